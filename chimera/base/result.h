@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors as values: what somebody gave us was wrong, and we say what and where.
+// (std::expected is C++23; the member names here are its own.)
+#pragma once
+
+#include <utility>
+#include <variant>
+
+#include "chimera/base/assert.h"
+#include "chimera/base/fixed.h"
+
+namespace chimera {
+
+enum class ErrorCode : unsigned char {
+  kBadInput,     // text, file or value that breaks a stated rule
+  kNotFound,     // a name or file that does not exist
+  kRefused,      // a legal request that the present state, rights or capacity do not allow
+  kUnsupported,  // a mechanism that this build does not have
+  kSystem,       // the operating system said no
+};
+
+/// What went wrong. `message` says what was found and what was expected, `where` the place
+/// ("arm.yaml:12:8", "/path/file.so"), empty when there is none. Trivially copyable: no heap.
+struct Error {
+  ErrorCode code = ErrorCode::kBadInput;
+  FixedString<400> message;
+  FixedString<200> where;
+};
+
+/// A T or an Error. Reading the half that is not there is a bug of the caller (CHIMERA_ASSERT).
+/// Context: setup.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) noexcept : half_(std::in_place_index<0>, std::move(value)) {}  // NOLINT: a value is a result
+  Result(Error error) noexcept : half_(std::in_place_index<1>, error) {}         // NOLINT: so is an error
+
+  bool has_value() const noexcept { return half_.index() == 0; }
+  explicit operator bool() const noexcept { return has_value(); }
+  T& value() & noexcept { CHIMERA_ASSERT(has_value()); return *std::get_if<0>(&half_); }
+  const T& value() const& noexcept { CHIMERA_ASSERT(has_value()); return *std::get_if<0>(&half_); }
+  T&& value() && noexcept { CHIMERA_ASSERT(has_value()); return std::move(*std::get_if<0>(&half_)); }
+  const Error& error() const noexcept { CHIMERA_ASSERT(!has_value()); return *std::get_if<1>(&half_); }
+  T& operator*() & noexcept { return value(); }
+  const T& operator*() const& noexcept { return value(); }
+  T&& operator*() && noexcept { return std::move(*this).value(); }
+  T* operator->() noexcept { return &value(); }
+  const T* operator->() const noexcept { return &value(); }
+
+ private:
+  std::variant<T, Error> half_;
+};
+
+/// Success without a value, or an Error.
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() noexcept = default;
+  Result(Error error) noexcept : error_(error), failed_(true) {}  // NOLINT: an error is a result
+
+  bool has_value() const noexcept { return !failed_; }
+  explicit operator bool() const noexcept { return !failed_; }
+  const Error& error() const noexcept { CHIMERA_ASSERT(failed_); return error_; }
+
+ private:
+  Error error_;
+  bool failed_ = false;
+};
+
+}  // namespace chimera

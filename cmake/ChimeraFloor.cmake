@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+# chimera_floor(NAME [LINKS floor...] [LIBRARIES lib...] [EXCEPTIONS])
+#   One floor of the library: every x.cc of the folder makes the static library chimera_NAME,
+#   every x_test.cc goes into one test binary NAME_test. Suffixes choose where a test runs:
+#     x_test.cc           debug (address+undefined sanitizers)
+#     x_process_test.cc   debug; uses real processes, label "process"
+#     x_threads_test.cc   debug, and again alone under the thread sanitizer, label "threads"
+#     x_realtime_test.cc  release only, label "realtime"
+#   Without EXCEPTIONS the floor is built with -fno-exceptions -fno-rtti (floors 0 to 5).
+# chimera_tests(NAME TARGET-LIBS... ) does the test half alone, for folders without a library.
+
+find_package(GTest REQUIRED)
+find_package(Threads REQUIRED)
+
+add_library(chimera_flags INTERFACE)
+target_include_directories(chimera_flags INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(chimera_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -fPIC)
+if(CHIMERA_SANITIZE)
+  target_compile_options(chimera_flags INTERFACE
+    -fsanitize=${CHIMERA_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1 -O1)
+  target_link_options(chimera_flags INTERFACE -fsanitize=${CHIMERA_SANITIZE})
+else()
+  target_compile_options(chimera_flags INTERFACE -O2 -g1)
+endif()
+if(CHIMERA_SANITIZE STREQUAL "thread")
+  target_compile_definitions(chimera_flags INTERFACE CHIMERA_WORDWISE_COPY=1)
+endif()
+
+# gtest precompiled once, reused by every test binary.
+if(CHIMERA_TESTS AND NOT TARGET chimera_gtest)
+  file(WRITE ${CMAKE_BINARY_DIR}/gtest_pch.cc "// carries the precompiled gtest header\n")
+  add_library(chimera_gtest STATIC ${CMAKE_BINARY_DIR}/gtest_pch.cc)
+  target_link_libraries(chimera_gtest PUBLIC chimera_flags GTest::gtest Threads::Threads)
+  target_precompile_headers(chimera_gtest PRIVATE <gtest/gtest.h>)
+endif()
+
+function(_chimera_test_binary target label sources libs)
+  add_executable(${target} ${sources})
+  target_link_libraries(${target} PRIVATE ${libs} chimera_gtest GTest::gtest_main)
+  target_precompile_headers(${target} REUSE_FROM chimera_gtest)
+  add_test(NAME ${target} COMMAND ${target} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+  set_tests_properties(${target} PROPERTIES LABELS "${label}" TIMEOUT 300
+    ENVIRONMENT "GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/results/${target}.xml;CHIMERA_BUILD=${CMAKE_BINARY_DIR};CHIMERA_SOURCE=${CMAKE_SOURCE_DIR}")
+  if(label STREQUAL "realtime")
+    set_tests_properties(${target} PROPERTIES RUN_SERIAL TRUE)
+  endif()
+endfunction()
+
+function(chimera_tests name)
+  cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
+  if(NOT CHIMERA_TESTS)
+    return()
+  endif()
+  file(GLOB all CONFIGURE_DEPENDS *_test.cc)
+  set(plain ${all})
+  list(FILTER plain EXCLUDE REGEX "_(threads|process|realtime)_test\\.cc$")
+  foreach(kind threads process realtime)
+    set(${kind} ${all})
+    list(FILTER ${kind} INCLUDE REGEX "_${kind}_test\\.cc$")
+  endforeach()
+  if(CHIMERA_SANITIZE STREQUAL "thread")
+    if(threads)
+      _chimera_test_binary(${name}_threads_test threads "${threads}" "${arg_LIBS}")
+    endif()
+  elseif(CHIMERA_SANITIZE)
+    if(plain OR threads)
+      _chimera_test_binary(${name}_test unit "${plain};${threads}" "${arg_LIBS}")
+    endif()
+    if(process)
+      _chimera_test_binary(${name}_process_test process "${process}" "${arg_LIBS}")
+    endif()
+  elseif(realtime)
+    _chimera_test_binary(${name}_realtime_test realtime "${realtime}" "${arg_LIBS}")
+  endif()
+endfunction()
+
+function(chimera_floor name)
+  cmake_parse_arguments(arg "EXCEPTIONS" "" "LINKS;LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cc linux/*.cc virtual/*.cc executive/*.cc)
+  list(FILTER sources EXCLUDE REGEX "_test\\.cc$")
+  set(target chimera_${name})
+  set(scope PUBLIC)
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    if(NOT arg_EXCEPTIONS)
+      target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
+    endif()
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  list(TRANSFORM arg_LINKS PREPEND chimera_)
+  target_link_libraries(${target} ${scope} chimera_flags ${arg_LINKS} ${arg_LIBRARIES})
+  chimera_tests(${name} LIBS ${target})
+endfunction()
