@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The register: all outputs of one task, published together, one writer, any number of readers.
+// Non-blocking write (Kopetz & Reisinger 1993) with four slots: docs/formats/table.md has the proof sketch.
+//
+//   writer:  fence | copy into slot (n+1) mod 4 | counter = n+1
+//   reader:  n = counter | copy slot n mod 4 | fence | m = counter | valid while m - n <= 2, else try again
+//
+// The writer may die at any instruction: what it had not published is not seen. Readers never store.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chimera/base/time.h"
+#include "chimera/table/slot.h"
+
+namespace chimera {
+
+/// The writing side. Exactly one per group at any time; the memory outlives it.
+class GroupWriter {
+ public:
+  GroupWriter() noexcept = default;
+  /// Takes up writing where the counter of `memory` stands; zeroed memory is a group never written.
+  /// Requires: memory.size() >= group_bytes(payload_bytes), 64-byte aligned. Context: setup.
+  GroupWriter(std::span<std::byte> memory, std::uint32_t payload_bytes) noexcept;
+
+  /// Where the next publication's values go. Changes with every publish(). Context: cycle; wait-free.
+  std::byte* staging() const noexcept;
+  /// Makes the staged values the latest. Context: cycle; wait-free.
+  void publish(Nanoseconds now, std::uint64_t valid) noexcept;
+  /// Copies the latest published values into staging, so that outputs stand until overwritten.
+  /// Context: cycle; wait-free; O(payload).
+  void prefill() noexcept;
+  /// Publications so far. Context: cycle; wait-free.
+  std::uint64_t sequence() const noexcept;
+
+ private:
+  std::byte* base_ = nullptr;
+  std::uint32_t payload_bytes_ = 0;
+  std::uint32_t stride_ = 0;
+  std::uint64_t latest_ = 0;
+};
+
+/// A reading side. Works on a read-only mapping.
+class GroupReader {
+ public:
+  GroupReader() noexcept = default;
+  /// Requires: as GroupWriter. Context: setup.
+  GroupReader(const std::byte* memory, std::uint32_t payload_bytes) noexcept;
+
+  /// Copies the latest publication whole: header to `header`, payload_bytes to `values`. False, with both
+  /// unchanged or partly overwritten, after kReadTries attempts were overtaken: the caller keeps its
+  /// previous copy (double-buffered) and counts it stale.
+  /// Context: cycle; bounded; plain loads only.
+  [[nodiscard]] bool try_read(chimera_slot& header, std::byte* values) const noexcept;
+  /// The latest published slot in place: its values follow the header. Only where writer and reader run
+  /// in one context, so that nothing is published while the pointer is in use.
+  /// Context: cycle; wait-free.
+  const chimera_slot* published() const noexcept;
+
+ private:
+  const std::byte* base_ = nullptr;
+  std::uint32_t payload_bytes_ = 0;
+  std::uint32_t stride_ = 0;
+};
+
+}  // namespace chimera

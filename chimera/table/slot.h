@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a group of state variables lies in memory: docs/formats/table.md.
+//
+//   [counter: 8 bytes on a cache line of its own][slot 0][slot 1][slot 2][slot 3]
+//   slot = chimera_slot header (32 bytes) + payload, rounded up to whole cache lines
+//   publication n lies in slot n mod 4; publication 0 is the never-written fill
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "chimera/table/slot_header.h"
+
+namespace chimera {
+
+inline constexpr std::uint32_t kSlots = 4;
+inline constexpr std::size_t kCacheLine = 64;
+inline constexpr std::uint32_t kReadTries = 4;
+
+/// Bytes from one slot to the next for `payload_bytes` of values. Context: any; wait-free.
+constexpr std::size_t slot_stride(std::size_t payload_bytes) noexcept {
+  return (sizeof(chimera_slot) + payload_bytes + kCacheLine - 1) / kCacheLine * kCacheLine;
+}
+
+/// Bytes of a whole group. Context: any; wait-free.
+constexpr std::size_t group_bytes(std::size_t payload_bytes) noexcept {
+  return kCacheLine + kSlots * slot_stride(payload_bytes);
+}
+
+}  // namespace chimera

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// A task as handed down: everything the floors below need to make and run it, and nothing about files.
+// Plain data over memory that the giver keeps alive (a Configuration, or tables baked into an image).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "chimera/base/ids.h"
+#include "chimera/base/time.h"
+#include "chimera/task/abi.h"
+
+namespace chimera {
+
+/// One dimension of a port of this task, after verification.
+struct ExtentSpec {
+  std::uint32_t max = 1;      ///< storage reserved; the extent itself when `constant` is empty
+  std::string_view constant;  ///< name of the constant variable that fixes the extent at init, in 1..max
+};
+
+/// One port instance of this task, with every unit, extent and type variable solved.
+struct PortSpec {
+  std::uint32_t declared = 0;   ///< index in the component's declaration
+  std::uint32_t instance = 0;   ///< of a repeated port; 0 otherwise
+  std::string_view variable;    ///< name in the table after aliases; resource: "" ; unbound in-const: ""
+  std::uint32_t element_bytes = 0;
+  ExtentSpec extent[CHIMERA_MAX_EXTENTS];
+  bool safety = false;
+  double min = 0, max = 0;      ///< declared range, in the port's unit; counts when has_range
+  bool has_range = false;
+  std::uint32_t type = CHIMERA_FLOAT64;  ///< solved element type, never CHIMERA_ANY
+  /// out-var: initial value; in-const: the value given to this task alone, else the component's default;
+  /// resource: its text without the zero. Empty: none. Values fill all max elements.
+  std::span<const std::byte> value;
+
+  std::uint32_t max_count() const noexcept { return extent[0].max * extent[1].max; }
+  std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }
+};
+
+/// What happens when a cycle ends after its deadline (design section 6).
+enum class OnMiss : std::uint8_t { kContinue, kHold, kSkip, kAbort, kDemote, kError, kSwitch, kFlag, kStop };
+
+/// One task. Times are zero or positive; period > 0.
+struct TaskSpec {
+  std::string_view name;
+  std::string_view component;
+  Nanoseconds period;    ///< between releases; an aperiodic task is asked for an event at each
+  Nanoseconds offset;    ///< of the first release after on
+  Nanoseconds deadline;  ///< relative to the release, 0 < deadline <= period
+  Nanoseconds budget;    ///< execution time a cycle may use; 0 = not stated
+  Nanoseconds min_time;  ///< execution time a useful cycle needs at least; 0 = not stated
+  std::uint32_t criticality = 0;    ///< higher is more critical: low 0, medium 1, high 2
+  std::uint32_t user_priority = 0;  ///< higher first
+  OnMiss on_miss = OnMiss::kContinue;
+  OnMiss on_overrun = OnMiss::kContinue;
+  std::uint32_t max_consecutive = 0;  ///< misses in a row after which the task goes to ERROR; 0 = no limit
+  bool aperiodic = false;             ///< the component has a sync method
+  RtpuId rtpu;
+  std::span<const PortSpec> ports;
+};
+
+}  // namespace chimera
