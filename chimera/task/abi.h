@@ -136,6 +136,8 @@ typedef struct chimera_port {
   uint32_t bit;              /* of the value in slot->valid */
   uint32_t count;            /* elements in use = product of extents */
   uint32_t extent[CHIMERA_MAX_EXTENTS]; /* 1 where the shape has fewer dimensions */
+  uint32_t type;             /* of the elements as solved: differs from the declaration for CHIMERA_ANY only */
+  uint32_t element_size;     /* bytes of one element, as solved */
 } chimera_port;
 
 /* Where a method leaves the text of its fault. */

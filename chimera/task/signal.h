@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The signals that move a task between its states (1994 paper, section 4; design section 7), and the nine methods.
+#pragma once
+
+#include <cstdint>
+
+#include "chimera/task/abi.h"
+
+namespace chimera {
+
+/// What a task may be told. `kWakeup` comes from the timer or the event source, never from a sender.
+enum class Signal : std::uint32_t {
+  kSpawn = CHIMERA_SIGNAL_SPAWN,
+  kOn = CHIMERA_SIGNAL_ON,
+  kOff = CHIMERA_SIGNAL_OFF,
+  kKill = CHIMERA_SIGNAL_KILL,
+  kClear = CHIMERA_SIGNAL_CLEAR,
+  kReinit = CHIMERA_SIGNAL_REINIT,
+  kWakeup = CHIMERA_SIGNAL_WAKEUP,
+};
+
+/// The methods of a component, in the order of the table in chimera_component.
+enum class Method : std::uint32_t {
+  kInit = CHIMERA_INIT,
+  kReinit = CHIMERA_REINIT,
+  kOn = CHIMERA_ON,
+  kCycle = CHIMERA_CYCLE,
+  kSync = CHIMERA_SYNC,
+  kOff = CHIMERA_OFF,
+  kKill = CHIMERA_KILL,
+  kError = CHIMERA_ERROR,
+  kClear = CHIMERA_CLEAR,
+};
+
+/// "cycle" for kCycle. Context: any; wait-free.
+constexpr const char* method_name(Method method) noexcept {
+  constexpr const char* kNames[CHIMERA_METHODS] = {"init", "reinit", "on",    "cycle", "sync",
+                                                   "off",  "kill",   "error", "clear"};
+  return kNames[static_cast<std::uint32_t>(method)];
+}
+
+/// "reinit" for kReinit. Context: any; wait-free.
+constexpr const char* signal_name(Signal signal) noexcept {
+  constexpr const char* kNames[CHIMERA_SIGNALS] = {"spawn", "on", "off", "kill", "clear", "reinit", "wakeup"};
+  return kNames[static_cast<std::uint32_t>(signal)];
+}
+
+}  // namespace chimera
