@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stage 2 of the walk: a draft and the descriptors of the library become a Configuration, or a report of all faults.
+#pragma once
+
+#include <optional>
+
+#include "chimera/config/configuration.h"
+#include "chimera/config/draft.h"
+#include "chimera/config/report.h"
+
+namespace chimera {
+
+class Library;
+
+/// `configuration` is there exactly when the report has no error. Warnings may come with it.
+struct Verdict {
+  std::optional<Configuration> configuration;
+  Report report;
+};
+
+/// Judges a draft by every legality rule. Faults that follow from another are left out.
+/// The configuration needs neither draft nor library afterwards. Context: setup.
+Verdict verify(const Draft& draft, const Library& library);
+
+/// Judges what was read, faults of the text included: the one call of `check` and `run`. Context: setup.
+Verdict verify(const Reading& reading, const Library& library);
+
+enum class Executor : std::uint8_t { kRealTime, kVirtual };
+
+/// What the single-context executors do not have yet and this configuration asks for, each by name and place;
+/// empty: it can run. Context: setup.
+Report unsupported_by_single_context(const Configuration& configuration, Executor executor);
+
+}  // namespace chimera
