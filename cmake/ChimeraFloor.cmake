@@ -59,6 +59,7 @@ if(CHIMERA_TESTS)
     file(WRITE ${CMAKE_BINARY_DIR}/gtest_pch.cc "// carries the precompiled gtest header\n")
     add_library(chimera_gtest STATIC EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/gtest_pch.cc)
     target_link_libraries(chimera_gtest PUBLIC chimera_flags GTest::gtest Threads::Threads)
+    target_compile_options(chimera_gtest PUBLIC -fpch-preprocess)  # without it ccache never hits
     target_precompile_headers(chimera_gtest PRIVATE <gtest/gtest.h>)
   endif()
 endif()
