@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""./dev test: compiles the trees, runs every test, and ends with one line that counts them."""
+import argparse
+import dataclasses
+import fnmatch
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import time
+
+import common
+import results
+import stress
+from results import FAILED, PASSED, SKIPPED, Case
+
+
+@dataclasses.dataclass
+class Share:
+    """A part of the tests with its limit; `runs` are (tree, labels), the real-time ones alone on the machine."""
+    name: str
+    limit_min: float
+    runs: tuple = ()
+
+
+COMPILE = Share("compile", 12)
+SHARES = (
+    Share("units", 3, (("debug", "unit"), ("tsan", "threads"), ("release", "size|symbol"))),
+    Share("processes", 4, (("debug", "process"), ("release", "realtime"))),
+    Share("page", 3, (("debug", "page"),)),
+    Share("firmware", 1, (("debug", "firmware"),)),
+    Share("models", 2, (("debug", "model"), ("fuzz", "fuzz"))),
+)
+TREES = ("debug", "tsan", "release", "fuzz")
+TOTAL_LIMIT_MIN = 25
+MAY_SKIP = common.ROOT / "tests" / "may_skip.txt"
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(
+        prog="./dev test", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Builds and runs every test; the last line counts them. Exit 0 only if none failed.",
+        epilog="shares and their limits in minutes: compile 12, "
+               + ", ".join(f"{share.name} {share.limit_min}" for share in SHARES) + "\nexample: ./dev test --only units")
+    parser.add_argument("--only", metavar="SHARE", choices=[share.name for share in SHARES],
+                        help="run one share; its trees are compiled first")
+    parser.add_argument("--stress", nargs="*", metavar="MINUTES|NAME",
+                        help="instead of the tests run the campaigns of tests/stress.txt, each MINUTES long (default 10)")
+    return parser.parse_args()
+
+
+def trees_of(shares):
+    """The trees the shares need; the fuzz tree only when something is to be fuzzed."""
+    wanted = [tree for tree in TREES if any(tree == run[0] for share in shares for run in share.runs)]
+    if not any((common.ROOT / "chimera").glob("*/*_fuzz.cc")):
+        wanted = [tree for tree in wanted if tree != "fuzz"]
+    return wanted
+
+
+def compile_trees(trees):
+    for tree in trees:
+        ready = common.configure(tree) if tree == "fuzz" else common.configure_with_tests(tree)
+        targets = () if tree == "debug" else ("tests_needed",)
+        if not ready or not common.compile_tree(tree, *targets):
+            return False
+    return True
+
+
+def without_address_randomisation():
+    """The thread sanitizer of this compiler meets memory maps it cannot use when addresses are randomised widely."""
+    prefix = ["setarch", platform.machine(), "-R"]
+    works = shutil.which("setarch") and subprocess.run(prefix + ["true"], capture_output=True).returncode == 0
+    return prefix if works else []
+
+
+def ctest(tree, labels, serial):
+    """Runs the tests of a tree that carry one of the labels. Returns their cases."""
+    folder = common.BUILD / tree
+    junit = folder / "results" / "ctest.xml"
+    shutil.rmtree(junit.parent, ignore_errors=True)
+    junit.parent.mkdir(parents=True)
+    command = ["ctest", "--test-dir", f"build/{tree}", "-L", f"^({labels})$", "--no-tests=ignore", "--output-junit",
+               str(junit), "--test-output-size-passed", "200000", "--test-output-size-failed", "1000000",
+               "-j", "1" if serial else str(max(2, os.cpu_count() or 2))]
+    prefix = without_address_randomisation() if tree == "tsan" else []
+    code = common.run_logged(prefix + command, folder / "ctest.log", r"\s*\d+/\d+ Test ")
+    if not junit.exists():
+        return [] if code == 0 else [Case(f"ctest in build/{tree}", FAILED, (folder / "ctest.log").read_text())]
+    return results.read(junit, junit.parent)
+
+
+def unlabelled(tree):
+    """Tests that no share would ever run."""
+    known = {label for share in SHARES for run in share.runs for label in run[1].split("|")} | {"threads"}
+    listing = subprocess.run(["ctest", "--test-dir", f"build/{tree}", "--show-only=json-v1"], cwd=common.ROOT,
+                             capture_output=True, text=True, check=True)
+    for test in json.loads(listing.stdout)["tests"]:
+        labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
+        if not known & set(labels):
+            yield Case(test["name"], FAILED, f"its labels {labels} belong to no share: it would never run")
+
+
+def run_share(share, trees):
+    cases = []
+    for tree, labels in share.runs:
+        if tree not in trees:
+            continue
+        if labels == "realtime":
+            with common.realtime_lock():
+                cases += ctest(tree, labels, serial=True)
+        else:
+            cases += ctest(tree, labels, serial=False)
+    return cases
+
+
+def allowed_skips():
+    """Lines of may_skip.txt: a test name (wildcards allowed), then the reason."""
+    lines = (line.strip() for line in MAY_SKIP.read_text().splitlines())
+    return [line.split(None, 1)[0] for line in lines if line and not line.startswith("#")]
+
+
+def judge_skips(cases):
+    """Under CI=true a skip that nobody foresaw is a failure."""
+    if os.environ.get("CI") != "true":
+        return
+    allowed = allowed_skips()
+    for case in cases:
+        if case.outcome == SKIPPED and not any(fnmatch.fnmatchcase(case.name, pattern) for pattern in allowed):
+            case.outcome = FAILED
+            case.said = f"skipped, and not listed in {MAY_SKIP.relative_to(common.ROOT)}: {case.said}"
+
+
+def timed(share, seconds, cases):
+    """Prints the share's line; one that took too long is a failed case."""
+    over = seconds > share.limit_min * 60
+    counts = "" if share is COMPILE else f"  {len(cases)} tests"
+    print(f"   {share.name:<10} {clock(seconds)} of {clock(share.limit_min * 60)}{counts}{'  TOO LONG' if over else ''}", flush=True)
+    if over:
+        cases.append(Case(f"share {share.name}", FAILED, f"took {clock(seconds)}, its limit is {clock(share.limit_min * 60)}"))
+    return cases
+
+
+def clock(seconds):
+    return f"{int(seconds) // 60:2d}:{int(seconds) % 60:02d}"
+
+
+def finish(cases):
+    """Failures with what they said, skips with their reasons, the count. Returns the exit code."""
+    judge_skips(cases)
+    for case in cases:
+        if case.outcome == FAILED:
+            lines = case.said.rstrip().splitlines()
+            shown = lines if len(lines) <= 120 else lines[:60] + [f"... {len(lines) - 120} lines ..."] + lines[-60:]
+            print(f"FAILED {case.name}\n    " + "\n    ".join(shown))
+    for case in cases:
+        if case.outcome == SKIPPED:
+            print(f"skipped {case.name}: {case.said}")
+    count = {outcome: sum(case.outcome == outcome for case in cases) for outcome in (PASSED, FAILED, SKIPPED)}
+    print(f"{count[PASSED]} passed, {count[FAILED]} failed, {count[SKIPPED]} skipped", flush=True)
+    return 1 if count[FAILED] or not count[PASSED] else 0
+
+
+def run_tests(shares):
+    begin = time.monotonic()
+    trees = trees_of(shares)
+    if not compile_trees(trees):
+        return finish([Case("compile", FAILED, "see above")])
+    cases = timed(COMPILE, time.monotonic() - begin, [])
+    for tree in trees:
+        cases += unlabelled(tree)
+    for share in shares:
+        common.step(f"running {share.name}")
+        start = time.monotonic()
+        found = run_share(share, trees)
+        cases += timed(share, time.monotonic() - start, found)
+    cases = timed(Share("total", TOTAL_LIMIT_MIN), time.monotonic() - begin, cases)
+    return finish(cases)
+
+
+def main():
+    arguments = parse_arguments()
+    if arguments.stress is not None:
+        return stress.main(arguments.stress)
+    return run_tests([share for share in SHARES if arguments.only in (None, share.name)])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
