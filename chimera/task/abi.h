@@ -104,7 +104,8 @@ typedef struct chimera_field {
  * shape: "" scalar; "[6]" literal; "[ndof<=10]" an extent given by the constant port `ndof`, at most 10;
  *        "[n<=16]" where no constant port is called n: an extent variable, solved by verification;
  *        two dimensions as "[3][3]".
- * unit:  UDUNITS-2 text with our unit file; a single capital letter is a unit variable ("U", "U/s", "U.V").
+ * unit:  UDUNITS-2 text with our unit file; the letters U, X, Y and Z, which are no units, are unit
+ *        variables ("U", "U/s", "U.X"; V is the volt).
  */
 typedef struct chimera_port_decl {
   const char* name;      /* a repeated port: without the '*' */
