@@ -2,10 +2,19 @@
 // The register: all outputs of one task, published together, one writer, any number of readers.
 // Non-blocking write (Kopetz & Reisinger 1993) with four slots: docs/formats/table.md has the proof sketch.
 //
-//   writer:  fence | copy into slot (n+1) mod 4 | counter = n+1
+//   writer:  fence | fill slot (n+1) mod 4 | counter = n+1
 //   reader:  n = counter | copy slot n mod 4 | fence | m = counter | valid while m - n <= 2, else try again
 //
-// The writer may die at any instruction: what it had not published is not seen. Readers never store.
+//   counter   slot 0   slot 1   slot 2   slot 3      a reader that loaded n = 4 copies slot 0:
+//      4      [ 4 ]    < 5 >      2        3         m = 4: nothing happened to it
+//      5        4      [ 5 ]    < 6 >      3         m = 5: not touched
+//      6        4        5      [ 6 ]    < 7 >       m = 6: not touched: m - n = 2 is the last good one
+//      7      < 8 >      5        6      [ 7 ]       m = 7: 8 may be half written over it: try again
+//             [latest publication]  <being filled>
+//
+// Invariants: (1) slot c mod 4, c the counter, is complete and nobody writes it; (2) the only slot written to is
+// (c+1) mod 4; (3) the counter only grows, by one a publication. A writer that dies at any instruction leaves
+// all three true: nothing is repaired, its successor fills slot (c+1) mod 4 again. Readers never store.
 #pragma once
 
 #include <cstddef>
@@ -25,15 +34,20 @@ class GroupWriter {
   /// Requires: memory.size() >= group_bytes(payload_bytes), 64-byte aligned. Context: setup.
   GroupWriter(std::span<std::byte> memory, std::uint32_t payload_bytes) noexcept;
 
-  /// Where the next publication's values go. Changes with every publish(). Context: cycle; wait-free.
+  /// Where the next publication's values go; 8-byte aligned. Changes with every publish(). What stands there is
+  /// that of four publications ago until prefill(). Context: cycle; wait-free.
   std::byte* staging() const noexcept;
   /// Makes the staged values the latest. Context: cycle; wait-free.
   void publish(Nanoseconds now, std::uint64_t valid) noexcept;
+  /// Stages payload_bytes from `values` and publishes them: what a task with a local table does after a method.
+  /// Context: cycle; wait-free; O(payload).
+  void write(const std::byte* values, Nanoseconds now, std::uint64_t valid) noexcept;
   /// Copies the latest published values into staging, so that outputs stand until overwritten.
   /// Context: cycle; wait-free; O(payload).
   void prefill() noexcept;
   /// Publications so far. Context: cycle; wait-free.
   std::uint64_t sequence() const noexcept;
+  std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
 
  private:
   std::byte* base_ = nullptr;
@@ -58,6 +72,7 @@ class GroupReader {
   /// in one context, so that nothing is published while the pointer is in use.
   /// Context: cycle; wait-free.
   const chimera_slot* published() const noexcept;
+  std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
 
  private:
   const std::byte* base_ = nullptr;

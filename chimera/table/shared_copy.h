@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// How bytes and the counter of a group cross from one context to another, in one place
+// (docs/decisions/0001-register-copy.md). Two builds of the same register:
+//
+//   release    the copy is a call of memcpy with a size the compiler cannot know. The bytes race with the
+//              writer; what was torn is thrown away by the counter check. Two fences order copy and counter.
+//   word-wise  (CHIMERA_WORDWISE_COPY=1, thread sanitizer) each 8-byte word is an atomic of its own: release
+//              stores, acquire loads, no fence, because the sanitizer does not model fences.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#ifndef CHIMERA_WORDWISE_COPY
+#define CHIMERA_WORDWISE_COPY 0
+#endif
+
+namespace chimera::shared_copy {
+
+/// The counter word at `place`. Readers use it on read-only mappings: it is never stored through.
+inline std::atomic_ref<std::uint64_t> word(const std::byte* place) noexcept {
+  return std::atomic_ref<std::uint64_t>(*reinterpret_cast<std::uint64_t*>(const_cast<std::byte*>(place)));
+}
+
+#if CHIMERA_WORDWISE_COPY
+
+inline void release_fence() noexcept {}  // every word is stored with release
+inline void acquire_fence() noexcept {}  // every word is loaded with acquire
+
+inline std::atomic_ref<unsigned char> byte_at(const std::byte* place) noexcept {
+  return std::atomic_ref<unsigned char>(*reinterpret_cast<unsigned char*>(const_cast<std::byte*>(place)));
+}
+
+inline void copy_out(void* to, const std::byte* from, std::size_t bytes) noexcept {
+  auto* out = static_cast<unsigned char*>(to);
+  std::size_t i = 0;
+  for (; i + 8 <= bytes; i += 8) {
+    const std::uint64_t w = word(from + i).load(std::memory_order_acquire);
+    std::memcpy(out + i, &w, 8);
+  }
+  for (; i < bytes; ++i) out[i] = byte_at(from + i).load(std::memory_order_acquire);
+}
+
+inline void copy_in(std::byte* to, const void* from, std::size_t bytes) noexcept {
+  const auto* in = static_cast<const unsigned char*>(from);
+  std::size_t i = 0;
+  for (; i + 8 <= bytes; i += 8) {
+    std::uint64_t w;
+    std::memcpy(&w, in + i, 8);
+    word(to + i).store(w, std::memory_order_release);
+  }
+  for (; i < bytes; ++i) byte_at(to + i).store(in[i], std::memory_order_release);
+}
+
+inline void move_inside(std::byte* to, const std::byte* from, std::size_t bytes) noexcept {
+  std::size_t i = 0;
+  for (; i + 8 <= bytes; i += 8) word(to + i).store(word(from + i).load(std::memory_order_relaxed),
+                                                    std::memory_order_release);
+  for (; i < bytes; ++i) byte_at(to + i).store(byte_at(from + i).load(std::memory_order_relaxed),
+                                               std::memory_order_release);
+}
+
+#else
+
+inline void release_fence() noexcept { std::atomic_thread_fence(std::memory_order_release); }
+inline void acquire_fence() noexcept { std::atomic_thread_fence(std::memory_order_acquire); }
+
+/// memcpy with a size hidden from the compiler: a known size would be expanded to `rep movsq`, three times slower.
+inline void opaque_copy(void* to, const void* from, std::size_t bytes) noexcept {
+  asm volatile("" : "+r"(bytes));
+  std::memcpy(to, from, bytes);
+}
+/// From the register into private memory.
+inline void copy_out(void* to, const std::byte* from, std::size_t bytes) noexcept { opaque_copy(to, from, bytes); }
+/// From private memory into the register.
+inline void copy_in(std::byte* to, const void* from, std::size_t bytes) noexcept { opaque_copy(to, from, bytes); }
+/// Within the register, by its writer.
+inline void move_inside(std::byte* to, const std::byte* from, std::size_t bytes) noexcept {
+  opaque_copy(to, from, bytes);
+}
+
+#endif
+
+}  // namespace chimera::shared_copy
