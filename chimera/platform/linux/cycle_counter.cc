@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/platform/cycle_counter.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <ctime>
+#include <string_view>
+
+#include "chimera/base/message.h"
+
+namespace chimera {
+namespace {
+
+// The start of a small file of /proc or /sys; "" when it cannot be read.
+struct FileStart {
+  explicit FileStart(const char* path) noexcept {
+    const int fd = ::open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) return;
+    ssize_t got = 0;
+    while (size < sizeof bytes && (got = ::read(fd, bytes + size, sizeof bytes - size)) > 0)
+      size += static_cast<std::size_t>(got);
+    ::close(fd);
+  }
+  std::string_view view() const noexcept { return {bytes, size}; }
+  char bytes[8192];
+  std::size_t size = 0;
+};
+
+#if defined(__x86_64__)
+
+bool has_flag(std::string_view cpuinfo, std::string_view flag) noexcept {
+  const std::size_t flags = cpuinfo.find("\nflags");
+  if (flags == std::string_view::npos) return false;
+  const std::string_view line = cpuinfo.substr(flags + 1, cpuinfo.find('\n', flags + 1) - flags - 1);
+  for (std::size_t at = line.find(flag); at != std::string_view::npos; at = line.find(flag, at + 1)) {
+    const std::size_t end = at + flag.size();
+    if (line[at - 1] == ' ' && (end == line.size() || line[end] == ' ')) return true;
+  }
+  return false;
+}
+
+// Why the counter must not be used; empty when it may.
+Message objection() noexcept {
+  const FileStart source("/sys/devices/system/clocksource/clocksource0/current_clocksource");
+  std::string_view name = source.view();
+  if (name.ends_with('\n')) name.remove_suffix(1);
+  if (name != "tsc" && name != "kvm-clock")
+    return Message() << "clock source is " << (name.empty() ? "unknown" : name) << ", not tsc";
+  const FileStart cpuinfo("/proc/cpuinfo");
+  for (const char* flag : {"constant_tsc", "nonstop_tsc", "rdtscp"})
+    if (!has_flag(cpuinfo.view(), flag)) return Message() << "processor lacks " << flag;
+  return {};
+}
+
+struct Reading {
+  std::uint64_t ticks = 0;
+  Nanoseconds at;
+};
+
+Nanoseconds monotonic() noexcept {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return {t.tv_sec * 1'000'000'000 + t.tv_nsec};
+}
+
+// Counter and clock together: the try with the least between its two counter reads, of `tries` or fewer when one
+// was `close_enough` already. A reading with a preemption inside would be wrong by half of it.
+Reading read_both(int tries, std::uint64_t close_enough) noexcept {
+  Reading best;
+  std::uint64_t least = UINT64_MAX;
+  for (int i = 0; i < tries && least > close_enough; ++i) {
+    unsigned cpu;
+    const std::uint64_t before = __rdtscp(&cpu);
+    const Nanoseconds at = monotonic();
+    const std::uint64_t after = __rdtscp(&cpu);
+    if (after - before >= least) continue;
+    least = after - before;
+    best = {before + least / 2, at};
+  }
+  return best;
+}
+
+#endif
+
+}  // namespace
+
+Nanoseconds CycleCounter::read_clock() noexcept {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return {t.tv_sec * 1'000'000'000 + t.tv_nsec};
+}
+
+CycleCounter CycleCounter::by_clock_gettime() noexcept {
+  return CycleCounter(Source::kClockGettime, TickScale(0, {}, 0), FixedString<120>("clock_gettime (as asked)"));
+}
+
+CycleCounter CycleCounter::calibrate() noexcept {
+#if defined(__x86_64__)
+  const Message why_not = objection();
+  if (why_not.empty()) {
+    const Reading first = read_both(20, 0);
+    const timespec span{0, 10'000'000};
+    ::clock_nanosleep(CLOCK_MONOTONIC, 0, &span, nullptr);
+    const Reading last = read_both(20, 0);
+    const std::uint64_t ticks = last.ticks - first.ticks;
+    const auto ns = static_cast<std::uint64_t>((last.at - first.at).count);
+    __extension__ using Wide = unsigned __int128;
+    const auto rate = static_cast<std::uint64_t>((static_cast<Wide>(ns) << 32) / ticks);
+    const Message text = Message() << "cycle counter at " << (ticks * 1000 + ns / 2) / ns << " MHz";
+    return CycleCounter(Source::kCycleCounter, TickScale(last.ticks, last.at, rate), FixedString<120>(text.view()));
+  }
+  const Message text = Message() << "clock_gettime (" << why_not.view() << ")";
+#else
+  const Message text = Message() << "clock_gettime (no cycle counter known for this processor)";
+#endif
+  return CycleCounter(Source::kClockGettime, TickScale(0, {}, 0), FixedString<120>(text.view()));
+}
+
+void CycleCounter::compare() noexcept {
+#if defined(__x86_64__)
+  if (source_ != Source::kCycleCounter) return;
+  const Reading both = read_both(4, 2000);
+  scale_.compare(both.ticks, both.at);
+#endif
+}
+
+}  // namespace chimera
