@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/puma_torque/mujoco_guard.h"
+
+#include <csetjmp>
+#include <cstdio>
+#include <cstdlib>
+#include <initializer_list>
+
+namespace chimera::library {
+namespace {
+
+// In static thread storage: the first touch from a real-time thread must not allocate.
+struct Landing {
+  std::jmp_buf* place;
+  char text[120];
+};
+__attribute__((tls_model("initial-exec"))) thread_local Landing landing{};
+
+// MuJoCo is C: it has nothing to unwind, and a handler that returned would let it go on with a broken state.
+[[noreturn]] void on_error(const char* text) {
+  if (landing.place == nullptr) {
+    std::fprintf(stderr, "mujoco: %s\n", text);
+    std::abort();
+  }
+  std::snprintf(landing.text, sizeof landing.text, "%s", text);
+  std::longjmp(*landing.place, 1);
+}
+
+// Warnings are also counted in the state; guarded() reads the counts.
+void on_warning(const char*) {}
+
+int bad_numbers(const mjData* state) noexcept {
+  return state->warning[mjWARN_BADQPOS].number + state->warning[mjWARN_BADQVEL].number +
+         state->warning[mjWARN_BADQACC].number + state->warning[mjWARN_BADCTRL].number;
+}
+
+bool returns(void (*part)(const mjModel*, mjData*), const mjModel* model, mjData* state) noexcept {
+  std::jmp_buf here;
+  landing.place = &here;
+  if (setjmp(here) != 0) {
+    landing.place = nullptr;
+    return false;
+  }
+  part(model, state);
+  landing.place = nullptr;
+  return true;
+}
+
+}  // namespace
+
+void install_mujoco_handlers() noexcept {
+  mju_user_error = on_error;
+  mju_user_warning = on_warning;
+}
+
+bool guarded(void (*part)(const mjModel*, mjData*), const mjModel* model, mjData* state) noexcept {
+  landing.text[0] = '\0';
+  // A reset clears the counts and then adds its own, so from zero each is seen.
+  for (int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC, mjWARN_BADCTRL}) state->warning[kind].number = 0;
+  return returns(part, model, state) && bad_numbers(state) == 0;
+}
+
+const char* mujoco_error() noexcept { return landing.text; }
+
+}  // namespace chimera::library

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mechanics of a torque-driven Puma 560 on MuJoCo: what the component puma_torque moves.
+// All vectors are joint space, base to wrist; positions in the standard Denavit-Hartenberg angles.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "chimera/base/fixed.h"
+#include "chimera/base/result.h"
+
+struct mjModel_;
+struct mjData_;
+
+namespace chimera::library {
+
+inline constexpr std::size_t kPumaJoints = 6;
+using PumaVector = std::array<double, kPumaJoints>;  ///< rad, rad/s or N.m
+using PumaInput = std::span<const double, kPumaJoints>;
+
+/// What may differ from arm to arm.
+struct PumaSettings {
+  double payload_mass = 0;   ///< kg, 0 to 10: a ball of radius 50 mm centred on the flange
+  double coulomb_share = 0;  ///< of the published Coulomb friction, 0 to 1
+};
+
+/// One simulated arm. Not copyable: owns the MuJoCo model and its state.
+class PumaArm {
+ public:
+  PumaArm() noexcept;
+  ~PumaArm();
+  PumaArm(const PumaArm&) = delete;
+  PumaArm& operator=(const PumaArm&) = delete;
+
+  /// Reads the model and stands at q = 0. Refuses a missing or ill-formed file, a model that is not a
+  /// six-joint arm with its names, a payload outside 0..10 kg, a share outside 0..1. Context: setup; may block.
+  Result<void> load(const char* mjcf_path, const PumaSettings& settings);
+
+  /// Stands at rest in `q` (rad). Refuses a position outside the joint limits or not finite. Context: setup.
+  Result<void> place(PumaInput q);
+
+  /// Moves on by `dt` seconds in equal sub-steps of at most 0.5 ms with `torque` (N.m, cut at the limits of the
+  /// drives). False, with fault() saying why and the state as before: torque not finite, dt not positive, or
+  /// a state that blew up. Context: cycle; wait-free; O(dt).
+  bool step(PumaInput torque, double dt);
+
+  /// Like step() without any command: the drives carry the weight and damp what moves, so the arm comes to
+  /// rest near where it is. For the time of an illegal configuration. Context: cycle; wait-free; O(dt).
+  bool step_locally_stable(double dt);
+
+  /// Brakes on: the joints stand still at once. Context: cycle; wait-free.
+  void brake();
+
+  /// Position (rad), velocity (rad/s), limits of the drives (N.m, either way). Context: cycle; wait-free.
+  PumaInput position() const noexcept;
+  PumaInput velocity() const noexcept;
+  const PumaVector& torque_limit() const noexcept { return torque_limit_; }
+
+  /// Gravity, centrifugal and Coriolis torque in the present state (N.m): what holds the arm at rest.
+  PumaVector bias_torque();
+  /// Joint-space mass matrix with motor inertias, row by row (kg.m2).
+  std::array<double, kPumaJoints * kPumaJoints> mass_matrix();
+  /// Wrist centre (frame 6) in the base frame: position (m), rotation row by row.
+  std::array<double, 3> wrist_position() const;
+  std::array<double, 9> wrist_rotation() const;
+
+  /// Why the last call that answered false did; empty before. Context: any.
+  const char* fault() const noexcept { return fault_.c_str(); }
+
+ private:
+  struct ModelRelease { void operator()(mjModel_* model) const; };
+  struct DataRelease { void operator()(mjData_* data) const; };
+
+  Result<void> read_model(const char* mjcf_path);
+  void apply(const PumaSettings& settings);
+  bool advance(double dt, const double* torque);
+  bool refuse(const char* why) noexcept;
+
+  std::unique_ptr<mjModel_, ModelRelease> model_;
+  std::unique_ptr<mjData_, DataRelease> state_;
+  PumaVector torque_limit_{};
+  FixedString<120> fault_;
+};
+
+}  // namespace chimera::library
