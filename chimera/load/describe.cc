@@ -57,7 +57,9 @@ Result<void> check_pointers(const std::string& place, const chimera_port_decl& p
   }
   if (port.flags >= CHIMERA_PORT_HAS_INITIAL << 1) return refused(place, "unknown flags");
   if ((port.flags & CHIMERA_PORT_HAS_INITIAL) == 0) return {};
-  if (port.initial == nullptr || port.initial_count == 0) return refused(place, "says it has an initial value but gives none");
+  if (port.initial == nullptr || port.initial_count == 0) {
+    return refused(place, "says it has an initial value but gives none");
+  }
   if (port.initial_count > kMaxExtent || port.element_size > kMaxExtent) {
     return refused(place, "the initial value is too large");
   }
@@ -89,7 +91,8 @@ PortDescriptor copy_port(const chimera_port_decl& port) {
   }
   for (std::uint32_t i = 0; i < port.n_fields; ++i) {
     const chimera_field& field = port.fields[i];
-    copy.fields.push_back({text_of(field.name), text_of(field.unit), field.type, field.offset, field.count, field.size});
+    copy.fields.push_back(
+        {text_of(field.name), text_of(field.unit), field.type, field.offset, field.count, field.size});
   }
   if (port.kind == CHIMERA_RESOURCE && copy.unit.empty()) copy.unit = "1";
   if ((port.flags & CHIMERA_PORT_HAS_INITIAL) != 0) copy.initial = initial_of(port, copy);
@@ -97,7 +100,9 @@ PortDescriptor copy_port(const chimera_port_decl& port) {
 }
 
 Result<void> check_component(const std::string& place, const chimera_component& component) {
-  if (component.construct == nullptr || component.destroy == nullptr) return refused(place, "has no construct or destroy");
+  if (component.construct == nullptr || component.destroy == nullptr) {
+    return refused(place, "has no construct or destroy");
+  }
   if (component.state_align == 0 || (component.state_align & (component.state_align - 1)) != 0 ||
       component.state_align > 4096) {
     return refused(place, "state alignment " + std::to_string(component.state_align) +

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/task/signal.h"
+
 namespace chimera {
 namespace {
 
 constexpr std::string_view kKinds[] = {"in-var",   "out-var",   "in-const",  "out-const",
                                        "resource", "in-stream", "out-stream"};
 constexpr std::string_view kTypes[] = {"bool", "int32", "int64", "float32", "float64", "string", "struct", "any"};
-constexpr std::string_view kMethods[] = {"init", "reinit", "on",    "cycle", "sync",
-                                         "off",  "kill",   "error", "clear"};
 
 std::string quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
 
@@ -67,7 +67,7 @@ std::vector<Saying> sayings(const PortDescriptor& port) {
 std::string methods_text(const Descriptor& descriptor) {
   std::string text;
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m) {
-    if (descriptor.methods[m]) text += (text.empty() ? "" : " ") + std::string(method_name(m));
+    if (descriptor.methods[m]) text += (text.empty() ? "" : " ") + std::string(method_name(static_cast<Method>(m)));
   }
   return text;
 }
@@ -103,11 +103,6 @@ std::string_view kind_name(std::uint32_t kind) noexcept {
 std::string_view type_name(std::uint32_t type) noexcept {
   CHIMERA_ASSERT(type < std::size(kTypes));
   return kTypes[type];
-}
-
-std::string_view method_name(std::uint32_t method) noexcept {
-  CHIMERA_ASSERT(method < std::size(kMethods));
-  return kMethods[method];
 }
 
 std::uint32_t type_size(std::uint32_t type) noexcept {

@@ -78,8 +78,6 @@ struct Descriptor {
 std::string_view kind_name(std::uint32_t kind) noexcept;
 /// "bool", "int32", "int64", "float32", "float64", "string", "struct", "any".
 std::string_view type_name(std::uint32_t type) noexcept;
-/// "init", "reinit", "on", "cycle", "sync", "off", "kill", "error", "clear".
-std::string_view method_name(std::uint32_t method) noexcept;
 /// Bytes of one element of a plain type; 0 for string and struct, whose size is declared.
 std::uint32_t type_size(std::uint32_t type) noexcept;
 

@@ -255,7 +255,8 @@ TEST(Match, NamesAMissingPortAndAnotherInitialValue) {
   object = file;
   object.ports[1].initial.clear();
   EXPECT_EQ(match(file, object).error().message.view(),
-            "component tderiv: port dx: initial value: the descriptor says bytes 0000000000000000, the object says none");
+            "component tderiv: port dx: initial value: the descriptor says bytes 0000000000000000, "
+            "the object says none");
   EXPECT_NE(fingerprint(file), fingerprint(object));
 }
 

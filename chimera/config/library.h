@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The components that are installed: their descriptors, found along CHIMERA_PATH and then in the install prefix.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/base/result.h"
+#include "chimera/config/unit_system.h"
+#include "chimera/load/descriptor.h"
+
+namespace chimera {
+
+/// A component as found. The shared object stands beside the descriptor: NAME.so.
+struct LibraryEntry {
+  Descriptor descriptor;
+  std::string descriptor_file;
+  std::string object_file;
+};
+
+/// Context: setup; may block. Immutable after make().
+class Library {
+ public:
+  /// Reads every NAME.component.json of `folders`, in order; of one name the first found counts. A folder that does
+  /// not exist is passed over. What cannot be read, or has a unit unknown to `units`, goes to faults().
+  static Library make(std::span<const std::string> folders, UnitSystem units);
+
+  /// A library of the given descriptors, for tests and tools that have no files.
+  static Library of(std::vector<Descriptor> descriptors, UnitSystem units);
+
+  /// By name, in alphabetical order.
+  std::span<const LibraryEntry> entries() const noexcept { return entries_; }
+  /// The component of that name, or nullptr.
+  const LibraryEntry* find(std::string_view name) const noexcept;
+  /// The installed name nearest to `name`, or "".
+  std::string nearest_name(std::string_view name) const;
+  /// What could not be read; `where` is the file.
+  std::span<const Error> faults() const noexcept { return faults_; }
+  const UnitSystem& units() const noexcept { return units_; }
+
+ private:
+  explicit Library(UnitSystem units) : units_(std::move(units)) {}
+  void read_folder(const std::string& folder);
+  void read_file(const std::string& path);
+  void add(LibraryEntry entry);
+
+  UnitSystem units_;
+  std::vector<LibraryEntry> entries_;
+  std::vector<Error> faults_;
+};
+
+/// The folders of CHIMERA_PATH (colons between them; empty parts are passed over), then `installed`.
+std::vector<std::string> component_folders(std::span<const std::string> installed);
+
+}  // namespace chimera

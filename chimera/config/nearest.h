@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The right name nearest to a wrong one, for every message that can offer one.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace chimera {
+
+/// Letters to insert, delete, replace or swap with their neighbour to make `b` of `a`. Context: setup; may block.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The name nearest to `wrong` (the first of equals), or "" when none is within a third of its length
+/// (at least 1 letter, at most 3). Upper and lower case differ by half a letter. Context: setup; may block.
+std::string nearest(std::string_view wrong, std::span<const std::string> names);
+
+}  // namespace chimera
