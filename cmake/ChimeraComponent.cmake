@@ -1,1 +1,93 @@
 # SPDX-License-Identifier: Apache-2.0
+# chimera_component(NAME source... [LIBRARIES lib...] [RESOURCES file...])
+#   One component: NAME.so and, derived from it by chimera-describe, NAME.component.json, both in
+#   ${CMAKE_BINARY_DIR}/components. The build prints the methods it found and fails when the object cannot be described.
+#   RESOURCES are copied beside them. LIBRARIES are linked into the component.
+#   NAME_test.cc beside the sources is linked with them (chimera/task/rig.h finds the component by its name):
+#   as the test NAME_test, or, where CHIMERA_COMPONENT_GROUP is set, into the group's one test binary.
+# chimera_component_tests(GROUP)
+#   The test binary of all components made so far with CHIMERA_COMPONENT_GROUP set to GROUP.
+#
+# The same file serves this build and the exported package: what differs are the targets chimera::component (headers
+# and base library) and chimera::describe (the tool).
+
+set(CHIMERA_COMPONENT_FLAGS -fPIC -fno-gnu-unique -fvisibility=hidden -ffp-contract=off)
+
+function(_chimera_component_tests_wanted out)
+  set(${out} FALSE PARENT_SCOPE)
+  if(CHIMERA_PACKAGE)  # outside our own build: a component is tested as it is built
+    if(NOT DEFINED BUILD_TESTING OR BUILD_TESTING)
+      set(${out} TRUE PARENT_SCOPE)
+    endif()
+  elseif(CHIMERA_TESTS AND CHIMERA_SANITIZE AND NOT CHIMERA_SANITIZE STREQUAL "thread")
+    set(${out} TRUE PARENT_SCOPE)
+  endif()
+endfunction()
+
+function(_chimera_component_test name objects libraries)
+  set(test ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cc)
+  _chimera_component_tests_wanted(wanted)
+  if(NOT wanted OR NOT EXISTS ${test})
+    return()
+  endif()
+  if(CHIMERA_COMPONENT_GROUP)
+    set_property(GLOBAL APPEND PROPERTY chimera_${CHIMERA_COMPONENT_GROUP}_sources ${test} $<TARGET_OBJECTS:${objects}>)
+    set_property(GLOBAL APPEND PROPERTY chimera_${CHIMERA_COMPONENT_GROUP}_libraries ${libraries})
+    return()
+  endif()
+  add_executable(${name}_test ${test} $<TARGET_OBJECTS:${objects}>)
+  target_link_libraries(${name}_test PRIVATE chimera::component ${libraries} GTest::gtest_main)
+  add_test(NAME ${name}_test COMMAND ${name}_test WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+endfunction()
+
+function(chimera_component name)
+  cmake_parse_arguments(arg "" "" "LIBRARIES;RESOURCES" ${ARGN})
+  set(folder ${CMAKE_BINARY_DIR}/components)
+  set(objects component_${name}_objects)
+  add_library(${objects} OBJECT ${arg_UNPARSED_ARGUMENTS})
+  target_link_libraries(${objects} PRIVATE chimera::component ${arg_LIBRARIES})
+  target_compile_options(${objects} PRIVATE ${CHIMERA_COMPONENT_FLAGS})
+
+  set(module component_${name})
+  add_library(${module} MODULE $<TARGET_OBJECTS:${objects}>)
+  target_link_libraries(${module} PRIVATE chimera::component ${arg_LIBRARIES})
+  set_target_properties(${module} PROPERTIES
+    PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${folder} LINKER_LANGUAGE CXX)
+  if(NOT CHIMERA_SANITIZE)
+    target_link_options(${module} PRIVATE -Wl,--no-undefined)
+  endif()
+
+  set(made)
+  if(TARGET chimera::describe)
+    add_custom_command(OUTPUT ${folder}/${name}.component.json
+      COMMAND chimera::describe $<TARGET_FILE:${module}> --output ${folder}/${name}.component.json
+      DEPENDS ${module} chimera::describe VERBATIM)
+    list(APPEND made ${folder}/${name}.component.json)
+  endif()
+  foreach(resource IN LISTS arg_RESOURCES)
+    get_filename_component(file ${resource} NAME)
+    add_custom_command(OUTPUT ${folder}/${file}
+      COMMAND ${CMAKE_COMMAND} -E copy_if_different ${CMAKE_CURRENT_SOURCE_DIR}/${resource} ${folder}/${file}
+      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${resource} VERBATIM)
+    list(APPEND made ${folder}/${file})
+  endforeach()
+  if(made)
+    add_custom_target(${module}_files ALL DEPENDS ${made})
+  endif()
+  set_property(GLOBAL APPEND PROPERTY chimera_component_names ${name})
+  _chimera_component_test(${name} ${objects} "${arg_LIBRARIES}")
+endfunction()
+
+function(chimera_component_tests group)
+  get_property(sources GLOBAL PROPERTY chimera_${group}_sources)
+  get_property(libraries GLOBAL PROPERTY chimera_${group}_libraries)
+  if(sources)
+    _chimera_test_binary(${group}_test unit "${sources}" "chimera_component_base;${libraries}")
+  endif()
+endfunction()
+
+if(NOT CHIMERA_PACKAGE AND NOT TARGET chimera_component_base)
+  add_library(chimera_component_base INTERFACE)
+  target_link_libraries(chimera_component_base INTERFACE chimera_flags chimera_base)
+  add_library(chimera::component ALIAS chimera_component_base)
+endif()

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// The named extras of a port and of a component: `initial = 0.0`, `range(-1, 1)`, `safety`, `frame = "base"`,
+// `doc = "..."`, `type = "T"`; `rate = 1000.0`, `source = "..."`.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <initializer_list>
+#include <string_view>
+#include <type_traits>
+
+namespace chimera {
+namespace face {
+
+/// A string literal: it lives as long as the component's object. Text made at run time does not compile here.
+struct Literal {
+  consteval Literal(const char* literal) : text(literal) {}  // NOLINT: a literal is one
+  const char* text;
+};
+
+/// Letters, digits and underscores, not beginning with a digit, for `size` characters.
+consteval void check_name(const char* name, std::size_t size) {
+  if (size == 0 || (*name >= '0' && *name <= '9')) throw "a name begins with a letter";
+  for (std::size_t i = 0; i < size; ++i) {
+    const char c = name[i];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (!letter && !(c >= '0' && c <= '9')) throw "a name has letters, digits and '_' only";
+  }
+}
+
+/// The name of a port or of a component.
+struct PortName {
+  consteval PortName(const char* literal) : text(literal) {  // NOLINT: a literal is a name
+    check_name(literal, std::char_traits<char>::length(literal));
+  }
+  const char* text;
+};
+
+/// The name of a repeated port: ends in '*', which is not part of the names of its instances.
+struct RepeatedName {
+  consteval RepeatedName(const char* literal) : text(literal) {  // NOLINT: a literal is a name
+    const std::size_t size = std::char_traits<char>::length(literal);
+    if (size == 0 || literal[size - 1] != '*') throw "the name of a repeated port ends in '*'";
+    check_name(literal, size - 1);
+  }
+  const char* text;
+};
+
+struct OptionBase {};
+template <class T>
+concept Option = std::derived_from<T, OptionBase>;
+
+/// Options live for the constructor call that they stand in: they may point at temporaries.
+template <class V>
+struct InitialIs : OptionBase {
+  explicit InitialIs(const V& v) : value(v) {}
+  const V& value;
+};
+template <class V>
+struct InitialListIs : OptionBase {
+  explicit InitialListIs(std::initializer_list<V> v) : values(v) {}
+  std::initializer_list<V> values;
+};
+struct RangeIs : OptionBase {
+  RangeIs(double low, double high) : min(low), max(high) {}
+  double min, max;
+};
+struct SafetyIs : OptionBase {};
+struct FrameIs : OptionBase {
+  explicit constexpr FrameIs(const char* t) : text(t) {}
+  const char* text;
+};
+struct DocIs : OptionBase {
+  explicit constexpr DocIs(const char* t) : text(t) {}
+  const char* text;
+};
+struct TypeIs : OptionBase {
+  explicit constexpr TypeIs(const char* t) : text(t) {}
+  const char* text;
+};
+struct RateIs {
+  double hertz;
+};
+struct SourceIs {
+  const char* text;
+};
+
+struct InitialName {
+  template <class V>
+  InitialIs<V> operator=(const V& value) const { return InitialIs<V>(value); }  // NOLINT: reads as a name
+  template <class V>
+  InitialListIs<V> operator=(std::initializer_list<V> values) const { return InitialListIs<V>(values); }  // NOLINT
+};
+struct FrameName {
+  constexpr FrameIs operator=(Literal t) const { return FrameIs(t.text); }  // NOLINT
+};
+struct DocName {
+  constexpr DocIs operator=(Literal t) const { return DocIs(t.text); }  // NOLINT
+};
+struct TypeName {
+  constexpr TypeIs operator=(Literal t) const { return TypeIs(t.text); }  // NOLINT
+};
+struct RateName {
+  constexpr RateIs operator=(double hertz) const { return {hertz}; }  // NOLINT
+};
+struct SourceName {
+  constexpr SourceIs operator=(Literal t) const { return {t.text}; }  // NOLINT
+};
+
+/// The names themselves stand in a namespace of their own, so that a variable called `rate` elsewhere in
+/// chimera hides nothing.
+namespace names {
+inline constexpr InitialName initial{};  ///< out-var: value at spawn; in-const: default when nobody gives one
+inline constexpr SafetyIs safety{};      ///< never publishes NaN, infinity or a value outside range()
+inline constexpr FrameName frame{};      ///< reference frame of the values
+inline constexpr DocName doc{};          ///< one sentence for the data sheet
+inline constexpr TypeName type{};        ///< name of the type variable of an Any port ("T" if not given)
+inline constexpr RateName rate{};        ///< CHIMERA_COMPONENT: default rate in Hz
+inline constexpr SourceName source{};    ///< CHIMERA_COMPONENT: the paper or book behind it
+
+/// The values this port may take, in its unit, ends included.
+inline RangeIs range(double min, double max) { return RangeIs(min, max); }
+}  // namespace names
+}  // namespace face
+
+using namespace face::names;
+
+}  // namespace chimera

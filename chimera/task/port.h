@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ports of a component, declared as its members:
+//
+//   In<double>      x {"x", "U"};                                in-var: the latest value at the start of a cycle
+//   Out<double[6]>  tau{"tau", "N.m", initial = 0.0, safety};    out-var: published when the method returned ok
+//   InConst<int>    ndof{"ndof", "1"};                           in-const: known from init on
+//   OutConst<double> mass{"mass", "kg"};                         out-const: written in init or reinit
+//   Resource        device{"device"};                            resource: a text that names something outside
+//   Many<In<double>> in{"in*", "U"};                             repeated: as many as the description says
+//
+// After the unit may stand a shape, where the type leaves it open: In<double[]> q{"q", "rad", "[ndof<=10]"}.
+// Types: bool, int32, int64, float, double, Text<N>, structs with Fields, Any. Options: chimera/task/options.h.
+#pragma once
+
+#include <string_view>
+
+#include "chimera/base/time.h"
+#include "chimera/task/declare_port.h"
+#include "chimera/task/port_view.h"
+
+namespace chimera {
+
+template <class P, std::uint32_t N = CHIMERA_MAX_INSTANCES>
+class Many;
+
+namespace face {
+
+/// What the four kinds of typed ports have in common: the three ways to declare one.
+template <class T, std::uint32_t Kind>
+class TypedPort : public View<T, Kind == CHIMERA_IN_VAR || Kind == CHIMERA_IN_CONST> {
+ public:
+  using Type = T;
+  static constexpr std::uint32_t kKind = Kind;
+
+  /// Without a unit: bool, text, or a struct whose fields have their own.
+  template <Option... O>
+  explicit TypedPort(PortName name, const O&... options) : TypedPort(name, Literal("1"), options...) {}
+  template <Option... O>
+  TypedPort(PortName name, Literal unit, const O&... options) {
+    static_assert(!PortType<T>::kOpen, "this type leaves the shape open: give it after the unit, as \"[ndof<=10]\"");
+    declare_port<T, Kind>(name.text, unit.text, PortType<T>::kShape, {&this->live_}, options...);
+  }
+  template <Option... O>
+  TypedPort(PortName name, Literal unit, Literal shape, const O&... options) {
+    static_assert(PortType<T>::kOpen, "the shape follows from the type: leave the text out, or use T[]");
+    declare_port<T, Kind>(name.text, unit.text, shape.text, {&this->live_}, options...);
+  }
+
+ protected:
+  TypedPort() noexcept = default;  // one of Many, which declares for all
+};
+
+}  // namespace face
+
+/// An in-var: the latest published value, copied before the method. Read-only.
+template <class T>
+class In : public face::TypedPort<T, CHIMERA_IN_VAR> {
+ public:
+  using face::TypedPort<T, CHIMERA_IN_VAR>::TypedPort;
+
+  /// How long ago the value was published, seen from the release of this job; kNever while !valid().
+  /// Context: cycle; wait-free.
+  Nanoseconds age() const noexcept {
+    return valid() ? Nanoseconds{*this->live_.now_ns - this->live_.slot->published_ns} : kNever;
+  }
+  /// True when the producer has published since this task's previous cycle. Context: cycle; wait-free.
+  bool fresh() const noexcept { return this->live_.slot != nullptr && this->live_.slot->sequence != this->live_.seen; }
+  /// False as long as nobody has written it and it had no initial value: floats are NaN then, the rest zero.
+  /// Context: cycle; wait-free.
+  bool valid() const noexcept {
+    return this->live_.slot != nullptr && ((this->live_.slot->valid >> this->live_.bit) & 1u) != 0;
+  }
+
+ private:
+  template <class P, std::uint32_t N>
+  friend class Many;
+  In() noexcept = default;
+};
+
+/// An out-var: holds the last published value until the method writes it. Published together with all
+/// other out-vars of the task, when the method returned ok.
+template <class T>
+class Out : public face::TypedPort<T, CHIMERA_OUT_VAR> {
+ public:
+  using face::TypedPort<T, CHIMERA_OUT_VAR>::TypedPort;
+
+ private:
+  template <class P, std::uint32_t N>
+  friend class Many;
+  Out() noexcept = default;
+};
+
+/// An in-const: a value that is known from init on and changes only with reinit. Read-only.
+template <class T>
+class InConst : public face::TypedPort<T, CHIMERA_IN_CONST> {
+ public:
+  using face::TypedPort<T, CHIMERA_IN_CONST>::TypedPort;
+
+  /// False when nobody gives the value and it has no default. Context: setup; wait-free.
+  bool valid() const noexcept { return this->live_.value != nullptr; }
+
+ private:
+  template <class P, std::uint32_t N>
+  friend class Many;
+  InConst() noexcept = default;
+};
+
+/// An out-const: written in init or reinit; its users are initialised after it.
+template <class T>
+class OutConst : public face::TypedPort<T, CHIMERA_OUT_CONST> {
+ public:
+  using face::TypedPort<T, CHIMERA_OUT_CONST>::TypedPort;
+
+ private:
+  template <class P, std::uint32_t N>
+  friend class Many;
+  OutConst() noexcept = default;
+};
+
+/// A resource: the text of the description that names a device, a file, an address. What to do with it is
+/// the component's business, in init and kill. Nothing is transferred.
+class Resource : public face::PortBase {
+ public:
+  template <face::Option... O>
+  explicit Resource(face::PortName name, const O&... options) {
+    face::declare_port<Text<256>, CHIMERA_RESOURCE>(name.text, "1", "", {&live_}, options...);
+  }
+  /// Context: any; wait-free.
+  std::string_view text() const noexcept { return {c_str()}; }
+  const char* c_str() const noexcept { return live_.value == nullptr ? "" : static_cast<const char*>(live_.value); }
+};
+
+/// A repeated port: at most N instances, as many as the description names; size() is known from init on.
+template <class P, std::uint32_t N>
+class Many {
+ public:
+  template <face::Option... O>
+  Many(face::RepeatedName name, face::Literal unit, const O&... options) {
+    static_assert(!face::PortType<typename P::Type>::kOpen, "this type leaves the shape open: give it after the unit");
+    declare(name, unit, face::Literal(face::PortType<typename P::Type>::kShape), options...);
+  }
+  template <face::Option... O>
+  Many(face::RepeatedName name, face::Literal unit, face::Literal shape, const O&... options) {
+    declare(name, unit, shape, options...);
+  }
+  Many(const Many&) = delete;
+  Many& operator=(const Many&) = delete;
+
+  std::size_t size() const noexcept { return instances_; }
+  const P& operator[](std::size_t i) const {
+    face::check_index(i, instances_);
+    return ports_[i];
+  }
+  const P* begin() const noexcept { return ports_; }
+  const P* end() const noexcept { return ports_ + instances_; }
+
+ private:
+  static_assert(sizeof(P) == sizeof(chimera_port), "the framework fills the instances as an array");
+  static_assert(N >= 1 && N <= CHIMERA_MAX_INSTANCES, "a repeated port has 1 to 16 instances");
+
+  template <class... O>
+  void declare(face::RepeatedName name, face::Literal unit, face::Literal shape, const O&... options) {
+    face::declare_port<typename P::Type, P::kKind>(name.text, unit.text, shape.text, {ports_, &instances_, N},
+                                                   options...);
+  }
+
+  std::uint32_t instances_ = 0;
+  P ports_[N];
+};
+
+}  // namespace chimera

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The one symbol of a component's object, chimera_components, and the list behind it. Included by the C++ face and
+ * by the C face, so both may stand in one object. Everything here is weak: each source file brings it, one is kept.
+ */
+#ifndef CHIMERA_TASK_REGISTRY_H_
+#define CHIMERA_TASK_REGISTRY_H_
+
+#include <stddef.h>
+
+#include "chimera/task/abi.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CHIMERA_MAX_COMPONENTS 64u /* of one object */
+
+/* Makes the declaration at its first call, and returns the same one ever after. */
+typedef const chimera_component* (*chimera_declare_fn)(void);
+
+typedef struct chimera_registry {
+  chimera_declare_fn declare[CHIMERA_MAX_COMPONENTS];
+  uint32_t count;
+} chimera_registry;
+
+__attribute__((weak, visibility("hidden"))) chimera_registry chimera_offered;
+
+/* Adds a component to this object's list. Called while the object is loaded, before chimera_components. */
+static inline int chimera_offer(chimera_declare_fn declare) {
+  if (chimera_offered.count == CHIMERA_MAX_COMPONENTS) return 0;
+  chimera_offered.declare[chimera_offered.count++] = declare;
+  return 1;
+}
+
+__attribute__((weak, visibility("default"))) const chimera_component* const* chimera_components(uint32_t abi_version,
+                                                                                               uint32_t* count) {
+  static const chimera_component* list[CHIMERA_MAX_COMPONENTS];
+  uint32_t i;
+  *count = 0;
+  if (abi_version != CHIMERA_ABI_VERSION) return NULL;
+  for (i = 0; i < chimera_offered.count; ++i) list[i] = chimera_offered.declare[i]();
+  *count = chimera_offered.count;
+  return list;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* CHIMERA_TASK_REGISTRY_H_ */

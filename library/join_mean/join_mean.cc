@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The join connector of the 1994 paper (figure 3): several producers of one quantity, combined by a weighted mean.
+// README.md is the data sheet.
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct JoinMean {
+  Many<In<double>>      in{"in*", "U", doc = "the values to join"};
+  Many<InConst<double>> weight{"weight*", "1", initial = 1.0, range(0, 1e6), doc = "how much each value counts"};
+  Out<double>           out{"out", "U", doc = "the weighted mean of the values that are valid"};
+
+  Outcome init() const {
+    if (in.size() == 0) return fault("there is nothing to join: name at least one input");
+    if (weight.size() != 0 && weight.size() != in.size()) return fault("there must be one weight for each input, or none");
+    return ok();
+  }
+  void on() { cycle(); }
+  void cycle() {
+    double sum = 0, weights = 0;
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      if (!in[i].valid()) continue;
+      const double w = weight.size() == 0 ? 1.0 : *weight[i];
+      sum += w * *in[i];
+      weights += w;
+    }
+    if (weights > 0) *out = sum / weights;  // else the last mean stands
+  }
+};
+CHIMERA_COMPONENT(JoinMean, "join_mean", "Joins several producers of one quantity by their weighted mean.",
+                  source = "Stewart and Khosla 1994, figure 3");
