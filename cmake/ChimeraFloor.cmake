@@ -16,7 +16,7 @@
 #   Labels: unit process realtime size symbol model (and page firmware). TREES: debug (default) tsan release.
 
 find_package(Threads REQUIRED)
-set(CHIMERA_PYTHON /usr/bin/python3 CACHE FILEPATH "The Python for which python3-yaml and python3-jsonschema are installed")
+set(CHIMERA_PYTHON /usr/bin/python3 CACHE FILEPATH "Debian's: the one with python3-yaml and jsonschema")
 
 if(CHIMERA_FUZZ)
   set(CHIMERA_TREE fuzz)
@@ -66,8 +66,10 @@ if(CHIMERA_TESTS)
 endif()
 
 function(_chimera_test_properties name label)
+  set(environment GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/results/${name}.xml
+    CHIMERA_BUILD=${CMAKE_BINARY_DIR} CHIMERA_SOURCE=${CMAKE_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT 300 SKIP_RETURN_CODE 77
-    ENVIRONMENT "GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/results/${name}.xml;CHIMERA_BUILD=${CMAKE_BINARY_DIR};CHIMERA_SOURCE=${CMAKE_SOURCE_DIR}")
+    ENVIRONMENT "${environment}")
   if(label STREQUAL "realtime")
     set_tests_properties(${name} PROPERTIES RUN_SERIAL TRUE)
   endif()
@@ -160,7 +162,7 @@ endfunction()
 
 function(chimera_floor name)
   cmake_parse_arguments(arg "EXCEPTIONS" "" "LINKS;LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cc linux/*.cc virtual/*.cc executive/*.cc)
+  file(GLOB sources CONFIGURE_DEPENDS *.cc hosted/*.cc linux/*.cc virtual/*.cc executive/*.cc)
   list(FILTER sources EXCLUDE REGEX "_(test|fuzz|stress)\\.cc$")
   set(target chimera_${name})
   set(scope PUBLIC)

@@ -8,7 +8,7 @@ build=${1:?usage: tools/demo.sh BUILD_TREE}
 program=$build/apps/chimera
 example=examples/01_puma_pid
 if [ ! -x "$program" ] || [ ! -d "$example" ]; then
-  echo "demo: not there yet: $([ -x "$program" ] || echo "${program#"$PWD"/} ")$([ -d "$example" ] || echo "$example")" >&2
+  echo "demo: not there yet: ${program#"$PWD"/} or $example" >&2
   exit 1
 fi
 echo "demo: $example has no run step yet" >&2

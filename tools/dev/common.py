@@ -40,7 +40,7 @@ class Progress:
 
 
 def run_logged(command, log, pattern, env=None):
-    """Runs `command` with its output in `log`; lines that match `pattern` are shown as progress. Returns the exit code."""
+    """Runs `command` with its output in `log`; lines that match `pattern` are progress. Returns the exit code."""
     progress = Progress()
     log.parent.mkdir(parents=True, exist_ok=True)
     with open(log, "w", encoding="utf-8", errors="replace") as file:

@@ -63,7 +63,8 @@ def _program_cases(test, results):
         if file.exists() and not cases:
             return [Case(name, FAILED, f"{name} ran no test")]
         return cases or [Case(name, PASSED)]
-    if status == "notrun" and test.find("skipped") is not None and "SKIP_RETURN_CODE" in test.find("skipped").get("message", ""):
+    skipped = test.find("skipped")
+    if status == "notrun" and skipped is not None and "SKIP_RETURN_CODE" in skipped.get("message", ""):
         return [Case(name, SKIPPED, _last_line(output))]
     if any(case.outcome == FAILED for case in cases):
         return cases

@@ -43,11 +43,13 @@ def parse_arguments():
         prog="./dev test", formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Builds and runs every test; the last line counts them. Exit 0 only if none failed.",
         epilog="shares and their limits in minutes: compile 12, "
-               + ", ".join(f"{share.name} {share.limit_min}" for share in SHARES) + "\nexample: ./dev test --only units")
-    parser.add_argument("--only", metavar="SHARE", choices=[share.name for share in SHARES],
+               + ", ".join(f"{share.name} {share.limit_min}" for share in SHARES)
+               + "\nexample: ./dev test --only units")
+    names = [share.name for share in SHARES]
+    parser.add_argument("--only", metavar="SHARE", choices=names,
                         help="run one share; its trees are compiled first")
     parser.add_argument("--stress", nargs="*", metavar="MINUTES|NAME",
-                        help="instead of the tests run the campaigns of tests/stress.txt, each MINUTES long (default 10)")
+                        help="instead: the campaigns of tests/stress.txt, each MINUTES long (default 10)")
     return parser.parse_args()
 
 
@@ -69,7 +71,7 @@ def compile_trees(trees):
 
 
 def without_address_randomisation():
-    """The thread sanitizer of this compiler meets memory maps it cannot use when addresses are randomised widely."""
+    """This compiler's thread sanitizer cannot use every memory map when addresses are randomised widely."""
     prefix = ["setarch", platform.machine(), "-R"]
     works = shutil.which("setarch") and subprocess.run(prefix + ["true"], capture_output=True).returncode == 0
     return prefix if works else []
@@ -136,9 +138,10 @@ def timed(share, seconds, cases):
     """Prints the share's line; one that took too long is a failed case."""
     over = seconds > share.limit_min * 60
     counts = "" if share is COMPILE else f"  {len(cases)} tests"
-    print(f"   {share.name:<10} {clock(seconds)} of {clock(share.limit_min * 60)}{counts}{'  TOO LONG' if over else ''}", flush=True)
+    limit = clock(share.limit_min * 60)
+    print(f"   {share.name:<10} {clock(seconds)} of {limit}{counts}{'  TOO LONG' if over else ''}", flush=True)
     if over:
-        cases.append(Case(f"share {share.name}", FAILED, f"took {clock(seconds)}, its limit is {clock(share.limit_min * 60)}"))
+        cases.append(Case(f"share {share.name}", FAILED, f"took {clock(seconds)}, its limit is {limit}"))
     return cases
 
 

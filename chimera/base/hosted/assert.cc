@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The hosted half of chimera/base/assert.h; a microcontroller image brings its own.
 #include "chimera/base/assert.h"
 
 #include <cstdio>

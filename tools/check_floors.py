@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Proves by the #include lines that a folder imports only lower floors (docs/walk.md)."""
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
+import sources  # noqa: E402
+
+FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "config": 6,
+         "subsystem": 7, "draw": 7, "desk": 8, "record": 8, "shell": 8, "web": 8, "link": 8}
+COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/pbo.h")
+ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")
+# Slow to compile: one .cc of an upper floor pays for each, never a header, never the real-time floors.
+HEAVY = re.compile(r"^(CLI/|yaml-cpp/|nlohmann/|fmt/|mujoco/|gmock/)")
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^">]+)[">]', re.MULTILINE)
+
+
+def includes(root, name):
+    """(line, quoted?, path) of every include line."""
+    content = sources.text(root, name)
+    for match in INCLUDE.finditer(content):
+        yield content.count("\n", 0, match.start()) + 1, match[1] == '"', match[2]
+
+
+def interface_headers(root):
+    """The headers of the component interface and all that these include."""
+    known, queue = set(), [name for name in COMPONENT_INTERFACE if (root / name).is_file()]
+    while queue:
+        name = queue.pop()
+        if name not in known:
+            known.add(name)
+            queue += [path for _, quoted, path in includes(root, name) if quoted and (root / path).is_file()]
+    return known
+
+
+def floor_of(path):
+    parts = path.split("/")
+    return FLOOR.get(parts[1]) if parts[0] == "chimera" and len(parts) > 2 else None
+
+
+def refusal(name, path, interface):
+    """Why `name` must not include the project's file `path`; None when it may."""
+    folder, target = name.split("/"), path.split("/")
+    if target[0] not in ROOT_FOLDERS:
+        return "includes start at the root of the checkout"
+    if folder[0] == "chimera":
+        mine, theirs = floor_of(name), floor_of(path)
+        if target[0] != "chimera":
+            return f"chimera/ imports nothing from {target[0]}/"
+        if mine is None or theirs is None:
+            return "no floor is known for this folder"
+        if folder[1] != target[1] and theirs >= mine:
+            return f"{folder[1]} is floor {mine}, {target[1]} is floor {theirs}"
+    if folder[0] == "library" and not name.endswith("_test.cc") and target[0] != "library":
+        if path not in interface and not path.startswith("chimera/base/"):
+            return "library/ imports only the component interface and chimera/base"
+    if folder[0] == "executive" and target[0] == "chimera" and (floor_of(path) is None or floor_of(path) > 5):
+        return "executive/ imports only floors 0 to 5"
+    return None
+
+
+def heavy_refusal(name, path):
+    if not name.startswith("chimera/") or not HEAVY.match(path):
+        return None
+    if (floor_of(name) or 0) < 6:
+        return "libraries like this stay above the real-time line"
+    return "slow to compile: include it in the one .cc that needs it" if name.endswith(".h") else None
+
+
+def check(root):
+    interface = interface_headers(root)
+    for name in sources.files(root):
+        if not name.endswith((".h", ".cc", ".c")):
+            continue
+        for line, quoted, path in includes(root, name):
+            why = refusal(name, path, interface) if quoted else heavy_refusal(name, path)
+            if why:
+                yield f"{name}:{line}: includes {path}: {why}"
+
+
+def _tree(name, included):
+    return {name: f"#include {included}\n"}
+
+
+PLANTED = (
+    (_tree("chimera/table/x.h", '"chimera/base/time.h"'), None),
+    (_tree("chimera/table/x.h", '"chimera/table/y.h"'), None),
+    (_tree("chimera/base/x.h", '"chimera/table/y.h"'),
+     "chimera/base/x.h:1: includes chimera/table/y.h: base is floor 0, table is floor 2"),
+    (_tree("chimera/shell/x.cc", '"chimera/web/y.h"'),
+     "chimera/shell/x.cc:1: includes chimera/web/y.h: shell is floor 8, web is floor 8"),
+    (_tree("chimera/load/x_test.cc", '"chimera/runtime/y.h"'),
+     "chimera/load/x_test.cc:1: includes chimera/runtime/y.h: load is floor 5, runtime is floor 5"),
+    (_tree("chimera/oddity/x.cc", '"chimera/base/y.h"'),
+     "chimera/oddity/x.cc:1: includes chimera/base/y.h: no floor is known for this folder"),
+    (_tree("chimera/base/x.cc", '"time.h"'),
+     "chimera/base/x.cc:1: includes time.h: includes start at the root of the checkout"),
+    (_tree("chimera/base/x.cc", '"library/gain/gain.h"'),
+     "chimera/base/x.cc:1: includes library/gain/gain.h: chimera/ imports nothing from library/"),
+    (_tree("library/gain/gain.cc", '"chimera/table/register.h"'),
+     "library/gain/gain.cc:1: includes chimera/table/register.h: "
+     "library/ imports only the component interface and chimera/base"),
+    ({"library/gain/gain.cc": '#include "chimera/task/component.h"\n#include "chimera/table/slot.h"\n',
+      "chimera/task/component.h": '#include "chimera/table/slot.h"\n', "chimera/table/slot.h": "\n"}, None),
+    (_tree("executive/main.cc", '"chimera/config/verify.h"'),
+     "executive/main.cc:1: includes chimera/config/verify.h: executive/ imports only floors 0 to 5"),
+    (_tree("chimera/runtime/x.cc", "<nlohmann/json.hpp>"),
+     "chimera/runtime/x.cc:1: includes nlohmann/json.hpp: libraries like this stay above the real-time line"),
+    (_tree("chimera/config/x.h", "<yaml-cpp/yaml.h>"),
+     "chimera/config/x.h:1: includes yaml-cpp/yaml.h: slow to compile: include it in the one .cc that needs it"),
+)
+
+if __name__ == "__main__":
+    sources.run(check, PLANTED)

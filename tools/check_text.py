@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every tracked text: the licence line, no path of one machine, no word about a workplace, nothing left to do."""
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
+import sources  # noqa: E402
+
+LICENCE = "SPDX-License-Identifier: Apache-2.0"
+LICENSED = (".h", ".cc", ".c", ".py", ".sh", ".cmake", ".js", ".ts", ".css", ".pml")
+BINARY = (".png", ".jpg", ".gz", ".zip", ".woff2", ".ico")
+# The words are put together here, so that this file does not complain about itself.
+FORBIDDEN = (
+    ("a path of one machine", re.compile("|".join([
+        "/wo" + r"rk/\w", "/ro" + r"ot/\w", "/ho" + r"me/\w", "/Us" + r"ers/\w",
+        "/tm" + r"p/bash"]))),
+    ("a host of a package registry", re.compile("|".join([
+        "deb" + r"\.debian\.org", "py" + r"pi\.org", "npm" + r"js\.org", "pkg" + r"\.dev\b", "artifact" + "registry",
+        "artifact-" + "registry", "google" + "apis"]), re.IGNORECASE)),
+    ("a word about how the text came to be", re.compile("|".join([
+        "an" + "thropic", "cla" + "ude", "chat" + "gpt", "open" + "ai", "cop" + "ilot", "sub" + "agent",
+        r"\bL" + r"LM\b", r"\bA" + r"I (agent|model|assist|generated)", "as an A" + r"I\b", "iss" + r"ue #?\d", r"\bsandb" + "ox"]),
+        re.IGNORECASE)),
+    ("something left to do", re.compile(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X)\b")),
+)
+
+
+def needs_licence(name):
+    return name.endswith(LICENSED) or name.split("/")[-1] in ("CMakeLists.txt", "dev") or name == ".ci/run"
+
+
+def check(root):
+    for name in sources.files(root):
+        if name.endswith(BINARY) or "_corpus/" in name:
+            continue
+        content = sources.text(root, name)
+        lines = content.splitlines()
+        head = lines[1:2] if lines and lines[0].startswith("#!") else lines[:1]
+        if needs_licence(name) and not (head and LICENCE in head[0]):
+            yield f"{name}:1: the first line lacks '{LICENCE}'"
+        for number, line in enumerate(lines, 1):
+            for what, pattern in FORBIDDEN:
+                match = pattern.search(line)
+                if match:
+                    yield f"{name}:{number}: {what}: '{match[0]}'"
+
+
+_HEAD = f"// {LICENCE}\n"
+PLANTED = (
+    ({"a.cc": _HEAD + "int x;\n", "b.sh": "#!/bin/sh\n# " + LICENCE + "\n", "c.md": "text\n"}, None),
+    ({"a.cc": "int x;\n"}, f"a.cc:1: the first line lacks '{LICENCE}'"),
+    ({"d/CMakeLists.txt": ""}, f"d/CMakeLists.txt:1: the first line lacks '{LICENCE}'"),
+    ({"c.md": "see /wo" + "rk/x\n"}, "c.md:1: a path of one machine: '/wo" + "rk/x'"),
+    ({"c.md": "\nin /ho" + "me/ann/x\n"}, "c.md:2: a path of one machine: '/ho" + "me/a'"),
+    ({"c.yaml": "from Py" + "PI.org\n"}, "c.yaml:1: a host of a package registry: 'Py" + "PI.org'"),
+    ({"a.cc": _HEAD + "// iss" + "ue 12\n"}, "a.cc:2: a word about how the text came to be: 'iss" + "ue 1'"),
+    ({"a.cc": _HEAD + "// TO" + "DO\n"}, "a.cc:2: something left to do: 'TO" + "DO'"),
+)
+
+if __name__ == "__main__":
+    sources.run(check, PLANTED)
