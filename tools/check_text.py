@@ -20,7 +20,8 @@ FORBIDDEN = (
         "artifact-" + "registry", "google" + "apis"]), re.IGNORECASE)),
     ("a word about how the text came to be", re.compile("|".join([
         "an" + "thropic", "cla" + "ude", "chat" + "gpt", "open" + "ai", "cop" + "ilot", "sub" + "agent",
-        r"\bL" + r"LM\b", r"\bA" + r"I (agent|model|assist|generated)", "as an A" + r"I\b", "iss" + r"ue #?\d", r"\bsandb" + "ox"]),
+        r"\bL" + r"LM\b", r"\bA" + r"I (agent|model|assist|generated)",
+        "as an A" + r"I\b", "iss" + r"ue #?\d", r"\bsandb" + "ox"]),
         re.IGNORECASE)),
     ("something left to do", re.compile(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X)\b")),
 )
