@@ -54,6 +54,7 @@ class FixedVector {
     return true;
   }
   constexpr void clear() noexcept { size_ = 0; }
+  constexpr void pop_back() noexcept { CHIMERA_ASSERT(size_ > 0); --size_; }
   constexpr T& operator[](std::size_t i) noexcept { CHIMERA_ASSERT(i < size_); return values_[i]; }
   constexpr const T& operator[](std::size_t i) const noexcept { CHIMERA_ASSERT(i < size_); return values_[i]; }
   constexpr T* begin() noexcept { return values_; }

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/instance.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "chimera/runtime/job_step.h"
+
+namespace chimera {
+namespace {
+
+constexpr std::uint32_t kValueAlignment = 8;
+
+std::uint32_t round_up(std::uint32_t bytes) noexcept {
+  return (bytes + kValueAlignment - 1) / kValueAlignment * kValueAlignment;
+}
+
+Error misfit(const TaskSpec& spec, const char* what, const char* port) {
+  Error error{ErrorCode::kBadInput, {}, {spec.name}};
+  char text[300];
+  std::snprintf(text, sizeof text, "component %.*s: %s%s%s; was it built from another source than its descriptor?",
+                static_cast<int>(spec.component.size()), spec.component.data(), what, *port ? " " : "", port);
+  error.message.assign(text);
+  return error;
+}
+
+void never_written(std::byte* at, std::uint32_t type, std::uint32_t bytes) noexcept {
+  std::memset(at, 0, bytes);
+  const double nan64 = std::numeric_limits<double>::quiet_NaN();
+  const float nan32 = std::numeric_limits<float>::quiet_NaN();
+  if (type == CHIMERA_FLOAT64)
+    for (std::uint32_t i = 0; i + sizeof nan64 <= bytes; i += sizeof nan64) std::memcpy(at + i, &nan64, sizeof nan64);
+  if (type == CHIMERA_FLOAT32)
+    for (std::uint32_t i = 0; i + sizeof nan32 <= bytes; i += sizeof nan32) std::memcpy(at + i, &nan32, sizeof nan32);
+}
+
+void never_written(std::byte* at, const chimera_port_decl& decl, const PortSpec& spec) noexcept {
+  if (spec.type != CHIMERA_STRUCT) return never_written(at, spec.type, spec.max_bytes());
+  std::memset(at, 0, spec.max_bytes());
+  for (std::uint32_t e = 0; e < spec.max_count(); ++e)
+    for (std::uint32_t f = 0; f < decl.n_fields; ++f) {
+      const chimera_field& field = decl.fields[f];
+      never_written(at + e * spec.element_bytes + field.offset, field.type, field.size * field.count);
+    }
+}
+
+}  // namespace
+
+Result<Instance> Instance::create(const TaskSpec& spec, const chimera_component& component) {
+  Instance made;
+  made.spec_ = &spec;
+  made.component_ = &component;
+  if (auto planned = made.plan(spec); !planned) return planned.error();
+  made.state_ = AlignedBytes(component.state_size, component.state_align);
+  made.constant_memory_ = AlignedBytes(made.constant_bytes_, kCacheLine);
+  made.make_fill();
+  for (AlignedBytes& group : made.groups_) {
+    group = AlignedBytes(group_bytes(made.payload_bytes_), kCacheLine);
+    GroupWriter writer(group.span(), made.payload_bytes_);
+    std::memcpy(writer.staging(), made.fill_.data(), made.payload_bytes_);
+    writer.publish(Nanoseconds{}, made.initial_valid_);
+  }
+  return made;
+}
+
+Result<void> Instance::plan(const TaskSpec& spec) {
+  for (const PortSpec& port : spec.ports) {
+    if (port.declared >= component_->n_ports) return misfit(spec, "it declares fewer ports", "");
+    if (auto planned = plan_port(port); !planned) return planned;
+  }
+  return {};
+}
+
+Result<void> Instance::plan_port(const PortSpec& port) {
+  const chimera_port_decl& decl = component_->ports[port.declared];
+  if (port.instance >= decl.max_instances) return misfit(*spec_, "too many instances of port", decl.name);
+  if (decl.type != CHIMERA_ANY && decl.kind != CHIMERA_RESOURCE && decl.element_size != port.element_bytes)
+    return misfit(*spec_, "another element size at port", decl.name);
+  switch (decl.kind) {
+    case CHIMERA_IN_VAR:
+      inputs_.emplace_back();
+      input_specs_.push_back(&port);
+      break;
+    case CHIMERA_OUT_VAR:
+      if (outputs_.size() == 64) return misfit(*spec_, "more than 64 out-vars, at port", decl.name);
+      if (!port.value.empty()) initial_valid_ |= std::uint64_t{1} << outputs_.size();
+      outputs_.push_back({nullptr, &port, payload_bytes_, port.max_bytes()});
+      payload_bytes_ += round_up(port.max_bytes());
+      break;
+    case CHIMERA_IN_CONST:
+    case CHIMERA_OUT_CONST:
+      constants_.push_back({nullptr, &port, &decl, nullptr});
+      constant_bytes_ += round_up(port.max_bytes());
+      break;
+    case CHIMERA_RESOURCE:
+      resources_.emplace_back(&port, std::string(reinterpret_cast<const char*>(port.value.data()), port.value.size()));
+      break;
+    default:
+      return misfit(*spec_, "streams cannot be bound yet, port", decl.name);
+  }
+  return {};
+}
+
+chimera_port* Instance::live(const PortSpec& port) const noexcept {
+  const chimera_port_decl& decl = component_->ports[port.declared];
+  return reinterpret_cast<chimera_port*>(state_.data() + decl.live_offset) + port.instance;
+}
+
+void Instance::make_fill() {
+  fill_.resize(payload_bytes_);
+  for (const Output& output : outputs_) {
+    const PortSpec& spec = *output.spec;
+    std::byte* to = fill_.data() + output.offset;
+    if (spec.value.empty()) never_written(to, component_->ports[spec.declared], spec);
+    else std::memcpy(to, spec.value.data(), std::min<std::size_t>(spec.value.size(), output.bytes));
+  }
+}
+
+bool Instance::is_unwritten(const Task& task, std::size_t i) const noexcept {
+  const Output& output = outputs_[i];
+  return std::memcmp(fill_.data() + output.offset, task.group.staging() + output.offset, output.bytes) == 0;
+}
+
+GroupReader Instance::reader() const noexcept {
+  return GroupReader(groups_[incarnation_ % 2].data(), payload_bytes_);
+}
+
+Result<void> Instance::construct(Task& task, Nanoseconds now) {
+  state_.clear();
+  task.faults.last = {};
+  if (component_->construct(state_.data(), &task.faults.last) != CHIMERA_OK)
+    return Error{ErrorCode::kRefused, {task.faults.last.text}, {spec_->name}};
+  is_constructed_ = true;
+  ++incarnation_;
+  task.instance = state_.data();
+  task.group = GroupWriter(groups_[incarnation_ % 2].span(), payload_bytes_);
+  std::memcpy(task.group.staging(), fill_.data(), payload_bytes_);
+  task.group.publish(now, initial_valid_);
+  task.group.prefill();
+  task.valid = initial_valid_;
+  wire(task);
+  return {};
+}
+
+void Instance::wire(Task& task) noexcept {
+  for (const PortSpec& port : spec_->ports) {
+    const chimera_port_decl& decl = component_->ports[port.declared];
+    chimera_port& to = *live(port);
+    to = {};
+    to.now_ns = &task.call.now_ns;
+    to.extent[0] = port.extent[0].max;
+    to.extent[1] = port.extent[1].max;
+    to.count = port.max_count();
+    to.type = port.type;
+    to.element_size = port.element_bytes;
+    if (decl.flags & CHIMERA_PORT_REPEATED) {
+      auto* instances = reinterpret_cast<std::uint32_t*>(state_.data() + decl.instances_offset);
+      *instances = std::max(*instances, port.instance + 1);
+    }
+  }
+  for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].port = live(*input_specs_[i]);
+  task.has_safety = false;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    outputs_[i].port = live(*outputs_[i].spec);
+    outputs_[i].port->bit = static_cast<std::uint32_t>(i);
+    task.has_safety = task.has_safety || outputs_[i].spec->safety;
+  }
+  std::byte* next = constant_memory_.data();
+  for (ConstantPort& constant : constants_) {
+    constant.port = live(*constant.spec);
+    constant.local = next;
+    constant.port->value = next;
+    next += round_up(constant.spec->max_bytes());
+    if (!constant.spec->value.empty()) std::memcpy(constant.local, constant.spec->value.data(), constant.spec->value.size());
+  }
+  for (auto& [port, text] : resources_) live(*port)->value = text.data();
+  task.inputs = inputs_;
+  task.outputs = outputs_;
+  aim_outputs(task);
+}
+
+void Instance::destroy(Task& task) noexcept {
+  if (is_constructed_) component_->destroy(state_.data());
+  is_constructed_ = false;
+  task.instance = nullptr;
+}
+
+bool Instance::read_constants(const ConstantStore& store, FixedString<160>& why) noexcept {
+  for (ConstantPort& constant : constants_) {
+    if (constant.decl->kind != CHIMERA_IN_CONST || constant.spec->variable.empty()) continue;
+    const Constant* found = store.find(constant.spec->variable);
+    if (found != nullptr && found->is_known) {
+      std::memcpy(constant.local, found->value.data(), std::min<std::size_t>(found->value.size(), constant.spec->max_bytes()));
+    } else if (constant.spec->value.empty()) {
+      char text[160];
+      std::snprintf(text, sizeof text, "constant %.*s has no value: its producer was not initialised",
+                    static_cast<int>(constant.spec->variable.size()), constant.spec->variable.data());
+      why.assign(text);
+      return false;
+    }
+  }
+  return fix_extents(store, why);
+}
+
+bool Instance::uses_changed(const ConstantStore& store) const noexcept {
+  for (const ConstantPort& constant : constants_) {
+    if (constant.decl->kind != CHIMERA_IN_CONST || constant.spec->variable.empty()) continue;
+    const Constant* found = store.find(constant.spec->variable);
+    if (found == nullptr || !found->is_known) continue;
+    const std::size_t bytes = std::min<std::size_t>(found->value.size(), constant.spec->max_bytes());
+    if (std::memcmp(constant.local, found->value.data(), bytes) != 0) return true;
+  }
+  return false;
+}
+
+int Instance::write_constants(ConstantStore& store, TaskId self) noexcept {
+  int changed = 0;
+  for (const ConstantPort& constant : constants_) {
+    if (constant.decl->kind != CHIMERA_OUT_CONST) continue;
+    changed += store.set(constant.spec->variable, {constant.local, constant.spec->max_bytes()}, self) ? 1 : 0;
+  }
+  return changed;
+}
+
+bool Instance::fix_extents(const ConstantStore& store, FixedString<160>& why) noexcept {
+  for (const PortSpec& port : spec_->ports) {
+    chimera_port& to = *live(port);
+    to.count = 1;
+    for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
+      const ExtentSpec& extent = port.extent[d];
+      const std::int64_t n = extent.constant.empty() ? extent.max : store.integer(extent.constant, extent.max);
+      if (n < 1 || n > extent.max) {
+        char text[160];
+        std::snprintf(text, sizeof text, "extent %.*s = %lld of port %s is outside 1 to %u",
+                      static_cast<int>(extent.constant.size()), extent.constant.data(), static_cast<long long>(n),
+                      component_->ports[port.declared].name, extent.max);
+        why.assign(text);
+        return false;
+      }
+      to.extent[d] = static_cast<std::uint32_t>(n);
+      to.count *= to.extent[d];
+    }
+  }
+  return true;
+}
+
+}  // namespace chimera

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The memory behind one task: component state, constants, resources, groups, and the wiring of every port.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/base/result.h"
+#include "chimera/runtime/aligned_bytes.h"
+#include "chimera/runtime/constant_store.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+/// A constant port of a task: `local` is what the component sees.
+struct ConstantPort {
+  chimera_port* port = nullptr;
+  const PortSpec* spec = nullptr;
+  const chimera_port_decl* decl = nullptr;
+  std::byte* local = nullptr;
+};
+
+/// Owns what a Task points at. Context: setup and edge.
+class Instance {
+ public:
+  /// Plans the memory for `spec`. Refuses a specification that does not fit the component's declaration
+  /// (a descriptor of another build): names task and port.
+  static Result<Instance> create(const TaskSpec& spec, const chimera_component& component);
+
+  /// Constructs the component anew in zeroed state and wires its ports: constants and resources to local memory,
+  /// outputs to a group that no consumer of the previous incarnation is bound to.
+  /// Leaves task.group published with the initial values (never-written fill where there are none).
+  Result<void> construct(Task& task, Nanoseconds now);
+  void destroy(Task& task) noexcept;
+
+  /// Copies constants in; false with `why` when one has no value. Sets extents that constants fix.
+  bool read_constants(const ConstantStore& store, FixedString<160>& why) noexcept;
+  /// Copies out-consts to the store; calls are counted: the number of constants that changed.
+  int write_constants(ConstantStore& store, TaskId self) noexcept;
+  /// Fixes the extents of all ports from known constants; false with `why` when one is out of range.
+  bool fix_extents(const ConstantStore& store, FixedString<160>& why) noexcept;
+
+  /// The group that consumers may be bound to before the task was ever spawned: the never-written fill.
+  GroupReader reader() const noexcept;
+  std::span<Input> inputs() noexcept { return inputs_; }
+  std::span<const ConstantPort> constants() const noexcept { return constants_; }
+  /// The variables behind inputs(), in the same order.
+  std::span<const PortSpec* const> input_specs() const noexcept { return input_specs_; }
+  std::uint64_t initial_valid() const noexcept { return initial_valid_; }
+  /// Where output `i` lies in the payload, what was specified for it, and its live half (nullptr: not constructed).
+  std::uint32_t output_offset(std::size_t i) const noexcept { return outputs_[i].offset; }
+  const PortSpec* output_spec(std::size_t i) const noexcept { return outputs_[i].spec; }
+  const chimera_port* output_port(std::size_t i) const noexcept { return is_constructed_ ? outputs_[i].port : nullptr; }
+  /// True when a constant that the component was initialised with has another value by now.
+  bool uses_changed(const ConstantStore& store) const noexcept;
+  /// True when the staged value of output `i` is still the never-written fill.
+  bool is_unwritten(const Task& task, std::size_t i) const noexcept;
+
+ private:
+  Result<void> plan(const TaskSpec& spec);
+  Result<void> plan_port(const PortSpec& port);
+  void wire(Task& task) noexcept;
+  void make_fill();
+  chimera_port* live(const PortSpec& port) const noexcept;
+
+  const TaskSpec* spec_ = nullptr;
+  const chimera_component* component_ = nullptr;
+  AlignedBytes state_;
+  AlignedBytes constant_memory_;
+  AlignedBytes groups_[2];
+  std::uint32_t payload_bytes_ = 0;
+  std::uint32_t constant_bytes_ = 0;
+  std::uint32_t incarnation_ = 0;
+  std::uint64_t initial_valid_ = 0;
+  bool is_constructed_ = false;
+  std::vector<Input> inputs_;
+  std::vector<const PortSpec*> input_specs_;
+  std::vector<Output> outputs_;
+  std::vector<std::byte> fill_;  ///< payload of a group at spawn: initial values, else the never-written fill
+  std::vector<ConstantPort> constants_;
+  std::vector<std::pair<const PortSpec*, std::string>> resources_;
+};
+
+}  // namespace chimera

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/job_step.h"
+
+#include <cstring>
+
+#include "chimera/runtime/safety.h"
+
+namespace chimera {
+namespace {
+
+std::uint64_t all_valid(const Task& task) noexcept {
+  const std::size_t n = task.outputs.size();
+  return n >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1;
+}
+
+void note_fault(Task& task, Method method, Nanoseconds at) noexcept {
+  ++task.faults.count;
+  task.faults.at = at;
+  task.faults.method = method;
+  if (task.faults.last.text[0] == '\0') std::strcpy(task.faults.last.text, "answered with a fault and gave no text");
+}
+
+Answer default_answer(Method method) noexcept { return method == Method::kError ? Answer::kFault : Answer::kOk; }
+
+}  // namespace
+
+void read_inputs(Task& task) noexcept {
+  for (Input& input : task.inputs) {
+    const chimera_slot* slot = input.producer.published();
+    chimera_port& port = *input.port;
+    port.slot = slot;
+    port.bit = input.bit;
+    port.value = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(slot + 1)) + input.offset;
+  }
+}
+
+void aim_outputs(Task& task) noexcept {
+  std::byte* staging = task.group.staging();
+  for (Output& output : task.outputs) output.port->value = staging + output.offset;
+}
+
+void record_fault(Task& task, Method method, const char* text, Nanoseconds at) noexcept {
+  task.faults.last.code = 0;
+  std::strncpy(task.faults.last.text, text, CHIMERA_FAULT_TEXT - 1);
+  task.faults.last.text[CHIMERA_FAULT_TEXT - 1] = '\0';
+  note_fault(task, method, at);
+}
+
+Answer call_method(Task& task, Method method, Nanoseconds at) noexcept {
+  const chimera_method body = task.component->methods[static_cast<int>(method)];
+  if (body == nullptr) return default_answer(method);
+  chimera_fault before = {};
+  const bool may_keep_old = method == Method::kError || method == Method::kClear;
+  if (may_keep_old) before = task.faults.last;
+  task.faults.last.text[0] = '\0';
+  task.faults.last.code = 0;
+  const Answer answer = answer_of(method, body(task.instance, &task.call));
+  if (answer == Answer::kFault) note_fault(task, method, at);
+  else if (may_keep_old) task.faults.last = before;
+  return answer;
+}
+
+Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) noexcept {
+  if (task.has_safety) {
+    char text[CHIMERA_FAULT_TEXT];
+    if (!is_safe(task, text)) {
+      ++task.profile.rejected;
+      record_fault(task, method, text, now);
+      task.group.prefill();
+      return Answer::kFault;
+    }
+  }
+  task.valid = valid;
+  task.group.publish(now, valid);
+  task.group.prefill();
+  aim_outputs(task);
+  return Answer::kOk;
+}
+
+State follow_error(Task& task, Next at, Nanoseconds now) noexcept {
+  while (at.kind == Next::Kind::kStep) {
+    const StepRule& step = rule(at.step);
+    if (step.before & kReadIn) read_inputs(task);
+    Answer answer = call_method(task, step.method, now);
+    if (answer == Answer::kOk && (step.after_ok & kWriteOut)) answer = publish(task, step.method, task.valid, now);
+    if (answer != Answer::kOk) task.group.prefill();
+    at = step.next[static_cast<int>(answer)];
+  }
+  task.state = at.state;
+  return at.state;
+}
+
+BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept {
+  chimera_call& call = task.call;
+  call.now_ns = time.release.count;
+  call.dt_ns = (time.release - task.last_release).count;
+  call.deadline_ns = time.deadline.count;
+  call.dropped = time.dropped;
+  call.illegal = time.illegal ? 1u : 0u;
+  if (task.spec->aperiodic) {
+    const Answer answer = call_method(task, Method::kSync, time.release);
+    if (answer != Answer::kOk) return {answer, Method::kSync};
+  }
+  read_inputs(task);
+  for (Input& input : task.inputs) {
+    input.port->seen = input.sequence;
+    input.sequence = input.port->slot->sequence;
+  }
+  return {call_method(task, Method::kCycle, time.release), Method::kCycle};
+}
+
+State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end, bool may_publish) noexcept {
+  const Step step = body.method == Method::kSync ? Step::kSync : Step::kCycle;
+  Answer answer = body.answer;
+  if (answer == Answer::kOk && may_publish) answer = publish(task, Method::kCycle, all_valid(task), end);
+  else if (answer != Answer::kNoEvent) task.group.prefill();
+  if (answer == Answer::kOk || answer == Answer::kAborted) {
+    if (answer == Answer::kAborted) ++task.profile.aborted;
+    else if (!may_publish) ++task.profile.held;
+    if (answer == Answer::kOk && may_publish) {
+      ++task.profile.cycles;
+      ++task.call.cycle;
+      task.last_release = time.release;
+    }
+    return State::kOn;
+  }
+  if (answer == Answer::kNoEvent) return State::kOn;
+  return follow_error(task, rule(step).next[static_cast<int>(answer)], end);
+}
+
+}  // namespace chimera

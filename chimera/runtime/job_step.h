@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one job step: transfer, method, check, publication. Every executor runs a cycle through these and adds
+// only when it is released and how it waits (design section 3, runtime).
+//
+//   begin_cycle   [sync] >in-var cycle             (virtual time: at first dispatch)
+//   end_cycle     out-var> | error ...             (virtual time: at modelled completion)
+#pragma once
+
+#include "chimera/base/time.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+/// When and how a cycle runs.
+struct CycleTime {
+  Nanoseconds release;
+  Nanoseconds deadline;       ///< absolute
+  std::uint32_t dropped = 0;  ///< releases dropped since the last completed cycle
+  bool illegal = false;       ///< the illegal-configuration flag, read once per job
+};
+
+/// What begin_cycle found, to be handed to end_cycle. `method` is the one that answered last.
+struct BodyEnd {
+  Answer answer = Answer::kOk;
+  Method method = Method::kCycle;
+};
+
+/// Runs sync (aperiodic tasks) and cycle. Publishes nothing. Requires: task.state == kOn.
+/// Context: cycle; as long as the component's methods take.
+BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept;
+
+/// Publishes what an ok cycle made (`may_publish` false: a late cycle that is held), or handles its fault by the
+/// rules of the state machine. Returns the state the task is in afterwards. Context: cycle.
+State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end, bool may_publish) noexcept;
+
+/// Points every in-var at its producer's latest publication. Context: cycle; wait-free; O(in-vars).
+void read_inputs(Task& task) noexcept;
+
+/// Calls a method; one that the component does not have answers as docs/formats/component-abi.md says
+/// (ok; error: not recovered). A fault is recorded with `at`. Context: that of the method.
+Answer call_method(Task& task, Method method, Nanoseconds at) noexcept;
+
+/// Checks safety ports and publishes the staged outputs. A refused value is recorded as a fault of `method`;
+/// then nothing is published, the last good outputs stand, and the answer is kFault.
+/// Context: cycle; wait-free; O(output bytes).
+Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) noexcept;
+
+/// Follows the steps that `first` starts until a state is reached, without any transfer of constants; for the
+/// error handling of cycle, sync, on and off. Context: cycle.
+State follow_error(Task& task, Next first, Nanoseconds now) noexcept;
+
+/// Records a fault that the framework itself found. `text` is cut at CHIMERA_FAULT_TEXT - 1. Context: cycle; wait-free.
+void record_fault(Task& task, Method method, const char* text, Nanoseconds at) noexcept;
+
+/// Points the out-vars at the staged values; after every publication and at set-up. Context: cycle; wait-free.
+void aim_outputs(Task& task) noexcept;
+
+}  // namespace chimera

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// The signalling half of TaskSet: one signal, the steps it starts, and what follows for the other tasks.
+#include <cstring>
+
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+namespace {
+
+std::string refusal(const Task& task, Signal signal) {
+  return std::string(signal_name(signal)) + " is not legal for " + std::string(task.spec->name) + " in state " +
+         state_name(task.state);
+}
+
+}  // namespace
+
+Result<void> TaskSet::start(Nanoseconds now) {
+  for (TaskId id : spec_.init_order) {
+    carry_out(id, Signal::kSpawn, now);
+    const Task& task = tasks_[id.index];
+    if (task.state != State::kOff)
+      return Error{ErrorCode::kRefused, {std::string("init: ") + task.faults.last.text}, {task.spec->name}};
+  }
+  const SignalReport report = signal(spec_.start, Signal::kOn, now);
+  if (!report.is_accepted) return Error{ErrorCode::kRefused, {report.refusal}, {spec_.name}};
+  return {};
+}
+
+void TaskSet::shut_down(Nanoseconds now) {
+  for (std::size_t i = spec_.start.size(); i-- > 0;)
+    if (tasks_[spec_.start[i].index].state == State::kOn) carry_out(spec_.start[i], Signal::kOff, now);
+  for (Task& task : tasks_)
+    if (task.state == State::kOn) carry_out(task.id, Signal::kOff, now);
+  for (std::size_t i = spec_.init_order.size(); i-- > 0;)
+    if (tasks_[spec_.init_order[i].index].state != State::kNotCreated)
+      carry_out(spec_.init_order[i], Signal::kKill, now);
+  on_set_changed();
+}
+
+SignalReport TaskSet::signal(TaskId task, Signal signal, Nanoseconds now) { return this->signal({&task, 1}, signal, now); }
+
+SignalReport TaskSet::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) {
+  SignalReport report;
+  for (TaskId id : tasks) {
+    const Task& task = tasks_[id.index];
+    report.before = report.after = task.state;
+    if (next(task.state, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
+    report.refusal = refusal(task, signal);
+    return report;
+  }
+  if (signal == Signal::kOn && !would_be_legal(tasks, signal, report.refusal)) return report;
+  for (TaskId id : tasks) {
+    report = carry_out(id, signal, now);
+    if (signal != Signal::kOn || report.after == State::kOn) continue;
+    for (TaskId done : tasks) {  // one transaction: whoever is ON already goes OFF again
+      if (done == id) break;
+      carry_out(done, Signal::kOff, now);
+    }
+    report.is_accepted = false;
+    report.refusal = "on: " + std::string(tasks_[id.index].spec->name) + ": " + tasks_[id.index].faults.last.text;
+    break;
+  }
+  on_set_changed();
+  return report;
+}
+
+bool TaskSet::would_be_legal(std::span<const TaskId> tasks, Signal signal, std::string& why) const {
+  std::vector<bool> on(on_.size());
+  for (const Task& task : tasks_) on[task.id.index] = task.state == State::kOn;
+  for (TaskId id : tasks) on[id.index] = signal == Signal::kOn;
+  why = variables_->explain(on, spec_.tasks);
+  return why.empty();
+}
+
+SignalReport TaskSet::carry_out(TaskId id, Signal signal, Nanoseconds now) {
+  Task& task = tasks_[id.index];
+  SignalReport report{true, task.state, task.state, {}};
+  if (signal == Signal::kSpawn) {
+    auto constructed = instances_[id.index].construct(task, now);
+    if (!constructed) {
+      record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
+      report.is_accepted = false;
+      report.refusal = constructed.error().message.c_str();
+      return report;
+    }
+  }
+  task.call.now_ns = now.count;
+  task.call.illegal = is_illegal() ? 1u : 0u;
+  if (signal == Signal::kOn) {
+    task.call.cycle = 0;
+    task.call.dropped = 0;
+    task.call.dt_ns = task.spec->period.count;
+  }
+  report.after = follow(task, next(task.state, signal, false), now);
+  if (report.after == State::kNotCreated) instances_[id.index].destroy(task);
+  deliver(task);
+  return report;
+}
+
+State TaskSet::follow(Task& task, Next at, Nanoseconds now) {
+  while (at.kind == Next::Kind::kStep) {
+    const StepRule& step = rule(at.step);
+    const Answer answer = run_step(task, step, now);
+    if (answer != Answer::kOk && task.state != State::kNotCreated) task.group.prefill();
+    at = step.next[static_cast<int>(answer)];
+  }
+  task.state = at.state;
+  return at.state;
+}
+
+Answer TaskSet::run_step(Task& task, const StepRule& step, Nanoseconds now) {
+  const Nanoseconds began = clock_ == nullptr ? now : clock_->now();
+  Answer answer = before_step(task, step, now) ? call_method(task, step.method, now) : Answer::kFault;
+  if (answer == Answer::kOk) answer = after_ok(task, step, now);
+  const Nanoseconds ended = clock_ == nullptr ? now : clock_->now();
+  task.profile.execution[static_cast<int>(step.method)].add(ended - began);
+  return answer;
+}
+
+bool TaskSet::before_step(Task& task, const StepRule& step, Nanoseconds now) {
+  if (step.before & kReadIn) read_inputs(task);
+  if (step.before & kReadOut) take_over(task);
+  if (step.before & kReadConst) {
+    FixedString<160> why;
+    if (!instances_[task.id.index].read_constants(constants_, why)) {
+      record_fault(task, step.method, why.c_str(), now);
+      return false;
+    }
+  }
+  return true;
+}
+
+Answer TaskSet::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
+  Instance& instance = instances_[task.id.index];
+  if (step.after_ok & kWriteConst) {
+    const int changed = instance.write_constants(constants_, task.id);
+    FixedString<160> why;
+    if (!instance.fix_extents(constants_, why)) {
+      record_fault(task, step.method, why.c_str(), now);
+      return Answer::kFault;
+    }
+    if (changed > 0) reinit_users(task.id, now);
+  }
+  if (step.after_ok & kWriteOut) {
+    const bool turns_on = step.step == Step::kOn;
+    const Answer answer = publish(task, step.method, turns_on ? valid_after_on(task) : task.valid, now);
+    if (answer == Answer::kOk && turns_on) bind_outputs_of(task);
+    return answer;
+  }
+  return Answer::kOk;
+}
+
+// >out-var: what a predecessor left is where this task starts from (2000 paper 5.1).
+void TaskSet::take_over(Task& task) noexcept {
+  taken_over_valid_ = 0;
+  for (std::uint32_t i = 0; i < task.outputs.size(); ++i) {
+    const Source& source = sources_[variables_->output(task.id, i).index];
+    const chimera_slot* slot = source.reader.published();
+    if (slot == nullptr || !((slot->valid >> source.bit) & 1u)) continue;
+    std::memcpy(task.group.staging() + task.outputs[i].offset, reinterpret_cast<const std::byte*>(slot + 1) + source.offset,
+                task.outputs[i].bytes);
+    taken_over_valid_ |= std::uint64_t{1} << i;
+  }
+}
+
+std::uint64_t TaskSet::valid_after_on(const Task& task) const noexcept {
+  const Instance& instance = instances_[task.id.index];
+  std::uint64_t valid = taken_over_valid_ | instance.initial_valid();
+  for (std::size_t i = 0; i < task.outputs.size(); ++i)
+    if (!instance.is_unwritten(task, i)) valid |= std::uint64_t{1} << i;
+  return valid;
+}
+
+// Exactly the users of the constants that changed, in the order of initialisation; a circle is refused by
+// verification, so this ends.
+void TaskSet::reinit_users(TaskId of, Nanoseconds now) {
+  for (TaskId id : spec_.init_order) {
+    Task& user = tasks_[id.index];
+    if (id == of || (user.state != State::kOff && user.state != State::kOn)) continue;
+    if (instances_[id.index].uses_changed(constants_)) carry_out(id, Signal::kReinit, now);
+  }
+}
+
+}  // namespace chimera

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The last fault of a task and how many there were: read from outside, written by the job step.
+#pragma once
+
+#include <cstdint>
+
+#include "chimera/base/time.h"
+#include "chimera/task/abi.h"
+#include "chimera/task/state_machine.h"
+
+namespace chimera {
+
+/// Context: cycle; wait-free. `last.text` is always zero-terminated.
+struct FaultRecord {
+  std::uint64_t count = 0;
+  Nanoseconds at;                 ///< of the last fault
+  Method method = Method::kInit;  ///< that answered it
+  chimera_fault last{};           ///< its code and text
+};
+
+}  // namespace chimera

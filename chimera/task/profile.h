@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a task costs and how punctual it is, always measured (1994 paper 3.3; reference HASE'96 for the idea).
+#pragma once
+
+#include <cstdint>
+
+#include "chimera/base/time.h"
+#include "chimera/task/abi.h"
+
+namespace chimera {
+
+/// Smallest, largest and sum of a duration. Context: cycle; wait-free.
+struct Spread {
+  std::uint64_t count = 0;
+  Nanoseconds min = kNever;
+  Nanoseconds max{INT64_MIN};
+  Nanoseconds sum;
+
+  void add(Nanoseconds value) noexcept {
+    ++count;
+    if (value < min) min = value;
+    if (value > max) max = value;
+    sum += value;
+  }
+  /// Mean, 0 when nothing was added.
+  Nanoseconds mean() const noexcept { return {count == 0 ? 0 : sum.count / static_cast<std::int64_t>(count)}; }
+};
+
+/// Everything counted about one task. Written by the job step and the executor of its context only.
+struct Profile {
+  Spread execution[CHIMERA_METHODS];  ///< time a method used, transfers included; virtual time: modelled
+  Spread response;                    ///< release to completion of a cycle
+  Spread start_delay;                 ///< release to start of a cycle: its max minus min is the start jitter
+  std::uint64_t cycles = 0;           ///< completed (published) cycles since spawn
+  std::uint64_t aborted = 0;          ///< cycles that gave up
+  std::uint64_t held = 0;             ///< late cycles not published (on_miss: hold)
+  std::uint64_t missed = 0;           ///< cycles that ended after their deadline
+  std::uint64_t overrun = 0;          ///< cycles that used more than their budget
+  std::uint64_t min_refused = 0;      ///< cycles whose minimum time could no longer be granted
+  std::uint64_t dropped = 0;          ///< releases dropped
+  std::uint64_t stale = 0;            ///< inputs kept because a read was overtaken
+  std::uint64_t rejected = 0;         ///< outputs of safety ports refused: NaN, infinite or out of range
+  std::uint32_t missed_in_a_row = 0;
+};
+
+}  // namespace chimera

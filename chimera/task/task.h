@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// One instance of a component under the framework: the papers' task. Plain data; the job step and the task
+// set act on it (chimera/runtime). Members are grouped by who may write them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/base/fixed.h"
+#include "chimera/table/group.h"
+#include "chimera/task/abi.h"
+#include "chimera/task/fault_record.h"
+#include "chimera/task/profile.h"
+#include "chimera/task/state_machine.h"
+#include "chimera/task/task_spec.h"
+
+namespace chimera {
+
+/// An in-var, bound in place: its producer runs in the same context. `port` points at its published slot,
+/// looked up anew before every method.
+struct Input {
+  chimera_port* port = nullptr;
+  GroupReader producer;
+  std::uint32_t offset = 0;    ///< of the value in the producer's payload
+  std::uint32_t bit = 0;       ///< of the value in the producer's valid bits
+  std::uint64_t sequence = 0;  ///< of the publication that the last cycle read
+};
+
+/// An out-var of this task.
+struct Output {
+  chimera_port* port = nullptr;
+  const PortSpec* spec = nullptr;
+  std::uint32_t offset = 0;  ///< of the value in this task's payload
+  std::uint32_t bytes = 0;   ///< reserved (extents at their maxima)
+};
+
+/// A signal sent by a method, acted upon after it.
+struct SentSignal {
+  Signal signal = Signal::kOff;
+  TaskId target;
+};
+
+inline constexpr std::size_t kOutboxSize = 16;
+
+struct Task {
+  // Fixed at set-up.
+  const TaskSpec* spec = nullptr;
+  const chimera_component* component = nullptr;
+  void* instance = nullptr;  ///< the component's state
+  TaskId id;
+  std::span<Output> outputs;
+  bool has_safety = false;
+
+  // Rebound at an edge when producers change.
+  std::span<Input> inputs;
+  GroupWriter group;
+
+  // Written by the job step.
+  State state = State::kNotCreated;
+  std::uint64_t valid = 0;        ///< of the out-vars, as last published
+  Nanoseconds last_release;       ///< of the last completed cycle; for dt
+  chimera_call call{};
+  FaultRecord faults;
+  Profile profile;
+  FixedVector<SentSignal, kOutboxSize> outbox;
+
+  // Written by the executor and the task set at edges.
+  FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
+};
+
+}  // namespace chimera
