@@ -69,6 +69,7 @@ inline void acquire_fence() noexcept { std::atomic_thread_fence(std::memory_orde
 
 /// memcpy with a size hidden from the compiler: a known size would be expanded to `rep movsq`, three times slower.
 inline void opaque_copy(void* to, const void* from, std::size_t bytes) noexcept {
+  if (bytes == 0) return;  // a group without variables has no values, and perhaps no place for them
   asm volatile("" : "+r"(bytes));
   std::memcpy(to, from, bytes);
 }
