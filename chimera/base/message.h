@@ -14,6 +14,9 @@ namespace chimera {
 /// At most 400 bytes; what does not fit is cut. Context: any; wait-free.
 class Message {
  public:
+  Message() noexcept = default;
+  explicit Message(std::string_view text) noexcept { *this << text; }
+
   Message& operator<<(std::string_view text) noexcept {
     for (const char c : text)
       if (size_ < sizeof bytes_) bytes_[size_++] = c;

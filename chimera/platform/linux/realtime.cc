@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/platform/realtime.h"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "chimera/base/message.h"
+
+namespace chimera {
+namespace {
+
+bool has_priority(int priority) noexcept {
+  int policy = 0;
+  sched_param param{};
+  return ::pthread_getschedparam(::pthread_self(), &policy, &param) == 0 && policy == SCHED_FIFO &&
+         param.sched_priority == priority;
+}
+
+void set_priority(const RealtimeRequest& request, RealtimeGrant& grant, Message& report) noexcept {
+  if (request.priority == 0) {
+    grant.priority = true;
+    return;
+  }
+  sched_param param{};
+  param.sched_priority = request.priority;
+  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param);
+  grant.priority = error == 0 && has_priority(request.priority);
+  report << "; FIFO priority " << request.priority;
+  if (grant.priority) {
+    report << " granted";
+    return;
+  }
+  rlimit limit{};
+  ::getrlimit(RLIMIT_RTPRIO, &limit);
+  report << " refused (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")
+         << "): set RLIMIT_RTPRIO to " << request.priority << " or more (is " << limit.rlim_cur
+         << "; 'ulimit -r', LimitRTPRIO=) or give CAP_SYS_NICE";
+}
+
+bool runs_only_on(int cpu) noexcept {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (::pthread_getaffinity_np(::pthread_self(), sizeof set, &set) != 0) return false;
+  return CPU_COUNT(&set) == 1 && CPU_ISSET(static_cast<std::size_t>(cpu), &set) && ::sched_getcpu() == cpu;
+}
+
+void set_cpu(const RealtimeRequest& request, RealtimeGrant& grant, Message& report) noexcept {
+  if (request.cpu < 0) {
+    grant.cpu = true;
+    return;
+  }
+  int error = EINVAL;
+  if (request.cpu < CPU_SETSIZE) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(static_cast<std::size_t>(request.cpu), &set);
+    error = ::pthread_setaffinity_np(::pthread_self(), sizeof set, &set);
+  }
+  grant.cpu = error == 0 && runs_only_on(request.cpu);
+  report << "; CPU " << request.cpu;
+  if (grant.cpu) {
+    report << " granted";
+    return;
+  }
+  report << " refused (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")
+         << "): this machine has CPU 0 to " << ::sysconf(_SC_NPROCESSORS_ONLN) - 1;
+}
+
+// The start of a small file, zero-terminated; "" when it cannot be read.
+struct FileStart {
+  explicit FileStart(const char* path) noexcept {
+    const int fd = ::open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) return;
+    const ssize_t got = ::read(fd, bytes, sizeof bytes - 1);
+    if (got > 0) bytes[got] = '\0';
+    ::close(fd);
+  }
+  char bytes[4096] = {};
+};
+
+// Memory counts as locked when the kernel says that some of it is.
+bool has_locked_memory() noexcept {
+  const FileStart status("/proc/self/status");
+  const char* line = std::strstr(status.bytes, "\nVmLck:");
+  return line != nullptr && std::strtol(line + sizeof "\nVmLck:" - 1, nullptr, 10) > 0;
+}
+
+void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Message& report) noexcept {
+  if (!request.lock_memory) {
+    grant.memory = true;
+    return;
+  }
+  const int error = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+  grant.memory = error == 0 && has_locked_memory();
+  if (grant.memory) {
+    report << "; memory locked";
+    return;
+  }
+  report << "; memory not locked (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")
+         << "): set RLIMIT_MEMLOCK to unlimited ('ulimit -l', LimitMEMLOCK=) or give CAP_IPC_LOCK";
+}
+
+double read_throttle_share() noexcept {
+  const long runtime = std::strtol(FileStart("/proc/sys/kernel/sched_rt_runtime_us").bytes, nullptr, 10);
+  const long period = std::strtol(FileStart("/proc/sys/kernel/sched_rt_period_us").bytes, nullptr, 10);
+  if (runtime < 0 || period <= 0 || runtime >= period) return 1;
+  return static_cast<double>(runtime) / static_cast<double>(period);
+}
+
+}  // namespace
+
+RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
+  RealtimeGrant grant;
+  Message parts;
+  lock_memory(request, grant, parts);  // first: its page faults are no longer at real-time priority
+  set_cpu(request, grant, parts);
+  set_priority(request, grant, parts);
+  if (request.priority > 0) {
+    grant.throttle_share = read_throttle_share();
+    if (grant.throttle_share < 1)
+      parts << "; throttled to " << static_cast<int>(grant.throttle_share * 100 + 0.5) << " % of a CPU";
+  }
+  Message report;
+  report << "real time: " << (parts.empty() ? "nothing asked for" : parts.view().substr(2));
+  grant.report.assign(report.view());
+  return grant;
+}
+
+}  // namespace chimera

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real-time rights of the calling thread: asked for, then looked up again, because a request that "succeeded" may
+// still not hold (a cgroup, an emulated kernel, a zero budget).
+#pragma once
+
+#include <cstdint>
+
+#include "chimera/base/fixed.h"
+
+namespace chimera {
+
+struct RealtimeRequest {
+  int priority = 0;         ///< SCHED_FIFO 1..99; 0 leaves the thread as it is
+  int cpu = -1;             ///< the only CPU to run on; -1: any
+  bool lock_memory = true;  ///< no page of the process is ever fetched again
+};
+
+/// What of a RealtimeRequest is in force now. What was not asked for counts as granted.
+struct RealtimeGrant {
+  bool priority = false;
+  bool cpu = false;
+  bool memory = false;
+  /// Of each period the kernel lets real-time threads run this share: 0.95 by default, 1 when not throttled.
+  double throttle_share = 1;
+  /// One line: what was granted, and for each thing that was not, what to set.
+  FixedString<400> report;
+
+  bool is_complete() const noexcept { return priority && cpu && memory; }
+};
+
+/// Applies `request` to the calling thread (memory: the process), as far as the system allows. Nothing is fatal:
+/// without rights the same program runs, late. Context: setup; may block.
+RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept;
+
+}  // namespace chimera

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs with and without rights: what is reported must be what the kernel says, either way.
+#include "chimera/platform/realtime.h"
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <string_view>
+#include <thread>
+
+namespace chimera {
+namespace {
+
+// On a thread of its own, so that the test's thread stays ordinary.
+RealtimeGrant enter_on_a_thread(const RealtimeRequest& request, int* policy = nullptr, int* cpus = nullptr) {
+  RealtimeGrant grant;
+  std::thread([&] {
+    grant = enter_realtime(request);
+    sched_param param{};
+    int found = 0;
+    ::pthread_getschedparam(::pthread_self(), &found, &param);
+    if (policy != nullptr) *policy = found;
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    ::pthread_getaffinity_np(::pthread_self(), sizeof set, &set);
+    if (cpus != nullptr) *cpus = CPU_COUNT(&set);
+  }).join();
+  return grant;
+}
+
+int first_allowed_cpu() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  ::sched_getaffinity(0, sizeof set, &set);
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+    if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) return cpu;
+  return -1;
+}
+
+TEST(Realtime, NothingAskedForIsGranted) {
+  const RealtimeGrant grant = enter_on_a_thread({.priority = 0, .cpu = -1, .lock_memory = false});
+  EXPECT_TRUE(grant.is_complete());
+  EXPECT_EQ(grant.report.view(), "real time: nothing asked for");
+}
+
+TEST(Realtime, CpuIsGrantedToAnOrdinaryUser) {
+  const int cpu = first_allowed_cpu();
+  int cpus = 0;
+  const RealtimeGrant grant = enter_on_a_thread({.priority = 0, .cpu = cpu, .lock_memory = false}, nullptr, &cpus);
+  EXPECT_TRUE(grant.cpu);
+  EXPECT_EQ(cpus, 1);
+  EXPECT_EQ(grant.report.view(), "real time: CPU " + std::to_string(cpu) + " granted");
+}
+
+TEST(Realtime, ACpuThatDoesNotExistIsRefusedByNumber) {
+  const RealtimeGrant grant = enter_on_a_thread({.priority = 0, .cpu = 1000, .lock_memory = false});
+  EXPECT_FALSE(grant.cpu);
+  EXPECT_EQ(grant.report.view(), "real time: CPU 1000 refused (Invalid argument): this machine has CPU 0 to " +
+                                     std::to_string(::sysconf(_SC_NPROCESSORS_ONLN) - 1));
+}
+
+TEST(Realtime, PriorityIsReportedAsTheKernelHasIt) {
+  int policy = -1;
+  const RealtimeGrant grant = enter_on_a_thread({.priority = 7, .cpu = -1, .lock_memory = false}, &policy);
+  EXPECT_EQ(grant.priority, policy == SCHED_FIFO);
+  const std::string_view report = grant.report.view();
+  if (grant.priority) {
+    EXPECT_TRUE(report.starts_with("real time: FIFO priority 7 granted")) << report;
+    EXPECT_GT(grant.throttle_share, 0);
+    EXPECT_LE(grant.throttle_share, 1);
+  } else {
+    EXPECT_NE(report.find("refused"), std::string_view::npos) << report;
+    EXPECT_NE(report.find("RLIMIT_RTPRIO to 7 or more"), std::string_view::npos) << report;
+  }
+}
+
+TEST(Realtime, APriorityOutOfRangeIsRefusedEvenWithRights) {
+  int policy = -1;
+  const RealtimeGrant grant = enter_on_a_thread({.priority = 100, .cpu = -1, .lock_memory = false}, &policy);
+  EXPECT_FALSE(grant.priority);
+  EXPECT_EQ(policy, SCHED_OTHER);
+}
+
+}  // namespace
+}  // namespace chimera
