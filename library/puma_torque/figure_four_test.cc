@@ -30,7 +30,7 @@ struct Figures {
 
 Figures run(double payload_mass) {
   PumaArm arm;
-  EXPECT_TRUE(arm.load(PUMA_MODEL, {.payload_mass = payload_mass}));
+  EXPECT_TRUE(arm.load(kPumaModel, {.payload_mass = payload_mass}));
   EXPECT_TRUE(arm.place(kStart));
   std::array<PidAxis, kPumaJoints> pid;
   PumaVector tau{};

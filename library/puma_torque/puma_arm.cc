@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include "library/puma_torque/mujoco_guard.h"
+#include "puma560_mjcf.h"
 
 namespace chimera::library {
 namespace {
@@ -29,6 +31,22 @@ Error bad(const char* format, Values... values) {
   return error;
 }
 
+struct FilesRelease {
+  void operator()(mjVFS* files) const {
+    mj_deleteVFS(files);
+    delete files;
+  }
+};
+
+// A component runs from a sealed copy of its object: it cannot know what lies beside the file it came from.
+std::unique_ptr<mjVFS, FilesRelease> built_in_files() {
+  std::unique_ptr<mjVFS, FilesRelease> files(new mjVFS);
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), kPumaModel, sizeof kPumaMjcf - 1);
+  std::memcpy(files->filedata[0], kPumaMjcf, sizeof kPumaMjcf - 1);
+  return files;
+}
+
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 }  // namespace
@@ -42,7 +60,9 @@ PumaArm::~PumaArm() = default;
 Result<void> PumaArm::read_model(const char* mjcf_path) {
   install_mujoco_handlers();
   char why[1000] = "";
-  model_.reset(mj_loadXML(mjcf_path, nullptr, why, sizeof why));
+  const bool built_in = std::strcmp(mjcf_path, kPumaModel) == 0;
+  const std::unique_ptr<mjVFS, FilesRelease> files = built_in ? built_in_files() : nullptr;
+  model_.reset(mj_loadXML(mjcf_path, files.get(), why, sizeof why));
   if (!model_) return bad("%s: %.300s", mjcf_path, why);
   if (model_->nq != 6 || model_->nv != 6 || model_->nu != 6) {
     return bad("%s: found %d joints and %d motors, expected 6 and 6", mjcf_path, static_cast<int>(model_->nv),

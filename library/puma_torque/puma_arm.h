@@ -16,6 +16,7 @@ struct mjData_;
 namespace chimera::library {
 
 inline constexpr std::size_t kPumaJoints = 6;
+inline constexpr char kPumaModel[] = "puma560.xml";  ///< the model that is always at hand
 using PumaVector = std::array<double, kPumaJoints>;  ///< rad, rad/s or N.m
 using PumaInput = std::span<const double, kPumaJoints>;
 
@@ -33,7 +34,8 @@ class PumaArm {
   PumaArm(const PumaArm&) = delete;
   PumaArm& operator=(const PumaArm&) = delete;
 
-  /// Reads the model and stands at q = 0. Refuses a missing or ill-formed file, a model that is not a
+  /// Reads the model and stands at q = 0. "puma560.xml" without a directory is the model built into this object,
+  /// whatever lies in the working directory. Refuses a missing or ill-formed file, a model that is not a
   /// six-joint arm with its names, a payload outside 0..10 kg, a share outside 0..1. Context: setup; may block.
   Result<void> load(const char* mjcf_path, const PumaSettings& settings);
 

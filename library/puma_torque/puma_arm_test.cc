@@ -24,7 +24,7 @@ constexpr PumaVector kQs{0, 0, -kPi / 2, 0, 0, 0};
 // The published nominal pose has joint 3 at +180 degrees; -180 is the same place within the limits.
 constexpr PumaVector kQn{0, kPi / 4, -kPi, 0, kPi / 4, 0};
 
-const char* model_path() { return PUMA_MODEL; }
+const char* model_path() { return kPumaModel; }
 
 struct PumaArmTest : testing::Test {
   PumaArm arm;
@@ -194,6 +194,12 @@ TEST_F(PumaArmTest, RefusesPayloadShareAndPoseOutsideTheirRange) {
   load();
   EXPECT_EQ(arm.place(PumaVector{0, 0, 1, 0, 0, 0}).error().message.view(),
             "joint 3 at 1 rad is outside its limits -3.927 to 0.7854 rad");
+}
+
+TEST_F(PumaArmTest, BuiltInModelIsTheFile) {
+  const Result<void> loaded = arm.load(PUMA_MODEL_FILE, {});
+  ASSERT_TRUE(loaded) << loaded.error().message.view();
+  expect_gravity(kQs, {0, 46.0069, 8.7722, 0, .0283, 0});
 }
 
 TEST_F(PumaArmTest, RefusesAFileThatIsNoSixJointArm) {

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The PID joint position controller of figure 4 (1994 paper): one independent axis for each joint.
+#include <cmath>
+
+#include "chimera/task/component.h"
+#include "library/pid_joint/pid.h"
+
+using namespace chimera;
+
+namespace {
+
+constexpr std::size_t kMostJoints = 10;
+
+struct PidJoint {
+  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Reference positions."};
+  In<double[]> qd_ref{"qd_ref", "rad/s", "[ndof<=10]", frame = "joint", doc = "Reference velocities."};
+  In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured positions."};
+  In<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured velocities."};
+  In<double[]> kp{"kp", "N.m/rad", "[ndof<=10]", doc = "Gain of the position error."};
+  In<double[]> ki{"ki", "N.m/(rad.s)", "[ndof<=10]", doc = "Gain of its integral."};
+  In<double[]> kd{"kd", "N.m.s/rad", "[ndof<=10]", doc = "Gain of the velocity error."};
+  Out<double[]> tau{"tau", "N.m", "[ndof<=10]", frame = "joint", initial = 0.0, safety, range(-200, 200),
+                    doc = "Torque for each joint, within tau_max."};
+  InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
+  InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint", doc = "What the drives can give."};
+  InConst<double> filter_time{"filter_time", "s", initial = 2e-3, range(0, 1),
+                              doc = "Time constant of the velocity filter; 0 for none."};
+
+  Outcome init() {
+    for (double limit : tau_max)
+      if (!(limit >= 0 && limit <= 200)) return fault("tau_max must be 0 to 200 N.m, the range of tau");
+    if (!(*filter_time >= 0)) return fault("filter_time must be 0 s or more");
+    return ok();
+  }
+  Outcome reinit() { return init(); }
+
+  // Bumpless: goes on from the torque that stands, of an earlier run or of a predecessor.
+  void on() {
+    for (std::size_t i = 0; i < tau.size(); ++i)
+      axis_[i].start(gains(i), q_ref[i] - q[i], qd_ref[i] - qd[i], std::isnan(tau[i]) ? 0 : tau[i]);
+  }
+  Outcome cycle(Cycle c) {
+    // While the configuration is illegal the robot holds itself and the errors mean nothing: do not integrate them.
+    if (c.illegal()) {
+      on();
+      return ok();
+    }
+    for (std::size_t i = 0; i < tau.size(); ++i) {
+      const double torque =
+          axis_[i].step(gains(i), q_ref[i] - q[i], qd_ref[i] - qd[i], c.dt(), *filter_time, tau_max[i]);
+      if (std::isnan(torque)) return fault("an input is not a number");
+      tau[i] = torque;
+    }
+    return ok();
+  }
+  // No off(): the last torque stands, for a successor to go on from. Who stops needs no zero from here, because a
+  // robot without a controller is an illegal configuration, in which it holds itself.
+
+ private:
+  library::PidGains gains(std::size_t i) const { return {kp[i], ki[i], kd[i]}; }
+
+  library::PidAxis axis_[kMostJoints];
+};
+
+CHIMERA_COMPONENT(PidJoint, "pid_joint", "Independent joint PID with anti-windup and filtered derivative.",
+                  rate = 1000.0, source = "1994 paper, figure 4; Astrom and Hagglund 2006");
+
+}  // namespace
