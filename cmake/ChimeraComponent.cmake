@@ -82,7 +82,7 @@ function(chimera_component_tests group)
   get_property(sources GLOBAL PROPERTY chimera_${group}_sources)
   get_property(libraries GLOBAL PROPERTY chimera_${group}_libraries)
   if(sources)
-    _chimera_test_binary(${group}_test unit "${sources}" "chimera_component_base;${libraries}")
+    _chimera_test_binary(${group}_test unit "${sources}" "chimera_component_base;${libraries}" "")
   endif()
 endfunction()
 
