@@ -197,7 +197,10 @@ TEST_F(PumaArmTest, RefusesPayloadShareAndPoseOutsideTheirRange) {
 }
 
 TEST_F(PumaArmTest, BuiltInModelIsTheFile) {
-  const Result<void> loaded = arm.load(PUMA_MODEL_FILE, {});
+  const char* source = std::getenv("CHIMERA_SOURCE");
+  ASSERT_NE(source, nullptr);
+  const std::string file = std::string(source) + "/library/puma_torque/puma560.xml";
+  const Result<void> loaded = arm.load(file.c_str(), {});
   ASSERT_TRUE(loaded) << loaded.error().message.view();
   expect_gravity(kQs, {0, 46.0069, 8.7722, 0, .0283, 0});
 }
