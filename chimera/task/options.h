@@ -18,13 +18,13 @@ struct Literal {
   const char* text;
 };
 
-/// Letters, digits and underscores, not beginning with a digit, for `size` characters.
+/// [a-z][a-z0-9_]*, at most 64 letters, for the first `size` characters.
 consteval void check_name(const char* name, std::size_t size) {
-  if (size == 0 || (*name >= '0' && *name <= '9')) throw "a name begins with a letter";
+  if (size == 0 || size > 64 || *name < 'a' || *name > 'z') throw "a name begins with a small letter";
   for (std::size_t i = 0; i < size; ++i) {
     const char c = name[i];
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    if (!letter && !(c >= '0' && c <= '9')) throw "a name has letters, digits and '_' only";
+    if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9') && c != '_')
+      throw "a name has small letters, digits and '_' only";
   }
 }
 

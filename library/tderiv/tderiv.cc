@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time derivative of one signal by backward difference: dx = (x - x_last) / dt. Zero in the first cycle's output
-// until a difference exists. README.md is the data sheet.
+// Time derivative of one signal by backward difference: dx = (x - x_last) / dt.
+// README.md is the data sheet.
 #include "chimera/task/component.h"
 
 using namespace chimera;

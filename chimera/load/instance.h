@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of one component at work: memory of its size and alignment, constructed and destroyed by the component.
+#pragma once
+
+#include <utility>
+
+#include "chimera/base/result.h"
+#include "chimera/task/abi.h"
+
+namespace chimera {
+
+/// Owns one constructed state. Its address never changes: ports are bound into it. Movable as a handle.
+class Instance {
+ public:
+  /// Allocates state_size zeroed bytes and constructs. Refuses when the component's constructor fails (with its
+  /// text), when it was not described properly (a port outside the state, say), and when there is no memory.
+  /// Context: setup; may block.
+  static Result<Instance> make(const chimera_component& component);
+
+  Instance(Instance&& other) noexcept
+      : component_(std::exchange(other.component_, nullptr)), state_(std::exchange(other.state_, nullptr)) {}
+  Instance& operator=(Instance&& other) noexcept {
+    std::swap(component_, other.component_);
+    std::swap(state_, other.state_);
+    return *this;
+  }
+  /// Destroys the state. Context: setup; may block.
+  ~Instance();
+
+  void* state() const noexcept { return state_; }
+  const chimera_component& component() const noexcept { return *component_; }
+
+ private:
+  Instance(const chimera_component& component, void* state) noexcept : component_(&component), state_(state) {}
+
+  const chimera_component* component_;
+  void* state_;
+};
+
+}  // namespace chimera
