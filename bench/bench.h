@@ -216,7 +216,7 @@ inline Goal figure_at_least(double bound) { return {Goal::kFigure, false, bound}
 /// One figure of a row, as `./dev bench` shows it. Fields that are not filled are shown as "-".
 struct Figure {
   int row = 0;
-  std::string what;
+  std::string what = {};
   std::string unit = "ns";
   double figure = NAN;
   double baseline = NAN;  // what a user would do or pick instead, in the same unit, in the same run

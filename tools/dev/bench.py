@@ -106,8 +106,8 @@ def main():
     known = sources()
     unknown = [row for row in arguments.rows if row not in known]
     if unknown or not known:
-        print(f"./dev: no row {', '.join(map(str, unknown))}; there are: {', '.join(map(str, sorted(known))) or 'none'}",
-              file=sys.stderr)
+        there_are = ", ".join(map(str, sorted(known))) or "none"
+        print(f"./dev: no row {', '.join(map(str, unknown))}; there are: {there_are}", file=sys.stderr)
         return 2
     programs = [path for row in (arguments.rows or sorted(known)) for path in known[row]]
     output = sys.stdout
