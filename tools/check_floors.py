@@ -9,7 +9,8 @@ import sources  # noqa: E402
 
 FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "config": 6,
          "subsystem": 7, "draw": 7, "desk": 8, "record": 8, "shell": 8, "web": 8, "link": 8}
-COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/pbo.h")
+COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
+                       "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")
 # Slow to compile: one .cc of an upper floor pays for each, never a header, never the real-time floors.
 HEAVY = re.compile(r"^(CLI/|yaml-cpp/|nlohmann/|fmt/|mujoco/|gmock/)")

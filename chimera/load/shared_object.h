@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shared object of a component, opened so that nobody can change it under a running task: docs/formats/component-abi.md.
+// The shared object of a component, opened so that nobody can change it under a running task:
+// docs/formats/component-abi.md.
 //
 //   file -> sealed copy in memory -> dlopen of the copy, never closed
 //

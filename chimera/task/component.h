@@ -74,7 +74,8 @@ inline std::int32_t judge(Method method, const Outcome& outcome, chimera_fault* 
 inline std::int32_t judge(Method method, bool yes, chimera_fault* fault) noexcept {
   if (yes) return CHIMERA_OK;
   if (method == Method::kSync) return CHIMERA_NO_EVENT;
-  return note_fault(fault, 0, method == Method::kError ? "error() did not recover" : "clear() found the cause still there");
+  return note_fault(fault, 0,
+                    method == Method::kError ? "error() did not recover" : "clear() found the cause still there");
 }
 
 template <class T, class Name, Method kMethod>
@@ -167,15 +168,15 @@ bool offer(PortName name, Literal doc, Extras... extras) noexcept {
 
 }  // namespace chimera::face
 
-#define CHIMERA_FACE_JOIN_(a, b) a##b
-#define CHIMERA_FACE_JOIN(a, b) CHIMERA_FACE_JOIN_(a, b)
+#define CHIMERA_COMPONENT_JOIN_(a, b) a##b
+#define CHIMERA_COMPONENT_JOIN(a, b) CHIMERA_COMPONENT_JOIN_(a, b)
 
 /// Offers a class as a component: CHIMERA_COMPONENT(Class, "name", "One sentence.") with optional extras
 /// `rate = 1000.0` (default rate, Hz) and `source = "paper or book"`. Stands at namespace scope, in the one
 /// source file of the component.
 #define CHIMERA_COMPONENT(Class, ...)                                              \
   namespace {                                                                      \
-  [[maybe_unused]] const bool CHIMERA_FACE_JOIN(chimera_offered_, __COUNTER__) = \
+  [[maybe_unused]] const bool CHIMERA_COMPONENT_JOIN(chimera_offered_, __COUNTER__) = \
       ::chimera::face::offer<Class>(__VA_ARGS__);                                  \
   }                                                                                \
   static_assert(true)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structs for ports about bodies in space, each with a unit per field. The reference frame is the port's: `frame = "base"`.
+// Structs for ports about bodies in space, each with a unit per field. The reference frame is the port's:
+// `frame = "base"`.
 #pragma once
 
 #include <tuple>

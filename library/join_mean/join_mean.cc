@@ -12,7 +12,7 @@ struct JoinMean {
 
   Outcome init() const {
     if (in.size() == 0) return fault("there is nothing to join: name at least one input");
-    if (weight.size() != 0 && weight.size() != in.size()) return fault("there must be one weight for each input, or none");
+    if (weight.size() != 0 && weight.size() != in.size()) return fault("give one weight for each input, or none");
     return ok();
   }
   void on() { cycle(); }

@@ -10,28 +10,28 @@
 namespace chimera {
 
 /// Owns one constructed state. Its address never changes: ports are bound into it. Movable as a handle.
-class Instance {
+class ComponentState {
  public:
   /// Allocates state_size zeroed bytes and constructs. Refuses when the component's constructor fails (with its
   /// text), when it was not described properly (a port outside the state, say), and when there is no memory.
   /// Context: setup; may block.
-  static Result<Instance> make(const chimera_component& component);
+  static Result<ComponentState> make(const chimera_component& component);
 
-  Instance(Instance&& other) noexcept
+  ComponentState(ComponentState&& other) noexcept
       : component_(std::exchange(other.component_, nullptr)), state_(std::exchange(other.state_, nullptr)) {}
-  Instance& operator=(Instance&& other) noexcept {
+  ComponentState& operator=(ComponentState&& other) noexcept {
     std::swap(component_, other.component_);
     std::swap(state_, other.state_);
     return *this;
   }
   /// Destroys the state. Context: setup; may block.
-  ~Instance();
+  ~ComponentState();
 
   void* state() const noexcept { return state_; }
   const chimera_component& component() const noexcept { return *component_; }
 
  private:
-  Instance(const chimera_component& component, void* state) noexcept : component_(&component), state_(state) {}
+  ComponentState(const chimera_component& component, void* state) noexcept : component_(&component), state_(state) {}
 
   const chimera_component* component_;
   void* state_;

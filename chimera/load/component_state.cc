@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/load/instance.h"
+#include "chimera/load/component_state.h"
 
 #include <cstring>
 #include <new>
@@ -15,7 +15,7 @@ std::align_val_t alignment(const chimera_component& component) noexcept {
 
 }  // namespace
 
-Result<Instance> Instance::make(const chimera_component& component) {
+Result<ComponentState> ComponentState::make(const chimera_component& component) {
   const std::size_t size = component.state_size == 0 ? 1 : component.state_size;
   void* state = ::operator new(size, alignment(component), std::nothrow);
   if (state == nullptr) {
@@ -25,13 +25,13 @@ Result<Instance> Instance::make(const chimera_component& component) {
   }
   std::memset(state, 0, size);
   chimera_fault fault{};
-  if (component.construct(state, &fault) == CHIMERA_OK) return Instance(component, state);
+  if (component.construct(state, &fault) == CHIMERA_OK) return ComponentState(component, state);
   ::operator delete(state, alignment(component));
   return (Message() << "component " << component.name << " cannot be made: " << fault.text)
       .error(ErrorCode::kRefused);
 }
 
-Instance::~Instance() {
+ComponentState::~ComponentState() {
   if (state_ == nullptr) return;
   component_->destroy(state_);
   ::operator delete(state_, alignment(*component_));
