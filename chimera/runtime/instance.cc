@@ -58,7 +58,7 @@ Result<Instance> Instance::create(const TaskSpec& spec, const chimera_component&
   for (AlignedBytes& group : made.groups_) {
     group = AlignedBytes(group_bytes(made.payload_bytes_), kCacheLine);
     GroupWriter writer(group.span(), made.payload_bytes_);
-    std::memcpy(writer.staging(), made.fill_.data(), made.payload_bytes_);
+    std::copy(made.fill_.begin(), made.fill_.end(), writer.staging());
     writer.publish(Nanoseconds{}, made.initial_valid_);
   }
   return made;
@@ -135,7 +135,7 @@ Result<void> Instance::construct(Task& task, Nanoseconds now) {
   ++incarnation_;
   task.instance = state_.data();
   task.group = GroupWriter(groups_[incarnation_ % 2].span(), payload_bytes_);
-  std::memcpy(task.group.staging(), fill_.data(), payload_bytes_);
+  std::copy(fill_.begin(), fill_.end(), task.group.staging());
   task.group.publish(now, initial_valid_);
   task.group.prefill();
   task.valid = initial_valid_;
@@ -170,7 +170,9 @@ void Instance::wire(Task& task) noexcept {
   for (ConstantPort& constant : constants_) {
     constant.port = live(*constant.spec);
     constant.local = next;
-    constant.port->value = next;
+    const bool can_be_given = constant.decl->kind == CHIMERA_OUT_CONST || !constant.spec->variable.empty() ||
+                              !constant.spec->value.empty();
+    constant.port->value = can_be_given ? next : nullptr;
     next += round_up(constant.spec->max_bytes());
     if (!constant.spec->value.empty()) std::memcpy(constant.local, constant.spec->value.data(), constant.spec->value.size());
   }

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/task_set.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "chimera/runtime/test_application.h"
+
+namespace chimera {
+namespace {
+
+using testing::component;
+using testing::TestApplication;
+
+struct Counter {  // counts up from 1; throws, returns a fault or publishes NaN when told
+  Out<double> n{"n", "1", initial = 0.0, safety, range(-100, 100)};
+  InConst<double> step{"step", "1", initial = 1.0};
+  void on(Cycle) { sum_ = *n; }
+  Outcome cycle(Cycle) {
+    sum_ += *step;
+    if (sum_ == 13) throw std::runtime_error("thirteen");
+    if (sum_ == 14) return fault("fourteen", 14);
+    *n = sum_ == 15 ? std::nan("") : sum_;
+    return ok();
+  }
+  bool error(Cycle) { return recovers_; }
+  double sum_ = 0;
+  bool recovers_ = true;
+};
+
+struct Reader {
+  In<double> n{"n", "1"};
+  Out<double> seen{"seen", "1"};
+  void cycle(Cycle) { *seen = *n; }
+};
+
+struct Arm {  // produces the constant that fixes extents
+  OutConst<std::int32_t> ndof{"ndof", "1"};
+  Out<double[]> q{"q", "rad", "[ndof<=10]"};
+  void init(Cycle) { *ndof = wanted_; }
+  void reinit(Cycle) { *ndof = wanted_; }
+  void cycle(Cycle) { for (std::size_t i = 0; i < q.size(); ++i) q[i] = static_cast<double>(i); }
+  std::int32_t wanted_ = 3;
+};
+
+struct User {
+  InConst<std::int32_t> ndof{"ndof", "1"};
+  In<double[]> q{"q", "rad", "[ndof<=10]"};
+  Out<std::int32_t> inits{"inits", "1", initial = 0};
+  void init(Cycle) { ++inits_; }
+  void reinit(Cycle) { ++inits_; }
+  void cycle(Cycle) { *inits = inits_ * 100 + static_cast<std::int32_t>(q.size()); }
+  std::int32_t inits_ = 0;
+};
+
+struct Boss {  // sends signals to others
+  void cycle(Cycle c) {
+    sent_ = c.signal(Signal::kOff, "reader") && !c.signal(Signal::kOff, "nobody");
+    if (!sent_) throw std::runtime_error("cannot send");
+  }
+  bool sent_ = false;
+};
+
+double number(const TaskSet& set, const char* variable) {
+  const VariableView view = set.view(set.variables().find(variable));
+  double value;
+  std::memcpy(&value, view.value, sizeof value);
+  return value;
+}
+
+State run_cycle(TaskSet& set, std::size_t task, Nanoseconds at) {
+  const CycleTime time{at, at + milliseconds(1), 0, set.is_illegal()};
+  Task& t = set.tasks()[task];
+  const BodyEnd body = begin_cycle(t, time);
+  const State state = end_cycle(t, body, time, at + microseconds(10), true);
+  set.deliver(t);
+  return state;
+}
+
+std::unique_ptr<TaskSet> make(TestApplication& app) {
+  auto set = TaskSet::create(app.spec, app.components);
+  EXPECT_TRUE(set) << set.error().message.view();
+  return *std::move(set);
+}
+
+struct CounterAndReader : ::testing::Test {
+  CounterAndReader() {
+    app.add("counter", component<Counter>("counter"));
+    app.add("reader", component<Reader>("reader"));
+    app.make();
+    set = make(app);
+  }
+  TestApplication app;
+  std::unique_ptr<TaskSet> set;
+};
+
+TEST_F(CounterAndReader, SpawnsTurnsOnAndMovesValues) {
+  ASSERT_TRUE(set->start({}));
+  EXPECT_EQ(set->tasks()[0].state, State::kOn);
+  EXPECT_FALSE(set->view(set->variables().find("seen")).is_valid);
+  EXPECT_TRUE(std::isnan(number(*set, "seen")));  // never written
+  run_cycle(*set, 0, milliseconds(1));
+  run_cycle(*set, 1, milliseconds(1));
+  EXPECT_EQ(number(*set, "seen"), 1);
+  EXPECT_TRUE(set->view(set->variables().find("seen")).is_valid);
+}
+
+TEST_F(CounterAndReader, AFailingCyclePublishesNothingAndSaysWhy) {
+  ASSERT_TRUE(set->start({}));
+  for (int i = 1; i <= 12; ++i) run_cycle(*set, 0, milliseconds(i));
+  EXPECT_EQ(number(*set, "n"), 12);
+  EXPECT_EQ(run_cycle(*set, 0, milliseconds(13)), State::kOn);  // error() recovers
+  EXPECT_STREQ(set->tasks()[0].faults.last.text, "thirteen");
+  EXPECT_EQ(number(*set, "n"), 12);
+  run_cycle(*set, 0, milliseconds(14));
+  EXPECT_STREQ(set->tasks()[0].faults.last.text, "fourteen");
+  EXPECT_EQ(set->tasks()[0].faults.last.code, 14);
+  run_cycle(*set, 0, milliseconds(15));
+  EXPECT_STREQ(set->tasks()[0].faults.last.text, "safety port n: element 0 is NaN; the last good value stands");
+  EXPECT_EQ(set->tasks()[0].profile.rejected, 1u);
+  EXPECT_EQ(number(*set, "n"), 12);
+  run_cycle(*set, 0, milliseconds(16));
+  EXPECT_EQ(number(*set, "n"), 16);
+  EXPECT_EQ(set->tasks()[0].faults.count, 3u);
+}
+
+TEST_F(CounterAndReader, AFaultThatIsNotRecoveredEndsInErrorAndClearLeadsToOff) {
+  ASSERT_TRUE(set->start({}));
+  static_cast<Counter*>(set->tasks()[0].instance)->recovers_ = false;
+  static_cast<Counter*>(set->tasks()[0].instance)->sum_ = 12;
+  EXPECT_EQ(run_cycle(*set, 0, milliseconds(1)), State::kError);
+  set->on_set_changed();
+  EXPECT_TRUE(set->is_illegal());  // the reader has no producer that is ON
+  EXPECT_TRUE(set->signal(TaskId{std::size_t{0}}, Signal::kClear, {}).is_accepted);
+  EXPECT_EQ(set->tasks()[0].state, State::kOff);
+  EXPECT_TRUE(set->signal(TaskId{std::size_t{0}}, Signal::kOn, {}).is_accepted);
+  EXPECT_FALSE(set->is_illegal());
+}
+
+TEST_F(CounterAndReader, RefusesWhatIsNotLegalAndChangesNothing) {
+  ASSERT_TRUE(set->start({}));
+  const SignalReport again = set->signal(TaskId{std::size_t{0}}, Signal::kOn, {});
+  EXPECT_FALSE(again.is_accepted);
+  EXPECT_EQ(again.refusal, "on is not legal for counter in state ON");
+  set->signal(TaskId{std::size_t{0}}, Signal::kOff, {});
+  EXPECT_TRUE(set->is_illegal());
+  set->signal(TaskId{std::size_t{1}}, Signal::kOff, {});
+  EXPECT_FALSE(set->is_illegal());
+  const SignalReport alone = set->signal(TaskId{std::size_t{1}}, Signal::kOn, {});
+  EXPECT_EQ(alone.refusal, "n would have no producer; the smallest legal set is: counter reader");
+  EXPECT_EQ(set->tasks()[1].state, State::kOff);
+}
+
+TEST_F(CounterAndReader, ARespawnedProducerTakesOverWhatItsPredecessorLeft) {
+  ASSERT_TRUE(set->start({}));
+  for (int i = 1; i <= 5; ++i) run_cycle(*set, 0, milliseconds(i));
+  const TaskId counter{std::size_t{0}};
+  set->signal(counter, Signal::kKill, {});
+  EXPECT_EQ(set->tasks()[0].state, State::kNotCreated);
+  EXPECT_EQ(number(*set, "n"), 5);
+  ASSERT_TRUE(set->signal(counter, Signal::kSpawn, {}).is_accepted);
+  EXPECT_EQ(number(*set, "n"), 5) << "consumers stay with the old incarnation until the new one is ON";
+  ASSERT_TRUE(set->signal(counter, Signal::kOn, {}).is_accepted);
+  EXPECT_EQ(number(*set, "n"), 5) << "bumpless";
+  run_cycle(*set, 0, milliseconds(6));
+  EXPECT_EQ(number(*set, "n"), 6);
+}
+
+TEST(TaskSet, TwoProducersOfOneVariableCannotBothBeOn) {
+  TestApplication app;
+  app.add("a", component<Counter>("counter"));
+  app.add("b", component<Counter>("counter"));
+  app.make({TaskId{std::size_t{0}}}, false);
+  auto set = make(app);
+  ASSERT_TRUE(set->start({}));
+  const SignalReport both = set->signal(TaskId{std::size_t{1}}, Signal::kOn, {});
+  EXPECT_EQ(both.refusal, "n would have two producers: a and b");
+}
+
+TEST(TaskSet, ConstantsFixExtentsAndReinitialiseExactlyTheirUsers) {
+  TestApplication app;
+  app.add("arm", component<Arm>("arm"));
+  app.add("user", component<User>("user"));
+  app.add("counter", component<Counter>("counter"));
+  app.port(0, 1).extent[0] = {10, "ndof"};
+  app.port(1, 1).extent[0] = {10, "ndof"};
+  app.make();
+  auto set = make(app);
+  ASSERT_TRUE(set->start({}));
+  run_cycle(*set, 1, milliseconds(1));
+  std::int32_t inits;
+  std::memcpy(&inits, set->view(set->variables().find("inits")).value, sizeof inits);
+  EXPECT_EQ(inits, 103);  // one init, three elements
+  EXPECT_EQ(set->tasks()[2].profile.execution[CHIMERA_REINIT].count, 0u);
+  static_cast<Arm*>(set->tasks()[0].instance)->wanted_ = 4;
+  ASSERT_TRUE(set->signal(TaskId{std::size_t{0}}, Signal::kReinit, {}).is_accepted);
+  run_cycle(*set, 1, milliseconds(2));
+  std::memcpy(&inits, set->view(set->variables().find("inits")).value, sizeof inits);
+  EXPECT_EQ(inits, 204);
+  EXPECT_EQ(set->tasks()[2].profile.execution[CHIMERA_REINIT].count, 0u);
+}
+
+TEST(TaskSet, AnExtentAboveItsMaximumIsAFaultOfInit) {
+  TestApplication app;
+  app.add("arm", component<Arm>("arm"));
+  app.port(0, 1).extent[0] = {2, "ndof"};
+  app.make();
+  auto set = make(app);
+  const auto started = set->start({});
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().message.view(), "init: extent ndof = 3 of port q is outside 1 to 2");
+  EXPECT_EQ(set->tasks()[0].state, State::kNotCreated);
+}
+
+TEST(TaskSet, SignalsOfATaskWaitForTheEdge) {
+  TestApplication app;
+  app.add("counter", component<Counter>("counter"));
+  app.add("reader", component<Reader>("reader"));
+  app.add("boss", component<Boss>("boss"));
+  app.make();
+  auto set = make(app);
+  ASSERT_TRUE(set->start({}));
+  EXPECT_EQ(run_cycle(*set, 2, milliseconds(1)), State::kOn);
+  EXPECT_TRUE(set->has_pending());
+  EXPECT_EQ(set->tasks()[1].state, State::kOn);
+  Signal signal{};
+  ASSERT_TRUE(set->take_pending(set->tasks()[1], signal));
+  EXPECT_EQ(signal, Signal::kOff);
+  EXPECT_FALSE(set->has_pending());
+  for (int i = 0; i < 40; ++i) run_cycle(*set, 2, milliseconds(i));
+  set->tasks()[2].outbox.clear();
+  (void)set->tasks()[2].outbox.try_push({Signal::kKill, TaskId{std::size_t{1}}});
+  set->deliver(set->tasks()[2]);
+  Signal last{};
+  while (set->take_pending(set->tasks()[1], signal)) last = signal;
+  EXPECT_EQ(last, Signal::kKill) << "kill is never dropped";
+}
+
+TEST(TaskSet, OperatorVariablesHoldTheirInitialValue) {
+  TestApplication app;
+  app.add("reader", component<Reader>("reader"));
+  app.give(app.operators, "n", CHIMERA_FLOAT64, testing::bytes_of(2.5));
+  app.make();
+  auto set = make(app);
+  ASSERT_TRUE(set->start({}));
+  run_cycle(*set, 0, milliseconds(1));
+  EXPECT_EQ(number(*set, "seen"), 2.5);
+}
+
+TEST(TaskSet, RefusesAVariableThatNobodyProduces) {
+  TestApplication app;
+  app.add("reader", component<Reader>("reader"));
+  app.make();
+  const auto set = TaskSet::create(app.spec, app.components);
+  ASSERT_FALSE(set);
+  EXPECT_EQ(set.error().message.view(), "nobody produces state variable n");
+}
+
+}  // namespace
+}  // namespace chimera

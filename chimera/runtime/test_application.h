@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: an application put together by hand, from components written in the test itself.
+#pragma once
+
+#include <cstring>
+#include <deque>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chimera/runtime/application_spec.h"
+#include "chimera/task/component.h"
+
+namespace chimera::testing {
+
+/// The declaration of component class T under `name`.
+template <class T>
+const chimera_component* component(const char* name) {
+  face::declared<T>.component.name = name;
+  face::declared<T>.component.doc = "A component of a test.";
+  face::declared<T>.component.source = "";
+  return face::declare<T>();
+}
+
+template <class T>
+std::vector<std::byte> bytes_of(const T& value) {
+  std::vector<std::byte> bytes(sizeof value);
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+
+/// Owns what an ApplicationSpec points at. Ports bind to variables of their own name unless aliased.
+class TestApplication {
+ public:
+  /// Adds a task with every port bound by name; returns its specification for changes before make().
+  TaskSpec& add(const char* name, const chimera_component* component, Nanoseconds period = milliseconds(1)) {
+    components.push_back(component);
+    auto& ports = ports_.emplace_back();
+    for (std::uint32_t p = 0; p < component->n_ports; ++p) {
+      const chimera_port_decl& decl = component->ports[p];
+      PortSpec port;
+      port.declared = p;
+      port.variable = decl.kind == CHIMERA_RESOURCE ? std::string_view{} : std::string_view{decl.name};
+      port.element_bytes = decl.element_size;
+      port.type = decl.type;
+      port.safety = (decl.flags & CHIMERA_PORT_SAFETY) != 0;
+      port.has_range = (decl.flags & CHIMERA_PORT_HAS_RANGE) != 0;
+      port.min = decl.min;
+      port.max = decl.max;
+      if (decl.flags & CHIMERA_PORT_HAS_INITIAL)
+        port.value = {static_cast<const std::byte*>(decl.initial), decl.initial_count * decl.element_size};
+      ports.push_back(port);
+    }
+    TaskSpec& task = tasks.emplace_back();
+    task.name = name;
+    task.component = component->name;
+    task.period = task.deadline = period;
+    task.aperiodic = component->methods[CHIMERA_SYNC] != nullptr;
+    return task;
+  }
+  PortSpec& port(std::size_t task, std::size_t index) { return ports_[task][index]; }
+  void give(std::vector<GivenSpec>& to, const char* name, std::uint32_t type, std::vector<std::byte> value) {
+    values_.push_back(std::move(value));
+    to.push_back({name, type, static_cast<std::uint32_t>(values_.back().size()), {}, values_.back()});
+  }
+  const ApplicationSpec& make(std::vector<TaskId> to_start = {}, bool start_all = true) {
+    init_order.clear();
+    start = std::move(to_start);
+    for (std::size_t t = 0; t < tasks.size(); ++t) {
+      tasks[t].ports = ports_[t];
+      init_order.push_back(TaskId(t));
+      if (start_all) start.push_back(TaskId(t));
+    }
+    spec = {"test", rtpus, tasks, constants, operators, init_order, start};
+    return spec;
+  }
+
+  std::vector<RtpuSpec> rtpus{{"main", 0, Policy::kEdf}};
+  std::vector<TaskSpec> tasks;
+  std::vector<const chimera_component*> components;
+  std::vector<GivenSpec> constants, operators;
+  std::vector<TaskId> init_order, start;
+  ApplicationSpec spec;
+
+ private:
+  std::deque<std::vector<PortSpec>> ports_;
+  std::deque<std::vector<std::byte>> values_;
+};
+
+}  // namespace chimera::testing
