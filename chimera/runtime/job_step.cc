@@ -26,11 +26,11 @@ Answer default_answer(Method method) noexcept { return method == Method::kError 
 
 void read_inputs(Task& task) noexcept {
   for (Input& input : task.inputs) {
-    const chimera_slot* slot = input.producer.published();
+    if (!input.group.latch()) ++task.profile.stale;
     chimera_port& port = *input.port;
-    port.slot = slot;
+    port.slot = input.group.slot();
     port.bit = input.bit;
-    port.value = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(slot + 1)) + input.offset;
+    port.value = const_cast<std::byte*>(input.group.values()) + input.offset;
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/runtime/task_set.h"
 
-#include <cstring>
+#include <algorithm>
 
 namespace chimera {
 
@@ -16,17 +16,17 @@ Result<std::unique_ptr<TaskSet>> TaskSet::create(const ApplicationSpec& spec,
 }
 
 TaskSet::~TaskSet() {
-  for (std::size_t t = 0; t < instances_.size(); ++t) instances_[t].destroy(tasks_[t]);
+  for (std::size_t t = 0; t < memories_.size(); ++t) memories_[t].destroy(tasks_[t]);
 }
 
 Result<void> TaskSet::build(std::span<const chimera_component* const> components) {
   const std::size_t n = spec_.tasks.size();
   std::vector<std::vector<std::uint32_t>> kinds(n);
-  instances_.reserve(n);
+  memories_.reserve(n);
   for (std::size_t t = 0; t < n; ++t) {
-    auto instance = Instance::create(spec_.tasks[t], *components[t]);
-    if (!instance) return instance.error();
-    instances_.push_back(*std::move(instance));
+    auto memory = TaskMemory::create(spec_.tasks[t], *components[t]);
+    if (!memory) return memory.error();
+    memories_.push_back(*std::move(memory));
     for (const PortSpec& port : spec_.tasks[t].ports) kinds[t].push_back(components[t]->ports[port.declared].kind);
   }
   variables_ = std::make_unique<Variables>(spec_, kinds);
@@ -42,22 +42,47 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
     task.call.fault = &task.faults.last;
     task.call.host = &kHost;
     task.call.context = &contexts_[t];
-    task.inputs = instances_[t].inputs();
+    task.inputs = memories_[t].inputs();
   }
   for (const Variable& variable : variables_->all()) {
     if (!variable.producers.empty() || variable.operator_index != UINT32_MAX) continue;
     const std::string_view reader = spec_.tasks[variable.consumers[0].task.index].name;
     return Error{ErrorCode::kBadInput, {"nobody produces state variable " + std::string(variable.name)}, {reader}};
   }
+  if (auto laid = lay_out(); !laid) return laid;
   set_constants();
-  bind_operators();
+  place_operators();
   bind_all();
   return {};
 }
 
+Result<void> TaskSet::lay_out() {
+  std::vector<GroupSpec> specs;
+  for (const TaskMemory& memory : memories_) specs.insert(specs.end(), 2, memory.group_spec());
+  std::vector<VariableSpec> operators;
+  for (const GivenSpec& given : spec_.operators)
+    operators.push_back({given.name, given.element_bytes, given.extent[0].max * given.extent[1].max});
+  for (const VariableSpec& variable : operators) specs.push_back({"operator", {&variable, 1}});
+  groups_.resize(specs.size());
+  places_.resize(TableLayout::count_variables(specs));
+  const auto layout = TableLayout::plan(specs, UINT64_MAX, groups_, places_);
+  if (!layout) return layout.error();
+  table_ = AlignedBytes(layout->region_bytes(), kCacheLine);
+  for (std::size_t t = 0; t < memories_.size(); ++t) {
+    const GroupPlace& place = groups_[2 * t];
+    memories_[t].place(group_memory(2 * t), group_memory(2 * t + 1), place.payload_bytes,
+                       std::span(places_).subspan(place.first_variable, place.variables));
+  }
+  return {};
+}
+
+std::span<std::byte> TaskSet::group_memory(std::size_t group) const noexcept {
+  return table_.span().subspan(groups_[group].offset, group_bytes(groups_[group].payload_bytes));
+}
+
 void TaskSet::set_constants() {
-  for (const Instance& instance : instances_)
-    for (const ConstantPort& port : instance.constants())
+  for (const TaskMemory& memory : memories_)
+    for (const ConstantPort& port : memory.constants())
       if (!port.spec->variable.empty())
         constants_.declare(port.spec->variable, port.spec->type, port.spec->max_bytes());
   for (const GivenSpec& given : spec_.constants) {
@@ -66,53 +91,55 @@ void TaskSet::set_constants() {
   }
 }
 
-void TaskSet::bind_operators() {
-  std::size_t bytes = 0;
-  for (const GivenSpec& given : spec_.operators) {
-    operator_offsets_.push_back(static_cast<std::uint32_t>(bytes));
-    bytes += group_bytes(given.value.size());
-  }
-  operator_memory_ = AlignedBytes(bytes, kCacheLine);
+void TaskSet::place_operators() {
   for (std::size_t o = 0; o < spec_.operators.size(); ++o) {
+    const std::size_t group = 2 * tasks_.size() + o;
+    GroupWriter writer(group_memory(group), groups_[group].payload_bytes);
     const auto value = spec_.operators[o].value;
-    GroupWriter writer(operator_memory_.span().subspan(operator_offsets_[o]), static_cast<std::uint32_t>(value.size()));
-    std::memcpy(writer.staging(), value.data(), value.size());
+    std::copy(value.begin(), value.end(), writer.staging());
     writer.publish(Nanoseconds{}, 1);
   }
 }
 
 // Until a producer goes ON its consumers look at the initial values, or the never-written fill, of the first one.
-void TaskSet::bind_all() noexcept {
+void TaskSet::bind_all() {
   sources_.resize(variables_->all().size());
   for (std::size_t v = 0; v < sources_.size(); ++v) {
     const Variable& variable = variables_->all()[v];
     if (variable.operator_index != UINT32_MAX) {
-      const std::uint32_t o = variable.operator_index;
-      const auto size = static_cast<std::uint32_t>(spec_.operators[o].value.size());
-      bind(VariableId(v), {GroupReader(operator_memory_.data() + operator_offsets_[o], size), 0, 0, TaskId{}});
+      const std::size_t group = 2 * tasks_.size() + variable.operator_index;
+      bind(VariableId(v), {GroupReader(group_memory(group).data(), groups_[group].payload_bytes), 0, 0, TaskId{}});
     } else if (!variable.producers.empty()) {
       const PortOf& first = variable.producers[0];
-      const Instance& instance = instances_[first.task.index];
-      bind(VariableId(v), {instance.reader(), instance.output_offset(first.index), first.index, first.task});
+      const TaskMemory& memory = memories_[first.task.index];
+      bind(VariableId(v), {memory.reader(), memory.output_offset(first.index), first.index, first.task});
     }
   }
 }
 
-void TaskSet::bind(VariableId variable, const Source& source) noexcept {
+// The operator lives in another context than the tasks: what it writes is copied through the register.
+GroupInput TaskSet::input_from(const Source& source) {
+  if (source.task.is_valid()) return GroupInput::direct(source.reader);
+  local_memory_.emplace_back(local_group_bytes(source.reader.payload_bytes()), kCacheLine);
+  locals_.emplace_back(source.reader, local_memory_.back().span());
+  return GroupInput::copied(locals_.back());
+}
+
+void TaskSet::bind(VariableId variable, const Source& source) {
   sources_[variable.index] = source;
   for (const PortOf& consumer : variables_->all()[variable.index].consumers) {
     Input& input = tasks_[consumer.task.index].inputs[consumer.index];
-    input.producer = source.reader;
+    input.group = input_from(source);
     input.offset = source.offset;
     input.bit = source.bit;
     input.sequence = 0;
   }
 }
 
-void TaskSet::bind_outputs_of(Task& task) noexcept {
-  const Instance& instance = instances_[task.id.index];
+void TaskSet::bind_outputs_of(Task& task) {
+  const TaskMemory& memory = memories_[task.id.index];
   for (std::uint32_t i = 0; i < task.outputs.size(); ++i)
-    bind(variables_->output(task.id, i), {instance.reader(), task.outputs[i].offset, i, task.id});
+    bind(variables_->output(task.id, i), {memory.reader(), task.outputs[i].offset, i, task.id});
 }
 
 TaskId TaskSet::find(std::string_view name) const noexcept {
@@ -134,7 +161,7 @@ VariableView TaskSet::view(std::size_t index) const noexcept {
     view.count = given.extent[0].max * given.extent[1].max;
     return view;
   }
-  const Instance& producer = instances_[source.task.index];
+  const TaskMemory& producer = memories_[source.task.index];
   view.spec = producer.output_spec(source.bit);
   const chimera_port* port = producer.output_port(source.bit);
   view.count = port == nullptr ? view.spec->max_count() : port->count;

@@ -3,6 +3,7 @@
 // illegal-configuration flag. The executors add time.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,7 +12,7 @@
 #include "chimera/base/result.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/constant_store.h"
-#include "chimera/runtime/instance.h"
+#include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/job_clock.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/variables.h"
@@ -96,11 +97,14 @@ class TaskSet {
 
   explicit TaskSet(const ApplicationSpec& spec) : spec_(spec) {}
   Result<void> build(std::span<const chimera_component* const> components);
-  void bind_all() noexcept;
-  void bind_operators();
+  void bind_all();
+  Result<void> lay_out();
+  std::span<std::byte> group_memory(std::size_t group) const noexcept;
+  void place_operators();
+  GroupInput input_from(const Source& source);
   void set_constants();
-  void bind(VariableId variable, const Source& source) noexcept;
-  void bind_outputs_of(Task& task) noexcept;
+  void bind(VariableId variable, const Source& source);
+  void bind_outputs_of(Task& task);
   State follow(Task& task, Next at, Nanoseconds now);
   Answer run_step(Task& task, const StepRule& step, Nanoseconds now);
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
@@ -117,13 +121,16 @@ class TaskSet {
   static const chimera_host kHost;
 
   const ApplicationSpec& spec_;
-  std::vector<Instance> instances_;
+  std::vector<TaskMemory> memories_;
   std::vector<Task> tasks_;
   std::vector<HostContext> contexts_;
   std::unique_ptr<Variables> variables_;
   std::vector<Source> sources_;  // one per variable
-  AlignedBytes operator_memory_;
-  std::vector<std::uint32_t> operator_offsets_;
+  AlignedBytes table_;                          // of groups: two for each task, then one for each operator variable
+  std::vector<GroupPlace> groups_;
+  std::vector<VariablePlace> places_;
+  std::vector<AlignedBytes> local_memory_;      // behind locals_
+  std::deque<LocalGroup> locals_;               // copies of operator variables, one for each in-var that reads one
   ConstantStore constants_;
   JobClock* clock_ = nullptr;
   std::vector<bool> on_;

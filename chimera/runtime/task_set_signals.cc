@@ -76,7 +76,7 @@ SignalReport TaskSet::carry_out(TaskId id, Signal signal, Nanoseconds now) {
   Task& task = tasks_[id.index];
   SignalReport report{true, task.state, task.state, {}};
   if (signal == Signal::kSpawn) {
-    auto constructed = instances_[id.index].construct(task, now);
+    auto constructed = memories_[id.index].construct(task, now);
     if (!constructed) {
       record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
       report.is_accepted = false;
@@ -92,7 +92,7 @@ SignalReport TaskSet::carry_out(TaskId id, Signal signal, Nanoseconds now) {
     task.call.dt_ns = task.spec->period.count;
   }
   report.after = follow(task, next(task.state, signal, false), now);
-  if (report.after == State::kNotCreated) instances_[id.index].destroy(task);
+  if (report.after == State::kNotCreated) memories_[id.index].destroy(task);
   deliver(task);
   return report;
 }
@@ -122,7 +122,7 @@ bool TaskSet::before_step(Task& task, const StepRule& step, Nanoseconds now) {
   if (step.before & kReadOut) take_over(task);
   if (step.before & kReadConst) {
     FixedString<160> why;
-    if (!instances_[task.id.index].read_constants(constants_, why)) {
+    if (!memories_[task.id.index].read_constants(constants_, why)) {
       record_fault(task, step.method, why.c_str(), now);
       return false;
     }
@@ -131,11 +131,11 @@ bool TaskSet::before_step(Task& task, const StepRule& step, Nanoseconds now) {
 }
 
 Answer TaskSet::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
-  Instance& instance = instances_[task.id.index];
+  TaskMemory& memory = memories_[task.id.index];
   if (step.after_ok & kWriteConst) {
-    const int changed = instance.write_constants(constants_, task.id);
+    const int changed = memory.write_constants(constants_, task.id);
     FixedString<160> why;
-    if (!instance.fix_extents(constants_, why)) {
+    if (!memory.fix_extents(constants_, why)) {
       record_fault(task, step.method, why.c_str(), now);
       return Answer::kFault;
     }
@@ -164,10 +164,10 @@ void TaskSet::take_over(Task& task) noexcept {
 }
 
 std::uint64_t TaskSet::valid_after_on(const Task& task) const noexcept {
-  const Instance& instance = instances_[task.id.index];
-  std::uint64_t valid = taken_over_valid_ | instance.initial_valid();
+  const TaskMemory& memory = memories_[task.id.index];
+  std::uint64_t valid = taken_over_valid_ | memory.initial_valid();
   for (std::size_t i = 0; i < task.outputs.size(); ++i)
-    if (!instance.is_unwritten(task, i)) valid |= std::uint64_t{1} << i;
+    if (!memory.is_unwritten(task, i)) valid |= std::uint64_t{1} << i;
   return valid;
 }
 
@@ -177,7 +177,7 @@ void TaskSet::reinit_users(TaskId of, Nanoseconds now) {
   for (TaskId id : spec_.init_order) {
     Task& user = tasks_[id.index];
     if (id == of || (user.state != State::kOff && user.state != State::kOn)) continue;
-    if (instances_[id.index].uses_changed(constants_)) carry_out(id, Signal::kReinit, now);
+    if (memories_[id.index].uses_changed(constants_)) carry_out(id, Signal::kReinit, now);
   }
 }
 

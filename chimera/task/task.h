@@ -8,6 +8,7 @@
 
 #include "chimera/base/fixed.h"
 #include "chimera/table/group.h"
+#include "chimera/table/transfer.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/fault_record.h"
 #include "chimera/task/profile.h"
@@ -16,11 +17,11 @@
 
 namespace chimera {
 
-/// An in-var, bound in place: its producer runs in the same context. `port` points at its published slot,
-/// looked up anew before every method.
+/// An in-var. Its producer's slot is latched before every method: in place when it runs in the same context, else
+/// copied through the register.
 struct Input {
   chimera_port* port = nullptr;
-  GroupReader producer;
+  GroupInput group;
   std::uint32_t offset = 0;    ///< of the value in the producer's payload
   std::uint32_t bit = 0;       ///< of the value in the producer's valid bits
   std::uint64_t sequence = 0;  ///< of the publication that the last cycle read

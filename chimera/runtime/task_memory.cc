@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/instance.h"
+#include "chimera/runtime/task_memory.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <limits>
+#include <cstring>
 
 #include "chimera/runtime/job_step.h"
+#include "chimera/table/never_written.h"
 
 namespace chimera {
 namespace {
@@ -26,13 +27,10 @@ Error misfit(const TaskSpec& spec, const char* what, const char* port) {
 }
 
 void never_written(std::byte* at, std::uint32_t type, std::uint32_t bytes) noexcept {
-  std::memset(at, 0, bytes);
-  const double nan64 = std::numeric_limits<double>::quiet_NaN();
-  const float nan32 = std::numeric_limits<float>::quiet_NaN();
-  if (type == CHIMERA_FLOAT64)
-    for (std::uint32_t i = 0; i + sizeof nan64 <= bytes; i += sizeof nan64) std::memcpy(at + i, &nan64, sizeof nan64);
-  if (type == CHIMERA_FLOAT32)
-    for (std::uint32_t i = 0; i + sizeof nan32 <= bytes; i += sizeof nan32) std::memcpy(at + i, &nan32, sizeof nan32);
+  const NeverWritten kind = type == CHIMERA_FLOAT64   ? NeverWritten::kFloat64
+                            : type == CHIMERA_FLOAT32 ? NeverWritten::kFloat32
+                                                      : NeverWritten::kZero;
+  fill_never_written({at, bytes}, kind);
 }
 
 void never_written(std::byte* at, const chimera_port_decl& decl, const PortSpec& spec) noexcept {
@@ -47,24 +45,31 @@ void never_written(std::byte* at, const chimera_port_decl& decl, const PortSpec&
 
 }  // namespace
 
-Result<Instance> Instance::create(const TaskSpec& spec, const chimera_component& component) {
-  Instance made;
+Result<TaskMemory> TaskMemory::create(const TaskSpec& spec, const chimera_component& component) {
+  TaskMemory made;
   made.spec_ = &spec;
   made.component_ = &component;
   if (auto planned = made.plan(spec); !planned) return planned.error();
   made.state_ = AlignedBytes(component.state_size, component.state_align);
   made.constant_memory_ = AlignedBytes(made.constant_bytes_, kCacheLine);
-  made.make_fill();
-  for (AlignedBytes& group : made.groups_) {
-    group = AlignedBytes(group_bytes(made.payload_bytes_), kCacheLine);
-    GroupWriter writer(group.span(), made.payload_bytes_);
-    std::copy(made.fill_.begin(), made.fill_.end(), writer.staging());
-    writer.publish(Nanoseconds{}, made.initial_valid_);
-  }
   return made;
 }
 
-Result<void> Instance::plan(const TaskSpec& spec) {
+void TaskMemory::place(std::span<std::byte> first, std::span<std::byte> second, std::uint32_t payload_bytes,
+                       std::span<const VariablePlace> places) {
+  groups_[0] = first;
+  groups_[1] = second;
+  payload_bytes_ = payload_bytes;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) outputs_[i].offset = places[i].offset;
+  make_fill();
+  for (std::span<std::byte> group : groups_) {
+    GroupWriter writer(group, payload_bytes_);
+    std::copy(fill_.begin(), fill_.end(), writer.staging());
+    writer.publish(Nanoseconds{}, initial_valid_);
+  }
+}
+
+Result<void> TaskMemory::plan(const TaskSpec& spec) {
   for (const PortSpec& port : spec.ports) {
     if (port.declared >= component_->n_ports) return misfit(spec, "it declares fewer ports", "");
     if (auto planned = plan_port(port); !planned) return planned;
@@ -72,7 +77,7 @@ Result<void> Instance::plan(const TaskSpec& spec) {
   return {};
 }
 
-Result<void> Instance::plan_port(const PortSpec& port) {
+Result<void> TaskMemory::plan_port(const PortSpec& port) {
   const chimera_port_decl& decl = component_->ports[port.declared];
   if (port.instance >= decl.max_instances) return misfit(*spec_, "too many instances of port", decl.name);
   if (decl.type != CHIMERA_ANY && decl.kind != CHIMERA_RESOURCE && decl.element_size != port.element_bytes)
@@ -85,8 +90,8 @@ Result<void> Instance::plan_port(const PortSpec& port) {
     case CHIMERA_OUT_VAR:
       if (outputs_.size() == 64) return misfit(*spec_, "more than 64 out-vars, at port", decl.name);
       if (!port.value.empty()) initial_valid_ |= std::uint64_t{1} << outputs_.size();
-      outputs_.push_back({nullptr, &port, payload_bytes_, port.max_bytes()});
-      payload_bytes_ += round_up(port.max_bytes());
+      outputs_.push_back({nullptr, &port, 0, port.max_bytes()});
+      variables_.push_back({port.variable, port.element_bytes, port.max_count()});
       break;
     case CHIMERA_IN_CONST:
     case CHIMERA_OUT_CONST:
@@ -102,12 +107,12 @@ Result<void> Instance::plan_port(const PortSpec& port) {
   return {};
 }
 
-chimera_port* Instance::live(const PortSpec& port) const noexcept {
+chimera_port* TaskMemory::live(const PortSpec& port) const noexcept {
   const chimera_port_decl& decl = component_->ports[port.declared];
   return reinterpret_cast<chimera_port*>(state_.data() + decl.live_offset) + port.instance;
 }
 
-void Instance::make_fill() {
+void TaskMemory::make_fill() {
   fill_.resize(payload_bytes_);
   for (const Output& output : outputs_) {
     const PortSpec& spec = *output.spec;
@@ -117,16 +122,16 @@ void Instance::make_fill() {
   }
 }
 
-bool Instance::is_unwritten(const Task& task, std::size_t i) const noexcept {
+bool TaskMemory::is_unwritten(const Task& task, std::size_t i) const noexcept {
   const Output& output = outputs_[i];
   return std::memcmp(fill_.data() + output.offset, task.group.staging() + output.offset, output.bytes) == 0;
 }
 
-GroupReader Instance::reader() const noexcept {
+GroupReader TaskMemory::reader() const noexcept {
   return GroupReader(groups_[incarnation_ % 2].data(), payload_bytes_);
 }
 
-Result<void> Instance::construct(Task& task, Nanoseconds now) {
+Result<void> TaskMemory::construct(Task& task, Nanoseconds now) {
   state_.clear();
   task.faults.last = {};
   if (component_->construct(state_.data(), &task.faults.last) != CHIMERA_OK)
@@ -134,7 +139,7 @@ Result<void> Instance::construct(Task& task, Nanoseconds now) {
   is_constructed_ = true;
   ++incarnation_;
   task.instance = state_.data();
-  task.group = GroupWriter(groups_[incarnation_ % 2].span(), payload_bytes_);
+  task.group = GroupWriter(groups_[incarnation_ % 2], payload_bytes_);
   std::copy(fill_.begin(), fill_.end(), task.group.staging());
   task.group.publish(now, initial_valid_);
   task.group.prefill();
@@ -143,7 +148,7 @@ Result<void> Instance::construct(Task& task, Nanoseconds now) {
   return {};
 }
 
-void Instance::wire(Task& task) noexcept {
+void TaskMemory::wire(Task& task) noexcept {
   for (const PortSpec& port : spec_->ports) {
     const chimera_port_decl& decl = component_->ports[port.declared];
     chimera_port& to = *live(port);
@@ -182,13 +187,13 @@ void Instance::wire(Task& task) noexcept {
   aim_outputs(task);
 }
 
-void Instance::destroy(Task& task) noexcept {
+void TaskMemory::destroy(Task& task) noexcept {
   if (is_constructed_) component_->destroy(state_.data());
   is_constructed_ = false;
   task.instance = nullptr;
 }
 
-bool Instance::read_constants(const ConstantStore& store, FixedString<160>& why) noexcept {
+bool TaskMemory::read_constants(const ConstantStore& store, FixedString<160>& why) noexcept {
   for (ConstantPort& constant : constants_) {
     if (constant.decl->kind != CHIMERA_IN_CONST || constant.spec->variable.empty()) continue;
     const Constant* found = store.find(constant.spec->variable);
@@ -205,7 +210,7 @@ bool Instance::read_constants(const ConstantStore& store, FixedString<160>& why)
   return fix_extents(store, why);
 }
 
-bool Instance::uses_changed(const ConstantStore& store) const noexcept {
+bool TaskMemory::uses_changed(const ConstantStore& store) const noexcept {
   for (const ConstantPort& constant : constants_) {
     if (constant.decl->kind != CHIMERA_IN_CONST || constant.spec->variable.empty()) continue;
     const Constant* found = store.find(constant.spec->variable);
@@ -216,7 +221,7 @@ bool Instance::uses_changed(const ConstantStore& store) const noexcept {
   return false;
 }
 
-int Instance::write_constants(ConstantStore& store, TaskId self) noexcept {
+int TaskMemory::write_constants(ConstantStore& store, TaskId self) noexcept {
   int changed = 0;
   for (const ConstantPort& constant : constants_) {
     if (constant.decl->kind != CHIMERA_OUT_CONST) continue;
@@ -225,7 +230,7 @@ int Instance::write_constants(ConstantStore& store, TaskId self) noexcept {
   return changed;
 }
 
-bool Instance::fix_extents(const ConstantStore& store, FixedString<160>& why) noexcept {
+bool TaskMemory::fix_extents(const ConstantStore& store, FixedString<160>& why) noexcept {
   for (const PortSpec& port : spec_->ports) {
     chimera_port& to = *live(port);
     to.count = 1;

@@ -8,6 +8,7 @@
 #include "chimera/base/result.h"
 #include "chimera/runtime/aligned_bytes.h"
 #include "chimera/runtime/constant_store.h"
+#include "chimera/table/layout.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -21,11 +22,18 @@ struct ConstantPort {
 };
 
 /// Owns what a Task points at. Context: setup and edge.
-class Instance {
+class TaskMemory {
  public:
   /// Plans the memory for `spec`. Refuses a specification that does not fit the component's declaration
   /// (a descriptor of another build): names task and port.
-  static Result<Instance> create(const TaskSpec& spec, const chimera_component& component);
+  static Result<TaskMemory> create(const TaskSpec& spec, const chimera_component& component);
+
+  /// The group of the task's out-vars, for the table's layout. Valid while this lives and does not move.
+  GroupSpec group_spec() const noexcept { return {spec_->name, variables_}; }
+  /// Gives the task its places in the table: two groups, used in turn by its incarnations, with the never-written
+  /// fill and initial values published in both. `places` are those of the first one's variables.
+  void place(std::span<std::byte> first, std::span<std::byte> second, std::uint32_t payload_bytes,
+             std::span<const VariablePlace> places);
 
   /// Constructs the component anew in zeroed state and wires its ports: constants and resources to local memory,
   /// outputs to a group that no consumer of the previous incarnation is bound to.
@@ -67,7 +75,8 @@ class Instance {
   const chimera_component* component_ = nullptr;
   AlignedBytes state_;
   AlignedBytes constant_memory_;
-  AlignedBytes groups_[2];
+  std::span<std::byte> groups_[2];
+  std::vector<VariableSpec> variables_;  ///< of the group: the out-vars
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t constant_bytes_ = 0;
   std::uint32_t incarnation_ = 0;
