@@ -12,6 +12,10 @@ constexpr std::size_t kLongest = 128;  // longer names are cut: a message needs 
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
+bool is_same_but_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+}
+
 /// Distance with a replacement of case at half the cost: twice the edit distance otherwise.
 std::size_t doubled_distance(std::string_view a, std::string_view b, std::size_t cost_of_case) {
   a = a.substr(0, kLongest);
@@ -42,7 +46,7 @@ std::string nearest(std::string_view wrong, std::span<const std::string> names) 
   std::string_view found;
   for (const std::string& name : names) {
     if (name == wrong) continue;
-    const std::size_t distance = doubled_distance(wrong, name, 1);
+    const std::size_t distance = is_same_but_case(wrong, name) ? 1 : doubled_distance(wrong, name, 1);
     if (distance < best) {
       best = distance;
       found = name;

@@ -25,6 +25,8 @@ TEST(Nearest, GivesTheNearestAndTheFirstOfEquals) {
 TEST(Nearest, PrefersAnotherCaseToAnotherLetter) {
   const std::vector<std::string> names{"n", "s", "N"};
   EXPECT_EQ(nearest("S", names), "s");
+  const std::vector<std::string> units{"ppm", "rpm"};
+  EXPECT_EQ(nearest("RPM", units), "rpm");
 }
 
 TEST(Nearest, GivesNothingWhenNothingIsNear) {

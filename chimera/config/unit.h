@@ -17,7 +17,7 @@ std::string base_unit_name(std::size_t index);
 
 /// A value x in this unit is factor * (x + offset) in the base units. Only temperatures have an offset.
 struct Unit {
-  std::array<std::int8_t, kBaseUnits> exponents{};
+  std::array<std::int16_t, kBaseUnits> exponents{};
   double factor = 1;
   double offset = 0;
 
@@ -29,7 +29,7 @@ struct Conversion {
   double factor = 1;
   double offset = 0;
 
-  double operator()(double value) const noexcept { return value * factor + offset; }
+  double operator()(double value) const noexcept;
 };
 
 /// Both measure the same thing in the same size (N.s/kg and m/s): ports may be connected. Sizes count as equal
@@ -39,7 +39,7 @@ bool same(const Unit& a, const Unit& b) noexcept;
 /// How to make values in `to` from values in `from`; nullopt when they measure different things. Context: setup.
 std::optional<Conversion> conversion(const Unit& from, const Unit& to) noexcept;
 
-/// Products and powers. An offset is lost: degC/s is K/s, because only a lone degC is a point on a scale.
+/// Products and powers; exponents stay within +-1000. An offset is lost: degC/s is K/s, because only a lone degC is a point on a scale.
 Unit operator*(const Unit& a, const Unit& b) noexcept;
 Unit operator/(const Unit& a, const Unit& b) noexcept;
 Unit power(const Unit& unit, int exponent) noexcept;

@@ -18,7 +18,7 @@ inline constexpr std::string_view kUnitVariables = "UXYZ";
 
 /// `rest` times the product of variable powers, in the order of kUnitVariables.
 struct UnitExpression {
-  std::array<std::int8_t, kUnitVariables.size()> variables{};
+  std::array<std::int16_t, kUnitVariables.size()> variables{};
   Unit rest;
 
   /// No variable: `rest` is the unit.
