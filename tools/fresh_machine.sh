@@ -49,7 +49,7 @@ fi
 
 # The URI of this machine's first apt source that carries exactly the given suite, in either notation.
 uri_of() {
-  cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list /etc/apt/sources.list.d/*.sources 2>/dev/null |
+  { cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list /etc/apt/sources.list.d/*.sources 2>/dev/null || true; } |
     awk -v want="$1" '
       function done() { if (uri != "" && index(" " suites " ", " " want " ")) { print uri; found = 1; exit } uri = suites = "" }
       /^[ \t]*#/ { next }
