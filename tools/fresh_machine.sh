@@ -51,7 +51,10 @@ fi
 uri_of() {
   { cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list /etc/apt/sources.list.d/*.sources 2>/dev/null || true; } |
     awk -v want="$1" '
-      function done() { if (uri != "" && index(" " suites " ", " " want " ")) { print uri; found = 1; exit } uri = suites = "" }
+      function done() {
+        if (uri != "" && index(" " suites " ", " " want " ")) { print uri; found = 1; exit }
+        uri = suites = ""
+      }
       /^[ \t]*#/ { next }
       /^deb[ \t]/ { sub(/\[[^]]*\]/, ""); if ($3 == want) { print $2; found = 1; exit } next }
       /^[ \t]*$/ { done(); next }
@@ -163,9 +166,9 @@ run "demo, again" $second_demo_limit root /opt/chimera './dev demo'
 if ! $demo_only; then
   run "tests as root" 0 root /opt/chimera './.ci/run'
   chroot "$folder" id newcomer >/dev/null 2>&1 || chroot "$folder" useradd -m -s /bin/bash newcomer
-  clone_to /home/newcomer/chimera
-  chroot "$folder" chown -R newcomer: /home/newcomer/chimera
-  run "tests as an ordinary user" 0 newcomer /home/newcomer/chimera './.ci/run'
+  clone_to /srv/newcomer
+  chroot "$folder" chown -R newcomer: /srv/newcomer
+  run "tests as an ordinary user" 0 newcomer /srv/newcomer './.ci/run'
 fi
 
 echo
