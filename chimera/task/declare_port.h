@@ -33,7 +33,7 @@ constexpr bool check_option() {
 template <class E, class V>
 E convert_initial(const V& value) {
   if constexpr (std::is_arithmetic_v<E>) {
-    static_assert(std::is_arithmetic_v<V>, "initial must be a number for this port");
+    static_assert(std::is_convertible_v<const V&, E> && !std::is_class_v<V>, "initial must be a number for this port");
     return static_cast<E>(value);
   } else {
     static_assert(std::is_convertible_v<const V&, E>, "initial must be of the port's type");
