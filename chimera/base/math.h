@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elementary functions for components. Built from IEEE additions, multiplications, divisions and square roots in a
+// fixed order, so that a host and a microcontroller agree to the bit, which two C libraries do not.
+//
+// Errors are the largest seen against a reference of higher precision, in units in the last place; math_test.cc
+// holds them. All functions: Context: any; wait-free; no errno, no exception flags promised. NaN in, NaN out.
+#pragma once
+
+namespace chimera::math {
+
+struct SinCos {
+  double sin = 0;
+  double cos = 0;
+};
+
+/// Below 1 ulp for |x| <= 1e6. Beyond, as if x were off by less than half its own last place. Infinity gives NaN.
+double sin(double x) noexcept;
+double cos(double x) noexcept;
+/// Both at the price of little more than one.
+SinCos sincos(double x) noexcept;
+/// Below 2.1 ulp for |x| <= 1e6.
+double tan(double x) noexcept;
+
+/// Below 1 ulp.
+double atan(double x) noexcept;
+/// Angle of the point (x, y) in [-pi, pi], all signs of zero and infinity as in IEEE 754. Below 2 ulp.
+double atan2(double y, double x) noexcept;
+/// NaN outside [-1, 1]. Below 1.2 ulp.
+double asin(double x) noexcept;
+/// NaN outside [-1, 1]. Below 1 ulp.
+double acos(double x) noexcept;
+
+/// Below 1 ulp. Overflows to infinity above 709.78, underflows to 0 below -745.13.
+/// 1 ulp where the result is subnormal.
+double exp(double x) noexcept;
+/// Natural. -infinity at 0, NaN below. Below 1 ulp.
+double log(double x) noexcept;
+
+/// Correctly rounded. NaN below 0.
+double sqrt(double x) noexcept;
+/// sqrt(x*x + y*y) without overflow on the way. Below 2 ulp.
+double hypot(double x, double y) noexcept;
+/// Exact: x minus the whole multiple of y that leaves the sign of x. NaN when y is 0 or x is infinite.
+/// At most 2100 steps.
+double fmod(double x, double y) noexcept;
+double floor(double x) noexcept;
+double fabs(double x) noexcept;
+double copysign(double magnitude, double sign) noexcept;
+
+bool is_nan(double x) noexcept;
+bool is_finite(double x) noexcept;
+
+inline constexpr double kPi = 0x1.921fb54442d18p+1;
+
+}  // namespace chimera::math
