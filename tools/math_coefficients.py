@@ -47,14 +47,17 @@ def emit(name, f, lo, hi, degree, weight):
     print("};")
 
 
-def emit_pair(name, value, low_bits_cleared=0):
-    hi = float(value)
-    if low_bits_cleared:
-        m, e = math.frexp(hi)
-        hi = math.ldexp(math.floor(math.ldexp(m, 53 - low_bits_cleared)), e - 53 + low_bits_cleared)
-    lo = float(value - mp.mpf(hi))
-    print(f"constexpr double {name}Hi = {hi.hex()}, {name}Lo = {lo.hex()};")
-    return hi, lo
+def emit_cut(name, value, bits_cleared):
+    """The leading bits of value alone, so that products with small whole numbers are exact."""
+    m, e = math.frexp(float(value))
+    cut = math.ldexp(math.floor(math.ldexp(m, 53 - bits_cleared)), e - 53 + bits_cleared)
+    print(f"constexpr double {name} = {cut.hex()};")
+    return cut
+
+
+def emit_pair(name, value, bits_cleared=0):
+    hi = emit_cut(name + "Hi", value, bits_cleared)
+    print(f"constexpr double {name}Lo = {float(value - mp.mpf(hi)).hex()};")
 
 
 def series(f, z, terms):
@@ -84,15 +87,10 @@ def main():
         return (mp.asin(x) - x) / (x * z)
     emit("kAsin", asin_rest, 0, mp.mpf(1) / 4, 13, lambda z: z * mp.sqrt(z) / mp.asin(mp.sqrt(z)))
 
-    hi, _ = emit_pair("kHalfPiCut", mp.pi / 2, 20)
-    rest = mp.pi / 2 - mp.mpf(hi)
-    m, e = math.frexp(float(rest))
-    second = math.ldexp(math.floor(math.ldexp(m, 33)), e - 33)
-    print(f"constexpr double kHalfPiSecond = {second.hex()};")
-    rest -= mp.mpf(second)
-    m, e = math.frexp(float(rest))
-    third = math.ldexp(math.floor(math.ldexp(m, 33)), e - 33)
-    print(f"constexpr double kHalfPiThird = {third.hex()}, kHalfPiFourth = {float(rest - mp.mpf(third)).hex()};")
+    rest = mp.pi / 2
+    for name in ("kHalfPiFirst", "kHalfPiSecond", "kHalfPiThird"):
+        rest -= mp.mpf(emit_cut(name, rest, 20))
+    print(f"constexpr double kHalfPiFourth = {float(rest).hex()};")
     emit_pair("kHalfPi", mp.pi / 2)
     emit_pair("kPi", mp.pi)
     emit_pair("kLn2", mp.log(2), 20)

@@ -79,10 +79,14 @@ constexpr double kAsin[] = {
 };
 constexpr double kHalfPiFirst = 0x1.921fb54400000p+0;
 constexpr double kHalfPiSecond = 0x1.0b4611a600000p-34;
-constexpr double kHalfPiThird = 0x1.3198a2e000000p-69, kHalfPiFourth = 0x1.b839a252049c1p-104;
-constexpr double kHalfPiHi = 0x1.921fb54442d18p+0, kHalfPiLo = 0x1.1a62633145c07p-54;
-constexpr double kPiHi = 0x1.921fb54442d18p+1, kPiLo = 0x1.1a62633145c07p-53;
-constexpr double kLn2Hi = 0x1.62e42fef00000p-1, kLn2Lo = 0x1.473de6af278edp-34;
+constexpr double kHalfPiThird = 0x1.3198a2e000000p-69;
+constexpr double kHalfPiFourth = 0x1.b839a252049c1p-104;
+constexpr double kHalfPiHi = 0x1.921fb54442d18p+0;
+constexpr double kHalfPiLo = 0x1.1a62633145c07p-54;
+constexpr double kPiHi = 0x1.921fb54442d18p+1;
+constexpr double kPiLo = 0x1.1a62633145c07p-53;
+constexpr double kLn2Hi = 0x1.62e42fef00000p-1;
+constexpr double kLn2Lo = 0x1.473de6af278edp-34;
 constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
 constexpr double kOneOverLn2 = 0x1.71547652b82fep+0;
 struct Angle { double hi, lo; };
