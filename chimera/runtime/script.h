@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an operator would do, written down with times: signals and the illegal-configuration flag. Tests and
+// `run` hand one to an executor, which acts at the first cycle edge at or after each time.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/base/assert.h"
+#include "chimera/base/ids.h"
+#include "chimera/base/time.h"
+#include "chimera/task/signal.h"
+
+namespace chimera {
+
+/// One act. `at` counts from the start of the run.
+struct ScriptAct {
+  enum class Kind : std::uint8_t { kSignal, kRaiseFlag, kLowerFlag };
+
+  Nanoseconds at;
+  Kind kind = Kind::kSignal;
+  Signal signal = Signal::kOn;  ///< kSignal only
+  TaskId task;                  ///< kSignal only
+};
+
+/// Acts in order of time, those of one instant in the given order. The memory outlives the script.
+class Script {
+ public:
+  Script() noexcept = default;
+  /// Requires: sorted by `at`. Context: setup.
+  explicit Script(std::span<const ScriptAct> acts) noexcept : acts_(acts) {
+    for (std::size_t i = 1; i < acts.size(); ++i) CHIMERA_ASSERT(acts[i - 1].at <= acts[i].at);
+  }
+
+  /// When the next act is due; kNever after the last. Context: cycle; wait-free.
+  Nanoseconds next_at() const noexcept { return done_ < acts_.size() ? acts_[done_].at : kNever; }
+  /// The next act that is due at `since_start`, once; null when none is. Context: edge; wait-free.
+  const ScriptAct* take(Nanoseconds since_start) noexcept {
+    return next_at() <= since_start ? &acts_[done_++] : nullptr;
+  }
+
+ private:
+  std::span<const ScriptAct> acts_;
+  std::size_t done_ = 0;
+};
+
+}  // namespace chimera
