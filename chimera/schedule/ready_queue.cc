@@ -41,13 +41,17 @@ void erase(std::span<T> heap, std::uint32_t& n, std::uint32_t at, Before&& befor
 
 }  // namespace
 
-ReadyQueue::ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const QueueStorage& storage,
-                       Nanoseconds origin) noexcept
-    : policy_(policy), storage_(storage), origin_(origin) {
+ReadyQueue::ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const QueueStorage& storage) noexcept
+    : policy_(policy), storage_(storage) {
   const std::size_t n = tasks.size();
   CHIMERA_ASSERT(storage.members.size() >= n && storage.classes.size() >= n && storage.tasks.size() >= n);
   CHIMERA_ASSERT(storage.loose.size() >= n && storage.pauses.size() >= n && storage.runs.size() >= n);
   make_classes(tasks);
+}
+
+void ReadyQueue::set_origin(Nanoseconds origin) noexcept {
+  CHIMERA_ASSERT(n_pauses_ == 0);
+  origin_ = origin;
 }
 
 void ReadyQueue::make_classes(std::span<const TaskSpec> tasks) noexcept {

@@ -92,7 +92,9 @@ class ReadyQueue {
  public:
   /// All tasks start outside (OFF); TaskId = index in `tasks`. Requires: period > 0, every span of `storage` as
   /// long as `tasks`. Context: setup.
-  ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const QueueStorage& storage, Nanoseconds origin) noexcept;
+  ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const QueueStorage& storage) noexcept;
+  /// The instant from which the grid counts, 0 until told. Requires: nobody has joined yet. Context: setup.
+  void set_origin(Nanoseconds origin) noexcept;
 
   /// The task takes part from the first release of its grid at or after `now`. No effect when it already does.
   /// Context: edge; O(class + log classes).
@@ -100,6 +102,8 @@ class ReadyQueue {
   /// The task takes part no more; a job of it that waits is forgotten without a count. No effect when outside.
   /// Context: edge; O(class + classes).
   void leave(TaskId task) noexcept;
+  /// The first release that the member takes part in. Context: edge.
+  Nanoseconds first_release(TaskId task) const noexcept { return storage_.members[find(task.index)].first; }
   /// True between join and leave. Context: edge.
   bool is_member(TaskId task) const noexcept;
 

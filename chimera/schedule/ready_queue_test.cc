@@ -25,7 +25,7 @@ class Bench {
  public:
   Bench(Policy policy, std::vector<TaskSpec> tasks)
       : tasks_(std::move(tasks)), members_(n()), classes_(n()), of_task_(n()), loose_(n()), pauses_(n()), runs_(n()),
-        queue(policy, tasks_, {members_, classes_, of_task_, loose_, pauses_, runs_}, Nanoseconds{}) {}
+        queue(policy, tasks_, {members_, classes_, of_task_, loose_, pauses_, runs_}) {}
 
   void join_all() {
     for (std::size_t i = 0; i < n(); ++i) queue.join(TaskId(i), Nanoseconds{});
@@ -131,6 +131,14 @@ TEST(ReadyQueue, KeepsTheGridForATaskThatJoinsLater) {
   EXPECT_EQ(b.queue.next_release(), kNever);
   b.queue.join(TaskId(1u), milliseconds(23));
   EXPECT_EQ(b.queue.next_release(), milliseconds(23));
+}
+
+TEST(ReadyQueue, CountsTheGridFromTheOrigin) {
+  Bench b(Policy::kEdf, {spec(10)});
+  b.queue.set_origin(microseconds(700));
+  b.queue.join(TaskId(0u), milliseconds(1));
+  EXPECT_EQ(b.queue.next_release(), microseconds(10'700));
+  EXPECT_EQ(b.queue.first_release(TaskId(0u)), microseconds(10'700));
 }
 
 TEST(ReadyQueue, ReleasesANewMemberWithTheFollowingReleaseOfItsClass) {

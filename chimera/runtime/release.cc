@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/release.h"
+
+#include <algorithm>
+
+#include "chimera/base/assert.h"
+
+namespace chimera {
+namespace {
+
+// How long before its deadline a job of the task must start. `abort` refuses a start at the deadline itself.
+Nanoseconds start_margin(const TaskSpec& spec) noexcept {
+  if (spec.min_time > Nanoseconds{}) return spec.min_time;
+  return spec.on_miss == OnMiss::kAbort ? Nanoseconds{1} : Nanoseconds{INT64_MIN / 2};
+}
+
+bool is_built(OnMiss reaction) noexcept { return reaction != OnMiss::kDemote && reaction != OnMiss::kSwitch; }
+
+}  // namespace
+
+Releases::Releases(TaskSet& set, const RunOptions& options)
+    : set_(set), tasks_(set.tasks()), options_(options), of_(tasks_.size()), members_(tasks_.size()),
+      classes_(tasks_.size()), queue_tasks_(tasks_.size()), loose_(tasks_.size()), pauses_(tasks_.size()),
+      runs_(tasks_.size()),
+      queue_(options.policy, set.spec().tasks, {members_, classes_, queue_tasks_, loose_, pauses_, runs_}) {
+  for (std::size_t i = 0; i < tasks_.size(); ++i) {
+    const TaskSpec& spec = *tasks_[i].spec;
+    CHIMERA_ASSERT(is_built(spec.on_miss) && is_built(spec.on_overrun));
+    of_[i].start_margin = start_margin(spec);
+    of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
+  }
+}
+
+void Releases::begin(Nanoseconds origin) noexcept {
+  origin_ = origin;
+  queue_.set_origin(origin);
+  refresh_members(origin);
+}
+
+void Releases::record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
+  if (options_.tap == nullptr) return;
+  TapRecord r;
+  r.at = at;
+  r.b = b;
+  r.a = static_cast<std::uint32_t>(a);
+  r.task = task;
+  r.kind = kind;
+  r.rtpu = options_.rtpu;
+  options_.tap->append(r);
+}
+
+void Releases::record_faults(Task& task) noexcept {
+  OfTask& t = of_[task.id.index];
+  if (task.faults.count == t.faults_seen) return;
+  t.faults_seen = task.faults.count;
+  record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
+}
+
+Nanoseconds Releases::next_event() const noexcept {
+  const Nanoseconds act = options_.script.next_at();
+  return std::min(queue_.next_release(), act == kNever ? kNever : origin_ + act);
+}
+
+void Releases::take_edge(Nanoseconds now) noexcept {
+  while (const ScriptAct* next = options_.script.take(now - origin_)) act(*next, now);
+  for (Task& task : tasks_) {
+    Signal signal;
+    while (!of_[task.id.index].is_busy && set_.take_pending(task, signal)) carry_out(task, signal, now);
+  }
+  refresh_members(now);
+}
+
+void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
+  if (act.kind != ScriptAct::Kind::kSignal) {
+    const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
+    set_.raise_flag(up);
+    record(TapKind::kFlag, now, TaskId(), up ? 1 : 0);
+    return;
+  }
+  Task& task = tasks_[act.task.index];
+  // A busy task takes it like a signal it sent itself: after its job and the error handling of that.
+  if (!of_[act.task.index].is_busy) carry_out(task, act.signal, now);
+  else if (!task.outbox.try_push({act.signal, act.task})) record(TapKind::kSignal, now, task.id, 0, 0);
+}
+
+void Releases::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
+  const bool was_illegal = set_.is_illegal();
+  const bool accepted = set_.signal(task.id, signal, now).is_accepted;
+  record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(signal), accepted ? 1 : 0);
+  record_faults(task);
+  if (set_.is_illegal() != was_illegal) record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
+}
+
+void Releases::refresh_members(Nanoseconds now) noexcept {
+  for (Task& task : tasks_) refresh(task, now);
+}
+
+// Makes the queue follow the state of the task.
+void Releases::refresh(Task& task, Nanoseconds now) noexcept {
+  OfTask& t = of_[task.id.index];
+  const bool on = task.state == State::kOn;
+  if (on == t.is_on) return;
+  t.is_on = on;
+  record(TapKind::kState, now, task.id, static_cast<std::uint64_t>(task.state));
+  if (!on) {
+    --n_on_;
+    queue_.leave(task.id);
+    return;
+  }
+  ++n_on_;
+  t.dropped = 0;
+  t.skip_next = false;
+  task.profile.missed_in_a_row = 0;
+  queue_.join(task.id, now);
+  // dt of the first cycle is the period, whatever part of one passed since on.
+  task.last_release = queue_.first_release(task.id) - task.spec->period;
+}
+
+void Releases::drop(const DroppedRelease& dropped) noexcept {
+  Task& task = tasks_[dropped.task.index];
+  task.profile.dropped += dropped.count;
+  of_[dropped.task.index].dropped += dropped.count;
+  record(TapKind::kDrop, dropped.last, dropped.task, dropped.count);
+  if (!dropped.waited) return;
+  count_miss(task, dropped.last + task.spec->deadline, {});
+}
+
+void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept {
+  ++task.profile.missed;
+  ++task.profile.missed_in_a_row;
+  record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);
+}
+
+void Releases::expire_waiting(const Job& job) noexcept {
+  record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle);
+  drop(DroppedRelease{job.task, job.release, 1, true});
+}
+
+bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
+  OfTask& t = of_[job.task.index];
+  Task& task = tasks_[job.task.index];
+  if (t.skip_next) {
+    t.skip_next = false;
+    drop(DroppedRelease{job.task, job.release, 1, false});
+    return false;
+  }
+  const OnMiss reaction = task.spec->on_miss;
+  if (task.spec->min_time > Nanoseconds{}) ++task.profile.min_refused;
+  if (reaction == OnMiss::kFlag) set_.raise_flag(true), record(TapKind::kFlag, now, TaskId(), 1);
+  if (reaction == OnMiss::kContinue || reaction == OnMiss::kFlag) return true;
+  drop(DroppedRelease{job.task, job.release, 1, now >= job.deadline});
+  if (reaction == OnMiss::kStop) task_stopped_ = true;
+  if (reaction == OnMiss::kError) {
+    record_fault(task, Method::kCycle, "its minimum time can no longer be granted", now);
+    follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], now);
+  }
+  const bool out_of_patience =
+      task.spec->max_consecutive > 0 && task.profile.missed_in_a_row >= task.spec->max_consecutive;
+  if (out_of_patience && task.state == State::kOn) give_up(task, now);
+  record_faults(task);
+  if (!task.outbox.empty()) set_.deliver(task);
+  if (task.state == State::kOn) return false;
+  set_.on_set_changed();
+  refresh(task, now);
+  return false;
+}
+
+void Releases::end_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
+                       Nanoseconds used) noexcept {
+  Task& task = tasks_[job.task.index];
+  OfTask& t = of_[job.task.index];
+  t.is_busy = false;
+  bool may_publish = true;
+  if (body.answer != Answer::kNoEvent) {
+    Profile& p = task.profile;
+    p.execution[CHIMERA_CYCLE].add(used);
+    p.response.add(end - job.release);
+    p.start_delay.add(start - job.release);
+    const bool failed = end > job.deadline || used > t.budget;
+    if (failed) may_publish = judge(task, job, body, end, used);
+    else p.missed_in_a_row = 0;
+  }
+  const std::uint64_t cycles = task.profile.cycles;
+  State state = end_cycle(task, body, time, end, may_publish);
+  if (task.profile.cycles != cycles) t.dropped = 0;
+  const bool out_of_patience =
+      task.profile.missed_in_a_row > 0 && task.profile.missed_in_a_row == task.spec->max_consecutive;
+  if (out_of_patience && state == State::kOn) give_up(task, end), state = task.state;
+  if (options_.tap != nullptr) record_faults(task);
+  if (!task.outbox.empty()) set_.deliver(task);
+  if (state == State::kOn) return;
+  set_.on_set_changed();
+  refresh(task, end);
+}
+
+// A failure of time was seen: counts it and says whether the result may still be published.
+bool Releases::judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept {
+  bool may_publish = true;
+  if (used > of_[job.task.index].budget) {
+    ++task.profile.overrun;
+    may_publish = react(task.spec->on_overrun, task, body, "used more execution time than its budget", end);
+  }
+  if (end <= job.deadline) {
+    task.profile.missed_in_a_row = 0;
+    return may_publish;
+  }
+  count_miss(task, end, end - job.deadline);
+  return react(task.spec->on_miss, task, body, "missed its deadline", end) && may_publish;
+}
+
+bool Releases::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept {
+  switch (reaction) {
+    case OnMiss::kContinue:
+    case OnMiss::kDemote:
+    case OnMiss::kSwitch:
+      return true;
+    case OnMiss::kHold:
+      return false;
+    case OnMiss::kSkip:
+      of_[task.id.index].skip_next = true;
+      return true;
+    case OnMiss::kAbort:
+      if (body.answer == Answer::kOk) body.answer = Answer::kAborted;
+      return false;
+    case OnMiss::kError:
+      if (body.answer != Answer::kFault) record_fault(task, Method::kCycle, why, at);
+      body.answer = Answer::kFault;
+      return false;
+    case OnMiss::kFlag:
+      set_.raise_flag(true);
+      record(TapKind::kFlag, at, TaskId(), 1);
+      return true;
+    case OnMiss::kStop:
+      task_stopped_ = true;
+      return true;
+  }
+  return true;
+}
+
+// max_consecutive: the component may degrade or shut down in error(), but the task ends in ERROR either way.
+void Releases::give_up(Task& task, Nanoseconds at) noexcept {
+  record_fault(task, Method::kCycle, "missed as many deadlines in a row as max_consecutive allows", at);
+  follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], at);
+  task.state = State::kError;
+}
+
+}  // namespace chimera

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every executor of one context does around a job: edges, releases, the failures of time and their reactions.
+// Executors differ in two things only: how long a job takes and how they wait.
+//
+//   edge: script acts, signals            -> tasks join and leave the queue
+//   release_due: releases                 -> ready queue; what is dropped is counted
+//   may_start: last chance to say no      -> begin: inputs and body -> end: failures, publication, profile
+//
+// The three failures of time (Stewart & Khosla; design section 6) and what they see:
+//   missed deadline    the job ended after its deadline                                      on_miss
+//   budget exceeded    it used more execution time than its budget                           on_overrun
+//   minimum refused    at its start less than `min` was left before the deadline             on_miss
+// Reactions: continue (a late result is published), hold (not published), skip (published; the next release is
+// dropped), abort (the job is over at its deadline: not started after it, nothing published; in preemptive virtual
+// time abandoned at that instant), error (the method error is called, nothing published), flag (published; the
+// illegal-configuration flag goes up and stays up until it is lowered), stop (published; the executor stops).
+// A refused minimum: continue and flag run the job all the same, the others do not start it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "chimera/runtime/job_step.h"
+#include "chimera/runtime/script.h"
+#include "chimera/runtime/tap.h"
+#include "chimera/runtime/task_set.h"
+#include "chimera/schedule/ready_queue.h"
+
+namespace chimera {
+
+/// How a context is to be run. What it points at outlives the executor.
+struct RunOptions {
+  Policy policy = Policy::kEdf;
+  Script script;
+  Tap* tap = nullptr;                        ///< null: nothing is recorded
+  std::uint8_t rtpu = 0;                     ///< for the records
+  const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
+};
+
+/// Why a run ended.
+enum class RunEnd : std::uint8_t {
+  kTime,         ///< the stated time is over
+  kStopped,      ///< RunOptions::stop was set
+  kNothingLeft,  ///< no task is ON and no act or signal can change that
+  kTaskStopped,  ///< the reaction `stop` of a task
+};
+
+/// The common half of all executors. Context of everything not marked: cycle; no allocation, no system call.
+class Releases {
+ public:
+  /// Requires: no task with the reactions demote or switch (other executors have them). Context: setup.
+  Releases(TaskSet& set, const RunOptions& options);
+
+  /// The grid of releases starts at `origin`; whoever is ON by now is released from there on. Context: edge.
+  void begin(Nanoseconds origin) noexcept;
+  Nanoseconds origin() const noexcept { return origin_; }
+
+  /// True when take_edge has something to do.
+  bool edge_is_due(Nanoseconds now) const noexcept {
+    return set_.has_pending() || options_.script.next_at() <= now - origin_;
+  }
+  /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
+  void take_edge(Nanoseconds now) noexcept;
+  /// The next instant at which an edge or a release may be due.
+  Nanoseconds next_event() const noexcept;
+  /// True while a task is ON or may yet be turned ON.
+  bool anything_left() const noexcept {
+    return n_on_ > 0 || set_.has_pending() || options_.script.next_at() != kNever;
+  }
+  bool stop_requested() const noexcept {
+    return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
+  }
+  bool task_stopped() const noexcept { return task_stopped_; }
+
+  void release_due(Nanoseconds now) noexcept {
+    if (queue_.next_release() > now) return;
+    queue_.release_due(now, [this](const DroppedRelease& d) { drop(d); });
+  }
+  ReadyQueue& queue() noexcept { return queue_; }
+  Task& task(TaskId id) noexcept { return tasks_[id.index]; }
+  bool is_on(TaskId id) const noexcept { return of_[id.index].is_on; }
+
+  /// False when the job must not start: its release is then counted as dropped, with all that follows.
+  bool may_start(const Job& job, Nanoseconds now) noexcept {
+    const OfTask& t = of_[job.task.index];
+    if (options_.tap != nullptr) record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle);
+    if (!t.skip_next && now + t.start_margin <= job.deadline) return true;
+    return decide_start(job, now);
+  }
+  /// Runs the body: inputs are read at this moment, nothing is published. `time` is for end().
+  BodyEnd begin_job(const Job& job, CycleTime& time) noexcept {
+    OfTask& t = of_[job.task.index];
+    t.is_busy = true;
+    time = CycleTime{job.release, job.deadline, t.dropped, set_.is_illegal()};
+    return begin_cycle(tasks_[job.task.index], time);
+  }
+  /// The job ended at `end`, begun at `start`, having used `used` of execution time.
+  void end_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
+               Nanoseconds used) noexcept;
+  /// The job began and is abandoned at its deadline (reaction abort): counts the miss; end_job follows.
+  void abandon(const Job& job) noexcept { count_miss(tasks_[job.task.index], job.deadline, {}); }
+  /// The job never started and its deadline has come (reaction abort).
+  void expire_waiting(const Job& job) noexcept;
+
+  /// Writes one record, if anybody wants it.
+  void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
+
+ private:
+  // Everything a job needs beside the Task, in one cache line.
+  struct alignas(64) OfTask {
+    Nanoseconds start_margin;  // a job starts while now + start_margin <= deadline
+    Nanoseconds budget;        // kNever: none
+    std::uint64_t faults_seen = 0;
+    std::uint32_t dropped = 0;  // since the last completed cycle
+    bool skip_next = false;
+    bool is_on = false;
+    bool is_busy = false;
+  };
+
+  void drop(const DroppedRelease& dropped) noexcept;
+  void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
+  bool decide_start(const Job& job, Nanoseconds now) noexcept;
+  bool judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept;
+  bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
+  void give_up(Task& task, Nanoseconds at) noexcept;
+  void act(const ScriptAct& act, Nanoseconds now) noexcept;
+  void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
+  void refresh_members(Nanoseconds now) noexcept;
+  void refresh(Task& task, Nanoseconds now) noexcept;
+  void record_faults(Task& task) noexcept;
+
+  TaskSet& set_;
+  std::span<Task> tasks_;
+  RunOptions options_;
+  Nanoseconds origin_;
+  std::vector<OfTask> of_;
+  std::vector<QueueMember> members_;
+  std::vector<QueueClass> classes_;
+  std::vector<QueueTask> queue_tasks_;
+  std::vector<LooseJob> loose_;
+  std::vector<std::uint32_t> pauses_, runs_;
+  ReadyQueue queue_;
+  std::uint32_t n_on_ = 0;
+  bool task_stopped_ = false;
+};
+
+}  // namespace chimera

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/virtual/preemptive.h"
+
+#include <algorithm>
+
+namespace chimera {
+
+Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, ModelledClock& clock,
+                       const PreemptiveOptions& options)
+    : releases_(releases), tasks_(tasks), clock_(clock), options_(options), active_(tasks.size()) {
+  const Policy policy = releases.queue().policy();
+  by_laxity_ = policy == Policy::kLlf || policy == Policy::kMufLaxity;
+  for (std::uint32_t i = 0; i < tasks.size(); ++i) {
+    if (tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back(i);
+  }
+}
+
+RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
+  for (;;) {
+    use_processor(now);
+    complete();
+    expire(now);
+    if (releases_.stop_requested()) return RunEnd::kStopped;
+    if (releases_.task_stopped()) return RunEnd::kTaskStopped;
+    if (now >= until) {
+      leave_processor();
+      return RunEnd::kTime;
+    }
+    if (releases_.edge_is_due(now)) take_edge(now);
+    releases_.release_due(now);
+    if (dispatch(now)) continue;
+    const bool idle = !running_.is_valid() && releases_.queue().is_empty();
+    if (idle && !releases_.anything_left()) return RunEnd::kNothingLeft;
+    now = std::clamp(next_event(now), now, until);
+  }
+}
+
+Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
+  Nanoseconds next = std::min(releases_.next_event(), next_deadline());
+  if (!running_.is_valid()) return next;
+  next = std::min(next, now + active_[running_.index].remaining);
+  if (!by_laxity_ || releases_.queue().is_empty()) return next;
+  const Nanoseconds since = now - releases_.origin();
+  return std::min(next, releases_.origin() + options_.quantum * (since / options_.quantum + 1));
+}
+
+// Deadlines lie on the grid of releases, so they are known without looking at any job.
+Nanoseconds Preemptive::next_deadline() noexcept {
+  Nanoseconds next = kNever;
+  for (const std::uint32_t i : abandoners_) {
+    Active& a = active_[i];
+    const bool on = releases_.is_on(TaskId(i));
+    if (!on) a.next_deadline = kNever;
+    else if (a.next_deadline == kNever) a.next_deadline = releases_.queue().first_release(TaskId(i)) + tasks_[i].deadline;
+    next = std::min(next, a.next_deadline);
+  }
+  return next;
+}
+
+void Preemptive::use_processor(Nanoseconds until) noexcept {
+  if (!running_.is_valid()) return;
+  Active& a = active_[running_.index];
+  a.used += until - mark_;
+  a.remaining -= until - mark_;
+  mark_ = until;
+}
+
+// Ends the slice of the running job; the job itself stays where it is.
+void Preemptive::leave_processor() noexcept {
+  if (!running_.is_valid()) return;
+  if (mark_ > slice_start_) {
+    releases_.record(TapKind::kRun, slice_start_, running_, CHIMERA_CYCLE, (mark_ - slice_start_).count);
+  }
+  slice_start_ = mark_;
+}
+
+void Preemptive::complete() noexcept {
+  if (!running_.is_valid() || active_[running_.index].remaining > Nanoseconds{}) return;
+  leave_processor();
+  Active& a = active_[running_.index];
+  running_ = TaskId();
+  end(a, mark_);
+}
+
+void Preemptive::end(Active& a, Nanoseconds now) noexcept {
+  a.has_begun = false;
+  releases_.queue().finish(a.job.task);
+  releases_.end_job(a.job, a.time, a.body, a.first_start, now, a.used);
+}
+
+void Preemptive::expire(Nanoseconds now) noexcept {
+  if (next_deadline() > now) return;
+  for (const std::uint32_t i : abandoners_) {
+    if (active_[i].next_deadline > now) continue;
+    expire(TaskId(i));
+    if (active_[i].next_deadline != kNever) active_[i].next_deadline += tasks_[i].period;
+  }
+}
+
+// The deadline of the task's present job has come; if it is unfinished it is over.
+void Preemptive::expire(TaskId task) noexcept {
+  Active& a = active_[task.index];
+  const Nanoseconds deadline = a.next_deadline;
+  Job waiting;
+  if (!a.has_begun) {
+    if (releases_.queue().remove(task, waiting)) releases_.expire_waiting(waiting);
+    return;
+  }
+  if (a.job.deadline != deadline) return;
+  if (running_ == task) {
+    leave_processor();
+    running_ = TaskId();
+  } else {
+    (void)releases_.queue().remove(task, waiting);
+  }
+  releases_.abandon(a.job);
+  a.body.answer = Answer::kAborted;
+  end(a, deadline);
+}
+
+void Preemptive::take_edge(Nanoseconds& now) noexcept {
+  clock_.set(now);
+  releases_.take_edge(now);
+  if (clock_.spent() == Nanoseconds{}) return;
+  leave_processor();  // methods at an edge hold the processor
+  now += clock_.spent();
+  mark_ = slice_start_ = now;
+}
+
+// Gives the processor to the most urgent job. True when that job needed no time: it has ended, and the instant is
+// not over, for it may have sent signals.
+bool Preemptive::dispatch(Nanoseconds now) noexcept {
+  ReadyQueue& queue = releases_.queue();
+  while (!queue.is_empty()) {
+    if (running_.is_valid()) {
+      if (!must_yield()) return false;
+      leave_processor();
+      releases_.record(TapKind::kPreempt, now, running_, 0);
+      queue.put_back(active_[running_.index].job, active_[running_.index].remaining);
+      running_ = TaskId();
+    }
+    if (!take_processor(queue.pop(), now)) continue;
+    complete();
+    if (!running_.is_valid()) return true;
+  }
+  return false;
+}
+
+bool Preemptive::must_yield() noexcept {
+  const Active& a = active_[running_.index];
+  const TaskSpec& spec = tasks_[running_.index];
+  const Urgency mine{spec.criticality, spec.user_priority, spec.period, a.job.deadline, a.remaining};
+  return is_more_urgent(releases_.queue().policy(), releases_.queue().top_urgency(), mine);
+}
+
+bool Preemptive::take_processor(const Job& job, Nanoseconds now) noexcept {
+  Active& a = active_[job.task.index];
+  if (!a.has_begun) {
+    if (!releases_.may_start(job, now)) return false;
+    clock_.set(now);
+    a.job = job;
+    a.body = releases_.begin_job(job, a.time);
+    a.first_start = now;
+    a.used = Nanoseconds{};
+    const bool had_event = a.body.answer != Answer::kNoEvent;
+    a.remaining = modelled_time(tasks_[job.task.index], job.task, job.release - releases_.origin(), clock_.spent(),
+                                had_event, options_.seed ? &*options_.seed : nullptr);
+    a.has_begun = true;
+    releases_.queue().occupy(job.task);
+  }
+  running_ = job.task;
+  slice_start_ = mark_ = now;
+  return true;
+}
+
+}  // namespace chimera

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Preemptive scheduling of one processor in virtual time: a discrete-event simulation that runs the real bodies.
+//
+// A body runs at its first dispatch (inputs as they are then) and its job then holds the processor for the modelled
+// time, in slices; it publishes, and its signals leave, when that time is used up. Order of things at one instant:
+// completion (publication), deadlines of jobs with the reaction abort, signals, releases, dispatch (reads).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "chimera/runtime/release.h"
+#include "chimera/runtime/virtual/modelled_clock.h"
+
+namespace chimera {
+
+/// How the processor is shared. Context: setup.
+struct PreemptiveOptions {
+  std::optional<std::uint64_t> seed;
+  Nanoseconds quantum = milliseconds(1);  ///< laxity policies compare the running job again at every multiple of it
+};
+
+/// The processor. Context of run: cycle; no allocation.
+class Preemptive {
+ public:
+  Preemptive(Releases& releases, std::span<const TaskSpec> tasks, ModelledClock& clock,
+             const PreemptiveOptions& options);
+
+  /// Runs from `now` to `until`, where a job under way is cut: it neither completes nor counts. May be called again
+  /// to go on. `now` receives the time reached.
+  RunEnd run(Nanoseconds& now, Nanoseconds until) noexcept;
+
+ private:
+  /// A job that has begun and not ended.
+  struct Active {
+    Job job;
+    CycleTime time;
+    BodyEnd body;
+    Nanoseconds first_start, used, remaining;
+    Nanoseconds next_deadline = kNever;  // of the task, when its reaction is abort and it is ON
+    bool has_begun = false;
+  };
+
+  Nanoseconds next_event(Nanoseconds now) noexcept;
+  Nanoseconds next_deadline() noexcept;
+  void use_processor(Nanoseconds until) noexcept;
+  void leave_processor() noexcept;
+  void complete() noexcept;
+  void expire(Nanoseconds now) noexcept;
+  void expire(TaskId task) noexcept;
+  void take_edge(Nanoseconds& now) noexcept;
+  bool dispatch(Nanoseconds now) noexcept;
+  bool must_yield() noexcept;
+  bool take_processor(const Job& job, Nanoseconds now) noexcept;
+  void end(Active& active, Nanoseconds now) noexcept;
+
+  Releases& releases_;
+  std::span<const TaskSpec> tasks_;
+  ModelledClock& clock_;
+  PreemptiveOptions options_;
+  std::vector<Active> active_;            // one per task
+  std::vector<std::uint32_t> abandoners_;  // tasks with the reaction abort
+  TaskId running_;
+  Nanoseconds slice_start_, mark_;  // of the running job: start of its slice, up to where its time is counted
+  bool by_laxity_;
+};
+
+}  // namespace chimera

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/virtual/virtual_executor.h"
+
+#include "chimera/base/assert.h"
+#include "chimera/runtime/cycle_loop.h"
+
+namespace chimera {
+namespace {
+
+// Virtual time without preemption: a job ends when its modelled time is used up; nothing else makes time pass.
+struct ModelledTime {
+  ModelledClock& clock;
+  std::span<const TaskSpec> tasks;
+  const std::uint64_t* seed;  // null: none
+  Nanoseconds origin;
+  Nanoseconds& now_;
+
+  Nanoseconds now() noexcept {
+    set(now_ + clock.spent());  // by methods at the edge
+    return now_;
+  }
+  void wait_until(Nanoseconds instant) noexcept { set(instant); }
+  Nanoseconds end_of(const Job& job, BodyEnd body, Nanoseconds start) noexcept {
+    const bool had_event = body.answer != Answer::kNoEvent;
+    set(start + modelled_time(tasks[job.task.index], job.task, job.release - origin, clock.spent(), had_event, seed));
+    return now_;
+  }
+  Nanoseconds after(Nanoseconds end) noexcept {
+    set(end + clock.spent());  // by the method error
+    return now_;
+  }
+
+ private:
+  void set(Nanoseconds now) noexcept {
+    now_ = now;
+    clock.set(now);
+  }
+};
+
+}  // namespace
+
+VirtualExecutor::VirtualExecutor(TaskSet& set, const RunOptions& options, const VirtualOptions& how)
+    : set_(set), how_(how), releases_(set, options),
+      preemptive_(releases_, set.spec().tasks, clock_, {how.seed, how.quantum}) {
+  CHIMERA_ASSERT(how.quantum > Nanoseconds{});
+  set.attach(clock_);
+}
+
+Result<void> VirtualExecutor::start() {
+  clock_.set(now_);
+  Result<void> started = set_.start(now_);
+  now_ = clock_.now();
+  if (started) releases_.begin(now_);
+  return started;
+}
+
+RunEnd VirtualExecutor::run(Nanoseconds duration) noexcept {
+  const Nanoseconds until = duration == kNever ? kNever : origin() + duration;
+  clock_.set(now_);
+  if (how_.preemptive) return preemptive_.run(now_, until);
+  ModelledTime time{clock_, set_.spec().tasks, how_.seed ? &*how_.seed : nullptr, origin(), now_};
+  return run_cycles(releases_, time, until);
+}
+
+}  // namespace chimera

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The executors behind one face, so that one suite runs over all of them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "chimera/platform/virtual/virtual_clock.h"
+#include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/virtual/virtual_executor.h"
+#include "tests/conformance/toy.h"
+
+namespace chimera::toy {
+
+/// What a job computing means on the virtual twin of the clock: it steps.
+class TwinClock final : public JobClock {
+ public:
+  explicit TwinClock(VirtualClock& clock) noexcept : clock_(clock) {}
+  Nanoseconds now() noexcept override { return clock_.now(); }
+  void spend(Nanoseconds time) noexcept override { clock_.advance(time); }
+
+ private:
+  VirtualClock& clock_;
+};
+
+enum class Kind { kExecutiveOnTwin, kVirtual, kPreemptive };
+
+inline const char* kind_name(Kind kind) {
+  return kind == Kind::kExecutiveOnTwin ? "executive" : kind == Kind::kVirtual ? "virtual" : "preemptive";
+}
+
+/// One run of one application on one executor.
+class Runner {
+ public:
+  Runner(TaskSet& set, Kind kind, Policy policy = Policy::kEdf, std::span<const ScriptAct> acts = {},
+      const VirtualOptions& how = {})
+      : ring_(1u << 16), tap_(ring_), job_clock_(clock_) {
+    RunOptions options;
+    options.policy = policy;
+    options.script = Script(acts);
+    options.tap = &tap_;
+    VirtualOptions virtual_options = how;
+    virtual_options.preemptive = kind == Kind::kPreemptive;
+    if (kind == Kind::kExecutiveOnTwin) executive_ = std::make_unique<Executive>(set, clock_, job_clock_, options);
+    else virtual_ = std::make_unique<VirtualExecutor>(set, options, virtual_options);
+  }
+
+  Result<void> start() { return executive_ ? executive_->start() : virtual_->start(); }
+  RunEnd run(Nanoseconds duration) { return executive_ ? executive_->run(duration) : virtual_->run(duration); }
+  void shut_down() { executive_ ? executive_->shut_down() : virtual_->shut_down(); }
+
+  /// The records since the last call.
+  std::vector<TapRecord> records() {
+    EXPECT_EQ(tap_.dropped(), 0u);
+    std::vector<TapRecord> all(ring_.size());
+    all.resize(tap_.read(all));
+    return all;
+  }
+
+ private:
+  std::vector<TapRecord> ring_;
+  Tap tap_;
+  VirtualClock clock_;
+  TwinClock job_clock_;
+  std::unique_ptr<Executive> executive_;
+  std::unique_ptr<VirtualExecutor> virtual_;
+};
+
+}  // namespace chimera::toy

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Components made in the test: a task does what its Toy says and writes down every call of a method.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "chimera/runtime/task_set.h"
+
+namespace chimera::toy {
+
+/// One call of a method, as the component saw it.
+struct Call {
+  std::string task;
+  Method method = Method::kInit;
+  Nanoseconds now, dt;
+  std::uint32_t dropped = 0;
+  bool illegal = false;
+  double in = 0;
+};
+
+/// What a task does and what happened to it. Outputs its number of cycles.
+struct Toy {
+  std::string name;
+  std::vector<Call>* calls = nullptr;
+  Nanoseconds spend;                              // by cycle
+  std::array<std::deque<int>, CHIMERA_METHODS> answers;  // of the next calls; CHIMERA_OK when none is left
+  std::deque<std::pair<Signal, std::string>> sends;      // one a cycle; an empty name: none
+  double value = 0;
+};
+
+/// The component's state; zeroed by the framework.
+struct State {
+  chimera_port me;  // in-const: the address of the Toy
+  chimera_port out;
+  chimera_port in;
+};
+
+inline Toy& toy_of(void* state) {
+  Toy* toy = nullptr;
+  std::memcpy(&toy, static_cast<State*>(state)->me.value, sizeof toy);
+  return *toy;
+}
+
+template <int kMethod>
+std::int32_t method(void* memory, const chimera_call* call) {
+  Toy& toy = toy_of(memory);
+  State& state = *static_cast<State*>(memory);
+  Call seen{toy.name,      static_cast<Method>(kMethod), {call->now_ns}, {call->dt_ns},
+            call->dropped, call->illegal != 0,           0};
+  if (state.in.value != nullptr) std::memcpy(&seen.in, state.in.value, sizeof seen.in);
+  toy.calls->push_back(seen);
+  if (kMethod == CHIMERA_CYCLE) {
+    if (toy.spend > Nanoseconds{}) call->host->spend(call->context, toy.spend.count);
+    toy.value += 1;
+    if (state.out.value != nullptr) std::memcpy(state.out.value, &toy.value, sizeof toy.value);
+    if (!toy.sends.empty()) {
+      const auto [signal, target] = toy.sends.front();
+      toy.sends.pop_front();
+      if (!target.empty()) call->host->signal(call->context, static_cast<std::uint32_t>(signal), target.c_str());
+    }
+  }
+  auto& answers = toy.answers[kMethod];
+  if (answers.empty()) return CHIMERA_OK;
+  const int answer = answers.front();
+  answers.pop_front();
+  return answer;
+}
+
+inline chimera_port_decl port(const char* name, std::uint32_t kind, std::uint32_t type, std::size_t offset) {
+  chimera_port_decl p{};
+  p.name = name;
+  p.doc = p.shape = p.frame = p.type_name = "";
+  p.unit = "1";
+  p.kind = kind;
+  p.type = type;
+  p.element_size = 8;
+  p.max_instances = 1;
+  p.live_offset = static_cast<std::uint32_t>(offset);
+  return p;
+}
+
+inline const chimera_component& component(bool aperiodic) {
+  static const std::array<chimera_port_decl, 3> ports = {
+      port("me", CHIMERA_IN_CONST, CHIMERA_INT64, offsetof(State, me)),
+      port("out", CHIMERA_OUT_VAR, CHIMERA_FLOAT64, offsetof(State, out)),
+      port("in", CHIMERA_IN_VAR, CHIMERA_FLOAT64, offsetof(State, in))};
+  static const auto make = [](bool with_sync) {
+    chimera_component c{};
+    c.abi_version = CHIMERA_ABI_VERSION;
+    c.struct_size = sizeof c;
+    c.name = "toy";
+    c.doc = c.source = "";
+    c.state_size = sizeof(State);
+    c.state_align = alignof(State);
+    c.n_ports = 3;
+    c.ports = ports.data();
+    c.construct = [](void*, chimera_fault*) -> std::int32_t { return CHIMERA_OK; };
+    c.destroy = [](void*) {};
+    const chimera_method methods[CHIMERA_METHODS] = {
+        method<CHIMERA_INIT>, method<CHIMERA_REINIT>, method<CHIMERA_ON>,   method<CHIMERA_CYCLE>, method<CHIMERA_SYNC>,
+        method<CHIMERA_OFF>,  method<CHIMERA_KILL>,   method<CHIMERA_ERROR>, method<CHIMERA_CLEAR>};
+    std::copy(std::begin(methods), std::end(methods), c.methods);
+    if (!with_sync) c.methods[CHIMERA_SYNC] = nullptr;
+    return c;
+  };
+  static const chimera_component periodic = make(false), polled = make(true);
+  return aperiodic ? polled : periodic;
+}
+
+/// An application of toys. Add tasks, then build().
+class Application {
+ public:
+  /// A task with deadline = period that outputs "x_NAME" and reads the output of `reads` when given.
+  TaskSpec& add(const std::string& name, Nanoseconds period, Nanoseconds spend = {}, const std::string& reads = "") {
+    auto& one = ones_.emplace_back(std::make_unique<One>());
+    one->toy.name = name;
+    one->toy.calls = &calls;
+    one->toy.spend = spend;
+    Toy* address = &one->toy;
+    std::memcpy(one->address.data(), &address, sizeof address);
+    one->out_name = "x_" + name;
+    one->in_name = "x_" + reads;
+    one->ports.resize(reads.empty() ? 2 : 3);
+    for (std::uint32_t i = 0; i < one->ports.size(); ++i) {
+      one->ports[i].declared = i;
+      one->ports[i].element_bytes = 8;
+    }
+    one->ports[0].type = CHIMERA_INT64;
+    one->ports[0].value = one->address;
+    one->ports[1].variable = one->out_name;
+    one->ports[1].value = one->zero;
+    if (!reads.empty()) one->ports[2].variable = one->in_name;
+    one->spec.name = one->toy.name;
+    one->spec.component = "toy";
+    one->spec.period = one->spec.deadline = period;
+    one->spec.rtpu = RtpuId(0u);
+    one->spec.ports = one->ports;
+    return one->spec;
+  }
+  Toy& toy(const std::string& name) { return ones_[id(name).index]->toy; }
+  TaskId id(const std::string& name) const {
+    for (std::size_t i = 0; i < ones_.size(); ++i) {
+      if (ones_[i]->toy.name == name) return TaskId(i);
+    }
+    ADD_FAILURE() << "no task " << name;
+    return TaskId(0u);
+  }
+  /// The tasks of `off` are spawned but not turned ON.
+  TaskSet& build(const std::vector<std::string>& off = {}) {
+    for (std::size_t i = 0; i < ones_.size(); ++i) {
+      specs_.push_back(ones_[i]->spec);
+      components_.push_back(&component(ones_[i]->spec.aperiodic));
+      order_.push_back(TaskId(i));
+      if (std::find(off.begin(), off.end(), ones_[i]->toy.name) == off.end()) start_.push_back(TaskId(i));
+    }
+    spec_.name = "toys";
+    spec_.rtpus = rtpus_;
+    spec_.tasks = specs_;
+    spec_.init_order = order_;
+    spec_.start = start_;
+    auto made = TaskSet::create(spec_, components_);
+    if (!made) {
+      ADD_FAILURE() << made.error().message.c_str();
+      std::abort();
+    }
+    set_ = *std::move(made);
+    return *set_;
+  }
+  const Task& task(const std::string& name) const { return set_->tasks()[id(name).index]; }
+  double published(const std::string& name) const {
+    const VariableView view = set_->view(set_->variables().find("x_" + name));
+    double value = 0;
+    std::memcpy(&value, view.value, sizeof value);
+    return value;
+  }
+  /// The calls of one method of one task.
+  std::vector<Call> calls_of(const std::string& name, Method method) const {
+    std::vector<Call> found;
+    for (const Call& call : calls) {
+      if (call.task == name && call.method == method) found.push_back(call);
+    }
+    return found;
+  }
+
+  std::vector<Call> calls;
+
+ private:
+  struct One {
+    Toy toy;
+    std::array<std::byte, 8> address{}, zero{};
+    std::string out_name, in_name;
+    std::vector<PortSpec> ports;
+    TaskSpec spec;
+  };
+  std::vector<std::unique_ptr<One>> ones_;
+  std::vector<TaskSpec> specs_;
+  std::vector<const chimera_component*> components_;
+  std::vector<TaskId> order_, start_;
+  std::vector<RtpuSpec> rtpus_{RtpuSpec{"only", 0, Policy::kEdf}};
+  ApplicationSpec spec_;
+  std::unique_ptr<TaskSet> set_;
+};
+
+}  // namespace chimera::toy
