@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "tests/kill/kill_trial.h"
+
+namespace chimera {
+namespace {
+
+TEST(KilledWriter, LeavesNeitherATornNorAnUnreadableGroup) {
+  const KillReport report = run_kill_trial({.kills = 2000});
+  EXPECT_EQ(report.failure, "");
+  EXPECT_EQ(report.kills, 2000u);
+  EXPECT_GE(report.mid_write, 1000u) << "otherwise little was shown";
+  EXPECT_GE(report.reads, 4000u);
+  EXPECT_EQ(report.torn, 0u);
+  EXPECT_EQ(report.backwards, 0u);
+  EXPECT_EQ(report.refused_dead, 0u);
+}
+
+TEST(KilledWriter, ThatFillsThePublishedSlotIsNoticed) {
+  const KillReport report = run_kill_trial({.kills = 20, .seconds = 60, .planted_defect = true});
+  EXPECT_EQ(report.failure, "");
+  EXPECT_GT(report.torn, 0u);
+}
+
+}  // namespace
+}  // namespace chimera
