@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "chimera/load/descriptor.h"
+#include "chimera/load/utf8.h"
 
 namespace chimera {
 namespace {
@@ -122,7 +123,12 @@ Verdict safety_rule(const PortDescriptor& port) {
 Verdict value_rule(std::uint32_t type, const std::byte* at, std::uint32_t size, const PortDescriptor* ranged) {
   double number = 0;
   if (type == CHIMERA_BOOL && std::to_integer<unsigned>(*at) > 1) return "a bool that is neither 0 nor 1";
-  if (type == CHIMERA_STRING && at[size - 1] != std::byte{0}) return "a string without an end";
+  if (type == CHIMERA_STRING) {
+    const char* text = reinterpret_cast<const char*>(at);
+    const std::size_t length = ::strnlen(text, size);
+    if (length == size) return "a string without an end";
+    return is_utf8({text, length}) ? Verdict() : "a text that is no UTF-8";
+  }
   if (type == CHIMERA_ANY) {
     const bool zero = std::all_of(at, at + size, [](std::byte b) { return b == std::byte{0}; });
     return zero ? Verdict() : "a type variable can only start at zero";
@@ -179,10 +185,20 @@ Verdict initial_rule(const PortDescriptor& port) {
   return {};
 }
 
+Verdict text_rule(const PortDescriptor& port) {
+  for (const std::string* text : {&port.doc, &port.unit, &port.frame}) {
+    if (!is_utf8(*text)) return "a text that is no UTF-8";
+  }
+  for (const FieldDescriptor& field : port.fields) {
+    if (!is_utf8(field.unit)) return "a text that is no UTF-8";
+  }
+  return {};
+}
+
 Verdict port_rules(const PortDescriptor& port) {
   if (!is_identifier(port.name)) return name_fault("port", port.name);
   if (port.unit.empty()) return "the unit is empty; write \"1\" for none";
-  for (const auto rule : {kind_rule, type_name_rule, fields_rule, instances_rule, range_rule, safety_rule}) {
+  for (const auto rule : {text_rule, kind_rule, type_name_rule, fields_rule, instances_rule, range_rule, safety_rule}) {
     if (Verdict v = rule(port); !v.empty()) return v;
   }
   return {};
@@ -214,6 +230,7 @@ Verdict component_rules(const Descriptor& descriptor) {
     return "default rate " + std::to_string(rate) + " Hz is not from 1/3600 to 1000000 Hz";
   }
   if (!descriptor.methods[CHIMERA_CYCLE]) return "has no cycle method";
+  if (!is_utf8(descriptor.doc) || !is_utf8(descriptor.source)) return "a text that is no UTF-8";
   return {};
 }
 

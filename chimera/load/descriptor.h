@@ -19,7 +19,7 @@ namespace chimera {
 
 /// One field of a struct element. Sizes and offsets in bytes.
 struct FieldDescriptor {
-  std::string name;
+  std::string name{};
   std::string unit = "1";
   std::uint32_t type = CHIMERA_FLOAT64;  ///< CHIMERA_BOOL to CHIMERA_STRING
   std::uint32_t offset = 0;
@@ -31,12 +31,12 @@ struct FieldDescriptor {
 
 /// One declared port.
 struct PortDescriptor {
-  std::string name;
-  std::string doc;
+  std::string name{};
+  std::string doc{};
   std::string unit = "1";  ///< as written; may hold unit variables
-  std::string shape;       ///< as written
-  std::string frame;
-  std::string type_name;   ///< of the struct or of the type variable; "" otherwise
+  std::string shape{};       ///< as written
+  std::string frame{};
+  std::string type_name{};   ///< of the struct or of the type variable; "" otherwise
   std::uint32_t kind = CHIMERA_IN_VAR;
   std::uint32_t type = CHIMERA_FLOAT64;
   std::uint32_t element_size = 8;
@@ -45,9 +45,9 @@ struct PortDescriptor {
   std::uint32_t max_instances = 1;
   bool has_range = false;
   double min = 0, max = 0;           ///< in `unit`; count when has_range
-  std::vector<Extent> extents;       ///< `shape`, parsed
-  std::vector<FieldDescriptor> fields;
-  std::vector<std::byte> initial;    ///< whole elements, padding zero: none, 1 (for all) or max_count()
+  std::vector<Extent> extents{};       ///< `shape`, parsed
+  std::vector<FieldDescriptor> fields{};
+  std::vector<std::byte> initial{};    ///< whole elements, padding zero: none, 1 (for all) or max_count()
 
   std::uint32_t max_count() const noexcept { return chimera::max_count(extents); }
   std::uint32_t initial_count() const noexcept;
@@ -57,15 +57,15 @@ struct PortDescriptor {
 
 /// One component. `valid(descriptor)` holds for every one that describe() or the file reader hands out.
 struct Descriptor {
-  std::string name;
-  std::string doc;
-  std::string source;
+  std::string name{};
+  std::string doc{};
+  std::string source{};
   std::uint32_t abi_version = CHIMERA_ABI_VERSION;
   double default_rate_hz = 0;  ///< 0: the description must give one
   std::uint32_t state_size = 0;
   std::uint32_t state_align = 8;
   std::array<bool, CHIMERA_METHODS> methods{};  ///< which of the nine are written
-  std::vector<PortDescriptor> ports;
+  std::vector<PortDescriptor> ports{};
 
   /// Has a sync method, so it is released by events.
   bool is_aperiodic() const noexcept { return methods[CHIMERA_SYNC]; }

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strict reading of a JSON tree: every access says what it expects, every refusal names the path. Includes the JSON
+// library, so it is for the .cc files that read JSON only.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace chimera {
+
+/// Thrown by JsonCursor and caught by the function that reads the document.
+struct JsonRefusal {
+  std::string message;
+};
+
+/// A value of the tree and its path ("$.ports[2].unit"). The tree outlives its cursors. Context: setup.
+class JsonCursor {
+ public:
+  JsonCursor(const nlohmann::json& value, std::string path) : value_(value), path_(std::move(path)) {}
+
+  [[noreturn]] void refuse(std::string_view why) const { throw JsonRefusal{path_ + ": " + std::string(why)}; }
+
+  /// Refuses anything but an object with all keys of `required` and no other than those and `optional`.
+  void expect_keys(std::initializer_list<std::string_view> required,
+                   std::initializer_list<std::string_view> optional) const;
+  bool has(std::string_view key) const { return value_.contains(key); }
+  JsonCursor at(std::string_view key) const { return {value_.at(std::string(key)), path_ + "." + std::string(key)}; }
+
+  /// Elements of an array of at most `limit`.
+  std::size_t size(std::size_t limit) const;
+  JsonCursor at(std::size_t i) const { return {value_.at(i), path_ + "[" + std::to_string(i) + "]"}; }
+  bool is_array() const { return value_.is_array(); }
+
+  std::string text() const;
+  bool truth() const;
+  std::uint32_t whole() const;
+  double number() const;  ///< or the words "inf" and "-inf"
+  const nlohmann::json& value() const { return value_; }
+
+ private:
+  const nlohmann::json& value_;
+  std::string path_;
+};
+
+/// The tree of `text`. Throws JsonRefusal for text above `bytes` or nested deeper than `nesting` (judged before
+/// parsing), for what is no JSON, and for a key that comes twice in one object.
+nlohmann::json read_json(std::string_view text, std::size_t bytes, std::size_t nesting);
+
+}  // namespace chimera

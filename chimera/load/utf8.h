@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether bytes are text: descriptors and messages go into JSON, which is UTF-8 or nothing.
+#pragma once
+
+#include <string_view>
+
+namespace chimera {
+
+/// Well-formed UTF-8 without surrogates, overlong forms and zero bytes. Context: any; wait-free; O(bytes).
+bool is_utf8(std::string_view bytes) noexcept;
+
+}  // namespace chimera
