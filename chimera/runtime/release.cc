@@ -116,13 +116,38 @@ void Releases::refresh(Task& task, Nanoseconds now) noexcept {
   task.last_release = queue_.first_release(task.id) - task.spec->period;
 }
 
-void Releases::drop(const DroppedRelease& dropped) noexcept {
-  Task& task = tasks_[dropped.task.index];
-  task.profile.dropped += dropped.count;
+void Releases::drop_on_purpose(const DroppedRelease& dropped) noexcept {
+  tasks_[dropped.task.index].profile.dropped += dropped.count;
   of_[dropped.task.index].dropped += dropped.count;
   record(TapKind::kDrop, dropped.last, dropped.task, dropped.count);
-  if (!dropped.waited) return;
-  count_miss(task, dropped.last + task.spec->deadline, {});
+}
+
+void Releases::drop(const DroppedRelease& dropped) noexcept {
+  drop_on_purpose(dropped);
+  Task& task = tasks_[dropped.task.index];
+  task.profile.missed += dropped.count;
+  task.profile.missed_in_a_row += dropped.count;
+  if (is_out_of_patience(task)) patience_lost_ = true;
+}
+
+// Tasks that others never let start have nobody else to end them.
+void Releases::give_up_starved(Nanoseconds now) noexcept {
+  patience_lost_ = false;
+  for (Task& task : tasks_) {
+    const OfTask& t = of_[task.id.index];
+    if (!t.is_on || t.is_busy || !is_out_of_patience(task)) continue;
+    give_up(task, now);
+    settle(task, now);
+  }
+}
+
+// After methods of the task ran outside an edge: what they left behind.
+void Releases::settle(Task& task, Nanoseconds now) noexcept {
+  record_faults(task);
+  if (!task.outbox.empty()) set_.deliver(task);
+  if (task.state == State::kOn) return;
+  set_.on_set_changed();
+  refresh(task, now);
 }
 
 void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept {
@@ -133,35 +158,32 @@ void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noex
 
 void Releases::expire_waiting(const Job& job) noexcept {
   record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle);
-  drop(DroppedRelease{job.task, job.release, 1, true});
+  record(TapKind::kMiss, job.deadline, job.task, tasks_[job.task.index].call.cycle);
+  drop(DroppedRelease{job.task, job.release, 1});
 }
 
 bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
   OfTask& t = of_[job.task.index];
   Task& task = tasks_[job.task.index];
+  const DroppedRelease dropped{job.task, job.release, 1};
   if (t.skip_next) {
     t.skip_next = false;
-    drop(DroppedRelease{job.task, job.release, 1, false});
+    drop_on_purpose(dropped);
     return false;
   }
   const OnMiss reaction = task.spec->on_miss;
   if (task.spec->min_time > Nanoseconds{}) ++task.profile.min_refused;
-  if (reaction == OnMiss::kFlag) set_.raise_flag(true), record(TapKind::kFlag, now, TaskId(), 1);
+  if (reaction == OnMiss::kFlag) raise_flag(now);
   if (reaction == OnMiss::kContinue || reaction == OnMiss::kFlag) return true;
-  drop(DroppedRelease{job.task, job.release, 1, now >= job.deadline});
+  record(TapKind::kMiss, now, job.task, task.call.cycle);
+  drop(dropped);
   if (reaction == OnMiss::kStop) task_stopped_ = true;
   if (reaction == OnMiss::kError) {
     record_fault(task, Method::kCycle, "its minimum time can no longer be granted", now);
     follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], now);
   }
-  const bool out_of_patience =
-      task.spec->max_consecutive > 0 && task.profile.missed_in_a_row >= task.spec->max_consecutive;
-  if (out_of_patience && task.state == State::kOn) give_up(task, now);
-  record_faults(task);
-  if (!task.outbox.empty()) set_.deliver(task);
-  if (task.state == State::kOn) return false;
-  set_.on_set_changed();
-  refresh(task, now);
+  if (is_out_of_patience(task) && task.state == State::kOn) give_up(task, now);
+  settle(task, now);
   return false;
 }
 
@@ -171,26 +193,22 @@ void Releases::end_job(const Job& job, const CycleTime& time, BodyEnd body, Nano
   OfTask& t = of_[job.task.index];
   t.is_busy = false;
   bool may_publish = true;
+  bool failed = false;
   if (body.answer != Answer::kNoEvent) {
     Profile& p = task.profile;
     p.execution[CHIMERA_CYCLE].add(used);
     p.response.add(end - job.release);
     p.start_delay.add(start - job.release);
-    const bool failed = end > job.deadline || used > t.budget;
+    failed = end > job.deadline || used > t.budget;
     if (failed) may_publish = judge(task, job, body, end, used);
     else p.missed_in_a_row = 0;
   }
   const std::uint64_t cycles = task.profile.cycles;
-  State state = end_cycle(task, body, time, end, may_publish);
-  if (task.profile.cycles != cycles) t.dropped = 0;
-  const bool out_of_patience =
-      task.profile.missed_in_a_row > 0 && task.profile.missed_in_a_row == task.spec->max_consecutive;
-  if (out_of_patience && state == State::kOn) give_up(task, end), state = task.state;
-  if (options_.tap != nullptr) record_faults(task);
-  if (!task.outbox.empty()) set_.deliver(task);
-  if (state == State::kOn) return;
-  set_.on_set_changed();
-  refresh(task, end);
+  const State state = end_cycle(task, body, time, end, may_publish);
+  if (task.profile.cycles != cycles) t.dropped -= time.dropped;  // this cycle was told of those
+  if (failed && is_out_of_patience(task) && state == State::kOn) give_up(task, end);
+  const bool quiet = task.state == State::kOn && task.outbox.empty() && task.faults.count == t.faults_seen;
+  if (!quiet) settle(task, end);
 }
 
 // A failure of time was seen: counts it and says whether the result may still be published.
@@ -227,8 +245,7 @@ bool Releases::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why
       body.answer = Answer::kFault;
       return false;
     case OnMiss::kFlag:
-      set_.raise_flag(true);
-      record(TapKind::kFlag, at, TaskId(), 1);
+      raise_flag(at);
       return true;
     case OnMiss::kStop:
       task_stopped_ = true;
@@ -237,11 +254,17 @@ bool Releases::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why
   return true;
 }
 
+void Releases::raise_flag(Nanoseconds at) noexcept {
+  if (!set_.is_illegal()) record(TapKind::kFlag, at, TaskId(), 1);
+  set_.raise_flag(true);
+}
+
 // max_consecutive: the component may degrade or shut down in error(), but the task ends in ERROR either way.
 void Releases::give_up(Task& task, Nanoseconds at) noexcept {
   record_fault(task, Method::kCycle, "missed as many deadlines in a row as max_consecutive allows", at);
   follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], at);
   task.state = State::kError;
+  task.profile.missed_in_a_row = 0;
 }
 
 }  // namespace chimera

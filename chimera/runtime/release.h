@@ -15,6 +15,9 @@
 // time abandoned at that instant), error (the method error is called, nothing published), flag (published; the
 // illegal-configuration flag goes up and stays up until it is lowered), stop (published; the executor stops).
 // A refused minimum: continue and flag run the job all the same, the others do not start it.
+//
+// A release that is dropped because jobs took too long is a missed deadline as well, in Profile::missed and towards
+// max_consecutive; one that a reaction drops on purpose is not.
 #pragma once
 
 #include <atomic>
@@ -76,6 +79,7 @@ class Releases {
   void release_due(Nanoseconds now) noexcept {
     if (queue_.next_release() > now) return;
     queue_.release_due(now, [this](const DroppedRelease& d) { drop(d); });
+    if (patience_lost_) give_up_starved(now);
   }
   ReadyQueue& queue() noexcept { return queue_; }
   Task& task(TaskId id) noexcept { return tasks_[id.index]; }
@@ -119,6 +123,12 @@ class Releases {
   };
 
   void drop(const DroppedRelease& dropped) noexcept;
+  void drop_on_purpose(const DroppedRelease& dropped) noexcept;
+  void give_up_starved(Nanoseconds now) noexcept;
+  static bool is_out_of_patience(const Task& task) noexcept {
+    const std::uint32_t limit = task.spec->max_consecutive;
+    return limit > 0 && task.profile.missed_in_a_row >= limit;
+  }
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
   bool judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept;
@@ -129,6 +139,8 @@ class Releases {
   void refresh_members(Nanoseconds now) noexcept;
   void refresh(Task& task, Nanoseconds now) noexcept;
   void record_faults(Task& task) noexcept;
+  void settle(Task& task, Nanoseconds now) noexcept;
+  void raise_flag(Nanoseconds at) noexcept;
 
   TaskSet& set_;
   std::span<Task> tasks_;
@@ -143,6 +155,7 @@ class Releases {
   ReadyQueue queue_;
   std::uint32_t n_on_ = 0;
   bool task_stopped_ = false;
+  bool patience_lost_ = false;  ///< by a dropped release: somebody may have missed too many
 };
 
 }  // namespace chimera

@@ -32,13 +32,11 @@ struct Job {
   Nanoseconds deadline;  ///< absolute
 };
 
-/// Releases that will never run. `count` releases up to and including `last` were dropped. `waited` is true when
-/// the last of them was ready and never started (a missed deadline), false when it went by unseen.
+/// Releases that will never run: `count` of them up to and including `last`.
 struct DroppedRelease {
   TaskId task;
   Nanoseconds last;
   std::uint32_t count = 0;
-  bool waited = false;
 };
 
 /// One member of a class; part of QueueStorage.
@@ -146,7 +144,7 @@ class ReadyQueue {
     const bool had_run = c.cursor < c.active;
     for (std::uint32_t i = c.cursor; i < c.active; ++i) {
       const QueueMember& m = storage_.members[c.begin + i];
-      if (m.first <= c.release) dropped(DroppedRelease{TaskId(m.task), c.release, 1, true});
+      if (m.first <= c.release) dropped(DroppedRelease{TaskId(m.task), c.release, 1});
     }
     if (n_deferred_ > 0) drop_deferred(index, dropped);
     const std::int64_t passed = now < c.next + c.period ? 1 : (now - c.next) / c.period + 1;
@@ -155,7 +153,7 @@ class ReadyQueue {
     for (std::uint32_t i = 0; passed > 1 && i < c.active; ++i) {
       const QueueMember& m = storage_.members[c.begin + i];
       const Nanoseconds last = c.release - c.period;
-      if (m.first <= last) dropped(DroppedRelease{TaskId(m.task), last, static_cast<std::uint32_t>(passed - 1), false});
+      if (m.first <= last) dropped(DroppedRelease{TaskId(m.task), last, static_cast<std::uint32_t>(passed - 1)});
     }
     c.cursor = 0;
     sift_pause_down(0);
@@ -168,7 +166,7 @@ class ReadyQueue {
     Job job;
     for (std::uint32_t i = 0; i < c.active; ++i) {
       const TaskId task(storage_.members[c.begin + i].task);
-      if (take_deferred(task, job)) dropped(DroppedRelease{task, job.release, 1, true});
+      if (take_deferred(task, job)) dropped(DroppedRelease{task, job.release, 1});
     }
   }
 

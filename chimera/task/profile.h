@@ -34,7 +34,7 @@ struct Profile {
   std::uint64_t cycles = 0;           ///< completed (published) cycles since spawn
   std::uint64_t aborted = 0;          ///< cycles that gave up
   std::uint64_t held = 0;             ///< late cycles not published (on_miss: hold)
-  std::uint64_t missed = 0;           ///< cycles that ended after their deadline
+  std::uint64_t missed = 0;           ///< deadlines: cycles that ended late, and releases dropped for lack of time
   std::uint64_t overrun = 0;          ///< cycles that used more than their budget
   std::uint64_t min_refused = 0;      ///< cycles whose minimum time could no longer be granted
   std::uint64_t dropped = 0;          ///< releases dropped
