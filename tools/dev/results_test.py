@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The counting frame on made-up results: nothing that went wrong may pass for passed."""
+import contextlib
+import io
+import os
+import pathlib
+import tempfile
+import unittest
+from unittest import mock
+
+import fuzz
+import results
+import stress
+import test as frame
+from results import FAILED, PASSED, SKIPPED, Case
+
+GTEST = """<testsuites><testsuite name="S">
+<testcase name="Passes" classname="S" status="run" result="completed"/>
+{more}</testsuite></testsuites>"""
+FAILURE = '<testcase name="Fails" classname="S" status="run" result="completed"><failure message="x != y"/></testcase>'
+SKIP = ('<testcase name="Skips" classname="S" status="run" result="skipped">'
+        '<skipped message="a.cc:7&#x0A;not judged: host stalled"/></testcase>')
+
+
+def ctest(status, inner=""):
+    return f'<testsuite><testcase name="t" status="{status}">{inner}</testcase></testsuite>'
+
+
+def read(junit, gtest=None):
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        (folder / "ctest.xml").write_text(junit)
+        if gtest is not None:
+            (folder / "t.xml").write_text(gtest)
+        return [(case.name, case.outcome, case.said) for case in results.read(folder / "ctest.xml", folder)]
+
+
+class Results(unittest.TestCase):
+    def test_cases_of_a_gtest_program_are_counted_each(self):
+        found = read(ctest("fail"), GTEST.format(more=FAILURE + SKIP))
+        self.assertEqual(found, [("S.Passes", PASSED, ""), ("S.Fails", FAILED, "x != y"),
+                                 ("S.Skips", SKIPPED, "not judged: host stalled")])
+
+    def test_a_program_that_died_after_its_report_failed(self):
+        found = read(ctest("fail", '<failure message="SEGFAULT"/><system-out>leak</system-out>'), GTEST.format(more=""))
+        self.assertEqual(found[1], ("t", FAILED, "t: SEGFAULT\nleak"))
+
+    def test_a_program_that_died_without_a_report_failed(self):
+        self.assertEqual(read(ctest("fail", '<failure message="Timeout"/>')), [("t", FAILED, "t: Timeout\n")])
+
+    def test_a_program_without_tests_failed(self):
+        self.assertEqual(read(ctest("run"), "<testsuites/>"), [("t", FAILED, "t ran no test")])
+
+    def test_an_unreadable_report_failed(self):
+        self.assertEqual(read(ctest("run"), "<testsui")[0][1], FAILED)
+
+    def test_a_program_that_was_not_found_failed(self):
+        self.assertEqual(read(ctest("notrun", '<skipped message="Unable to find executable"/>'))[0][1], FAILED)
+
+    def test_a_script_that_skips_gives_its_last_line_as_reason(self):
+        found = read(ctest("notrun", '<skipped message="SKIP_RETURN_CODE=77"/><system-out>a\nno rights\n</system-out>'))
+        self.assertEqual(found, [("t", SKIPPED, "no rights")])
+
+
+def finish(cases, ci="true", allowed=""):
+    """(exit code, last line) of the frame."""
+    said = io.StringIO()
+    with mock.patch.object(frame, "allowed_skips", allowed.split), mock.patch.dict(os.environ, {"CI": ci}), \
+            contextlib.redirect_stdout(said):
+        code = frame.finish(cases)
+    return code, said.getvalue().splitlines()[-1]
+
+
+class Finish(unittest.TestCase):
+    def test_all_passed(self):
+        self.assertEqual(finish([Case("a", PASSED)]), (0, "1 passed, 0 failed, 0 skipped"))
+
+    def test_one_failed(self):
+        self.assertEqual(finish([Case("a", PASSED), Case("b", FAILED)]), (1, "1 passed, 1 failed, 0 skipped"))
+
+    def test_nothing_ran(self):
+        self.assertEqual(finish([]), (1, "0 passed, 0 failed, 0 skipped"))
+
+    def test_an_unforeseen_skip_is_red_on_the_build_machine(self):
+        self.assertEqual(finish([Case("a", PASSED), Case("S.b", SKIPPED)]), (1, "1 passed, 1 failed, 0 skipped"))
+
+    def test_a_listed_skip_is_not(self):
+        cases = [Case("a", PASSED), Case("S.b", SKIPPED)]
+        self.assertEqual(finish(cases, allowed="S.*"), (0, "1 passed, 0 failed, 1 skipped"))
+
+    def test_people_may_skip(self):
+        cases = [Case("a", PASSED), Case("S.b", SKIPPED)]
+        self.assertEqual(finish(cases, ci=""), (0, "1 passed, 0 failed, 1 skipped"))
+
+    def test_a_share_over_its_limit_failed(self):
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(frame.timed(frame.SHARES[0], 181, [])[0].outcome, FAILED)
+            self.assertEqual(frame.timed(frame.SHARES[0], 179, []), [])
+
+
+class Fuzz(unittest.TestCase):
+    STATS = "#9 cov: 12 ft: 3\nstat::number_of_executed_units: 900\n"
+
+    def judge(self, planted, code, said):
+        arguments = mock.Mock(planted=planted, program=pathlib.Path("f"))
+        return fuzz.judge(arguments, mock.Mock(returncode=code, stdout="", stderr=said))
+
+    def test_a_quiet_run_passes_with_its_counts(self):
+        self.assertEqual(self.judge(False, 0, self.STATS), (0, "f: 900 executions, 12 edges"))
+
+    def test_a_crash_fails(self):
+        self.assertEqual(self.judge(False, 77, self.STATS + "SUMMARY: libFuzzer: deadly signal")[0], 1)
+
+    def test_a_run_without_executions_fails(self):
+        self.assertEqual(self.judge(False, 0, "")[0], 1)
+
+    def test_a_planted_defect_that_is_not_found_fails(self):
+        self.assertEqual(self.judge(True, 0, self.STATS)[0], 1)
+        self.assertEqual(self.judge(True, 1, "cannot open the corpus")[0], 1)
+
+
+class Stress(unittest.TestCase):
+    def test_minutes_and_name_come_in_any_order(self):
+        self.assertEqual(stress.parse(["5", "kill"]), (5.0, "kill"))
+        self.assertEqual(stress.parse(["kill"]), (10.0, "kill"))
+
+    def test_the_last_json_line_is_the_report(self):
+        self.assertEqual(stress.last_json('{"n": 1}\ntext\n{"n": 2}\n'), {"n": 2})
+        with self.assertRaises(ValueError):
+            stress.last_json("died")
+
+
+if __name__ == "__main__":
+    unittest.main()
