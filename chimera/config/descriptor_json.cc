@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <iomanip>
-#include <nlohmann/json.hpp>
+#include <iterator>
 #include <sstream>
 
 #include "chimera/config/descriptor_value.h"

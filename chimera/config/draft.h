@@ -11,6 +11,7 @@
 
 #include "chimera/base/time.h"
 #include "chimera/config/node.h"
+#include "chimera/config/quantity.h"
 #include "chimera/config/report.h"
 #include "chimera/schedule/policy.h"
 #include "chimera/task/task_spec.h"
@@ -69,7 +70,7 @@ struct DraftTask {
   Word name;
   Word component;  ///< `at` is the name's when the key was left out
   std::optional<Word> rtpu;
-  std::optional<Located<double>> rate_hz;
+  std::optional<Located<Rate>> rate;
   std::optional<Located<Nanoseconds>> deadline, offset, budget, min_time, stale_after;
   std::optional<Located<std::uint32_t>> criticality, user_priority, max_consecutive;
   std::vector<DraftAlias> alias;
@@ -81,6 +82,7 @@ struct DraftTask {
   std::optional<Word> standby_for;
   std::optional<Located<std::uint64_t>> stack_bytes;
   std::optional<Located<bool>> own_process;
+  bool is_partial = false;  ///< some key could not be read: say nothing about what the task lacks
 };
 
 struct DraftRtpu {
@@ -103,6 +105,7 @@ struct Draft {
   std::vector<NamedNode> operators;
   std::vector<DraftSet> configurations;  ///< empty: none declared
   std::optional<Word> start;
+  bool is_partial = false;  ///< something outside the tasks could not be read
 };
 
 /// A draft, when the text can be read at all, and what is wrong with the text. A draft with faults in its report

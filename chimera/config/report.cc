@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/config/report.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "chimera/base/assert.h"
+#include "chimera/config/rule_ids.h"
+
+namespace chimera {
+namespace {
+
+/// Text as a JSON string. Bytes that are not printable ASCII or part of valid UTF-8 were refused by the reader.
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (byte < 0x20) {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(byte));
+      out += escape;
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string_view word(Severity severity) { return severity == Severity::kError ? "error" : "warning"; }
+
+std::string remedy(const Fault& fault) {
+  if (!fault.remedy.empty()) return fault.remedy;
+  return fault.nearest.empty() ? std::string{} : "did you mean '" + fault.nearest + "'?";
+}
+
+}  // namespace
+
+void Report::add(Fault fault) {
+  CHIMERA_ASSERT(is_rule(fault.rule));
+  for (const Fault& known : faults_)
+    if (known.at == fault.at && known.rule == fault.rule && known.message == fault.message) return;
+  ++(fault.severity == Severity::kError ? errors_ : warnings_);
+  if (faults_.size() < kMaxFaults) faults_.push_back(std::move(fault));
+}
+
+void Report::add_all(const Report& other) {
+  for (const Fault& fault : other.faults_) add(fault);
+  const std::size_t kept_errors = static_cast<std::size_t>(std::count_if(
+      other.faults_.begin(), other.faults_.end(), [](const Fault& f) { return f.severity == Severity::kError; }));
+  errors_ += other.errors_ - kept_errors;
+  warnings_ += other.warnings_ - (other.faults_.size() - kept_errors);
+}
+
+void Report::sort() {
+  std::stable_sort(faults_.begin(), faults_.end(), [](const Fault& a, const Fault& b) { return a.at < b.at; });
+}
+
+bool Report::has(std::string_view rule) const noexcept {
+  return std::any_of(faults_.begin(), faults_.end(), [rule](const Fault& f) { return f.rule == rule; });
+}
+
+std::string Report::text() const {
+  std::string out;
+  for (const Fault& fault : faults_) {
+    out += file_;
+    if (fault.at.line != 0) out += ':' + std::to_string(fault.at.line) + ':' + std::to_string(fault.at.column);
+    out += ": ";
+    out += word(fault.severity);
+    out += ": " + fault.message + " [";
+    out += fault.rule;
+    out += "]\n";
+    if (const std::string help = remedy(fault); !help.empty()) out += "  " + help + '\n';
+  }
+  if (const std::size_t all = errors_ + warnings_; all > faults_.size())
+    out += file_ + ": and " + std::to_string(all - faults_.size()) + " more\n";
+  return out;
+}
+
+std::string Report::json() const {
+  std::string out = "{\"file\": " + quoted(file_) + ", \"legal\": " + (is_legal() ? "true" : "false") +
+                    ", \"errors\": " + std::to_string(errors_) + ", \"warnings\": " + std::to_string(warnings_) +
+                    ", \"faults\": [";
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    const Fault& fault = faults_[i];
+    out += std::string(i == 0 ? "" : ", ") + "{\"rule\": " + quoted(fault.rule) + ", \"severity\": " +
+           quoted(word(fault.severity)) + ", \"file\": " + quoted(file_) +
+           ", \"line\": " + std::to_string(fault.at.line) + ", \"column\": " + std::to_string(fault.at.column) +
+           ", \"found\": " + quoted(fault.found) + ", \"expected\": " + quoted(fault.expected) +
+           ", \"nearest\": " + quoted(fault.nearest) + ", \"message\": " + quoted(fault.message) +
+           ", \"remedy\": " + quoted(remedy(fault)) + '}';
+  }
+  return out + "]}";
+}
+
+}  // namespace chimera

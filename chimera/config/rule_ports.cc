@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string_view>
+
+#include "chimera/base/assert.h"
+#include "chimera/config/draft_values.h"
+#include "chimera/config/nearest.h"
+#include "chimera/config/rules.h"
+
+namespace chimera {
+namespace {
+
+std::vector<std::string> port_names(const Descriptor& component, bool (*wanted)(std::uint32_t kind)) {
+  std::vector<std::string> names;
+  for (const PortDescriptor& port : component.ports)
+    if (wanted(port.kind)) names.push_back(port.name);
+  return names;
+}
+
+bool is_linkable(std::uint32_t kind) {
+  return kind == CHIMERA_IN_VAR || kind == CHIMERA_OUT_VAR || kind == CHIMERA_IN_CONST || kind == CHIMERA_OUT_CONST;
+}
+bool is_in_const(std::uint32_t kind) { return kind == CHIMERA_IN_CONST; }
+bool is_out_var(std::uint32_t kind) { return kind == CHIMERA_OUT_VAR; }
+bool is_resource(std::uint32_t kind) { return kind == CHIMERA_RESOURCE; }
+
+/// The port that `name` under `key` means, or nullptr and a fault.
+const PortDescriptor* find_port(Model& model, const TaskModel& task, const Word& name, const char* key,
+                                bool (*wanted)(std::uint32_t), const char* wanted_kind) {
+  const PortDescriptor* port = task.component->port(name.text);
+  if (port != nullptr && wanted(port->kind)) return port;
+  const std::vector<std::string> names = port_names(*task.component, wanted);
+  const std::string of = "component '" + task.component->name + "'";
+  const std::string there_are = std::string("its ") + wanted_kind + " ports: " + listed(names);
+  if (port == nullptr) {
+    const std::string near = nearest(name.text, names);
+    model.error("port-unknown", name.at,
+                "'" + std::string(key) + "' of task '" + task.name() + "': " + of + " has no port '" + name.text + "'",
+                name.text, listed(names), near, near.empty() ? there_are : "");
+    return nullptr;
+  }
+  model.error("port-kind", name.at,
+              "'" + std::string(key) + "' of task '" + task.name() + "': port '" + name.text + "' of " + of + " is an " +
+                  std::string(kind_name(port->kind)) + "; expected an " + wanted_kind,
+              std::string(kind_name(port->kind)), wanted_kind, {}, there_are);
+  return nullptr;
+}
+
+void check_keys(Model& model, const TaskModel& task) {
+  const DraftTask& draft = *task.draft;
+  for (const DraftAlias& alias : draft.alias) find_port(model, task, alias.port, "alias", is_linkable, "variable or constant");
+  for (const NamedNode& value : draft.constants) find_port(model, task, value.name, "constants", is_in_const, "in-const");
+  for (const NamedNode& value : draft.resources) find_port(model, task, value.name, "resources", is_resource, "resource");
+  for (const NamedNode& value : draft.initial) find_port(model, task, value.name, "initial", is_out_var, "out-var");
+  for (const NamedNode& value : draft.max_step) find_port(model, task, value.name, "max_step", is_out_var, "out-var");
+}
+
+const DraftAlias* alias_of(const DraftTask& draft, std::string_view port) {
+  for (const DraftAlias& alias : draft.alias)
+    if (alias.port.text == port) return &alias;
+  return nullptr;
+}
+
+const NamedNode* named(const std::vector<NamedNode>& values, std::string_view name) {
+  for (const NamedNode& value : values)
+    if (value.name.text == name) return &value;
+  return nullptr;
+}
+
+/// The value that the task's own keys give to `port`, or nullptr.
+const Node* own_value(const DraftTask& draft, const PortDescriptor& port) {
+  const std::vector<NamedNode>* values = port.kind == CHIMERA_IN_CONST   ? &draft.constants
+                                         : port.kind == CHIMERA_OUT_VAR  ? &draft.initial
+                                         : port.kind == CHIMERA_RESOURCE ? &draft.resources
+                                                                         : nullptr;
+  const NamedNode* value = values != nullptr ? named(*values, port.name) : nullptr;
+  return value != nullptr ? &value->value : nullptr;
+}
+
+/// How many instances the description gives to a repeated port; 0, with a fault, when that cannot be.
+std::size_t instances(Model& model, const TaskModel& task, const PortDescriptor& port, const DraftAlias* alias) {
+  const std::string of = "port '" + port.name + "' of task '" + task.name() + "'";
+  const std::string range = "1 to " + std::to_string(port.max_instances);
+  std::size_t count = 0;
+  Place at = task.draft->name.at;
+  if (port.kind == CHIMERA_RESOURCE) {
+    const NamedNode* value = named(task.draft->resources, port.name);
+    if (value == nullptr) return 1;  // its text is missing: require_resources says so
+    at = value->value.at;
+    count = value->value.is_list() ? value->value.items.size() : 1;
+  } else if (alias != nullptr) {
+    at = alias->port.at;
+    count = alias->variables.size();
+  }
+  if (count >= 1 && count <= port.max_instances) return count;
+  model.error("repeated-port", at, "repeated " + of + " has " + std::to_string(count) + " instances; expected " + range,
+              std::to_string(count), range, {}, "write alias: {" + port.name + ": [variable, variable]}");
+  return 0;
+}
+
+void add_port(TaskModel& task, std::size_t task_index, std::uint32_t index, std::uint32_t instance,
+              const DraftAlias* alias) {
+  const PortDescriptor& declared = task.component->ports[index];
+  LinkedPort port;
+  port.declared = &declared;
+  port.index = index;
+  port.instance = instance;
+  port.task = task_index;
+  port.name = declared.repeated ? declared.name + '[' + std::to_string(instance) + ']' : declared.name;
+  port.at = alias != nullptr ? alias->port.at : task.draft->name.at;
+  port.own = own_value(*task.draft, declared);
+  if (is_linkable(declared.kind)) port.variable = declared.name;
+  if (alias != nullptr) {
+    port.variable = alias->variables[instance].text;
+    port.at = alias->variables[instance].at;
+  }
+  task.ports.push_back(std::move(port));
+}
+
+void link_port(Model& model, std::size_t task_index, std::uint32_t index) {
+  TaskModel& task = model.tasks[task_index];
+  const PortDescriptor& port = task.component->ports[index];
+  const DraftAlias* alias = is_linkable(port.kind) ? alias_of(*task.draft, port.name) : nullptr;
+  if (alias != nullptr && alias->is_list != port.repeated) {
+    const std::string expected = port.repeated ? "a list of variables" : "one variable";
+    model.error("alias-list", alias->port.at,
+                "'alias' of task '" + task.name() + "': port '" + port.name + "' is " +
+                    (port.repeated ? "repeated" : "not repeated") + "; expected " + expected,
+                port.name, expected, {},
+                port.repeated ? "write " + port.name + ": [variable, variable]" : "write " + port.name + ": variable");
+    alias = nullptr;
+    if (port.repeated) return;
+  }
+  const std::size_t count = port.repeated ? instances(model, task, port, alias) : 1;
+  for (std::uint32_t i = 0; i < count; ++i) add_port(task, task_index, index, i, alias);
+}
+
+}  // namespace
+
+void link_ports(Model& model) {
+  for (std::size_t i = 0; i < model.tasks.size(); ++i) {
+    TaskModel& task = model.tasks[i];
+    if (task.component == nullptr) continue;
+    check_keys(model, task);
+    for (std::uint32_t p = 0; p < task.component->ports.size(); ++p) link_port(model, i, p);
+    CHIMERA_ASSERT(task.ports.size() <= CHIMERA_MAX_PORTS);  // describe() counts every instance
+  }
+}
+
+void require_resources(Model& model) {
+  for (const TaskModel& task : model.tasks)
+    for (const LinkedPort& port : task.ports)
+      if (port.is(CHIMERA_RESOURCE) && port.own == nullptr && !task.draft->is_partial)
+        model.error("resource-missing", task.draft->name.at,
+                    "task '" + task.name() + "': the resource '" + port.declared->name + "' is not given", {},
+                    port.declared->name, {},
+                    "write resources: {" + port.declared->name + ": ...}" +
+                        (port.declared->doc.empty() ? "" : " (" + port.declared->doc + ")"));
+}
+
+}  // namespace chimera

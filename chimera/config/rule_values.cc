@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/config/rules.h"
+#include "chimera/config/solve.h"
+#include "chimera/config/values.h"
+
+namespace chimera {
+namespace {
+
+void check_own(Model& model, const LinkedPort& port) {
+  const char* key = port.is(CHIMERA_IN_CONST) ? "constant" : "initial value";
+  value_bytes(model, *port.own, {port, std::string(key) + " '" + port.declared->name + "' of task '" +
+                                 model.tasks[port.task].name() + "'"});
+}
+
+/// A given value must fit everybody who uses it; the first who refuses it speaks.
+void check_given(Model& model, const VariableModel& variable) {
+  const char* key = variable.is_constant ? "constant" : "operator variable";
+  for (const PortRef ref : variable.consumers) {
+    const LinkedPort& port = model.port(ref);
+    const std::string what = std::string(key) + " '" + variable.name + "'";
+    if (is_solved(port) && !value_bytes(model, variable.given->value, {port, what})) return;
+  }
+}
+
+void check_steps(Model& model, const TaskModel& task) {
+  for (const NamedNode& step : task.draft->max_step)
+    for (const LinkedPort& port : task.ports)
+      if (port.declared->name == step.name.text && port.is(CHIMERA_OUT_VAR) && is_solved(port)) {
+        ValueTarget target{port, "largest step of '" + step.name.text + "' of task '" + task.name() + "'"};
+        target.is_step = true;
+        value_bytes(model, step.value, target);
+      }
+}
+
+void check_resources(Model& model, const TaskModel& task) {
+  for (const LinkedPort& port : task.ports) {
+    if (!port.is(CHIMERA_RESOURCE) || port.own == nullptr) continue;
+    const Node* text = port.own;
+    if (port.declared->repeated && text->is_list()) text = &text->items[port.instance];
+    if (!text->is_scalar())
+      model.error("value-type", text->at,
+                  "resource '" + port.name + "' of task '" + task.name() + "': expected a text", {}, "a text");
+  }
+}
+
+}  // namespace
+
+void check_values(Model& model) {
+  for_each_port(model, [&](PortRef, const LinkedPort& port) {
+    if (port.own != nullptr && is_solved(port)) check_own(model, port);
+  });
+  for (const VariableModel& variable : model.variables)
+    if (variable.given != nullptr) check_given(model, variable);
+  for (const TaskModel& task : model.tasks) {
+    check_steps(model, task);
+    check_resources(model, task);
+  }
+}
+
+}  // namespace chimera

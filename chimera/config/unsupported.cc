@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `check` accepts and the single-context executors cannot do yet: refused by name, never passed over.
+#include <algorithm>
+#include <array>
+
+#include "chimera/config/verify.h"
+
+namespace chimera {
+namespace {
+
+class Refusals {
+ public:
+  Refusals(const Configuration& configuration, Executor executor)
+      : configuration_(configuration), executor_(executor), report_(configuration.file()) {}
+
+  Report take() {
+    for (std::size_t i = 0; i < configuration_.rtpus().size(); ++i) rtpu(i);
+    for (const DraftTask& task : configuration_.draft().tasks) judge(task);
+    for (const ConfiguredVariable& variable : configuration_.variables()) constant(variable);
+    report_.sort();
+    return std::move(report_);
+  }
+
+ private:
+  void refuse(Place at, const std::string& what, std::string remedy) {
+    report_.add({.rule = "not-built", .at = at, .message = what + ": run cannot do this yet", .found = {},
+                 .expected = {}, .nearest = {}, .remedy = std::move(remedy)});
+  }
+  void refuse_key(Place at, const char* key, const DraftTask& task) {
+    refuse(at, "'" + std::string(key) + "' of task '" + task.name.text + "'", "take it out to run");
+  }
+
+  void rtpu(std::size_t index) {
+    const RtpuSpec& spec = configuration_.rtpus()[index];
+    if (executor_ == Executor::kRealTime && spec.policy == Policy::kLlf)
+      refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time", "use muf-laxity, or run --virtual");
+    const auto tasks = configuration_.tasks();
+    const auto first = std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
+    if (first == tasks.end() || index == tasks[0].rtpu) return;
+    refuse(first->at, "task '" + first->name + "' on a second rtpu, '" + std::string(spec.name) + "'",
+           "place every task on one rtpu to run");
+  }
+
+  void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task) {
+    constexpr std::array kBuilt = {OnMiss::kContinue, OnMiss::kHold, OnMiss::kSkip, OnMiss::kError, OnMiss::kFlag};
+    constexpr std::array kNames = {"continue", "hold", "skip", "abort", "demote", "error", "switch", "flag", "stop"};
+    if (!reaction || std::find(kBuilt.begin(), kBuilt.end(), reaction->kind) != kBuilt.end()) return;
+    refuse(reaction->at, "'" + std::string(key) + ": " + kNames[static_cast<std::size_t>(reaction->kind)] +
+           "' of task '" + task.name.text + "'", "use continue, hold, skip, error or flag to run");
+  }
+
+  void judge(const DraftTask& task) {
+    reaction(task.on_miss, "on_miss", task);
+    reaction(task.on_overrun, "on_overrun", task);
+    if (task.on_fault && task.on_fault->kind != OnFault::kError) refuse_key(task.on_fault->at, "on_fault", task);
+    if (task.tolerate) refuse_key(task.tolerate->at, "tolerate", task);
+    if (task.server) refuse_key(task.server->at, "server", task);
+    if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
+    if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
+    for (const NamedNode& step : task.max_step) refuse_key(step.name.at, "max_step", task);
+    if (task.stack_bytes) refuse_key(task.stack_bytes->at, "stack", task);
+    if (task.own_process && task.own_process->value) refuse_key(task.own_process->at, "isolation: process", task);
+  }
+
+  void constant(const ConfiguredVariable& variable) {
+    if (variable.is_constant && variable.producers.size() > 1)
+      refuse(variable.at, "constant '" + variable.name + "' with a producer in each of several configurations",
+             "keep one of its producers to run");
+  }
+
+  const Configuration& configuration_;
+  Executor executor_;
+  Report report_;
+};
+
+}  // namespace
+
+Report unsupported_by_single_context(const Configuration& configuration, Executor executor) {
+  return Refusals(configuration, executor).take();
+}
+
+}  // namespace chimera
