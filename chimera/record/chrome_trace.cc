@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/record/chrome_trace.h"
+
+#include "chimera/task/signal.h"
+#include "chimera/task/state_machine.h"
+
+namespace chimera {
+namespace {
+
+// Names are identifiers of a verified description; whatever else comes must not break the JSON.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + "\"";
+}
+
+std::string argument(const char* name, std::int64_t value) {
+  return ", \"" + std::string(name) + "\": " + std::to_string(value);
+}
+
+const char* method_of(const TapRecord& record) {
+  return record.a < CHIMERA_METHODS ? method_name(static_cast<Method>(record.a)) : "?";
+}
+
+std::string signal_of(const TapRecord& record) {
+  return std::string("signal ") + (record.a < CHIMERA_SIGNALS ? signal_name(static_cast<Signal>(record.a)) : "?");
+}
+
+std::string state_of(const TapRecord& record) {
+  return std::string("state ") + (record.a < std::uint32_t{kStates} ? state_name(static_cast<State>(record.a)) : "?");
+}
+
+}  // namespace
+
+std::string microseconds_text(Nanoseconds t) {
+  const bool negative = t.count < 0;
+  const std::uint64_t n = negative ? -static_cast<std::uint64_t>(t.count) : static_cast<std::uint64_t>(t.count);
+  char text[40];
+  std::snprintf(text, sizeof text, "%s%llu.%03llu", negative ? "-" : "", static_cast<unsigned long long>(n / 1000),
+                static_cast<unsigned long long>(n % 1000));
+  return text;
+}
+
+ChromeTrace::ChromeTrace(std::FILE* file, std::string subsystem, std::span<const std::string> rtpus,
+                         std::span<const std::string> tasks, Nanoseconds origin)
+    : file_(file), subsystem_(std::move(subsystem)), origin_(origin) {
+  std::fputs("{\"traceEvents\": [\n", file_);
+  for (std::size_t r = 0; r < rtpus.size(); ++r) {
+    metadata("process_name", r, 0, rtpus[r]);
+    for (std::size_t t = 0; t < tasks.size(); ++t) metadata("thread_name", r, t, tasks[t]);
+  }
+}
+
+void ChromeTrace::metadata(const char* what, std::size_t pid, std::size_t tid, const std::string& name) {
+  std::fprintf(file_, "%s{\"ph\": \"M\", \"name\": \"%s\", \"pid\": %zu, \"tid\": %zu, \"args\": {\"name\": %s}}",
+               is_first_ ? "" : ",\n", what, pid, tid, quoted(name).c_str());
+  is_first_ = false;
+}
+
+void ChromeTrace::event(const TapRecord& record, const char* phase, const std::string& name, const std::string& more) {
+  const std::uint32_t tid = record.task.is_valid() ? record.task.index : 0;
+  const Nanoseconds at = record.at - origin_;
+  const bool is_slice = *phase == 'X';
+  const std::string shape = is_slice ? ", \"dur\": " + microseconds_text(Nanoseconds{record.b}) : ", \"s\": \"t\"";
+  std::fprintf(file_, "%s{\"ph\": \"%s\", \"name\": %s, \"pid\": %u, \"tid\": %u, \"ts\": %s%s, \"args\": {\"ns\": %lld%s}}",
+               is_first_ ? "" : ",\n", phase, quoted(name).c_str(), static_cast<unsigned>(record.rtpu), tid,
+               microseconds_text(at).c_str(), shape.c_str(), static_cast<long long>(at.count), more.c_str());
+  is_first_ = false;
+}
+
+void ChromeTrace::add_one(const TapRecord& record) {
+  switch (record.kind) {
+    case TapKind::kRelease: return event(record, "i", "release", argument("cycle", record.a));
+    case TapKind::kRun: return event(record, "X", method_of(record), argument("dur_ns", record.b));
+    case TapKind::kPreempt: return event(record, "i", "preempt", "");
+    case TapKind::kMiss: return event(record, "i", "miss", argument("late_ns", record.b));
+    case TapKind::kDrop: return event(record, "i", "drop", argument("releases", record.a));
+    case TapKind::kSignal: return event(record, "i", signal_of(record), argument("accepted", record.b));
+    case TapKind::kFault: return event(record, "i", std::string("fault in ") + method_of(record), "");
+    case TapKind::kState: return event(record, "i", state_of(record), "");
+    case TapKind::kFlag: return event(record, "i", record.a != 0 ? "flag up" : "flag down", "");
+  }
+}
+
+void ChromeTrace::add(std::span<const TapRecord> records) {
+  for (const TapRecord& record : records) add_one(record);
+}
+
+void ChromeTrace::end(std::uint64_t dropped) {
+  std::fprintf(file_, "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"dropped_records\": %llu}}\n",
+               quoted(subsystem_).c_str(), static_cast<unsigned long long>(dropped));
+  std::fflush(file_);
+}
+
+}  // namespace chimera

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// TapRecords as a Chrome trace, which Perfetto and chrome://tracing open: docs/formats/trace.md.
+#pragma once
+
+#include <cstdio>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chimera/runtime/tap_record.h"
+
+namespace chimera {
+
+/// Writes one trace while records come in; memory does not grow. Context: setup; may block.
+class ChromeTrace {
+ public:
+  /// `file` stays open and the caller's. Names by index; records refer to them.
+  /// Times are written relative to `origin`.
+  ChromeTrace(std::FILE* file, std::string subsystem, std::span<const std::string> rtpus,
+              std::span<const std::string> tasks, Nanoseconds origin);
+  /// Adds records in the order in which they were made.
+  void add(std::span<const TapRecord> records);
+  /// Closes the JSON, saying how many records were lost. Afterwards nothing more may be added.
+  void end(std::uint64_t dropped);
+
+ private:
+  void event(const TapRecord& record, const char* phase, const std::string& name, const std::string& more);
+  void add_one(const TapRecord& record);
+  void metadata(const char* what, std::size_t pid, std::size_t tid, const std::string& name);
+
+  std::FILE* file_;
+  std::string subsystem_;
+  Nanoseconds origin_;
+  bool is_first_ = true;
+};
+
+/// `t` in microseconds with exactly three decimals: "1.234", "-0.001". No rounding.
+std::string microseconds_text(Nanoseconds t);
+
+}  // namespace chimera
