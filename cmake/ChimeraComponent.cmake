@@ -11,7 +11,9 @@
 # The same file serves this build and the exported package: what differs are the targets chimera::component (headers
 # and base library) and chimera::describe (the tool).
 
-set(CHIMERA_COMPONENT_FLAGS -fPIC -fno-gnu-unique -fvisibility=hidden -ffp-contract=off)
+# A C function that is not static and no method declared by PBO_MODULE is a misspelt method: an error.
+set(CHIMERA_COMPONENT_FLAGS -fPIC -fvisibility=hidden -ffp-contract=off
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique> $<$<COMPILE_LANGUAGE:C>:-Werror=missing-prototypes>)
 
 function(_chimera_component_tests_wanted out)
   set(${out} FALSE PARENT_SCOPE)

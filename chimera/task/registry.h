@@ -32,8 +32,11 @@ static inline int chimera_offer(chimera_declare_fn declare) {
   return 1;
 }
 
-__attribute__((weak, visibility("default"))) const chimera_component* const* chimera_components(uint32_t abi_version,
-                                                                                               uint32_t* count) {
+/* The object's symbol (chimera_components_fn in abi.h). */
+__attribute__((weak, visibility("default")))
+const chimera_component* const* chimera_components(uint32_t abi_version, uint32_t* count);
+
+const chimera_component* const* chimera_components(uint32_t abi_version, uint32_t* count) {
   static const chimera_component* list[CHIMERA_MAX_COMPONENTS];
   uint32_t i;
   *count = 0;

@@ -25,6 +25,7 @@
 #include "chimera/task/abi.h"
 #include "chimera/task/registry.h"
 #include "chimera/task/signal.h"
+#include "chimera/task/text.h"
 
 namespace chimera {
 
