@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+
+#include "chimera/draw/graph.h"
+
+namespace chimera::draw {
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string label(const Box& box) {
+  std::string all = box.name;
+  if (!box.component.empty() && box.component != box.name) all += "\n" + box.component;
+  if (!box.rate.empty()) all += "\n" + box.rate;
+  if (!box.state.empty()) all += "\n" + box.state;
+  std::string out;
+  for (const char c : quoted(all)) out += c == '\n' ? std::string("\\n") : std::string(1, c);
+  return out;
+}
+
+bool is_output(PortKind kind) { return kind == PortKind::kOut || kind == PortKind::kOutConst; }
+bool is_constant(PortKind kind) { return kind == PortKind::kInConst || kind == PortKind::kOutConst; }
+
+/// Both ends of one variable, as node names.
+struct Line {
+  std::vector<std::string> from, to;
+  bool is_constant = false;
+};
+
+std::map<std::string, Line> lines_of(const Graph& graph) {
+  std::map<std::string, Line> lines;
+  for (const Box& box : graph.boxes) {
+    for (const Port& port : box.ports) {
+      if (port.kind == PortKind::kResource || port.variable.empty()) continue;
+      Line& line = lines[port.variable];
+      (is_output(port.kind) ? line.from : line.to).push_back(quoted(box.name));
+      line.is_constant = is_constant(port.kind);
+    }
+  }
+  return lines;
+}
+
+void append_line(std::string& out, const std::string& variable, const Line& line) {
+  const std::string style = line.is_constant ? ", style=dashed" : "";
+  const std::string name = quoted("var " + variable);
+  if (line.from.size() == 1 && line.to.size() == 1) {
+    out += "  " + line.from[0] + " -> " + line.to[0] + " [label=" + quoted(variable) + style + "];\n";
+    return;
+  }
+  // A dot where the line fans out, or an open end where nobody writes or reads.
+  out += "  " + name + " [shape=point, xlabel=" + quoted(variable) + "];\n";
+  for (const std::string& from : line.from) out += "  " + from + " -> " + name + " [arrowhead=none" + style + "];\n";
+  for (const std::string& to : line.to) {
+    out += "  " + name + " -> " + to + (line.is_constant ? " [style=dashed];\n" : ";\n");
+  }
+}
+
+}  // namespace
+
+std::string dot(const Graph& graph) {
+  std::string out = "digraph " + quoted(graph.title) + " {\n  rankdir=LR;\n  node [shape=box, style=rounded];\n";
+  for (const Box& box : graph.boxes) {
+    out += "  " + quoted(box.name) + " [label=" + label(box) + "];\n";
+    for (const Port& port : box.ports) {
+      if (port.kind != PortKind::kResource) continue;
+      const std::string node = quoted(box.name + " resource " + port.name);
+      out += "  " + node + " [shape=plaintext, label=" + quoted(port.variable) + "];\n";
+      out += "  " + quoted(box.name) + " -> " + node + " [dir=both, constraint=false, label=" + quoted(port.name) +
+             "];\n";
+    }
+  }
+  for (const auto& [variable, line] : lines_of(graph)) append_line(out, variable, line);
+  return out + "}\n";
+}
+
+}  // namespace chimera::draw
