@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/draw/graph.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+
+#include "chimera/draw/layout.h"
+
+namespace chimera::draw {
+namespace {
+
+using enum PortKind;
+
+/// Figure 4 of the 1994 paper, with a display that two lines feed.
+Graph figure4() {
+  return {"puma_pid",
+          {{"trajectory", "joint_trajectory", "100 Hz", "", {{kInConst, "ndof", "ndof"}, {kOut, "q", "q_d"}, {kOut, "qd", "qd_d"}}},
+           {"pid",
+            "pid_joint",
+            "1 kHz",
+            "ON",
+            {{kIn, "q_ref", "q_d"}, {kIn, "qd_ref", "qd_d"}, {kIn, "q", "q"}, {kIn, "kp", "kp"}, {kInConst, "ndof", "ndof"},
+             {kInConst, "limit", "tau_max"}, {kOut, "tau", "tau"}}},
+           {"arm", "puma_torque", "1 kHz", "ON",
+            {{kIn, "tau", "tau"}, {kOut, "q", "q"}, {kOut, "qd", "qd"}, {kOutConst, "ndof", "ndof"},
+             {kResource, "model", "puma560.xml"}}},
+           {"log", "csv_log", "10 Hz", "OFF", {{kIn, "a", "q"}, {kIn, "b", "q_d"}, {kResource, "file", "out.csv"}}}},
+          {"kp"}};
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+TEST(Graph, ColumnsFollowTheDataAndLoopsAreCutBehindTheirSource) {
+  EXPECT_EQ(columns_of(figure4()), (std::vector<std::size_t>{0, 1, 2, 3}));
+}
+
+TEST(Graph, ALoopWithoutSourceStillHasColumns) {
+  const Graph loop{"loop", {{"a", "", "", "", {{kIn, "x", "x"}, {kOut, "y", "y"}}},
+                            {"b", "", "", "", {{kIn, "y", "y"}, {kOut, "x", "x"}}}}, {}};
+  EXPECT_EQ(columns_of(loop), (std::vector<std::size_t>{0, 1}));
+}
+
+TEST(Graph, BoxesDoNotOverlap) {
+  const Graph graph = figure4();
+  const Layout layout = lay_out(graph);
+  for (const Placed& a : layout.boxes) {
+    EXPECT_LE(a.x + a.width, layout.width);
+    EXPECT_LE(a.y + a.height, layout.height);
+    for (const Placed& b : layout.boxes) {
+      if (&a == &b) continue;
+      EXPECT_TRUE(a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y);
+    }
+  }
+}
+
+TEST(Graph, LinesAreStraightAndTracksAreNotShared) {
+  const Graph graph = figure4();
+  const Layout layout = lay_out(graph);
+  std::set<int> tracks;
+  for (const Piece& piece : layout.pieces) {
+    EXPECT_TRUE(piece.x1 == piece.x2 || piece.y1 == piece.y2);
+    if (piece.x1 != piece.x2 || piece.is_dot) continue;
+    EXPECT_TRUE(tracks.insert(piece.x1).second) << piece.x1;
+  }
+}
+
+TEST(Graph, NoLineCrossesABox) {
+  const Graph graph = figure4();
+  const Layout layout = lay_out(graph);
+  for (const Piece& piece : layout.pieces) {
+    for (const Placed& box : layout.boxes) {
+      const bool beside = std::max(piece.x1, piece.x2) <= box.x || std::min(piece.x1, piece.x2) >= box.x + box.width;
+      const bool over = std::max(piece.y1, piece.y2) <= box.y || std::min(piece.y1, piece.y2) >= box.y + box.height;
+      EXPECT_TRUE(beside || over) << piece.x1 << "," << piece.y1 << " to " << piece.x2 << "," << piece.y2;
+    }
+  }
+}
+
+TEST(Graph, ADotMarksEveryFan) {
+  Graph graph = figure4();
+  const auto dots = [&graph] {
+    std::size_t n = 0;
+    const Layout layout = lay_out(graph);
+    for (const Piece& piece : layout.pieces) n += piece.is_dot ? 1 : 0;
+    return n;
+  };
+  const std::size_t with_log = dots();
+  graph.boxes.pop_back();
+  EXPECT_GE(with_log, 2u);
+  EXPECT_EQ(dots(), 0u);
+}
+
+TEST(Svg, ShowsEveryNameAndEscapesIt) {
+  Graph graph = figure4();
+  graph.title = "a<b&c";
+  const std::string document = svg(graph);
+  if (const char* keep = std::getenv("CHIMERA_KEEP_PICTURE"); keep != nullptr) std::ofstream(keep) << svg(figure4());
+  for (const char* name : {"trajectory", "pid_joint", "1 kHz ON", "puma560.xml", "tau_max", "a&lt;b&amp;c"}) {
+    EXPECT_EQ(count(document, std::string(name)) > 0, true) << name;
+  }
+  EXPECT_EQ(count(document, "rx=\"12\""), 4u);
+  EXPECT_TRUE(document.ends_with("</svg>\n"));
+}
+
+TEST(Dot, JoinsPairsDirectlyAndFansThroughADot) {
+  const std::string document = dot(figure4());
+  EXPECT_EQ(count(document, "\"pid\" -> \"arm\" [label=\"tau\"];"), 1u);
+  EXPECT_EQ(count(document, "\"var q\" [shape=point, xlabel=\"q\"];"), 1u);
+  EXPECT_EQ(count(document, "\"arm\" -> \"var q\" [arrowhead=none];"), 1u);
+  EXPECT_EQ(count(document, "\"var q\" -> \"log\";"), 1u);
+  EXPECT_EQ(count(document, "\"var kp\" -> \"pid\";"), 1u);
+  EXPECT_EQ(count(document, "label=\"arm\\npuma_torque\\n1 kHz\\nON\""), 1u);
+}
+
+TEST(Text, DrawsInputsLeftAndOutputsRight) {
+  const Graph graph{"tiny",
+                    {{"gain", "gain", "1 kHz", "",
+                      {{kIn, "x", "u"}, {kOut, "y", "y"}, {kInConst, "k", "k"}, {kResource, "dev", "/dev/x"}}},
+                     {"log", "csv_log", "", "", {{kIn, "a", "y"}}}},
+                    {"u"}};
+  EXPECT_EQ(text(graph),
+            "tiny\n"
+            "                                     k \u25bc\n"
+            "                                   \u256d\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500"
+            "\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u256e\n"
+            "                       u (given) \u2500\u25b6\u2502 gain                     \u2502\u2500\u25b6 y (log)\n"
+            "                                   \u2502 1 kHz                    \u2502\n"
+            "                                   \u2570\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500"
+            "\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u256f\n"
+            "                                     \u2195 dev = /dev/x\n"
+            "                                   \u256d\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500"
+            "\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u256e\n"
+            "                        y (gain) \u2500\u25b6\u2502 log                      \u2502\n"
+            "                                   \u2502 csv_log                  \u2502\n"
+            "                                   \u2570\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500"
+            "\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u256f\n");
+}
+
+}  // namespace
+}  // namespace chimera::draw
