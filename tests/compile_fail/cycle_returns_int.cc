@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: 'cycle' must return nothing, or an Outcome: ok() or fault("text")
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Bad {
+  int cycle(Cycle) { return 0; }
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

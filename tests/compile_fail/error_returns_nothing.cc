@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: 'error' must return bool (true: recovered), or an Outcome
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Bad {
+  void cycle() {}
+  void error() {}
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: 'init' must return nothing, or an Outcome: ok() or fault("text")
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Bad {
+  bool init() { return true; }
+  void cycle() {}
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

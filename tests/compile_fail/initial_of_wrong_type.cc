@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: initial must be a number for this port
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Bad {
+  Out<double> x{"x", "m", initial = "zero"};
+  void cycle() {}
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: a component needs a method cycle(Cycle) or cycle()
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Bad {
+  void init() {}
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* refused: 'pbo_out_x' undeclared */
+#include "chimera/task/pbo.h"
+
+typedef struct { double last; } ballLocal_t;
+PBO_PORTS(ball, (in_var, x, float64, "", "m"))
+PBO_MODULE(ball, .doc = "Does not compile.");
+
+int ballCycle(ballLocal_t *local) {
+  SVAR_OUT(x);
+  *x = 1;
+  return PBO_OK;
+}

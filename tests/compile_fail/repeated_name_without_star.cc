@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: the name of a repeated port ends in '*'
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Bad {
+  Many<In<double>> x{"in", "m"};
+  void cycle() {}
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

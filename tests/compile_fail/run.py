@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every x.cc and x.c of this folder must fail to compile with the sentence of its line "refused: ...". The same for
+each misspelling listed in chimera/task/method_check.h. A control that compiles shows that the compiler works at all."""
+import concurrent.futures
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+FOLDER = pathlib.Path(__file__).resolve().parent
+ROOT = FOLDER.parents[1]
+FLAGS = {".cc": ["g++", "-std=c++20"], ".c": ["gcc", "-std=c99", "-Werror=missing-prototypes"]}
+CONTROL = """#include "chimera/task/component.h"
+using namespace chimera;
+struct Good {
+  void init() {} void reinit() {} void on() {} void cycle() {} bool sync() { return true; } void off() {}
+  void kill() {} bool error() { return true; } bool clear() { return true; }
+%s};
+CHIMERA_COMPONENT(Good, "good", "Compiles.");
+"""
+
+
+def compile_text(path, flags=()):
+    command = FLAGS[path.suffix] + ["-fsyntax-only", "-fdiagnostics-color=never", f"-I{ROOT}", *flags, str(path)]
+    made = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"}, check=False)
+    return made.returncode, made.stderr
+
+
+def judge(path, sentence):
+    """'' when the file is refused with the sentence, else what happened."""
+    code, said = compile_text(path)
+    if sentence is None:
+        return "" if code == 0 else f"{path.name}: does not compile:\n{said}"
+    if code == 0:
+        return f"{path.name}: compiles, expected: {sentence}"
+    if sentence not in said:  # a sentence of `throw` stands in the line that the compiler quotes
+        errors = [line for line in said.splitlines() if "error: " in line]
+        return f"{path.name}: expected: {sentence}\nfound:\n" + "\n".join(errors)
+    return ""
+
+
+def cases():
+    for path in sorted(FOLDER.glob("*.c")) + sorted(FOLDER.glob("*.cc")):
+        sentence = re.search(r"refused: (.*?)(?: \*/)?$", path.read_text(), re.MULTILINE)
+        yield path, sentence[1] if sentence else sys.exit(f"{path.name} has no line 'refused: ...'")
+
+
+def misspellings():
+    header = (ROOT / "chimera/task/method_check.h").read_text()
+    listed = header.split("#define CHIMERA_FACE_MISSPELLINGS(X)")[1].split("\n\n")[0]
+    return re.findall(r"X\((\w+), (\w+)\)", listed)
+
+
+def main():
+    work = []
+    with tempfile.TemporaryDirectory() as folder:
+        control = pathlib.Path(folder) / "control.cc"
+        control.write_text(CONTROL % "")
+        work.append((control, None))
+        work += cases()
+        # All misspellings in one class: the compiler names each of them.
+        words = misspellings()
+        all_of_them = pathlib.Path(folder) / "misspelt.cc"
+        all_of_them.write_text(CONTROL % "".join(f"  void {word}() {{}}\n" for word, _ in words))
+        _, said = compile_text(all_of_them)
+        missing = [f"'{word}': did you mean '{meant}'?" for word, meant in words
+                   if f"the component has a method '{word}': did you mean '{meant}'? The methods are init reinit on "
+                      "cycle sync off kill error clear" not in said]
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            wrong = [line for line in pool.map(lambda one: judge(*one), work) if line] + missing
+    print("\n".join(wrong) if wrong else f"{len(work) - 1} refusals and {len(words)} misspellings as written")
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()

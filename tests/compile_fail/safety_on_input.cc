@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: safety goes with an out-var: it guards what is published
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Bad {
+  In<double> x{"x", "m", safety};
+  void cycle() {}
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

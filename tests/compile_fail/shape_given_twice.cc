@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: the shape follows from the type: leave the text out, or use T[]
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Bad {
+  In<double[6]> x{"x", "m", "[6]"};
+  void cycle() {}
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// refused: call to non-'constexpr' function 'const char* name()'
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+const char* name();
+struct Bad {
+  In<double> x{name(), "m"};
+  void cycle() {}
+};
+CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");
