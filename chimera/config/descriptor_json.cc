@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <iomanip>
-#include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "chimera/config/descriptor_value.h"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 
@@ -65,6 +66,14 @@ void JsonCursor::expect_keys(std::initializer_list<std::string_view> required,
     if (!value_.contains(key)) refuse("the key " + in_quotes(key) + " is missing");
   }
 }
+
+bool JsonCursor::has(std::string_view key) const { return value_.contains(key); }
+
+JsonCursor JsonCursor::at(std::string_view key) const {
+  return {value_.at(std::string(key)), path_ + "." + std::string(key)};
+}
+
+JsonCursor JsonCursor::at(std::size_t i) const { return {value_.at(i), path_ + "[" + std::to_string(i) + "]"}; }
 
 std::size_t JsonCursor::size(std::size_t limit) const {
   if (!value_.is_array()) refuse("expected a list, found " + kind(value_));

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strict reading of a JSON tree: every access says what it expects, every refusal names the path. Includes the JSON
-// library, so it is for the .cc files that read JSON only.
+// Strict reading of a JSON tree: every access says what it expects, every refusal names the path.
 #pragma once
 
 #include <cstdint>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -26,13 +25,12 @@ class JsonCursor {
   /// Refuses anything but an object with all keys of `required` and no other than those and `optional`.
   void expect_keys(std::initializer_list<std::string_view> required,
                    std::initializer_list<std::string_view> optional) const;
-  bool has(std::string_view key) const { return value_.contains(key); }
-  JsonCursor at(std::string_view key) const { return {value_.at(std::string(key)), path_ + "." + std::string(key)}; }
+  bool has(std::string_view key) const;
+  JsonCursor at(std::string_view key) const;  ///< requires has(key)
 
   /// Elements of an array of at most `limit`.
   std::size_t size(std::size_t limit) const;
-  JsonCursor at(std::size_t i) const { return {value_.at(i), path_ + "[" + std::to_string(i) + "]"}; }
-  bool is_array() const { return value_.is_array(); }
+  JsonCursor at(std::size_t i) const;  ///< requires i < size()
 
   std::string text() const;
   bool truth() const;

@@ -17,13 +17,11 @@ using enum PortKind;
 /// Figure 4 of the 1994 paper, with a display that two lines feed.
 Graph figure4() {
   return {"puma_pid",
-          {{"trajectory", "joint_trajectory", "100 Hz", "", {{kInConst, "ndof", "ndof"}, {kOut, "q", "q_d"}, {kOut, "qd", "qd_d"}}},
-           {"pid",
-            "pid_joint",
-            "1 kHz",
-            "ON",
-            {{kIn, "q_ref", "q_d"}, {kIn, "qd_ref", "qd_d"}, {kIn, "q", "q"}, {kIn, "kp", "kp"}, {kInConst, "ndof", "ndof"},
-             {kInConst, "limit", "tau_max"}, {kOut, "tau", "tau"}}},
+          {{"trajectory", "joint_trajectory", "100 Hz", "",
+            {{kInConst, "ndof", "ndof"}, {kOut, "q", "q_d"}, {kOut, "qd", "qd_d"}}},
+           {"pid", "pid_joint", "1 kHz", "ON",
+            {{kIn, "q_ref", "q_d"}, {kIn, "qd_ref", "qd_d"}, {kIn, "q", "q"}, {kIn, "kp", "kp"},
+             {kInConst, "ndof", "ndof"}, {kInConst, "limit", "tau_max"}, {kOut, "tau", "tau"}}},
            {"arm", "puma_torque", "1 kHz", "ON",
             {{kIn, "tau", "tau"}, {kOut, "q", "q"}, {kOut, "qd", "qd"}, {kOutConst, "ndof", "ndof"},
              {kResource, "model", "puma560.xml"}}},
@@ -125,22 +123,20 @@ TEST(Text, DrawsInputsLeftAndOutputsRight) {
                       {{kIn, "x", "u"}, {kOut, "y", "y"}, {kInConst, "k", "k"}, {kResource, "dev", "/dev/x"}}},
                      {"log", "csv_log", "", "", {{kIn, "a", "y"}}}},
                     {"u"}};
+  std::string bar;
+  for (int i = 0; i < 26; ++i) bar += "\u2500";
   EXPECT_EQ(text(graph),
             "tiny\n"
             "                                     k \u25bc\n"
-            "                                   \u256d\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500"
-            "\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u256e\n"
+            "                                   \u256d" + bar + "\u256e\n"
             "                       u (given) \u2500\u25b6\u2502 gain                     \u2502\u2500\u25b6 y (log)\n"
             "                                   \u2502 1 kHz                    \u2502\n"
-            "                                   \u2570\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500"
-            "\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u256f\n"
+            "                                   \u2570" + bar + "\u256f\n"
             "                                     \u2195 dev = /dev/x\n"
-            "                                   \u256d\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500"
-            "\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u256e\n"
+            "                                   \u256d" + bar + "\u256e\n"
             "                        y (gain) \u2500\u25b6\u2502 log                      \u2502\n"
             "                                   \u2502 csv_log                  \u2502\n"
-            "                                   \u2570\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500"
-            "\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u256f\n");
+            "                                   \u2570" + bar + "\u256f\n");
 }
 
 }  // namespace

@@ -69,11 +69,11 @@ Placed measure(const Graph& graph, std::size_t index) {
     }
   }
   const std::size_t rows = std::max(placed.in.size(), placed.out.size());
-  placed.height = static_cast<int>(head.size()) * kHeadLine + 14 + static_cast<int>(rows) * kRow;
+  placed.height = static_cast<int>(head.size()) * kHeadLine + 24 + static_cast<int>(rows) * kRow;
   return placed;
 }
 
-int labels_height(std::size_t count) { return count == 0 ? 0 : static_cast<int>(count) * kStep + 10; }
+int labels_height(std::size_t count) { return count == 0 ? 0 : static_cast<int>(count) * kStep + 16; }
 
 /// Boxes of one column, from the top, rows on the grid that all columns share.
 int stack(std::vector<Placed*>& column, const Graph& graph, int top) {

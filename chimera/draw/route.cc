@@ -71,7 +71,9 @@ struct Track {
     heights.insert(heights.end(), right.begin(), right.end());
     std::sort(heights.begin(), heights.end());
     heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
-    const auto has = [](const std::vector<int>& all, int y) { return std::find(all.begin(), all.end(), y) != all.end(); };
+    const auto has = [](const std::vector<int>& all, int y) {
+      return std::find(all.begin(), all.end(), y) != all.end();
+    };
     for (const int y : heights) {
       const int ends = has(left, y) + has(right, y) + (y > top) + (y < bottom);
       if (ends >= 3) pieces.push_back({x, y, x, y, true, false});

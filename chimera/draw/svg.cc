@@ -31,7 +31,8 @@ class Page {
              escaped(what) + "</text>\n";
   }
   void line(int x1, int y1, int x2, int y2, const std::string& more = "") {
-    body_ += "<line x1=\"" + n(x1) + "\" y1=\"" + n(y1) + "\" x2=\"" + n(x2) + "\" y2=\"" + n(y2) + "\"" + more + "/>\n";
+    body_ += "<line x1=\"" + n(x1) + "\" y1=\"" + n(y1) + "\" x2=\"" + n(x2) + "\" y2=\"" + n(y2) + "\"" + more +
+             "/>\n";
   }
   void dot(int x, int y) { body_ += "<circle cx=\"" + n(x) + "\" cy=\"" + n(y) + "\" r=\"3\"/>\n"; }
   void box(const Placed& p) {
@@ -67,7 +68,7 @@ void draw_above(Page& page, const Placed& p) {
   // The leftmost line is the longest, so that its label runs over all others.
   for (std::size_t i = 0; i < p.above.size(); ++i) {
     const int x = p.x + static_cast<int>(i + 1) * kStep;
-    const int top = p.y - static_cast<int>(p.above.size() - i) * kStep;
+    const int top = p.y - 6 - static_cast<int>(p.above.size() - i) * kStep;
     page.line(x, top, x, p.y, p.above[i]->kind == PortKind::kInConst ? kArrow : kBackArrow);
     page.words(x + 4, top + 6, link_text(*p.above[i], "="), "soft");
   }
@@ -76,7 +77,7 @@ void draw_above(Page& page, const Placed& p) {
 void draw_below(Page& page, const Placed& p) {
   for (std::size_t i = 0; i < p.below.size(); ++i) {
     const int x = p.x + static_cast<int>(i + 1) * kStep;
-    const int bottom = p.y + p.height + static_cast<int>(p.below.size() - i) * kStep;
+    const int bottom = p.y + p.height + 6 + static_cast<int>(p.below.size() - i) * kStep;
     page.line(x, p.y + p.height, x, bottom, std::string(kArrow) + kBackArrow);
     page.words(x + 4, bottom + 2, link_text(*p.below[i], ": "), "soft");
   }
@@ -96,7 +97,7 @@ void draw_box(Page& page, const Graph& graph, const Placed& p) {
   }
   for (std::size_t i = 0; i < p.out.size(); ++i) {
     page.words(p.x + p.width - 8, p.out_y(i) + 4, p.out[i]->name, "port", "end");
-    page.words(p.x + p.width + 4, p.out_y(i) - 3, p.out[i]->variable, "soft");
+    page.words(p.x + p.width + 4, p.out_y(i) - 5, p.out[i]->variable, "soft");
   }
   draw_above(page, p);
   draw_below(page, p);
