@@ -168,6 +168,19 @@ VariableView TaskSet::view(std::size_t index) const noexcept {
   return view;
 }
 
+std::vector<VariableReader> TaskSet::readers_of(std::size_t index) const {
+  std::vector<VariableReader> readers;
+  const auto add = [&](std::size_t group, std::uint32_t offset, std::uint32_t bit) {
+    readers.push_back({GroupReader(group_memory(group).data(), groups_[group].payload_bytes), offset, bit});
+  };
+  const Variable& variable = variables_->all()[index];
+  if (variable.operator_index != UINT32_MAX) add(2 * tasks_.size() + variable.operator_index, 0, 0);
+  for (const PortOf& producer : variable.producers)
+    for (std::size_t half = 0; half < 2; ++half)
+      add(2 * producer.task.index + half, memories_[producer.task.index].output_offset(producer.index), producer.index);
+  return readers;
+}
+
 void TaskSet::deliver(Task& task) noexcept {
   for (const SentSignal& sent : task.outbox) {
     Task& target = tasks_[sent.target.index];

@@ -37,6 +37,13 @@ struct VariableView {
   bool is_valid = false;
 };
 
+/// A group in which a variable's value may stand.
+struct VariableReader {
+  GroupReader reader;
+  std::uint32_t offset = 0;  ///< of the value in the payload
+  std::uint32_t bit = 0;     ///< of the value in the valid bits
+};
+
 class TaskSet {
  public:
   /// Plans memory for every task and binds what can be bound. `components[i]` runs task i; `spec` and the components
@@ -79,6 +86,9 @@ class TaskSet {
   const ApplicationSpec& spec() const noexcept { return spec_; }
   const Variables& variables() const noexcept { return *variables_; }
   TaskId find(std::string_view name) const noexcept;
+  /// Every group in which a value of variable `index` may stand (each producer has two, used in turn):
+  /// for readers in other threads, who take the latest publication. Context: setup.
+  std::vector<VariableReader> readers_of(std::size_t index) const;
   /// Latest value of variable `index` (Variables::all()). Context: edge.
   VariableView view(std::size_t index) const noexcept;
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `chimera run` makes of the tap's records: a trace file and a timeline.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "chimera/desk/run.h"
+
+/// Context: setup thread.
+class RecordFiles final : public chimera::desk::RecordSink {
+ public:
+  /// `trace` empty: no file; `unit` 0: no timeline.
+  RecordFiles(const std::string& trace, chimera::Nanoseconds unit, chimera::Nanoseconds duration);
+  ~RecordFiles() override;
+
+  bool is_open() const noexcept { return why_.empty(); }
+  const std::string& why() const noexcept { return why_; }
+  void begin(const chimera::ApplicationSpec& spec, chimera::Nanoseconds origin) override;
+  void take(std::span<const chimera::TapRecord> records) override;
+  void end(std::uint64_t dropped) override;
+  /// Prints the timeline and closes the file; false when something was lost or could not be written.
+  bool finish(std::FILE* out, std::FILE* err);
+
+ private:
+  struct Trace;
+  std::unique_ptr<Trace> trace_;
+  std::string why_;
+  chimera::Nanoseconds unit_, duration_, origin_;
+  std::vector<chimera::TapRecord> kept_;  ///< for the timeline
+  std::vector<std::string> names_;
+  std::uint64_t dropped_ = 0;
+};

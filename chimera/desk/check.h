@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// `chimera check`: is this description legal? And its picture.
+#pragma once
+
+#include <string>
+
+#include "chimera/config/configuration.h"
+#include "chimera/config/verify.h"
+#include "chimera/desk/output.h"
+#include "chimera/desk/workplace.h"
+
+namespace chimera::desk {
+
+struct CheckOptions {
+  std::string file;
+  bool json = false;
+  std::string graph;  ///< "", "dot", "svg" or "text"
+};
+
+/// Reads and verifies; code kRefused when the description has a fault. Context: setup; may block.
+Output check(const CheckOptions& options, const Workplace& workplace);
+
+/// The lines that a legal description earns: tasks, order, load.
+std::string verdict_text(const Configuration& configuration);
+
+}  // namespace chimera::desk

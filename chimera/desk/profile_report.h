@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The profile of every task, as a table for people and as JSON: what it costs and how punctual it is.
+#pragma once
+
+#include <string>
+
+#include "chimera/runtime/task_set.h"
+
+namespace chimera::desk {
+
+/// One line a task: state, cycles, execution time of cycle (mean, max), load, response, start jitter, failures; then a
+/// line for every task with a fault. `ran` is the time that the loads refer to. Context: setup.
+std::string profile_table(const TaskSet& tasks, Nanoseconds ran);
+/// A JSON array with everything counted, times in nanoseconds. Context: setup.
+std::string profile_json(const TaskSet& tasks);
+
+}  // namespace chimera::desk

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/run.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "chimera/desk/check.h"
+#include "chimera/desk/expectation.h"
+#include "chimera/desk/profile_report.h"
+#include "chimera/desk/run_loop.h"
+#include "chimera/desk/script_text.h"
+
+namespace chimera::desk {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+
+constexpr std::size_t kTapRecords = std::size_t{1} << 18;
+constexpr Nanoseconds kDrainEvery = milliseconds(10);
+
+const char* word(RunEnd end) {
+  switch (end) {
+    case RunEnd::kTime: return "time";
+    case RunEnd::kStopped: return "stopped";
+    case RunEnd::kNothingLeft: return "nothing-left";
+    case RunEnd::kTaskStopped: return "stopped-by-task";
+  }
+  return "?";
+}
+
+const char* sentence(RunEnd end) {
+  switch (end) {
+    case RunEnd::kTime: return "";
+    case RunEnd::kStopped: return ", ended by the operator";
+    case RunEnd::kNothingLeft: return ", ended because no task was ON any more";
+    case RunEnd::kTaskStopped: return ", ended by the reaction `stop` of a task";
+  }
+  return "";
+}
+
+/// One run with everything that is watched and expected of it.
+class Session {
+ public:
+  Session(const RunRequest& request, Application application, RecordSink* sink, std::FILE* out, std::FILE* err)
+      : request_(request), application_(std::move(application)), sink_(sink), out_(out), err_(err) {}
+
+  Result<void> prepare(const Library& library);
+  Result<void> start(const Library& library);
+  RunEnd run();
+  int report(RunEnd end);
+
+ private:
+  void drain();
+  void watch_line(Nanoseconds at);
+  std::string variables_json() const;
+
+  const RunRequest& request_;
+  Application application_;
+  RecordSink* sink_;
+  std::FILE* out_;
+  std::FILE* err_;
+  std::vector<ScriptAct> acts_;
+  std::vector<TapRecord> ring_;
+  std::unique_ptr<Tap> tap_;
+  std::unique_ptr<RunLoop> loop_;
+  std::vector<Probe> watched_;
+  std::vector<Expectation> expected_;
+  Nanoseconds ran_;
+};
+
+// Names and bounds are judged before anything starts; extents are known after init, so start() asks again.
+Result<void> Session::prepare(const Library& library) {
+  for (const std::string& name : request_.watch)
+    if (auto probe = application_.probe(name); !probe) return probe.error();
+  for (const std::string& text : request_.expect)
+    if (auto judged = Expectation::parse(text, application_, library.units()); !judged) return judged.error();
+  auto acts = parse_script(request_.at, application_.tasks());
+  if (!acts) return acts.error();
+  acts_ = *std::move(acts);
+  RunOptions options;
+  options.policy = application_.configuration().rtpus()[0].policy;
+  options.script = Script(acts_);
+  options.stop = &stop_requested;
+  if (sink_ != nullptr) {
+    ring_.resize(kTapRecords);
+    tap_ = std::make_unique<Tap>(ring_);
+    options.tap = tap_.get();
+  }
+  loop_ = request_.virtual_time ? make_virtual_loop(application_, request_, options)
+                                : make_real_time_loop(application_, request_, options);
+  return {};
+}
+
+Result<void> Session::start(const Library& library) {
+  if (auto started = loop_->start(); !started) return started;
+  for (const std::string& name : request_.watch) watched_.push_back(*application_.probe(name));
+  for (const std::string& text : request_.expect)
+    expected_.push_back(*Expectation::parse(text, application_, library.units()));
+  if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
+  if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin());
+  return {};
+}
+
+void Session::drain() {
+  if (sink_ == nullptr) return;
+  TapRecord records[512];
+  for (std::size_t n; (n = tap_->read(records)) > 0;) sink_->take({records, n});
+}
+
+void Session::watch_line(Nanoseconds at) {
+  if (watched_.empty() || request_.json) return;
+  std::string line = "t " + [at] {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3f s", to_seconds(at));
+    return std::string(text);
+  }();
+  std::vector<std::byte> value;
+  for (const Probe& probe : watched_)
+    line += "  " + probe.name + " " + (probe.read(value) ? value_text(probe.form, value) : "not written yet");
+  std::fprintf(out_, "%s\n", line.c_str());
+  std::fflush(out_);
+}
+
+RunEnd Session::run() {
+  Nanoseconds next_watch = watched_.empty() ? kNever : request_.every;
+  for (Nanoseconds at;;) {
+    const Nanoseconds next_drain = sink_ == nullptr ? kNever : at + kDrainEvery;
+    const Nanoseconds patience = request_.virtual_time ? kNever : at + milliseconds(100);
+    const Nanoseconds next = std::min({next_watch, next_drain, patience, request_.duration});
+    const std::optional<RunEnd> end = loop_->advance(next);
+    drain();
+    at = next;
+    if (end || next == next_watch) watch_line(end && *end != RunEnd::kTime ? loop_->now() : next);
+    if (next == next_watch) next_watch += request_.every;
+    if (end) {
+      ran_ = std::min(loop_->now(), request_.duration);
+      return *end;
+    }
+  }
+}
+
+std::string Session::variables_json() const {
+  std::string rows;
+  std::vector<std::byte> value;
+  for (const Probe& probe : watched_) {
+    rows += (rows.empty() ? "" : ", ") + json_string(probe.name) + ": {\"unit\": " + json_string(probe.form.unit) +
+            ", \"value\": " + (probe.read(value) ? value_json(probe.form, value) : "null") + "}";
+  }
+  return rows;
+}
+
+int Session::report(RunEnd end) {
+  std::string lines, rows;
+  bool all_hold = true;
+  for (const Expectation& expectation : expected_) {
+    std::string said;
+    const bool holds = expectation.holds(said);
+    all_hold = all_hold && holds;
+    lines += (holds ? "holds: " : "FAILS: ") + expectation.text() + " (" + said + ")\n";
+    rows += (rows.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(expectation.text()) + ", \"holds\": " +
+            (holds ? "true" : "false") + ", \"said\": " + json_string(said) + "}";
+  }
+  const std::string variables = variables_json();
+  loop_->shut_down();
+  if (sink_ != nullptr) {
+    drain();
+    sink_->end(tap_->dropped());
+  }
+  if (request_.json) {
+    std::fprintf(out_, "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s]}\n",
+                 json_string(application_.configuration().subsystem()).c_str(), json_string(loop_->description()).c_str(),
+                 static_cast<long long>(ran_.count), word(end), profile_json(application_.tasks()).c_str(),
+                 variables.c_str(), rows.c_str());
+  } else {
+    std::fprintf(out_, "ran %.3f s%s\n%s%s", to_seconds(ran_), sentence(end),
+                 profile_table(application_.tasks(), ran_).c_str(), lines.c_str());
+  }
+  return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
+}
+
+int refuse(const Output& output, std::FILE* out, std::FILE* err) {
+  std::fputs(output.out.c_str(), out);
+  std::fputs(output.err.c_str(), err);
+  return output.code;
+}
+
+}  // namespace
+
+void request_stop() noexcept { stop_requested = true; }
+
+int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err) {
+  const auto library = workplace.library();
+  if (!library) return refuse(refused(library.error(), request.json), out, err);
+  Verdict verdict = verify(read_description_file(request.file), *library);
+  if (verdict.configuration)
+    verdict.report.add_all(unsupported_by_single_context(
+        *verdict.configuration, request.virtual_time ? Executor::kVirtual : Executor::kRealTime));
+  if (!request.json) std::fputs(verdict.report.text().c_str(), err);
+  if (!verdict.report.is_legal()) {
+    if (request.json) std::fprintf(out, "%s\n", verdict.report.json().c_str());
+    return kRefused;
+  }
+  if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
+  auto application = Application::load(*verdict.configuration, *library);
+  if (!application) return refuse(refused(application.error(), request.json), out, err);
+  Session session(request, *std::move(application), sink, out, err);
+  if (auto ready = session.prepare(*library); !ready) return refuse(refused(ready.error(), request.json), out, err);
+  if (auto started = session.start(*library); !started) return refuse(refused(started.error(), request.json), out, err);
+  return session.report(session.run());
+}
+
+}  // namespace chimera::desk

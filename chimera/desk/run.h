@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// `chimera run`: an application from its description, in real time or in virtual time, in one context.
+#pragma once
+
+#include <cstdio>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chimera/desk/application.h"
+#include "chimera/desk/output.h"
+#include "chimera/desk/workplace.h"
+#include "chimera/runtime/tap_record.h"
+
+namespace chimera::desk {
+
+struct RunRequest {
+  std::string file;
+  Nanoseconds duration = kNever;        ///< until a signal of the operating system ends it
+  bool virtual_time = false;
+  bool preemptive = false;              ///< virtual time only
+  std::optional<std::uint64_t> seed;    ///< virtual time only
+  Nanoseconds quantum = milliseconds(1);
+  int priority = 80;                    ///< SCHED_FIFO, real time only; 0: as an ordinary process
+  std::vector<std::string> at;          ///< timed acts, script_text.h
+  std::vector<std::string> expect;      ///< expectation.h
+  std::vector<std::string> watch;       ///< state variables to print while it runs
+  Nanoseconds every = seconds(1);       ///< how often
+  bool json = false;
+};
+
+/// Takes the tap's records in order while the run goes on. Context: setup thread.
+class RecordSink {
+ public:
+  virtual ~RecordSink() = default;
+  virtual void begin(const ApplicationSpec& spec, Nanoseconds origin) = 0;
+  virtual void take(std::span<const TapRecord> records) = 0;
+  /// `dropped` records did not fit the ring.
+  virtual void end(std::uint64_t dropped) = 0;
+};
+
+/// Runs and reports on `out` and `err`; answers the exit code: kOk when it ran to its end and every expectation
+/// holds. `sink` may be null. Blocks for the duration.
+int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err);
+
+/// Asks a running run() to end; for signal handlers.
+void request_stop() noexcept;
+
+}  // namespace chimera::desk

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/run_loop.h"
+
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/realtime.h"
+#include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/virtual/virtual_executor.h"
+
+namespace chimera::desk {
+namespace {
+
+class VirtualLoop final : public RunLoop {
+ public:
+  VirtualLoop(Application& application, const RunRequest& request, const RunOptions& options)
+      : request_(request), executor_(application.tasks(), options, {request.preemptive, request.seed, request.quantum}) {}
+
+  Result<void> start() override { return executor_.start(); }
+  std::optional<RunEnd> advance(Nanoseconds until) override {
+    const bool last = until >= request_.duration;
+    const RunEnd end = executor_.run(last ? request_.duration : until);
+    if (end == RunEnd::kTime && !last) return std::nullopt;
+    return end;
+  }
+  Nanoseconds now() const override { return executor_.now() - executor_.origin(); }
+  Nanoseconds origin() const override { return executor_.origin(); }
+  void shut_down() override { executor_.shut_down(); }
+  std::string description() const override {
+    std::string text = request_.preemptive ? "virtual time, preemptive" : "virtual time, non-preemptive";
+    return request_.seed ? text + ", seed " + std::to_string(*request_.seed) : text;
+  }
+
+ private:
+  const RunRequest& request_;
+  VirtualExecutor executor_;
+};
+
+// The executive has a thread of its own; this side sleeps and looks on.
+class RealTimeLoop final : public RunLoop {
+ public:
+  RealTimeLoop(Application& application, const RunRequest& request, const RunOptions& options)
+      : request_(request), cpu_(static_cast<int>(application.configuration().rtpus()[0].cpu)), job_clock_(clock_),
+        executive_(application.tasks(), clock_, job_clock_, options) {}
+  ~RealTimeLoop() override {
+    if (thread_.joinable()) thread_.join();
+  }
+
+  Result<void> start() override {
+    std::promise<Result<void>> started;
+    auto answer = started.get_future();
+    thread_ = std::thread([this, &started] {
+      const RealtimeRequest wanted{request_.priority, cpu_, true};
+      grant_ = enter_realtime(wanted).report.c_str();
+      const Result<void> result = executive_.start();
+      started.set_value(result);
+      ended_.set_value(result ? executive_.run(request_.duration) : RunEnd::kStopped);
+    });
+    return answer.get();
+  }
+  std::optional<RunEnd> advance(Nanoseconds until) override {
+    const auto wait = std::chrono::nanoseconds((until - now()).count);
+    if (end_.wait_for(wait) == std::future_status::timeout) return std::nullopt;
+    ran_ = now();
+    thread_.join();
+    return end_.get();
+  }
+  Nanoseconds now() const override { return const_cast<LinuxClock&>(clock_).now() - executive_.origin(); }
+  Nanoseconds origin() const override { return executive_.origin(); }
+  void shut_down() override { executive_.shut_down(); }
+  std::string description() const override { return "real time: " + grant_; }
+
+ private:
+  const RunRequest& request_;
+  int cpu_;
+  LinuxClock clock_;
+  ComputingClock job_clock_;
+  Executive executive_;
+  std::string grant_;
+  std::promise<RunEnd> ended_;
+  std::future<RunEnd> end_ = ended_.get_future();
+  Nanoseconds ran_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request, const RunOptions& options) {
+  return std::make_unique<VirtualLoop>(application, request, options);
+}
+
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request, const RunOptions& options) {
+  return std::make_unique<RealTimeLoop>(application, request, options);
+}
+
+}  // namespace chimera::desk

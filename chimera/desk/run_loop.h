@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two ways to run an application, seen alike: in slices up to an instant since the start.
+#pragma once
+
+#include <memory>
+
+#include "chimera/desk/run.h"
+#include "chimera/runtime/release.h"
+
+namespace chimera::desk {
+
+/// Context: setup thread. Only one at a time per application.
+class RunLoop {
+ public:
+  virtual ~RunLoop() = default;
+  /// Spawns the tasks and turns the start set ON; real time: from now on they run.
+  virtual Result<void> start() = 0;
+  /// Lets the run come to `until` (since its origin) or to its end; nullopt: it goes on.
+  virtual std::optional<RunEnd> advance(Nanoseconds until) = 0;
+  /// Since the origin.
+  virtual Nanoseconds now() const = 0;
+  virtual Nanoseconds origin() const = 0;
+  virtual void shut_down() = 0;
+  /// One line about how it is run, for people.
+  virtual std::string description() const = 0;
+};
+
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request, const RunOptions& options);
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request, const RunOptions& options);
+
+}  // namespace chimera::desk

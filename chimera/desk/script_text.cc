@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/script_text.h"
+
+#include <algorithm>
+
+#include "chimera/config/nearest.h"
+#include "chimera/config/quantity.h"
+
+namespace chimera::desk {
+namespace {
+
+Error wrong(const std::string& text, const std::string& why) {
+  return {ErrorCode::kBadInput, {"--at '" + text + "': " + why}, {}};
+}
+
+std::string unknown(const char* what, const std::string& found, std::span<const std::string> names) {
+  const std::string near = nearest(found, names);
+  return std::string("no ") + what + " '" + found + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
+Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, ScriptAct act) {
+  if (which != "up" && which != "down") return wrong(text, "the flag goes 'up' or 'down'");
+  act.kind = which == "up" ? ScriptAct::Kind::kRaiseFlag : ScriptAct::Kind::kLowerFlag;
+  return act;
+}
+
+Result<ScriptAct> parse_signal(const std::string& text, const std::string& word, const std::string& task, ScriptAct act,
+                               const TaskSet& tasks) {
+  const std::vector<std::string> words = {"spawn", "on", "off", "kill", "clear", "reinit"};
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found == words.end()) return wrong(text, unknown("signal", word, words));
+  act.signal = static_cast<Signal>(found - words.begin());
+  act.task = tasks.find(task);
+  if (act.task.is_valid()) return act;
+  std::vector<std::string> names;
+  for (const Task& t : tasks.tasks()) names.emplace_back(t.spec->name);
+  return wrong(text, unknown("task", task, names));
+}
+
+Result<ScriptAct> parse(const std::string& text, const TaskSet& tasks) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return wrong(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
+  const auto at = parse_duration(text.substr(0, colon));
+  if (!at) return wrong(text, at.error().message.c_str());
+  const std::size_t begin = text.find_first_not_of(' ', colon + 1);
+  const std::size_t blank = begin == std::string::npos ? begin : text.find(' ', begin);
+  if (blank == std::string::npos) return wrong(text, "after the time stand a signal and a task, or 'flag up'");
+  const std::string word = text.substr(begin, blank - begin);
+  const std::string object = text.substr(text.find_first_not_of(' ', blank) == std::string::npos
+                                             ? blank : text.find_first_not_of(' ', blank));
+  ScriptAct act;
+  act.at = *at;
+  return word == "flag" ? parse_flag(text, object, act) : parse_signal(text, word, object, act, tasks);
+}
+
+}  // namespace
+
+Result<std::vector<ScriptAct>> parse_script(std::span<const std::string> texts, const TaskSet& tasks) {
+  std::vector<ScriptAct> acts;
+  for (const std::string& text : texts) {
+    auto act = parse(text, tasks);
+    if (!act) return act.error();
+    acts.push_back(*act);
+  }
+  std::stable_sort(acts.begin(), acts.end(), [](const ScriptAct& a, const ScriptAct& b) { return a.at < b.at; });
+  return acts;
+}
+
+}  // namespace chimera::desk

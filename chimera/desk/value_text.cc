@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/value_text.h"
+
+#include <cstdio>
+#include <cstring>
+
+#include "chimera/desk/output.h"
+
+namespace chimera::desk {
+namespace {
+
+template <class T>
+T read(const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+double number(std::uint32_t type, const std::byte* at) {
+  switch (type) {
+    case CHIMERA_BOOL: return read<std::uint8_t>(at);
+    case CHIMERA_INT32: return read<std::int32_t>(at);
+    case CHIMERA_INT64: return static_cast<double>(read<std::int64_t>(at));
+    case CHIMERA_FLOAT32: return static_cast<double>(read<float>(at));
+    default: return read<double>(at);
+  }
+}
+
+std::string text_of(const std::byte* at, std::uint32_t bytes) {
+  const char* text = reinterpret_cast<const char*>(at);
+  return {text, ::strnlen(text, bytes)};
+}
+
+std::string plain(std::uint32_t type, const std::byte* at, std::uint32_t bytes, bool json) {
+  if (type == CHIMERA_STRING) return json ? json_string(text_of(at, bytes)) : "\"" + text_of(at, bytes) + "\"";
+  if (type == CHIMERA_BOOL) return read<std::uint8_t>(at) != 0 ? "true" : "false";
+  if (type == CHIMERA_INT64) return std::to_string(read<std::int64_t>(at));
+  if (json) return json_number(number(type, at));
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", number(type, at));
+  return text;
+}
+
+std::string with_unit(std::string text, const std::string& unit) { return unit == "1" ? text : text + " " + unit; }
+
+std::string field_text(const FieldDescriptor& field, const std::byte* at, bool json) {
+  std::string text;
+  for (std::uint32_t i = 0; i < field.count; ++i)
+    text += (i == 0 ? "" : json ? ", " : " ") + plain(field.type, at + i * field.size, field.size, json);
+  if (field.count > 1) text = "[" + text + "]";
+  return json ? text : with_unit(text, field.unit);
+}
+
+std::string element_text(const ValueForm& form, const std::byte* at, bool json) {
+  if (form.type != CHIMERA_STRUCT) return plain(form.type, at, form.element_bytes, json);
+  std::string text;
+  for (const FieldDescriptor& field : form.fields)
+    text += (text.empty() ? "" : ", ") + (json ? json_string(field.name) : field.name) + ": " +
+            field_text(field, at + field.offset, json);
+  return "{" + text + "}";
+}
+
+std::string render(const ValueForm& form, std::span<const std::byte> bytes, bool json) {
+  std::string text;
+  for (std::uint32_t i = 0; i < form.count; ++i)
+    text += (i == 0 ? "" : json ? ", " : " ") + element_text(form, bytes.data() + i * form.element_bytes, json);
+  return form.is_scalar ? text : "[" + text + "]";
+}
+
+}  // namespace
+
+std::string value_text(const ValueForm& form, std::span<const std::byte> bytes) {
+  const std::string text = render(form, bytes, false);
+  return form.type == CHIMERA_STRUCT ? text : with_unit(text, form.unit);
+}
+
+std::string value_json(const ValueForm& form, std::span<const std::byte> bytes) { return render(form, bytes, true); }
+
+std::vector<double> numbers(const ValueForm& form, std::span<const std::byte> bytes) {
+  std::vector<double> all;
+  for (std::uint32_t i = 0; i < form.count; ++i) {
+    const std::byte* at = bytes.data() + i * form.element_bytes;
+    if (form.type == CHIMERA_STRUCT) {
+      for (const FieldDescriptor& field : form.fields)
+        for (std::uint32_t k = 0; k < field.count && field.type != CHIMERA_STRING; ++k)
+          all.push_back(number(field.type, at + field.offset + k * field.size));
+    } else if (form.type != CHIMERA_STRING) {
+      all.push_back(number(form.type, at));
+    }
+  }
+  return all;
+}
+
+}  // namespace chimera::desk

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/workplace.h"
+
+#include <climits>
+#include <unistd.h>
+
+#include "chimera/config/unit_system.h"
+
+namespace chimera::desk {
+
+Workplace Workplace::around(const std::string& program) {
+  const std::string folder = program.substr(0, program.rfind('/'));
+  const std::string prefix = folder.substr(0, folder.rfind('/'));
+  const std::vector<std::string> installed = {prefix + "/components", prefix + "/lib/chimera/components"};
+  Workplace made;
+  made.component_folders = chimera::component_folders(installed);
+  made.unit_files = {prefix + "/share/chimera/units.xml", prefix + "/../../share/chimera/units.xml"};
+  return made;
+}
+
+Result<Library> Workplace::library() const {
+  auto units = UnitSystem::load(unit_files);
+  if (!units) return units.error();
+  return Library::make(component_folders, *std::move(units));
+}
+
+std::string program_path() {
+  char path[PATH_MAX];
+  const ssize_t n = ::readlink("/proc/self/exe", path, sizeof path);
+  return n > 0 ? std::string(path, static_cast<std::size_t>(n)) : std::string("chimera");
+}
+
+}  // namespace chimera::desk
