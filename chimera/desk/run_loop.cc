@@ -7,6 +7,7 @@
 
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/platform/realtime.h"
+#include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 
@@ -67,7 +68,7 @@ class RealTimeLoop final : public RunLoop {
     thread_.join();
     return end_.get();
   }
-  Nanoseconds now() const override { return const_cast<LinuxClock&>(clock_).now() - executive_.origin(); }
+  Nanoseconds now() const override { return looking_on_.now() - executive_.origin(); }
   Nanoseconds origin() const override { return executive_.origin(); }
   void shut_down() override { executive_.shut_down(); }
   std::string description() const override { return "real time: " + grant_; }
@@ -75,7 +76,8 @@ class RealTimeLoop final : public RunLoop {
  private:
   const RunRequest& request_;
   int cpu_;
-  LinuxClock clock_;
+  CounterClock clock_;             // of the executive's thread
+  mutable LinuxClock looking_on_;  // of this side
   ComputingClock job_clock_;
   Executive executive_;
   std::string grant_;
