@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/chimera/record_files.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include "chimera/draw/timeline.h"
+#include "chimera/record/chrome_trace.h"
+
+using chimera::Nanoseconds;
+
+struct RecordFiles::Trace {
+  std::FILE* file = nullptr;
+  std::unique_ptr<chimera::ChromeTrace> writer;
+};
+
+RecordFiles::RecordFiles(const std::string& trace, Nanoseconds unit, Nanoseconds duration)
+    : unit_(unit), duration_(duration) {
+  if (trace.empty()) return;
+  trace_ = std::make_unique<Trace>();
+  trace_->file = std::fopen(trace.c_str(), "w");
+  if (trace_->file == nullptr) why_ = std::strerror(errno);
+}
+
+RecordFiles::~RecordFiles() {
+  if (trace_ != nullptr && trace_->file != nullptr) std::fclose(trace_->file);
+}
+
+void RecordFiles::begin(const chimera::ApplicationSpec& spec, Nanoseconds origin) {
+  origin_ = origin;
+  std::vector<std::string> rtpus;
+  for (const chimera::TaskSpec& task : spec.tasks) names_.emplace_back(task.name);
+  for (const chimera::RtpuSpec& rtpu : spec.rtpus) rtpus.emplace_back(rtpu.name);
+  if (trace_ != nullptr)
+    trace_->writer = std::make_unique<chimera::ChromeTrace>(trace_->file, std::string(spec.name), rtpus, names_, origin);
+}
+
+void RecordFiles::take(std::span<const chimera::TapRecord> records) {
+  if (trace_ != nullptr) trace_->writer->add(records);
+  if (unit_.count == 0) return;
+  for (const chimera::TapRecord& record : records)
+    if (record.kind == chimera::TapKind::kRun) kept_.push_back(record);
+}
+
+void RecordFiles::end(std::uint64_t dropped) {
+  dropped_ = dropped;
+  if (trace_ != nullptr) trace_->writer->end(dropped);
+}
+
+bool RecordFiles::finish(std::FILE* out, std::FILE* err) {
+  bool good = dropped_ == 0;
+  if (!good) std::fprintf(err, "%llu records were lost: the trace has a gap\n", static_cast<unsigned long long>(dropped_));
+  if (unit_.count > 0) std::fputs(chimera::draw::timeline(kept_, names_, origin_, duration_, unit_).c_str(), out);
+  if (trace_ != nullptr) {
+    const bool written = std::ferror(trace_->file) == 0 && std::fclose(trace_->file) == 0;
+    trace_->file = nullptr;
+    if (!written) std::fprintf(err, "the trace could not be written whole: %s\n", std::strerror(errno));
+    good = good && written;
+  }
+  return good;
+}
