@@ -50,7 +50,7 @@ void RecordFiles::end(std::uint64_t dropped) {
 bool RecordFiles::finish(std::FILE* out, std::FILE* err) {
   bool good = dropped_ == 0;
   if (!good) std::fprintf(err, "%llu records were lost: the trace has a gap\n", static_cast<unsigned long long>(dropped_));
-  if (unit_.count > 0) std::fputs(chimera::draw::timeline(kept_, names_, origin_, duration_, unit_).c_str(), out);
+  if (unit_.count > 0) std::fputs(chimera::draw::text(chimera::draw::timeline(kept_, names_, origin_, unit_, duration_)).c_str(), out);
   if (trace_ != nullptr) {
     const bool written = std::ferror(trace_->file) == 0 && std::fclose(trace_->file) == 0;
     trace_->file = nullptr;

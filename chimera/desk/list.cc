@@ -102,7 +102,7 @@ Output describe_component(const std::string& name, const Workplace& workplace, b
   const LibraryEntry* entry = library->find(name);
   if (entry == nullptr) return refused(unknown(name, *library), json);
   Output output;
-  output.out = json ? descriptor_to_json(entry->descriptor) : sheet(*entry);
+  output.out = json ? to_json(entry->descriptor) : sheet(*entry);
   return output;
 }
 
