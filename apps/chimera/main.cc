@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The `chimera` command: words of the command line to the commands of chimera/desk.
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 
 #include <CLI/CLI.hpp>
 
@@ -9,7 +11,6 @@
 #include "chimera/config/quantity.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
-#include "chimera/desk/new.h"
 #include "chimera/desk/run.h"
 
 namespace {
@@ -24,7 +25,6 @@ struct Words {
   desk::RunRequest run;
   std::string duration, every, quantum, seed;
   std::string trace, timeline;
-  desk::NewOptions made;
 };
 
 int print(const desk::Output& output) {
@@ -49,17 +49,6 @@ void add_list(CLI::App& app, Words& words) {
   d->add_option("NAME", words.component, "the component")->required();
   d->add_flag("--json", words.json, "its descriptor");
   d->footer("Example: chimera describe pid_joint");
-}
-
-void add_new(CLI::App& app, Words& words) {
-  CLI::App* n = app.add_subcommand("new", "Begin a component or an application of your own");
-  n->require_subcommand(1);
-  CLI::App* c = n->add_subcommand("component", "A component with its test, ready to build");
-  c->add_option("NAME", words.made.name, "its name, and that of the new folder")->required();
-  c->add_flag("--c", words.made.c_face, "written in C instead of C++");
-  CLI::App* a = n->add_subcommand("app", "An application: a description and a component, ready to run");
-  a->add_option("NAME", words.made.name, "its name, and that of the new folder")->required();
-  n->footer("Example: chimera new component my_filter");
 }
 
 void add_run(CLI::App& app, Words& words) {
@@ -139,9 +128,7 @@ int carry_out(CLI::App& app, Words& words) {
   if (app.got_subcommand("check")) return print(desk::check(words.check, workplace));
   if (app.got_subcommand("list")) return print(desk::list(workplace, words.json));
   if (app.got_subcommand("describe")) return print(desk::describe_component(words.component, workplace, words.json));
-  if (app.got_subcommand("run")) return run_application(words, workplace);
-  words.made.is_application = app.get_subcommand("new")->got_subcommand("app");
-  return print(desk::make_new(words.made));
+  return run_application(words, workplace);
 }
 
 }  // namespace
@@ -154,7 +141,6 @@ int main(int argc, char** argv) {
   add_check(app, words);
   add_run(app, words);
   add_list(app, words);
-  add_new(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
