@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: 'clear' must return bool (true: the cause is gone), or an Outcome
 #include "chimera/task/component.h"
 
 using namespace chimera;

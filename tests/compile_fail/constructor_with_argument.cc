@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: a component is made without arguments: what it needs comes by in-const and resource ports
 #include "chimera/task/component.h"
 
 using namespace chimera;

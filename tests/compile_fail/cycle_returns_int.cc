@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: 'cycle' must return nothing, or an Outcome: ok() or fault("text")
 #include "chimera/task/component.h"
 
 using namespace chimera;

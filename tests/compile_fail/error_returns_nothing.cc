@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: 'error' must return bool (true: recovered), or an Outcome
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: initial must be a number for this port
 #include "chimera/task/component.h"
 
 using namespace chimera;

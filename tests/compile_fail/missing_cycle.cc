@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: a component needs a method cycle(Cycle) or cycle()
 #include "chimera/task/component.h"
 
 using namespace chimera;

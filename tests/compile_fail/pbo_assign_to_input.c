@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* refused: assignment of read-only location */
 #include "chimera/task/pbo.h"
 
 typedef struct { double last; } ballLocal_t;

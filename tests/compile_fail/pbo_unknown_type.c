@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* refused: unknown type name 'PBO_TYPE_quaternion' */
 #include "chimera/task/pbo.h"
 
 typedef struct { double last; } ballLocal_t;

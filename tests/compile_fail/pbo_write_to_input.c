@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* refused: 'pbo_out_x' undeclared */
 #include "chimera/task/pbo.h"
 
 typedef struct { double last; } ballLocal_t;

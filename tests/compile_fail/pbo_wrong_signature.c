@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* refused: conflicting types for 'ballCycle' */
 #include "chimera/task/pbo.h"
 
 typedef struct { double last; } ballLocal_t;

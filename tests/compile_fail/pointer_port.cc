@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: a port cannot carry a pointer: it means nothing in another process
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: a name has small letters, digits and '_' only
 #include "chimera/task/component.h"
 
 using namespace chimera;

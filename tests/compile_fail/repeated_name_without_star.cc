@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: the name of a repeated port ends in '*'
 #include "chimera/task/component.h"
 
 using namespace chimera;

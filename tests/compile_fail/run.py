@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every x.cc and x.c of this folder must fail to compile with the sentence of its line "refused: ...". The same for
+"""Every x.cc and x.c of this folder must fail to compile with its sentence in expected.txt. The same for
 each misspelling listed in chimera/task/method_check.h. A control that compiles shows that the compiler works at all."""
 import concurrent.futures
 import os
@@ -42,9 +42,11 @@ def judge(path, sentence):
 
 
 def cases():
-    for path in sorted(FOLDER.glob("*.c")) + sorted(FOLDER.glob("*.cc")):
-        sentence = re.search(r"refused: (.*?)(?: \*/)?$", path.read_text(), re.MULTILINE)
-        yield path, sentence[1] if sentence else sys.exit(f"{path.name} has no line 'refused: ...'")
+    expected = dict(line.split(": ", 1) for line in (FOLDER / "expected.txt").read_text().splitlines())
+    files = {path.name: path for path in [*FOLDER.glob("*.c"), *FOLDER.glob("*.cc")]}
+    if files.keys() != expected.keys():
+        sys.exit(f"expected.txt and the files differ: {sorted(files.keys() ^ expected.keys())}")
+    return [(files[name], expected[name]) for name in sorted(files)]
 
 
 def misspellings():

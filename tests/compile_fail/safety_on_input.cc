@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: safety goes with an out-var: it guards what is published
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: the shape follows from the type: leave the text out, or use T[]
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: a struct needs names and units for its members to go through a port: specialise chimera::Fields for it
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: 'sync' must return bool (true: an event was taken), or an Outcome
 #include "chimera/task/component.h"
 
 using namespace chimera;

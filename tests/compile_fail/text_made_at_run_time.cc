@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: call to non-'constexpr' function 'const char* name()'
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: a port carries bool, int32, int64, float or double: no other number type is known everywhere
 #include "chimera/task/component.h"
 
 using namespace chimera;

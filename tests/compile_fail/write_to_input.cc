@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// refused: assignment of read-only location
 #include "chimera/task/component.h"
 
 using namespace chimera;
