@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "chimera/base/message.h"
+#include "chimera/load/elf_check.h"
 
 namespace chimera {
 namespace {
@@ -52,14 +53,6 @@ Result<void> copy_all(int from, int to, const std::string& path) {
   }
 }
 
-Result<void> check_elf(int copy, const std::string& path) {
-  char mark[4] = {};
-  const ssize_t got = ::pread(copy, mark, sizeof mark, 0);
-  if (got == 4 && std::memcmp(mark, "\177ELF", 4) == 0) return {};
-  return (Message() << "is not a shared object: it does not begin with the ELF mark")
-      .error(ErrorCode::kBadInput, path);
-}
-
 /// The descriptor of a sealed copy of the file.
 Result<int> sealed_copy(const std::string& path) {
   OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
@@ -69,7 +62,8 @@ Result<int> sealed_copy(const std::string& path) {
   OpenFile copy(::memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (copy.number() < 0) return system_error("no memory for a copy", path);
   if (const auto copied = copy_all(file.number(), copy.number(), path); !copied) return copied.error();
-  if (const auto elf = check_elf(copy.number(), path); !elf) return elf.error();
+  if (const auto why = elf_fault(copy.number()); !why.empty())
+    return (Message() << why).error(ErrorCode::kBadInput, path);
   if (::fcntl(copy.number(), F_ADD_SEALS, kSeals) != 0) return system_error("the copy cannot be sealed", path);
   return copy.take();
 }

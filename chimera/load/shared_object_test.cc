@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects good and bad: chimera/load/test_objects.
+#include "chimera/load/shared_object.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "chimera/load/component_state.h"
+
+namespace chimera {
+namespace {
+
+std::string object(const std::string& name) {
+  const char* build = ::getenv("CHIMERA_BUILD");
+  return std::string(build == nullptr ? "build/debug" : build) + "/chimera/load/test_objects/" + name;
+}
+
+/// A file of its own that goes with the test.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& text) {
+    const int file = ::mkstemp(path_);
+    EXPECT_GE(file, 0);
+    ::close(file);
+    write(text);
+  }
+  ~TemporaryFile() { ::unlink(path_); }
+  void write(const std::string& text) { std::ofstream(path_, std::ios::binary) << text; }
+  std::string path() const { return path_; }
+
+ private:
+  char path_[32] = "/tmp/shared_object_XXXXXX";
+};
+
+std::string contents(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+std::string refusal(const std::string& path) {
+  const auto opened = SharedObject::open(path);
+  if (opened) return "opened";
+  EXPECT_EQ(opened.error().where.view(), path.substr(0, 200));
+  return std::string(opened.error().message.view());
+}
+
+/// One cycle of counter.so; what its object has counted.
+std::int32_t count_once(const chimera_component& component, ComponentState& instance) {
+  std::int32_t count = 0;
+  const chimera_port_decl& port = component.ports[0];
+  reinterpret_cast<chimera_port*>(static_cast<std::byte*>(instance.state()) + port.live_offset)->value = &count;
+  chimera_call call{};
+  chimera_fault fault{};
+  call.fault = &fault;
+  EXPECT_EQ(component.methods[CHIMERA_CYCLE](instance.state(), &call), CHIMERA_OK);
+  return count;
+}
+
+TEST(SharedObject, OffersItsComponents) {
+  const auto opened = SharedObject::open(object("counter.so"));
+  ASSERT_TRUE(opened) << opened.error().message.view();
+  ASSERT_EQ(opened->components().size(), 1u);
+  EXPECT_STREQ(opened->components()[0]->name, "counter");
+  EXPECT_TRUE(opened->component("counter"));
+}
+
+TEST(SharedObject, RefusesAFileThatIsNotThere) {
+  EXPECT_EQ(refusal("/nowhere/at/all.so"), "cannot be opened: No such file or directory");
+  EXPECT_EQ(SharedObject::open("/nowhere/at/all.so").error().code, ErrorCode::kNotFound);
+}
+
+TEST(SharedObject, RefusesWhatIsNoObject) {
+  const std::string sentence = "is not a shared object: it does not begin with the ELF mark";
+  const TemporaryFile text("subsystem: puma\n"), empty("");
+  EXPECT_EQ(refusal(text.path()), sentence);
+  EXPECT_EQ(refusal(empty.path()), sentence);
+  EXPECT_EQ(refusal("/tmp"), "cannot be read: Is a directory");
+}
+
+TEST(SharedObject, RefusesAnObjectCutShortAtAnyPlace) {
+  const std::string whole = contents(object("counter.so"));
+  for (std::size_t size = 4; size < whole.size(); size += 97)
+    ASSERT_EQ(refusal(TemporaryFile(whole.substr(0, size)).path()), "is cut short") << size;
+}
+
+TEST(SharedObject, RefusesAnObjectForAnotherMachine) {
+  std::string other = contents(object("counter.so"));
+  other[18] = '\x03';  // e_machine: 80386
+  EXPECT_EQ(refusal(TemporaryFile(other).path()), "was built for another machine");
+  other = contents(object("counter.so"));
+  other[16] = '\x01';  // e_type: relocatable
+  EXPECT_EQ(refusal(TemporaryFile(other).path()), "is not a shared object: it is another kind of ELF file");
+}
+
+TEST(SharedObject, RefusesAnObjectThatCannotBeLinked) {
+  EXPECT_EQ(refusal(object("unresolved.so")), "cannot be loaded: undefined symbol: chimera_test_that_nobody_has");
+}
+
+TEST(SharedObject, RefusesAnObjectWithoutComponents) {
+  EXPECT_EQ(refusal(object("no_symbol.so")),
+            "has no symbol chimera_components: no CHIMERA_COMPONENT or PBO_MODULE was built into it");
+  EXPECT_EQ(refusal(object("nothing_offered.so")), "offers no component");
+}
+
+TEST(SharedObject, RefusesAnotherVersionOfTheInterface) {
+  EXPECT_EQ(refusal(object("other_abi.so")),
+            "was built for another version of the component interface than 1, which this framework speaks: build it "
+            "again");
+}
+
+TEST(SharedObject, NamesWhatItOffersInsteadOfAnUnknownComponent) {
+  const auto opened = SharedObject::open(object("counter.so"));
+  ASSERT_TRUE(opened);
+  EXPECT_EQ(opened->component("kounter").error().message.view(), "has no component kounter; it offers counter");
+}
+
+TEST(SharedObject, MatchesItsOwnDescriptorAndNamesThePortThatDiffers) {
+  const auto opened = SharedObject::open(object("counter.so"));
+  ASSERT_TRUE(opened);
+  Descriptor file = describe(**opened->component("counter")).value();
+  EXPECT_TRUE(opened->matching(file));
+  file.ports[0].unit = "m";
+  const auto differs = opened->matching(file);
+  ASSERT_FALSE(differs);
+  const std::string_view said = differs.error().message.view();
+  EXPECT_NE(said.find("port count"), std::string_view::npos) << said;
+  EXPECT_EQ(differs.error().where.view(), object("counter.so").substr(0, 200));
+  file.name = "other";
+  EXPECT_EQ(opened->matching(file).error().message.view(), "has no component other; it offers counter");
+}
+
+TEST(SharedObject, IsNotChangedByOverwritingItsFile) {
+  TemporaryFile file(contents(object("counter.so")));
+  const auto opened = SharedObject::open(file.path());
+  ASSERT_TRUE(opened);
+  file.write(std::string(contents(object("counter.so")).size(), '\0'));
+  const auto component = opened->component("counter");
+  ASSERT_TRUE(component);
+  auto instance = ComponentState::make(**component);
+  ASSERT_TRUE(instance);
+  EXPECT_EQ(count_once(**component, *instance), 1);
+}
+
+TEST(SharedObject, OpenedTwiceSharesNothing) {
+  const auto first = SharedObject::open(object("counter.so"));
+  const auto second = SharedObject::open(object("counter.so"));
+  ASSERT_TRUE(first && second);
+  const auto one = first->component("counter"), two = second->component("counter");
+  ASSERT_TRUE(one && two);
+  EXPECT_NE(*one, *two);
+  auto a = ComponentState::make(**one), b = ComponentState::make(**two);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(count_once(**one, *a), 1);
+  EXPECT_EQ(count_once(**one, *a), 2);
+  EXPECT_EQ(count_once(**two, *b), 1);
+}
+
+TEST(ComponentState, CarriesTheTextOfAConstructorThatRefuses) {
+  const auto opened = SharedObject::open(object("broken_state.so"));
+  ASSERT_TRUE(opened);
+  EXPECT_EQ(ComponentState::make(*opened->components()[0]).error().message.view(),
+            "component broken_state cannot be made: no");
+}
+
+TEST(ComponentState, IsZeroedAndMovesAsAHandle) {
+  const auto opened = SharedObject::open(object("counter.so"));
+  ASSERT_TRUE(opened);
+  auto made = ComponentState::make(*opened->components()[0]);
+  ASSERT_TRUE(made);
+  void* const state = made->state();
+  for (std::uint32_t i = 0; i < made->component().state_size; ++i)
+    ASSERT_EQ(static_cast<std::byte*>(state)[i], std::byte{0}) << i;
+  const ComponentState moved = std::move(*made);
+  EXPECT_EQ(moved.state(), state);
+  EXPECT_EQ(made->state(), nullptr);
+}
+
+}  // namespace
+}  // namespace chimera
