@@ -161,6 +161,7 @@ int Session::report(RunEnd end) {
             (holds ? "true" : "false") + ", \"said\": " + json_string(said) + "}";
   }
   const std::string variables = variables_json();
+  const std::vector<State> states = states_of(application_.tasks());
   loop_->shut_down();
   if (sink_ != nullptr) {
     drain();
@@ -169,11 +170,11 @@ int Session::report(RunEnd end) {
   if (request_.json) {
     std::fprintf(out_, "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s]}\n",
                  json_string(application_.configuration().subsystem()).c_str(), json_string(loop_->description()).c_str(),
-                 static_cast<long long>(ran_.count), word(end), profile_json(application_.tasks()).c_str(),
+                 static_cast<long long>(ran_.count), word(end), profile_json(application_.tasks(), states).c_str(),
                  variables.c_str(), rows.c_str());
   } else {
     std::fprintf(out_, "ran %.3f s%s\n%s%s", to_seconds(ran_), sentence(end),
-                 profile_table(application_.tasks(), ran_).c_str(), lines.c_str());
+                 profile_table(application_.tasks(), states, ran_).c_str(), lines.c_str());
   }
   return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
 }

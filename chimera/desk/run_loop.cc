@@ -71,7 +71,7 @@ class RealTimeLoop final : public RunLoop {
   Nanoseconds now() const override { return looking_on_.now() - executive_.origin(); }
   Nanoseconds origin() const override { return executive_.origin(); }
   void shut_down() override { executive_.shut_down(); }
-  std::string description() const override { return "real time: " + grant_; }
+  std::string description() const override { return grant_; }
 
  private:
   const RunRequest& request_;
