@@ -25,6 +25,7 @@ TEST(UnitSystem, NamesTheUnknownWordAndTheNearestUnit) {
   EXPECT_EQ(refusal("kmh"), "\"kmh\" is no known unit; did you mean \"km/h\"?");
   EXPECT_EQ(refusal("radain"), "\"radain\" is no known unit; did you mean \"radian\"?");
   EXPECT_EQ(refusal("furlongs"), "\"furlongs\" is no known unit");
+  EXPECT_EQ(refusal("hPa"), "\"hPa\" is no known unit; did you mean \"Pa\"?");
   EXPECT_EQ(refusal("ft"), "\"ft\" is no known unit; did you mean \"t\"?");
 }
 
