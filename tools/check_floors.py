@@ -67,6 +67,8 @@ def heavy_refusal(name, path):
         return None
     if (floor_of(name) or 0) < 6:
         return "libraries like this stay above the real-time line"
+    if path == "nlohmann/json_fwd.hpp":  # declarations only: what a header may show
+        return None
     return "slow to compile: include it in the one .cc that needs it" if name.endswith(".h") else None
 
 

@@ -65,7 +65,9 @@ void ChromeTrace::event(const TapRecord& record, const char* phase, const std::s
   const Nanoseconds at = record.at - origin_;
   const bool is_slice = *phase == 'X';
   const std::string shape = is_slice ? ", \"dur\": " + microseconds_text(Nanoseconds{record.b}) : ", \"s\": \"t\"";
-  std::fprintf(file_, "%s{\"ph\": \"%s\", \"name\": %s, \"pid\": %u, \"tid\": %u, \"ts\": %s%s, \"args\": {\"ns\": %lld%s}}",
+  constexpr const char* kEvent =
+      "%s{\"ph\": \"%s\", \"name\": %s, \"pid\": %u, \"tid\": %u, \"ts\": %s%s, \"args\": {\"ns\": %lld%s}}";
+  std::fprintf(file_, kEvent,
                is_first_ ? "" : ",\n", phase, quoted(name).c_str(), static_cast<unsigned>(record.rtpu), tid,
                microseconds_text(at).c_str(), shape.c_str(), static_cast<long long>(at.count), more.c_str());
   is_first_ = false;
@@ -90,7 +92,8 @@ void ChromeTrace::add(std::span<const TapRecord> records) {
 }
 
 void ChromeTrace::end(std::uint64_t dropped) {
-  std::fprintf(file_, "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"dropped_records\": %llu}}\n",
+  std::fprintf(file_,
+               "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"dropped_records\": %llu}}\n",
                quoted(subsystem_).c_str(), static_cast<unsigned long long>(dropped));
   std::fflush(file_);
 }
