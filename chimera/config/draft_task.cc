@@ -111,8 +111,12 @@ void read_server(const Node& node, const std::string& what, DraftTask& task, Rep
   refuse_unknown_keys(node, kServerKeys, what, report);
   for (const std::string_view key : kServerKeys)
     if (node.find(key) == nullptr)
-      report.add({.rule = "key-missing", .at = node.at, .message = "'" + std::string(key) + "' in " + what + " is missing",
-                  .found = {}, .expected = std::string(key), .nearest = {},
+      report.add({.rule = "key-missing",
+                  .at = node.at,
+                  .message = "'" + std::string(key) + "' in " + what + " is missing",
+                  .found = {},
+                  .expected = std::string(key),
+                  .nearest = {},
                   .remedy = "write {kind: deferrable, capacity: 1 ms, period: 10 ms}"});
   const Node *kind = node.find("kind"), *capacity = node.find("capacity"), *period = node.find("period");
   DraftServer server;

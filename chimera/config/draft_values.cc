@@ -68,10 +68,14 @@ bool check_name(const Word& word, const std::string& what, Report& report) {
   if (is_name(word.text)) return true;
   const std::string shown = word.text.size() > kMaxNameBytes ? word.text.substr(0, kMaxNameBytes) + "..." : word.text;
   const bool glued = word.text.find(':') != std::string::npos;
-  report.add({.rule = "name-illegal", .at = word.at,
-              .message = what + " is '" + shown + "'; expected a letter or '_', then letters, digits and '_', at most " +
+  report.add({.rule = "name-illegal",
+              .at = word.at,
+              .message = what + " is '" + shown +
+                         "'; expected a letter or '_', then letters, digits and '_', at most " +
                          std::to_string(kMaxNameBytes),
-              .found = shown, .expected = "a name", .nearest = {},
+              .found = shown,
+              .expected = "a name",
+              .nearest = {},
               .remedy = glued ? "a space must follow the ':'" : ""});
   return false;
 }
@@ -114,7 +118,8 @@ std::optional<Located<std::uint32_t>> read_whole(const Node& node, std::uint32_t
                                                  const std::string& what, Report& report) {
   if (!expect_plain(node, "a whole number", what, report)) return std::nullopt;
   const auto value = whole(node.text);
-  if (value && *value >= min && *value <= max) return Located<std::uint32_t>{static_cast<std::uint32_t>(*value), node.at};
+  if (value && *value >= min && *value <= max)
+    return Located<std::uint32_t>{static_cast<std::uint32_t>(*value), node.at};
   const std::string range = std::to_string(min) + " to " + std::to_string(max);
   add(report, "number-bad", node, what + " is " + written(node) + "; expected a whole number from " + range, range);
   return std::nullopt;

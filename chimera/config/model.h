@@ -64,10 +64,11 @@ struct TaskModel {
   Nanoseconds deadline, offset, budget, min_time;
   std::uint32_t criticality = 0;
   std::size_t rtpu = 0;
+  bool lacks_link = false;  ///< a name under its keys is no port, or a repeated port has no instances
 
   const std::string& name() const noexcept { return draft->name.text; }
-  /// Of an unknown component, or with a key that could not be read.
-  bool is_partial() const noexcept { return component == nullptr || draft->is_partial; }
+  /// Of an unknown component, or with a key or a link that could not be read.
+  bool is_partial() const noexcept { return component == nullptr || draft->is_partial || lacks_link; }
   bool has_inputs() const noexcept;
   bool has_resource() const noexcept;
 };

@@ -40,6 +40,9 @@ std::string remedy(const Fault& fault) {
 
 void Report::add(Fault fault) {
   CHIMERA_ASSERT(is_rule(fault.rule));
+  for (std::string* part : {&fault.message, &fault.found, &fault.expected, &fault.nearest, &fault.remedy})
+    for (char& c : *part)
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';  // one fault, one line
   for (const Fault& known : faults_)
     if (known.at == fault.at && known.rule == fault.rule && known.message == fault.message) return;
   ++(fault.severity == Severity::kError ? errors_ : warnings_);

@@ -8,13 +8,13 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 73> kRules = {
+inline constexpr std::array<std::string_view, 72> kRules = {
     // the text
     "file-unreadable", "text-size", "text-encoding", "text-tab", "text-entries", "text-nesting", "value-size",
     "yaml-syntax", "yaml-anchor", "yaml-alias", "yaml-tag", "yaml-documents", "yaml-block-scalar", "yaml-key",
     // keys and words
     "key-twice", "key-unknown", "key-missing", "value-kind", "name-illegal", "word-unknown", "number-bad",
-    "quantity-bad", "quantity-unit", "version-unknown", "count-limit",
+    "quantity-bad", "version-unknown", "count-limit",
     // components and ports
     "component-unknown", "port-unknown", "port-kind", "port-stream", "alias-list", "repeated-port",
     "table-limit", "resource-missing",

@@ -23,35 +23,47 @@ bool is_in_const(std::uint32_t kind) { return kind == CHIMERA_IN_CONST; }
 bool is_out_var(std::uint32_t kind) { return kind == CHIMERA_OUT_VAR; }
 bool is_resource(std::uint32_t kind) { return kind == CHIMERA_RESOURCE; }
 
-/// The port that `name` under `key` means, or nullptr and a fault.
-const PortDescriptor* find_port(Model& model, const TaskModel& task, const Word& name, const char* key,
-                                bool (*wanted)(std::uint32_t), const char* wanted_kind) {
+/// What a key of a task may name.
+struct Wanted {
+  const char* key;
+  bool (*fits)(std::uint32_t kind);
+  const char* kinds;  ///< "in-const"
+};
+
+std::string with_article(const std::string& noun) { return (noun[0] == 'i' || noun[0] == 'o' ? "an " : "a ") + noun; }
+
+/// `name` under a key has to be a port of a kind that fits.
+void check_key(Model& model, TaskModel& task, const Word& name, const Wanted& wanted) {
   const PortDescriptor* port = task.component->port(name.text);
-  if (port != nullptr && wanted(port->kind)) return port;
-  const std::vector<std::string> names = port_names(*task.component, wanted);
+  if (port != nullptr && wanted.fits(port->kind)) return;
+  task.lacks_link = true;
+  const std::vector<std::string> names = port_names(*task.component, wanted.fits);
+  const std::string key = "'" + std::string(wanted.key) + "' of task '" + task.name() + "': ";
   const std::string of = "component '" + task.component->name + "'";
-  const std::string there_are = std::string("its ") + wanted_kind + " ports: " + listed(names);
+  const std::string there_are = std::string("its ") + wanted.kinds + " ports: " + listed(names);
   if (port == nullptr) {
     const std::string near = nearest(name.text, names);
-    model.error("port-unknown", name.at,
-                "'" + std::string(key) + "' of task '" + task.name() + "': " + of + " has no port '" + name.text + "'",
-                name.text, listed(names), near, near.empty() ? there_are : "");
-    return nullptr;
+    model.error("port-unknown", name.at, key + of + " has no port '" + name.text + "'", name.text, listed(names), near,
+                near.empty() ? there_are : "");
+    return;
   }
+  const std::string kind(kind_name(port->kind));
   model.error("port-kind", name.at,
-              "'" + std::string(key) + "' of task '" + task.name() + "': port '" + name.text + "' of " + of + " is an " +
-                  std::string(kind_name(port->kind)) + "; expected an " + wanted_kind,
-              std::string(kind_name(port->kind)), wanted_kind, {}, there_are);
-  return nullptr;
+              key + "port '" + name.text + "' of " + of + " is " + with_article(kind) + "; expected " +
+                  with_article(wanted.kinds),
+              kind, wanted.kinds, {}, there_are);
 }
 
-void check_keys(Model& model, const TaskModel& task) {
+void check_keys(Model& model, TaskModel& task) {
+  constexpr Wanted kAlias{"alias", is_linkable, "variable or constant"},
+      kConstants{"constants", is_in_const, "in-const"}, kResources{"resources", is_resource, "resource"},
+      kInitial{"initial", is_out_var, "out-var"}, kMaxStep{"max_step", is_out_var, "out-var"};
   const DraftTask& draft = *task.draft;
-  for (const DraftAlias& alias : draft.alias) find_port(model, task, alias.port, "alias", is_linkable, "variable or constant");
-  for (const NamedNode& value : draft.constants) find_port(model, task, value.name, "constants", is_in_const, "in-const");
-  for (const NamedNode& value : draft.resources) find_port(model, task, value.name, "resources", is_resource, "resource");
-  for (const NamedNode& value : draft.initial) find_port(model, task, value.name, "initial", is_out_var, "out-var");
-  for (const NamedNode& value : draft.max_step) find_port(model, task, value.name, "max_step", is_out_var, "out-var");
+  for (const DraftAlias& alias : draft.alias) check_key(model, task, alias.port, kAlias);
+  for (const NamedNode& value : draft.constants) check_key(model, task, value.name, kConstants);
+  for (const NamedNode& value : draft.resources) check_key(model, task, value.name, kResources);
+  for (const NamedNode& value : draft.initial) check_key(model, task, value.name, kInitial);
+  for (const NamedNode& value : draft.max_step) check_key(model, task, value.name, kMaxStep);
 }
 
 const DraftAlias* alias_of(const DraftTask& draft, std::string_view port) {
@@ -128,9 +140,11 @@ void link_port(Model& model, std::size_t task_index, std::uint32_t index) {
                 port.name, expected, {},
                 port.repeated ? "write " + port.name + ": [variable, variable]" : "write " + port.name + ": variable");
     alias = nullptr;
+    task.lacks_link = true;
     if (port.repeated) return;
   }
   const std::size_t count = port.repeated ? instances(model, task, port, alias) : 1;
+  task.lacks_link = task.lacks_link || count == 0;
   for (std::uint32_t i = 0; i < count; ++i) add_port(task, task_index, index, i, alias);
 }
 
@@ -149,7 +163,7 @@ void link_ports(Model& model) {
 void require_resources(Model& model) {
   for (const TaskModel& task : model.tasks)
     for (const LinkedPort& port : task.ports)
-      if (port.is(CHIMERA_RESOURCE) && port.own == nullptr && !task.draft->is_partial)
+      if (port.is(CHIMERA_RESOURCE) && port.own == nullptr && !task.is_partial())
         model.error("resource-missing", task.draft->name.at,
                     "task '" + task.name() + "': the resource '" + port.declared->name + "' is not given", {},
                     port.declared->name, {},

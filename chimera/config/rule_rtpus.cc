@@ -29,8 +29,9 @@ void place(Model& model, TaskModel& task) {
     }
   }
   const std::string near = nearest(name->text, names);
-  model.error("rtpu-unknown", name->at, "task '" + task.name() + "' names the rtpu '" + name->text + "', which is not there",
-              name->text, listed(names), near, near.empty() ? "there are: " + listed(names) : "");
+  model.error("rtpu-unknown", name->at,
+              "task '" + task.name() + "' names the rtpu '" + name->text + "', which is not there", name->text,
+              listed(names), near, near.empty() ? "there are: " + listed(names) : "");
 }
 
 /// The task of `rtpu` whose criticality is extreme by `better`, or nullptr.

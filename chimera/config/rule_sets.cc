@@ -25,8 +25,9 @@ std::optional<std::size_t> find_set(Model& model, const Word& name, const std::s
     if (model.sets[i].name == name.text) return i;
   const std::vector<std::string> names = set_names(model);
   const std::string near = nearest(name.text, names);
-  model.error("configuration-unknown", name.at, who + " names the configuration '" + name.text + "', which is not there",
-              name.text, listed(names), near, near.empty() ? "there are: " + listed(names) : "");
+  model.error("configuration-unknown", name.at,
+              who + " names the configuration '" + name.text + "', which is not there", name.text, listed(names), near,
+              near.empty() ? "there are: " + listed(names) : "");
   return std::nullopt;
 }
 
@@ -41,8 +42,8 @@ void add_task(Model& model, SetModel& set, const Word& name) {
                 listed(names), near, near.empty() ? "there are: " + listed(names) : "");
   } else if (set.has(*task)) {
     model.error("configuration-task-twice", name.at,
-                "configuration '" + set.name + "' names the task '" + name.text + "' twice", name.text, "each task once",
-                {}, "take one of the two out");
+                "configuration '" + set.name + "' names the task '" + name.text + "' twice", name.text,
+                "each task once", {}, "take one of the two out");
   } else {
     set.tasks.push_back(*task);
     if (model.tasks[*task].is_partial()) set.is_whole = false;

@@ -109,10 +109,12 @@ void settle(Model& model, VariableModel& variable, PortRef ref) {
 void bind(Model& model, PortRef ref, const LinkedPort& port, const VariableModel& variable, ExtentBindings& bindings) {
   const TaskModel& task = model.tasks[port.task];
   const std::vector<Extent>& declared = port.declared->extents;
-  if (declared.size() != variable.extents.size()) return;
+  const std::vector<SolvedExtent> one{{.constant = {}, .max = 1, .known = 1}};  // a scalar is a vector of one
+  const std::vector<SolvedExtent>& theirs = variable.extents.empty() ? one : variable.extents;
+  if (declared.size() != theirs.size()) return;
   for (std::size_t i = 0; i < declared.size(); ++i) {
     if (declared[i].is_literal() || giver(task, declared[i].symbol) != nullptr) continue;
-    SolvedExtent extent = variable.extents[i];
+    SolvedExtent extent = theirs[i];
     const std::uint32_t most = std::min(extent.max, declared[i].max);
     extent.max = declared[i].max;
     const auto [bound, is_new] =
@@ -155,6 +157,7 @@ void take_from_values(Model& model, ExtentBindings& bindings) {
     if (variable.has_extents || variable.given == nullptr) continue;
     variable.extents = shape_of(variable.given->value);
     variable.has_extents = true;
+    spread(model, bindings);
   }
   for_each_port(model, [&](PortRef ref, LinkedPort& port) {
     if (port.has_extents || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
@@ -172,7 +175,8 @@ bool differ(const SolvedExtent& a, const SolvedExtent& b) {
 }
 
 bool shapes_differ(const std::vector<SolvedExtent>& a, const std::vector<SolvedExtent>& b) {
-  if (a.size() != b.size()) return true;
+  const auto is_one = [](const SolvedExtent& e) { return e.known && *e.known == 1; };
+  if (a.size() != b.size()) return !std::all_of(a.begin(), a.end(), is_one) || !std::all_of(b.begin(), b.end(), is_one);
   for (std::size_t i = 0; i < a.size(); ++i)
     if (differ(a[i], b[i])) return true;
   return false;
@@ -190,7 +194,7 @@ void compare(Model& model, const VariableModel& variable, const LinkedPort& port
   if (!variable.has_extents || !variable.shape_from) return;
   const std::string other = settled_by(model, variable, variable.shape_from);
   if (!port.has_extents) {  // a generic port with another number of dimensions
-    if (port.declared->extents.size() == variable.extents.size()) return;
+    if (port.declared->extents.size() == std::max<std::size_t>(variable.extents.size(), 1)) return;
     model.error("shape-clash", port.at,
                 model.say(port) + " is " + port.declared->shape + "; " + other + " is " + said(variable.extents),
                 port.declared->shape, said(variable.extents), {}, "link it to another variable by alias");

@@ -48,10 +48,11 @@ void check(Model& model, std::size_t standby, std::size_t primary) {
                 text(outputs(task)), text(outputs(other)), {}, "link its outputs by alias");
   for (const SetModel& set : model.sets)
     if (set.has(standby) && set.has(primary))
-      model.error("standby-in-configuration", set.at,
-                  "configuration '" + set.name + "' names task '" + other.name() + "' and its standby '" + task.name() + "'",
-                  task.name(), "one of the two", {}, "take '" + task.name() + "' out: it goes ON when '" + other.name() +
-                  "' fails");
+      model.error(
+          "standby-in-configuration", set.at,
+          "configuration '" + set.name + "' names task '" + other.name() + "' and its standby '" + task.name() + "'",
+          task.name(), "one of the two", {},
+          "take '" + task.name() + "' out: it goes ON when '" + other.name() + "' fails");
   if (task.rtpu == other.rtpu)
     model.warn("standby-same-rtpu", at,
                "task '" + task.name() + "' and the task it stands in for, '" + other.name() + "', are both on rtpu '" +

@@ -31,8 +31,8 @@ void read_rate(Model& model, TaskModel& task) {
   const double hz = task.component->default_rate_hz;
   if (hz == 0) {
     model.error("rate-missing", draft.name.at,
-                "task '" + task.name() + "' has no rate, and component '" + task.component->name + "' has no default", {},
-                "a rate", {}, "write rate: 100 Hz");
+                "task '" + task.name() + "' has no rate, and component '" + task.component->name + "' has no default",
+                {}, "a rate", {}, "write rate: 100 Hz");
     return;
   }
   task.period = Nanoseconds{std::llround(1e9 / hz)};  // describe() bounds the default
@@ -44,9 +44,10 @@ void check_time(Model& model, const TaskModel& task, const char* key, const std:
                 bool may_be_zero, const char* limit_name, std::optional<Nanoseconds> limit, bool may_be_limit) {
   if (!time) return;
   const auto refuse = [&](const std::string& expected) {
-    model.error("time-range", time->at,
-                "'" + std::string(key) + "' of task '" + task.name() + "' is " + say(time->value) + "; expected " + expected,
-                say(time->value), expected);
+    model.error(
+        "time-range", time->at,
+        "'" + std::string(key) + "' of task '" + task.name() + "' is " + say(time->value) + "; expected " + expected,
+        say(time->value), expected);
   };
   if (!may_be_zero && time->value.count == 0) {
     refuse("more than 0");
@@ -74,8 +75,9 @@ void check_task(Model& model, TaskModel& task) {
   const std::optional<Nanoseconds> deadline = draft.deadline ? std::optional(draft.deadline->value) : task.period;
   check_time(model, task, "offset", draft.offset, true, "period", task.period, false);
   check_time(model, task, "budget", draft.budget, false, "deadline", deadline, true);
-  check_time(model, task, "min", draft.min_time, false, draft.budget ? "budget" : "deadline",
-             draft.budget ? std::optional(draft.budget->value) : deadline, true);
+  const bool has_budget = draft.budget && draft.budget->value.count > 0;
+  check_time(model, task, "min", draft.min_time, false, has_budget ? "budget" : "deadline",
+             has_budget ? std::optional(draft.budget->value) : deadline, true);
   check_time(model, task, "stale_after", draft.stale_after, false, "", std::nullopt, true);
   check_server(model, task);
   task.deadline = deadline.value_or(Nanoseconds{});
@@ -108,10 +110,11 @@ void limit(Model& model, const SetModel& set, std::uint32_t cpu) {
               "the budgets of configuration '" + set.name + "' take " + found + " of CPU " + std::to_string(cpu) +
                   "; expected at most 0.93",
               found, "at most 0.93", {},
-              fits > 0 ? "task '" + task.name() + "' takes most: it would fit with budget: " +
-                             say(Nanoseconds{static_cast<std::int64_t>(fits * static_cast<double>(task.period->count))}) +
-                             " or rate: " + room + " Hz"
-                       : "move tasks to another CPU, or lower their rates");
+              fits > 0
+                  ? "task '" + task.name() + "' takes most: it would fit with budget: " +
+                        say(Nanoseconds{static_cast<std::int64_t>(fits * static_cast<double>(task.period->count))}) +
+                        " or rate: " + room + " Hz"
+                  : "move tasks to another CPU, or lower their rates");
 }
 
 }  // namespace

@@ -67,8 +67,11 @@ void spread(Model& model, TypeBindings& bindings) {
 
 /// Where no port says a type, a written value does.
 void take_from_values(Model& model, TypeBindings& bindings) {
-  for (VariableModel& variable : model.variables)
-    if (!variable.type && variable.given != nullptr) variable.type = type_of(variable.given->value);
+  for (VariableModel& variable : model.variables) {
+    if (variable.type || variable.given == nullptr) continue;
+    variable.type = type_of(variable.given->value);
+    spread(model, bindings);  // before the next value: it is converted rather than asked
+  }
   for_each_port(model, [&](PortRef ref, LinkedPort& port) {
     if (port.type || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
     if (const auto type = type_of(*port.own))
@@ -121,20 +124,33 @@ void compare(Model& model, const VariableModel& variable, PortRef ref, const Typ
   const std::string differs = difference(model, *port.declared, *first.declared);
   if (differs.empty()) return;
   model.error("struct-clash", port.at,
-              model.say(port) + " and " + settled_by(model, variable, variable.type_from) + " mean different structs '" +
-                  port.declared->type_name + "': " + differs,
+              model.say(port) + " and " + settled_by(model, variable, variable.type_from) +
+                  " mean different structs '" + port.declared->type_name + "': " + differs,
               port.declared->type_name, {}, {}, "build both components against one definition of the struct");
+}
+
+bool is_refused(Model& model, const LinkedPort& port) {
+  const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
+  return variable != nullptr && variable->type && !is_scalar(*variable->type);
+}
+
+/// Another port of the same type variable is linked to something that it cannot take.
+bool follows_from_another(Model& model, const LinkedPort& port) {
+  for (const LinkedPort& other : model.tasks[port.task].ports)
+    if (&other != &port && uses(*other.declared, port.declared->type_name) && is_refused(model, other)) return true;
+  return false;
 }
 
 void report_unsolved(Model& model, const LinkedPort& port) {
   const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
-  if (variable != nullptr && variable->type && !is_scalar(*variable->type)) {
+  if (is_refused(model, port)) {
     model.error("type-clash", port.at,
                 model.say(port) + " takes any number; " + settled_by(model, *variable, variable->type_from) + " is " +
                     text_of(model, *variable),
                 text_of(model, *variable), "a number", {}, "link it to another variable by alias");
     return;
   }
+  if (follows_from_another(model, port)) return;
   model.error("type-unsolved", port.at,
               "nothing settles the type '" + port.declared->type_name + "' of " + model.say(port),
               port.declared->type_name, "a linked port or a value of a known type", {},

@@ -127,6 +127,7 @@ void take_from_values(Model& model, UnitTable& table) {
     if (const auto unit = unit_of(model, variable.given->value)) {
       variable.unit = unit->unit;
       variable.unit_text = unit->text;
+      spread(model, table);  // before the next value: it is converted rather than asked
     }
   }
   for_each_port(model, [&](PortRef ref, LinkedPort& port) {

@@ -33,9 +33,11 @@ class Refusals {
   void rtpu(std::size_t index) {
     const RtpuSpec& spec = configuration_.rtpus()[index];
     if (executor_ == Executor::kRealTime && spec.policy == Policy::kLlf)
-      refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time", "use muf-laxity, or run --virtual");
+      refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time",
+             "use muf-laxity, or run --virtual");
     const auto tasks = configuration_.tasks();
-    const auto first = std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
+    const auto first =
+        std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
     if (first == tasks.end() || index == tasks[0].rtpu) return;
     refuse(first->at, "task '" + first->name + "' on a second rtpu, '" + std::string(spec.name) + "'",
            "place every task on one rtpu to run");

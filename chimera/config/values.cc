@@ -90,7 +90,8 @@ class Writer {
       list(node, dimension);
       return;
     }
-    refuse("value-shape", node.at, "found " + written(node) + "; expected a list for each row", written(node), "a list");
+    refuse("value-shape", node.at, "found " + written(node) + "; expected a list for each row", written(node),
+           "a list");
   }
 
   std::string shape(std::size_t dimension) const {
@@ -112,8 +113,9 @@ class Writer {
     std::vector<std::string> names;
     for (const FieldDescriptor& field : declared.fields) names.push_back(field.name);
     if (!node.is_map()) {
-      refuse("value-type", node.at, "found " + written(node) + "; expected a map of the fields of " + declared.type_name,
-             written(node), "a map", {}, "write {" + names[0] + ": ...} with the fields " + listed(names));
+      refuse("value-type", node.at,
+             "found " + written(node) + "; expected a map of the fields of " + declared.type_name, written(node),
+             "a map", {}, "write {" + names[0] + ": ...} with the fields " + listed(names));
       return;
     }
     for (const Word& key : node.keys) {
@@ -138,8 +140,10 @@ class Writer {
     if (!node.is_list()) {
       for (std::uint32_t i = 0; i < field.count; ++i) cell(node, each, to + std::size_t{i} * field.size);
     } else if (node.items.size() != field.count || field.count == 1) {
-      refuse("value-shape", node.at, "field '" + field.name + "': found a list of " + std::to_string(node.items.size()) +
-             "; expected " + std::to_string(field.count), std::to_string(node.items.size()), std::to_string(field.count));
+      refuse("value-shape", node.at,
+             "field '" + field.name + "': found a list of " + std::to_string(node.items.size()) + "; expected " +
+                 std::to_string(field.count),
+             std::to_string(node.items.size()), std::to_string(field.count));
     } else {
       for (std::uint32_t i = 0; i < field.count; ++i) cell(node.items[i], each, to + std::size_t{i} * field.size);
     }
@@ -161,8 +165,10 @@ class Writer {
     if (!node.is_scalar()) {
       refuse("value-type", node.at, "found " + written(node) + "; expected a text", written(node), "a text");
     } else if (node.text.size() >= cell.size) {
-      refuse("value-range", node.at, "found a text of " + std::to_string(node.text.size()) + " bytes; expected at most " +
-             std::to_string(cell.size - 1), node.text, "at most " + std::to_string(cell.size - 1) + " bytes");
+      refuse("value-range", node.at,
+             "found a text of " + std::to_string(node.text.size()) + " bytes; expected at most " +
+                 std::to_string(cell.size - 1),
+             node.text, "at most " + std::to_string(cell.size - 1) + " bytes");
     } else {
       std::memcpy(to, node.text.data(), node.text.size());
     }
@@ -172,9 +178,11 @@ class Writer {
     if (node.text == "true" || node.text == "false")
       store<std::uint8_t>(to, node.text == "true");
     else
-      refuse("value-type", node.at, "found " + written(node) + "; expected true or false", node.text, "true or false", {},
-             node.text == "yes" || node.text == "on" ? "write true" : node.text == "no" || node.text == "off"
-             ? "write false" : "");
+      refuse("value-type", node.at, "found " + written(node) + "; expected true or false", node.text, "true or false",
+             {},
+             node.text == "yes" || node.text == "on"   ? "write true"
+             : node.text == "no" || node.text == "off" ? "write false"
+                                                       : "");
   }
 
   void number(const Node& node, const Cell& cell, std::byte* to) {
@@ -234,8 +242,8 @@ class Writer {
     if (!in_range(node, cell, value)) return;
     if (cell.type == CHIMERA_FLOAT64) return store(to, value);
     if (std::isfinite(value) && std::fabs(value) > std::numeric_limits<float>::max())
-      return refuse("value-range", node.at, "found " + written(node) + "; expected a number that fits float32", node.text,
-                    "float32");
+      return refuse("value-range", node.at, "found " + written(node) + "; expected a number that fits float32",
+                    node.text, "float32");
     store(to, static_cast<float>(value));
   }
 
