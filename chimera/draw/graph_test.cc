@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <random>
 #include <set>
 
 #include "chimera/draw/layout.h"
@@ -45,40 +46,62 @@ TEST(Graph, ALoopWithoutSourceStillHasColumns) {
   EXPECT_EQ(columns_of(loop), (std::vector<std::size_t>{0, 1}));
 }
 
-TEST(Graph, BoxesDoNotOverlap) {
-  const Graph graph = figure4();
-  const Layout layout = lay_out(graph);
-  for (const Placed& a : layout.boxes) {
-    EXPECT_LE(a.x + a.width, layout.width);
-    EXPECT_LE(a.y + a.height, layout.height);
-    for (const Placed& b : layout.boxes) {
-      if (&a == &b) continue;
-      EXPECT_TRUE(a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y);
-    }
-  }
-}
-
-TEST(Graph, LinesAreStraightAndTracksAreNotShared) {
-  const Graph graph = figure4();
+/// What every picture keeps, whatever it shows.
+void expect_sound(const Graph& graph) {
   const Layout layout = lay_out(graph);
   std::set<int> tracks;
   for (const Piece& piece : layout.pieces) {
     EXPECT_TRUE(piece.x1 == piece.x2 || piece.y1 == piece.y2);
-    if (piece.x1 != piece.x2 || piece.is_dot) continue;
-    EXPECT_TRUE(tracks.insert(piece.x1).second) << piece.x1;
-  }
-}
-
-TEST(Graph, NoLineCrossesABox) {
-  const Graph graph = figure4();
-  const Layout layout = lay_out(graph);
-  for (const Piece& piece : layout.pieces) {
+    EXPECT_TRUE(std::min(piece.x1, piece.x2) >= 0 && std::max(piece.x1, piece.x2) <= layout.width);
+    EXPECT_TRUE(std::min(piece.y1, piece.y2) >= 0 && std::max(piece.y1, piece.y2) <= layout.height);
+    if (piece.x1 == piece.x2 && !piece.is_dot) {
+      EXPECT_TRUE(tracks.insert(piece.x1).second) << "two lines share the track at " << piece.x1;
+    }
     for (const Placed& box : layout.boxes) {
       const bool beside = std::max(piece.x1, piece.x2) <= box.x || std::min(piece.x1, piece.x2) >= box.x + box.width;
       const bool over = std::max(piece.y1, piece.y2) <= box.y || std::min(piece.y1, piece.y2) >= box.y + box.height;
-      EXPECT_TRUE(beside || over) << piece.x1 << "," << piece.y1 << " to " << piece.x2 << "," << piece.y2;
+      EXPECT_TRUE(beside || over) << "a line crosses " << graph.boxes[box.box].name;
     }
   }
+  for (const Placed& a : layout.boxes) {
+    EXPECT_LE(a.x + a.width, layout.width);
+    EXPECT_LE(a.y + a.height, layout.height);
+    for (const Placed& b : layout.boxes) {
+      const bool apart = a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y;
+      EXPECT_TRUE(&a == &b || apart) << graph.boxes[a.box].name << " lies on " << graph.boxes[b.box].name;
+    }
+  }
+}
+
+TEST(Graph, LinesCrossNoBoxAndShareNoTrack) { expect_sound(figure4()); }
+
+TEST(Graph, AnyGraphIsDrawnSoundly) {
+  for (unsigned seed = 1; seed <= 200 && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    Graph graph{"random", {}, {"v0", "v1"}};
+    const std::size_t boxes = 1 + random() % 8, ports = 1 + random() % 9;
+    for (std::size_t i = 0; i < boxes; ++i) {
+      Box box{"box" + std::to_string(i), random() % 2 == 0 ? "" : "component", "", "", {}};
+      for (std::size_t k = 0; k < ports; ++k) {
+        const auto kind = static_cast<PortKind>(random() % 5);
+        box.ports.push_back({kind, "p" + std::to_string(k), "v" + std::to_string(random() % 9)});
+      }
+      graph.boxes.push_back(box);
+    }
+    expect_sound(graph);
+    if (const char* keep = std::getenv("CHIMERA_KEEP_PICTURE"); keep != nullptr) std::ofstream(keep) << svg(graph);
+  }
+}
+
+TEST(Graph, TheLargestApplicationIsDrawn) {
+  Graph graph{"chain", {}, {}};
+  for (int i = 0; i < 256; ++i) {
+    const std::string in = "v" + std::to_string(i), out = "v" + std::to_string((i + 1) % 256);
+    graph.boxes.push_back({"box" + std::to_string(i), "", "", "", {{kIn, "in", in}, {kOut, "out", out}}});
+  }
+  expect_sound(graph);
+  EXPECT_EQ(count(svg(graph), "rx=\"12\""), 256u);
 }
 
 TEST(Graph, ADotMarksEveryFan) {
@@ -99,7 +122,6 @@ TEST(Svg, ShowsEveryNameAndEscapesIt) {
   Graph graph = figure4();
   graph.title = "a<b&c";
   const std::string document = svg(graph);
-  if (const char* keep = std::getenv("CHIMERA_KEEP_PICTURE"); keep != nullptr) std::ofstream(keep) << svg(figure4());
   for (const char* name : {"trajectory", "pid_joint", "1 kHz ON", "puma560.xml", "tau_max", "a&lt;b&amp;c"}) {
     EXPECT_EQ(count(document, std::string(name)) > 0, true) << name;
   }
