@@ -5,6 +5,9 @@
 #   RESOURCES are copied beside them. LIBRARIES are linked into the component.
 #   NAME_test.cc beside the sources is linked with them (chimera/task/rig.h finds the component by its name):
 #   as the test NAME_test, or, where CHIMERA_COMPONENT_GROUP is set, into the group's one test binary.
+# chimera_application(NAME description)
+#   The tests check_NAME and run_NAME: the description is legal with the components built here and those installed,
+#   and runs for a second of virtual time.
 # chimera_component_tests(GROUP)
 #   The test binary of all components made so far with CHIMERA_COMPONENT_GROUP set to GROUP.
 #
@@ -35,6 +38,10 @@ function(_chimera_component_test name objects libraries)
   if(CHIMERA_COMPONENT_GROUP)
     set_property(GLOBAL APPEND PROPERTY chimera_${CHIMERA_COMPONENT_GROUP}_sources ${test} $<TARGET_OBJECTS:${objects}>)
     set_property(GLOBAL APPEND PROPERTY chimera_${CHIMERA_COMPONENT_GROUP}_libraries ${libraries})
+    return()
+  endif()
+  if(NOT TARGET GTest::gtest_main)
+    message(STATUS "${name}_test.cc is not built: GoogleTest was not found")
     return()
   endif()
   add_executable(${name}_test ${test} $<TARGET_OBJECTS:${objects}>)
@@ -78,6 +85,17 @@ function(chimera_component name)
   endif()
   set_property(GLOBAL APPEND PROPERTY chimera_component_names ${name})
   _chimera_component_test(${name} ${objects} "${arg_LIBRARIES}")
+endfunction()
+
+function(chimera_application name description)
+  set(path ${CMAKE_BINARY_DIR}/components)
+  if(DEFINED ENV{CHIMERA_PATH})
+    string(APPEND path ":$ENV{CHIMERA_PATH}")
+  endif()
+  add_test(NAME check_${name} COMMAND chimera::program check ${description})
+  add_test(NAME run_${name} COMMAND chimera::program run ${description} --virtual --for "1 s")
+  set_tests_properties(check_${name} run_${name} PROPERTIES
+    WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} ENVIRONMENT "CHIMERA_PATH=${path}")
 endfunction()
 
 function(chimera_component_tests group)

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/new.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "chimera/base/message.h"
+#include "chimera/load/descriptor.h"
+
+namespace chimera::desk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestName = 40;
+
+/// What the templates call @NAME@ and so on.
+struct Words {
+  std::string name, type, package, program;
+};
+
+struct File {
+  std::string path, text;
+  bool is_program = false;
+};
+
+/// "low_pass" -> "LowPass"
+std::string type_of(const std::string& name) {
+  std::string type;
+  bool is_start = true;
+  for (const char c : name) {
+    if (c != '_') type += is_start && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    is_start = c == '_';
+  }
+  return type;
+}
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+/// Without the licence line: what is made belongs to whoever makes it.
+std::string without_licence(const std::string& text) {
+  std::string kept;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("SPDX-License-Identifier") == std::string::npos) kept += line + "\n";
+  return kept;
+}
+
+std::string template_name(NewKind kind) {
+  return kind == NewKind::kApplication ? "app" : kind == NewKind::kComponentInC ? "component_c" : "component";
+}
+
+/// share/chimera/templates of the installation, or of the checkout around a build tree (build/PRESET).
+Result<fs::path> template_folder(const fs::path& prefix, NewKind kind) {
+  const fs::path place = fs::path("share/chimera/templates") / template_name(kind);
+  for (const fs::path& root : {prefix, prefix.parent_path().parent_path()})
+    if (fs::is_directory(root / place)) return root / place;
+  return (Message() << "there are no templates: no " << place.string()).error(ErrorCode::kNotFound, prefix.string());
+}
+
+File fill_in(const fs::path& file, const Words& words) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  File made{file.filename().string(), without_licence(text.str()), file.extension() == ".sh"};
+  if (made.path.starts_with("NAME")) made.path.replace(0, 4, words.name);
+  replace(made.text, "@NAME@", words.name);
+  replace(made.text, "@TYPE@", words.type);
+  replace(made.text, "@PACKAGE@", words.package);
+  replace(made.text, "@PROGRAM@", words.program);
+  return made;
+}
+
+Result<void> check(const NewRequest& request) {
+  if (!is_identifier(request.name) || request.name.size() > kLongestName) {
+    return (Message() << "\"" << request.name << "\" is no legal name: [a-z][a-z0-9_]*, at most " << kLongestName
+                      << " letters")
+        .error(ErrorCode::kBadInput);
+  }
+  if (!fs::is_directory(request.parent))
+    return (Message() << "there is no such folder").error(ErrorCode::kNotFound, request.parent);
+  const fs::path folder = fs::path(request.parent) / request.name;
+  if (fs::exists(fs::symlink_status(folder)))
+    return (Message() << "exists already: nothing is overwritten").error(ErrorCode::kRefused, folder.string());
+  return {};
+}
+
+std::string next_steps(const fs::path& folder, const std::string& package, const std::vector<File>& files) {
+  std::string text = "made " + folder.string() + ":";
+  for (const File& file : files) text += " " + file.path;
+  return text + "\nnext:\n  cd " + folder.string() + "\n  cmake -B build -Dchimera_DIR=" + package +
+         "\n  cmake --build build\n  ctest --test-dir build --output-on-failure\n";
+}
+
+Result<std::string> make(const NewRequest& request, const fs::path& program) {
+  if (const auto legal = check(request); !legal) return legal.error();
+  const fs::path prefix = fs::absolute(program).parent_path().parent_path();
+  const auto templates = template_folder(prefix, request.kind);
+  if (!templates) return templates.error();
+  const Words words{request.name, type_of(request.name), (prefix / "lib/cmake/chimera").string(),
+                    fs::absolute(program).string()};
+  std::vector<fs::path> sources;
+  for (const auto& entry : fs::directory_iterator(*templates)) sources.push_back(entry.path());
+  std::sort(sources.begin(), sources.end());
+  std::vector<File> files;
+  for (const fs::path& source : sources) files.push_back(fill_in(source, words));
+
+  const fs::path folder = fs::path(request.parent) / request.name;
+  fs::create_directory(folder);
+  for (const File& file : files) {
+    std::ofstream out(folder / file.path, std::ios::binary);
+    out << file.text;
+    out.close();
+    if (!out) return (Message() << "cannot be written").error(ErrorCode::kSystem, (folder / file.path).string());
+    if (file.is_program) fs::permissions(folder / file.path, fs::perms::owner_exec, fs::perm_options::add);
+  }
+  return next_steps(folder, words.package, files);
+}
+
+}  // namespace
+
+Output new_project(const NewRequest& request, const std::string& program) {
+  try {
+    auto made = make(request, program);
+    if (!made) return refused(made.error(), false);
+    return {*std::move(made), "", kOk};
+  } catch (const fs::filesystem_error& error) {
+    const std::string why = error.code().message();
+    return refused((Message() << why).error(ErrorCode::kSystem, error.path1().string()), false);
+  }
+}
+
+}  // namespace chimera::desk
