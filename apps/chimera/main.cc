@@ -11,6 +11,7 @@
 #include "chimera/config/quantity.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
+#include "chimera/desk/new.h"
 #include "chimera/desk/run.h"
 
 namespace {
@@ -22,6 +23,8 @@ struct Words {
   bool json = false;
   desk::CheckOptions check;
   std::string component;
+  desk::NewRequest made;
+  bool in_c = false;
   desk::RunRequest run;
   std::string duration, every, quantum, seed;
   std::string trace, timeline;
@@ -70,6 +73,24 @@ void add_run(CLI::App& app, Words& words) {
   r->add_flag("--json", words.json, "the result as one JSON object");
   r->footer("Exit code 0 only if the run came to its end and every --expect holds.\n"
             "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
+}
+
+void add_new(CLI::App& app, Words& words) {
+  CLI::App* n = app.add_subcommand("new", "Make a project that builds and passes its tests at once");
+  n->require_subcommand(1);
+  CLI::App* c = n->add_subcommand("component", "One component and its test");
+  c->add_option("NAME", words.made.name, "[a-z][a-z0-9_]*; also the name of the folder")->required();
+  c->add_flag("--c", words.in_c, "in C instead of C++");
+  c->footer("Example: chimera new component low_pass");
+  CLI::App* a = n->add_subcommand("app", "A description, a component of its own, and a script that runs it");
+  a->add_option("NAME", words.made.name, "[a-z][a-z0-9_]*; also the name of the folder")->required();
+  a->footer("Example: chimera new app pendulum");
+}
+
+desk::Output make_new(const CLI::App& app, Words& words) {
+  if (app.get_subcommand("new")->got_subcommand("app")) words.made.kind = desk::NewKind::kApplication;
+  else if (words.in_c) words.made.kind = desk::NewKind::kComponentInC;
+  return desk::new_project(words.made, desk::program_path());
 }
 
 bool read_duration(const std::string& text, const char* option, Nanoseconds& to) {
@@ -126,6 +147,7 @@ int carry_out(CLI::App& app, Words& words) {
   const desk::Workplace workplace = desk::Workplace::around(desk::program_path());
   words.check.json = words.json;
   if (app.got_subcommand("check")) return print(desk::check(words.check, workplace));
+  if (app.got_subcommand("new")) return print(make_new(app, words));
   if (app.got_subcommand("list")) return print(desk::list(workplace, words.json));
   if (app.got_subcommand("describe")) return print(desk::describe_component(words.component, workplace, words.json));
   return run_application(words, workplace);
@@ -141,6 +163,7 @@ int main(int argc, char** argv) {
   add_check(app, words);
   add_run(app, words);
   add_list(app, words);
+  add_new(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -84,7 +84,7 @@ Result<void> check(const NewRequest& request) {
   }
   if (!fs::is_directory(request.parent))
     return (Message() << "there is no such folder").error(ErrorCode::kNotFound, request.parent);
-  const fs::path folder = fs::path(request.parent) / request.name;
+  const fs::path folder = (fs::path(request.parent) / request.name).lexically_normal();
   if (fs::exists(fs::symlink_status(folder)))
     return (Message() << "exists already: nothing is overwritten").error(ErrorCode::kRefused, folder.string());
   return {};
@@ -110,7 +110,7 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
   std::vector<File> files;
   for (const fs::path& source : sources) files.push_back(fill_in(source, words));
 
-  const fs::path folder = fs::path(request.parent) / request.name;
+  const fs::path folder = (fs::path(request.parent) / request.name).lexically_normal();
   fs::create_directory(folder);
   for (const File& file : files) {
     std::ofstream out(folder / file.path, std::ios::binary);
