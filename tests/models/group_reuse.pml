@@ -11,7 +11,7 @@
 #define WORDS 2
 #define TRIES 2
 #define INCARNATIONS 3
-#define PUBLICATIONS 3
+#define PUBLICATIONS(k) (k == INCARNATIONS -> 2 : (k == 1 -> 3 : 2))
 
 #define FREE 0
 #define IN_USE 1
@@ -25,7 +25,7 @@ byte group_of[INCARNATIONS + 1];
 byte adopted;                         /* by the reader */
 bool reader_is_on;
 bool told_off[INCARNATIONS + 1], is_off[INCARNATIONS + 1], is_dead[INCARNATIONS + 1];
-byte published[INCARNATIONS + 1];
+bool published[INCARNATIONS + 1];
 
 #define WORD(g, n, i) slot[(g) * N * WORDS + ((n) % N) * WORDS + (i)]
 
@@ -50,10 +50,10 @@ proctype Writer(byte k; byte g) {
   do
   :: atomic { is_dead[k] -> break }
   :: atomic { !is_dead[k] && told_off[k] -> is_off[k] = true; break }
-  :: atomic { !is_dead[k] && cycles < PUBLICATIONS -> i = 0 };
+  :: atomic { !is_dead[k] && cycles < PUBLICATIONS(k) -> i = 0 };
      do
      :: atomic { !is_dead[k] && i < WORDS -> WORD(g, n + 1, i) = k * 16 + n + 1; i++ }
-     :: atomic { !is_dead[k] && i == WORDS -> n++; counter[g] = n; published[k]++; cycles++; break }
+     :: atomic { !is_dead[k] && i == WORDS -> n++; counter[g] = n; published[k] = true; cycles++; i = 0; break }
      :: atomic { is_dead[k] -> goto ended }
      od
   od;
@@ -74,7 +74,7 @@ active proctype Manager() {
        writer_of[g] = k;
        run Writer(k, g)
      };
-     published[k] > 0;                /* the new task's first outputs, into its still unbound group */
+     published[k];                    /* the new task's first outputs, into its still unbound group */
      atomic {
        group_of[k] = g;
        generation = k;
@@ -120,12 +120,14 @@ active proctype Reader() {
            assert(copy[0] == mine * 16 + n); /* of the incarnation that is bound, the publication it names */
            assert(n >= last[g]);             /* counters never go back */
            last[g] = n;
+           tries = 0;
            break
         :: m < n -> assert(false)
         :: else -> n = m; tries++
         fi
-     :: else -> break
-     od
+     :: else -> tries = 0; break
+     od;
+     atomic { n = 0; m = 0; i = 0; copy[0] = 0; copy[1] = 0; mine = 0; g = 0 } /* forgotten: fewer states */
   :: reader_is_on = false; break
   od
 }
