@@ -22,6 +22,7 @@
 #include <span>
 
 #include "chimera/base/time.h"
+#include "chimera/table/shared_copy.h"
 #include "chimera/table/slot.h"
 
 namespace chimera {
@@ -36,7 +37,7 @@ class GroupWriter {
 
   /// Where the next publication's values go; 8-byte aligned. Changes with every publish(). What stands there is
   /// that of four publications ago until prefill(). Context: cycle; wait-free.
-  std::byte* staging() const noexcept;
+  std::byte* staging() const noexcept { return next() + sizeof(chimera_slot); }
   /// Makes the staged values the latest. Context: cycle; wait-free.
   void publish(Nanoseconds now, std::uint64_t valid) noexcept;
   /// Stages payload_bytes from `values` and publishes them: what a task with a local table does after a method.
@@ -46,14 +47,16 @@ class GroupWriter {
   /// Context: cycle; wait-free; O(payload).
   void prefill() noexcept;
   /// Publications so far. Context: cycle; wait-free.
-  std::uint64_t sequence() const noexcept;
+  std::uint64_t sequence() const noexcept { return latest_; }
   std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
 
  private:
+  std::byte* next() const noexcept { return base_ + kCacheLine + (latest_ + 1) % kSlots * stride_; }
+
   std::byte* base_ = nullptr;
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t stride_ = 0;
-  std::uint64_t latest_ = 0;
+  std::uint64_t latest_ = 0;  // what the counter says; nobody else stores to it
 };
 
 /// A reading side. Works on a read-only mapping.
@@ -67,7 +70,20 @@ class GroupReader {
   /// unchanged or partly overwritten, after kReadTries attempts were overtaken: the caller keeps its
   /// previous copy (double-buffered) and counts it stale.
   /// Context: cycle; bounded; plain loads only.
-  [[nodiscard]] bool try_read(chimera_slot& header, std::byte* values) const noexcept;
+  [[nodiscard]] bool try_read(chimera_slot& header, std::byte* values) const noexcept {
+    std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
+    return read_slot(n, header, values) || try_again(n, header, values);
+  }
+  /// The same into a copy of a slot, whose values follow its header: one copy instead of two.
+  /// Requires: sizeof(chimera_slot) + payload_bytes at `to`. Context: cycle; bounded; plain loads only.
+  [[nodiscard]] bool try_read(chimera_slot* to) const noexcept {
+    std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
+    for (std::uint32_t tries = 0; tries < kReadTries; ++tries) {
+      shared_copy::copy_out(to, slot(n), sizeof *to + payload_bytes_);
+      if (was_whole(n)) return true;
+    }
+    return false;
+  }
   /// The latest published slot in place: its values follow the header. Only where writer and reader run
   /// in one context, so that nothing is published while the pointer is in use.
   /// Context: cycle; wait-free.
@@ -75,9 +91,47 @@ class GroupReader {
   std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
 
  private:
+  const std::byte* slot(std::uint64_t n) const noexcept { return base_ + kCacheLine + n % kSlots * stride_; }
+
+  // One try at publication n; when it was overtaken, n becomes the latest.
+  bool read_slot(std::uint64_t& n, chimera_slot& header, std::byte* values) const noexcept {
+    const std::byte* from = slot(n);
+    shared_copy::load_header(header, from);
+    shared_copy::copy_out(values, from + sizeof header, payload_bytes_);
+    return was_whole(n);
+  }
+  // After a copy of slot n: was it left alone? Then n becomes the latest.
+  bool was_whole(std::uint64_t& n) const noexcept {
+    shared_copy::acquire_fence();  // pairs with the fence at the end of publish()
+    const std::uint64_t m = shared_copy::word(base_).load(std::memory_order_acquire);  // acquire: for the next try
+    const bool is_whole = m - n <= kSlots - 2;  // n + kSlots is begun once the counter says n + kSlots - 1
+    n = m;
+    return is_whole;
+  }
+  // The tries after the first, seldom needed.
+  bool try_again(std::uint64_t n, chimera_slot& header, std::byte* values) const noexcept;
+
   const std::byte* base_ = nullptr;
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t stride_ = 0;
 };
+
+inline void GroupWriter::publish(Nanoseconds now, std::uint64_t valid) noexcept {
+  shared_copy::store_header(next(), {now.count, latest_ + 1, valid, 0});
+  ++latest_;
+  // Whoever loads this value sees the whole slot. pairs with the first load of try_read()
+  shared_copy::word(base_).store(latest_, std::memory_order_release);
+  // Whoever sees a byte of the next staging sees this counter. pairs with the fence of read_slot()
+  shared_copy::release_fence();
+}
+
+inline void GroupWriter::write(const std::byte* values, Nanoseconds now, std::uint64_t valid) noexcept {
+  shared_copy::copy_in(staging(), values, payload_bytes_);
+  publish(now, valid);
+}
+
+inline const chimera_slot* GroupReader::published() const noexcept {
+  return reinterpret_cast<const chimera_slot*>(slot(shared_copy::word(base_).load(std::memory_order_acquire)));
+}
 
 }  // namespace chimera

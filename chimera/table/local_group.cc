@@ -6,26 +6,20 @@
 namespace chimera {
 
 LocalGroup::LocalGroup(GroupReader reader, std::span<std::byte> memory) noexcept
-    : reader_(reader), memory_(memory.data()) {
+    : reader_(reader),
+      memory_(memory.data()),
+      used_(reinterpret_cast<chimera_slot*>(memory.data())),
+      spare_(reinterpret_cast<chimera_slot*>(memory.data() + slot_stride(reader.payload_bytes()))) {
   CHIMERA_ASSERT(memory.size() >= local_group_bytes(reader.payload_bytes()));
   CHIMERA_ASSERT(reinterpret_cast<std::uintptr_t>(memory_) % kCacheLine == 0);
-  *at(0) = {};
-  *at(1) = {};
+  *used_ = {};
+  *spare_ = {};
 }
 
 std::span<std::byte> LocalGroup::values_of_half(std::uint32_t half) const noexcept {
   CHIMERA_ASSERT(half < 2);
-  return {reinterpret_cast<std::byte*>(at(half) + 1), reader_.payload_bytes()};
-}
-
-bool LocalGroup::refresh() noexcept {
-  chimera_slot* spare = at(1 - used_);
-  if (!reader_.try_read(*spare, reinterpret_cast<std::byte*>(spare + 1))) {
-    ++stale_;
-    return false;
-  }
-  used_ = 1 - used_;
-  return true;
+  std::byte* slot = memory_ + half * slot_stride(reader_.payload_bytes());
+  return {slot + sizeof(chimera_slot), reader_.payload_bytes()};
 }
 
 void LocalGroup::rebind(GroupReader reader) noexcept {

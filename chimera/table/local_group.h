@@ -28,24 +28,30 @@ class LocalGroup {
 
   /// Takes over the latest publication. False when the writer overtook every try: the previous copy stays and
   /// counts as stale. Context: cycle; bounded; O(payload).
-  bool refresh() noexcept;
+  bool refresh() noexcept {
+    if (!reader_.try_read(spare_)) {
+      ++stale_;
+      return false;
+    }
+    chimera_slot* read = spare_;
+    spare_ = used_;
+    used_ = read;
+    return true;
+  }
   /// From now on reads `reader`, keeping the present copy until the next refresh(). Requires: same payload size.
   /// Context: cycle; wait-free.
   void rebind(GroupReader reader) noexcept;
 
   /// The present copy: header, then values. Changes its place with refresh(). Context: cycle; wait-free.
-  const chimera_slot* slot() const noexcept { return at(used_); }
+  const chimera_slot* slot() const noexcept { return used_; }
   /// Reads that were overtaken, since construction.
   std::uint64_t stale() const noexcept { return stale_; }
 
  private:
-  chimera_slot* at(std::uint32_t half) const noexcept {
-    return reinterpret_cast<chimera_slot*>(memory_ + half * slot_stride(reader_.payload_bytes()));
-  }
-
   GroupReader reader_;
   std::byte* memory_ = nullptr;
-  std::uint32_t used_ = 0;
+  chimera_slot* used_ = nullptr;
+  chimera_slot* spare_ = nullptr;
   std::uint64_t stale_ = 0;
 };
 

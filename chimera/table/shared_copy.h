@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "chimera/table/slot_header.h"
+
 #ifndef CHIMERA_WORDWISE_COPY
 #define CHIMERA_WORDWISE_COPY 0
 #endif
@@ -22,6 +24,22 @@ namespace chimera::shared_copy {
 /// The counter word at `place`. Readers use it on read-only mappings: it is never stored through.
 inline std::atomic_ref<std::uint64_t> word(const std::byte* place) noexcept {
   return std::atomic_ref<std::uint64_t>(*reinterpret_cast<std::uint64_t*>(const_cast<std::byte*>(place)));
+}
+
+/// The header of a slot, in both builds word by word: three moves, the reserved word stays zero. (Built on the stack
+/// and copied as a block it would be read back wider than it was written, which stalls.)
+inline void store_header(std::byte* to, const chimera_slot& header) noexcept {
+  constexpr auto order = CHIMERA_WORDWISE_COPY ? std::memory_order_release : std::memory_order_relaxed;
+  word(to).store(static_cast<std::uint64_t>(header.published_ns), order);
+  word(to + 8).store(header.sequence, order);
+  word(to + 16).store(header.valid, order);
+}
+inline void load_header(chimera_slot& header, const std::byte* from) noexcept {
+  constexpr auto order = CHIMERA_WORDWISE_COPY ? std::memory_order_acquire : std::memory_order_relaxed;
+  header.published_ns = static_cast<std::int64_t>(word(from).load(order));
+  header.sequence = word(from + 8).load(order);
+  header.valid = word(from + 16).load(order);
+  header.reserved = 0;
 }
 
 #if CHIMERA_WORDWISE_COPY

@@ -15,11 +15,4 @@ GroupInput GroupInput::copied(LocalGroup& local) noexcept {
   return input;
 }
 
-std::uint32_t transfer_in(std::span<GroupInput> inputs) noexcept {
-  std::uint32_t stale = 0;
-  for (GroupInput& input : inputs)
-    if (!input.latch()) ++stale;
-  return stale;
-}
-
 }  // namespace chimera

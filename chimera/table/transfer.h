@@ -46,6 +46,11 @@ class GroupInput {
 
 /// Latches every input; the number of those that stayed stale. Port pointers are resolved from slot() afterwards.
 /// Consistent per group, not across groups. Context: cycle; bounded; O(bytes of the copied groups).
-std::uint32_t transfer_in(std::span<GroupInput> inputs) noexcept;
+inline std::uint32_t transfer_in(std::span<GroupInput> inputs) noexcept {
+  std::uint32_t stale = 0;
+  for (GroupInput& input : inputs)
+    if (!input.latch()) ++stale;
+  return stale;
+}
 
 }  // namespace chimera
