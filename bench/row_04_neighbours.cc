@@ -129,7 +129,8 @@ int main(int argc, char** argv) {
     const auto our_two = two.add("register", beside(turn, 1, from_register));
     const auto mutex_two = two.add("PI mutex, process-shared", beside(turn, 2, from_mutex));
     two.run(our_two);
-    report(two, our_two, mutex_two, "read 80 B with two readers, times cheaper than a mutex", bench::ratio_at_least(15));
+    report(two, our_two, mutex_two, "read 80 B with two readers, times cheaper than a mutex",
+           bench::ratio_at_least(15));
   }
   stop = true;
 }

@@ -51,7 +51,8 @@ def main():
         as_expected = (errors > 0) == bool(mutant)
         wrong += not as_expected
         verdict = "caught" if mutant and errors else "NOT CAUGHT" if mutant else f"{errors} errors"
-        print(f"{model + (' with ' + mutant if mutant else ''):42} {verdict:10} {states:>10} states {seconds:5.1f} s CPU")
+        name = f"{model} with {mutant}" if mutant else model
+        print(f"{name:42} {verdict:10} {states:>10} states {seconds:5.1f} s CPU")
     return 1 if wrong else 0
 
 
