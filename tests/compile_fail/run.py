@@ -55,13 +55,27 @@ def misspellings():
     return re.findall(r"X\((\w+), (\w+)\)", listed)
 
 
+def guide(folder):
+    """The whole sources in the guide for authors: they must compile as written."""
+    text = (ROOT / "docs/howto/write-a-component.md").read_text()
+    blocks = re.findall(r"```(cpp|c)\n(#include \"chimera/task/(?:component|pbo)\.h\".*?)```", text, re.DOTALL)
+    if len(blocks) < 2:
+        sys.exit("the guide has no sources any more")
+    for i, (language, source) in enumerate(blocks):
+        path = pathlib.Path(folder) / f"guide_{i}.{'cc' if language == 'cpp' else 'c'}"
+        path.write_text(source)
+        yield path, None
+
+
 def main():
     work = []
     with tempfile.TemporaryDirectory() as folder:
         control = pathlib.Path(folder) / "control.cc"
         control.write_text(CONTROL % "")
         work.append((control, None))
-        work += cases()
+        work += guide(folder)
+        refused = cases()
+        work += refused
         # All misspellings in one class: the compiler names each of them.
         words = misspellings()
         all_of_them = pathlib.Path(folder) / "misspelt.cc"
@@ -72,7 +86,7 @@ def main():
                       "cycle sync off kill error clear" not in said]
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             wrong = [line for line in pool.map(lambda one: judge(*one), work) if line] + missing
-    print("\n".join(wrong) if wrong else f"{len(work) - 1} refusals and {len(words)} misspellings as written")
+    print("\n".join(wrong) if wrong else f"{len(refused)} refusals and {len(words)} misspellings as written")
     sys.exit(1 if wrong else 0)
 
 
