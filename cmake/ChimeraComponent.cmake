@@ -8,8 +8,8 @@
 # chimera_application(NAME description)
 #   The tests check_NAME and run_NAME: the description is legal with the components built here and those installed,
 #   and runs for a second of virtual time.
-# chimera_component_tests(GROUP)
-#   The test binary of all components made so far with CHIMERA_COMPONENT_GROUP set to GROUP.
+# chimera_component_tests(GROUP [file...])
+#   The test binary of all components made so far with CHIMERA_COMPONENT_GROUP set to GROUP, and of further test files.
 #
 # The same file serves this build and the exported package: what differs are the targets chimera::component (headers
 # and base library) and chimera::describe (the tool).
@@ -31,13 +31,17 @@ endfunction()
 
 function(_chimera_component_test name objects libraries)
   set(test ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cc)
-  _chimera_component_tests_wanted(wanted)
-  if(NOT wanted OR NOT EXISTS ${test})
+  if(CHIMERA_COMPONENT_GROUP)
+    set(group chimera_${CHIMERA_COMPONENT_GROUP})
+    set_property(GLOBAL APPEND PROPERTY ${group}_sources $<TARGET_OBJECTS:${objects}>)
+    set_property(GLOBAL APPEND PROPERTY ${group}_libraries ${libraries})
+    if(EXISTS ${test})
+      set_property(GLOBAL APPEND PROPERTY ${group}_sources ${test})
+    endif()
     return()
   endif()
-  if(CHIMERA_COMPONENT_GROUP)
-    set_property(GLOBAL APPEND PROPERTY chimera_${CHIMERA_COMPONENT_GROUP}_sources ${test} $<TARGET_OBJECTS:${objects}>)
-    set_property(GLOBAL APPEND PROPERTY chimera_${CHIMERA_COMPONENT_GROUP}_libraries ${libraries})
+  _chimera_component_tests_wanted(wanted)
+  if(NOT wanted OR NOT EXISTS ${test})
     return()
   endif()
   if(NOT TARGET GTest::gtest_main)
@@ -101,6 +105,7 @@ endfunction()
 function(chimera_component_tests group)
   get_property(sources GLOBAL PROPERTY chimera_${group}_sources)
   get_property(libraries GLOBAL PROPERTY chimera_${group}_libraries)
+  list(APPEND sources ${ARGN})
   _chimera_component_tests_wanted(wanted)
   if(sources AND wanted)
     _chimera_test_binary(${group}_test unit "${sources}" "chimera_component_base;${libraries}" "")
