@@ -107,6 +107,17 @@ chimera_port_decl declare_type(const char* name, const char* unit, const char* s
   return port;
 }
 
+/// True when the fields leave out at least one member: a gap that padding cannot explain.
+inline bool leaves_out_a_member(const chimera_port_decl& port, std::size_t align) {
+  std::size_t end = 0;
+  for (std::uint32_t i = 0; i < port.n_fields; ++i) {
+    const chimera_field& field = port.fields[i];
+    if (field.offset >= end + align) return true;
+    end = field.offset + std::size_t{field.count} * field.size;
+  }
+  return port.element_size >= end + align;
+}
+
 /// Where a port's live half lies; `instances` and `max` only for a repeated one.
 struct Place {
   const void* live;
@@ -123,6 +134,8 @@ void declare_port(const char* name, const char* unit, const char* shape, Place p
   Collector* to = Collector::current();
   if (to == nullptr) return;
   chimera_port_decl port = declare_type<T, Kind>(name, unit, shape);
+  if (port.n_fields != 0 && leaves_out_a_member(port, alignof(E)))
+    to->refuse(name, "carries a struct with a member that its Fields do not name");
   if (place.instances != nullptr) {
     const std::size_t size = std::strlen(name);  // "in*": the declaration has no star
     auto* kept = reinterpret_cast<char*>(to->keep(name, size));

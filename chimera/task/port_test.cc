@@ -12,6 +12,17 @@
 #include "chimera/task/rig.h"
 
 namespace chimera {
+
+struct Halved {
+  double named;
+  double forgotten;
+};
+template <>
+struct Fields<Halved> {
+  static constexpr const char* name = "Halved";
+  static constexpr auto list = std::tuple{field("named", "m", &Halved::named)};
+};
+
 namespace {
 
 struct Declared {
@@ -186,6 +197,12 @@ struct Elsewhere {
 };
 CHIMERA_COMPONENT(Elsewhere, "elsewhere", "A port on the heap.");
 
+struct Partly {
+  In<Halved> x{"x"};
+  void cycle() {}
+};
+CHIMERA_COMPONENT(Partly, "partly", "A struct port with a member left out.");
+
 TEST(Port, WhatCannotBeDeclaredIsRefusedAtConstruction) {
   alignas(64) std::byte state[4096] = {};
   chimera_fault fault{};
@@ -193,6 +210,8 @@ TEST(Port, WhatCannotBeDeclaredIsRefusedAtConstruction) {
   EXPECT_STREQ(fault.text, "port same is declared twice");
   EXPECT_EQ(component("elsewhere").construct(state, &fault), CHIMERA_FAULT);
   EXPECT_STREQ(fault.text, "port away must be a member of the component, not on the heap or static");
+  EXPECT_EQ(component("partly").construct(state, &fault), CHIMERA_FAULT);
+  EXPECT_STREQ(fault.text, "port x carries a struct with a member that its Fields do not name");
 }
 
 }  // namespace
