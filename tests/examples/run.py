@@ -59,6 +59,7 @@ def main():
     parser.add_argument("--examples", required=True, type=pathlib.Path)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
+    options.program = os.path.abspath(options.program)
     self_test()
     failed = passed = 0
     folders = sorted(folder for folder in options.examples.iterdir() if folder.is_dir())
