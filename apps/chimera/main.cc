@@ -153,6 +153,12 @@ int carry_out(CLI::App& app, Words& words) {
   return run_application(words, workplace);
 }
 
+bool is_command(const CLI::App& app, const std::string& word) {
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (command->get_name() == word) return true;
+  return false;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -164,6 +170,10 @@ int main(int argc, char** argv) {
   add_run(app, words);
   add_list(app, words);
   add_new(app, words);
+  if (argc > 1 && argv[1][0] != '-' && !is_command(app, argv[1])) {
+    std::fprintf(stderr, "no command '%s'; `chimera --help` lists them\n", argv[1]);
+    return desk::kUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -38,6 +38,16 @@ const char* sentence(RunEnd end) {
   return "";
 }
 
+std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
+  const std::string name(task.spec->name);
+  std::string why = task.faults.last.text;
+  if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
+  if (refused.why == Refusal::kIllegalSet) why = "the tasks ON would not be a legal set";
+  char at[32];
+  std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
+  return std::string("refused at ") + at + ": " + signal_name(refused.signal) + " " + name + ": " + why + "\n";
+}
+
 /// One run with everything that is watched and expected of it.
 class Session {
  public:
@@ -162,6 +172,9 @@ int Session::report(RunEnd end) {
   }
   const std::string variables = variables_json();
   const std::vector<State> states = states_of(application_.tasks());
+  std::string refused;
+  for (const RefusedSignal& r : loop_->refused())
+    refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
   loop_->shut_down();
   if (sink_ != nullptr) {
     drain();
@@ -173,7 +186,7 @@ int Session::report(RunEnd end) {
                  static_cast<long long>(ran_.count), word(end), profile_json(application_.tasks(), states).c_str(),
                  variables.c_str(), rows.c_str());
   } else {
-    std::fprintf(out_, "ran %.3f s%s\n%s%s", to_seconds(ran_), sentence(end),
+    std::fprintf(out_, "ran %.3f s%s\n%s%s%s", to_seconds(ran_), sentence(end), refused.c_str(),
                  profile_table(application_.tasks(), states, ran_).c_str(), lines.c_str());
   }
   return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;

@@ -21,6 +21,8 @@ class RunLoop {
   virtual Nanoseconds now() const = 0;
   virtual Nanoseconds origin() const = 0;
   virtual void shut_down() = 0;
+  /// What was refused while it ran; after the end only.
+  virtual std::span<const RefusedSignal> refused() const = 0;
   /// One line about how it is run, for people.
   virtual std::string description() const = 0;
 };

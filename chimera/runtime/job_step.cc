@@ -49,14 +49,15 @@ void record_fault(Task& task, Method method, const char* text, Nanoseconds at) n
 Answer call_method(Task& task, Method method, Nanoseconds at) noexcept {
   const chimera_method body = task.component->methods[static_cast<int>(method)];
   if (body == nullptr) return default_answer(method);
-  chimera_fault before = {};
-  const bool may_keep_old = method == Method::kError || method == Method::kClear;
-  if (may_keep_old) before = task.faults.last;
-  task.faults.last.text[0] = '\0';
-  task.faults.last.code = 0;
+  task.said.text[0] = '\0';
+  task.said.code = 0;
   const Answer answer = answer_of(method, body(task.instance, &task.call));
-  if (answer == Answer::kFault) note_fault(task, method, at);
-  else if (may_keep_old) task.faults.last = before;
+  // An error() that does not recover adds nothing to the fault that called it.
+  if (answer == Answer::kFault && method != Method::kError) {
+    task.said.text[CHIMERA_FAULT_TEXT - 1] = '\0';
+    task.faults.last = task.said;
+    note_fault(task, method, at);
+  }
   return answer;
 }
 

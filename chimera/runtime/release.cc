@@ -85,8 +85,9 @@ void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
 
 void Releases::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
   const bool was_illegal = set_.is_illegal();
-  const bool accepted = set_.signal(task.id, signal, now).is_accepted;
-  record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(signal), accepted ? 1 : 0);
+  const SignalReport report = set_.signal(task.id, signal, now);
+  record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(signal), report.is_accepted ? 1 : 0);
+  if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before});
   record_faults(task);
   if (set_.is_illegal() != was_illegal) record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
 }

@@ -24,6 +24,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "chimera/base/fixed.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/script.h"
 #include "chimera/runtime/tap.h"
@@ -40,6 +41,17 @@ struct RunOptions {
   std::uint8_t rtpu = 0;                     ///< for the records
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
 };
+
+/// A signal that was refused, from the script or from a task.
+struct RefusedSignal {
+  Nanoseconds at;  ///< on the executor's clock
+  TaskId task;
+  Signal signal = Signal::kOn;
+  Refusal why = Refusal::kNone;
+  State state = State::kNotCreated;  ///< of the task, then
+};
+
+inline constexpr std::size_t kRefusedKept = 64;
 
 /// Why a run ended.
 enum class RunEnd : std::uint8_t {
@@ -107,6 +119,9 @@ class Releases {
   /// The job never started and its deadline has come (reaction abort).
   void expire_waiting(const Job& job) noexcept;
 
+  /// The first kRefusedKept signals that were refused. Context: setup.
+  std::span<const RefusedSignal> refused() const noexcept { return {refused_.begin(), refused_.end()}; }
+
   /// Writes one record, if anybody wants it.
   void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
 
@@ -155,6 +170,7 @@ class Releases {
   ReadyQueue queue_;
   std::uint32_t n_on_ = 0;
   bool task_stopped_ = false;
+  FixedVector<RefusedSignal, kRefusedKept> refused_;
   bool patience_lost_ = false;  ///< by a dropped release: somebody may have missed too many
 };
 

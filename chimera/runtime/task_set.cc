@@ -33,13 +33,14 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
   tasks_.resize(n);
   contexts_.resize(n);
   on_.assign(n, false);
+  wanted_.assign(n, false);
   for (std::size_t t = 0; t < n; ++t) {
     Task& task = tasks_[t];
     task.spec = &spec_.tasks[t];
     task.component = components[t];
     task.id = TaskId(t);
     contexts_[t] = {this, &task};
-    task.call.fault = &task.faults.last;
+    task.call.fault = &task.said;
     task.call.host = &kHost;
     task.call.context = &contexts_[t];
     task.inputs = memories_[t].inputs();

@@ -20,12 +20,22 @@
 
 namespace chimera {
 
-/// What became of a signal.
+/// Why a signal was refused.
+enum class Refusal : std::uint8_t {
+  kNone,
+  kState,       ///< not legal in the state of the task
+  kIllegalSet,  ///< the tasks that would be ON would have two producers of a variable, or none
+  kFault        ///< `on` or the constructor said no; the text is in the task's fault record
+};
+
+/// What became of a signal. Plain data: no text is made on the cycle path; explain() makes it.
 struct SignalReport {
   bool is_accepted = false;
+  Refusal why = Refusal::kNone;
+  Signal signal = Signal::kOn;
+  TaskId task;  ///< the one it failed at, else the last
   State before = State::kNotCreated;
   State after = State::kNotCreated;
-  std::string refusal;  ///< why not, for people; empty when accepted
 };
 
 /// Present value of a state variable.
@@ -67,6 +77,10 @@ class TaskSet {
   SignalReport signal(TaskId task, Signal signal, Nanoseconds now);
   /// Turns tasks ON (or OFF) as one transaction: refused as a whole when the set would be illegal. Context: edge.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now);
+
+  /// A refused report in words, with the smallest legal set where that helps; "" when it was accepted. For a report of
+  /// the last call of signal(). Context: setup; may block.
+  std::string explain(const SignalReport& report) const;
 
   /// Hands the signals that `task` sent during its last method to their targets. Context: edge.
   void deliver(Task& task) noexcept;
@@ -122,7 +136,7 @@ class TaskSet {
   void take_over(Task& task) noexcept;
   std::uint64_t valid_after_on(const Task& task) const noexcept;
   void reinit_users(TaskId of, Nanoseconds now);
-  bool would_be_legal(std::span<const TaskId> tasks, Signal signal, std::string& why) const;
+  bool would_be_legal(std::span<const TaskId> tasks) noexcept;
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
 
   static std::int32_t host_expired(void* context);
@@ -144,6 +158,7 @@ class TaskSet {
   ConstantStore constants_;
   JobClock* clock_ = nullptr;
   std::vector<bool> on_;
+  std::vector<bool> wanted_;  // the ON set that was asked for last
   std::uint32_t n_pending_ = 0;
   std::uint64_t taken_over_valid_ = 0;
   bool flag_raised_ = false;

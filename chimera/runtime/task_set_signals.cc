@@ -5,15 +5,6 @@
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
-namespace {
-
-std::string refusal(const Task& task, Signal signal) {
-  return std::string(signal_name(signal)) + " is not legal for " + std::string(task.spec->name) + " in state " +
-         state_name(task.state);
-}
-
-}  // namespace
-
 Result<void> TaskSet::start(Nanoseconds now) {
   for (TaskId id : spec_.init_order) {
     carry_out(id, Signal::kSpawn, now);
@@ -22,7 +13,7 @@ Result<void> TaskSet::start(Nanoseconds now) {
       return Error{ErrorCode::kRefused, {std::string("init: ") + task.faults.last.text}, {task.spec->name}};
   }
   const SignalReport report = signal(spec_.start, Signal::kOn, now);
-  if (!report.is_accepted) return Error{ErrorCode::kRefused, {report.refusal}, {spec_.name}};
+  if (!report.is_accepted) return Error{ErrorCode::kRefused, {explain(report)}, {spec_.name}};
   return {};
 }
 
@@ -41,14 +32,19 @@ SignalReport TaskSet::signal(TaskId task, Signal signal, Nanoseconds now) { retu
 
 SignalReport TaskSet::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) {
   SignalReport report;
+  report.signal = signal;
   for (TaskId id : tasks) {
     const Task& task = tasks_[id.index];
+    report.task = id;
     report.before = report.after = task.state;
     if (next(task.state, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
-    report.refusal = refusal(task, signal);
+    report.why = Refusal::kState;
     return report;
   }
-  if (signal == Signal::kOn && !would_be_legal(tasks, signal, report.refusal)) return report;
+  if (signal == Signal::kOn && !would_be_legal(tasks)) {
+    report.why = Refusal::kIllegalSet;
+    return report;
+  }
   for (TaskId id : tasks) {
     report = carry_out(id, signal, now);
     if (signal != Signal::kOn || report.after == State::kOn) continue;
@@ -57,30 +53,37 @@ SignalReport TaskSet::signal(std::span<const TaskId> tasks, Signal signal, Nanos
       carry_out(done, Signal::kOff, now);
     }
     report.is_accepted = false;
-    report.refusal = "on: " + std::string(tasks_[id.index].spec->name) + ": " + tasks_[id.index].faults.last.text;
+    report.why = Refusal::kFault;
     break;
   }
   on_set_changed();
   return report;
 }
 
-bool TaskSet::would_be_legal(std::span<const TaskId> tasks, Signal signal, std::string& why) const {
-  std::vector<bool> on(on_.size());
-  for (const Task& task : tasks_) on[task.id.index] = task.state == State::kOn;
-  for (TaskId id : tasks) on[id.index] = signal == Signal::kOn;
-  why = variables_->explain(on, spec_.tasks);
-  return why.empty();
+bool TaskSet::would_be_legal(std::span<const TaskId> tasks) noexcept {
+  for (const Task& task : tasks_) wanted_[task.id.index] = task.state == State::kOn;
+  for (TaskId id : tasks) wanted_[id.index] = true;
+  return variables_->is_legal(wanted_);
+}
+
+std::string TaskSet::explain(const SignalReport& report) const {
+  if (report.is_accepted) return {};
+  if (report.why == Refusal::kIllegalSet) return variables_->explain(wanted_, spec_.tasks);
+  const Task& task = tasks_[report.task.index];
+  const std::string what = signal_name(report.signal);
+  if (report.why == Refusal::kFault) return what + ": " + std::string(task.spec->name) + ": " + task.faults.last.text;
+  return what + " is not legal for " + std::string(task.spec->name) + " in state " + state_name(report.before);
 }
 
 SignalReport TaskSet::carry_out(TaskId id, Signal signal, Nanoseconds now) {
   Task& task = tasks_[id.index];
-  SignalReport report{true, task.state, task.state, {}};
+  SignalReport report{true, Refusal::kNone, signal, id, task.state, task.state};
   if (signal == Signal::kSpawn) {
     auto constructed = memories_[id.index].construct(task, now);
     if (!constructed) {
       record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
       report.is_accepted = false;
-      report.refusal = constructed.error().message.c_str();
+      report.why = Refusal::kFault;
       return report;
     }
   }

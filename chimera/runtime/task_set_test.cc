@@ -143,13 +143,13 @@ TEST_F(CounterAndReader, RefusesWhatIsNotLegalAndChangesNothing) {
   ASSERT_TRUE(set->start({}));
   const SignalReport again = set->signal(TaskId{std::size_t{0}}, Signal::kOn, {});
   EXPECT_FALSE(again.is_accepted);
-  EXPECT_EQ(again.refusal, "on is not legal for counter in state ON");
+  EXPECT_EQ(set->explain(again), "on is not legal for counter in state ON");
   set->signal(TaskId{std::size_t{0}}, Signal::kOff, {});
   EXPECT_TRUE(set->is_illegal());
   set->signal(TaskId{std::size_t{1}}, Signal::kOff, {});
   EXPECT_FALSE(set->is_illegal());
   const SignalReport alone = set->signal(TaskId{std::size_t{1}}, Signal::kOn, {});
-  EXPECT_EQ(alone.refusal, "n would have no producer; the smallest legal set is: counter reader");
+  EXPECT_EQ(set->explain(alone), "n would have no producer; the smallest legal set is: counter reader");
   EXPECT_EQ(set->tasks()[1].state, State::kOff);
 }
 
@@ -176,7 +176,7 @@ TEST(TaskSet, TwoProducersOfOneVariableCannotBothBeOn) {
   auto set = make(app);
   ASSERT_TRUE(set->start({}));
   const SignalReport both = set->signal(TaskId{std::size_t{1}}, Signal::kOn, {});
-  EXPECT_EQ(both.refusal, "n would have two producers: a and b");
+  EXPECT_EQ(set->explain(both), "n would have two producers: a and b");
 }
 
 TEST(TaskSet, ConstantsFixExtentsAndReinitialiseExactlyTheirUsers) {

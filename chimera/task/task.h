@@ -61,6 +61,7 @@ struct Task {
   std::uint64_t valid = 0;        ///< of the out-vars, as last published
   Nanoseconds last_release;       ///< of the last completed cycle; for dt
   chimera_call call{};
+  chimera_fault said{};  ///< where the present method leaves its fault; faults keeps the last one
   FaultRecord faults;
   Profile profile;
   FixedVector<SentSignal, kOutboxSize> outbox;

@@ -41,6 +41,8 @@ class Executive {
 
   /// When the grid of releases began. Context: any.
   Nanoseconds origin() const noexcept { return releases_.origin(); }
+  /// Context: setup, between runs.
+  std::span<const RefusedSignal> refused() const noexcept { return releases_.refused(); }
 
  private:
   TaskSet& set_;

@@ -35,6 +35,8 @@ class VirtualExecutor {
   /// Context: any.
   Nanoseconds now() const noexcept { return now_; }
   Nanoseconds origin() const noexcept { return releases_.origin(); }
+  /// Context: setup, between runs.
+  std::span<const RefusedSignal> refused() const noexcept { return releases_.refused(); }
 
  private:
   TaskSet& set_;
