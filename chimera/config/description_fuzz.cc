@@ -60,11 +60,11 @@ void check_spec(const Configuration& made) {
 }
 
 #ifdef CHIMERA_PLANTED_DEFECT
-/// A defect to prove that the fuzzer finds one: beyond the end for a user priority above 4.
-void planted(const Configuration& made) {
-  for (const TaskSpec& task : made.spec().tasks) {
-    volatile char marks[5] = {};
-    marks[std::min(task.user_priority, 5u)] = 1;
+/// A defect to prove that the fuzzer finds one: beyond the end for a task name of more than 16 letters.
+void planted(const Draft& draft) {
+  for (const DraftTask& task : draft.tasks) {
+    volatile char marks[17] = {};
+    marks[std::min<std::size_t>(task.name.text.size(), 17)] = 1;
   }
 }
 #endif
@@ -73,14 +73,15 @@ void planted(const Configuration& made) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
-  const Verdict verdict = verify(read_description(text, "fuzz"), library());
+  const Reading reading = read_description(text, "fuzz");
+#ifdef CHIMERA_PLANTED_DEFECT
+  if (reading.draft) planted(*reading.draft);
+#endif
+  const Verdict verdict = verify(reading, library());
   require(verdict.configuration.has_value() == verdict.report.is_legal(), "legal is what becomes a configuration");
   check_faults(verdict.report, static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
   if (!verdict.configuration) return 0;
   check_spec(*verdict.configuration);
   check_faults(unsupported_by_single_context(*verdict.configuration, Executor::kRealTime), size + 1);
-#ifdef CHIMERA_PLANTED_DEFECT
-  planted(*verdict.configuration);
-#endif
   return 0;
 }
