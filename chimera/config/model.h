@@ -111,6 +111,7 @@ struct Model {
   std::vector<DraftRtpu> rtpus;           ///< the declared ones, or the one by default
   std::vector<TaskId> init_order;
   std::vector<double> utilisation;        ///< per rtpu, start configuration
+  bool has_unmet = false;                 ///< an input or a constant without producer was reported
 
   LinkedPort& port(PortRef ref) { return tasks[ref.task].ports[ref.port]; }
   const LinkedPort& port(PortRef ref) const { return tasks[ref.task].ports[ref.port]; }

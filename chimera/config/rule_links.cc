@@ -106,6 +106,7 @@ void report_unmet(Model& model, const LinkedPort& port, const VariableModel& var
   std::vector<std::string> names;
   const std::string made = products(model, set, names);
   const std::string near = nearest(variable.name, names);
+  model.has_unmet = true;
   model.error("input-unmet", port.at,
               model.say(port) + " has no producer in configuration '" + set.name + "', which produces " + made,
               variable.name, "a producer of '" + variable.name + "'", near,

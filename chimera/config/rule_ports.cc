@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
 #include <string_view>
 
 #include "chimera/base/assert.h"
@@ -88,25 +89,32 @@ const Node* own_value(const DraftTask& draft, const PortDescriptor& port) {
   return value != nullptr ? &value->value : nullptr;
 }
 
-/// How many instances the description gives to a repeated port; 0, with a fault, when that cannot be.
-std::size_t instances(Model& model, const TaskModel& task, const PortDescriptor& port, const DraftAlias* alias) {
-  const std::string of = "port '" + port.name + "' of task '" + task.name() + "'";
-  const std::string range = "1 to " + std::to_string(port.max_instances);
+/// How many instances the description gives to a repeated port, and where: its alias, else the list under
+/// `constants` or `resources`. A constant with a default may have none.
+struct Instances {
   std::size_t count = 0;
-  Place at = task.draft->name.at;
-  if (port.kind == CHIMERA_RESOURCE) {
-    const NamedNode* value = named(task.draft->resources, port.name);
-    if (value == nullptr) return 1;  // its text is missing: require_resources says so
-    at = value->value.at;
-    count = value->value.is_list() ? value->value.items.size() : 1;
-  } else if (alias != nullptr) {
-    at = alias->port.at;
-    count = alias->variables.size();
-  }
-  if (count >= 1 && count <= port.max_instances) return count;
-  model.error("repeated-port", at, "repeated " + of + " has " + std::to_string(count) + " instances; expected " + range,
-              std::to_string(count), range, {}, "write alias: {" + port.name + ": [variable, variable]}");
-  return 0;
+  Place at;
+};
+
+Instances count_instances(const TaskModel& task, const PortDescriptor& port, const DraftAlias* alias) {
+  if (alias != nullptr) return {alias->variables.size(), alias->port.at};
+  const Node* own = port.kind == CHIMERA_OUT_VAR ? nullptr : own_value(*task.draft, port);
+  if (own != nullptr) return {own->is_list() ? own->items.size() : 1, own->at};
+  return {port.kind == CHIMERA_RESOURCE ? 1u : 0u, task.draft->name.at};  // require_resources asks for the text
+}
+
+/// The same, or nullopt and a fault when it cannot be.
+std::optional<std::size_t> instances(Model& model, const TaskModel& task, const PortDescriptor& port,
+                                     const DraftAlias* alias) {
+  const Instances found = count_instances(task, port, alias);
+  const std::size_t least = port.kind == CHIMERA_IN_CONST && !port.initial.empty() ? 0 : 1;
+  if (found.count >= least && found.count <= port.max_instances) return found.count;
+  const std::string range = std::to_string(least) + " to " + std::to_string(port.max_instances);
+  model.error("repeated-port", found.at,
+              "repeated port '" + port.name + "' of task '" + task.name() + "' has " + std::to_string(found.count) +
+                  " instances; expected " + range,
+              std::to_string(found.count), range, {}, "write alias: {" + port.name + ": [variable, variable]}");
+  return std::nullopt;
 }
 
 void add_port(TaskModel& task, std::size_t task_index, std::uint32_t index, std::uint32_t instance,
@@ -120,6 +128,8 @@ void add_port(TaskModel& task, std::size_t task_index, std::uint32_t index, std:
   port.name = declared.repeated ? declared.name + '[' + std::to_string(instance) + ']' : declared.name;
   port.at = alias != nullptr ? alias->port.at : task.draft->name.at;
   port.own = own_value(*task.draft, declared);
+  const bool has_list = port.own != nullptr && declared.repeated && port.own->is_list();
+  if (has_list && !port.is(CHIMERA_OUT_VAR)) port.own = &port.own->items[instance];
   if (is_linkable(declared.kind)) port.variable = declared.name;
   if (alias != nullptr) {
     port.variable = alias->variables[instance].text;
@@ -143,9 +153,9 @@ void link_port(Model& model, std::size_t task_index, std::uint32_t index) {
     task.lacks_link = true;
     if (port.repeated) return;
   }
-  const std::size_t count = port.repeated ? instances(model, task, port, alias) : 1;
-  task.lacks_link = task.lacks_link || count == 0;
-  for (std::uint32_t i = 0; i < count; ++i) add_port(task, task_index, index, i, alias);
+  const std::optional<std::size_t> count = port.repeated ? instances(model, task, port, alias) : 1;
+  task.lacks_link = task.lacks_link || !count;
+  for (std::uint32_t i = 0; i < count.value_or(0); ++i) add_port(task, task_index, index, i, alias);
 }
 
 }  // namespace

@@ -273,7 +273,7 @@ void agree_on_shapes(Model& model) {
   spread(model, bindings);
   for (const VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) { compare(model, variable, model.port(ref), bindings); });
-  if (!model.is_incomplete())
+  if (!model.is_incomplete() && !model.has_unmet)  // what is missing would settle it
     for_each_port(model, [&](PortRef, const LinkedPort& port) {
       if (!port.has_extents) report_unsolved(model, port);
     });

@@ -167,7 +167,7 @@ void agree_on_types(Model& model) {
   spread(model, bindings);
   for (const VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) { compare(model, variable, ref, bindings); });
-  if (model.is_incomplete()) return;
+  if (model.is_incomplete() || model.has_unmet) return;  // what is missing would settle it
   for_each_port(model, [&](PortRef, const LinkedPort& port) {
     if (!port.type) report_unsolved(model, port);
   });

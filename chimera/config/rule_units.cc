@@ -137,6 +137,15 @@ void take_from_values(Model& model, UnitTable& table) {
   });
 }
 
+/// A default is a plain number: where nothing else settles its unit, it has none.
+void take_from_defaults(Model& model, UnitTable& table) {
+  for_each_port(model, [&](PortRef ref, LinkedPort& port) {
+    if (port.unit || !has_unit(port) || port.source != ConstSource::kDefault) return;
+    bind(model, table, ref, port, substituted(model, table, port), {Unit{}, "1"});
+    spread(model, table);
+  });
+}
+
 /// The component of the library that turns `from` into `to`, or "".
 std::string converter(const Model& model, UnitTable& table, const Unit& from, const Unit& to) {
   for (const LibraryEntry& entry : model.library.entries()) {
@@ -208,11 +217,12 @@ void agree_on_units(Model& model) {
   spread(model, table);
   take_from_values(model, table);
   spread(model, table);
+  take_from_defaults(model, table);
   for (const VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) {
       compare(model, table, variable, model.port(ref));
     });
-  if (model.is_incomplete()) return;
+  if (model.is_incomplete() || model.has_unmet) return;  // what is missing would settle it
   for_each_port(model, [&](PortRef, const LinkedPort& port) {
     if (!port.unit && has_unit(port)) report_unsolved(model, port);
   });

@@ -35,10 +35,8 @@ void check_steps(Model& model, const TaskModel& task) {
 void check_resources(Model& model, const TaskModel& task) {
   for (const LinkedPort& port : task.ports) {
     if (!port.is(CHIMERA_RESOURCE) || port.own == nullptr) continue;
-    const Node* text = port.own;
-    if (port.declared->repeated && text->is_list()) text = &text->items[port.instance];
-    if (!text->is_scalar())
-      model.error("value-type", text->at,
+    if (!port.own->is_scalar())
+      model.error("value-type", port.own->at,
                   "resource '" + port.name + "' of task '" + task.name() + "': expected a text", {}, "a text");
   }
 }

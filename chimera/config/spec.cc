@@ -33,9 +33,8 @@ std::vector<std::byte> accepted(Model& model, const Node& node, const LinkedPort
 
 std::span<const std::byte> value_of(Model& model, Parts& parts, const LinkedPort& port) {
   if (port.is(CHIMERA_RESOURCE)) {
-    const Node& node = port.own->is_list() ? port.own->items[port.instance] : *port.own;
-    std::vector<std::byte> bytes(node.text.size());
-    std::memcpy(bytes.data(), node.text.data(), bytes.size());
+    std::vector<std::byte> bytes(port.own->text.size());
+    std::memcpy(bytes.data(), port.own->text.data(), bytes.size());
     return keep(parts, std::move(bytes));
   }
   if (port.own != nullptr) return keep(parts, accepted(model, *port.own, port));
