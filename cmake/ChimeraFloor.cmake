@@ -31,7 +31,7 @@ endif()
 add_library(chimera_flags INTERFACE)
 target_include_directories(chimera_flags INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(chimera_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fPIC)
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fPIC -fno-semantic-interposition)
 if(CHIMERA_FUZZ)
   # clang warns about other things than g++; g++ is the compiler that judges.
   target_compile_options(chimera_flags INTERFACE -w -fsanitize=fuzzer-no-link)

@@ -20,18 +20,28 @@ void note_fault(Task& task, Method method, Nanoseconds at) noexcept {
   if (task.faults.last.text[0] == '\0') std::strcpy(task.faults.last.text, "answered with a fault and gave no text");
 }
 
+// What the method said of its fault becomes the task's last one.
+void take_fault(Task& task, Method method, Nanoseconds at) noexcept {
+  task.said.text[CHIMERA_FAULT_TEXT - 1] = '\0';
+  task.faults.last = task.said;
+  note_fault(task, method, at);
+}
+
 Answer default_answer(Method method) noexcept { return method == Method::kError ? Answer::kFault : Answer::kOk; }
 
 }  // namespace
 
+// The halves below are put in place by force: at the length of a short cycle the calls themselves would show.
+[[gnu::always_inline]] static inline void read_input(Task& task, Input& input) noexcept {
+  if (!input.group.latch()) ++task.profile.stale;
+  chimera_port& port = *input.port;
+  port.slot = input.group.slot();
+  port.bit = input.bit;
+  port.value = const_cast<std::byte*>(input.group.values()) + input.offset;
+}
+
 void read_inputs(Task& task) noexcept {
-  for (Input& input : task.inputs) {
-    if (!input.group.latch()) ++task.profile.stale;
-    chimera_port& port = *input.port;
-    port.slot = input.group.slot();
-    port.bit = input.bit;
-    port.value = const_cast<std::byte*>(input.group.values()) + input.offset;
-  }
+  for (Input& input : task.inputs) read_input(task, input);
 }
 
 void aim_outputs(Task& task) noexcept {
@@ -53,29 +63,33 @@ Answer call_method(Task& task, Method method, Nanoseconds at) noexcept {
   task.said.code = 0;
   const Answer answer = answer_of(method, body(task.instance, &task.call));
   // An error() that does not recover adds nothing to the fault that called it.
-  if (answer == Answer::kFault && method != Method::kError) {
-    task.said.text[CHIMERA_FAULT_TEXT - 1] = '\0';
-    task.faults.last = task.said;
-    note_fault(task, method, at);
-  }
+  if (answer == Answer::kFault && method != Method::kError) take_fault(task, method, at);
   return answer;
 }
 
-Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) noexcept {
-  if (task.has_safety) {
-    char text[CHIMERA_FAULT_TEXT];
-    if (!is_safe(task, text)) {
-      ++task.profile.rejected;
-      record_fault(task, method, text, now);
-      task.group.prefill();
-      return Answer::kFault;
-    }
-  }
+// True when a safety port refused a value: then that is a fault, and the last good outputs stand.
+static bool refuses_unsafe(Task& task, Method method, Nanoseconds now) noexcept {
+  char text[CHIMERA_FAULT_TEXT];
+  if (is_safe(task, text)) return false;
+  ++task.profile.rejected;
+  record_fault(task, method, text, now);
+  task.group.prefill();
+  return true;
+}
+
+[[gnu::always_inline]] static inline Answer publish_in_place(Task& task, Method method, std::uint64_t valid,
+                                                             Nanoseconds now) noexcept {
+  if (task.has_safety && refuses_unsafe(task, method, now)) return Answer::kFault;
   task.valid = valid;
   task.group.publish(now, valid);
   task.group.prefill();
-  aim_outputs(task);
+  std::byte* staging = task.group.staging();
+  for (Output& output : task.outputs) output.port->value = staging + output.offset;
   return Answer::kOk;
+}
+
+Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) noexcept {
+  return publish_in_place(task, method, valid, now);
 }
 
 State follow_error(Task& task, Next at, Nanoseconds now) noexcept {
@@ -91,6 +105,19 @@ State follow_error(Task& task, Next at, Nanoseconds now) noexcept {
   return at.state;
 }
 
+// call_method for the one method that every component has and that runs all the time.
+[[gnu::always_inline]] static inline Answer call_cycle(Task& task, Nanoseconds at) noexcept {
+  const chimera_method body = task.component->methods[CHIMERA_CYCLE];
+  if (body == nullptr) return Answer::kOk;
+  task.said.text[0] = '\0';
+  task.said.code = 0;
+  const std::int32_t value = body(task.instance, &task.call);
+  if (value == CHIMERA_OK) [[likely]] return Answer::kOk;
+  const Answer answer = answer_of(Method::kCycle, value);
+  if (answer == Answer::kFault) take_fault(task, Method::kCycle, at);
+  return answer;
+}
+
 BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept {
   chimera_call& call = task.call;
   call.now_ns = time.release.count;
@@ -102,18 +129,18 @@ BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept {
     const Answer answer = call_method(task, Method::kSync, time.release);
     if (answer != Answer::kOk) return {answer, Method::kSync};
   }
-  read_inputs(task);
   for (Input& input : task.inputs) {
+    read_input(task, input);
     input.port->seen = input.sequence;
-    input.sequence = input.port->slot->sequence;
+    input.sequence = input.group.slot()->sequence;
   }
-  return {call_method(task, Method::kCycle, time.release), Method::kCycle};
+  return {call_cycle(task, time.release), Method::kCycle};
 }
 
 State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end, bool may_publish) noexcept {
   const Step step = body.method == Method::kSync ? Step::kSync : Step::kCycle;
   Answer answer = body.answer;
-  if (answer == Answer::kOk && may_publish) answer = publish(task, Method::kCycle, all_valid(task), end);
+  if (answer == Answer::kOk && may_publish) answer = publish_in_place(task, Method::kCycle, all_valid(task), end);
   else if (answer != Answer::kNoEvent) task.group.prefill();
   if (answer == Answer::kOk || answer == Answer::kAborted) {
     if (answer == Answer::kAborted) ++task.profile.aborted;

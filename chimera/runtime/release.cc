@@ -34,11 +34,11 @@ Releases::Releases(TaskSet& set, const RunOptions& options)
 void Releases::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
   queue_.set_origin(origin);
+  look_at_script();
   refresh_members(origin);
 }
 
-void Releases::record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
-  if (options_.tap == nullptr) return;
+void Releases::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
   TapRecord r;
   r.at = at;
   r.b = b;
@@ -57,12 +57,12 @@ void Releases::record_faults(Task& task) noexcept {
 }
 
 Nanoseconds Releases::next_event() const noexcept {
-  const Nanoseconds act = options_.script.next_at();
-  return std::min(queue_.next_release(), act == kNever ? kNever : origin_ + act);
+  return std::min(queue_.next_release(), next_act_);
 }
 
 void Releases::take_edge(Nanoseconds now) noexcept {
   while (const ScriptAct* next = options_.script.take(now - origin_)) act(*next, now);
+  look_at_script();
   for (Task& task : tasks_) {
     Signal signal;
     while (!of_[task.id.index].is_busy && set_.take_pending(task, signal)) carry_out(task, signal, now);

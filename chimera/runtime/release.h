@@ -73,7 +73,7 @@ class Releases {
 
   /// True when take_edge has something to do.
   bool edge_is_due(Nanoseconds now) const noexcept {
-    return set_.has_pending() || options_.script.next_at() <= now - origin_;
+    return set_.has_pending() || next_act_ <= now;
   }
   /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
   void take_edge(Nanoseconds now) noexcept;
@@ -81,7 +81,7 @@ class Releases {
   Nanoseconds next_event() const noexcept;
   /// True while a task is ON or may yet be turned ON.
   bool anything_left() const noexcept {
-    return n_on_ > 0 || set_.has_pending() || options_.script.next_at() != kNever;
+    return n_on_ > 0 || set_.has_pending() || next_act_ != kNever;
   }
   bool stop_requested() const noexcept {
     return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
@@ -100,7 +100,7 @@ class Releases {
   /// False when the job must not start: its release is then counted as dropped, with all that follows.
   bool may_start(const Job& job, Nanoseconds now) noexcept {
     const OfTask& t = of_[job.task.index];
-    if (options_.tap != nullptr) record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle);
+    record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle);
     if (!t.skip_next && now + t.start_margin <= job.deadline) return true;
     return decide_start(job, now);
   }
@@ -108,7 +108,11 @@ class Releases {
   BodyEnd begin_job(const Job& job, CycleTime& time) noexcept {
     OfTask& t = of_[job.task.index];
     t.is_busy = true;
-    time = CycleTime{job.release, job.deadline, t.dropped, set_.is_illegal()};
+    // Field by field: a copy of a fresh aggregate loads wider than it was stored, and waits for the store buffer.
+    time.release = job.release;
+    time.deadline = job.deadline;
+    time.dropped = t.dropped;
+    time.illegal = set_.is_illegal();
     return begin_cycle(tasks_[job.task.index], time);
   }
   /// The job ended at `end`, begun at `start`, having used `used` of execution time.
@@ -123,7 +127,9 @@ class Releases {
   std::span<const RefusedSignal> refused() const noexcept { return {refused_.begin(), refused_.end()}; }
 
   /// Writes one record, if anybody wants it.
-  void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
+  void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept {
+    if (options_.tap != nullptr) append(kind, at, task, a, b);
+  }
 
  private:
   // Everything a job needs beside the Task, in one cache line.
@@ -137,6 +143,7 @@ class Releases {
     bool is_busy = false;
   };
 
+  void append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept;
   void drop(const DroppedRelease& dropped) noexcept;
   void drop_on_purpose(const DroppedRelease& dropped) noexcept;
   void give_up_starved(Nanoseconds now) noexcept;
@@ -150,6 +157,10 @@ class Releases {
   bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
   void give_up(Task& task, Nanoseconds at) noexcept;
   void act(const ScriptAct& act, Nanoseconds now) noexcept;
+  void look_at_script() noexcept {
+    const Nanoseconds at = options_.script.next_at();
+    next_act_ = at == kNever ? kNever : origin_ + at;
+  }
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
   void refresh_members(Nanoseconds now) noexcept;
   void refresh(Task& task, Nanoseconds now) noexcept;
@@ -161,6 +172,7 @@ class Releases {
   std::span<Task> tasks_;
   RunOptions options_;
   Nanoseconds origin_;
+  Nanoseconds next_act_ = kNever;  ///< of the script, on the clock
   std::vector<OfTask> of_;
   std::vector<QueueMember> members_;
   std::vector<QueueClass> classes_;

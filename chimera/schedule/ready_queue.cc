@@ -162,7 +162,8 @@ TaskId ReadyQueue::top_task() const noexcept {
   return loose_is_top() ? storage_.loose[0].job.task : TaskId(head(storage_.runs[0]).task);
 }
 
-Job ReadyQueue::pop() noexcept {
+// More than one run, or jobs beside them.
+Job ReadyQueue::pop_among() noexcept {
   CHIMERA_ASSERT(!is_empty());
   if (n_loose_ > 0 && loose_is_top()) return pop_loose();
   const std::uint32_t index = storage_.runs[0];

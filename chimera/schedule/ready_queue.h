@@ -123,7 +123,18 @@ class ReadyQueue {
   TaskId top_task() const noexcept;
   /// Takes the most urgent job; ties: user priority, then order of the tasks. Requires: not empty.
   /// Context: cycle; O(1) while one class is ready, else O(log classes).
-  Job pop() noexcept;
+  Job pop() noexcept {
+    if (n_runs_ != 1 || n_loose_ != 0 || n_busy_ != 0) return pop_among();
+    QueueClass& c = storage_.classes[storage_.runs[0]];
+    const QueueMember& m = storage_.members[c.begin + c.cursor];
+    do {
+      if (++c.cursor == c.active) {
+        n_runs_ = 0;
+        break;
+      }
+    } while (storage_.members[c.begin + c.cursor].first > c.release);
+    return {TaskId(m.task), c.release, c.release + m.deadline};
+  }
 
   /// Preemptive use: the job of the task runs; releases until finish() wait for its end.
   void occupy(TaskId task) noexcept;
@@ -178,6 +189,7 @@ class ReadyQueue {
   bool take_deferred(TaskId task, Job& job) noexcept;
   bool take_from_run(TaskId task, Job& job) noexcept;
   void refresh_run(std::uint32_t index, bool had_run) noexcept;
+  Job pop_among() noexcept;
   Job pop_loose() noexcept;
   bool settle(QueueClass& c) noexcept;
   const QueueMember& head(std::uint32_t index) const noexcept;

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// The executive on the Linux clock. Counts and order are judged, durations are not; and nothing is judged while the
+// host did not let even a thread above everything else run in time (the witness).
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include <atomic>
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/runtime/executive/counter_clock.h"
+#include "tests/conformance/runner.h"
+
+namespace chimera::toy {
+namespace {
+
+constexpr Nanoseconds kWitnessPeriod = milliseconds(1);
+constexpr Nanoseconds kGapAllowed = microseconds(200);  // 10 % of the shortest period
+constexpr int kTries = 5;
+
+void pin_here(int priority) {
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(static_cast<unsigned>(std::max(1u, std::thread::hardware_concurrency()) - 1), &one);
+  pthread_setaffinity_np(pthread_self(), sizeof one, &one);
+  const sched_param p{.sched_priority = priority};
+  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &p) != 0) {
+    std::printf("no real-time rights: the run is more likely not to be judged\n");
+  }
+}
+
+// Sleeps to absolute instants on the same processor, above everything, and keeps the largest lateness it saw.
+class Witness {
+ public:
+  Witness() : thread_([this] { watch(); }) {}
+  Nanoseconds worst() {
+    stop_.store(true);
+    thread_.join();
+    return worst_;
+  }
+
+ private:
+  void watch() {
+    pin_here(60);
+    LinuxClock clock;
+    for (Nanoseconds next = clock.now() + kWitnessPeriod; !stop_.load(); next += kWitnessPeriod) {
+      clock.wait_until(next);
+      worst_ = std::max(worst_, clock.now() - next);
+    }
+  }
+  std::atomic<bool> stop_{false};
+  Nanoseconds worst_;
+  std::thread thread_;
+};
+
+struct Seen {
+  RunEnd end = RunEnd::kStopped;
+  std::uint64_t cycles[3] = {}, dropped = 0, missed = 0;
+  std::string first_order;
+  bool in_order = true;
+};
+
+Seen run_once(bool overload) {
+  Application app;
+  app.add("fast", milliseconds(2), microseconds(100));
+  app.add("middle", milliseconds(5), microseconds(200), "fast");
+  app.add("slow", milliseconds(10), overload ? milliseconds(15) : microseconds(300), "middle");
+  TaskSet& set = app.build();
+  app.calls.reserve(10'000);
+  CounterClock clock;
+  ComputingClock job_clock(clock);
+  Executive executive(set, clock, job_clock, {});
+  Seen seen;
+  std::thread loop([&] {
+    pin_here(50);
+    if (!executive.start()) return;
+    seen.end = executive.run(milliseconds(400));
+    executive.shut_down();
+  });
+  loop.join();
+  Nanoseconds last;
+  for (const Call& call : app.calls) {
+    if (call.method != Method::kCycle) continue;
+    if (seen.first_order.size() < 3) seen.first_order += call.task[0];
+    seen.in_order = seen.in_order && call.now >= last;  // releases of a set that fits come in order
+    last = call.now;
+  }
+  const char* names[] = {"fast", "middle", "slow"};
+  for (int i = 0; i < 3; ++i) {
+    const Profile& p = app.task(names[i]).profile;
+    seen.cycles[i] = p.cycles;
+    seen.dropped += p.dropped;
+    seen.missed += p.missed;
+  }
+  return seen;
+}
+
+// A run during which the host kept its word; nothing after kTries that did not.
+std::optional<Seen> judged(bool overload) {
+  Nanoseconds worst;
+  for (int i = 0; i < kTries; ++i) {
+    Witness witness;
+    const Seen seen = run_once(overload);
+    worst = witness.worst();
+    if (worst <= kGapAllowed) return seen;
+    std::printf("try %d: the witness was %lld us late\n", i + 1, static_cast<long long>(worst.count / 1000));
+  }
+  std::printf("not judged: host stalled %lld us\n", static_cast<long long>(worst.count / 1000));
+  return std::nullopt;
+}
+
+TEST(ExecutiveRealtime, RunsEveryCycleInOrderAndDropsNone) {
+  const auto seen = judged(false);
+  if (!seen) GTEST_SKIP() << "not judged: host stalled";
+  EXPECT_EQ(seen->end, RunEnd::kTime);
+  EXPECT_EQ(seen->first_order, "fms");
+  EXPECT_TRUE(seen->in_order);
+  EXPECT_EQ(seen->cycles[0], 200u);
+  EXPECT_EQ(seen->cycles[1], 80u);
+  EXPECT_EQ(seen->cycles[2], 40u);
+  EXPECT_EQ(seen->dropped, 0u);
+  EXPECT_EQ(seen->missed, 0u);
+}
+
+TEST(ExecutiveRealtime, CountsWhatAnOverloadedSetDropsAndNeverBursts) {
+  const auto seen = judged(true);
+  if (!seen) GTEST_SKIP() << "not judged: host stalled";
+  EXPECT_EQ(seen->first_order, "fms");
+  EXPECT_LE(seen->cycles[2], 400u / 15 + 1);
+  EXPECT_GT(seen->cycles[2], 10u);
+  EXPECT_GT(seen->dropped, 100u);
+  // Every release of the 400 ms ran or was dropped, but for the one that the end cut off.
+  EXPECT_NEAR(static_cast<double>(seen->cycles[0] + seen->cycles[1] + seen->cycles[2] + seen->dropped), 320, 12);
+}
+
+}  // namespace
+}  // namespace chimera::toy

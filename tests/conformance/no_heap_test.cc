@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// While tasks are ON the framework asks the heap for nothing: counted over ten thousand cycles, and the counter is
+// shown to see an allocation. (That it cannot is another test: tools/check_cycle_path.py.)
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "tests/conformance/runner.h"
+
+namespace {
+
+std::size_t n_allocations = 0;  // of this thread of this program; tests run one after another
+
+}  // namespace
+
+// Every form of new that the library's own default ends in.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++n_allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  std::abort();
+}
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++n_allocations;
+  const auto a = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(a, (size + a - 1) / a * a)) return memory;
+  std::abort();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace chimera::toy {
+namespace {
+
+bool allocates = false;  // the planted fault: the component itself does
+
+// A component without a log: reads, computes, publishes, now and then fails or tells another task to go off.
+struct Quiet {
+  chimera_port out;
+  chimera_port in;
+  std::uint64_t cycles;
+};
+
+std::int32_t quiet_cycle(void* memory, const chimera_call* call) {
+  Quiet& quiet = *static_cast<Quiet*>(memory);
+  double in = 0;
+  std::memcpy(&in, quiet.in.value, sizeof in);
+  in += 1;
+  std::memcpy(quiet.out.value, &in, sizeof in);
+  call->host->spend(call->context, 20'000);
+  if (allocates) delete new int(1);
+  if (++quiet.cycles % 100 == 50) {
+    std::strcpy(call->fault->text, "every hundredth");
+    return CHIMERA_FAULT;
+  }
+  if (quiet.cycles % 400 == 30) call->host->spend(call->context, 3'000'000);  // late: releases are dropped
+  return CHIMERA_OK;
+}
+
+std::int32_t recovers(void*, const chimera_call*) { return CHIMERA_OK; }
+
+struct Counted {
+  std::size_t allocations = 0;
+  std::uint64_t cycles = 0;
+  std::uint64_t faults = 0, dropped = 0;
+};
+
+Counted count(Kind kind) {
+  const std::array<chimera_port_decl, 2> decls = {port("out", CHIMERA_OUT_VAR, CHIMERA_FLOAT64, offsetof(Quiet, out)),
+                                                  port("in", CHIMERA_IN_VAR, CHIMERA_FLOAT64, offsetof(Quiet, in))};
+  chimera_component component = toy::component(false);
+  component.ports = decls.data();
+  component.n_ports = 2;
+  component.state_size = sizeof(Quiet);
+  std::fill(std::begin(component.methods), std::end(component.methods), nullptr);
+  component.methods[CHIMERA_CYCLE] = quiet_cycle;
+  component.methods[CHIMERA_ERROR] = recovers;
+  constexpr std::uint32_t kTasks = 5;
+  const char* names[kTasks] = {"a", "b", "c", "d", "e"};
+  const double zero = 0;
+  std::array<std::array<PortSpec, 2>, kTasks> ports;
+  std::array<TaskSpec, kTasks> tasks;
+  std::array<const chimera_component*, kTasks> components;
+  std::array<TaskId, kTasks> ids;
+  for (std::uint32_t i = 0; i < kTasks; ++i) {
+    for (std::uint32_t p = 0; p < 2; ++p) {
+      ports[i][p].declared = p;
+      ports[i][p].element_bytes = 8;
+      ports[i][p].variable = names[(i + (p == 0 ? 0 : kTasks - 1)) % kTasks];
+    }
+    ports[i][0].value = std::as_bytes(std::span(&zero, 1));
+    tasks[i].name = names[i];
+    tasks[i].component = "quiet";
+    tasks[i].period = tasks[i].deadline = milliseconds(1);
+    tasks[i].ports = ports[i];
+    tasks[i].rtpu = RtpuId(0u);
+    components[i] = &component;
+    ids[i] = TaskId(i);
+  }
+  const RtpuSpec rtpu{"only", 0, Policy::kEdf};
+  ApplicationSpec spec;
+  spec.name = "quiet";
+  spec.rtpus = {&rtpu, 1};
+  spec.tasks = tasks;
+  spec.init_order = spec.start = ids;
+  auto set = TaskSet::create(spec, components);
+  EXPECT_TRUE(set);
+  const std::array<ScriptAct, 3> acts = {
+      ScriptAct{milliseconds(50), ScriptAct::Kind::kRaiseFlag, Signal::kOn, TaskId()},
+      ScriptAct{milliseconds(70), ScriptAct::Kind::kLowerFlag, Signal::kOn, TaskId()},
+      ScriptAct{milliseconds(90), ScriptAct::Kind::kSignal, Signal::kReinit, TaskId(0u)}};
+  Runner runner(**set, kind, Policy::kEdf, acts);
+  EXPECT_TRUE(runner.start());
+  Counted counted;
+  const std::size_t before = n_allocations;
+  runner.run(milliseconds(2200));
+  counted.allocations = n_allocations - before;
+  for (const Task& task : (*set)->tasks()) {
+    counted.cycles += task.profile.cycles;
+    counted.faults += task.faults.count;
+    counted.dropped += task.profile.dropped;
+  }
+  return counted;
+}
+
+class NoHeap : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(All, NoHeap, testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
+                         [](const auto& one) { return kind_name(one.param); });
+
+TEST_P(NoHeap, TenThousandCyclesWithFaultsDropsAndActsAllocateNothing) {
+  allocates = false;
+  const Counted counted = count(GetParam());
+  EXPECT_EQ(counted.allocations, 0u);
+  EXPECT_GE(counted.cycles, 10'000u);
+  EXPECT_GT(counted.faults, 50u);
+  EXPECT_GT(counted.dropped, 10u);
+}
+
+TEST_P(NoHeap, AComponentThatAllocatesIsSeen) {
+  allocates = true;
+  const Counted counted = count(GetParam());
+  EXPECT_GE(counted.allocations, counted.cycles);
+  allocates = false;
+}
+
+}  // namespace
+}  // namespace chimera::toy
