@@ -10,7 +10,9 @@ namespace {
 class Candidate {
  public:
   Candidate(std::uint32_t n, bool preemptive)
-      : axes_(n, [](std::uint32_t) { return milliseconds(1); }), executor_(axes_.set(), {}, how(preemptive)), periods_(n) {
+      : axes_(n, [](std::uint32_t) { return milliseconds(1); }),
+        executor_(axes_.set(), {}, how(preemptive)),
+        periods_(n) {
     if (!executor_.start()) std::exit(1);
   }
   void run(std::uint64_t jobs) {

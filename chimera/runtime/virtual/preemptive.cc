@@ -51,7 +51,8 @@ Nanoseconds Preemptive::next_deadline() noexcept {
     Active& a = active_[i];
     const bool on = releases_.is_on(TaskId(i));
     if (!on) a.next_deadline = kNever;
-    else if (a.next_deadline == kNever) a.next_deadline = releases_.queue().first_release(TaskId(i)) + tasks_[i].deadline;
+    else if (a.next_deadline == kNever)
+      a.next_deadline = releases_.queue().first_release(TaskId(i)) + tasks_[i].deadline;
     next = std::min(next, a.next_deadline);
   }
   return next;
