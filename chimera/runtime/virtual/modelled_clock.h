@@ -48,7 +48,8 @@ class ModelledClock final : public JobClock {
 };
 
 /// Execution time of a job whose body has run: what it spent; else, with a seed (null: none), uniform in
-/// [min, budget]; else its budget; else 0. A poll that found no event costs only what it spent. Context: any; wait-free.
+/// [min, budget]; else its budget; else 0. A poll that found no event costs only what it spent.
+/// Context: any; wait-free.
 inline Nanoseconds modelled_time(const TaskSpec& spec, TaskId task, Nanoseconds release, Nanoseconds spent,
                                  bool had_event, const std::uint64_t* seed) noexcept {
   if (spent > Nanoseconds{} || !had_event) return spent;
