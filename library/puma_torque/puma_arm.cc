@@ -15,7 +15,8 @@ namespace chimera::library {
 namespace {
 
 // Euler's method, implicit in the viscous friction as MuJoCo does it, is stable for any friction; the motor
-// inertias (0.17 kg.m2 and more) leave only controllers faster than 2/(0.5 ms) to upset it. RK4 costs four times as much.
+// inertias (0.17 kg.m2 and more) leave only controllers faster than 2/(0.5 ms) to upset it. RK4 costs four times as
+// much.
 constexpr double kLongestSubStep = 0.5e-3;
 
 // Damping of the drives while the configuration is illegal (N.m.s/rad): 20/s times each joint's inertia or so.
@@ -144,7 +145,8 @@ bool PumaArm::advance(double dt, const double* torque) {
     if (!good) {
       std::copy(q.begin(), q.end(), state_->qpos);
       std::copy(qd.begin(), qd.end(), state_->qvel);
-      return refuse(mujoco_error()[0] != '\0' ? mujoco_error() : "the simulated arm blew up: its state is not a number");
+      return refuse(mujoco_error()[0] != '\0' ? mujoco_error()
+                                              : "the simulated arm blew up: its state is not a number");
     }
   }
   return true;
