@@ -38,7 +38,8 @@ Library library() {
 
 /// A chain of generic filters: each unit and shape is solved from its neighbour, the longest way there is.
 std::string application(const char* rate) {
-  std::string text = "subsystem: chain\noperator: {y0: [1 rad, 2 rad, 3 rad], bias: 0 rad}\nconstants: {gain: 2}\ntasks:\n";
+  std::string text = "subsystem: chain\noperator: {y0: [1 rad, 2 rad, 3 rad], bias: 0 rad}\n";
+  text += "constants: {gain: 2}\ntasks:\n";
   for (std::size_t i = kTasks; i > 0; --i) {
     const std::string n = std::to_string(i), before = std::to_string(i - 1);
     text += "  t" + n + ":\n    component: filter\n    rate: " + rate + "\n    budget: 5 us\n    criticality: high\n" +

@@ -97,6 +97,12 @@ struct SetModel {
   bool has(std::size_t task) const noexcept;
 };
 
+/// A written list that tells how many elements a constant extent has, before `init` tells it.
+struct WrittenLength {
+  std::size_t count = 0;
+  Place at;
+};
+
 struct Model {
   Model(const Draft& d, const Library& l, Report& r) : draft(d), library(l), report(r) {}
 
@@ -111,6 +117,7 @@ struct Model {
   std::vector<DraftRtpu> rtpus;           ///< the declared ones, or the one by default
   std::vector<TaskId> init_order;
   std::vector<double> utilisation;        ///< per rtpu, start configuration
+  std::map<std::string, WrittenLength> written_lengths;  ///< by constant
   bool has_unmet = false;                 ///< an input or a constant without producer was reported
 
   LinkedPort& port(PortRef ref) { return tasks[ref.task].ports[ref.port]; }

@@ -76,6 +76,7 @@ class Writer {
              " (shape " + shape_text(port_.extents) + ")", std::to_string(node.items.size()), expected);
       return;
     }
+    if (!extent.known && !extent.constant.empty() && !agrees(node, extent)) return;
     for (const Node& item : node.items) {
       if (dimension + 1 < port_.extents.size()) {
         row(item, node.items.size() != 0 ? dimension + 1 : 0);
@@ -84,6 +85,18 @@ class Writer {
         next_ += port_.element_bytes;
       }
     }
+  }
+  /// Lists for one constant extent have one length: a short one would leave elements zero without a word.
+  bool agrees(const Node& node, const SolvedExtent& extent) {
+    const WrittenLength mine{node.items.size(), node.at};
+    const WrittenLength& first = model_.written_lengths.try_emplace(extent.constant, mine).first->second;
+    if (first.count == mine.count) return true;
+    const std::string expected = std::to_string(first.count);
+    refuse("value-shape", node.at,
+           "found a list of " + std::to_string(mine.count) + "; expected " + expected + ", as in the list for '" +
+               extent.constant + "' at " + Model::say(first.at),
+           std::to_string(mine.count), expected);
+    return false;
   }
   void row(const Node& node, std::size_t dimension) {
     if (node.is_list()) {
