@@ -167,9 +167,12 @@ class ReadyQueue {
       if (m.first <= last) dropped(DroppedRelease{TaskId(m.task), last, static_cast<std::uint32_t>(passed - 1)});
     }
     c.cursor = 0;
-    sift_pause_down(0);
+    if (n_pauses_ > 1) sift_pause_down(0);
     if (had_run) remove_run(index);
-    if (settle(c)) push_run(index);
+    if (!settle(c)) return;
+    if (n_runs_ > 0) return push_run(index);
+    storage_.runs[0] = index;
+    n_runs_ = 1;
   }
   template <class Dropped>
   void drop_deferred(std::uint32_t index, Dropped&& dropped) noexcept {

@@ -47,7 +47,7 @@ struct TaskSpec {
   std::string_view name;
   std::string_view component;
   Nanoseconds period;    ///< between releases; an aperiodic task is asked for an event at each
-  Nanoseconds offset;    ///< of the first release after on
+  Nanoseconds offset;    ///< of the grid of releases: start of the run + offset + k * period, whenever on comes
   Nanoseconds deadline;  ///< relative to the release, 0 < deadline <= period
   Nanoseconds budget;    ///< execution time a cycle may use; 0 = not stated
   Nanoseconds min_time;  ///< execution time a useful cycle needs at least; 0 = not stated
