@@ -44,11 +44,12 @@ class Refusals {
   }
 
   void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task) {
-    constexpr std::array kBuilt = {OnMiss::kContinue, OnMiss::kHold, OnMiss::kSkip, OnMiss::kError, OnMiss::kFlag};
+    constexpr std::array kBuilt = {OnMiss::kContinue, OnMiss::kHold, OnMiss::kSkip,
+                                   OnMiss::kAbort, OnMiss::kError, OnMiss::kFlag, OnMiss::kStop};
     constexpr std::array kNames = {"continue", "hold", "skip", "abort", "demote", "error", "switch", "flag", "stop"};
     if (!reaction || std::find(kBuilt.begin(), kBuilt.end(), reaction->kind) != kBuilt.end()) return;
     refuse(reaction->at, "'" + std::string(key) + ": " + kNames[static_cast<std::size_t>(reaction->kind)] +
-           "' of task '" + task.name.text + "'", "use continue, hold, skip, error or flag to run");
+           "' of task '" + task.name.text + "'", "use continue, hold, skip, abort, error, flag or stop to run");
   }
 
   void judge(const DraftTask& task) {
