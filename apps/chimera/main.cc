@@ -40,7 +40,8 @@ void add_check(CLI::App& app, Words& words) {
   CLI::App* c = app.add_subcommand("check", "Prove a description legal, or name every fault with its place");
   c->add_option("FILE", words.check.file, "the description")->required();
   c->add_flag("--json", words.json, "the report as one JSON object");
-  c->add_option("--graph", words.check.graph, "draw it instead: dot, svg or text")->check(CLI::IsMember({"dot", "svg", "text"}));
+  c->add_option("--graph", words.check.graph, "draw it instead: dot, svg or text")
+      ->check(CLI::IsMember({"dot", "svg", "text"}));
   c->footer("Example: chimera check examples/01_puma_pid/puma_pid.yaml --graph svg > puma.svg");
 }
 

@@ -32,7 +32,8 @@ void RecordFiles::begin(const chimera::ApplicationSpec& spec, Nanoseconds origin
   for (const chimera::TaskSpec& task : spec.tasks) names_.emplace_back(task.name);
   for (const chimera::RtpuSpec& rtpu : spec.rtpus) rtpus.emplace_back(rtpu.name);
   if (trace_ != nullptr)
-    trace_->writer = std::make_unique<chimera::ChromeTrace>(trace_->file, std::string(spec.name), rtpus, names_, origin);
+    trace_->writer =
+        std::make_unique<chimera::ChromeTrace>(trace_->file, std::string(spec.name), rtpus, names_, origin);
 }
 
 void RecordFiles::take(std::span<const chimera::TapRecord> records) {
@@ -49,8 +50,10 @@ void RecordFiles::end(std::uint64_t dropped) {
 
 bool RecordFiles::finish(std::FILE* out, std::FILE* err) {
   bool good = dropped_ == 0;
-  if (!good) std::fprintf(err, "%llu records were lost: the trace has a gap\n", static_cast<unsigned long long>(dropped_));
-  if (unit_.count > 0) std::fputs(chimera::draw::text(chimera::draw::timeline(kept_, names_, origin_, unit_, duration_)).c_str(), out);
+  if (!good)
+    std::fprintf(err, "%llu records were lost: the trace has a gap\n", static_cast<unsigned long long>(dropped_));
+  if (unit_.count > 0)
+    std::fputs(chimera::draw::text(chimera::draw::timeline(kept_, names_, origin_, unit_, duration_)).c_str(), out);
   if (trace_ != nullptr) {
     const bool written = std::ferror(trace_->file) == 0 && std::fclose(trace_->file) == 0;
     trace_->file = nullptr;

@@ -55,9 +55,10 @@ Result<Probe> Application::probe(const std::string& variable) const {
     std::vector<std::string> names;
     for (const Variable& v : all) names.emplace_back(v.name);
     const std::string nearest(chimera::nearest(variable, names));
-    return Error{ErrorCode::kNotFound,
-                 {"no state variable '" + variable + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?")},
-                 {configuration_.file()}};
+    return Error{
+        ErrorCode::kNotFound,
+        {"no state variable '" + variable + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?")},
+        {configuration_.file()}};
   }
   Probe probe;
   probe.name = variable;

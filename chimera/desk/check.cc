@@ -24,12 +24,14 @@ std::string order_text(const Configuration& configuration, const ConfiguredSet& 
 std::string verdict_text(const Configuration& configuration) {
   std::size_t states = 0, constants = 0;
   for (const ConfiguredVariable& variable : configuration.variables()) ++(variable.is_constant ? constants : states);
-  std::string text = configuration.subsystem() + ": legal. " + count(configuration.tasks().size(), "task", "tasks") + ", " +
-                     count(states, "state variable", "state variables") + ", " + count(constants, "constant", "constants") +
-                     ", " + count(configuration.sets().size(), "configuration", "configurations") + "\n";
+  std::string text = configuration.subsystem() + ": legal. " + count(configuration.tasks().size(), "task", "tasks") +
+                     ", " + count(states, "state variable", "state variables") + ", " +
+                     count(constants, "constant", "constants") + ", " +
+                     count(configuration.sets().size(), "configuration", "configurations") + "\n";
   for (std::size_t s = 0; s < configuration.sets().size(); ++s) {
     const ConfiguredSet& set = configuration.sets()[s];
-    text += "  " + set.name + (s == configuration.start() ? " (start): " : ": ") + order_text(configuration, set) + "\n";
+    text +=
+        "  " + set.name + (s == configuration.start() ? " (start): " : ": ") + order_text(configuration, set) + "\n";
   }
   const auto loads = configuration.utilisation();
   for (std::size_t r = 0; r < loads.size(); ++r) {
@@ -66,7 +68,9 @@ Output check(const CheckOptions& options, const Workplace& workplace) {
     return output;
   }
   const draw::Graph graph = graph_of(*verdict.configuration);
-  output.out = options.graph == "dot" ? draw::dot(graph) : options.graph == "svg" ? draw::svg(graph) : draw::text(graph);
+  output.out = options.graph == "dot"   ? draw::dot(graph)
+               : options.graph == "svg" ? draw::svg(graph)
+                                        : draw::text(graph);
   return output;
 }
 

@@ -26,7 +26,8 @@ bool compare(double value, const std::string& op, double bound) {
 
 }  // namespace
 
-Result<Expectation> Expectation::parse(const std::string& text, const Application& application, const UnitSystem& units) {
+Result<Expectation> Expectation::parse(const std::string& text, const Application& application,
+                                       const UnitSystem& units) {
   const std::size_t at = text.find_first_of("<>");
   if (at == std::string::npos) return wrong(text, "write 'VARIABLE <= QUANTITY', with < <= > or >=");
   Expectation made;

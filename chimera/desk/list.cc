@@ -43,7 +43,9 @@ std::string sheet(const LibraryEntry& entry) {
   const Descriptor& d = entry.descriptor;
   std::string text = d.name + ": " + d.doc + "\n";
   if (!d.source.empty()) text += "source   " + d.source + "\n";
-  text += "rate     " + (d.default_rate_hz > 0 ? number_text(d.default_rate_hz) + " Hz by default" : "stated by the description") + "\n";
+  text += "rate     " +
+          (d.default_rate_hz > 0 ? number_text(d.default_rate_hz) + " Hz by default" : "stated by the description") +
+          "\n";
   text += "released " + std::string(d.is_aperiodic() ? "by events (sync is asked at its rate)" : "by the timer") + "\n";
   text += "methods ";
   for (std::size_t m = 0; m < CHIMERA_METHODS; ++m)
@@ -58,7 +60,8 @@ std::string sheet(const LibraryEntry& entry) {
   for (const PortDescriptor& port : d.ports) {
     std::string line = "  " + padded(std::string(kind_name(port.kind)), 9) + "  " +
                        padded(port.name + (port.repeated ? "*" : ""), name_width) + "  ";
-    if (port.kind != CHIMERA_RESOURCE) line += padded(type_text(port), type_width) + "  " + padded(port.unit, unit_width) + "  ";
+    if (port.kind != CHIMERA_RESOURCE)
+      line += padded(type_text(port), type_width) + "  " + padded(port.unit, unit_width) + "  ";
     line += remarks(port);
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
@@ -86,8 +89,8 @@ Output list(const Workplace& workplace, bool json) {
   for (const LibraryEntry& entry : library->entries()) {
     const Descriptor& d = entry.descriptor;
     output.out += padded(d.name, width) + "  " + d.doc + "\n";
-    rows += (rows.empty() ? "" : ", ") + std::string("{\"name\": ") + json_string(d.name) + ", \"doc\": " + json_string(d.doc) +
-            ", \"file\": " + json_string(entry.object_file) + "}";
+    rows += (rows.empty() ? "" : ", ") + std::string("{\"name\": ") + json_string(d.name) +
+            ", \"doc\": " + json_string(d.doc) + ", \"file\": " + json_string(entry.object_file) + "}";
   }
   if (json) output.out = "{\"components\": [" + rows + "]}\n";
   else if (library->entries().empty()) output.err = "no components found; CHIMERA_PATH says where to look\n";

@@ -29,9 +29,10 @@ std::string row(const Task& task, State state, Nanoseconds ran, int width) {
   char line[400];
   std::snprintf(line, sizeof line, "%-*.*s  %-11s %9llu  %10s %10s  %6.2f %%  %10s  %10s  %6llu %6llu %6llu\n", width,
                 static_cast<int>(task.spec->name.size()), task.spec->name.data(), state_name(state),
-                static_cast<unsigned long long>(p.cycles), mean_text(cycle).c_str(), max_text(cycle).c_str(), 100 * load,
-                max_text(p.response).c_str(), jitter_text(p.start_delay).c_str(), static_cast<unsigned long long>(p.missed),
-                static_cast<unsigned long long>(p.dropped), static_cast<unsigned long long>(task.faults.count));
+                static_cast<unsigned long long>(p.cycles), mean_text(cycle).c_str(), max_text(cycle).c_str(),
+                100 * load, max_text(p.response).c_str(), jitter_text(p.start_delay).c_str(),
+                static_cast<unsigned long long>(p.missed), static_cast<unsigned long long>(p.dropped),
+                static_cast<unsigned long long>(task.faults.count));
   return line;
 }
 
@@ -48,19 +49,22 @@ std::string task_json(const Task& task, State state) {
   std::string methods;
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m)
     if (p.execution[m].count > 0)
-      methods += (methods.empty() ? "" : ", ") + json_string(method_name(static_cast<Method>(m))) + ": " + spread_json(p.execution[m]);
-  std::string text = "{\"task\": " + json_string(task.spec->name) + ", \"component\": " + json_string(task.spec->component) +
-                     ", \"state\": " + json_string(state_name(state)) + ", \"period_ns\": " +
-                     std::to_string(task.spec->period.count) + ", \"cycles\": " + number(p.cycles) + ", \"execution_ns\": {" +
-                     methods + "}, \"response_ns\": " + spread_json(p.response) + ", \"start_delay_ns\": " +
-                     spread_json(p.start_delay) + ", \"missed\": " + number(p.missed) + ", \"overrun\": " + number(p.overrun) +
-                     ", \"min_refused\": " + number(p.min_refused) + ", \"dropped\": " + number(p.dropped) + ", \"held\": " +
-                     number(p.held) + ", \"aborted\": " + number(p.aborted) + ", \"stale\": " + number(p.stale) +
-                     ", \"rejected\": " + number(p.rejected) + ", \"faults\": " + number(task.faults.count);
+      methods += (methods.empty() ? "" : ", ") + json_string(method_name(static_cast<Method>(m))) + ": " +
+                 spread_json(p.execution[m]);
+  std::string text =
+      "{\"task\": " + json_string(task.spec->name) + ", \"component\": " + json_string(task.spec->component) +
+      ", \"state\": " + json_string(state_name(state)) + ", \"period_ns\": " + std::to_string(task.spec->period.count) +
+      ", \"cycles\": " + number(p.cycles) + ", \"execution_ns\": {" + methods +
+      "}, \"response_ns\": " + spread_json(p.response) + ", \"start_delay_ns\": " + spread_json(p.start_delay) +
+      ", \"missed\": " + number(p.missed) + ", \"overrun\": " + number(p.overrun) +
+      ", \"min_refused\": " + number(p.min_refused) + ", \"dropped\": " + number(p.dropped) +
+      ", \"held\": " + number(p.held) + ", \"aborted\": " + number(p.aborted) + ", \"stale\": " + number(p.stale) +
+      ", \"rejected\": " + number(p.rejected) + ", \"faults\": " + number(task.faults.count);
   if (task.faults.count > 0)
-    text += ", \"last_fault\": {\"method\": " + json_string(method_name(task.faults.method)) + ", \"at_ns\": " +
-            std::to_string(task.faults.at.count) + ", \"code\": " + std::to_string(task.faults.last.code) + ", \"text\": " +
-            json_string(task.faults.last.text) + "}";
+    text += ", \"last_fault\": {\"method\": " + json_string(method_name(task.faults.method)) +
+            ", \"at_ns\": " + std::to_string(task.faults.at.count) +
+            ", \"code\": " + std::to_string(task.faults.last.code) +
+            ", \"text\": " + json_string(task.faults.last.text) + "}";
   return text + "}";
 }
 
@@ -77,8 +81,8 @@ std::string profile_table(const TaskSet& tasks, std::span<const State> states, N
   for (const Task& task : tasks.tasks()) width = std::max(width, task.spec->name.size());
   const int w = static_cast<int>(width);
   char head[400];
-  std::snprintf(head, sizeof head, "%-*s  %-11s %9s  %10s %10s  %8s  %10s  %10s  %6s %6s %6s\n", w, "task", "state", "cycles",
-                "mean", "max", "load", "response", "jitter", "missed", "dropped", "faults");
+  std::snprintf(head, sizeof head, "%-*s  %-11s %9s  %10s %10s  %8s  %10s  %10s  %6s %6s %6s\n", w, "task", "state",
+                "cycles", "mean", "max", "load", "response", "jitter", "missed", "dropped", "faults");
   std::string text = head;
   for (const Task& task : tasks.tasks()) text += row(task, states[task.id.index], ran, w);
   for (const Task& task : tasks.tasks())

@@ -13,8 +13,8 @@ namespace chimera::desk {
 /// The state of every task, in order: taken at the end of a run, before everything is shut down.
 std::vector<State> states_of(const TaskSet& tasks);
 
-/// One line a task: state (as in `states`), cycles, execution time of cycle (mean, max), load, response, start jitter, failures; then a
-/// line for every task with a fault. `ran` is the time that the loads refer to. Context: setup.
+/// One line a task: state (as in `states`), cycles, execution time of cycle (mean, max), load, response, start jitter,
+/// failures; then a line for every task with a fault. `ran` is the time that the loads refer to. Context: setup.
 std::string profile_table(const TaskSet& tasks, std::span<const State> states, Nanoseconds ran);
 /// A JSON array with everything counted, times in nanoseconds. Context: setup.
 std::string profile_json(const TaskSet& tasks, std::span<const State> states);

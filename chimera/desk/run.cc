@@ -167,8 +167,8 @@ int Session::report(RunEnd end) {
     const bool holds = expectation.holds(said);
     all_hold = all_hold && holds;
     lines += (holds ? "holds: " : "FAILS: ") + expectation.text() + " (" + said + ")\n";
-    rows += (rows.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(expectation.text()) + ", \"holds\": " +
-            (holds ? "true" : "false") + ", \"said\": " + json_string(said) + "}";
+    rows += (rows.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(expectation.text()) +
+            ", \"holds\": " + (holds ? "true" : "false") + ", \"said\": " + json_string(said) + "}";
   }
   const std::string variables = variables_json();
   const std::vector<State> states = states_of(application_.tasks());
@@ -181,10 +181,12 @@ int Session::report(RunEnd end) {
     sink_->end(tap_->dropped());
   }
   if (request_.json) {
-    std::fprintf(out_, "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s]}\n",
-                 json_string(application_.configuration().subsystem()).c_str(), json_string(loop_->description()).c_str(),
-                 static_cast<long long>(ran_.count), word(end), profile_json(application_.tasks(), states).c_str(),
-                 variables.c_str(), rows.c_str());
+    std::fprintf(out_,
+                 "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"tasks\": %s, "
+                 "\"variables\": {%s}, \"expectations\": [%s]}\n",
+                 json_string(application_.configuration().subsystem()).c_str(),
+                 json_string(loop_->description()).c_str(), static_cast<long long>(ran_.count), word(end),
+                 profile_json(application_.tasks(), states).c_str(), variables.c_str(), rows.c_str());
   } else {
     std::fprintf(out_, "ran %.3f s%s\n%s%s%s", to_seconds(ran_), sentence(end), refused.c_str(),
                  profile_table(application_.tasks(), states, ran_).c_str(), lines.c_str());

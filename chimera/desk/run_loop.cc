@@ -17,7 +17,8 @@ namespace {
 class VirtualLoop final : public RunLoop {
  public:
   VirtualLoop(Application& application, const RunRequest& request, const RunOptions& options)
-      : request_(request), executor_(application.tasks(), options, {request.preemptive, request.seed, request.quantum}) {}
+      : request_(request),
+        executor_(application.tasks(), options, {request.preemptive, request.seed, request.quantum}) {}
 
   Result<void> start() override { return executor_.start(); }
   std::optional<RunEnd> advance(Nanoseconds until) override {
@@ -91,11 +92,13 @@ class RealTimeLoop final : public RunLoop {
 
 }  // namespace
 
-std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request, const RunOptions& options) {
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
+                                           const RunOptions& options) {
   return std::make_unique<VirtualLoop>(application, request, options);
 }
 
-std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request, const RunOptions& options) {
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,
+                                             const RunOptions& options) {
   return std::make_unique<RealTimeLoop>(application, request, options);
 }
 

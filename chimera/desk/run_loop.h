@@ -27,7 +27,9 @@ class RunLoop {
   virtual std::string description() const = 0;
 };
 
-std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request, const RunOptions& options);
-std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request, const RunOptions& options);
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
+                                           const RunOptions& options);
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,
+                                             const RunOptions& options);
 
 }  // namespace chimera::desk

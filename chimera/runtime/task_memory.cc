@@ -179,7 +179,8 @@ void TaskMemory::wire(Task& task) noexcept {
                               !constant.spec->value.empty();
     constant.port->value = can_be_given ? next : nullptr;
     next += round_up(constant.spec->max_bytes());
-    if (!constant.spec->value.empty()) std::memcpy(constant.local, constant.spec->value.data(), constant.spec->value.size());
+    if (!constant.spec->value.empty())
+      std::memcpy(constant.local, constant.spec->value.data(), constant.spec->value.size());
   }
   for (auto& [port, text] : resources_) live(*port)->value = text.data();
   task.inputs = inputs_;
@@ -198,7 +199,8 @@ bool TaskMemory::read_constants(const ConstantStore& store, FixedString<160>& wh
     if (constant.decl->kind != CHIMERA_IN_CONST || constant.spec->variable.empty()) continue;
     const Constant* found = store.find(constant.spec->variable);
     if (found != nullptr && found->is_known) {
-      std::memcpy(constant.local, found->value.data(), std::min<std::size_t>(found->value.size(), constant.spec->max_bytes()));
+      std::memcpy(constant.local, found->value.data(),
+                  std::min<std::size_t>(found->value.size(), constant.spec->max_bytes()));
     } else if (constant.spec->value.empty()) {
       char text[160];
       std::snprintf(text, sizeof text, "constant %.*s has no value: its producer was not initialised",

@@ -28,7 +28,9 @@ void TaskSet::shut_down(Nanoseconds now) {
   on_set_changed();
 }
 
-SignalReport TaskSet::signal(TaskId task, Signal signal, Nanoseconds now) { return this->signal({&task, 1}, signal, now); }
+SignalReport TaskSet::signal(TaskId task, Signal signal, Nanoseconds now) {
+  return this->signal({&task, 1}, signal, now);
+}
 
 SignalReport TaskSet::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) {
   SignalReport report;
@@ -160,8 +162,8 @@ void TaskSet::take_over(Task& task) noexcept {
     const Source& source = sources_[variables_->output(task.id, i).index];
     const chimera_slot* slot = source.reader.published();
     if (slot == nullptr || !((slot->valid >> source.bit) & 1u)) continue;
-    std::memcpy(task.group.staging() + task.outputs[i].offset, reinterpret_cast<const std::byte*>(slot + 1) + source.offset,
-                task.outputs[i].bytes);
+    std::memcpy(task.group.staging() + task.outputs[i].offset,
+                reinterpret_cast<const std::byte*>(slot + 1) + source.offset, task.outputs[i].bytes);
     taken_over_valid_ |= std::uint64_t{1} << i;
   }
 }

@@ -106,7 +106,8 @@ void follow(const std::string& so_far, Next next, std::set<std::string>& stories
     const auto answer = static_cast<Answer>(i);
     if (step.next[i].kind == Next::Kind::kImpossible) continue;
     const std::string after = answer == Answer::kOk ? text(step.after_ok) : "-";
-    follow(so_far + " " + text(step.before) + "|" + std::string(method_name(step.method)) + "=" + text(answer) + "|" + after,
+    follow(so_far + " " + text(step.before) + "|" + std::string(method_name(step.method)) + "=" + text(answer) + "|" +
+               after,
            step.next[i], stories);
   }
 }
@@ -120,7 +121,8 @@ std::set<std::string> stories_of_the_code() {
       for (bool aperiodic : {false, true}) {
         const bool differs = state == State::kOn && signal == Signal::kWakeup;
         if (aperiodic && !differs) continue;
-        const std::string head = std::string(state_name(state)) + " " + (aperiodic ? "~" : "") + std::string(signal_name(signal));
+        const std::string head =
+            std::string(state_name(state)) + " " + (aperiodic ? "~" : "") + std::string(signal_name(signal));
         const Next first = next(state, signal, aperiodic);
         if (first.kind == Next::Kind::kImpossible) stories.insert(head + " refused");
         else follow(head, first, stories);

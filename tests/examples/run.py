@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the lessons: every `$ chimera ...` line of examples/*/expected.txt in its folder, and compares what it prints.
 
-A line `...` stands for any lines; `[exit 1]` after the output states an exit code other than 0. Only commands in virtual
-time and commands on files have a text that can be compared; lessons in real time are shown in the README of their folder.
-With --write the files are brought up to date, to be looked at before they are committed.
+A line `...` stands for any lines; `[exit 1]` after the output states an exit code other than 0. Only commands in
+virtual time and commands on files have a text that can be compared; lessons in real time are shown in the README of
+their folder. With --write the files are brought up to date, to be looked at before they are committed.
 """
 import argparse
 import os
@@ -77,7 +77,7 @@ def main():
                 passed += 1
                 continue
             failed += 1
-            print(f"{folder.name}: $ {command}\n--- expected\n" + "\n".join(expected) + "\n--- found\n" + "\n".join(found))
+            print("\n".join([f"{folder.name}: $ {command}", "--- expected", *expected, "--- found", *found]))
     print(f"{passed} commands as shown, {failed} not")
     return 1 if failed or not passed else 0
 
