@@ -31,6 +31,15 @@ std::vector<std::byte> accepted(Model& model, const Node& node, const LinkedPort
   return std::move(*bytes);
 }
 
+void count_list(const Node& node, std::uint32_t (&listed)[CHIMERA_MAX_EXTENTS]) {
+  const Node* at = &node;
+  for (std::uint32_t& entries : listed) {
+    if (!at->is_list() || at->items.empty()) return;
+    entries = static_cast<std::uint32_t>(at->items.size());
+    at = &at->items[0];
+  }
+}
+
 std::span<const std::byte> value_of(Model& model, Parts& parts, const LinkedPort& port) {
   if (port.is(CHIMERA_RESOURCE)) {
     std::vector<std::byte> bytes(port.own->text.size());
@@ -60,6 +69,7 @@ PortSpec port_spec(Model& model, Parts& parts, const LinkedPort& port, const Con
   spec.min = port.declared->min;
   spec.max = port.declared->max;
   spec.value = value_of(model, parts, port);
+  if (port.own != nullptr) count_list(*port.own, spec.listed);
   return spec;
 }
 
@@ -93,6 +103,7 @@ void add_given(Model& model, Parts& parts, const VariableModel& variable, const 
   spec.element_bytes = port.element_bytes;
   fill_extents(parts, port, spec.extent);
   spec.value = keep(parts, accepted(model, variable.given->value, port));
+  count_list(variable.given->value, spec.listed);
   (variable.is_constant ? parts.constants : parts.operators).push_back(spec);
 }
 

@@ -19,6 +19,7 @@ struct GivenSpec {
   std::uint32_t element_bytes = 8;
   ExtentSpec extent[CHIMERA_MAX_EXTENTS];
   std::span<const std::byte> value;  ///< extent[0].max * extent[1].max elements
+  std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};  ///< as PortSpec::listed
 };
 
 struct RtpuSpec {

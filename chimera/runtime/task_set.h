@@ -127,6 +127,8 @@ class TaskSet {
   void place_operators();
   GroupInput input_from(const Source& source);
   void set_constants();
+  const GivenSpec* given(std::string_view variable) const noexcept;
+  bool lists_fit(const Task& task, FixedString<160>& why) const noexcept;
   void bind(VariableId variable, const Source& source);
   void bind_outputs_of(Task& task);
   State follow(Task& task, Next at, Nanoseconds now);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The signalling half of TaskSet: one signal, the steps it starts, and what follows for the other tasks.
+#include <cstdio>
 #include <cstring>
 
 #include "chimera/runtime/task_set.h"
@@ -127,7 +128,7 @@ bool TaskSet::before_step(Task& task, const StepRule& step, Nanoseconds now) {
   if (step.before & kReadOut) take_over(task);
   if (step.before & kReadConst) {
     FixedString<160> why;
-    if (!memories_[task.id.index].read_constants(constants_, why)) {
+    if (!memories_[task.id.index].read_constants(constants_, why) || !lists_fit(task, why)) {
       record_fault(task, step.method, why.c_str(), now);
       return false;
     }
@@ -140,7 +141,7 @@ Answer TaskSet::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
   if (step.after_ok & kWriteConst) {
     const int changed = memory.write_constants(constants_, task.id);
     FixedString<160> why;
-    if (!memory.fix_extents(constants_, why)) {
+    if (!memory.fix_extents(constants_, why) || !lists_fit(task, why)) {
       record_fault(task, step.method, why.c_str(), now);
       return Answer::kFault;
     }
@@ -153,6 +154,34 @@ Answer TaskSet::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
     return answer;
   }
   return Answer::kOk;
+}
+
+const GivenSpec* TaskSet::given(std::string_view variable) const noexcept {
+  for (const auto& list : {spec_.constants, spec_.operators})
+    for (const GivenSpec& given : list)
+      if (given.name == variable) return &given;
+  return nullptr;
+}
+
+// A value written as a list has as many entries as the constant says that fixes the extent.
+bool TaskSet::lists_fit(const Task& task, FixedString<160>& why) const noexcept {
+  for (const PortSpec& port : task.spec->ports) {
+    const GivenSpec* from = port.value.empty() && !port.variable.empty() ? given(port.variable) : nullptr;
+    const std::uint32_t* listed = from != nullptr ? from->listed : port.listed;
+    for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
+      const ExtentSpec& extent = port.extent[d];
+      if (extent.constant.empty() || listed[d] == 0) continue;
+      const std::int64_t n = constants_.integer(extent.constant, listed[d]);
+      if (n == listed[d]) continue;
+      char text[160];
+      std::snprintf(text, sizeof text, "%.*s has a list of %u values, but %.*s is %lld",
+                    static_cast<int>(port.variable.size()), port.variable.data(), listed[d],
+                    static_cast<int>(extent.constant.size()), extent.constant.data(), static_cast<long long>(n));
+      why.assign(text);
+      return false;
+    }
+  }
+  return true;
 }
 
 // >out-var: what a predecessor left is where this task starts from (2000 paper 5.1).

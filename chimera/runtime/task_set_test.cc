@@ -214,6 +214,20 @@ TEST(TaskSet, AnExtentAboveItsMaximumIsAFaultOfInit) {
   EXPECT_EQ(set->tasks()[0].state, State::kNotCreated);
 }
 
+TEST(TaskSet, AListMustBeAsLongAsTheConstantSays) {
+  TestApplication app;
+  app.add("arm", component<Arm>("arm"));
+  app.add("user", component<User>("user"));
+  app.port(0, 1).extent[0] = {10, "ndof"};
+  app.port(1, 1).extent[0] = {10, "ndof"};
+  app.port(1, 1).listed[0] = 4;
+  app.make();
+  auto set = make(app);
+  const auto started = set->start({});
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().message.view(), "init: q has a list of 4 values, but ndof is 3");
+}
+
 TEST(TaskSet, SignalsOfATaskWaitForTheEdge) {
   TestApplication app;
   app.add("counter", component<Counter>("counter"));

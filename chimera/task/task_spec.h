@@ -34,6 +34,9 @@ struct PortSpec {
   /// out-var: initial value; in-const: the value given to this task alone, else the component's default;
   /// resource: its text without the zero. Empty: none. Values fill all max elements.
   std::span<const std::byte> value;
+  /// Entries of the list that `value` was written as, by dimension; 0: one value for all elements. An extent that a
+  /// constant fixes must agree with them.
+  std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};
 
   std::uint32_t max_count() const noexcept { return extent[0].max * extent[1].max; }
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }
