@@ -27,12 +27,16 @@ struct PumaTorque {
   Resource model{"model", doc = "MJCF file; puma560.xml without a directory is built in."};
 
   void init() {
-    check(arm_.load(model.c_str(), {.payload_mass = *payload_mass, .coulomb_share = *coulomb_share}));
+    load();
     check(arm_.place(PumaInput(start_pose.begin(), library::kPumaJoints)));
-    *ndof = static_cast<std::int32_t>(library::kPumaJoints);
-    std::ranges::copy(arm_.torque_limit(), tau_max.begin());
   }
-  void reinit() { init(); }
+  // Another payload, at rest in the same place.
+  void reinit() {
+    library::PumaVector here;
+    std::ranges::copy(arm_.position(), here.begin());
+    load();
+    check(arm_.place(here));
+  }
   void on() { publish(); }
   Outcome cycle(Cycle c) {
     const PumaInput torque(tau.begin(), library::kPumaJoints);
@@ -56,6 +60,11 @@ struct PumaTorque {
 
   static void check(const Result<void>& result) {
     if (!result) throw std::runtime_error(std::string(result.error().message.view()));
+  }
+  void load() {
+    check(arm_.load(model.c_str(), {.payload_mass = *payload_mass, .coulomb_share = *coulomb_share}));
+    *ndof = static_cast<std::int32_t>(library::kPumaJoints);
+    std::ranges::copy(arm_.torque_limit(), tau_max.begin());
   }
   void publish() {
     std::ranges::copy(arm_.position(), q.begin());

@@ -1,2 +1,99 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "chimera/task/rig.h"
+
+namespace chimera {
+namespace {
+
+constexpr std::array<double, 6> kStretched{0, 0, -1.5707963267948966, 0, 0, 0};
+
+struct PumaTorqueTest : testing::Test {
+  Rig rig{"puma_torque"};
+  void give(const std::array<double, 6>& pose) {
+    rig.resource("model", "puma560.xml");
+    for (std::size_t i = 0; i < 6; ++i) rig.set("start_pose", pose[i], i);
+    for (std::size_t i = 0; i < 6; ++i) rig.set("tau", 0.0, i);
+  }
+  void start() {
+    give(kStretched);
+    const RigAnswer made = rig.init();
+    ASSERT_TRUE(made) << made.text;
+    ASSERT_TRUE(rig.on());
+  }
+};
+
+TEST_F(PumaTorqueTest, TellsItsJointsAndLimitsAtInit) {
+  start();
+  EXPECT_EQ(rig.get<std::int32_t>("ndof"), 6);
+  EXPECT_EQ(rig.get<double>("tau_max", 0), 97.6);
+  EXPECT_EQ(rig.get<double>("tau_max", 5), 21.3);
+}
+
+TEST_F(PumaTorqueTest, PublishesItsStartPoseAtOn) {
+  start();
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(rig.get<double>("q", i), kStretched[i]);
+    EXPECT_EQ(rig.get<double>("qd", i), 0);
+  }
+}
+
+TEST_F(PumaTorqueTest, FallsWithoutTorqueAndHoldsWhenTheConfigurationIsIllegal) {
+  start();
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_LT(rig.get<double>("q", 1), -0.03);
+  EXPECT_LT(rig.get<double>("qd", 1), -0.5);
+  rig.illegal(true);
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(rig.cycle());
+  const double held = rig.get<double>("q", 1);
+  rig.set("tau", std::nan(""), 1);
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("q", 1), held, 1e-4);
+}
+
+TEST_F(PumaTorqueTest, TorqueThatIsNotANumberIsAFaultAndBrakes) {
+  start();
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle());
+  rig.set("tau", std::numeric_limits<double>::infinity(), 3);
+  const RigAnswer answer = rig.cycle();
+  EXPECT_FALSE(answer);
+  EXPECT_EQ(answer.text, "tau[3] is not finite");
+  EXPECT_FALSE(rig.error());
+  EXPECT_EQ(rig.get<double>("qd", 1), 0);
+  EXPECT_TRUE(rig.clear());
+}
+
+TEST_F(PumaTorqueTest, BrakesAtOff) {
+  start();
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle());
+  ASSERT_TRUE(rig.off());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rig.get<double>("qd", i), 0);
+}
+
+TEST_F(PumaTorqueTest, ReinitTakesAnotherPayloadWhereItStands) {
+  start();
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle());
+  const double here = rig.get<double>("q", 1);
+  rig.set("payload_mass", 3.0);
+  ASSERT_TRUE(rig.reinit());
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("q", 1), here);
+  EXPECT_EQ(rig.get<double>("qd", 1), 0);
+}
+
+TEST_F(PumaTorqueTest, RefusesAPoseOutsideTheLimits) {
+  std::array<double, 6> pose = kStretched;
+  pose[4] = 2;
+  give(pose);
+  const RigAnswer answer = rig.init();
+  EXPECT_FALSE(answer);
+  EXPECT_EQ(answer.text, "joint 5 at 2 rad is outside its limits -1.745 to 1.745 rad");
+}
+
+}  // namespace
+}  // namespace chimera

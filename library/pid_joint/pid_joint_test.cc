@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chimera/task/rig.h"
+
+namespace chimera {
+namespace {
+
+struct PidJointTest : testing::Test {
+  Rig rig{"pid_joint"};
+  void give() {
+    rig.set("ndof", std::int32_t{2});
+    rig.set("filter_time", 0.0);
+    for (std::size_t i = 0; i < 2; ++i) {
+      rig.set("tau_max", 50.0, i);
+      rig.set("kp", 100.0, i);
+      rig.set("ki", 10.0, i);
+      rig.set("kd", 5.0, i);
+      for (const char* port : {"q_ref", "qd_ref", "q", "qd"}) rig.set(port, 0.0, i);
+    }
+  }
+  void start() {
+    give();
+    ASSERT_TRUE(rig.init());
+    ASSERT_TRUE(rig.on());
+  }
+};
+
+TEST_F(PidJointTest, GivesTheThreeTermsForEachJointAlone) {
+  start();
+  rig.set("q_ref", 0.1, 0);
+  rig.set("qd", -0.2, 1);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_DOUBLE_EQ(rig.get<double>("tau", 0), 100 * 0.1 + 10 * 0.1 * 1e-3);
+  EXPECT_DOUBLE_EQ(rig.get<double>("tau", 1), 5 * 0.2);
+}
+
+TEST_F(PidJointTest, StaysWithinWhatTheDrivesGive) {
+  start();
+  rig.set("q_ref", 3.0, 0);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(rig.get<double>("tau", 0), 50);
+}
+
+TEST_F(PidJointTest, GoesOnFromTheTorqueThatStands) {
+  start();
+  rig.set("q_ref", 0.2, 0);
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(rig.cycle());
+  const double stands = rig.get<double>("tau", 0);
+  ASSERT_GT(stands, 20);
+  ASSERT_TRUE(rig.off());
+  rig.set("q", 0.15, 0);
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("tau", 0), stands, 1e-3);
+}
+
+TEST_F(PidJointTest, DoesNotIntegrateWhileTheConfigurationIsIllegal) {
+  start();
+  rig.illegal(true);
+  rig.set("q_ref", 0.2, 0);
+  for (int i = 0; i < 5000; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(rig.get<double>("tau", 0), 0);
+  rig.illegal(false);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("tau", 0), 0, 1e-2);
+}
+
+TEST_F(PidJointTest, InputThatIsNotANumberIsAFault) {
+  start();
+  rig.set("q", std::nan(""), 1);
+  EXPECT_EQ(rig.cycle().text, "an input is not a number");
+}
+
+TEST_F(PidJointTest, RefusesLimitsBeyondTheRangeOfTau) {
+  give();
+  rig.set("tau_max", 201.0, 1);
+  EXPECT_EQ(rig.init().text, "tau_max must be 0 to 200 N.m, the range of tau");
+}
+
+}  // namespace
+}  // namespace chimera
