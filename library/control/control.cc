@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The speed control of the cruise control (2000 paper, figure 17): how much force the car needs.
+#include <cmath>
+
+#include "chimera/task/component.h"
+#include "library/control/pi.h"
+
+using namespace chimera;
+
+namespace {
+
+struct Control {
+  In<double> vr{"vr", "m/s", doc = "Speed to hold; 0: the control is off."};
+  In<double> vz{"vz", "m/s", doc = "Measured speed."};
+  Out<double> fd{"fd", "N", initial = 0.0, safety, range(-20000, 20000), doc = "Force wanted; below 0 to brake."};
+  InConst<double> kp{"kp", "N.s/m", initial = 2500.0, range(0, 1e6), doc = "Gain of the speed error."};
+  InConst<double> ki{"ki", "N/m", initial = 600.0, range(0, 1e6), doc = "Gain of its integral."};
+  InConst<double> drive_max{"drive_max", "N", initial = 2280.0, range(0, 20000), doc = "The most it asks for."};
+  InConst<double> brake_max{"brake_max", "N", initial = 4000.0, range(0, 20000), doc = "The most it brakes with."};
+
+  Outcome init() {
+    if (!(*drive_max >= 0 && *drive_max <= 20000) || !(*brake_max >= 0 && *brake_max <= 20000))
+      return fault("drive_max and brake_max are 0 to 20000 N");
+    return ok();
+  }
+  Outcome reinit() { return init(); }
+  // Bumpless: goes on from the force that stands, of an earlier run or of a predecessor.
+  void on() { pi_.start(std::isnan(*fd) ? 0 : *fd); }
+  Outcome cycle(Cycle c) {
+    if (!std::isfinite(*vr) || !std::isfinite(*vz)) return fault("vr or vz is not finite");
+    if (c.illegal()) return ok();
+    if (*vr > 0) {
+      *fd = pi_.step(*kp, *ki, *vr - *vz, c.dt(), -*brake_max, *drive_max);
+    } else {
+      pi_.start(0);
+      *fd = 0;
+    }
+    return ok();
+  }
+
+ private:
+  library::Pi pi_;
+};
+
+CHIMERA_COMPONENT(Control, "control", "Holds the speed of a car: PI with limits and anti-windup.", rate = 50.0,
+                  source = "2000 paper, section 6; Astrom and Hagglund 2006");
+
+}  // namespace

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Output element of the cruise control (2000 paper, figure 15): how much gas to give.
+#include <algorithm>
+
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+namespace {
+
+struct Engine {
+  In<double> fde{"fde", "N", doc = "Force wanted of the engine."};
+  Out<double> gas{"gas", "1", initial = 0.0, safety, range(0, 1), doc = "Throttle, 0 closed to 1 open."};
+  InConst<double> full_gas{"full_gas", "N", initial = 2280.0, range(1, 1e5), doc = "Force of the engine at full gas."};
+
+  Outcome init() { return *full_gas > 0 ? ok() : fault("full_gas must be above 0 N"); }
+  Outcome reinit() { return init(); }
+  void cycle(Cycle c) { *gas = c.illegal() ? 0 : std::clamp(*fde / *full_gas, 0.0, 1.0); }
+  void off() { *gas = 0; }
+};
+
+CHIMERA_COMPONENT(Engine, "engine", "Gives gas for a wanted force.", rate = 50.0, source = "2000 paper, section 6");
+
+}  // namespace

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Output element of the direct-drive variant (2000 paper, section 6): one force that drives and brakes.
+#include <algorithm>
+
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+namespace {
+
+struct Motor {
+  In<double> fd{"fd", "N", doc = "Force wanted; below 0 to brake."};
+  Out<double> fm{"fm", "N", initial = 0.0, safety, range(-50000, 50000), doc = "Force of the motor at the wheels."};
+  InConst<double> force_max{"force_max", "N", initial = 5000.0, range(0, 50000), doc = "Of the motor, either way."};
+
+  Outcome init() { return *force_max >= 0 && *force_max <= 50000 ? ok() : fault("force_max is 0 to 50000 N"); }
+  Outcome reinit() { return init(); }
+  void cycle(Cycle c) { *fm = c.illegal() ? 0 : std::clamp(*fd, -*force_max, *force_max); }
+  void off() { *fm = 0; }
+};
+
+CHIMERA_COMPONENT(Motor, "motor", "Direct-drive motor that drives and brakes.", rate = 50.0,
+                  source = "2000 paper, section 6");
+
+}  // namespace

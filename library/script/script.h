@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happens when, as one line of text: "0:0 5:0.4 8:0" is 0 from 0 on, 0.4 from 5 on, 0 again from 8 on. It stands
+// for the driver's foot, a button or a road where a simulated world has to be told.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include "chimera/base/fixed.h"
+
+namespace chimera::library {
+
+/// A function given by points with rising arguments. Before the first point it has the first value.
+class Script {
+ public:
+  static constexpr std::size_t kMostPoints = 32;
+
+  /// Reads "at:value at:value ...", at most 32 points, arguments rising, all numbers finite.
+  /// Nullptr, or what is wrong; the script is then empty. Context: setup.
+  const char* read(std::string_view text) noexcept {
+    points_.clear();
+    const char* wrong = read_points(text);
+    if (wrong != nullptr) points_.clear();
+    return wrong;
+  }
+
+  /// The value of the last point at or before `at`. 0 without points. Context: cycle; wait-free.
+  double step(double at) const noexcept {
+    const std::size_t n = passed(at);
+    return points_.empty() ? 0 : points_[n == 0 ? 0 : n - 1].value;
+  }
+
+  /// The value on the straight line between the points around `at`. 0 without points. Context: cycle; wait-free.
+  double line(double at) const noexcept {
+    const std::size_t n = passed(at);
+    if (n == 0 || n == points_.size()) return step(at);
+    const Point &a = points_[n - 1], &b = points_[n];
+    return a.value + (b.value - a.value) * (at - a.at) / (b.at - a.at);
+  }
+
+  /// Least and greatest value; 0 and 0 without points. Context: setup.
+  double least() const noexcept { return extreme(-1); }
+  double greatest() const noexcept { return extreme(1); }
+
+ private:
+  struct Point {
+    double at = 0;
+    double value = 0;
+  };
+
+  static bool take_number(std::string_view& text, double& number) noexcept {
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (read.ec != std::errc{} || !std::isfinite(number)) return false;
+    text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
+    return true;
+  }
+
+  const char* read_points(std::string_view text) noexcept {
+    while (true) {
+      while (text.starts_with(' ')) text.remove_prefix(1);
+      if (text.empty()) return points_.empty() ? "the script is empty: write at:value at:value ..." : nullptr;
+      Point point;
+      if (!take_number(text, point.at)) return "a point of the script does not begin with a number";
+      if (!text.starts_with(':')) return "a point of the script has no ':' after its first number";
+      text.remove_prefix(1);
+      if (!take_number(text, point.value)) return "a point of the script has no number after ':'";
+      if (!text.empty() && !text.starts_with(' ')) return "a point of the script does not end with its second number";
+      if (!points_.empty() && point.at <= points_[points_.size() - 1].at) return "the points of the script do not rise";
+      if (!points_.try_push(point)) return "the script has more than 32 points";
+    }
+  }
+
+  std::size_t passed(double at) const noexcept {
+    std::size_t n = 0;
+    while (n < points_.size() && points_[n].at <= at) ++n;
+    return n;
+  }
+
+  double extreme(double sign) const noexcept {
+    if (points_.empty()) return 0;
+    double most = points_[0].value;
+    for (const Point& point : points_)
+      if (sign * point.value > sign * most) most = point.value;
+    return most;
+  }
+
+  FixedVector<Point, kMostPoints> points_;
+};
+
+}  // namespace chimera::library

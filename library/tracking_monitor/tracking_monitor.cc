@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judges how a robot follows its reference, so that a demonstration can be judged by values in the table.
+#include <algorithm>
+#include <cmath>
+
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+namespace {
+
+constexpr std::size_t kMostJoints = 10;
+
+struct TrackingMonitor {
+  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Reference positions."};
+  In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured positions."};
+  Out<double> max_error{"max_error", "rad", initial = 0.0, doc = "Farthest any joint strayed from its reference since on."};
+  Out<double> error_now{"error_now", "rad", initial = 0.0, doc = "Farthest of all joints in this cycle."};
+  Out<double> moved{"moved", "rad", initial = 0.0,
+                    doc = "Least of all joints: farthest from where it stood at on, within the window."};
+  InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
+  InConst<double> window{"window", "s", initial = 2.0, range(0, 3600), doc = "Time that moved looks at."};
+
+  void on() {
+    elapsed_ = 0;
+    *max_error = *error_now = *moved = 0;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      from_[i] = q[i];
+      farthest_[i] = 0;
+    }
+  }
+  Outcome cycle(Cycle c) {
+    elapsed_ += c.dt();
+    double error = 0;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      if (std::isnan(q[i]) || std::isnan(q_ref[i])) return fault("a position is not a number");
+      error = std::max(error, std::abs(q_ref[i] - q[i]));
+      if (elapsed_ <= *window + 1e-9) farthest_[i] = std::max(farthest_[i], std::abs(q[i] - from_[i]));
+    }
+    *error_now = error;
+    *max_error = std::max(*max_error, error);
+    *moved = *std::min_element(farthest_, farthest_ + q.size());
+    return ok();
+  }
+
+ private:
+  double from_[kMostJoints] = {};
+  double farthest_[kMostJoints] = {};
+  double elapsed_ = 0;
+};
+
+CHIMERA_COMPONENT(TrackingMonitor, "tracking_monitor", "Judges how a robot follows its reference.", rate = 1000.0);
+
+}  // namespace
