@@ -107,10 +107,13 @@ Counted count(Kind kind) {
   spec.init_order = spec.start = ids;
   auto set = TaskSet::create(spec, components);
   EXPECT_TRUE(set);
-  const std::array<ScriptAct, 3> acts = {
+  const std::array<ScriptAct, 6> acts = {
       ScriptAct{milliseconds(50), ScriptAct::Kind::kRaiseFlag, Signal::kOn, TaskId()},
       ScriptAct{milliseconds(70), ScriptAct::Kind::kLowerFlag, Signal::kOn, TaskId()},
-      ScriptAct{milliseconds(90), ScriptAct::Kind::kSignal, Signal::kReinit, TaskId(0u)}};
+      ScriptAct{milliseconds(90), ScriptAct::Kind::kSignal, Signal::kReinit, TaskId(0u)},
+      ScriptAct{milliseconds(100), ScriptAct::Kind::kSignal, Signal::kOff, TaskId(4u)},
+      ScriptAct{milliseconds(110), ScriptAct::Kind::kSignal, Signal::kOn, TaskId(4u)},
+      ScriptAct{milliseconds(120), ScriptAct::Kind::kSignal, Signal::kOn, TaskId(4u)}};  // refused
   Runner runner(**set, kind, Policy::kEdf, acts);
   EXPECT_TRUE(runner.start());
   Counted counted;
