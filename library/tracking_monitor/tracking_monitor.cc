@@ -14,7 +14,8 @@ constexpr std::size_t kMostJoints = 10;
 struct TrackingMonitor {
   In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Reference positions."};
   In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured positions."};
-  Out<double> max_error{"max_error", "rad", initial = 0.0, doc = "Farthest any joint strayed from its reference since on."};
+  Out<double> max_error{"max_error", "rad", initial = 0.0,
+                        doc = "Farthest any joint strayed from its reference since on."};
   Out<double> error_now{"error_now", "rad", initial = 0.0, doc = "Farthest of all joints in this cycle."};
   Out<double> moved{"moved", "rad", initial = 0.0,
                     doc = "Least of all joints: farthest from where it stood at on, within the window."};
