@@ -45,7 +45,7 @@ void RecordFiles::take(std::span<const chimera::TapRecord> records) {
 
 void RecordFiles::end(std::uint64_t dropped) {
   dropped_ = dropped;
-  if (trace_ != nullptr) trace_->writer->end(dropped);
+  if (trace_ != nullptr && !trace_->writer->end(dropped)) write_error_ = errno;
 }
 
 bool RecordFiles::finish(std::FILE* out, std::FILE* err) {
@@ -55,10 +55,11 @@ bool RecordFiles::finish(std::FILE* out, std::FILE* err) {
   if (unit_.count > 0)
     std::fputs(chimera::draw::text(chimera::draw::timeline(kept_, names_, origin_, unit_, duration_)).c_str(), out);
   if (trace_ != nullptr) {
-    const bool written = std::ferror(trace_->file) == 0 && std::fclose(trace_->file) == 0;
+    if (std::fclose(trace_->file) != 0 && write_error_ == 0) write_error_ = errno;
     trace_->file = nullptr;
-    if (!written) std::fprintf(err, "the trace could not be written whole: %s\n", std::strerror(errno));
-    good = good && written;
+    if (write_error_ != 0)
+      std::fprintf(err, "the trace could not be written whole: %s\n", std::strerror(write_error_));
+    good = good && write_error_ == 0;
   }
   return good;
 }

@@ -32,4 +32,5 @@ class RecordFiles final : public chimera::desk::RecordSink {
   std::vector<chimera::TapRecord> kept_;  ///< for the timeline
   std::vector<std::string> names_;
   std::uint64_t dropped_ = 0;
+  int write_error_ = 0;  ///< errno of the first failure that was seen
 };

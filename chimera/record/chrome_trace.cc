@@ -61,10 +61,13 @@ void ChromeTrace::metadata(const char* what, std::size_t pid, std::size_t tid, c
 }
 
 void ChromeTrace::event(const TapRecord& record, const char* phase, const std::string& name, const std::string& more) {
-  const std::uint32_t tid = record.task.is_valid() ? record.task.index : 0;
+  const bool is_of_task = record.task.is_valid();
+  const std::uint32_t tid = is_of_task ? record.task.index : 0;
   const Nanoseconds at = record.at - origin_;
   const bool is_slice = *phase == 'X';
-  const std::string shape = is_slice ? ", \"dur\": " + microseconds_text(Nanoseconds{record.b}) : ", \"s\": \"t\"";
+  // What concerns no single task (the flag) spans the whole rtpu; the viewers then ignore its tid.
+  const char* scope = is_of_task ? ", \"s\": \"t\"" : ", \"s\": \"p\"";
+  const std::string shape = is_slice ? ", \"dur\": " + microseconds_text(Nanoseconds{record.b}) : scope;
   constexpr const char* kEvent =
       "%s{\"ph\": \"%s\", \"name\": %s, \"pid\": %u, \"tid\": %u, \"ts\": %s%s, \"args\": {\"ns\": %lld%s}}";
   std::fprintf(file_, kEvent,
@@ -91,11 +94,11 @@ void ChromeTrace::add(std::span<const TapRecord> records) {
   for (const TapRecord& record : records) add_one(record);
 }
 
-void ChromeTrace::end(std::uint64_t dropped) {
+bool ChromeTrace::end(std::uint64_t dropped) {
   std::fprintf(file_,
                "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"dropped_records\": %llu}}\n",
                quoted(subsystem_).c_str(), static_cast<unsigned long long>(dropped));
-  std::fflush(file_);
+  return std::fflush(file_) == 0 && std::ferror(file_) == 0;
 }
 
 }  // namespace chimera

@@ -20,8 +20,9 @@ class ChromeTrace {
               std::span<const std::string> tasks, Nanoseconds origin);
   /// Adds records in the order in which they were made.
   void add(std::span<const TapRecord> records);
-  /// Closes the JSON, saying how many records were lost. Afterwards nothing more may be added.
-  void end(std::uint64_t dropped);
+  /// Closes the JSON, saying how many records were lost. Afterwards nothing more may be added. False when anything of
+  /// the trace, now or before, could not be written: the file is cut short and errno tells the last reason.
+  [[nodiscard]] bool end(std::uint64_t dropped);
 
  private:
   void event(const TapRecord& record, const char* phase, const std::string& name, const std::string& more);

@@ -29,7 +29,7 @@ nlohmann::json trace_of(std::span<const TapRecord> records, std::uint64_t droppe
   std::FILE* file = ::open_memstream(&text, &size);
   ChromeTrace trace(file, "arm", rtpus, tasks, Nanoseconds{1000});
   trace.add(records);
-  trace.end(dropped);
+  EXPECT_TRUE(trace.end(dropped));
   std::fclose(file);
   nlohmann::json parsed = nlohmann::json::parse(std::string(text, size));
   std::free(text);
@@ -74,6 +74,23 @@ TEST(ChromeTrace, NamesEveryKindOfRecord) {
     if (event["ph"] == "i") names += event["name"].get<std::string>() + ", ";
   EXPECT_EQ(names, "release, preempt, drop, signal off, fault in cycle, state ERROR, flag up, flag down, ");
   EXPECT_EQ(trace["otherData"]["dropped_records"], 3);
+}
+
+TEST(ChromeTrace, GivesTheWholeProcessWhatConcernsNoTask) {
+  TapRecord flag = record(TapKind::kFlag, 1, 0, 1);
+  flag.task = TaskId();
+  const TapRecord records[] = {flag, record(TapKind::kRelease, 2, 0)};
+  const auto events = trace_of(records)["traceEvents"];
+  EXPECT_EQ(events[3]["s"], "p");
+  EXPECT_EQ(events[4]["s"], "t");
+}
+
+TEST(ChromeTrace, TellsThatItCouldNotBeWritten) {
+  std::FILE* full = std::fopen("/dev/full", "w");
+  ASSERT_NE(full, nullptr);
+  ChromeTrace trace(full, "arm", {}, {}, Nanoseconds{});
+  EXPECT_FALSE(trace.end(0));
+  std::fclose(full);
 }
 
 TEST(MicrosecondsText, NeverRounds) {
