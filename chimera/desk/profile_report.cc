@@ -44,7 +44,7 @@ std::string spread_json(const Spread& spread) {
          ", \"mean\": " + std::to_string(spread.mean().count) + ", \"max\": " + std::to_string(spread.max.count) + "}";
 }
 
-std::string task_json(const Task& task, State state) {
+std::string task_json(const Task& task, State state, Nanoseconds origin) {
   const Profile& p = task.profile;
   std::string methods;
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m)
@@ -62,7 +62,7 @@ std::string task_json(const Task& task, State state) {
       ", \"rejected\": " + number(p.rejected) + ", \"faults\": " + number(task.faults.count);
   if (task.faults.count > 0)
     text += ", \"last_fault\": {\"method\": " + json_string(method_name(task.faults.method)) +
-            ", \"at_ns\": " + std::to_string(task.faults.at.count) +
+            ", \"at_ns\": " + std::to_string((task.faults.at - origin).count) +
             ", \"code\": " + std::to_string(task.faults.last.code) +
             ", \"text\": " + json_string(task.faults.last.text) + "}";
   return text + "}";
@@ -76,7 +76,7 @@ std::vector<State> states_of(const TaskSet& tasks) {
   return states;
 }
 
-std::string profile_table(const TaskSet& tasks, std::span<const State> states, Nanoseconds ran) {
+std::string profile_table(const TaskSet& tasks, std::span<const State> states, Nanoseconds ran, Nanoseconds origin) {
   std::size_t width = 4;
   for (const Task& task : tasks.tasks()) width = std::max(width, task.spec->name.size());
   const int w = static_cast<int>(width);
@@ -88,13 +88,14 @@ std::string profile_table(const TaskSet& tasks, std::span<const State> states, N
   for (const Task& task : tasks.tasks())
     if (task.faults.count > 0)
       text += std::string(task.spec->name) + ": last fault in " + method_name(task.faults.method) + " at " +
-              time_text(task.faults.at) + ": " + task.faults.last.text + "\n";
+              time_text(task.faults.at - origin) + ": " + task.faults.last.text + "\n";
   return text;
 }
 
-std::string profile_json(const TaskSet& tasks, std::span<const State> states) {
+std::string profile_json(const TaskSet& tasks, std::span<const State> states, Nanoseconds origin) {
   std::string rows;
-  for (const Task& task : tasks.tasks()) rows += (rows.empty() ? "" : ", ") + task_json(task, states[task.id.index]);
+  for (const Task& task : tasks.tasks())
+    rows += (rows.empty() ? "" : ", ") + task_json(task, states[task.id.index], origin);
   return "[" + rows + "]";
 }
 

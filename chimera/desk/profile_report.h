@@ -14,9 +14,10 @@ namespace chimera::desk {
 std::vector<State> states_of(const TaskSet& tasks);
 
 /// One line a task: state (as in `states`), cycles, execution time of cycle (mean, max), load, response, start jitter,
-/// failures; then a line for every task with a fault. `ran` is the time that the loads refer to. Context: setup.
-std::string profile_table(const TaskSet& tasks, std::span<const State> states, Nanoseconds ran);
-/// A JSON array with everything counted, times in nanoseconds. Context: setup.
-std::string profile_json(const TaskSet& tasks, std::span<const State> states);
+/// failures; then a line for every task with a fault. `ran` is the time that the loads refer to; faults are timed from
+/// `origin`. Context: setup.
+std::string profile_table(const TaskSet& tasks, std::span<const State> states, Nanoseconds ran, Nanoseconds origin);
+/// A JSON array with everything counted, times in nanoseconds, of faults from `origin`. Context: setup.
+std::string profile_json(const TaskSet& tasks, std::span<const State> states, Nanoseconds origin);
 
 }  // namespace chimera::desk

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/run.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 
 #include "chimera/desk/check.h"
 #include "chimera/desk/expectation.h"
 #include "chimera/desk/profile_report.h"
+#include "chimera/desk/progress.h"
 #include "chimera/desk/run_loop.h"
 #include "chimera/desk/script_text.h"
 
@@ -17,6 +21,8 @@ std::atomic<bool> stop_requested{false};
 
 constexpr std::size_t kTapRecords = std::size_t{1} << 18;
 constexpr Nanoseconds kDrainEvery = milliseconds(10);
+constexpr Nanoseconds kLookEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
+constexpr Nanoseconds kTellEvery = seconds(3);         // of wall time
 
 const char* word(RunEnd end) {
   switch (end) {
@@ -47,6 +53,37 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
   std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
   return std::string("refused at ") + at + ": " + signal_name(refused.signal) + " " + name + ": " + why + "\n";
 }
+
+/// Lines of progress, each over the one before; silent unless somebody can see them.
+class ProgressLine {
+ public:
+  ProgressLine(const RunRequest& request, std::FILE* err)
+      : all_(request.duration), err_(err), is_on_(request.virtual_time && ::isatty(::fileno(err)) == 1) {}
+
+  bool is_on() const noexcept { return is_on_; }
+  void look(Nanoseconds done) {
+    const Nanoseconds wall = spent();
+    if (wall < next_) return;
+    std::fprintf(err_, "\r%s\033[K", progress_text(done, all_, wall).c_str());
+    std::fflush(err_);
+    next_ = wall + kTellEvery;
+    has_written_ = true;
+  }
+  void wipe() {
+    if (has_written_) std::fputs("\r\033[K", err_);
+    has_written_ = false;
+  }
+
+ private:
+  Nanoseconds spent() const {
+    return Nanoseconds{std::chrono::nanoseconds(std::chrono::steady_clock::now() - begin_).count()};
+  }
+  Nanoseconds all_, next_ = kTellEvery;
+  std::FILE* err_;
+  bool is_on_;
+  bool has_written_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
 
 /// One run with everything that is watched and expected of it.
 class Session {
@@ -133,13 +170,17 @@ void Session::watch_line(Nanoseconds at) {
 
 RunEnd Session::run() {
   Nanoseconds next_watch = watched_.empty() ? kNever : request_.every;
+  ProgressLine progress(request_, err_);
   for (Nanoseconds at;;) {
     const Nanoseconds next_drain = sink_ == nullptr ? kNever : at + kDrainEvery;
-    const Nanoseconds patience = request_.virtual_time ? kNever : at + milliseconds(100);
+    const bool looks_up = !request_.virtual_time || progress.is_on();
+    const Nanoseconds patience = looks_up ? at + kLookEvery : kNever;
     const Nanoseconds next = std::min({next_watch, next_drain, patience, request_.duration});
     const std::optional<RunEnd> end = loop_->advance(next);
     drain();
     at = next;
+    if (progress.is_on() && !end) progress.look(at);
+    if (end || next == next_watch) progress.wipe();
     if (end || next == next_watch) watch_line(end && *end != RunEnd::kTime ? loop_->now() : next);
     if (next == next_watch) next_watch += request_.every;
     if (end) {
@@ -186,10 +227,10 @@ int Session::report(RunEnd end) {
                  "\"variables\": {%s}, \"expectations\": [%s]}\n",
                  json_string(application_.configuration().subsystem()).c_str(),
                  json_string(loop_->description()).c_str(), static_cast<long long>(ran_.count), word(end),
-                 profile_json(application_.tasks(), states).c_str(), variables.c_str(), rows.c_str());
+                 profile_json(application_.tasks(), states, loop_->origin()).c_str(), variables.c_str(), rows.c_str());
   } else {
     std::fprintf(out_, "ran %.3f s%s\n%s%s%s", to_seconds(ran_), sentence(end), refused.c_str(),
-                 profile_table(application_.tasks(), states, ran_).c_str(), lines.c_str());
+                 profile_table(application_.tasks(), states, ran_, loop_->origin()).c_str(), lines.c_str());
   }
   return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
 }

@@ -13,6 +13,11 @@ Error wrong(const std::string& text, const std::string& why) {
   return {ErrorCode::kBadInput, {"--at '" + text + "': " + why}, {}};
 }
 
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(' ');
+  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
+}
+
 std::string unknown(const char* what, const std::string& found, std::span<const std::string> names) {
   const std::string near = nearest(found, names);
   return std::string("no ") + what + " '" + found + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
@@ -42,12 +47,11 @@ Result<ScriptAct> parse(const std::string& text, const TaskSet& tasks) {
   if (colon == std::string::npos) return wrong(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
   const auto at = parse_duration(text.substr(0, colon));
   if (!at) return wrong(text, at.error().message.c_str());
-  const std::size_t begin = text.find_first_not_of(' ', colon + 1);
-  const std::size_t blank = begin == std::string::npos ? begin : text.find(' ', begin);
+  const std::string act_text = trimmed(text.substr(colon + 1));
+  const std::size_t blank = act_text.find(' ');
   if (blank == std::string::npos) return wrong(text, "after the time stand a signal and a task, or 'flag up'");
-  const std::string word = text.substr(begin, blank - begin);
-  const std::string object = text.substr(text.find_first_not_of(' ', blank) == std::string::npos
-                                             ? blank : text.find_first_not_of(' ', blank));
+  const std::string word = act_text.substr(0, blank);
+  const std::string object = trimmed(act_text.substr(blank));
   ScriptAct act;
   act.at = *at;
   return word == "flag" ? parse_flag(text, object, act) : parse_signal(text, word, object, act, tasks);

@@ -34,6 +34,7 @@ std::string text_of(const std::byte* at, std::uint32_t bytes) {
 std::string plain(std::uint32_t type, const std::byte* at, std::uint32_t bytes, bool json) {
   if (type == CHIMERA_STRING) return json ? json_string(text_of(at, bytes)) : "\"" + text_of(at, bytes) + "\"";
   if (type == CHIMERA_BOOL) return read<std::uint8_t>(at) != 0 ? "true" : "false";
+  if (type == CHIMERA_INT32) return std::to_string(read<std::int32_t>(at));
   if (type == CHIMERA_INT64) return std::to_string(read<std::int64_t>(at));
   if (json) return json_number(number(type, at));
   char text[40];

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// For the tests of this folder: the components of this build tree, and descriptions written down in a test.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "chimera/desk/application.h"
+#include "chimera/desk/workplace.h"
+
+namespace chimera::desk {
+
+/// A file of its own that is gone with the object. Context: setup.
+class TestFile {
+ public:
+  explicit TestFile(const std::string& text) {
+    const int fd = ::mkstemps(path_, 5);
+    std::ofstream(path_) << text;
+    ::close(fd);
+  }
+  ~TestFile() { ::unlink(path_); }
+  TestFile(const TestFile&) = delete;
+  TestFile& operator=(const TestFile&) = delete;
+  std::string path() const { return path_; }
+
+ private:
+  char path_[32] = "/tmp/chimera_desk_XXXXXX.yaml";
+};
+
+inline Workplace test_place() {
+  return {{std::string(std::getenv("CHIMERA_BUILD")) + "/components"},
+          {std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml"}};
+}
+
+inline Library test_library() { return *test_place().library(); }
+
+/// One task, whose outputs are count, dt, now, deadline, cycles, dropped and illegal.
+inline constexpr const char* kCounterText = R"(subsystem: small
+tasks:
+  counter: {component: t_counter}
+)";
+
+/// The application that `text` describes, its tasks in NOT-CREATED.
+inline Application test_application(const std::string& text, const Library& library) {
+  const TestFile file(text);
+  Verdict verdict = verify(read_description_file(file.path()), library);
+  EXPECT_TRUE(verdict.configuration) << verdict.report.text();
+  return *Application::load(*verdict.configuration, library);
+}
+
+}  // namespace chimera::desk
