@@ -29,7 +29,7 @@ install(FILES ${CMAKE_BINARY_DIR}/installed/chimeraConfig.cmake cmake/ChimeraCom
   ${CMAKE_BINARY_DIR}/lib/cmake/chimera/chimeraConfigVersion.cmake DESTINATION lib/cmake/chimera COMPONENT sdk)
 install(FILES ${CMAKE_BINARY_DIR}/chimera/base/libchimera_base.a DESTINATION lib COMPONENT sdk)
 install(PROGRAMS ${CMAKE_BINARY_DIR}/bin/chimera ${CMAKE_BINARY_DIR}/bin/chimera-describe DESTINATION bin COMPONENT sdk)
-install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk)
+install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk PATTERN completion EXCLUDE)
 # Without the test components, which are no library.
 install(DIRECTORY ${CMAKE_BINARY_DIR}/components/ DESTINATION lib/chimera/components COMPONENT sdk
   PATTERN "t_*" EXCLUDE)

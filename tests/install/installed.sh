@@ -1,0 +1,35 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# usage: installed.sh BUILD_TREE: what `cmake --install` puts somewhere works from any folder, without that tree.
+set -eu
+tree=$1
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+fail() { echo "installed: $*"; exit 1; }
+
+cmake --install "$tree" --prefix "$place/prefix" > "$place/log" 2>&1 || { cat "$place/log"; fail "cmake --install"; }
+cd "$place/prefix"
+for file in bin/chimera bin/chimera-describe lib/chimera/components/gain.so \
+  lib/chimera/components/gain.component.json lib/chimera/components/puma560.xml share/chimera/units.xml \
+  share/chimera/schema/description.schema.json share/chimera/schema/descriptor.schema.json \
+  share/chimera/schema/run.schema.json share/chimera/templates/component/CMakeLists.txt \
+  share/bash-completion/completions/chimera share/man/man1/chimera.1 share/chimera/examples/README.md; do
+  [ -s "$file" ] || fail "$file is missing"
+done
+[ -z "$(find . -name 't_*.so')" ] || fail "test components are no library"
+
+mkdir "$place/elsewhere"
+cd "$place/elsewhere"
+unset CHIMERA_PATH
+chimera=$place/prefix/bin/chimera
+"$chimera" list | grep -q '^gain ' || fail "list does not name gain"
+found=$("$chimera" list --json | grep -o '"file": "[^"]*"' | grep -vc "\"$place/prefix/" || true)
+[ "$found" = 0 ] || fail "list names $found components outside the installation"
+for example in "$place"/prefix/share/chimera/examples/*/*.yaml; do
+  "$chimera" check "$example" > out 2>&1 || { cat out; fail "check $example"; }
+done
+example=$(ls "$place"/prefix/share/chimera/examples/*/*.yaml | head -1)
+"$chimera" run "$example" --virtual --for '50 ms' > out 2>&1 || { cat out; fail "run $example"; }
+grep -q '^ran 0.050 s' out || { cat out; fail "run $example did not come to its end"; }
+"$chimera" run "$example" --virtual --for '50 ms' --json > out || fail "run --json"
+echo "installed: works from any folder"

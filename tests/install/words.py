@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""The commands and options that `chimera --help` names, the manual and the completion are the same, each way.
+
+usage: words.py PROGRAM SOURCE
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+
+def help_of(program, words):
+    return subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True, timeout=30).stdout
+
+
+def said_by_help(program, words=()):
+    """Maps "" and every command ("new component") to its options and subcommands, as `--help` tells them."""
+    text = help_of(program, words)
+    options = set(re.findall(r"^\s+(?:-\w,\s*)?(--[a-z-]+)", text, re.MULTILINE))
+    heading = re.search(r"^SUBCOMMANDS:\n|^Subcommands:\n", text, re.MULTILINE | re.IGNORECASE)
+    commands = re.findall(r"^  ([a-z]+)\b", text[heading.end():], re.MULTILINE) if heading else []
+    said = {" ".join(words): options | set(commands)}
+    for command in commands:
+        said |= said_by_help(program, (*words, command))
+    return said
+
+
+def said_by_manual(text):
+    """A section .SS holds one command; its options are the tagged paragraphs (.TP). OPTIONS belongs to no command."""
+    said = {"": set()}
+    commands, options = text.split(".SH COMMANDS", 1)[1].split(".SH OPTIONS", 1)
+    tagged = r"^\.TP\n\.BI? (\\-\\-\S+)"
+    for section in commands.split("\n.SS ")[1:]:
+        name, body = section.split("\n", 1)
+        said.setdefault(name, set()).update(word.replace("\\", "") for word in re.findall(tagged, body, re.MULTILINE))
+        said.setdefault(name.rpartition(" ")[0], set()).add(name.rpartition(" ")[2])
+    options = options.split(".SH ", 1)[0]
+    said[""] |= {word.replace("\\", "") for word in re.findall(tagged, options, re.MULTILINE)}
+    return said
+
+
+def said_by_completion(path, commands):
+    said = {}
+    for command in commands:
+        script = 'source "$1"; _chimera_words "$2"'
+        run = subprocess.run(["bash", "-c", script, "bash", str(path), command], capture_output=True, text=True,
+                             check=True, timeout=30)
+        said[command] = set(run.stdout.split())
+    return said
+
+
+def complete(path, program, words):
+    """What bash would offer for the last of `words`."""
+    script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _chimera; '
+              'printf "%s\\n" "${COMPREPLY[@]}"')
+    run = subprocess.run(["bash", "-c", script, "bash", str(path), program, *words], capture_output=True, text=True,
+                         check=True, timeout=60)
+    return set(run.stdout.split())
+
+
+def differences(what, said, wanted):
+    for command in sorted(said.keys() | wanted.keys()):
+        have, want = said.get(command, set()), wanted.get(command, set())
+        for word in sorted(want - have):
+            yield f"chimera {command}: {word} is not in the {what}"
+        for word in sorted(have - want):
+            yield f"chimera {command}: {word} is in the {what} only"
+
+
+def main():
+    program, source = sys.argv[1], pathlib.Path(sys.argv[2])
+    completion = source / "share/chimera/completion/chimera.bash"
+    wanted = said_by_help(program)
+    faults = list(differences("manual", said_by_manual((source / "docs/man/chimera.1").read_text()), wanted))
+    faults += differences("completion", said_by_completion(completion, wanted), wanted)
+    if "run" not in wanted or "--virtual" not in wanted["run"] or "--c" not in wanted.get("new component", ()):
+        faults.append(f"the help was not understood: {wanted}")
+    for words, offered in ((["de"], {"describe"}), (["check", "--gr"], {"--graph"}),
+                           (["check", "--graph", "d"], {"dot"}), (["new", "c"], {"component"}),
+                           (["run", "--seed", ""], set()), (["describe", "gai"], {"gain"})):
+        if (got := complete(completion, program, words)) != offered:
+            faults.append(f"completion of {words}: {sorted(got)}, expected {sorted(offered)}")
+    for fault in faults:
+        print(fault)
+    print(f"{sum(map(len, wanted.values()))} words of {len(wanted)} commands, {len(faults)} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
