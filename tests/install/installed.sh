@@ -25,10 +25,10 @@ chimera=$place/prefix/bin/chimera
 "$chimera" list | grep -q '^gain ' || fail "list does not name gain"
 found=$("$chimera" list --json | grep -o '"file": "[^"]*"' | grep -vc "\"$place/prefix/" || true)
 [ "$found" = 0 ] || fail "list names $found components outside the installation"
-for example in "$place"/prefix/share/chimera/examples/*/*.yaml; do
+for example in "$place"/prefix/share/chimera/examples/01_*/*.yaml; do
   "$chimera" check "$example" > out 2>&1 || { cat out; fail "check $example"; }
 done
-example=$(ls "$place"/prefix/share/chimera/examples/*/*.yaml | head -1)
+example=$(ls "$place"/prefix/share/chimera/examples/01_*/*.yaml | head -1)
 "$chimera" run "$example" --virtual --for '50 ms' > out 2>&1 || { cat out; fail "run $example"; }
 grep -q '^ran 0.050 s' out || { cat out; fail "run $example did not come to its end"; }
 "$chimera" run "$example" --virtual --for '50 ms' --json > out || fail "run --json"

@@ -19,7 +19,7 @@ def definition(schema, name):
 
 def outputs(source):
     """(kind, exit code, words of the command line)"""
-    examples = sorted((source / "examples").glob("*/*.yaml"))
+    examples = sorted((source / "examples").glob("01_*/*.yaml"))
     good, faulty = sorted((source / "tests/verify/good").glob("*.yaml")), sorted(
         (source / "tests/verify/faulty").glob("*.yaml"))
     faults = source / "tests/commands/faults/faults.yaml"
