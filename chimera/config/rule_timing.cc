@@ -91,19 +91,34 @@ double load(const TaskModel& task) {
   return task.period ? static_cast<double>(task.budget.count) / static_cast<double>(task.period->count) : 0;
 }
 
+/// Work that finds no time is gone at its deadline, by the task's own word.
+bool gives_way(const TaskModel& task) {
+  return task.draft->on_miss && task.draft->on_miss->kind == OnMiss::kAbort;
+}
+
+void warn_of_overload(Model& model, const SetModel& set, const TaskModel& task, std::uint32_t cpu, const char* sum) {
+  model.warn("utilisation", task.draft->budget->at,
+             "the budgets of configuration '" + set.name + "' take " + sum + " of CPU " + std::to_string(cpu) +
+                 ", more than 0.93: every task says 'on_miss: abort', so what finds no time ends at its deadline",
+             "run it in virtual time");
+}
+
 void limit(Model& model, const SetModel& set, std::uint32_t cpu) {
   double sum = 0;
+  bool all_give_way = true;
   std::size_t heaviest = model.tasks.size();
   for (const std::size_t index : set.tasks) {
     const TaskModel& task = model.tasks[index];
     if (model.rtpus[task.rtpu].cpu.value != cpu) continue;
     sum += load(task);
+    all_give_way = all_give_way && gives_way(task);
     if (heaviest == model.tasks.size() || load(task) > load(model.tasks[heaviest])) heaviest = index;
   }
   if (sum <= kMaxUtilisation) return;
   const TaskModel& task = model.tasks[heaviest];
   char found[64], room[64];
   std::snprintf(found, sizeof found, "%.3f", sum);
+  if (all_give_way) return warn_of_overload(model, set, task, cpu, found);
   const double fits = kMaxUtilisation - (sum - load(task));
   std::snprintf(room, sizeof room, "%.1f", fits > 0 ? 1.0 / (static_cast<double>(task.budget.count) * 1e-9 / fits) : 0);
   model.error("utilisation", task.draft->budget->at,

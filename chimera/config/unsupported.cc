@@ -4,6 +4,7 @@
 #include <array>
 
 #include "chimera/config/verify.h"
+#include "chimera/schedule/utilisation.h"
 
 namespace chimera {
 namespace {
@@ -35,6 +36,8 @@ class Refusals {
     if (executor_ == Executor::kRealTime && spec.policy == Policy::kLlf)
       refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time",
              "use muf-laxity, or run --virtual");
+    if (executor_ == Executor::kRealTime && configuration_.utilisation()[index] > kMaxUtilisation)
+      refuse(configuration_.tasks()[0].at, "budgets above 0.93 of a CPU in real time", "run --virtual");
     const auto tasks = configuration_.tasks();
     const auto first =
         std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
