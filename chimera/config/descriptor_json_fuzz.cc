@@ -16,12 +16,10 @@ void require(bool kept, const char* property) {
 }
 
 #ifdef CHIMERA_PLANTED_DEFECT
-/// A defect to prove that the fuzzer finds one: beyond the end for ports of more than 4 instances.
-void planted(const chimera::Descriptor& descriptor) {
-  for (const chimera::PortDescriptor& port : descriptor.ports) {
-    volatile char marks[5] = {};
-    marks[port.max_instances] = 1;
-  }
+/// A defect to prove that the fuzzer finds one: beyond the end for a refusal of more than 200 bytes.
+void planted(const chimera::Error& refusal) {
+  volatile char copy[201] = {};
+  copy[refusal.message.view().size()] = 1;
 }
 #endif
 
@@ -31,11 +29,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const auto read = chimera::parse_descriptor({reinterpret_cast<const char*>(bytes), size});
   if (!read) {
     require(!read.error().message.empty(), "a refusal says why");
+#ifdef CHIMERA_PLANTED_DEFECT
+    planted(read.error());
+#endif
     return 0;
   }
-#ifdef CHIMERA_PLANTED_DEFECT
-  planted(read.value());
-#endif
   const std::string text = chimera::to_json(read.value());
   if (text.size() > chimera::kMaxDescriptorBytes) return 0;  // indentation may make a legal file too long
   const auto again = chimera::parse_descriptor(text);
