@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Needs: chimera component_joint_trajectory_files component_pid_joint_files component_puma_torque_files component_tracking_monitor_files
-"""Row 15: from `chimera run` to the first cycle. Measured from outside, so it is an upper bound: the whole command for a
-run of 10 ms in real time, less those 10 ms; process start, library, verification, loading, init and the end included."""
+# Needs: demo
+"""Row 15: from `chimera run` to the first cycle. Measured from outside, so it is an upper bound: the whole command for
+a run of 10 ms in real time, less those 10 ms; process start, library, verification, loading, init and end included."""
 import json
 import os
 import statistics
@@ -15,7 +15,8 @@ RUN_MS = 10
 
 def once(program, description):
     began = time.monotonic()
-    done = subprocess.run([program, "run", description, "--for", f"{RUN_MS} ms", "--json"], capture_output=True, text=True)
+    command = [program, "run", description, "--for", f"{RUN_MS} ms", "--json"]
+    done = subprocess.run(command, capture_output=True, text=True)
     took = (time.monotonic() - began) * 1e3 - RUN_MS
     result = json.loads(done.stdout)
     assert done.returncode == 0 and all(task["cycles"] > 0 for task in result["tasks"]), done.stdout + done.stderr

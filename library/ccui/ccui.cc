@@ -8,7 +8,8 @@ using namespace chimera;
 namespace {
 
 struct Ccui {
-  Out<double> vr{"vr", "m/s", initial = 0.0, safety, range(0, 70), doc = "Speed to hold; 0: the cruise control is off."};
+  Out<double> vr{"vr",   "m/s",        initial = 0.0,
+                 safety, range(0, 70), doc = "Speed to hold; 0: the cruise control is off."};
   Resource buttons{"buttons", doc = "Script of seconds:km/h, each held until the next; \"0:0\" is never switched on."};
 
   Outcome init() {
