@@ -39,7 +39,10 @@ class CarModel {
   void place(double speed) noexcept {
     speed_ = speed;
     distance_ = 0;
+    wheel_angle_ = 0;
   }
+  /// Another load or other wheels, at the same place and speed.
+  void refit(const CarBody& body) noexcept { body_ = body; }
 
   /// Moves on by `dt` (s) under `drive` and `brake` (N, brake >= 0) on a `grade` (rise over run).
   /// Brakes and rolling resistance can stop the car but not push it. Requires: dt >= 0. Context: cycle; wait-free.
@@ -51,17 +54,20 @@ class CarModel {
     const double rubbed = (brake + body_.rolling * body_.mass * kGravity * std::cos(slope)) / body_.mass * dt;
     const double before = speed_;
     speed_ = std::abs(pushed) <= rubbed ? 0 : pushed - std::copysign(rubbed, pushed);
-    distance_ += 0.5 * (before + speed_) * dt;
+    const double moved = 0.5 * (before + speed_) * dt;
+    distance_ += moved;
+    wheel_angle_ += moved / body_.wheel_radius;
   }
 
   double speed() const noexcept { return speed_; }        ///< m/s
   double distance() const noexcept { return distance_; }  ///< m since place()
-  double wheel_angle() const noexcept { return distance_ / body_.wheel_radius; }  ///< rad
+  double wheel_angle() const noexcept { return wheel_angle_; }  ///< rad since place()
 
  private:
   CarBody body_;
   double speed_ = 0;
   double distance_ = 0;
+  double wheel_angle_ = 0;
 };
 
 }  // namespace chimera::library

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The speed control of the cruise control (2000 paper, figure 17): how much force the car needs.
+#include <algorithm>
 #include <cmath>
 
 #include "chimera/task/component.h"
@@ -21,15 +22,23 @@ struct Control {
   Outcome init() {
     if (!(*drive_max >= 0 && *drive_max <= 20000) || !(*brake_max >= 0 && *brake_max <= 20000))
       return fault("drive_max and brake_max are 0 to 20000 N");
+    if (!(*kp >= 0 && *kp <= 1e6) || !(*ki >= 0 && *ki <= 1e6)) return fault("kp and ki are 0 to 1e6");
     return ok();
   }
   Outcome reinit() { return init(); }
-  // Bumpless: goes on from the force that stands, of an earlier run or of a predecessor.
-  void on() { pi_.start(std::isnan(*fd) ? 0 : *fd); }
+  // Bumpless: goes on from the force that stands, of an earlier run or of a predecessor. Not before the first cycle,
+  // because a speed made by differences is known only then. A force of 0 is nobody to go on from.
+  void on() {
+    pi_.start(0);
+    takes_over_ = std::isfinite(*fd) && *fd != 0;
+  }
   Outcome cycle(Cycle c) {
+    if (c.illegal()) return ok();  // nobody follows fd: the error means nothing, do not integrate it
     if (!std::isfinite(*vr) || !std::isfinite(*vz)) return fault("vr or vz is not finite");
-    if (c.illegal()) return ok();
+    const bool takes_over = takes_over_;
+    takes_over_ = false;
     if (*vr > 0) {
+      if (takes_over) pi_.start(std::clamp(*fd - *kp * (*vr - *vz), -*brake_max, *drive_max));
       *fd = pi_.step(*kp, *ki, *vr - *vz, c.dt(), -*brake_max, *drive_max);
     } else {
       pi_.start(0);
@@ -40,6 +49,7 @@ struct Control {
 
  private:
   library::Pi pi_;
+  bool takes_over_ = false;
 };
 
 CHIMERA_COMPONENT(Control, "control", "Holds the speed of a car: PI with limits and anti-windup.", rate = 50.0,

@@ -13,26 +13,32 @@ namespace {
 
 struct ElectricCar {
   In<double> fm{"fm", "N", doc = "Force wanted of the motor; below 0 it brakes."};
-  Out<double> xw{"xw", "rad", doc = "Angle of a wheel since on, forward positive."};
+  Out<double> xw{"xw", "rad", doc = "Angle of a wheel since init, forward positive."};
   Out<double> speed{"speed", "km/h", doc = "True speed, for judging; no module of the control reads it."};
   Out<double> grade{"grade", "1", doc = "Rise over run where the car is."};
   InConst<double> mass{"mass", "kg", initial = 1600.0, range(500, 40000), doc = "With load."};
   InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Of the tyre under load."};
-  InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "When it is switched on first."};
+  InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "At init."};
   InConst<double> force_max{"force_max", "N", initial = 5000.0, range(0, 50000), doc = "Of the motor, either way."};
   InConst<double> power_max{"power_max", "W", initial = 80e3, range(0, 1e6), doc = "Of the motor, either way."};
   Resource road{"road", doc = "Script of metres:grade, straight lines between; \"0:0\" is level."};
 
   Outcome init() {
+    if (!(*start_speed >= 0 && *start_speed <= 60)) return fault("start_speed is 0 to 60 m/s");
+    car_.place(*start_speed);
+    return reinit();
+  }
+  // Another load, other wheels or another road, where the car is and at its speed.
+  Outcome reinit() {
     if (const char* wrong = grade_.read(road.text())) return fault(wrong);
     if (grade_.least() < -0.3 || grade_.greatest() > 0.3) return fault("a grade of the road is outside -0.3 to 0.3");
-    if (!(*mass > 0) || !(*wheel_radius > 0)) return fault("mass and wheel_radius must be above 0");
-    if (!(*force_max >= 0) || !(*power_max >= 0)) return fault("force_max and power_max must be 0 or more");
-    car_ = library::CarModel({.mass = *mass, .wheel_radius = *wheel_radius});
-    car_.place(*start_speed);
+    if (!(*mass >= 500 && *mass <= 40000)) return fault("mass is 500 to 40000 kg");
+    if (!(*wheel_radius >= 0.1 && *wheel_radius <= 1)) return fault("wheel_radius is 0.1 to 1 m");
+    if (!(*force_max >= 0 && *force_max <= 50000)) return fault("force_max is 0 to 50000 N");
+    if (!(*power_max >= 0 && *power_max <= 1e6)) return fault("power_max is 0 to 1e6 W");
+    car_.refit({.mass = *mass, .wheel_radius = *wheel_radius});
     return ok();
   }
-  Outcome reinit() { return init(); }
   void on() { publish(); }
   Outcome cycle(Cycle c) {
     if (!std::isfinite(*fm)) return fault("fm is not finite");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Output element of the cruise control (2000 paper, figure 15): how much gas to give.
 #include <algorithm>
+#include <cmath>
 
 #include "chimera/task/component.h"
 
@@ -13,9 +14,13 @@ struct Engine {
   Out<double> gas{"gas", "1", initial = 0.0, safety, range(0, 1), doc = "Throttle, 0 closed to 1 open."};
   InConst<double> full_gas{"full_gas", "N", initial = 2280.0, range(1, 1e5), doc = "Force of the engine at full gas."};
 
-  Outcome init() { return *full_gas > 0 ? ok() : fault("full_gas must be above 0 N"); }
+  Outcome init() { return *full_gas >= 1 && *full_gas <= 1e5 ? ok() : fault("full_gas is 1 to 100000 N"); }
   Outcome reinit() { return init(); }
-  void cycle(Cycle c) { *gas = c.illegal() ? 0 : std::clamp(*fde / *full_gas, 0.0, 1.0); }
+  Outcome cycle(Cycle c) {
+    if (!c.illegal() && !std::isfinite(*fde)) return fault("fde is not finite");
+    *gas = c.illegal() ? 0 : std::clamp(*fde / *full_gas, 0.0, 1.0);
+    return ok();
+  }
   void off() { *gas = 0; }
 };
 

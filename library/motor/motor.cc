@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Output element of the direct-drive variant (2000 paper, section 6): one force that drives and brakes.
 #include <algorithm>
+#include <cmath>
 
 #include "chimera/task/component.h"
 
@@ -15,7 +16,11 @@ struct Motor {
 
   Outcome init() { return *force_max >= 0 && *force_max <= 50000 ? ok() : fault("force_max is 0 to 50000 N"); }
   Outcome reinit() { return init(); }
-  void cycle(Cycle c) { *fm = c.illegal() ? 0 : std::clamp(*fd, -*force_max, *force_max); }
+  Outcome cycle(Cycle c) {
+    if (!c.illegal() && !std::isfinite(*fd)) return fault("fd is not finite");
+    *fm = c.illegal() ? 0 : std::clamp(*fd, -*force_max, *force_max);
+    return ok();
+  }
   void off() { *fm = 0; }
 };
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Splits one force into one for the engine and one for the brakes (2000 paper, figure 17).
+#include <algorithm>
+#include <cmath>
+
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -11,10 +14,12 @@ struct SplitPm {
   Out<double> fde{"fde", "N", doc = "Force wanted of the engine, 0 or more."};
   Out<double> fdw{"fdw", "N", doc = "Force wanted of the brakes, 0 or more."};
 
-  void on() { cycle(); }
-  void cycle() {
-    *fde = *fd > 0 ? *fd : 0;
-    *fdw = *fd > 0 ? 0 : -*fd;
+  Outcome on() { return cycle(); }
+  Outcome cycle() {
+    if (!std::isfinite(*fd)) return fault("fd is not finite");
+    *fde = std::max(0.0, *fd);
+    *fdw = std::max(0.0, -*fd);
+    return ok();
   }
 };
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The modified split of the 2000 paper (figure 18): a pedal overrides the control.
+#include <algorithm>
+#include <cmath>
+
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -13,19 +16,23 @@ struct SplitPmOverride {
   Out<double> fde{"fde", "N", doc = "Force wanted of the engine, 0 or more."};
   Out<double> fdw{"fdw", "N", doc = "Force wanted of the brakes, 0 or more."};
 
-  void on() { cycle(); }
-  void cycle() {
+  Outcome on() { return cycle(); }
+  Outcome cycle() {
+    if (!std::isfinite(*fd) || !std::isfinite(*fra) || !std::isfinite(*frb))
+      return fault("fd, fra or frb is not finite");
     if (*fra != 0 || *frb != 0) {
       *fde = *fra;
       *fdw = *frb;
-      return;
+      return ok();
     }
-    *fde = *fd > 0 ? *fd : 0;
-    *fdw = *fd > 0 ? 0 : -*fd;
+    *fde = std::max(0.0, *fd);
+    *fdw = std::max(0.0, -*fd);
+    return ok();
   }
 };
 
-CHIMERA_COMPONENT(SplitPmOverride, "split_pm_override", "Splits a force into engine and brake force, unless a pedal is pressed.", rate = 50.0,
+CHIMERA_COMPONENT(SplitPmOverride, "split_pm_override",
+                  "Splits a force into engine and brake force, unless a pedal is pressed.", rate = 50.0,
                   source = "2000 paper, section 6, figure 18");
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Output element of the cruise control (2000 paper, figure 15): how hard to press the brakes.
 #include <algorithm>
+#include <cmath>
 
 #include "chimera/task/component.h"
 
@@ -17,7 +18,11 @@ struct Wheels {
     return *brake_limit >= 0 && *brake_limit <= 20000 ? ok() : fault("brake_limit is 0 to 20000 N");
   }
   Outcome reinit() { return init(); }
-  void cycle(Cycle c) { *fb = c.illegal() ? 0 : std::clamp(*fdw, 0.0, *brake_limit); }
+  Outcome cycle(Cycle c) {
+    if (!c.illegal() && !std::isfinite(*fdw)) return fault("fdw is not finite");
+    *fb = c.illegal() ? 0 : std::clamp(*fdw, 0.0, *brake_limit);
+    return ok();
+  }
   void off() { *fb = 0; }
 };
 
