@@ -109,7 +109,8 @@ def main():
         there_are = ", ".join(map(str, sorted(known))) or "none"
         print(f"./dev: no row {', '.join(map(str, unknown))}; there are: {there_are}", file=sys.stderr)
         return 2
-    programs = [path for row in (arguments.rows or sorted(known)) for path in known[row]]
+    programs = [path for row in (arguments.rows or sorted(known)) for path in known[row]
+                if arguments.peers or not path.stem.endswith("_peer")]
     output = sys.stdout
     if arguments.json:
         sys.stdout = sys.stderr  # steps are for people, standard output is the object
