@@ -2,10 +2,10 @@
 # Needs: row_07_executive
 """Row 7 against its peer: 201 tasks in the executive, 201 functions in one LinuxCNC HAL thread, both at 1 kHz.
 
-Pairs of one second each, one after the other. Ours: the work of a wake by our own profile, divided by its jobs; each job
-multiplies six values, is released, checked against its deadline, profiled and publishes a group. Theirs: `servo.time`, the
-thread's own measure in clock ticks, divided by 201; each function is one `ddt`, called through a pointer, unchecked.
-HAL runs as an ordinary user without real-time rights, as it does where it was not set up for more.
+Pairs of one second each, one after the other. Ours: the work of a wake by our own profile, divided by its jobs; each
+job multiplies six values, is released, checked against its deadline, profiled, and publishes a group. Theirs:
+`servo.time`, the thread's own measure in clock ticks, divided by 201; each function is one `ddt`, called through a
+pointer, unchecked. HAL runs as an ordinary user without real-time rights, as it does where it was not set up for more.
 """
 import json
 import os
