@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
@@ -12,7 +13,9 @@ namespace {
 
 struct CsvLogTest : testing::Test {
   Rig rig{"csv_log"};
-  std::string path = testing::TempDir() + "csv_log_test.csv";
+  std::string path = testing::TempDir() + "csv_log_" + std::to_string(::getpid()) + ".csv";
+
+  ~CsvLogTest() override { ::unlink(path.c_str()); }
 
   void start(std::int32_t capacity) {
     rig.instances("in", 2);

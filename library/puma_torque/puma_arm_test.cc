@@ -207,10 +207,11 @@ TEST_F(PumaArmTest, BuiltInModelIsTheFile) {
 
 TEST_F(PumaArmTest, RefusesAFileThatIsNoSixJointArm) {
   EXPECT_NE(arm.load("no_such.xml", {}).error().message.view().find("no_such.xml: "), std::string_view::npos);
-  const std::string path = testing::TempDir() + "one_joint.xml";
+  const std::string path = testing::TempDir() + "one_joint_" + std::to_string(::getpid()) + ".xml";
   std::ofstream(path) << "<mujoco><worldbody><body><joint/><geom size='.1'/></body></worldbody></mujoco>";
   EXPECT_EQ(arm.load(path.c_str(), {}).error().message.view(),
             path + ": found 1 joints and 0 motors, expected 6 and 6");
+  ::unlink(path.c_str());
 }
 
 TEST_F(PumaArmTest, LeavesNoLogFileBehind) {
