@@ -54,6 +54,7 @@ std::span<const std::byte> value_of(Model& model, Parts& parts, const LinkedPort
 PortSpec port_spec(Model& model, Parts& parts, const LinkedPort& port, const ConfiguredPort& configured) {
   PortSpec spec;
   spec.declared = port.index;
+  spec.kind = port.declared->kind;
   spec.instance = port.instance;
   spec.variable = configured.variable;
   if (!port.is(CHIMERA_RESOURCE)) {
@@ -89,6 +90,7 @@ TaskSpec task_spec(const TaskModel& task, const ConfiguredTask& configured, std:
   if (draft.on_miss) spec.on_miss = draft.on_miss->kind;
   if (draft.on_overrun) spec.on_overrun = draft.on_overrun->kind;
   spec.aperiodic = configured.is_aperiodic;
+  spec.is_hardware = configured.is_hardware;
   spec.rtpu = RtpuId(task.rtpu);
   spec.ports = ports;
   return spec;

@@ -21,15 +21,13 @@ TaskSet::~TaskSet() {
 
 Result<void> TaskSet::build(std::span<const chimera_component* const> components) {
   const std::size_t n = spec_.tasks.size();
-  std::vector<std::vector<std::uint32_t>> kinds(n);
   memories_.reserve(n);
   for (std::size_t t = 0; t < n; ++t) {
     auto memory = TaskMemory::create(spec_.tasks[t], *components[t]);
     if (!memory) return memory.error();
     memories_.push_back(*std::move(memory));
-    for (const PortSpec& port : spec_.tasks[t].ports) kinds[t].push_back(components[t]->ports[port.declared].kind);
   }
-  variables_ = std::make_unique<Variables>(spec_, kinds);
+  variables_ = std::make_unique<Variables>(spec_);
   tasks_.resize(n);
   contexts_.resize(n);
   on_.assign(n, false);

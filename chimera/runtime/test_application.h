@@ -40,6 +40,7 @@ class TestApplication {
       const chimera_port_decl& decl = component->ports[p];
       PortSpec port;
       port.declared = p;
+      port.kind = decl.kind;
       port.variable = decl.kind == CHIMERA_RESOURCE ? std::string_view{} : std::string_view{decl.name};
       port.element_bytes = decl.element_size;
       port.type = decl.type;
@@ -56,6 +57,7 @@ class TestApplication {
     task.component = component->name;
     task.period = task.deadline = period;
     task.aperiodic = component->methods[CHIMERA_SYNC] != nullptr;
+    for (const PortSpec& port : ports) task.is_hardware = task.is_hardware || port.kind == CHIMERA_RESOURCE;
     return task;
   }
   PortSpec& port(std::size_t task, std::size_t index) { return ports_[task][index]; }

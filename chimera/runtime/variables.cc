@@ -15,14 +15,14 @@ std::size_t Variables::index_of(std::string_view name) {
   return found;
 }
 
-Variables::Variables(const ApplicationSpec& spec, const std::vector<std::vector<std::uint32_t>>& kinds) {
+Variables::Variables(const ApplicationSpec& spec) {
   for (std::size_t o = 0; o < spec.operators.size(); ++o)
     variables_[index_of(spec.operators[o].name)].operator_index = static_cast<std::uint32_t>(o);
   inputs_.resize(spec.tasks.size());
   outputs_.resize(spec.tasks.size());
   for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
     for (std::size_t p = 0; p < spec.tasks[t].ports.size(); ++p) {
-      const std::uint32_t kind = kinds[t][p];
+      const std::uint32_t kind = spec.tasks[t].ports[p].kind;
       if (kind != CHIMERA_IN_VAR && kind != CHIMERA_OUT_VAR) continue;
       const std::size_t v = index_of(spec.tasks[t].ports[p].variable);
       auto& mine = kind == CHIMERA_IN_VAR ? inputs_[t] : outputs_[t];

@@ -28,8 +28,7 @@ struct Variable {
 /// Immutable. Context: setup; the checks also at an edge.
 class Variables {
  public:
-  /// `kinds[t][p]` is the kind (CHIMERA_IN_VAR ...) of port p of task t.
-  Variables(const ApplicationSpec& spec, const std::vector<std::vector<std::uint32_t>>& kinds);
+  explicit Variables(const ApplicationSpec& spec);
 
   std::span<const Variable> all() const noexcept { return variables_; }
   /// Index in all(), or all().size().

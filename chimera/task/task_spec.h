@@ -23,6 +23,7 @@ struct ExtentSpec {
 /// One port instance of this task, with every unit, extent and type variable solved.
 struct PortSpec {
   std::uint32_t declared = 0;   ///< index in the component's declaration
+  std::uint32_t kind = CHIMERA_IN_VAR;  ///< as declared
   std::uint32_t instance = 0;   ///< of a repeated port; 0 otherwise
   std::string_view variable;    ///< name in the table after aliases; resource: "" ; unbound in-const: ""
   std::uint32_t element_bytes = 0;
@@ -60,6 +61,7 @@ struct TaskSpec {
   OnMiss on_overrun = OnMiss::kContinue;
   std::uint32_t max_consecutive = 0;  ///< misses in a row after which the task goes to ERROR; 0 = no limit
   bool aperiodic = false;             ///< the component has a sync method
+  bool is_hardware = false;           ///< has a resource port: first to go ON, last to go OFF
   RtpuId rtpu;
   std::span<const PortSpec> ports;
 };

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the keeper and its children say to each other: docs/formats/processes.md, "Keeper messages".
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+#include "chimera/base/time.h"
+
+namespace chimera {
+
+/// Descriptors of a child at its start. The keeper's channel is the only one that is not a mapping.
+enum : int {
+  kChannelDescriptor = 3,
+  kImageDescriptor = 4,
+  kDecisionPageDescriptor = 5,
+  kKeeperPageDescriptor = 6,
+  kListeningDescriptor = 7,  ///< manager only: the subsystem's socket
+  kBundleDescriptor = 8,     ///< manager only: description, descriptors and units, as read at the start
+};
+
+struct KeeperMessage {
+  enum class Kind : std::uint32_t {
+    kSegment, kStart, kEndChild, kEnd,                        // to the keeper
+    kPeer, kStarted, kEnded, kComplete, kFinish               // from the keeper
+  };
+
+  Kind kind = Kind::kSegment;
+  std::uint32_t index = 0;        ///< the peer it is about
+  std::uint32_t incarnation = 0;
+  std::int32_t code = 0;          ///< kEnded: exit status or signal; kEnd: exit code
+  std::uint32_t by_signal = 0;    ///< kEnded
+  std::uint32_t core_dumped = 0;  ///< kEnded
+  std::int32_t pid = 0;           ///< kStarted: for people
+  std::uint32_t reserved = 0;
+  Nanoseconds at;                 ///< kStarted, kEnded: when, CLOCK_MONOTONIC
+  std::uint64_t unused[3] = {};
+};
+static_assert(sizeof(KeeperMessage) == 64 && std::is_trivially_copyable_v<KeeperMessage>);
+
+inline std::span<const std::byte> bytes_of(const KeeperMessage& message) noexcept {
+  return std::as_bytes(std::span(&message, 1));
+}
+inline std::span<std::byte> bytes_of(KeeperMessage& message) noexcept {
+  return std::as_writable_bytes(std::span(&message, 1));
+}
+
+}  // namespace chimera

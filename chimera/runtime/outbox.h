@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Posts between peers: for each pair one ring in the sender's segment, one writer, one reader. The reader's progress
+// stands in the reader's own segment, so both map each other read-only. docs/formats/processes.md.
+//
+//   writer: ring[posted mod N] = post; posted = posted + 1 (release)
+//   reader: taken..posted (acquire) | copy | progress = taken (release)
+//   writer: room while posted - progress < N (acquire)
+// Invariant: the writer never stores to a place between progress and posted, so a post is read whole. Whoever dies
+// leaves all of it true.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "chimera/base/ids.h"
+#include "chimera/base/time.h"
+#include "chimera/task/signal.h"
+#include "chimera/task/state_machine.h"
+
+namespace chimera {
+
+enum class PostKind : std::uint8_t { kSignal, kReport, kRequest, kEvent };
+
+/// What an event is about.
+enum class Happening : std::uint8_t {
+  kState,     ///< task went from `before` to `after`
+  kFault,     ///< method `detail` of the task failed; its text stands in the task's fault group
+  kRefused,   ///< signal from task `from` refused, `why`
+  kSignalled, ///< signal from task `from` carried out
+  kFlag,      ///< this rtpu's flag word went to `detail`
+  kStop,      ///< reaction `stop` of the task: the rtpu turned all its tasks OFF
+};
+
+/// 64 bytes; what is not used is 0 (ids: invalid).
+struct Post {
+  std::uint64_t command = 0;  ///< number of the command it belongs to; 0: none
+  Nanoseconds at;
+  TaskId task;                ///< target, or whom it is about
+  TaskId from;                ///< the sending task
+  Signal signal = Signal::kOn;
+  PostKind kind = PostKind::kSignal;
+  Happening happening = Happening::kState;
+  bool more = false;          ///< one transaction with the next signal in the same ring
+  std::uint8_t why = 0;       ///< Refusal
+  State before = State::kNotCreated;
+  State after = State::kNotCreated;
+  std::uint64_t detail = 0;
+  std::uint64_t reserved[2] = {};
+};
+static_assert(sizeof(Post) == 64);
+
+inline constexpr std::size_t kPosts = 256;  ///< of one ring
+
+/// In the sender's segment.
+struct PostRing {
+  std::atomic<std::uint64_t> posted{0};
+  std::uint64_t reserved[7] = {};
+  Post posts[kPosts];
+};
+
+/// In the reader's segment: the incarnation of the sender in the upper 24 bits, posts taken in the lower 40.
+struct PostProgress {
+  std::atomic<std::uint64_t> word{0};
+};
+
+/// The writing side: own ring, progress of the one reader.
+class Outbox {
+ public:
+  Outbox() noexcept = default;
+  Outbox(PostRing& ring, const PostProgress* progress, std::uint32_t my_incarnation) noexcept
+      : ring_(&ring), progress_(progress), incarnation_(my_incarnation) {}
+
+  /// False when the reader is a whole ring behind (or there is no reader: progress null and the ring full).
+  /// Context: cycle; wait-free.
+  [[nodiscard]] bool try_post(const Post& post) noexcept;
+  /// Another incarnation of the reader; null: none. Context: edge.
+  void set_reader(const PostProgress* progress) noexcept { progress_ = progress; }
+
+ private:
+  PostRing* ring_ = nullptr;
+  const PostProgress* progress_ = nullptr;
+  std::uint32_t incarnation_ = 0;
+};
+
+/// The reading side: the sender's ring, own progress.
+class Inbox {
+ public:
+  Inbox() noexcept = default;
+  /// Begins behind everything posted so far. Context: edge.
+  Inbox(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept;
+
+  /// The next post; false when there is none. Nothing read from the ring is used as index or length by this class.
+  /// Context: cycle; wait-free.
+  bool take(Post& post) noexcept;
+  bool is_attached() const noexcept { return ring_ != nullptr; }
+
+ private:
+  const PostRing* ring_ = nullptr;
+  PostProgress* progress_ = nullptr;
+  std::uint32_t incarnation_ = 0;
+  std::uint64_t taken_ = 0;
+};
+
+}  // namespace chimera

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two small pages that every process of a subsystem maps. docs/formats/processes.md.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "chimera/base/time.h"
+
+namespace chimera {
+
+inline constexpr std::uint32_t kMaxRtpus = 16;             // config/draft.cc refuses more
+inline constexpr std::uint32_t kMaxPeers = kMaxRtpus + 1;  // the manager is peer number n_rtpus
+
+/// One word on a cache line of its own, so that ringing one bell does not slow the reader of another.
+struct alignas(64) BellWord {
+  std::atomic<std::uint32_t> word{0};
+};
+
+/// Writable by all: nothing here decides anything but when somebody looks.
+struct DecisionPage {
+  BellWord bells[kMaxPeers];  ///< one for each peer
+  /// Counted up after every change of a status word, of who lives, or of a wish of the manager.
+  alignas(64) std::atomic<std::uint32_t> changes{0};
+};
+
+/// Writable by the keeper alone.
+struct KeeperPage {
+  std::uint64_t reserved = 0;
+  Nanoseconds origin;              ///< of the grid of releases, CLOCK_MONOTONIC
+  std::uint32_t n_rtpus = 0;
+  std::atomic<std::uint32_t> ending{0};
+  std::atomic<std::uint32_t> alive[kMaxPeers];  ///< incarnation of the peer that lives; 0: none
+};
+
+}  // namespace chimera

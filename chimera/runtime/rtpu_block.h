@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a peer tells the others beside its groups: states, profiles, the flag, posts, the tap. Written by its owner
+// only, read by everybody through read-only mappings. docs/formats/processes.md.
+//
+// The block of a segment lies at block_offset(layout) and is block_bytes(n_tasks) long. A reader takes n_tasks and
+// n_peers from its own image, never from the block.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chimera/base/ids.h"
+#include "chimera/runtime/outbox.h"
+#include "chimera/runtime/pages.h"
+#include "chimera/runtime/tap_ring.h"
+#include "chimera/table/segment.h"
+#include "chimera/task/profile.h"
+
+namespace chimera {
+
+enum class PeerPhase : std::uint32_t { kStarting, kServing, kEnding, kEnded };
+
+/// State of a task in one word: bits 0-7 State, bit 8 service (init or kill under way), bits 32-63 incarnation.
+struct TaskStatus {
+  State state = State::kNotCreated;
+  bool in_service = false;
+  std::uint32_t incarnation = 0;
+
+  constexpr bool operator==(const TaskStatus&) const noexcept = default;
+  constexpr std::uint64_t word() const noexcept {
+    return static_cast<std::uint64_t>(incarnation) << 32 | (in_service ? 256u : 0u) | static_cast<std::uint64_t>(state);
+  }
+  /// A word that no owner would write reads as ERROR.
+  static constexpr TaskStatus of(std::uint64_t word) noexcept {
+    const auto state = word & 255u;
+    return {state < kStates ? static_cast<State>(state) : State::kError, (word & 256u) != 0,
+            static_cast<std::uint32_t>(word >> 32)};
+  }
+};
+
+/// At the start of a block.
+struct alignas(64) BlockHead {
+  std::uint64_t magic = 0;                     ///< kBlockMagic
+  std::uint32_t peer = 0;
+  std::uint32_t incarnation = 0;
+  std::uint32_t n_tasks = 0;
+  std::uint32_t n_peers = 0;
+  std::atomic<PeerPhase> phase{PeerPhase::kStarting};
+  std::atomic<std::uint32_t> flag{0};          ///< bit 0: the ON set is not legal; bit 1: raised by a task; bit 2: by an operator
+  std::atomic<std::uint32_t> running{0};       ///< (task + 1) << 8 | method; 0: between jobs
+  std::atomic<std::uint32_t> seen_changes{0};
+  std::atomic<std::uint64_t> lost_posts{0};    ///< events that found no room in the manager's ring
+  std::atomic<std::uint64_t> beats{0};         ///< edges passed: one that does not grow is stuck in `running`
+  char grant[448] = {};                        ///< one line about real-time rights, zero-terminated
+};
+inline constexpr std::uint64_t kBlockMagic = 0x314b4c42'4d494843;  // "CHIMBLK1" in memory
+
+/// What the manager must not forget when it dies. In the manager's block only.
+struct ManagerMemory {
+  std::atomic<std::uint64_t> events{0};                         ///< number of the last event
+  std::atomic<std::uint32_t> handled[kMaxRtpus];                ///< incarnation whose death was dealt with
+  std::atomic<std::int64_t> restarts[kMaxRtpus][4];             ///< instants of the last restarts
+  std::atomic<std::uint32_t> started{0};                        ///< 1: the start set has been asked for
+};
+
+/// Views into a block over mapped bytes. Plain value; every accessor is O(1) and wait-free.
+class BlockView {
+ public:
+  BlockView() noexcept = default;
+  /// Requires: bytes.size() >= block_bytes(n_tasks), 64-byte aligned. Context: setup.
+  BlockView(const std::byte* bytes, std::uint32_t n_tasks) noexcept;
+
+  const BlockHead& head() const noexcept;
+  TaskStatus status(TaskId task) const noexcept;
+  /// Copied word by word: two numbers may be a cycle apart.
+  Profile profile(TaskId task) const noexcept;
+  /// Of the manager: what is to become of the task (goal bits), and whether its group goes to the tap.
+  std::uint32_t goal(TaskId task) const noexcept;
+  bool is_tapped(TaskId task) const noexcept;
+  const PostProgress& progress(std::uint32_t peer) const noexcept;
+  const PostRing& outbox(std::uint32_t peer) const noexcept;
+  const TapRing& tap() const noexcept;
+  const ManagerMemory& memory() const noexcept;
+  bool is_there() const noexcept { return bytes_ != nullptr; }
+
+ private:
+  const std::byte* bytes_ = nullptr;
+  std::uint32_t n_tasks_ = 0;
+};
+
+/// The owner's side.
+class BlockOwner {
+ public:
+  BlockOwner() noexcept = default;
+  /// Writes the head over zeroed bytes. Requires as BlockView. Context: setup.
+  BlockOwner(std::byte* bytes, std::uint32_t peer, std::uint32_t incarnation, std::uint32_t n_tasks,
+             std::uint32_t n_peers) noexcept;
+
+  BlockHead& head() const noexcept;
+  void set_status(TaskId task, TaskStatus status) const noexcept;  ///< release; pairs with BlockView::status
+  Profile& profile(TaskId task) const noexcept;
+  void set_goal(TaskId task, std::uint32_t goal) const noexcept;
+  void set_tapped(TaskId task, bool tapped) const noexcept;
+  PostProgress& progress(std::uint32_t peer) const noexcept;
+  PostRing& outbox(std::uint32_t peer) const noexcept;
+  TapRing& tap() const noexcept;
+  ManagerMemory& memory() const noexcept;
+  BlockView view() const noexcept { return BlockView(bytes_, n_tasks_); }
+
+ private:
+  std::byte* bytes_ = nullptr;
+  std::uint32_t n_tasks_ = 0;
+};
+
+/// Bytes from the start of the segment to the block.
+std::uint64_t block_offset(const TableLayout& layout) noexcept;
+std::uint64_t block_bytes(std::uint32_t n_tasks) noexcept;
+/// Bytes of a whole segment: groups and block.
+inline std::uint64_t peer_segment_bytes(const TableLayout& layout, std::uint32_t n_tasks) noexcept {
+  return block_offset(layout) + block_bytes(n_tasks);
+}
+
+}  // namespace chimera

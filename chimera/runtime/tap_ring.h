@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tap: one writer appends fixed-size records, any number of readers follow on read-only mappings. The writer
+// never looks at a reader; one that falls behind by a whole ring loses the oldest and learns how many.
+//
+//   writer: records[head mod N] = record (word-wise) ; head = head + 1 (release)
+//   reader: h = head (acquire) | copy | fence | valid while head - index < N - 1, else skipped and counted
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chimera/runtime/tap_record.h"
+
+namespace chimera {
+
+inline constexpr std::size_t kTapRecords = 1u << 15;  // 1 MiB: 0.3 s at 100 records a millisecond
+
+/// In the writer's segment; zeroed memory is an empty ring.
+struct TapRing {
+  std::atomic<std::uint64_t> head{0};
+  std::uint64_t reserved[7] = {};
+  TapRecord records[kTapRecords];
+};
+
+/// The writing side. One writer. Context of append(): cycle; wait-free.
+class Tap {
+ public:
+  explicit Tap(TapRing& ring) noexcept : ring_(&ring), head_(ring.head.load(std::memory_order_relaxed)) {}
+  void append(const TapRecord& record) noexcept;
+
+ private:
+  TapRing* ring_;
+  std::uint64_t head_;
+};
+
+/// A reading side.
+class TapReader {
+ public:
+  TapReader() noexcept = default;
+  /// Begins with the next record (or with the oldest still there). Context: setup.
+  explicit TapReader(const TapRing& ring, bool from_oldest = false) noexcept;
+  /// Moves up to out.size() records to `out`; returns how many. What was overwritten before it could be read is
+  /// added to lost(). Context: any; wait-free but for O(out).
+  std::size_t read(std::span<TapRecord> out) noexcept;
+  std::uint64_t lost() const noexcept { return lost_; }
+  /// Number of the next record to be read, from 0 at the start of the ring.
+  std::uint64_t position() const noexcept { return next_; }
+
+ private:
+  const TapRing* ring_ = nullptr;
+  std::uint64_t next_ = 0;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace chimera

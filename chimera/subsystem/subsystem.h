@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decides what happens in a subsystem: a step function (event, time) -> actions without any call to the system, driven on
+// Linux by chimera/manager and in virtual time by simulated processes. docs/formats/processes.md, design section 7.
+//
+// What it knows of the processes it is told by events; what it must not forget it asks the driver to remember, and a
+// new Subsystem given that memory goes on where the old one died. The driver carries out actions in order.
+//
+// Goals. A task has a goal while it is to be brought up: at the start, and again after its rtpu died. Goals are
+// pursued in the order of constants (spawn) and then as one transaction in data-flow order (on).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/variables.h"
+
+namespace chimera::subsystem {
+
+/// Goal bits of a task (BlockView::goal).
+inline constexpr std::uint32_t kGoalSpawn = 1, kGoalOn = 2;
+
+/// Restart at most this often within this time, then give up until a person says `spawn` or `clear`.
+inline constexpr int kRestartIntensity = 3;
+inline constexpr Nanoseconds kRestartWindow = seconds(10);
+/// A signal that is not reported on within this time fails.
+inline constexpr Nanoseconds kAnswerLimit = seconds(2);
+
+// ---- events ----
+
+/// The driver starts: what the previous manager remembered (all zero at the first start). Exactly once, first; then
+/// RtpuUp/RtpuDown/TaskSeen for everything there is, then InventoryComplete.
+struct Begun {
+  std::vector<std::uint32_t> goals;     ///< by task
+  std::vector<std::uint32_t> handled;   ///< by rtpu: incarnation whose death was dealt with
+  std::vector<std::array<Nanoseconds, 4>> restarts;  ///< by rtpu: instants of its last restarts, 0: none
+  bool started = false;                 ///< the start set was asked for by a previous manager
+};
+struct InventoryComplete {};
+/// The rtpu serves: maps this manager's segment and takes posts from now on.
+struct RtpuUp { RtpuId rtpu; std::uint32_t incarnation = 0; };
+/// The process is dead (proof by pidfd). TaskSeen events with the last words of its segment have come before.
+struct RtpuDown { RtpuId rtpu; std::uint32_t incarnation = 0; std::string cause; };
+/// A status word as it is now.
+struct TaskSeen { TaskId task; TaskStatus status; };
+/// What became of a signal that was sent with a command number.
+struct Reported { std::uint64_t command = 0; TaskId task; Signal signal = Signal::kOn; bool accepted = false;
+                  Refusal why = Refusal::kNone; State before{}, after{}; std::string text; };
+/// A task asked for `on` (only the manager may).
+struct Requested { TaskId task; Signal signal = Signal::kOn; TaskId from; };
+/// A face asked for it. `id` is the driver's, above 0, never twice.
+struct Commanded { std::uint64_t id = 0; Signal signal = Signal::kOn; std::vector<TaskId> tasks; };
+/// Nothing but time: due at next_due().
+struct Tick {};
+
+using Event = std::variant<Begun, InventoryComplete, RtpuUp, RtpuDown, TaskSeen, Reported, Requested, Commanded, Tick>;
+
+// ---- actions ----
+
+/// Post the signals to the rtpu as one transaction (`more` on all but the last). `command` is the Subsystem's own
+/// number, to come back in Reported. `on` and `spawn` have been judged; the others go as they are.
+struct Send { RtpuId rtpu; std::uint64_t command = 0; Signal signal = Signal::kOn; std::vector<TaskId> tasks; };
+struct StartRtpu { RtpuId rtpu; };
+/// Must be remembered before any later action is carried out.
+struct RememberGoal { TaskId task; std::uint32_t goal = 0; };
+struct RememberHandled { RtpuId rtpu; std::uint32_t incarnation = 0; };
+struct RememberRestart { RtpuId rtpu; std::array<Nanoseconds, 4> instants{}; };
+struct RememberStarted {};
+/// A command is over.
+struct Outcome {
+  TaskId task;
+  State before{}, after{};
+};
+struct Answer { std::uint64_t id = 0; bool accepted = false; std::string text; TaskId at; std::vector<Outcome> outcomes; };
+/// For the event log: kind as in docs/formats/control.md.
+struct Tell { std::string kind; TaskId task; RtpuId rtpu; std::string text; };
+
+using Action = std::variant<Send, StartRtpu, RememberGoal, RememberHandled, RememberRestart, RememberStarted, Answer, Tell>;
+
+/// One subsystem. Single-threaded; no clock of its own. Context: setup; may allocate.
+class Subsystem {
+ public:
+  /// `spec` outlives it.
+  explicit Subsystem(const ApplicationSpec& spec);
+
+  /// Takes one event at `now` (never before the previous one) and appends what is to be done to `actions`.
+  void step(const Event& event, Nanoseconds now, std::vector<Action>& actions);
+  /// When a Tick is due; kNever: not before another event.
+  Nanoseconds next_due() const noexcept;
+
+  /// As people see it: a task of a dead rtpu that was created is ERROR.
+  State state(TaskId task) const noexcept;
+  /// Is every goal met or given up?
+  bool is_settled() const noexcept;
+  /// Why the tasks that would be ON with `tasks` are no legal set; "" when they are.
+  std::string judge_on(std::span<const TaskId> tasks) const;
+
+ private:
+  // to be written by its author
+  const ApplicationSpec& spec_;
+};
+
+}  // namespace chimera::subsystem
