@@ -15,18 +15,11 @@
 #include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/job_clock.h"
 #include "chimera/runtime/job_step.h"
+#include "chimera/runtime/refusal.h"
 #include "chimera/runtime/variables.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
-
-/// Why a signal was refused.
-enum class Refusal : std::uint8_t {
-  kNone,
-  kState,       ///< not legal in the state of the task
-  kIllegalSet,  ///< the tasks that would be ON would have two producers of a variable, or none
-  kFault        ///< `on` or the constructor said no; the text is in the task's fault record
-};
 
 /// What became of a signal. Plain data: no text is made on the cycle path; explain() makes it.
 struct SignalReport {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/refusal.h"
 #include "chimera/runtime/rtpu_block.h"
 #include "chimera/runtime/variables.h"
 
@@ -78,11 +79,23 @@ struct Outcome {
   TaskId task;
   State before{}, after{};
 };
-struct Answer { std::uint64_t id = 0; bool accepted = false; std::string text; TaskId at; std::vector<Outcome> outcomes; };
+struct Answer {
+  std::uint64_t id = 0;
+  bool accepted = false;
+  std::string text;
+  TaskId at;
+  std::vector<Outcome> outcomes;
+};
 /// For the event log: kind as in docs/formats/control.md.
-struct Tell { std::string kind; TaskId task; RtpuId rtpu; std::string text; };
+struct Tell {
+  std::string kind;
+  TaskId task;
+  RtpuId rtpu;
+  std::string text;
+};
 
-using Action = std::variant<Send, StartRtpu, RememberGoal, RememberHandled, RememberRestart, RememberStarted, Answer, Tell>;
+using Action =
+    std::variant<Send, StartRtpu, RememberGoal, RememberHandled, RememberRestart, RememberStarted, Answer, Tell>;
 
 /// One subsystem. Single-threaded; no clock of its own. Context: setup; may allocate.
 class Subsystem {

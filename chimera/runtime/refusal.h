@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace chimera {
+
+/// Why a signal was refused.
+enum class Refusal : std::uint8_t {
+  kNone,
+  kState,       ///< not legal in the state of the task
+  kIllegalSet,  ///< the tasks that would be ON would have two producers of a variable, or none
+  kFault        ///< `on` or the constructor said no; the text is in the task's fault record
+};
+
+}  // namespace chimera
