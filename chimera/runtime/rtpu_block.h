@@ -48,7 +48,8 @@ struct alignas(64) BlockHead {
   std::uint32_t n_tasks = 0;
   std::uint32_t n_peers = 0;
   std::atomic<PeerPhase> phase{PeerPhase::kStarting};
-  std::atomic<std::uint32_t> flag{0};          ///< bit 0: the ON set is not legal; bit 1: raised by a task; bit 2: by an operator
+  std::atomic<std::uint32_t> flag{
+      0};  ///< bit 0: the ON set is not legal; bit 1: raised by a task; bit 2: by an operator
   std::atomic<std::uint32_t> running{0};       ///< (task + 1) << 8 | method; 0: between jobs
   std::atomic<std::uint32_t> seen_changes{0};
   std::atomic<std::uint64_t> lost_posts{0};    ///< events that found no room in the manager's ring
