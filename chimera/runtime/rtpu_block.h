@@ -51,9 +51,11 @@ struct alignas(64) BlockHead {
   std::atomic<std::uint32_t> flag{
       0};  ///< bit 0: the ON set is not legal; bit 1: raised by a task; bit 2: by an operator
   std::atomic<std::uint32_t> running{0};       ///< (task + 1) << 8 | method; 0: between jobs
+  std::atomic<std::uint32_t> serving{0};       ///< the same for the service thread: init and kill
   std::atomic<std::uint32_t> seen_changes{0};
   std::atomic<std::uint64_t> lost_posts{0};    ///< events that found no room in the manager's ring
   std::atomic<std::uint64_t> beats{0};         ///< edges passed: one that does not grow is stuck in `running`
+  std::uint32_t reserved = 0;
   char grant[448] = {};                        ///< one line about real-time rights, zero-terminated
 };
 inline constexpr std::uint64_t kBlockMagic = 0x314b4c42'4d494843;  // "CHIMBLK1" in memory
