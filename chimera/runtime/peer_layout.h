@@ -28,7 +28,9 @@ class PeerLayout {
   const TableLayout& table() const noexcept { return *table_; }
   bool has(TaskId task) const noexcept { return first_group_[task.index] != UINT32_MAX; }
   /// The groups of a task of this peer. `half` is the incarnation modulo 2. Requires: has(task).
-  GroupId outputs(TaskId task, std::uint32_t half) const noexcept { return GroupId(first_group_[task.index] + half % 2); }
+  GroupId outputs(TaskId task, std::uint32_t half) const noexcept {
+    return GroupId(first_group_[task.index] + half % 2);
+  }
   GroupId constants(TaskId task) const noexcept { return GroupId(first_group_[task.index] + 2); }
   GroupId fault(TaskId task) const noexcept { return GroupId(first_group_[task.index] + 3); }
   /// Of operator variable `index` of the specs; of the manager only.

@@ -11,7 +11,7 @@ namespace {
 
 struct Source {
   Out<double> a{"a", "1"};
-  Out<double[3]> b{"b", "1"};
+  Out<double> b{"b", "1"};
   OutConst<std::int32_t> n{"n", "1"};
   void init() { *n = 3; }
   void cycle(Cycle) {}
@@ -40,7 +40,7 @@ TEST_F(PeerLayoutTest, GivesATaskFourGroupsInTheSegmentOfItsRtpuOnly) {
   EXPECT_TRUE(first->has(TaskId(1u)));
   ASSERT_TRUE(second->has(TaskId(0u)));
   EXPECT_EQ(second->table().groups().size(), 4u);
-  EXPECT_EQ(second->place(second->outputs(TaskId(0u), 0)).payload_bytes, 32u);
+  EXPECT_EQ(second->place(second->outputs(TaskId(0u), 0)).payload_bytes, 16u);
   EXPECT_EQ(second->variables(second->outputs(TaskId(0u), 1))[1].offset, 8u);
   EXPECT_EQ(second->place(second->constants(TaskId(0u))).payload_bytes, 8u);
   EXPECT_EQ(second->place(second->fault(TaskId(0u))).payload_bytes, sizeof(FaultRecord));
