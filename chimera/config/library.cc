@@ -47,6 +47,12 @@ Library Library::of(std::vector<Descriptor> descriptors, UnitSystem units) {
   return library;
 }
 
+Library Library::of_entries(std::vector<LibraryEntry> entries, UnitSystem units) {
+  Library library(std::move(units));
+  for (LibraryEntry& entry : entries) library.add(std::move(entry));
+  return library;
+}
+
 void Library::read_folder(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code failed;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/config/unit_system.h"
 
+#include <sys/mman.h>
 #include <udunits2.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -102,11 +104,25 @@ std::string contents(const std::string& file) {
   return text.str();
 }
 
+/// The units of `xml`. UDUNITS reads nothing but files, so the text is given the form of one.
+ut_system* read_units(const std::string& xml) {
+  const int descriptor = ::memfd_create("chimera-units", MFD_CLOEXEC);
+  if (descriptor < 0) return nullptr;
+  const std::scoped_lock lock(inside());
+  ut_set_error_message_handler(ut_ignore);
+  ut_system* system = nullptr;
+  if (::write(descriptor, xml.data(), xml.size()) == static_cast<ssize_t>(xml.size()))
+    system = ut_read_xml(("/proc/self/fd/" + std::to_string(descriptor)).c_str());
+  ::close(descriptor);
+  return system;
+}
+
 }  // namespace
 
 struct UnitSystem::Content {
   ut_system* system = nullptr;
   std::string file;
+  std::string xml;
   std::vector<std::string> names;
   mutable std::map<std::string, std::optional<Unit>, std::less<>> cache;  // guarded by inside()
 
@@ -143,30 +159,24 @@ struct UnitSystem::Content {
 Result<UnitSystem> UnitSystem::load(std::span<const std::string> files) {
   std::vector<std::string> places(files.begin(), files.end());
   if (const char* named = std::getenv("CHIMERA_UNITS"); named != nullptr && *named != '\0') places = {named};
+  for (const std::string& place : places)
+    if (std::ifstream(place).good()) return of(contents(place), place);
+  std::string all = "no unit file; looked for";
+  for (const std::string& place : places) all += " " + place;
+  return Error{ErrorCode::kNotFound, std::string_view(all), {}};
+}
+
+Result<UnitSystem> UnitSystem::of(std::string text, std::string file) {
   auto content = std::make_shared<Content>();
-  for (const std::string& place : places) {
-    if (std::ifstream(place).good()) {
-      content->file = place;
-      break;
-    }
-  }
-  if (content->file.empty()) {
-    std::string all = "no unit file; looked for";
-    for (const std::string& place : places) all += " " + place;
-    return Error{ErrorCode::kNotFound, std::string_view(all), {}};
-  }
-  {
-    const std::scoped_lock lock(inside());
-    ut_set_error_message_handler(ut_ignore);
-    content->system = ut_read_xml(content->file.c_str());
-  }
+  content->xml = std::move(text);
+  content->file = std::move(file);
+  content->system = read_units(content->xml);
   if (content->system == nullptr || !content->meaning("rad")) {
     return Error{ErrorCode::kBadInput, std::string_view("no unit file of UDUNITS-2 with the base unit rad"),
                  std::string_view(content->file)};
   }
-  const std::string xml = contents(content->file);
-  collect(xml, "symbol", content->names);
-  collect(xml, "singular", content->names);
+  collect(content->xml, "symbol", content->names);
+  collect(content->xml, "singular", content->names);
   content->names.insert(content->names.end(), std::begin(kCompounds), std::end(kCompounds));
   return UnitSystem(std::move(content));
 }
@@ -196,5 +206,6 @@ Result<UnitExpression> UnitSystem::parse_expression(std::string_view text) const
 
 std::span<const std::string> UnitSystem::names() const noexcept { return content_->names; }
 const std::string& UnitSystem::file() const noexcept { return content_->file; }
+const std::string& UnitSystem::text() const noexcept { return content_->xml; }
 
 }  // namespace chimera

@@ -22,6 +22,9 @@ class UnitSystem {
   /// Refuses when there is none or when it is no unit file, naming it. Context: setup; may block.
   static Result<UnitSystem> load(std::span<const std::string> files);
 
+  /// The same from the text of a unit file; `file` is its name for messages. Context: setup; may block.
+  static Result<UnitSystem> of(std::string text, std::string file);
+
   /// The unit of "N.m/rad", "m/s2", "kg.m^2.s^-1", "%", "1". Refuses, naming the word that is wrong and the nearest
   /// known unit, unknown words, unit variables, numbers other than 1, and a product after a "/". Context: setup.
   Result<Unit> parse(std::string_view text) const;
@@ -33,6 +36,8 @@ class UnitSystem {
   std::span<const std::string> names() const noexcept;
   /// The file they came from.
   const std::string& file() const noexcept;
+  /// The text of that file.
+  const std::string& text() const noexcept;
 
  private:
   struct Content;
