@@ -8,8 +8,8 @@
 
 #include "chimera/config/configuration.h"
 #include "chimera/config/library.h"
+#include "chimera/config/value_text.h"
 #include "chimera/config/verify.h"
-#include "chimera/desk/value_text.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera::desk {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/output.h"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 namespace chimera::desk {
 
 std::string error_line(const Error& error) {
@@ -23,11 +20,5 @@ Output refused(const Error& error, bool json, int code) {
     output.err = error_line(error);
   return output;
 }
-
-std::string json_string(std::string_view text) {
-  return nlohmann::json(std::string(text)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-std::string json_number(double value) { return std::isfinite(value) ? nlohmann::json(value).dump() : "null"; }
 
 }  // namespace chimera::desk

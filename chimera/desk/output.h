@@ -5,6 +5,7 @@
 #include <string>
 
 #include "chimera/base/result.h"
+#include "chimera/config/json_text.h"
 
 namespace chimera::desk {
 
@@ -22,9 +23,5 @@ struct Output {
 std::string error_line(const Error& error);
 /// An Output that only says `error`, as text or as {"error": {...}}.
 Output refused(const Error& error, bool json, int code = kRefused);
-/// `text` as a JSON string with its quotes.
-std::string json_string(std::string_view text);
-/// A finite number as JSON, in the shortest form that reads back the same; null for what JSON has no number for.
-std::string json_number(double value);
 
 }  // namespace chimera::desk

@@ -212,7 +212,8 @@ int Session::report(RunEnd end) {
             ", \"holds\": " + (holds ? "true" : "false") + ", \"said\": " + json_string(said) + "}";
   }
   const std::string variables = variables_json();
-  const std::vector<State> states = states_of(application_.tasks());
+  const std::vector<TaskProfile> profiles =
+      profiles_of(application_.tasks(), states_of(application_.tasks()));
   std::string refused;
   for (const RefusedSignal& r : loop_->refused())
     refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
@@ -227,10 +228,10 @@ int Session::report(RunEnd end) {
                  "\"variables\": {%s}, \"expectations\": [%s]}\n",
                  json_string(application_.configuration().subsystem()).c_str(),
                  json_string(loop_->description()).c_str(), static_cast<long long>(ran_.count), word(end),
-                 profile_json(application_.tasks(), states, loop_->origin()).c_str(), variables.c_str(), rows.c_str());
+                 profile_json(profiles, loop_->origin()).c_str(), variables.c_str(), rows.c_str());
   } else {
     std::fprintf(out_, "ran %.3f s%s\n%s%s%s", to_seconds(ran_), sentence(end), refused.c_str(),
-                 profile_table(application_.tasks(), states, ran_, loop_->origin()).c_str(), lines.c_str());
+                 profile_table(profiles, ran_, loop_->origin()).c_str(), lines.c_str());
   }
   return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
 }

@@ -137,13 +137,13 @@ TEST(Run, AnIllegalDescriptionIsReportedAndNotRun) {
 
 TEST(ProfileReport, ATaskThatNeverRanHasNoFiguresButALine) {
   Application application = test_application(kCounterText, test_library());
-  const std::vector<State> states = states_of(application.tasks());
-  EXPECT_EQ(profile_table(application.tasks(), states, Nanoseconds{}, Nanoseconds{}),
+  const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()));
+  EXPECT_EQ(profile_table(profiles, Nanoseconds{}, Nanoseconds{}),
             "task     state          cycles        mean        max      load    response      jitter  missed dropped "
             "faults\n"
             "counter  NOT-CREATED         0           -          -    0.00 %           -           -       0      0   "
             "   0\n");
-  EXPECT_EQ(profile_json(application.tasks(), states, Nanoseconds{}),
+  EXPECT_EQ(profile_json(profiles, Nanoseconds{}),
             "[{\"task\": \"counter\", \"component\": \"t_counter\", \"state\": \"NOT-CREATED\", "
             "\"period_ns\": 1000000, \"cycles\": 0, \"execution_ns\": {}, \"response_ns\": {\"count\": 0}, "
             "\"start_delay_ns\": {\"count\": 0}, "
@@ -158,10 +158,10 @@ TEST(ProfileReport, FaultsAreTimedFromTheOrigin) {
   task.faults.at = seconds(5000);
   task.faults.method = Method::kCycle;
   std::snprintf(task.faults.last.text, sizeof task.faults.last.text, "worn");
-  const std::vector<State> states = states_of(application.tasks());
-  EXPECT_NE(profile_table(application.tasks(), states, seconds(2), seconds(4999))
+  const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()));
+  EXPECT_NE(profile_table(profiles, seconds(2), seconds(4999))
                 .find("counter: last fault in cycle at 1.00 s: worn\n"), std::string::npos);
-  EXPECT_NE(profile_json(application.tasks(), states, seconds(4999)).find("\"at_ns\": 1000000000, "),
+  EXPECT_NE(profile_json(profiles, seconds(4999)).find("\"at_ns\": 1000000000, "),
             std::string::npos);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/desk/value_text.h"
+#include "chimera/config/value_text.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-namespace chimera::desk {
+namespace chimera {
 namespace {
 
 template <class T>
@@ -78,4 +78,4 @@ TEST(ValueText, AStructNamesItsFieldsEachWithItsUnit) {
 TEST(Numbers, TextsGiveNone) { EXPECT_TRUE(numbers(form(CHIMERA_STRING, 8), bytes_of("1234567")).empty()); }
 
 }  // namespace
-}  // namespace chimera::desk
+}  // namespace chimera

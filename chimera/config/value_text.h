@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/library.h"
+#include "chimera/load/descriptor.h"
 
-namespace chimera::desk {
+namespace chimera {
 
 /// How the bytes of a variable are to be read.
 struct ValueForm {
@@ -29,4 +29,4 @@ std::string value_json(const ValueForm& form, std::span<const std::byte> bytes);
 /// Every number of the value in order; texts give none.
 std::vector<double> numbers(const ValueForm& form, std::span<const std::byte> bytes);
 
-}  // namespace chimera::desk
+}  // namespace chimera

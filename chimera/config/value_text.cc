@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/desk/value_text.h"
+#include "chimera/config/value_text.h"
 
 #include <cstdio>
 #include <cstring>
 
-#include "chimera/desk/output.h"
+#include "chimera/config/json_text.h"
 
-namespace chimera::desk {
+namespace chimera {
 namespace {
 
 template <class T>
@@ -92,4 +92,4 @@ std::vector<double> numbers(const ValueForm& form, std::span<const std::byte> by
   return all;
 }
 
-}  // namespace chimera::desk
+}  // namespace chimera

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/config/json_text.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace chimera {
+
+std::string json_string(std::string_view text) {
+  return nlohmann::json(std::string(text)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string json_number(double value) { return std::isfinite(value) ? nlohmann::json(value).dump() : "null"; }
+
+}  // namespace chimera
