@@ -45,13 +45,17 @@ struct Begun {
   bool started = false;                 ///< the start set was asked for by a previous manager
 };
 struct InventoryComplete {};
-/// The rtpu serves: maps this manager's segment and takes posts from now on.
+/// The rtpu serves: maps this manager's segment and takes posts from now on, none of an earlier manager. TaskSeen of
+/// its tasks, read after it began to, have come before.
 struct RtpuUp { RtpuId rtpu; std::uint32_t incarnation = 0; };
-/// The process is dead (proof by pidfd). TaskSeen events with the last words of its segment have come before.
+/// The process is dead (proof by pidfd). TaskSeen events with the last words of its segment have come before, also for
+/// one that is found dead at the start. `cause` follows the name in a sentence: "ended by signal 11 (SIGSEGV) in
+/// pid.cycle; core dumped".
 struct RtpuDown { RtpuId rtpu; std::uint32_t incarnation = 0; std::string cause; };
 /// A status word as it is now.
 struct TaskSeen { TaskId task; TaskStatus status; };
-/// What became of a signal that was sent with a command number.
+/// What became of a signal that was sent with a command number: one for each task of a Send. TaskSeen of the task, read
+/// after the report was taken, has come before.
 struct Reported { std::uint64_t command = 0; TaskId task; Signal signal = Signal::kOn; bool accepted = false;
                   Refusal why = Refusal::kNone; State before{}, after{}; std::string text; };
 /// A task asked for `on` (only the manager may).
@@ -68,6 +72,7 @@ using Event = std::variant<Begun, InventoryComplete, RtpuUp, RtpuDown, TaskSeen,
 /// Post the signals to the rtpu as one transaction (`more` on all but the last). `command` is the Subsystem's own
 /// number, to come back in Reported. `on` and `spawn` have been judged; the others go as they are.
 struct Send { RtpuId rtpu; std::uint64_t command = 0; Signal signal = Signal::kOn; std::vector<TaskId> tasks; };
+/// Does nothing when it lives.
 struct StartRtpu { RtpuId rtpu; };
 /// Must be remembered before any later action is carried out.
 struct RememberGoal { TaskId task; std::uint32_t goal = 0; };
