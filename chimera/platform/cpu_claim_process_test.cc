@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/platform/cpu_claim.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+
+namespace chimera {
+namespace {
+
+// No machine has it: a run beside this test is not disturbed. Two copies of this test do not meet either.
+int cpu() { return 100'000 + static_cast<int>(::getpid()); }
+
+TEST(CpuClaim, RefusesASecondHolderAndNamesTheFirst) {
+  const auto first = CpuClaim::take(cpu());
+  ASSERT_TRUE(first.has_value()) << first.error().message.view();
+  const auto second = CpuClaim::take(cpu());
+  ASSERT_FALSE(second.has_value());
+  EXPECT_EQ(second.error().code, ErrorCode::kRefused);
+  const std::string message(second.error().message.view());
+  EXPECT_EQ(message,
+            "CPU " + std::to_string(cpu()) + " is in use by another real-time subsystem (process " +
+                std::to_string(::getpid()) + "): end that one, place the rtpu on another CPU, or run "
+                "with --priority 0");
+  EXPECT_TRUE(CpuClaim::take(cpu() + 1).has_value());
+}
+
+TEST(CpuClaim, EndsWithItsHolderAndMovesWithoutALoss) {
+  {
+    auto first = CpuClaim::take(cpu());
+    const CpuClaim moved = *std::move(first);
+    EXPECT_TRUE(moved.is_held());
+    EXPECT_FALSE(CpuClaim::take(cpu()).has_value());
+  }
+  EXPECT_TRUE(CpuClaim::take(cpu()).has_value());
+}
+
+TEST(CpuClaim, IsFreeAgainWhenItsProcessWasKilled) {
+  const int number = cpu();
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const auto held = CpuClaim::take(number);
+    if (!held.has_value() || ::write(ends[1], "h", 1) != 1) ::_exit(1);
+    for (;;) ::pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(ends[0], &byte, 1), 1);
+  EXPECT_FALSE(CpuClaim::take(number).has_value());
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_TRUE(CpuClaim::take(number).has_value());
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+}  // namespace
+}  // namespace chimera

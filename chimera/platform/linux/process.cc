@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/platform/process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <climits>
+#include <csignal>
+#include <ctime>
+
+#include "chimera/base/time.h"
+#include "chimera/platform/linux/descriptor.h"
+
+namespace chimera {
+namespace {
+
+// By number: the C library's header declares them without C linkage.
+int pidfd_open(pid_t pid) noexcept { return static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)); }
+bool pidfd_send_signal(int pidfd, int number) noexcept {
+  return ::syscall(SYS_pidfd_send_signal, pidfd, number, nullptr, 0) == 0;
+}
+
+constexpr std::size_t kMaxArguments = 63;
+constexpr std::size_t kMaxPassed = 16;
+constexpr int kFirst = 3;  // of the descriptors that are passed on
+
+// In the child, between fork and exec: nothing here may allocate, lock or return.
+[[noreturn]] void become(const char* program, char* const* words, std::span<const int> passed, int failed) noexcept {
+  const int above = kFirst + static_cast<int>(passed.size());
+  // Out of the way first: a descriptor to pass on may itself be 3 or 4 here. The copies do not survive exec.
+  int copies[kMaxPassed + 1];
+  for (std::size_t i = 0; i < passed.size(); ++i) copies[i] = ::fcntl(passed[i], F_DUPFD_CLOEXEC, above);
+  const int report = ::fcntl(failed, F_DUPFD_CLOEXEC, above);
+  bool good = report >= 0;
+  for (std::size_t i = 0; i < passed.size(); ++i)
+    good = good && copies[i] >= 0 && ::dup2(copies[i], kFirst + static_cast<int>(i)) >= 0;
+  // Whatever the parent was careless with ends at exec too.
+  good = good && ::close_range(static_cast<unsigned>(above), UINT_MAX, CLOSE_RANGE_CLOEXEC) == 0;
+  for (int number = 1; number < NSIG; ++number) ::signal(number, number == SIGINT ? SIG_IGN : SIG_DFL);
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  if (good) ::execv(program, words);
+  const int error = errno;
+  if (::write(report >= 0 ? report : failed, &error, sizeof error) < 0) ::_exit(126);
+  ::_exit(127);
+}
+
+Nanoseconds monotonic() noexcept {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return {t.tv_sec * 1'000'000'000 + t.tv_nsec};
+}
+
+}  // namespace
+
+Result<Process> Process::start(const char* program, std::span<const char* const> arguments,
+                               std::span<const int> descriptors) noexcept {
+  const Message what = Message() << "program " << program;
+  if (arguments.size() > kMaxArguments || descriptors.size() > kMaxPassed)
+    return (Message() << what.view() << ": more than " << kMaxArguments << " arguments or " << kMaxPassed
+                      << " descriptors")
+        .error(ErrorCode::kBadInput);
+  char* words[kMaxArguments + 1] = {};
+  for (std::size_t i = 0; i < arguments.size(); ++i) words[i] = const_cast<char*>(arguments[i]);
+  int pipe_ends[2];
+  if (::pipe2(pipe_ends, O_CLOEXEC) != 0) return system_error(what, "pipe");
+  const Descriptor answer(pipe_ends[0]);
+  Descriptor failed(pipe_ends[1]);
+  // No handler of this process may run in the child.
+  sigset_t all, before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t pid = ::fork();
+  if (pid == 0) become(program, words, descriptors, failed.fd);
+  const int fork_error = errno;
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  errno = fork_error;
+  if (pid < 0) return system_error(what, "fork");
+  Process child;
+  child.pid_ = pid;
+  child.pidfd_ = pidfd_open(pid);  // close-on-exec; the number is the child's as long as it is not reaped
+  const int pidfd_error = errno;
+  failed = Descriptor();
+  int error = 0;
+  ssize_t got;
+  do got = ::read(answer.fd, &error, sizeof error);
+  while (got < 0 && errno == EINTR);
+  if (got == 0 && child.pidfd_ >= 0) return child;
+  if (got == 0) ::kill(pid, SIGKILL);  // still ours: nobody has reaped it
+  while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}
+  errno = got == 0 ? pidfd_error : error;
+  return system_error(what, got == 0 ? "pidfd_open" : "exec");
+}
+
+Process& Process::operator=(Process&& other) noexcept {
+  std::swap(pidfd_, other.pidfd_);
+  std::swap(pid_, other.pid_);
+  return *this;
+}
+
+Process::~Process() {
+  if (pidfd_ >= 0) ::close(pidfd_);
+}
+
+bool Process::has_ended(ProcessEnd& end) noexcept {
+  if (pidfd_ < 0) return false;
+  siginfo_t info{};
+  if (::waitid(P_PIDFD, static_cast<id_t>(pidfd_), &info, WEXITED | WNOHANG) != 0 || info.si_pid == 0) return false;
+  end.by_signal = info.si_code != CLD_EXITED;
+  end.code = info.si_status;
+  end.core_dumped = info.si_code == CLD_DUMPED;
+  ::close(std::exchange(pidfd_, -1));
+  pid_ = -1;
+  return true;
+}
+
+bool Process::wait(ProcessEnd& end, std::int64_t limit_ns) noexcept {
+  const Nanoseconds until = monotonic() + std::min(Nanoseconds{limit_ns}, seconds(1'000'000'000));
+  while (pidfd_ >= 0) {
+    if (has_ended(end)) return true;
+    const Nanoseconds left = std::max(until - monotonic(), Nanoseconds{0});
+    if (left.count == 0) return false;
+    const timespec patience{left.count / 1'000'000'000, left.count % 1'000'000'000};
+    pollfd ended{pidfd_, POLLIN, 0};
+    ::ppoll(&ended, 1, &patience, nullptr);
+  }
+  return false;
+}
+
+bool Process::signal(int number) const noexcept {
+  return pidfd_ >= 0 && pidfd_send_signal(pidfd_, number);
+}
+
+bool follow_parent(pid_t parent, int signal) noexcept {
+  return ::prctl(PR_SET_PDEATHSIG, signal) == 0 && ::getppid() == parent;
+}
+
+}  // namespace chimera
