@@ -90,7 +90,8 @@ class Inbox {
   /// Begins behind everything posted so far. Context: edge.
   Inbox(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept;
 
-  /// The next post; false when there is none. Nothing read from the ring is used as index or length by this class.
+  /// The next post; false when there is none. Nothing read from the ring is used as index or length by this class, and
+  /// what no sender would write (a word that is no value of its enumeration) is passed over.
   /// Context: cycle; wait-free.
   bool take(Post& post) noexcept;
   bool is_attached() const noexcept { return ring_ != nullptr; }
