@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happened, numbered without a gap from the start of the subsystem, over every restart of the manager. The last
+// ten thousand are kept; whoever asks for older ones learns how many are gone.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "chimera/base/ids.h"
+#include "chimera/base/time.h"
+
+namespace chimera::manager {
+
+/// One entry. `kind` as in docs/formats/control.md.
+struct LoggedEvent {
+  std::uint64_t number = 0;
+  Nanoseconds at;             ///< CLOCK_MONOTONIC
+  std::int64_t wall_ns = 0;   ///< since 1970
+  std::string kind;
+  TaskId task;                ///< invalid: none
+  RtpuId rtpu;                ///< invalid: none
+  std::string text;
+};
+
+inline constexpr std::size_t kEventsKept = 10'000;
+
+/// Single-threaded. Context: setup; may allocate.
+class EventLog {
+ public:
+  /// Goes on behind number `last`, which a predecessor gave out.
+  explicit EventLog(std::uint64_t last = 0) noexcept : last_(last) {}
+
+  /// Takes an event under the next number; `event.number` is ignored.
+  void add(LoggedEvent event);
+  /// Number of the oldest event kept, last() + 1 when there is none; and of the newest, 0 before the first.
+  std::uint64_t first() const noexcept { return last_ - kept_.size() + 1; }
+  std::uint64_t last() const noexcept { return last_; }
+  /// Requires: first() <= number <= last().
+  const LoggedEvent& at(std::uint64_t number) const noexcept { return kept_[number - first()]; }
+
+ private:
+  std::deque<LoggedEvent> kept_;
+  std::uint64_t last_;
+};
+
+}  // namespace chimera::manager
