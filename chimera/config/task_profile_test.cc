@@ -34,8 +34,8 @@ TEST(TaskProfile, ReadsAsDocumented) {
   const TaskProfile task = sample();
   EXPECT_EQ(profile_json({&task, 1}, kOrigin),
             "[{\"task\": \"pid\", \"component\": \"pid_joint\", \"state\": \"ON\", \"period_ns\": 1000000, "
-            "\"cycles\": 2, \"execution_ns\": {\"cycle\": {\"count\": 2, \"min\": 3000, \"mean\": 4000, \"max\": 5000}}, "
-            "\"response_ns\": {\"count\": 1, \"min\": 7000, \"mean\": 7000, \"max\": 7000}, "
+            "\"cycles\": 2, \"execution_ns\": {\"cycle\": {\"count\": 2, \"min\": 3000, \"mean\": 4000, \"max\": 5000}"
+            "}, \"response_ns\": {\"count\": 1, \"min\": 7000, \"mean\": 7000, \"max\": 7000}, "
             "\"start_delay_ns\": {\"count\": 0}, \"missed\": 1, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, "
             "\"held\": 0, \"aborted\": 0, \"stale\": 0, \"rejected\": 4, \"faults\": 1, \"last_fault\": {\"method\": "
             "\"cycle\", \"at_ns\": 1000000000, \"code\": 12, \"text\": \"too \\\"hot\\\"\"}}]");

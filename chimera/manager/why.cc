@@ -64,8 +64,9 @@ std::string praise(const std::vector<WhyLink>& chain) {
 }
 
 const WhyLink* find(const std::vector<WhyLink>& chain, std::string_view variable) {
-  const auto at = std::find_if(chain.begin(), chain.end(), [&](const WhyLink& l) { return l.facts.variable == variable; });
-  return at == chain.end() ? nullptr : &*at;
+  for (const WhyLink& link : chain)
+    if (link.facts.variable == variable) return &link;
+  return nullptr;
 }
 
 /// From a troubled link up to the one whose own inputs are good: a loop is left where it was entered.

@@ -46,8 +46,7 @@ bool to_post(const unsigned char (&bytes)[sizeof(Post)], Post& post) noexcept {
 
 }  // namespace
 
-bool Outbox::try_post(const Post& post) noexcept {
-  const std::uint64_t posted = ring_->posted.load(std::memory_order_relaxed);
+std::uint64_t Outbox::room() const noexcept {
   std::uint64_t taken = 0;
   if (progress_ != nullptr) {
     // SYNC: pairs with the release in Inbox::take(): the reader is done with the places it passed.
@@ -55,7 +54,17 @@ bool Outbox::try_post(const Post& post) noexcept {
     if (is_of(word, incarnation_)) taken = word & kCountMask;
   }
   // In 40 bits, so that the count may wrap; a reader that claims to be ahead of us leaves no room either.
-  if (((posted - taken) & kCountMask) >= kPosts) return false;
+  const std::uint64_t waiting = (ring_->posted.load(std::memory_order_relaxed) - taken) & kCountMask;
+  return waiting < kPosts ? kPosts - waiting : 0;
+}
+
+bool Outbox::is_followed() const noexcept {
+  return progress_ != nullptr && is_of(progress_->word.load(std::memory_order_acquire), incarnation_);
+}
+
+bool Outbox::try_post(const Post& post) noexcept {
+  if (room() == 0) return false;
+  const std::uint64_t posted = ring_->posted.load(std::memory_order_relaxed);
   shared_copy::copy_in(place(*ring_, posted), &post, sizeof post);
   // SYNC: pairs with the acquire in Inbox: the post is whole before it is counted.
   ring_->posted.store(posted + 1, std::memory_order_release);

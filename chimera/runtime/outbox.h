@@ -45,7 +45,7 @@ struct Post {
   std::uint8_t why = 0;       ///< Refusal
   State before = State::kNotCreated;
   State after = State::kNotCreated;
-  std::uint64_t detail = 0;
+  std::uint64_t detail = 0;   ///< report: 1 accepted, 0 not; event: as its Happening says
   std::uint64_t reserved[2] = {};
 };
 static_assert(sizeof(Post) == 64);
@@ -74,6 +74,10 @@ class Outbox {
   /// False when the reader is a whole ring behind (or there is no reader: progress null and the ring full).
   /// Context: cycle; wait-free.
   [[nodiscard]] bool try_post(const Post& post) noexcept;
+  /// Posts that would still be taken. Context: cycle; wait-free.
+  std::uint64_t room() const noexcept;
+  /// Does the reader take the posts of this incarnation (and none from before)? Context: cycle; wait-free.
+  bool is_followed() const noexcept;
   /// Another incarnation of the reader; null: none. Context: edge.
   void set_reader(const PostProgress* progress) noexcept { progress_ = progress; }
 

@@ -67,6 +67,21 @@ TEST_F(Outboxes, AFullRingRefusesAndLosesNothing) {
   EXPECT_FALSE(inbox.take(post));
 }
 
+TEST_F(Outboxes, SaysHowMuchRoomThereIsAndWhetherItsReaderFollows) {
+  Outbox outbox(*ring, &progress, 3);
+  EXPECT_FALSE(outbox.is_followed());
+  ASSERT_TRUE(outbox.try_post(numbered(0)));
+  EXPECT_EQ(outbox.room(), kPosts - 1);
+  Inbox inbox(*ring, progress, 3);
+  EXPECT_TRUE(outbox.is_followed());
+  EXPECT_EQ(outbox.room(), kPosts);
+  fill(outbox);
+  EXPECT_EQ(outbox.room(), 0u);
+  outbox.set_reader(nullptr);
+  EXPECT_FALSE(outbox.is_followed());
+  EXPECT_FALSE(Outbox(*ring, &progress, 4).is_followed());
+}
+
 TEST_F(Outboxes, ANewReaderBeginsBehindWhatWasPosted) {
   Outbox outbox(*ring, &progress, 7);
   ASSERT_TRUE(outbox.try_post(numbered(0)));
