@@ -83,6 +83,7 @@ class Axes {
       }
       ports_[i][0].variable = *names_[(i + n - 1) % n];
       ports_[i][1].variable = *names_[i];
+      ports_[i][1].kind = CHIMERA_OUT_VAR;
       ports_[i][1].value = zeros_;
       TaskSpec task;
       task.name = *names_[i];

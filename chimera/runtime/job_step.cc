@@ -32,16 +32,27 @@ Answer default_answer(Method method) noexcept { return method == Method::kError 
 }  // namespace
 
 // The halves below are put in place by force: at the length of a short cycle the calls themselves would show.
-[[gnu::always_inline]] static inline void read_input(Task& task, Input& input) noexcept {
-  if (!input.group.latch()) ++task.profile.stale;
+[[gnu::always_inline]] static inline void read_input(Input& input) noexcept {
+  (void)input.group.latch();
   chimera_port& port = *input.port;
   port.slot = input.group.slot();
   port.bit = input.bit;
   port.value = const_cast<std::byte*>(input.group.values()) + input.offset;
 }
 
+// Groups produced elsewhere: once each, however many inputs look at them.
+[[gnu::always_inline]] static inline void refresh_copies(Task& task) noexcept {
+  for (LocalGroup* copy : task.copies)
+    if (!copy->refresh()) ++task.profile.stale;
+}
+
+[[gnu::always_inline]] static inline void tell_running(Task& task, std::uint32_t method) noexcept {
+  task.running->store((task.id.index + 1) << 8 | method, std::memory_order_relaxed);
+}
+
 void read_inputs(Task& task) noexcept {
-  for (Input& input : task.inputs) read_input(task, input);
+  refresh_copies(task);
+  for (Input& input : task.inputs) read_input(input);
 }
 
 void aim_outputs(Task& task) noexcept {
@@ -59,6 +70,7 @@ void record_fault(Task& task, Method method, const char* text, Nanoseconds at) n
 Answer call_method(Task& task, Method method, Nanoseconds at) noexcept {
   const chimera_method body = task.component->methods[static_cast<int>(method)];
   if (body == nullptr) return default_answer(method);
+  tell_running(task, static_cast<std::uint32_t>(method));
   task.said.text[0] = '\0';
   task.said.code = 0;
   const Answer answer = answer_of(method, body(task.instance, &task.call));
@@ -109,6 +121,7 @@ State follow_error(Task& task, Next at, Nanoseconds now) noexcept {
 [[gnu::always_inline]] static inline Answer call_cycle(Task& task, Nanoseconds at) noexcept {
   const chimera_method body = task.component->methods[CHIMERA_CYCLE];
   if (body == nullptr) return Answer::kOk;
+  tell_running(task, CHIMERA_CYCLE);
   task.said.text[0] = '\0';
   task.said.code = 0;
   const std::int32_t value = body(task.instance, &task.call);
@@ -129,8 +142,9 @@ BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept {
     const Answer answer = call_method(task, Method::kSync, time.release);
     if (answer != Answer::kOk) return {answer, Method::kSync};
   }
+  refresh_copies(task);
   for (Input& input : task.inputs) {
-    read_input(task, input);
+    read_input(input);
     input.port->seen = input.sequence;
     input.sequence = input.group.slot()->sequence;
   }

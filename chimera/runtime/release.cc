@@ -53,19 +53,23 @@ void Releases::record_faults(Task& task) noexcept {
   OfTask& t = of_[task.id.index];
   if (task.faults.count == t.faults_seen) return;
   t.faults_seen = task.faults.count;
+  set_.faulted(task);
   record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
 }
 
 Nanoseconds Releases::next_event() const noexcept {
-  return std::min(queue_.next_release(), next_act_);
+  const Nanoseconds next = std::min(queue_.next_release(), next_act_);
+  return options_.guest == nullptr ? next : std::min(next, options_.guest->next_due());
 }
 
 void Releases::take_edge(Nanoseconds now) noexcept {
   while (const ScriptAct* next = options_.script.take(now - origin_)) act(*next, now);
   look_at_script();
+  if (options_.guest != nullptr) options_.guest->take(*this, now);
   for (Task& task : tasks_) {
     Signal signal;
-    while (!of_[task.id.index].is_busy && set_.take_pending(task, signal)) carry_out(task, signal, now);
+    while (!of_[task.id.index].is_busy && !task.in_service && set_.take_pending(task, signal))
+      carry_out(task, signal, now);
   }
   refresh_members(now);
 }
@@ -86,10 +90,30 @@ void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
 void Releases::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
   const bool was_illegal = set_.is_illegal();
   const SignalReport report = set_.signal(task.id, signal, now);
-  record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(signal), report.is_accepted ? 1 : 0);
   if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before});
-  record_faults(task);
+  record_signal(report, was_illegal, now);
+  if (options_.guest != nullptr) options_.guest->told(report, now);
+}
+
+void Releases::record_signal(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept {
+  record(TapKind::kSignal, now, report.task, static_cast<std::uint64_t>(report.signal), report.is_accepted ? 1 : 0);
+  record_faults(tasks_[report.task.index]);
   if (set_.is_illegal() != was_illegal) record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
+}
+
+SignalReport Releases::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
+  const bool was_illegal = set_.is_illegal();
+  const SignalReport report = set_.signal(tasks, signal, now);
+  record_signal(report, was_illegal, now);
+  return report;
+}
+
+SignalReport Releases::served(TaskId task, Nanoseconds now) noexcept {
+  const bool was_illegal = set_.is_illegal();
+  const SignalReport report = set_.served(task, now);
+  record_faults(tasks_[task.index]);
+  if (set_.is_illegal() != was_illegal) record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
+  return report;
 }
 
 void Releases::refresh_members(Nanoseconds now) noexcept {

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "chimera/base/fixed.h"
+#include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/script.h"
 #include "chimera/runtime/tap.h"
@@ -39,6 +40,7 @@ struct RunOptions {
   Script script;
   Tap* tap = nullptr;                        ///< null: nothing is recorded
   std::uint8_t rtpu = 0;                     ///< for the records
+  EdgeGuest* guest = nullptr;                ///< null: nobody else takes part in the edges
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
 };
 
@@ -73,7 +75,7 @@ class Releases {
 
   /// True when take_edge has something to do.
   bool edge_is_due(Nanoseconds now) const noexcept {
-    return set_.has_pending() || next_act_ <= now;
+    return set_.has_pending() || next_act_ <= now || (options_.guest != nullptr && options_.guest->is_due(now));
   }
   /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
   void take_edge(Nanoseconds now) noexcept;
@@ -81,12 +83,18 @@ class Releases {
   Nanoseconds next_event() const noexcept;
   /// True while a task is ON or may yet be turned ON.
   bool anything_left() const noexcept {
-    return n_on_ > 0 || set_.has_pending() || next_act_ != kNever;
+    return n_on_ > 0 || set_.has_pending() || next_act_ != kNever || options_.guest != nullptr;
   }
   bool stop_requested() const noexcept {
     return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
   }
   bool task_stopped() const noexcept { return task_stopped_; }
+  /// The reaction `stop` has been answered: the loop may go on. Context: edge.
+  void forget_stop() noexcept { task_stopped_ = false; }
+
+  /// For the guest, within take(): signals, recorded as they are carried out. Context: edge.
+  SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
+  SignalReport served(TaskId task, Nanoseconds now) noexcept;
 
   void release_due(Nanoseconds now) noexcept {
     if (queue_.next_release() > now) return;
@@ -162,6 +170,7 @@ class Releases {
     next_act_ = at == kNever ? kNever : origin_ + at;
   }
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
+  void record_signal(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;
   void refresh_members(Nanoseconds now) noexcept;
   void refresh(Task& task, Nanoseconds now) noexcept;
   void record_faults(Task& task) noexcept;

@@ -79,6 +79,7 @@ Result<void> TaskMemory::plan(const TaskSpec& spec) {
 
 Result<void> TaskMemory::plan_port(const PortSpec& port) {
   const chimera_port_decl& decl = component_->ports[port.declared];
+  if (decl.kind != port.kind) return misfit(*spec_, "another kind of port", decl.name);
   if (port.instance >= decl.max_instances) return misfit(*spec_, "too many instances of port", decl.name);
   if (decl.type != CHIMERA_ANY && decl.kind != CHIMERA_RESOURCE && decl.element_size != port.element_bytes)
     return misfit(*spec_, "another element size at port", decl.name);

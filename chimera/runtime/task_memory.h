@@ -50,6 +50,10 @@ class TaskMemory {
 
   /// The group that consumers may be bound to before the task was ever spawned: the never-written fill.
   GroupReader reader() const noexcept;
+  /// How often it was constructed: outputs go to group incarnation modulo 2.
+  std::uint32_t incarnation() const noexcept { return incarnation_; }
+  /// False for the memory of a task of another context.
+  bool is_planned() const noexcept { return component_ != nullptr; }
   std::span<Input> inputs() noexcept { return inputs_; }
   std::span<const ConstantPort> constants() const noexcept { return constants_; }
   /// The variables behind inputs(), in the same order.

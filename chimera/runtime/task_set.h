@@ -3,7 +3,7 @@
 // illegal-configuration flag. The executors add time.
 #pragma once
 
-#include <deque>
+#include <atomic>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,6 +16,10 @@
 #include "chimera/runtime/job_clock.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/refusal.h"
+#include "chimera/runtime/neighbours.h"
+#include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/service.h"
+#include "chimera/runtime/sources.h"
 #include "chimera/runtime/variables.h"
 #include "chimera/task/task.h"
 
@@ -24,6 +28,7 @@ namespace chimera {
 /// What became of a signal. Plain data: no text is made on the cycle path; explain() makes it.
 struct SignalReport {
   bool is_accepted = false;
+  bool is_deferred = false;  ///< the service thread has it: the rest comes from TaskSet::served()
   Refusal why = Refusal::kNone;
   Signal signal = Signal::kOn;
   TaskId task;  ///< the one it failed at, else the last
@@ -47,12 +52,25 @@ struct VariableReader {
   std::uint32_t bit = 0;     ///< of the value in the valid bits
 };
 
+/// Where a context stands in the application. By default it is alone: all tasks and operator variables are its own.
+struct ContextPlace {
+  RtpuId rtpu;                     ///< whose tasks are its own; invalid: all
+  std::span<std::byte> table;      ///< zeroed bytes for PeerLayout::of(spec, rtpu); empty: memory of its own
+  Neighbours* others = nullptr;
+  Service* service = nullptr;      ///< null: init and kill run where the signal is taken
+  /// Told which task and method runs, as BlockHead::running says, by the context and by the service thread.
+  std::atomic<std::uint32_t>* running = &running_untold;
+  std::atomic<std::uint32_t>* serving = &running_untold;
+};
+
 class TaskSet {
  public:
-  /// Plans memory for every task and binds what can be bound. `components[i]` runs task i; `spec` and the components
-  /// outlive the set. Refuses tasks that do not fit their component. Context: setup.
+  /// Plans memory for every task and binds what can be bound. `components[i]` runs task i (not looked at for tasks of
+  /// other contexts); `spec`, the components and what `place` names outlive the set. Refuses tasks that do not fit
+  /// their component. Context: setup.
   static Result<std::unique_ptr<TaskSet>> create(const ApplicationSpec& spec,
-                                                 std::span<const chimera_component* const> components);
+                                                 std::span<const chimera_component* const> components,
+                                                 const ContextPlace& place = {});
   TaskSet(const TaskSet&) = delete;
   TaskSet& operator=(const TaskSet&) = delete;
   ~TaskSet();
@@ -71,6 +89,22 @@ class TaskSet {
   /// Turns tasks ON (or OFF) as one transaction: refused as a whole when the set would be illegal. Context: edge.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now);
 
+  /// Runs what the service thread was asked for with this task. Context: the service thread; may block.
+  void serve(TaskId task, JobClock& clock);
+  /// Goes on with the signal that the service thread has served; deferred again while there is more. Context: edge.
+  SignalReport served(TaskId task, Nanoseconds now);
+  /// Reads constants of other contexts; true when one that the task was initialised with has changed. Context: edge.
+  bool uses_changed_constants(TaskId task) noexcept;
+  /// Something changed in another context: inputs follow, the flag is judged anew. Context: edge.
+  void follow_others() noexcept;
+  /// Its memory may go: see Sources::let_go. Context: edge.
+  void let_go(TaskId producer) noexcept { bindings_.let_go(producer); }
+  /// The flag words of the other contexts, to be read with every job. Context: edge.
+  void watch_flags(std::span<const std::atomic<std::uint32_t>* const> flags) noexcept { foreign_flags_ = flags; }
+  std::uint32_t incarnation(TaskId task) const noexcept { return memories_[task.index].incarnation(); }
+  const PeerLayout& layout() const noexcept { return *layout_; }
+  bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
+
   /// A refused report in words, with the smallest legal set where that helps; "" when it was accepted. For a report of
   /// the last call of signal(). Context: setup; may block.
   std::string explain(const SignalReport& report) const;
@@ -83,10 +117,22 @@ class TaskSet {
   bool take_pending(Task& task, Signal& signal) noexcept;
 
   /// The illegal-configuration flag: raised by somebody, or because the ON set is not legal. Context: cycle.
-  bool is_illegal() const noexcept { return flag_raised_ || !on_set_legal_; }
+  bool is_illegal() const noexcept {
+    if (flag_raised_ || !on_set_legal_) return true;
+    for (const std::atomic<std::uint32_t>* flag : foreign_flags_)
+      if (flag->load(std::memory_order_relaxed) != 0) return true;
+    return false;
+  }
+  /// The ON set over all contexts obeys the two set equations, as far as this context has looked. Context: cycle.
+  bool is_on_set_legal() const noexcept { return on_set_legal_; }
+  bool is_flag_raised() const noexcept { return flag_raised_; }
   void raise_flag(bool up) noexcept { flag_raised_ = up; }
   /// To be told by the executor when a cycle left the ON state by itself. Context: edge.
   void on_set_changed() noexcept;
+  /// To be told by the executor when it saw a new fault of the task. Context: edge.
+  void faulted(const Task& task) noexcept {
+    if (place_.others != nullptr) place_.others->faulted(task);
+  }
 
   std::span<Task> tasks() noexcept { return tasks_; }
   std::span<const Task> tasks() const noexcept { return tasks_; }
@@ -100,37 +146,52 @@ class TaskSet {
   VariableView view(std::size_t index) const noexcept;
 
  private:
-  /// Where a variable's value comes from at present.
-  struct Source {
-    GroupReader reader;
-    std::uint32_t offset = 0;
-    std::uint32_t bit = 0;
-    TaskId task;  ///< invalid: the operator
-  };
   struct HostContext {
     TaskSet* set = nullptr;
     Task* task = nullptr;
+    JobClock* clock = nullptr;  ///< null: that of the set
+  };
+  /// A signal that waits for the service thread. Touched by one thread at a time.
+  struct Serving {
+    SignalReport report;
+    Step step = Step::kInit;
+    bool constructs = false;
+    Answer answer = Answer::kOk;
+  };
+  /// A constant of another context.
+  struct ForeignConstant {
+    TaskId producer;
+    std::string_view name;
+    std::uint32_t offset = 0, bytes = 0;
   };
 
-  explicit TaskSet(const ApplicationSpec& spec) : spec_(spec) {}
+  TaskSet(const ApplicationSpec& spec, const ContextPlace& place) : spec_(spec), place_(place) {}
   Result<void> build(std::span<const chimera_component* const> components);
-  void bind_all();
+  void prepare_task(std::size_t t);
   Result<void> lay_out();
-  std::span<std::byte> group_memory(std::size_t group) const noexcept;
+  std::span<std::byte> group_memory(GroupId group) const noexcept;
   void place_operators();
-  GroupInput input_from(const Source& source);
   void set_constants();
+  void plan_foreign_constants();
+  void read_foreign_constants() noexcept;
+  void publish_constants(const Task& task) noexcept;
   const GivenSpec* given(std::string_view variable) const noexcept;
   bool lists_fit(const Task& task, FixedString<160>& why) const noexcept;
-  void bind(VariableId variable, const Source& source);
-  void bind_outputs_of(Task& task);
-  State follow(Task& task, Next at, Nanoseconds now);
-  Answer run_step(Task& task, const StepRule& step, Nanoseconds now);
+  bool follow(Task& task, Next at, Nanoseconds now);
+  bool is_served(Method method) const noexcept {
+    return place_.service != nullptr && (method == Method::kInit || method == Method::kKill);
+  }
+  SignalReport advance(Task& task, Next at, Nanoseconds now);
+  void hand_over(Task& task, Step step);
+  Answer construct(Task& task, Nanoseconds now);
+  Answer run_method(Task& task, Method method, Nanoseconds now, JobClock* clock);
+  Next conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now);
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
   Answer after_ok(Task& task, const StepRule& step, Nanoseconds now);
   void take_over(Task& task) noexcept;
   std::uint64_t valid_after_on(const Task& task) const noexcept;
   void reinit_users(TaskId of, Nanoseconds now);
+  bool uses_constant_of(TaskId user, TaskId producer) const noexcept;
   bool would_be_legal(std::span<const TaskId> tasks) noexcept;
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
 
@@ -140,18 +201,23 @@ class TaskSet {
   static const chimera_host kHost;
 
   const ApplicationSpec& spec_;
+  ContextPlace place_;
   std::vector<TaskMemory> memories_;
   std::vector<Task> tasks_;
   std::vector<HostContext> contexts_;
+  std::vector<Serving> serving_;
   std::unique_ptr<Variables> variables_;
-  std::vector<Source> sources_;  // one per variable
-  AlignedBytes table_;                          // of groups: two for each task, then one for each operator variable
-  std::vector<GroupPlace> groups_;
-  std::vector<VariablePlace> places_;
-  std::vector<AlignedBytes> local_memory_;      // behind locals_
-  std::deque<LocalGroup> locals_;               // copies of operator variables, one for each in-var that reads one
+  std::unique_ptr<PeerLayout> everything_;  // of all groups of the application
+  std::unique_ptr<PeerLayout> layout_;      // of the groups of this context
+  AlignedBytes own_table_;                  // behind table_, unless the place gives it
+  std::span<std::byte> table_;
+  std::vector<GroupReader> operators_;
+  Sources bindings_;
   ConstantStore constants_;
+  std::vector<ForeignConstant> foreign_constants_;
+  AlignedBytes constant_scratch_;
   JobClock* clock_ = nullptr;
+  std::span<const std::atomic<std::uint32_t>* const> foreign_flags_;
   std::vector<bool> on_;
   std::vector<bool> wanted_;  // the ON set that was asked for last
   std::uint32_t n_pending_ = 0;

@@ -44,7 +44,8 @@ SignalReport TaskSet::signal(std::span<const TaskId> tasks, Signal signal, Nanos
     report.why = Refusal::kState;
     return report;
   }
-  if (signal == Signal::kOn && !would_be_legal(tasks)) {
+  // With others only the manager turns tasks ON: it has judged the whole set.
+  if (signal == Signal::kOn && place_.others == nullptr && !would_be_legal(tasks)) {
     report.why = Refusal::kIllegalSet;
     return report;
   }
@@ -80,53 +81,121 @@ std::string TaskSet::explain(const SignalReport& report) const {
 
 SignalReport TaskSet::carry_out(TaskId id, Signal signal, Nanoseconds now) {
   Task& task = tasks_[id.index];
-  SignalReport report{true, Refusal::kNone, signal, id, task.state, task.state};
-  if (signal == Signal::kSpawn) {
-    auto constructed = memories_[id.index].construct(task, now);
-    if (!constructed) {
-      record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
-      report.is_accepted = false;
-      report.why = Refusal::kFault;
-      return report;
-    }
-  }
+  Serving& serving = serving_[id.index];
+  serving = {{true, false, Refusal::kNone, signal, id, task.state, task.state}, Step::kInit, false, Answer::kOk};
   task.call.now_ns = now.count;
   task.call.illegal = is_illegal() ? 1u : 0u;
+  if (signal == Signal::kSpawn) {
+    serving.constructs = true;
+    if (place_.service == nullptr) {
+      serving.answer = construct(task, now);
+      return served(id, now);
+    }
+    hand_over(task, Step::kInit);
+    serving.report.is_deferred = true;
+    return serving.report;
+  }
   if (signal == Signal::kOn) {
     task.call.cycle = 0;
     task.call.dropped = 0;
     task.call.dt_ns = task.spec->period.count;
   }
-  report.after = follow(task, next(task.state, signal, false), now);
-  if (report.after == State::kNotCreated) memories_[id.index].destroy(task);
+  return advance(task, next(task.state, signal, false), now);
+}
+
+SignalReport TaskSet::served(TaskId id, Nanoseconds now) {
+  Task& task = tasks_[id.index];
+  Serving& serving = serving_[id.index];
+  task.in_service = false;
+  if (!serving.constructs) {
+    advance(task, conclude(task, rule(serving.step), serving.answer, now), now);
+  } else if (serving.constructs = false; serving.answer == Answer::kOk) {
+    advance(task, next(State::kNotCreated, Signal::kSpawn, false), now);
+  } else {
+    serving.report.is_accepted = serving.report.is_deferred = false;
+    serving.report.why = Refusal::kFault;
+  }
+  if (place_.service != nullptr) on_set_changed();
+  return serving.report;
+}
+
+SignalReport TaskSet::advance(Task& task, Next at, Nanoseconds now) {
+  SignalReport& report = serving_[task.id.index].report;
+  report.is_deferred = !follow(task, at, now);
+  report.after = task.state;
+  if (!report.is_deferred && place_.service == nullptr && task.state == State::kNotCreated)
+    memories_[task.id.index].destroy(task);
   deliver(task);
   return report;
 }
 
-State TaskSet::follow(Task& task, Next at, Nanoseconds now) {
+// Runs the steps that `at` starts until a state is reached (true), or until the service thread has the next one.
+bool TaskSet::follow(Task& task, Next at, Nanoseconds now) {
   while (at.kind == Next::Kind::kStep) {
     const StepRule& step = rule(at.step);
-    const Answer answer = run_step(task, step, now);
-    if (answer != Answer::kOk && task.state != State::kNotCreated) task.group.prefill();
-    at = step.next[static_cast<int>(answer)];
+    Answer answer = Answer::kFault;
+    if (before_step(task, step, now)) {
+      if (is_served(step.method)) return hand_over(task, at.step), false;
+      answer = run_method(task, step.method, now, clock_);
+    }
+    at = conclude(task, step, answer, now);
   }
   task.state = at.state;
-  return at.state;
+  return true;
 }
 
-Answer TaskSet::run_step(Task& task, const StepRule& step, Nanoseconds now) {
-  const Nanoseconds began = clock_ == nullptr ? now : clock_->now();
-  Answer answer = before_step(task, step, now) ? call_method(task, step.method, now) : Answer::kFault;
+Next TaskSet::conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now) {
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
-  const Nanoseconds ended = clock_ == nullptr ? now : clock_->now();
-  task.profile.execution[static_cast<int>(step.method)].add(ended - began);
+  if (answer != Answer::kOk && task.state != State::kNotCreated) task.group.prefill();
+  return step.next[static_cast<int>(answer)];
+}
+
+Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock* clock) {
+  const Nanoseconds began = clock == nullptr ? now : clock->now();
+  const Answer answer = call_method(task, method, now);
+  const Nanoseconds ended = clock == nullptr ? now : clock->now();
+  task.profile.execution[static_cast<int>(method)].add(ended - began);
   return answer;
+}
+
+Answer TaskSet::construct(Task& task, Nanoseconds now) {
+  const auto constructed = memories_[task.id.index].construct(task, now);
+  if (constructed) return Answer::kOk;
+  record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
+  return Answer::kFault;
+}
+
+// A task that is being killed is ON no more, whatever its kill does.
+void TaskSet::hand_over(Task& task, Step step) {
+  serving_[task.id.index].step = step;
+  if (task.state == State::kOn) task.state = State::kOff;
+  task.in_service = true;
+  place_.service->ask(task.id);
+}
+
+void TaskSet::serve(TaskId id, JobClock& clock) {
+  Task& task = tasks_[id.index];
+  Serving& serving = serving_[id.index];
+  contexts_[id.index].clock = &clock;
+  task.running = place_.serving;
+  if (serving.constructs) {
+    task.running->store((id.index + 1) << 8 | CHIMERA_INIT, std::memory_order_relaxed);
+    serving.answer = construct(task, clock.now());
+  } else {
+    const Method method = rule(serving.step).method;
+    serving.answer = run_method(task, method, clock.now(), &clock);
+    if (method == Method::kKill) memories_[id.index].destroy(task);
+  }
+  place_.serving->store(0, std::memory_order_relaxed);
+  task.running = place_.running;
+  contexts_[id.index].clock = nullptr;
 }
 
 bool TaskSet::before_step(Task& task, const StepRule& step, Nanoseconds now) {
   if (step.before & kReadIn) read_inputs(task);
   if (step.before & kReadOut) take_over(task);
   if (step.before & kReadConst) {
+    read_foreign_constants();
     FixedString<160> why;
     if (!memories_[task.id.index].read_constants(constants_, why) || !lists_fit(task, why)) {
       record_fault(task, step.method, why.c_str(), now);
@@ -145,12 +214,13 @@ Answer TaskSet::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
       record_fault(task, step.method, why.c_str(), now);
       return Answer::kFault;
     }
+    if (place_.others != nullptr) publish_constants(task);
     if (changed > 0) reinit_users(task.id, now);
   }
   if (step.after_ok & kWriteOut) {
     const bool turns_on = step.step == Step::kOn;
     const Answer answer = publish(task, step.method, turns_on ? valid_after_on(task) : task.valid, now);
-    if (answer == Answer::kOk && turns_on) bind_outputs_of(task);
+    if (answer == Answer::kOk && turns_on) bindings_.take_outputs_of(task);
     return answer;
   }
   return Answer::kOk;
@@ -188,8 +258,9 @@ bool TaskSet::lists_fit(const Task& task, FixedString<160>& why) const noexcept 
 void TaskSet::take_over(Task& task) noexcept {
   taken_over_valid_ = 0;
   for (std::uint32_t i = 0; i < task.outputs.size(); ++i) {
-    const Source& source = sources_[variables_->output(task.id, i).index];
-    const chimera_slot* slot = source.reader.published();
+    const VariableId variable = variables_->output(task.id, i);
+    const Source& source = bindings_.source(variable);
+    const chimera_slot* slot = bindings_.latest(variable);
     if (slot == nullptr || !((slot->valid >> source.bit) & 1u)) continue;
     std::memcpy(task.group.staging() + task.outputs[i].offset,
                 reinterpret_cast<const std::byte*>(slot + 1) + source.offset, task.outputs[i].bytes);
@@ -206,13 +277,49 @@ std::uint64_t TaskSet::valid_after_on(const Task& task) const noexcept {
 }
 
 // Exactly the users of the constants that changed, in the order of initialisation; a circle is refused by
-// verification, so this ends.
+// verification, so this ends. Users in other contexts are sent the signal and compare for themselves.
 void TaskSet::reinit_users(TaskId of, Nanoseconds now) {
   for (TaskId id : spec_.init_order) {
+    if (id == of) continue;
+    if (!is_mine(id)) {
+      const State there = place_.others->state(id);
+      if ((there == State::kOff || there == State::kOn) && uses_constant_of(id, of))
+        (void)place_.others->post(Signal::kReinit, id, of, true);
+      continue;
+    }
     Task& user = tasks_[id.index];
-    if (id == of || (user.state != State::kOff && user.state != State::kOn)) continue;
+    if (user.in_service && uses_constant_of(id, of) && user.pending.try_push(Signal::kReinit)) ++n_pending_;
+    if (user.in_service || (user.state != State::kOff && user.state != State::kOn)) continue;
     if (memories_[id.index].uses_changed(constants_)) carry_out(id, Signal::kReinit, now);
   }
+}
+
+bool TaskSet::uses_constant_of(TaskId user, TaskId producer) const noexcept {
+  for (const PortSpec& made : spec_.tasks[producer.index].ports)
+    for (const PortSpec& used : spec_.tasks[user.index].ports)
+      if (made.kind == CHIMERA_OUT_CONST && used.kind == CHIMERA_IN_CONST && made.variable == used.variable) return true;
+  return false;
+}
+
+bool TaskSet::uses_changed_constants(TaskId task) noexcept {
+  read_foreign_constants();
+  return memories_[task.index].uses_changed(constants_);
+}
+
+void TaskSet::publish_constants(const Task& task) noexcept {
+  const GroupId group = layout_->constants(task.id);
+  const GroupPlace& place = layout_->place(group);
+  if (place.payload_bytes == 0) return;
+  GroupWriter writer(group_memory(group), place.payload_bytes);
+  const auto places = layout_->variables(group);
+  std::size_t i = 0;
+  for (const PortSpec& port : task.spec->ports) {
+    if (port.kind != CHIMERA_OUT_CONST) continue;
+    const Constant* constant = constants_.find(port.variable);
+    std::memcpy(writer.staging() + places[i].offset, constant->value.data(), places[i].bytes);
+    ++i;
+  }
+  writer.publish(Nanoseconds{}, ~std::uint64_t{0});
 }
 
 }  // namespace chimera

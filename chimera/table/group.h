@@ -89,6 +89,8 @@ class GroupReader {
   /// Context: cycle; wait-free.
   const chimera_slot* published() const noexcept;
   std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
+  /// False for one that was made without memory: it must not be read.
+  bool is_bound() const noexcept { return base_ != nullptr; }
 
  private:
   const std::byte* slot(std::uint64_t n) const noexcept { return base_ + kCacheLine + n % kSlots * stride_; }

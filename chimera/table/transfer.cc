@@ -15,4 +15,10 @@ GroupInput GroupInput::copied(LocalGroup& local) noexcept {
   return input;
 }
 
+GroupInput GroupInput::following(LocalGroup& local) noexcept {
+  GroupInput input = copied(local);
+  input.refreshes_ = false;
+  return input;
+}
+
 }  // namespace chimera

@@ -21,6 +21,10 @@ class GroupInput {
   /// The producer runs elsewhere. Copies into `local`, which outlives the input.
   static GroupInput copied(LocalGroup& local) noexcept;
 
+  /// As copied(), but `local` is refreshed by somebody else, once for all inputs that follow it.
+  static GroupInput following(LocalGroup& local) noexcept;
+  bool follows(const LocalGroup& local) const noexcept { return local_ == &local; }
+
   /// Brings slot() up to date. False when it stayed as it was because the writer overtook the read (counted by the
   /// LocalGroup). Context: cycle; bounded; O(1) when direct, else O(payload).
   bool latch() noexcept {
@@ -28,7 +32,7 @@ class GroupInput {
       slot_ = reader_.published();
       return true;
     }
-    const bool fresh = local_->refresh();
+    const bool fresh = !refreshes_ || local_->refresh();
     slot_ = local_->slot();
     return fresh;
   }
@@ -41,6 +45,7 @@ class GroupInput {
  private:
   GroupReader reader_;
   LocalGroup* local_ = nullptr;
+  bool refreshes_ = true;
   const chimera_slot* slot_ = nullptr;
 };
 

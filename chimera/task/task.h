@@ -3,6 +3,7 @@
 // set act on it (chimera/runtime). Members are grouped by who may write them.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 
@@ -43,6 +44,9 @@ struct SentSignal {
 
 inline constexpr std::size_t kOutboxSize = 16;
 
+/// Where a task tells that nobody wants to know.
+inline std::atomic<std::uint32_t> running_untold{0};
+
 struct Task {
   // Fixed at set-up.
   const TaskSpec* spec = nullptr;
@@ -51,9 +55,11 @@ struct Task {
   TaskId id;
   std::span<Output> outputs;
   bool has_safety = false;
+  std::atomic<std::uint32_t>* running = &running_untold;  ///< told which method runs, for whoever finds the process dead
 
   // Rebound at an edge when producers change.
   std::span<Input> inputs;
+  std::span<LocalGroup* const> copies;  ///< of groups produced elsewhere, refreshed before the inputs are read
   GroupWriter group;
 
   // Written by the job step.
@@ -67,6 +73,7 @@ struct Task {
   FixedVector<SentSignal, kOutboxSize> outbox;
 
   // Written by the executor and the task set at edges.
+  bool in_service = false;  ///< init or kill is run by the service thread: nobody else touches the task
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
 };
 

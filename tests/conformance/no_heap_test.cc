@@ -90,6 +90,7 @@ Counted count(Kind kind) {
       ports[i][p].element_bytes = 8;
       ports[i][p].variable = names[(i + (p == 0 ? 0 : kTasks - 1)) % kTasks];
     }
+    ports[i][0].kind = CHIMERA_OUT_VAR;
     ports[i][0].value = std::as_bytes(std::span(&zero, 1));
     tasks[i].name = names[i];
     tasks[i].component = "quiet";

@@ -133,6 +133,8 @@ class Application {
       one->ports[i].declared = i;
       one->ports[i].element_bytes = 8;
     }
+    one->ports[0].kind = CHIMERA_IN_CONST;
+    one->ports[1].kind = CHIMERA_OUT_VAR;
     one->ports[0].type = CHIMERA_INT64;
     one->ports[0].value = one->address;
     one->ports[1].variable = one->out_name;

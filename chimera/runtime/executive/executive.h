@@ -33,6 +33,9 @@ class Executive {
   /// Spawns all tasks and turns the start set ON; the grid of releases begins when that is done. Refuses as
   /// TaskSet::start. Context: setup; as long as init and on take.
   Result<void> start();
+  /// Begins with nothing spawned, on a grid of releases that others share. Context: setup.
+  void start(Nanoseconds origin) { releases_.begin(origin); }
+  Releases& releases() noexcept { return releases_; }
   /// Runs for `duration` from the origin of the grid; kNever: without limit. May be called again to go on.
   /// Context: cycle; returns when RunEnd says so.
   RunEnd run(Nanoseconds duration) noexcept;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Somebody who takes part in the edges of an executor: signals and news from other processes come in this way.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+class Releases;
+
+/// Rings a bell or names an instant when it wants an edge. Used by the executor's thread only.
+class EdgeGuest {
+ public:
+  /// True when take() has something to do. Context: cycle; wait-free.
+  bool is_due(Nanoseconds now) const noexcept {
+    return bell_->load(std::memory_order_relaxed) != heard_ || now >= due_;
+  }
+  Nanoseconds next_due() const noexcept { return due_; }
+  /// What has rung by now is dealt with by the take() that follows. Context: edge; wait-free.
+  std::uint32_t heard() const noexcept { return heard_; }
+
+  /// Does what is due. Context: edge.
+  virtual void take(Releases& releases, Nanoseconds now) noexcept = 0;
+  /// A signal that a task of this context sent to one of this context was carried out or refused. Context: edge.
+  virtual void told(const SignalReport& report, Nanoseconds now) noexcept = 0;
+
+ protected:
+  explicit EdgeGuest(const std::atomic<std::uint32_t>& bell) noexcept : bell_(&bell) {}
+  ~EdgeGuest() = default;
+  void listen() noexcept { heard_ = bell_->load(std::memory_order_acquire); }  // pairs with Doorbell::ring()
+  void set_due(Nanoseconds due) noexcept { due_ = due; }
+
+ private:
+  const std::atomic<std::uint32_t>* bell_;
+  std::uint32_t heard_ = 0;
+  Nanoseconds due_ = kNever;
+};
+
+}  // namespace chimera

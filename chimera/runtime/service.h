@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who runs init and kill: methods that may take long and may block, so they never run on the thread that cycles.
+#pragma once
+
+#include "chimera/base/ids.h"
+
+namespace chimera {
+
+/// A thread of ordinary priority beside the context. It calls TaskSet::serve(task); then the context's thread calls
+/// TaskSet::served(task) at an edge.
+class Service {
+ public:
+  /// Takes over the task until it is served. Context: edge; wait-free.
+  virtual void ask(TaskId task) noexcept = 0;
+
+ protected:
+  ~Service() = default;
+};
+
+}  // namespace chimera

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/sources.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "chimera/table/never_written.h"
+
+namespace chimera {
+namespace {
+
+Source operator_source(const Variable& variable) noexcept { return {TaskId(), variable.operator_index, 0, 0, {}}; }
+
+bool same_group(const Source& a, const Source& b) noexcept {
+  return a.task == b.task && (a.task.is_valid() || a.operator_index == b.operator_index);
+}
+
+void fill_output(const PortSpec& port, std::span<std::byte> to) noexcept {
+  if (!port.value.empty()) {
+    std::memcpy(to.data(), port.value.data(), std::min(port.value.size(), to.size()));
+    return;
+  }
+  // The fields of a struct are known where it is made; here its bytes are zero and not valid.
+  fill_never_written(to, port.type == CHIMERA_FLOAT64   ? NeverWritten::kFloat64
+                         : port.type == CHIMERA_FLOAT32 ? NeverWritten::kFloat32
+                                                        : NeverWritten::kZero);
+}
+
+}  // namespace
+
+void Sources::prepare(const Variables& variables, const PeerLayout& everything, std::span<Task> tasks,
+                      std::span<TaskMemory> memories, std::span<const GroupReader> operators,
+                      const Neighbours* others) {
+  variables_ = &variables;
+  everything_ = &everything;
+  tasks_ = tasks;
+  memories_ = memories;
+  operators_ = operators;
+  others_ = others;
+  sources_.resize(variables.all().size());
+  used_.resize(tasks.size());
+  for (const Variable& variable : variables.all()) plan_copies(variable);
+  std::vector<std::size_t> n(tasks.size());
+  std::uint32_t largest = 0;
+  for (const Copy& copy : copies_) ++n[copy.consumer.index];
+  for (std::size_t t = 0; t < n.size(); ++t) used_[t].reserve(n[t]);
+  for (const GroupPlace& group : everything.table().groups()) largest = std::max(largest, group.payload_bytes);
+  scratch_ = AlignedBytes(sizeof(chimera_slot) + largest, kCacheLine);
+  for (std::size_t v = 0; v < sources_.size(); ++v) {
+    const Variable& variable = variables.all()[v];
+    if (variable.operator_index != UINT32_MAX) bind(VariableId(v), operator_source(variable));
+    else if (!variable.producers.empty()) bind(VariableId(v), source_from(variable.producers[0]));
+  }
+  refresh_readers();
+}
+
+std::uint32_t Sources::payload_of(const Source& source) const noexcept {
+  const GroupId group =
+      source.task.is_valid() ? everything_->outputs(source.task, 0) : everything_->operator_group(source.operator_index);
+  return everything_->place(group).payload_bytes;
+}
+
+GroupReader Sources::reader_of(const Source& source) const noexcept {
+  if (source.here.is_bound()) return source.here;
+  if (!source.task.is_valid() && !operators_.empty()) return operators_[source.operator_index];
+  if (others_ == nullptr) return {};
+  return source.task.is_valid() ? others_->outputs(source.task) : others_->operator_variable(source.operator_index);
+}
+
+Source Sources::source_from(const PortOf& producer) const noexcept {
+  const auto places = everything_->variables(everything_->outputs(producer.task, 0));
+  Source source{producer.task, 0, places[producer.index].offset, producer.index, {}};
+  if (is_mine(producer.task)) source.here = memories_[producer.task.index].reader();
+  return source;
+}
+
+void Sources::plan_copies(const Variable& variable) {
+  for (const PortOf& consumer : variable.consumers) {
+    if (!is_mine(consumer.task)) continue;
+    if (variable.operator_index != UINT32_MAX) plan_copy(consumer.task, operator_source(variable));
+    for (const PortOf& producer : variable.producers)
+      if (!is_mine(producer.task)) plan_copy(consumer.task, source_from(producer));
+  }
+}
+
+void Sources::plan_copy(TaskId consumer, const Source& source) {
+  if (copy_for(consumer, source) != nullptr) return;
+  const std::uint32_t payload = payload_of(source);
+  copy_memory_.emplace_back(local_group_bytes(payload), kCacheLine);
+  copies_.push_back({LocalGroup(GroupReader(nullptr, payload), copy_memory_.back().span()), consumer, source, false});
+  for (std::uint32_t half = 0; half < 2; ++half) fill(source, copies_.back().group.values_of_half(half));
+}
+
+// What stands in a copy before its producer was ever seen.
+void Sources::fill(const Source& source, std::span<std::byte> values) const noexcept {
+  if (!source.task.is_valid()) return;
+  const auto places = everything_->variables(everything_->outputs(source.task, 0));
+  std::size_t i = 0;
+  for (const PortSpec& port : tasks_[source.task.index].spec->ports)
+    if (port.kind == CHIMERA_OUT_VAR) {
+      fill_output(port, values.subspan(places[i].offset, port.max_bytes()));
+      ++i;
+    }
+}
+
+Sources::Copy* Sources::copy_for(TaskId consumer, const Source& source) noexcept {
+  for (Copy& copy : copies_)
+    if (copy.consumer == consumer && same_group(copy.of, source)) return &copy;
+  return nullptr;
+}
+
+void Sources::bind(VariableId variable, const Source& source) noexcept {
+  sources_[variable.index] = source;
+  for (const PortOf& consumer : variables_->all()[variable.index].consumers)
+    if (is_mine(consumer.task)) bind_input(tasks_[consumer.task.index].inputs[consumer.index], consumer.task, source);
+}
+
+void Sources::bind_input(Input& input, TaskId consumer, const Source& source) noexcept {
+  input.group = source.here.is_bound() ? GroupInput::direct(source.here)
+                                       : GroupInput::following(copy_for(consumer, source)->group);
+  input.offset = source.offset;
+  input.bit = source.bit;
+  input.sequence = 0;
+}
+
+void Sources::take_outputs_of(const Task& task) noexcept {
+  for (std::uint32_t i = 0; i < task.outputs.size(); ++i)
+    bind(variables_->output(task.id, i), source_from({task.id, i}));
+  collect_copies();
+}
+
+void Sources::follow_others() noexcept {
+  if (others_ == nullptr) return;
+  for (std::size_t v = 0; v < sources_.size(); ++v) {
+    const Variable& variable = variables_->all()[v];
+    for (const PortOf& producer : variable.producers) {
+      if (is_mine(producer.task) || producer.task == sources_[v].task) continue;
+      if (others_->state(producer.task) == State::kOn) bind(VariableId(v), source_from(producer));
+    }
+  }
+  refresh_readers();
+}
+
+// Copies of producers that are ON, and of the operator, read from their present groups. Those of others keep what
+// they have: a restarted process shows a group without values before its tasks are ON again.
+void Sources::refresh_readers() noexcept {
+  for (Copy& copy : copies_) {
+    if (copy.of.task.is_valid() && copy.is_bound && others_->state(copy.of.task) != State::kOn) continue;
+    const GroupReader reader = reader_of(copy.of);
+    if (!reader.is_bound()) continue;
+    copy.group.rebind(reader);
+    copy.is_bound = true;
+  }
+  collect_copies();
+}
+
+void Sources::let_go(TaskId producer) noexcept {
+  for (Copy& copy : copies_)
+    if (copy.of.task == producer) copy.is_bound = false;
+  collect_copies();
+}
+
+void Sources::collect_copies() noexcept {
+  for (std::vector<LocalGroup*>& used : used_) used.clear();
+  for (Copy& copy : copies_) {
+    if (!copy.is_bound) continue;
+    Task& task = tasks_[copy.consumer.index];
+    const auto reads = [&copy](const Input& input) { return input.group.follows(copy.group); };
+    if (std::any_of(task.inputs.begin(), task.inputs.end(), reads)) used_[copy.consumer.index].push_back(&copy.group);
+  }
+  for (std::size_t t = 0; t < used_.size(); ++t) tasks_[t].copies = used_[t];
+}
+
+const chimera_slot* Sources::latest(VariableId variable) noexcept {
+  const Source& source = sources_[variable.index];
+  const GroupReader reader = reader_of(source);
+  if (!reader.is_bound()) return nullptr;
+  if (source.here.is_bound()) return reader.published();
+  auto* slot = reinterpret_cast<chimera_slot*>(scratch_.data());
+  return reader.try_read(slot) ? slot : nullptr;
+}
+
+}  // namespace chimera

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the value of every state variable comes from at present, and the inputs that follow it. Producers of the same
+// context are read in place; all others (another context, the operator) through the register into local copies, one for
+// each pair of a task and a group, so that variables of one group are always of one publication.
+//
+// Until a producer goes ON its consumers look at the initial values, or the never-written fill, of the first one.
+#pragma once
+
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "chimera/runtime/aligned_bytes.h"
+#include "chimera/runtime/neighbours.h"
+#include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/task_memory.h"
+#include "chimera/runtime/variables.h"
+#include "chimera/table/local_group.h"
+
+namespace chimera {
+
+/// Who produces a variable and where its value stands in the group.
+struct Source {
+  TaskId task;                ///< invalid: the operator
+  std::size_t operator_index = 0;
+  std::uint32_t offset = 0;   ///< of the value in the payload
+  std::uint32_t bit = 0;      ///< of the value in the valid bits
+  GroupReader here{};         ///< the group, where it lies in this context; else not bound
+};
+
+/// Context of everything not marked: edge; no allocation. Everything given to prepare() outlives it.
+class Sources {
+ public:
+  /// `everything` lays out all groups of the application; `memories[t]` is planned for the tasks of this context and
+  /// empty for those of others; `operators[o]` is the group of operator variable o where this context holds it itself.
+  /// Context: setup.
+  void prepare(const Variables& variables, const PeerLayout& everything, std::span<Task> tasks,
+               std::span<TaskMemory> memories, std::span<const GroupReader> operators, const Neighbours* others);
+
+  /// The task, of this context, went ON: whoever reads its variables reads them from its group now.
+  void take_outputs_of(const Task& task) noexcept;
+  /// Something changed elsewhere: follows producers that went ON or were replaced.
+  void follow_others() noexcept;
+  /// From now on nothing is read from the groups of that task (invalid: the operator): their memory may go. What was
+  /// read last stays, until follow_others() finds it produced again.
+  void let_go(TaskId producer) noexcept;
+
+  const Source& source(VariableId variable) const noexcept { return sources_[variable.index]; }
+  /// The latest slot of the group that the variable comes from: in place, or copied into memory of this object that is
+  /// good until the next call. Null when there is none yet.
+  const chimera_slot* latest(VariableId variable) noexcept;
+
+ private:
+  /// A task's copy of a group produced elsewhere.
+  struct Copy {
+    LocalGroup group;
+    TaskId consumer;
+    Source of;
+    bool is_bound = false;  ///< to a group that may be read
+  };
+
+  bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
+  std::uint32_t payload_of(const Source& source) const noexcept;
+  GroupReader reader_of(const Source& source) const noexcept;
+  Source source_from(const PortOf& producer) const noexcept;
+  void plan_copies(const Variable& variable);
+  void plan_copy(TaskId consumer, const Source& source);
+  void fill(const Source& source, std::span<std::byte> values) const noexcept;
+  Copy* copy_for(TaskId consumer, const Source& source) noexcept;
+  void bind(VariableId variable, const Source& source) noexcept;
+  void bind_input(Input& input, TaskId consumer, const Source& source) noexcept;
+  void refresh_readers() noexcept;
+  void collect_copies() noexcept;
+
+  const Variables* variables_ = nullptr;
+  const PeerLayout* everything_ = nullptr;
+  std::span<Task> tasks_;
+  std::span<TaskMemory> memories_;
+  std::span<const GroupReader> operators_;
+  const Neighbours* others_ = nullptr;
+  std::vector<Source> sources_;  // by variable
+  std::deque<Copy> copies_;
+  std::vector<AlignedBytes> copy_memory_;
+  std::vector<std::vector<LocalGroup*>> used_;  // by task: bound copies that an input follows
+  AlignedBytes scratch_;                        // a slot of the largest group
+};
+
+}  // namespace chimera
