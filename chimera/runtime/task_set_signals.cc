@@ -297,7 +297,8 @@ void TaskSet::reinit_users(TaskId of, Nanoseconds now) {
 bool TaskSet::uses_constant_of(TaskId user, TaskId producer) const noexcept {
   for (const PortSpec& made : spec_.tasks[producer.index].ports)
     for (const PortSpec& used : spec_.tasks[user.index].ports)
-      if (made.kind == CHIMERA_OUT_CONST && used.kind == CHIMERA_IN_CONST && made.variable == used.variable) return true;
+      if (made.kind == CHIMERA_OUT_CONST && used.kind == CHIMERA_IN_CONST && made.variable == used.variable)
+        return true;
   return false;
 }
 

@@ -55,7 +55,8 @@ struct Task {
   TaskId id;
   std::span<Output> outputs;
   bool has_safety = false;
-  std::atomic<std::uint32_t>* running = &running_untold;  ///< told which method runs, for whoever finds the process dead
+  std::atomic<std::uint32_t>* running =
+      &running_untold;  ///< told which method runs, for whoever finds the process dead
 
   // Rebound at an edge when producers change.
   std::span<Input> inputs;

@@ -86,11 +86,10 @@ Counted count(Kind kind) {
   std::array<TaskId, kTasks> ids;
   for (std::uint32_t i = 0; i < kTasks; ++i) {
     for (std::uint32_t p = 0; p < 2; ++p) {
-      ports[i][p].declared = p;
+      ports[i][p].declared = p, ports[i][p].kind = decls[p].kind;
       ports[i][p].element_bytes = 8;
       ports[i][p].variable = names[(i + (p == 0 ? 0 : kTasks - 1)) % kTasks];
     }
-    ports[i][0].kind = CHIMERA_OUT_VAR;
     ports[i][0].value = std::as_bytes(std::span(&zero, 1));
     tasks[i].name = names[i];
     tasks[i].component = "quiet";
