@@ -55,8 +55,8 @@ void Sources::prepare(const Variables& variables, const PeerLayout& everything, 
 }
 
 std::uint32_t Sources::payload_of(const Source& source) const noexcept {
-  const GroupId group =
-      source.task.is_valid() ? everything_->outputs(source.task, 0) : everything_->operator_group(source.operator_index);
+  const GroupId group = source.task.is_valid() ? everything_->outputs(source.task, 0)
+                                               : everything_->operator_group(source.operator_index);
   return everything_->place(group).payload_bytes;
 }
 
