@@ -132,8 +132,9 @@ int main(int argc, char** argv) {
   Candidate ten(10, at_1_khz), thousand(1000, at_1_khz);
   // Ten rates side by side: every pop chooses between classes.
   Candidate mixed(10, [](std::uint32_t i) { return milliseconds(1) + microseconds(7) * i; });
-  std::vector<TapRecord> ring(4096);
-  Tap tap(ring);
+  const auto ring = std::make_unique<TapRing>();
+  Tap tap(*ring);
+  TapReader reader(*ring);
   Candidate tapped(10, at_1_khz, &tap);
   Comparison c(repetitions(argc, argv));
   const auto bare_10 = c.add("bodies of 10", [&](std::uint64_t n) { ten.run_bare(n, 10); });
@@ -145,7 +146,7 @@ int main(int argc, char** argv) {
   std::array<TapRecord, 4096> drain;
   const auto run_tapped = c.add("executive of 10, tapped", [&](std::uint64_t n) {
     tapped.run(n);
-    tap.read(drain);
+    reader.read(drain);
   });
   c.run(bare_10);
   if (ten.cycles() == 0 || thousand.dropped() > thousand.cycles() / 100) {

@@ -43,15 +43,15 @@ void RecordFiles::take(std::span<const chimera::TapRecord> records) {
     if (record.kind == chimera::TapKind::kRun) kept_.push_back(record);
 }
 
-void RecordFiles::end(std::uint64_t dropped) {
-  dropped_ = dropped;
-  if (trace_ != nullptr && !trace_->writer->end(dropped)) write_error_ = errno;
+void RecordFiles::end(std::uint64_t lost) {
+  lost_ = lost;
+  if (trace_ != nullptr && !trace_->writer->end(lost)) write_error_ = errno;
 }
 
 bool RecordFiles::finish(std::FILE* out, std::FILE* err) {
-  bool good = dropped_ == 0;
+  bool good = lost_ == 0;
   if (!good)
-    std::fprintf(err, "%llu records were lost: the trace has a gap\n", static_cast<unsigned long long>(dropped_));
+    std::fprintf(err, "%llu records were lost: the trace has a gap\n", static_cast<unsigned long long>(lost_));
   if (unit_.count > 0)
     std::fputs(chimera::draw::text(chimera::draw::timeline(kept_, names_, origin_, unit_, duration_)).c_str(), out);
   if (trace_ != nullptr) {

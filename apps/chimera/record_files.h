@@ -20,7 +20,7 @@ class RecordFiles final : public chimera::desk::RecordSink {
   const std::string& why() const noexcept { return why_; }
   void begin(const chimera::ApplicationSpec& spec, chimera::Nanoseconds origin) override;
   void take(std::span<const chimera::TapRecord> records) override;
-  void end(std::uint64_t dropped) override;
+  void end(std::uint64_t lost) override;
   /// Prints the timeline and closes the file; false when something was lost or could not be written.
   bool finish(std::FILE* out, std::FILE* err);
 
@@ -31,6 +31,6 @@ class RecordFiles final : public chimera::desk::RecordSink {
   chimera::Nanoseconds unit_, duration_, origin_;
   std::vector<chimera::TapRecord> kept_;  ///< for the timeline
   std::vector<std::string> names_;
-  std::uint64_t dropped_ = 0;
+  std::uint64_t lost_ = 0;
   int write_error_ = 0;  ///< errno of the first failure that was seen
 };

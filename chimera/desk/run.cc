@@ -13,13 +13,13 @@
 #include "chimera/desk/progress.h"
 #include "chimera/desk/run_loop.h"
 #include "chimera/desk/script_text.h"
+#include "chimera/runtime/tap_ring.h"
 
 namespace chimera::desk {
 namespace {
 
 std::atomic<bool> stop_requested{false};
 
-constexpr std::size_t kTapRecords = std::size_t{1} << 18;
 constexpr Nanoseconds kDrainEvery = milliseconds(10);
 constexpr Nanoseconds kLookEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
 constexpr Nanoseconds kTellEvery = seconds(3);         // of wall time
@@ -107,8 +107,9 @@ class Session {
   std::FILE* out_;
   std::FILE* err_;
   std::vector<ScriptAct> acts_;
-  std::vector<TapRecord> ring_;
-  std::unique_ptr<Tap> tap_;
+  std::unique_ptr<TapRing> ring_;
+  std::optional<Tap> tap_;
+  TapReader reader_;
   std::unique_ptr<RunLoop> loop_;
   std::vector<Probe> watched_;
   std::vector<Expectation> expected_;
@@ -129,9 +130,9 @@ Result<void> Session::prepare(const Library& library) {
   options.script = Script(acts_);
   options.stop = &stop_requested;
   if (sink_ != nullptr) {
-    ring_.resize(kTapRecords);
-    tap_ = std::make_unique<Tap>(ring_);
-    options.tap = tap_.get();
+    ring_ = std::make_unique<TapRing>();
+    options.tap = &tap_.emplace(*ring_);
+    reader_ = TapReader(*ring_);
   }
   loop_ = request_.virtual_time ? make_virtual_loop(application_, request_, options)
                                 : make_real_time_loop(application_, request_, options);
@@ -151,7 +152,7 @@ Result<void> Session::start(const Library& library) {
 void Session::drain() {
   if (sink_ == nullptr) return;
   TapRecord records[512];
-  for (std::size_t n; (n = tap_->read(records)) > 0;) sink_->take({records, n});
+  for (std::size_t n; (n = reader_.read(records)) > 0;) sink_->take({records, n});
 }
 
 void Session::watch_line(Nanoseconds at) {
@@ -220,7 +221,7 @@ int Session::report(RunEnd end) {
   loop_->shut_down();
   if (sink_ != nullptr) {
     drain();
-    sink_->end(tap_->dropped());
+    sink_->end(reader_.lost());
   }
   if (request_.json) {
     std::fprintf(out_,

@@ -36,8 +36,8 @@ class RecordSink {
   virtual ~RecordSink() = default;
   virtual void begin(const ApplicationSpec& spec, Nanoseconds origin) = 0;
   virtual void take(std::span<const TapRecord> records) = 0;
-  /// `dropped` records did not fit the ring.
-  virtual void end(std::uint64_t dropped) = 0;
+  /// `lost` records were overwritten before they were read.
+  virtual void end(std::uint64_t lost) = 0;
 };
 
 /// Runs and reports on `out` and `err`; answers the exit code: kOk when it ran to its end and every expectation

@@ -94,10 +94,10 @@ void ChromeTrace::add(std::span<const TapRecord> records) {
   for (const TapRecord& record : records) add_one(record);
 }
 
-bool ChromeTrace::end(std::uint64_t dropped) {
+bool ChromeTrace::end(std::uint64_t lost) {
   std::fprintf(file_,
-               "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"dropped_records\": %llu}}\n",
-               quoted(subsystem_).c_str(), static_cast<unsigned long long>(dropped));
+               "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"lost_records\": %llu}}\n",
+               quoted(subsystem_).c_str(), static_cast<unsigned long long>(lost));
   return std::fflush(file_) == 0 && std::ferror(file_) == 0;
 }
 

@@ -22,7 +22,7 @@ class ChromeTrace {
   void add(std::span<const TapRecord> records);
   /// Closes the JSON, saying how many records were lost. Afterwards nothing more may be added. False when anything of
   /// the trace, now or before, could not be written: the file is cut short and errno tells the last reason.
-  [[nodiscard]] bool end(std::uint64_t dropped);
+  [[nodiscard]] bool end(std::uint64_t lost);
 
  private:
   void event(const TapRecord& record, const char* phase, const std::string& name, const std::string& more);

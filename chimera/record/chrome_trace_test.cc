@@ -21,7 +21,7 @@ TapRecord record(TapKind kind, std::int64_t at, std::uint32_t task, std::uint32_
   return made;
 }
 
-nlohmann::json trace_of(std::span<const TapRecord> records, std::uint64_t dropped = 0) {
+nlohmann::json trace_of(std::span<const TapRecord> records, std::uint64_t lost = 0) {
   const std::string rtpus[] = {"main"};
   const std::string tasks[] = {"pid", "say \"hi\""};
   char* text = nullptr;
@@ -29,7 +29,7 @@ nlohmann::json trace_of(std::span<const TapRecord> records, std::uint64_t droppe
   std::FILE* file = ::open_memstream(&text, &size);
   ChromeTrace trace(file, "arm", rtpus, tasks, Nanoseconds{1000});
   trace.add(records);
-  EXPECT_TRUE(trace.end(dropped));
+  EXPECT_TRUE(trace.end(lost));
   std::fclose(file);
   nlohmann::json parsed = nlohmann::json::parse(std::string(text, size));
   std::free(text);
@@ -73,7 +73,7 @@ TEST(ChromeTrace, NamesEveryKindOfRecord) {
   for (const auto& event : trace["traceEvents"])
     if (event["ph"] == "i") names += event["name"].get<std::string>() + ", ";
   EXPECT_EQ(names, "release, preempt, drop, signal off, fault in cycle, state ERROR, flag up, flag down, ");
-  EXPECT_EQ(trace["otherData"]["dropped_records"], 3);
+  EXPECT_EQ(trace["otherData"]["lost_records"], 3);
 }
 
 TEST(ChromeTrace, GivesTheWholeProcessWhatConcernsNoTask) {

@@ -157,7 +157,8 @@ TEST_F(Outboxes, RandomBytesNeverLeadOutOfTheRingOrIntoALoop) {
   auto* words = reinterpret_cast<std::uint64_t*>(ring.get());
   std::uint64_t taken = 0;
   for (int round = 0; round < 300; ++round) {
-    for (std::size_t i = 0; i < sizeof(PostRing) / 8; ++i) words[i] = random() & (round % 3 == 0 ? 0x0101010101010101u : ~std::uint64_t{0});
+    const std::uint64_t mask = round % 3 == 0 ? 0x0101010101010101u : ~std::uint64_t{0};
+    for (std::size_t i = 0; i < sizeof(PostRing) / 8; ++i) words[i] = random() & mask;
     if (round % 2 == 1) ring->posted = random() % 600;
     progress.word = random();
     Outbox outbox(*ring, &progress, static_cast<std::uint32_t>(random()));

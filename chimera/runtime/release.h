@@ -28,7 +28,7 @@
 #include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/script.h"
-#include "chimera/runtime/tap.h"
+#include "chimera/runtime/tap_ring.h"
 #include "chimera/runtime/task_set.h"
 #include "chimera/schedule/ready_queue.h"
 

@@ -34,7 +34,7 @@ class Runner {
  public:
   Runner(TaskSet& set, Kind kind, Policy policy = Policy::kEdf, std::span<const ScriptAct> acts = {},
       const VirtualOptions& how = {})
-      : ring_(1u << 16), tap_(ring_), job_clock_(clock_) {
+      : tap_(*ring_), reader_(*ring_), job_clock_(clock_) {
     RunOptions options;
     options.policy = policy;
     options.script = Script(acts);
@@ -51,15 +51,16 @@ class Runner {
 
   /// The records since the last call.
   std::vector<TapRecord> records() {
-    EXPECT_EQ(tap_.dropped(), 0u);
-    std::vector<TapRecord> all(ring_.size());
-    all.resize(tap_.read(all));
+    std::vector<TapRecord> all(kTapRecords);
+    all.resize(reader_.read(all));
+    EXPECT_EQ(reader_.lost(), 0u);
     return all;
   }
 
  private:
-  std::vector<TapRecord> ring_;
+  std::unique_ptr<TapRing> ring_ = std::make_unique<TapRing>();
   Tap tap_;
+  TapReader reader_;
   VirtualClock clock_;
   TwinClock job_clock_;
   std::unique_ptr<Executive> executive_;
