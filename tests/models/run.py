@@ -20,6 +20,12 @@ CASES = [
     ("group_reuse", "BEFORE_ADOPTION"),
     ("group_reuse", "WITHOUT_PROOF"),
     ("group_reuse", "COUNTER_BACK"),
+    ("outbox", ""),
+    ("outbox", "PUBLISH_FIRST"),
+    ("outbox", "FREE_FIRST"),
+    ("outbox", "ONE_TOO_MANY"),
+    ("outbox", "FROM_THE_START"),
+    ("outbox", "ANY_INCARNATION"),
 ]
 
 
