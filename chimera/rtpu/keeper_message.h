@@ -35,7 +35,7 @@ struct KeeperMessage {
   std::uint32_t core_dumped = 0;  ///< kEnded
   std::int32_t pid = 0;           ///< kStarted: for people
   std::uint32_t reserved = 0;
-  Nanoseconds at;                 ///< kStarted, kEnded: when, CLOCK_MONOTONIC
+  Nanoseconds at = {};            ///< kStarted, kEnded: when, CLOCK_MONOTONIC
   std::uint64_t unused[3] = {};
 };
 static_assert(sizeof(KeeperMessage) == 64 && std::is_trivially_copyable_v<KeeperMessage>);

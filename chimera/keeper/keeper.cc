@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/keeper/keeper.h"
+
+#include <poll.h>
+#include <sys/signalfd.h>
+
+#include <algorithm>
+
+namespace chimera {
+namespace {
+
+constexpr Nanoseconds kQuickDeath = seconds(1), kLongestPause = milliseconds(500);
+constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to be carried out
+
+}  // namespace
+
+Keeper::Keeper(KeeperPlan plan) : plan_(std::move(plan)), peers_(plan_.peers) {}
+
+Keeper::~Keeper() {
+  ProcessEnd end;
+  face_.signal(SIGKILL);
+  face_.wait(end, kLastLimit.count);
+  if (signals_.fd >= 0) ::pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
+}
+
+Result<void> Keeper::start() {
+  sigset_t mask;
+  ::sigemptyset(&mask);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) ::sigaddset(&mask, number);
+  ::pthread_sigmask(SIG_BLOCK, &mask, &mask_before_);
+  ::sigdelset(&mask, SIGPIPE);
+  signals_ = Descriptor(::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK));
+  if (signals_.fd < 0) return system_error(Message("keeper"), "signalfd");
+  if (auto started = peers_.start_all(); !started || plan_.face.empty()) return started;
+  std::vector<const char*> words;
+  for (const std::string& word : plan_.face) words.push_back(word.c_str());
+  auto face = Process::start(words[0], words, {});
+  if (!face) return face.error();
+  face_ = *std::move(face);
+  return {};
+}
+
+int Keeper::run() {
+  while (phase_ != Phase::kDone) {
+    wait();
+    look();
+    while (advance()) {}
+  }
+  return end_code_ != 0 ? end_code_ : face_code_;
+}
+
+void Keeper::wait() {
+  std::vector<pollfd> events = {{signals_.fd, POLLIN, 0}, {face_.pidfd(), POLLIN, 0}};
+  for (std::uint32_t index = 0; index < peers_.size(); ++index) {
+    events.push_back({peers_.channel(index), POLLIN, 0});
+    events.push_back({peers_.pidfd(index), POLLIN, 0});
+  }
+  const Nanoseconds due = std::min(phase_due_, manager_due_);
+  const Nanoseconds left = std::max(due - clock_.now(), Nanoseconds{0});
+  const timespec patience{left.count / 1'000'000'000, left.count % 1'000'000'000};
+  ::ppoll(events.data(), events.size(), due == kNever ? nullptr : &patience, nullptr);
+}
+
+/// Takes everything that has happened.
+void Keeper::look() {
+  signalfd_siginfo taken;
+  while (::read(signals_.fd, &taken, sizeof taken) == sizeof taken) end_asked_ = true;
+  std::vector<KeeperMessage> wishes;
+  for (std::uint32_t index = 0; index < peers_.size(); ++index) {
+    peers_.take_messages(index, wishes);
+    const Nanoseconds started = peers_.since(index);
+    if (!peers_.has_ended(index, wishes) || index != peers_.manager()) continue;
+    if (peers_.since(index) - started >= kQuickDeath) manager_pause_ = {0};
+    manager_due_ = peers_.since(index) + manager_pause_;
+    manager_pause_ = std::clamp(manager_pause_ * 2, milliseconds(10), kLongestPause);
+  }
+  for (const KeeperMessage& wish : wishes) obey(wish);
+  ProcessEnd end;
+  if (face_.has_ended(end) && !end.by_signal) {
+    face_code_ = end.code;
+    end_asked_ = true;
+  }
+}
+
+void Keeper::obey(const KeeperMessage& wish) {
+  if (wish.kind == KeeperMessage::Kind::kEnd) {
+    end_asked_ = true;
+    end_code_ = wish.code;
+  }
+  if (wish.index >= peers_.manager()) return;
+  const bool is_meant = wish.incarnation == 0 || wish.incarnation == peers_.incarnation(wish.index);
+  if (wish.kind == KeeperMessage::Kind::kEndChild && is_meant) peers_.signal(wish.index, SIGKILL);
+  if (wish.kind == KeeperMessage::Kind::kStart && !peers_.lives(wish.index) && phase_ < Phase::kRtpusFinish)
+    peers_.restart(wish.index);
+}
+
+void Keeper::enter(Phase phase, Nanoseconds limit) {
+  phase_ = phase;
+  phase_due_ = clock_.now() + limit;
+}
+
+/// One step of what is due; true when there may be another.
+bool Keeper::advance() {
+  const Nanoseconds now = clock_.now();
+  const bool is_late = now >= phase_due_;
+  const std::uint32_t manager = peers_.manager();
+  if (now >= manager_due_) {
+    manager_due_ = kNever;
+    if (phase_ < Phase::kRtpusFinish) peers_.restart(manager);
+    if (phase_ < Phase::kRtpusFinish && !peers_.lives(manager)) manager_due_ = now + kLongestPause;
+  } else if (phase_ == Phase::kRunning && end_asked_) {
+    face_.signal(SIGTERM);
+    enter(Phase::kFaceFinishes, plan_.face_limit);
+  } else if (phase_ == Phase::kFaceFinishes && (!face_.is_held() || is_late)) {
+    peers_.finish_rtpus();
+    enter(Phase::kRtpusFinish, plan_.ending_limit);
+  } else if (phase_ == Phase::kRtpusFinish && (!peers_.any_rtpu_lives() || is_late)) {
+    for (std::uint32_t index = 0; index < manager; ++index) peers_.signal(index, SIGKILL);
+    enter(Phase::kRtpusDie, kLastLimit);
+  } else if (phase_ == Phase::kRtpusDie && (!peers_.any_rtpu_lives() || is_late)) {
+    peers_.signal(manager, SIGTERM);
+    enter(Phase::kManagerFinishes, kLastLimit);
+  } else if (phase_ == Phase::kManagerFinishes && (!peers_.lives(manager) || is_late)) {
+    phase_ = Phase::kDone;  // what is left ends with this keeper
+  } else {
+    return false;
+  }
+  return phase_ != Phase::kDone;
+}
+
+}  // namespace chimera

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parent of a subsystem's processes: starts them, passes their memory on, waits for their ends, and decides
+// nothing. docs/formats/processes.md, "Keeper messages" and "Ending".
+#pragma once
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include "chimera/keeper/peers.h"
+
+namespace chimera {
+
+struct KeeperPlan {
+  PeerPlan peers;
+  std::vector<std::string> face;          ///< program and arguments of the face of this run; empty: none
+  Nanoseconds face_limit = seconds(2);    ///< to finish when told to
+  Nanoseconds ending_limit = seconds(2);  ///< for `off` and `kill` of all tasks
+};
+
+/// Must live in the thread that lives longest: the children follow it. Context: setup.
+class Keeper {
+ public:
+  explicit Keeper(KeeperPlan plan);
+  /// Nothing that it started outlives it.
+  ~Keeper();
+  Keeper(const Keeper&) = delete;
+  Keeper& operator=(const Keeper&) = delete;
+
+  /// Starts everybody; refuses when one cannot be. SIGINT, SIGTERM and SIGHUP are blocked from here on: run() takes
+  /// them.
+  Result<void> start();
+  /// Keeps until the face exits, the manager says so, or a signal does; then ends everybody. The exit code: the
+  /// manager's if it gave one above 0, else that of the face, 0 without one.
+  int run();
+
+ private:
+  enum class Phase : std::uint8_t { kRunning, kFaceFinishes, kRtpusFinish, kRtpusDie, kManagerFinishes, kDone };
+
+  void wait();
+  void look();
+  void obey(const KeeperMessage& wish);
+  bool advance();
+  void enter(Phase phase, Nanoseconds limit);
+
+  const KeeperPlan plan_;
+  LinuxClock clock_;
+  Peers peers_;
+  Process face_;
+  Descriptor signals_;
+  sigset_t mask_before_{};
+  Phase phase_ = Phase::kRunning;
+  Nanoseconds phase_due_ = kNever;
+  Nanoseconds manager_due_ = kNever;  // when it is started again
+  Nanoseconds manager_pause_;
+  bool end_asked_ = false;
+  int end_code_ = 0, face_code_ = 0;
+};
+
+}  // namespace chimera

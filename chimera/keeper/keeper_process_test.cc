@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keeper with real processes that log what they are told (testing/child.cc).
+#include "chimera/keeper/keeper.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "chimera/platform/frozen_bytes.h"
+
+namespace chimera {
+namespace {
+
+constexpr Nanoseconds kPatience = seconds(20);
+
+std::span<const std::byte> text(const char* words) { return std::as_bytes(std::span(words, std::strlen(words))); }
+
+/// A keeper in a process of its own, with `n` rtpus, the manager and a face, all of them testing/child.cc.
+class KeeperProcess : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    char name[] = "/tmp/keeper_test_XXXXXX";
+    folder_ = ::mkdtemp(name);
+    ::setenv("CHIMERA_TEST_LOG", (folder_ + "/log").c_str(), 1);
+    ::setenv("CHIMERA_TEST_ORDERS", folder_.c_str(), 1);
+    ::unsetenv("CHIMERA_TEST_DEAF");
+  }
+  void TearDown() override {
+    if (keeper_ > 0) {
+      ::kill(keeper_, SIGKILL);
+      ::waitpid(keeper_, nullptr, 0);
+    }
+    std::filesystem::remove_all(folder_);
+  }
+
+  void start(std::uint32_t n, bool with_face = true) {
+    keeper_ = ::fork();
+    if (keeper_ != 0) return;
+    const auto image = FrozenBytes::create("image", text("the image"));
+    const auto bundle = FrozenBytes::create("bundle", text("the bundle"));
+    KeeperPlan plan{.peers = {.rtpu_program = KEEPER_TEST_CHILD, .manager_program = KEEPER_TEST_CHILD, .n_rtpus = n,
+                              .image = image->descriptor(), .bundle = bundle->descriptor(), .listening = 0},
+                    .face = {}, .face_limit = milliseconds(200), .ending_limit = milliseconds(300)};
+    if (with_face) plan.face = {KEEPER_TEST_CHILD, "face", std::to_string(::getpid())};
+    Keeper keeper(plan);
+    if (const auto started = keeper.start(); !started) ::_exit(99);
+    ::_exit(keeper.run());
+  }
+  void order(const std::string& who, const std::string& what) {
+    std::ofstream(folder_ + "/" + who, std::ios::app) << what << "\n";
+  }
+  std::string log() const {
+    std::stringstream all;
+    all << std::ifstream(folder_ + "/log").rdbuf();
+    return all.str();
+  }
+  bool has(const std::string& line) const { return ("\n" + log()).find("\n" + line) != std::string::npos; }
+  bool wait_for(const std::string& line) {
+    LinuxClock clock;
+    for (const Nanoseconds until = clock.now() + kPatience; !has(line); ::usleep(1000))
+      if (clock.now() > until) return ADD_FAILURE() << "no line '" << line << "' in\n" << log(), false;
+    return true;
+  }
+  /// Of the process that logged "WHO begin PID".
+  pid_t pid_of(const std::string& who) {
+    const std::string all = "\n" + log(), begin = "\n" + who + " begin ";
+    const std::size_t at = all.find(begin);
+    return at == std::string::npos ? 0 : std::stoi(all.substr(at + begin.size()));
+  }
+  int code_of_keeper() {
+    int status = 0;
+    EXPECT_EQ(::waitpid(keeper_, &status, 0), keeper_);
+    keeper_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 256 + WTERMSIG(status);
+  }
+  /// True when every process that ever began is gone.
+  bool nobody_is_left() {
+    std::istringstream all(log());
+    std::vector<pid_t> pids;
+    for (std::string line; std::getline(all, line);)
+      if (const auto at = line.find(" begin "); at != std::string::npos) pids.push_back(std::stoi(line.substr(at + 7)));
+    LinuxClock clock;
+    for (const Nanoseconds until = clock.now() + kPatience; clock.now() < until; ::usleep(1000))
+      if (std::none_of(pids.begin(), pids.end(), [](pid_t pid) { return ::kill(pid, 0) == 0; })) return true;
+    return false;
+  }
+
+  std::string folder_;
+  pid_t keeper_ = 0;
+};
+
+TEST_F(KeeperProcess, StartsEverybodyAndPassesTheirMemoryOn) {
+  start(2);
+  EXPECT_TRUE(wait_for("0.1 peer 1 1 by-1.1"));
+  EXPECT_TRUE(wait_for("0.1 peer 2 1 by-2.1"));
+  EXPECT_TRUE(wait_for("1.1 peer 0 1 by-0.1"));
+  EXPECT_TRUE(wait_for("2.1 peer 0 1 by-0.1"));
+  EXPECT_TRUE(wait_for("2.1 peer 1 1 by-1.1"));
+  EXPECT_TRUE(has("2.1 started 0 1 alive"));
+  EXPECT_TRUE(has("2.1 started 1 1 alive"));
+  EXPECT_TRUE(has("2.1 complete"));
+  EXPECT_TRUE(has("0.1 begin " + std::to_string(pid_of("0.1")) + " image 9 alive 1\n"));
+  EXPECT_TRUE(has("2.1 begin " + std::to_string(pid_of("2.1")) + " image 9 alive 1 bundle 10\n"));
+  EXPECT_FALSE(has("0.1 started")) << "that is for the manager";
+  EXPECT_TRUE(wait_for("face begin"));
+  order("face", "exit 3");
+  EXPECT_EQ(code_of_keeper(), 3);
+  EXPECT_TRUE(has("0.1 finish"));
+  EXPECT_TRUE(has("1.1 finish"));
+  EXPECT_TRUE(has("2.1 terminated"));
+  EXPECT_TRUE(nobody_is_left());
+}
+
+TEST_F(KeeperProcess, ADeadManagerIsReplacedAndToldAllThereIs) {
+  start(2);
+  ASSERT_TRUE(wait_for("1.1 peer 2 1"));
+  order("1", "exit 4");
+  ASSERT_TRUE(wait_for("2.1 ended 1 1 exit 4"));
+  ::kill(pid_of("2.1"), SIGKILL);
+  ASSERT_TRUE(wait_for("2.2 complete"));
+  const std::string all = log();
+  const std::string told = all.substr(all.find("2.2 started"), all.find("2.2 complete") - all.find("2.2 started"));
+  std::string order_of_telling;
+  std::istringstream lines(told);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("2.2 ")) order_of_telling += line.substr(4) + "\n";
+  EXPECT_EQ(order_of_telling,
+            "started 0 1 alive\npeer 0 1 by-0.1\npeer 1 1 by-1.1\nended 1 1 exit 4\npeer 2 1 by-2.1\n");
+  EXPECT_TRUE(wait_for("0.1 peer 2 2 by-2.2"));
+}
+
+TEST_F(KeeperProcess, AnRtpuIsStartedAgainWhenTheManagerSaysSo) {
+  start(2);
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+  order("2", "changes");
+  ASSERT_TRUE(wait_for("2.1 changes 3"));
+  order("0.1", "crash");
+  ASSERT_TRUE(wait_for("2.1 ended 0 1 signal 11"));
+  order("2", "changes");
+  ASSERT_TRUE(wait_for("2.1 changes 4"));
+  order("2", "start 1");  // lives: nothing
+  order("2", "start 0");
+  ASSERT_TRUE(wait_for("2.1 started 0 2 alive"));
+  ASSERT_TRUE(wait_for("2.1 peer 0 2 by-0.2"));
+  ASSERT_TRUE(wait_for("0.2 peer 1 1 by-1.1"));
+  ASSERT_TRUE(wait_for("0.2 peer 2 1 by-2.1"));
+  EXPECT_TRUE(has("0.2 begin " + std::to_string(pid_of("0.2")) + " image 9 alive 2"));
+  EXPECT_FALSE(has("1.2 begin"));
+  EXPECT_FALSE(has("0.2 peer 0 1")) << "only the manager gets its predecessor's memory";
+}
+
+TEST_F(KeeperProcess, TheManagerMayEndAnRtpuThatHangs) {
+  start(1);
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+  order("0", "stubborn");
+  order("1", "kill 0");
+  EXPECT_TRUE(wait_for("1.1 ended 0 1 signal 9"));
+}
+
+TEST_F(KeeperProcess, TheManagerMayEndEverythingWithItsCode) {
+  start(1);
+  ASSERT_TRUE(wait_for("face begin"));
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+  order("1", "end 6");
+  EXPECT_EQ(code_of_keeper(), 6);
+  EXPECT_TRUE(has("face finishes"));
+  EXPECT_TRUE(nobody_is_left());
+}
+
+TEST_F(KeeperProcess, SignalsEndEverythingWithTheCodeOfTheFace) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    std::filesystem::remove(folder_ + "/log");
+    start(1);
+    ASSERT_TRUE(wait_for("face begin"));
+    ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+    ::kill(keeper_, number);
+    EXPECT_EQ(code_of_keeper(), 5) << number;
+    const std::string all = log();
+    EXPECT_LT(all.find("face finishes"), all.find("0.1 finish"));
+    EXPECT_LT(all.find("0.1 finish"), all.find("1.1 terminated"));
+    EXPECT_TRUE(nobody_is_left());
+  }
+}
+
+TEST_F(KeeperProcess, EndsWithoutAFaceToo) {
+  start(1, false);
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+  ::kill(keeper_, SIGTERM);
+  EXPECT_EQ(code_of_keeper(), 0);
+  EXPECT_TRUE(nobody_is_left());
+}
+
+TEST_F(KeeperProcess, WhoeverDoesNotFinishIsKilledAfterItsLimit) {
+  ::setenv("CHIMERA_TEST_DEAF", "1", 1);
+  start(2);
+  ASSERT_TRUE(wait_for("face begin"));
+  ASSERT_TRUE(wait_for("2.1 peer 0 1"));
+  order("0", "stubborn");
+  order("2", "stubborn");
+  ASSERT_TRUE(wait_for("0.1 is stubborn"));
+  ASSERT_TRUE(wait_for("2.1 is stubborn"));
+  ::kill(keeper_, SIGINT);
+  EXPECT_EQ(code_of_keeper(), 0);
+  EXPECT_TRUE(nobody_is_left());
+}
+
+TEST_F(KeeperProcess, AFaceThatDiesBySignalDoesNotEndTheRun) {
+  start(1);
+  ASSERT_TRUE(wait_for("face begin"));
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+  ::kill(pid_of("face"), SIGKILL);
+  order("1", "kill 0");
+  EXPECT_TRUE(wait_for("1.1 ended 0 1 signal 9")) << "it still keeps";
+  ::kill(keeper_, SIGTERM);
+  EXPECT_EQ(code_of_keeper(), 0);
+}
+
+TEST_F(KeeperProcess, NobodyIsLeftWhenTheKeeperItselfIsKilled) {
+  start(2);
+  ASSERT_TRUE(wait_for("face begin"));
+  ASSERT_TRUE(wait_for("2.1 peer 1 1"));
+  ASSERT_TRUE(wait_for("2.1 peer 0 1"));
+  ::kill(keeper_, SIGKILL);
+  EXPECT_EQ(code_of_keeper(), 256 + SIGKILL);
+  EXPECT_TRUE(nobody_is_left());
+}
+
+TEST_F(KeeperProcess, AManagerThatDiesAgainAndAgainIsStartedMoreAndMoreSlowly) {
+  order("1", "exit 1");
+  start(1);
+  ASSERT_TRUE(wait_for("1.6 begin"));  // pauses of 0, 10, 20, 40 and 80 ms
+  EXPECT_TRUE(::kill(pid_of("0.1"), 0) == 0) << "the rtpu goes on";
+  ::kill(keeper_, SIGTERM);
+  EXPECT_EQ(code_of_keeper(), 5);
+}
+
+TEST(Keeper, RefusesProgramsThatCannotBeStartedAndLeavesNobody) {
+  const PeerPlan peers{.rtpu_program = "/nowhere/chimera-rtpu", .manager_program = "/bin/true", .n_rtpus = 1,
+                       .image = 0, .bundle = 0, .listening = 0};
+  Keeper keeper({.peers = peers, .face = {}});
+  const auto started = keeper.start();
+  ASSERT_FALSE(started.has_value());
+  EXPECT_EQ(started.error().message.view(),
+            "program /nowhere/chimera-rtpu: exec failed: No such file or directory");
+}
+
+}  // namespace
+}  // namespace chimera

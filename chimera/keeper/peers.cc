@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/keeper/peers.h"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "chimera/platform/doorbell.h"
+
+namespace chimera {
+
+using Kind = KeeperMessage::Kind;
+
+Peers::Peers(PeerPlan plan) : plan_(std::move(plan)), peers_(plan_.n_rtpus + 1) {}
+
+Peers::~Peers() {
+  ProcessEnd how;
+  for (Peer& peer : peers_) peer.process.signal(SIGKILL);
+  for (Peer& peer : peers_) peer.process.wait(how, seconds(1).count);
+}
+
+Result<void> Peers::start_all() {
+  if (plan_.n_rtpus > kMaxRtpus) return Message("more rtpus than a subsystem can have").error(ErrorCode::kBadInput);
+  auto decision = SharedPages::create("chimera-decision", sizeof(DecisionPage));
+  if (!decision) return decision.error();
+  auto keeper = MemoryRegion::create("chimera-keeper", sizeof(KeeperPage));
+  if (!keeper) return keeper.error();
+  decision_ = *std::move(decision);
+  keeper_ = *std::move(keeper);
+  new (decision_.bytes().data()) DecisionPage;
+  new (keeper_.writable().data()) KeeperPage;
+  page().origin = clock_.now();
+  page().n_rtpus = plan_.n_rtpus;
+  for (std::uint32_t index = 0; index < size(); ++index)
+    if (auto started = start(index); !started) return started;
+  return {};
+}
+
+Result<void> Peers::start(std::uint32_t index) {
+  Peer& peer = peers_[index];
+  auto ends = Channel::pair();
+  if (!ends) return ends.error();
+  const bool is_manager = index == manager();
+  const std::uint32_t incarnation = peer.last.incarnation + 1;
+  const std::string& program = is_manager ? plan_.manager_program : plan_.rtpu_program;
+  const std::string numbers[] = {std::to_string(index), std::to_string(incarnation), std::to_string(::getpid())};
+  const std::array words = {program.c_str(),    "--peer",   numbers[0].c_str(), "--incarnation",
+                            numbers[1].c_str(), "--parent", numbers[2].c_str()};
+  const std::array passed = {ends->second.descriptor(), plan_.image,     decision_.descriptor(),
+                             keeper_.descriptor(),      plan_.listening, plan_.bundle};
+  publish_life(index, incarnation);  // before it can look
+  auto process = Process::start(program.c_str(), words, std::span(passed).first(is_manager ? 6 : 4));
+  if (!process) return process.error();
+  peer.process = *std::move(process);
+  peer.channel = std::move(ends->first);
+  peer.last = {.kind = Kind::kStarted, .index = index, .incarnation = incarnation, .pid = peer.process.pid(),
+               .at = clock_.now()};
+  introduce(index);
+  return {};
+}
+
+void Peers::restart(std::uint32_t index) {
+  const auto started = start(index);
+  if (started) return;
+  std::fprintf(stderr, "%s\n", started.error().message.c_str());
+  ++peers_[index].last.incarnation;
+  end(index, {.by_signal = false, .code = 127});
+}
+
+/// The newcomer is told of the others, and the manager of a new rtpu.
+void Peers::introduce(std::uint32_t newcomer) {
+  if (newcomer != manager()) {
+    for (std::uint32_t other = 0; other < size(); ++other)
+      if (other != newcomer) tell_segment(newcomer, other);
+    return tell_life(newcomer);
+  }
+  for (std::uint32_t rtpu = 0; rtpu < manager(); ++rtpu) {
+    if (lives(rtpu)) tell_life(rtpu);
+    tell_segment(newcomer, rtpu);
+    if (!lives(rtpu)) tell_life(rtpu);
+  }
+  tell_segment(newcomer, newcomer);  // its predecessor's
+  tell(newcomer, {.kind = Kind::kComplete});
+}
+
+/// A child that does not take its messages any more would see a world that is not there: it is ended.
+void Peers::tell(std::uint32_t index, const KeeperMessage& message, int passed) {
+  const Peer& peer = peers_[index];
+  if (peer.channel.is_open() && !peer.channel.send(bytes_of(message), passed) && errno == EAGAIN)
+    peer.process.signal(SIGKILL);
+}
+
+void Peers::tell_segment(std::uint32_t to, std::uint32_t of) {
+  const Peer& peer = peers_[of];
+  if (peer.segment.fd < 0) return;
+  tell(to, {.kind = Kind::kPeer, .index = of, .incarnation = peer.segment_incarnation}, peer.segment.fd);
+}
+
+void Peers::tell_life(std::uint32_t of) { tell(manager(), peers_[of].last, peers_[of].process.pidfd()); }
+
+void Peers::publish_life(std::uint32_t index, std::uint32_t incarnation) {
+  page().alive[index].store(incarnation, std::memory_order_release);
+  auto* decision = reinterpret_cast<DecisionPage*>(decision_.bytes().data());
+  decision->changes.fetch_add(1, std::memory_order_release);  // pairs with the look at an edge: who lives
+  for (std::uint32_t i = 0; i < size(); ++i) Doorbell(decision->bells[i].word).ring();
+}
+
+void Peers::take_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
+  Peer& peer = peers_[index];
+  KeeperMessage message;
+  int passed = -1;
+  while (peer.channel.is_open()) {
+    const Channel::Got got = peer.channel.receive(bytes_of(message), passed);
+    if (got == Channel::Got::kNothing) return;
+    if (got == Channel::Got::kClosed) {
+      peer.channel = Channel();
+      return;
+    }
+    Descriptor segment(passed);
+    if (message.kind == Kind::kSegment && segment.fd >= 0) {
+      peer.segment = std::move(segment);
+      peer.segment_incarnation = peer.last.incarnation;
+      for (std::uint32_t other = 0; other < size(); ++other)
+        if (other != index) tell_segment(other, index);
+    } else if (index == manager()) {
+      wishes.push_back(message);
+    }
+  }
+}
+
+bool Peers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
+  ProcessEnd how;
+  if (!peers_[index].process.has_ended(how)) return false;
+  take_messages(index, wishes);  // its last words
+  end(index, how);
+  return true;
+}
+
+void Peers::end(std::uint32_t index, const ProcessEnd& how) {
+  Peer& peer = peers_[index];
+  peer.channel = Channel();
+  peer.last = {.kind = Kind::kEnded, .index = index, .incarnation = peer.last.incarnation, .code = how.code,
+               .by_signal = how.by_signal, .core_dumped = how.core_dumped, .at = clock_.now()};
+  publish_life(index, 0);
+  if (index != manager()) tell_life(index);
+}
+
+void Peers::finish_rtpus() {
+  page().ending.store(1, std::memory_order_release);
+  for (std::uint32_t index = 0; index < manager(); ++index) tell(index, {.kind = Kind::kFinish});
+}
+
+bool Peers::any_rtpu_lives() const noexcept {
+  return std::any_of(peers_.begin(), peers_.end() - 1, [](const Peer& peer) { return peer.process.is_held(); });
+}
+
+}  // namespace chimera

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/keeper/socket_place.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include "chimera/platform/linux/descriptor.h"
+
+namespace chimera {
+namespace {
+
+Error failed(const std::string& path, const char* call) { return system_error(Message(path), call); }
+
+Error refusal(const std::string& text, const std::string& where) {
+  return Message(text).error(ErrorCode::kRefused, where);
+}
+
+/// The folder, opened and found to be ours alone to write to.
+Result<Descriptor> open_folder(const std::string& path, bool for_others) {
+  if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) return failed(path, "mkdir");
+  Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  if (folder.fd < 0)
+    return refusal("the folder of the sockets is no folder, or a symbolic link: remove it", path);
+  struct stat status {};
+  if (::fstat(folder.fd, &status) != 0) return failed(path, "fstat");
+  if (status.st_uid != ::geteuid())
+    return refusal("the folder of the sockets is another user's: set XDG_RUNTIME_DIR to a folder of yours", path);
+  if ((status.st_mode & 022u) != 0)
+    return refusal("others may write to the folder of the sockets: run 'chmod 0700 " + path + "'", path);
+  if (for_others && ::fchmod(folder.fd, 0711) != 0) return failed(path, "fchmod");
+  return folder;
+}
+
+Result<sockaddr_un> address_of(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path)
+    return refusal("the path of the socket is longer than " + std::to_string(sizeof address.sun_path - 1) +
+                       " bytes: set XDG_RUNTIME_DIR to a shorter one, or give the subsystem a shorter name",
+                   path);
+  std::memcpy(address.sun_path, path.c_str(), path.size());
+  return address;
+}
+
+const sockaddr* plain(const sockaddr_un& address) noexcept { return reinterpret_cast<const sockaddr*>(&address); }
+
+/// Refuses when somebody listens there; else nothing is left of a former socket. Under the lock of the folder.
+Result<void> clear_way(const sockaddr_un& address, const std::string& subsystem) {
+  const Descriptor asking(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (asking.fd < 0) return failed(address.sun_path, "socket");
+  if (::connect(asking.fd, plain(address), sizeof address) == 0 || errno == EAGAIN) {
+    ucred keeper{};
+    socklen_t size = sizeof keeper;
+    ::getsockopt(asking.fd, SOL_SOCKET, SO_PEERCRED, &keeper, &size);
+    return refusal("a subsystem '" + subsystem + "' runs already" +
+                       (keeper.pid > 0 ? " (process " + std::to_string(keeper.pid) + ")" : "") +
+                       ": end it, or give this one another name",
+                   address.sun_path);
+  }
+  if (errno == ENOENT) return {};
+  if (errno != ECONNREFUSED) return failed(address.sun_path, "connect");
+  if (::unlink(address.sun_path) != 0) return failed(address.sun_path, "unlink");
+  return {};
+}
+
+}  // namespace
+
+Result<SocketPlace> SocketPlace::open(const std::string& path, const std::string& subsystem, bool for_others) {
+  auto folder = open_folder(path, for_others);
+  if (!folder) return folder.error();
+  SocketPlace place;
+  place.path_ = path + "/" + subsystem + ".sock";
+  const auto address = address_of(place.path_);
+  if (!address) return address.error();
+  if (::flock(folder->fd, LOCK_EX) != 0) return failed(path, "flock");
+  if (auto clear = clear_way(*address, subsystem); !clear) return clear.error();
+  Descriptor listening(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (listening.fd < 0) return failed(place.path_, "socket");
+  struct stat status {};
+  // Nobody else can pass the folder between bind and chmod unless it was opened for others, whom the door judges.
+  if (::bind(listening.fd, plain(*address), sizeof *address) != 0) return failed(place.path_, "bind");
+  if (::chmod(address->sun_path, for_others ? 0666 : 0600) != 0) return failed(place.path_, "chmod");
+  if (::stat(address->sun_path, &status) != 0) return failed(place.path_, "stat");
+  if (::listen(listening.fd, 64) != 0) return failed(place.path_, "listen");
+  ::flock(folder->fd, LOCK_UN);
+  place.inode_ = status.st_ino;
+  place.folder_ = folder->release();
+  place.listening_ = listening.release();
+  return place;
+}
+
+SocketPlace& SocketPlace::operator=(SocketPlace&& other) noexcept {
+  std::swap(folder_, other.folder_);
+  std::swap(listening_, other.listening_);
+  std::swap(inode_, other.inode_);
+  std::swap(path_, other.path_);
+  return *this;
+}
+
+SocketPlace::~SocketPlace() {
+  if (listening_ < 0) return;
+  ::flock(folder_, LOCK_EX);
+  struct stat status {};
+  if (::lstat(path_.c_str(), &status) == 0 && status.st_ino == inode_) ::unlink(path_.c_str());
+  ::close(listening_);
+  ::close(folder_);
+}
+
+}  // namespace chimera
