@@ -11,8 +11,7 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <variant>
@@ -107,6 +106,7 @@ class Subsystem {
  public:
   /// `spec` outlives it.
   explicit Subsystem(const ApplicationSpec& spec);
+  ~Subsystem();
 
   /// Takes one event at `now` (never before the previous one) and appends what is to be done to `actions`.
   void step(const Event& event, Nanoseconds now, std::vector<Action>& actions);
@@ -121,8 +121,8 @@ class Subsystem {
   std::string judge_on(std::span<const TaskId> tasks) const;
 
  private:
-  // to be written by its author
-  const ApplicationSpec& spec_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace chimera::subsystem

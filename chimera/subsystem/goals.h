@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What tasks are to be brought to. Remembered by the driver, so that a goal outlives the manager.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/subsystem/situation.h"
+
+namespace chimera::subsystem {
+
+/// Beside kGoalSpawn and kGoalOn: killed by a person after its process died, so it is not missed.
+inline constexpr std::uint32_t kGoalGone = 4;
+/// An rtpu that was asked for and does not serve within this time is not waited for any longer.
+inline constexpr Nanoseconds kStartLimit = seconds(10);
+
+/// Context: setup.
+class Goals {
+ public:
+  Goals(Situation& situation) : at_(situation), goals_(situation.spec.tasks.size()) {}
+
+  void recall(std::span<const std::uint32_t> remembered);
+  void set(TaskId task, std::uint32_t goal);
+  void add(TaskId task, std::uint32_t bits) { set(task, of(task) | bits); }
+  void clear(TaskId task, std::uint32_t bits) { set(task, of(task) & ~bits); }
+  std::uint32_t of(TaskId task) const noexcept { return goals_[task.index].bits; }
+  bool has(TaskId task, std::uint32_t bits) const noexcept { return (of(task) & bits) != 0; }
+  bool is_pursued(TaskId task) const noexcept { return has(task, kGoalSpawn | kGoalOn); }
+  bool any(std::uint32_t bits) const noexcept;
+  std::vector<TaskId> with(std::uint32_t bits) const;
+
+  /// Gives the goals of the task up and tells why.
+  void fail(TaskId task, const char* kind, std::string why);
+  /// Why the last goals of the task were given up.
+  const std::string& failure(TaskId task) const noexcept { return goals_[task.index].failure; }
+
+  /// Sends every spawn that can be sent; notices goals that are reached or whose rtpu does not come.
+  void pursue();
+  void take(const Reply& reply);
+  Nanoseconds next_due() const noexcept;
+
+ private:
+  struct Goal {
+    std::uint32_t bits = 0;
+    std::uint64_t command = 0;  ///< of its spawn
+    std::string failure;
+  };
+  void pursue(TaskId task);
+  bool has_constants(TaskId task) const noexcept;
+
+  Situation& at_;
+  std::vector<Goal> goals_;
+};
+
+}  // namespace chimera::subsystem

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/subsystem/roster.h"
+
+namespace chimera::subsystem {
+
+void Roster::see(TaskId task, TaskStatus status) noexcept {
+  tasks_[task.index].status = status;
+  if (status.state != State::kNotCreated) tasks_[task.index].is_lost = false;
+}
+
+void Roster::up(RtpuId rtpu, std::uint32_t incarnation) noexcept {
+  rtpus_[rtpu.index].life = Life::kUp;
+  rtpus_[rtpu.index].incarnation = incarnation;
+}
+
+void Roster::down(RtpuId rtpu, std::uint32_t incarnation) noexcept {
+  rtpus_[rtpu.index].life = Life::kDown;
+  rtpus_[rtpu.index].incarnation = incarnation;
+  for (std::size_t t = 0; t < tasks_.size(); ++t) {
+    if (spec_.tasks[t].rtpu != rtpu) continue;
+    if (tasks_[t].status.state != State::kNotCreated) tasks_[t].is_lost = true;
+    tasks_[t].status = {};
+  }
+}
+
+void Roster::starting(RtpuId rtpu, Nanoseconds now) noexcept {
+  if (life(rtpu) == Life::kDown) rtpus_[rtpu.index].life = Life::kStarting;
+  rtpus_[rtpu.index].since = now;
+}
+
+State Roster::state(TaskId task) const noexcept { return is_lost(task) ? State::kError : status(task).state; }
+
+}  // namespace chimera::subsystem

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is known of the processes and their tasks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "chimera/base/ids.h"
+#include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/rtpu_block.h"
+
+namespace chimera::subsystem {
+
+enum class Life : std::uint8_t {
+  kUnknown,   ///< may live, does not serve us yet
+  kUp,
+  kStarting,  ///< dead; asked for
+  kDown       ///< dead; nobody asked for it
+};
+
+/// Context: setup.
+class Roster {
+ public:
+  explicit Roster(const ApplicationSpec& spec) : spec_(spec), tasks_(spec.tasks.size()), rtpus_(spec.rtpus.size()) {}
+
+  void see(TaskId task, TaskStatus status) noexcept;
+  void up(RtpuId rtpu, std::uint32_t incarnation) noexcept;
+  /// Its tasks are not there any more; those that were created are lost.
+  void down(RtpuId rtpu, std::uint32_t incarnation) noexcept;
+  void starting(RtpuId rtpu, Nanoseconds now) noexcept;
+  /// A lost task that nobody wants any more is NOT-CREATED.
+  void forget(TaskId task) noexcept { tasks_[task.index].is_lost = false; }
+
+  /// As people see it: a lost task is ERROR.
+  State state(TaskId task) const noexcept;
+  /// Of the task in the process that lives, or the last words of one not yet known to be dead.
+  const TaskStatus& status(TaskId task) const noexcept { return tasks_[task.index].status; }
+  bool is_lost(TaskId task) const noexcept { return tasks_[task.index].is_lost; }
+  bool is_created(TaskId task) const noexcept { return status(task).state != State::kNotCreated; }
+  Life life(RtpuId rtpu) const noexcept { return rtpus_[rtpu.index].life; }
+  Life life_of(TaskId task) const noexcept { return life(rtpu(task)); }
+  std::uint32_t incarnation(RtpuId rtpu) const noexcept { return rtpus_[rtpu.index].incarnation; }
+  /// Since when it is awaited.
+  Nanoseconds since(RtpuId rtpu) const noexcept { return rtpus_[rtpu.index].since; }
+  /// Instants of its last restarts, 0: none.
+  std::array<Nanoseconds, 4>& restarts(RtpuId rtpu) noexcept { return rtpus_[rtpu.index].restarts; }
+  RtpuId rtpu(TaskId task) const noexcept { return spec_.tasks[task.index].rtpu; }
+
+ private:
+  struct Task {
+    TaskStatus status;
+    bool is_lost = false;
+  };
+  struct Rtpu {
+    Life life = Life::kUnknown;
+    std::uint32_t incarnation = 0;
+    Nanoseconds since;
+    std::array<Nanoseconds, 4> restarts{};
+  };
+  const ApplicationSpec& spec_;
+  std::vector<Task> tasks_;
+  std::vector<Rtpu> rtpus_;
+};
+
+}  // namespace chimera::subsystem

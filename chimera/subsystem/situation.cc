@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/subsystem/situation.h"
+
+#include <algorithm>
+
+#include "chimera/subsystem/order.h"
+
+namespace chimera::subsystem {
+
+Situation::Situation(const ApplicationSpec& application)
+    : spec(application), variables(application), order(data_flow_order(application)),
+      makers(makers_of_constants(application)), roster(application), mail(application.tasks.size()) {}
+
+void Situation::tell(const char* kind, TaskId task, RtpuId rtpu, std::string text) const {
+  act(Tell{kind, task, rtpu, std::move(text)});
+}
+
+std::uint64_t Situation::send(Signal signal, std::span<const TaskId> tasks) {
+  const std::uint64_t command = mail.post(signal, tasks, now);
+  act(Send{roster.rtpu(tasks.front()), command, signal, {tasks.begin(), tasks.end()}});
+  return command;
+}
+
+std::vector<TaskId> Situation::sorted(std::span<const TaskId> tasks, bool backwards) const {
+  std::vector<TaskId> result;
+  for (TaskId task : order)
+    if (std::find(tasks.begin(), tasks.end(), task) != tasks.end()) result.push_back(task);
+  if (backwards) std::reverse(result.begin(), result.end());
+  return result;
+}
+
+std::size_t Situation::run_at(std::span<const TaskId> tasks, std::size_t first) const {
+  std::size_t n = 1;
+  while (first + n < tasks.size() && roster.rtpu(tasks[first + n]) == roster.rtpu(tasks[first])) ++n;
+  return n;
+}
+
+// A process that does not serve us yet may still carry out what an earlier manager sent.
+bool Situation::may_be_on(TaskId task) const {
+  const State seen = roster.status(task).state;
+  return seen == State::kOn || mail.is_possible(task, Signal::kOn) ||
+         (roster.life_of(task) == Life::kUnknown && seen == State::kOff);
+}
+
+bool Situation::is_busy(TaskId task) const { return mail.is_awaited(task) || roster.status(task).in_service; }
+
+std::string Situation::judge_on(std::span<const TaskId> tasks) const {
+  std::vector<bool> on(spec.tasks.size());
+  for (std::size_t t = 0; t < on.size(); ++t) on[t] = may_be_on(TaskId(t));
+  for (TaskId task : tasks) on[task.index] = true;
+  return variables.is_legal(on) ? std::string{} : variables.explain(on, spec.tasks);
+}
+
+std::string Situation::illegal(Signal signal, TaskId task, State state) const {
+  return std::string(signal_name(signal)) + " is not legal for " + name(task) + " in state " + state_name(state);
+}
+
+std::string Situation::sentence(const Reply& reply) const {
+  if (!reply.is_fault || reply.why.empty()) return reply.why;
+  return std::string(signal_name(reply.signal)) + ": " + name(reply.task) + ": " + reply.why;
+}
+
+bool is_legal(State state, Signal signal) noexcept {
+  return next(state, signal, false).kind != Next::Kind::kImpossible;
+}
+
+}  // namespace chimera::subsystem

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/subsystem/subsystem.h"
+
+#include <gtest/gtest.h>
+
+#include "chimera/subsystem/test_world.h"
+
+namespace chimera::subsystem {
+namespace {
+
+class StartTest : public ::testing::Test, public TestWorld {};
+class SubsystemTest : public ::testing::Test, public TestWorld {
+ protected:
+  SubsystemTest() { start(); }
+};
+
+TEST_F(StartTest, RemembersItsGoalsBeforeAnythingElse) {
+  EXPECT_EQ(step(remembered), "goal arm 3\ngoal pid 3\ngoal traj 3\ngoal reserve 1\nremember started\n");
+}
+
+TEST_F(StartTest, SpawnsInTheOrderOfConstantsAsRtpusComeUp) {
+  step(remembered);
+  EXPECT_EQ(step(RtpuUp{kServo, 1}), "") << "not before the inventory is complete";
+  EXPECT_EQ(step(InventoryComplete{}), "send servo: spawn arm\n");
+  EXPECT_EQ(step(RtpuUp{kSpare, 1}), "send spare: spawn traj\n");
+  EXPECT_EQ(report(kArm, State::kOff), "goal arm 2\nsend servo: spawn pid\nsend spare: spawn reserve\n");
+}
+
+TEST_F(StartTest, TurnsTheStartSetOnRunByRunInItsOrder) {
+  step(remembered);
+  step(RtpuUp{kServo, 1});
+  step(RtpuUp{kSpare, 1});
+  step(InventoryComplete{});
+  for (TaskId task : {kArm, kTraj, kPid}) report(task, State::kOff);
+  EXPECT_EQ(report(kReserve, State::kOff), "goal reserve 0\nsend servo: on arm\n");
+  EXPECT_EQ(report(kArm, State::kOn), "send spare: on traj\n");
+  EXPECT_EQ(report(kTraj, State::kOn), "send servo: on pid\n");
+  EXPECT_FALSE(subsystem->is_settled());
+  EXPECT_EQ(report(kPid, State::kOn), "goal arm 0\ngoal traj 0\ngoal pid 0\nstarted: arm traj pid are ON\n");
+  EXPECT_TRUE(subsystem->is_settled());
+}
+
+TEST_F(StartTest, AFaultyInitGivesItsGoalsUpAndTheRestIsRefusedWhenItIsNoLegalSet) {
+  step(remembered);
+  step(RtpuUp{kServo, 1});
+  step(RtpuUp{kSpare, 1});
+  step(InventoryComplete{});
+  for (TaskId task : {kArm, kPid, kReserve}) report(task, State::kOff);
+  EXPECT_EQ(report(kTraj, State::kNotCreated, "no file"),
+            "goal traj 0\nfault: spawn: traj: no file\ngoal arm 0\ngoal pid 0\n"
+            "refused: ref would have no producer; the smallest legal set is: arm pid traj\n");
+  EXPECT_TRUE(subsystem->is_settled());
+}
+
+TEST_F(StartTest, AnRtpuThatNeverServesIsNotWaitedForForever) {
+  step(remembered);
+  step(RtpuUp{kServo, 1});
+  step(InventoryComplete{});
+  report(kArm, State::kOff);
+  report(kPid, State::kOff);
+  EXPECT_EQ(subsystem->next_due(), now + seconds(10));
+  now += seconds(10);
+  EXPECT_EQ(step(Tick{}),
+            "goal traj 0\nrefused: no answer from rtpu spare\ngoal reserve 0\nrefused: no answer from rtpu spare\n"
+            "goal arm 0\ngoal pid 0\nrefused: ref would have no producer; the smallest legal set is: arm pid traj\n");
+}
+
+TEST_F(SubsystemTest, OffOfAListIsOneStepAgainstTheDataFlow) {
+  EXPECT_EQ(command(Signal::kOff, {kArm, kTraj, kPid}),
+            "send servo: off pid\nsend spare: off traj\nsend servo: off arm\n");
+  report(kPid, State::kOff);
+  report(kArm, State::kOff);
+  EXPECT_EQ(report(kTraj, State::kOff), "answer 1 yes pid ON>OFF traj ON>OFF arm ON>OFF\n");
+}
+
+TEST_F(SubsystemTest, NothingOfAListIsSentWhenOneOfItIsIllegal) {
+  EXPECT_EQ(command(Signal::kOff, {kArm, kReserve}), "answer 1 no: off is not legal for reserve in state OFF\n");
+  EXPECT_EQ(command(Signal::kClear, {kArm}), "answer 2 no: clear is not legal for arm in state ON\n");
+  EXPECT_EQ(command(Signal::kSpawn, {kArm}), "answer 3 no: spawn is not legal for arm in state ON\n");
+}
+
+TEST_F(SubsystemTest, ASecondProducerIsRefused) {
+  EXPECT_EQ(command(Signal::kOn, {kReserve}), "answer 1 no: tau would have two producers: pid and reserve\n");
+}
+
+TEST_F(SubsystemTest, OnWaitsForAnOffThatIsNotReportedYet) {
+  EXPECT_EQ(command(Signal::kOff, {kPid}), "send servo: off pid\n");
+  EXPECT_EQ(command(Signal::kOn, {kReserve}), "");
+  EXPECT_EQ(report(kPid, State::kOff),
+            "answer 1 yes pid ON>OFF\ngoal reserve 2\nsend spare: on reserve\n");
+  EXPECT_EQ(report(kReserve, State::kOn), "goal reserve 0\nanswer 2 yes reserve OFF>ON\n");
+}
+
+TEST_F(SubsystemTest, AFailedTransactionTurnsOffBackwardsWhatItTurnedOn) {
+  command(Signal::kOff, {kArm, kTraj, kPid});
+  for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
+  EXPECT_EQ(command(Signal::kOn, {kPid, kTraj, kArm}), "goal arm 2\ngoal traj 2\ngoal pid 2\nsend servo: on arm\n");
+  report(kArm, State::kOn);
+  report(kTraj, State::kOn);
+  EXPECT_EQ(report(kPid, State::kOff, "gains are zero"), "send spare: off traj\nsend servo: off arm\n");
+  report(kTraj, State::kOff);
+  EXPECT_EQ(report(kArm, State::kOff),
+            "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 2 no: pid: gains are zero\n");
+}
+
+TEST_F(SubsystemTest, OneThatLeavesOnByItselfFailsTheTransaction) {
+  command(Signal::kOff, {kArm, kTraj, kPid});
+  for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
+  command(Signal::kOn, {kPid, kTraj, kArm});
+  report(kArm, State::kOn);
+  EXPECT_EQ(seen(kArm, State::kError), "");
+  EXPECT_EQ(report(kTraj, State::kOn), "send spare: off traj\n");
+  EXPECT_EQ(report(kTraj, State::kOff),
+            "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 2 no: arm: went from ON to ERROR\n");
+}
+
+TEST_F(SubsystemTest, OffDoesNotWaitBehindAnOnThatIsUnderWay) {
+  command(Signal::kOff, {kArm, kTraj, kPid});
+  for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
+  command(Signal::kOn, {kArm, kTraj, kPid});
+  const Reported on = sent[kArm.index];
+  EXPECT_EQ(command(Signal::kOff, {kArm}), "goal arm 0\nsend servo: off arm\n");
+  seen(kArm, State::kOn);
+  EXPECT_EQ(step(Reported{on.command, kArm, Signal::kOn, true, Refusal::kNone, State::kOff, State::kOn, {}}),
+            "goal traj 0\ngoal pid 0\nanswer 2 no: arm: off was asked for meanwhile\n");
+  EXPECT_EQ(report(kArm, State::kOff), "answer 3 yes arm ON>OFF\n");
+}
+
+TEST_F(SubsystemTest, NoReportWithinTheLimitIsNoAnswer) {
+  command(Signal::kOff, {kTraj});
+  EXPECT_EQ(subsystem->next_due(), now + seconds(2));
+  now += seconds(2);
+  EXPECT_EQ(step(Tick{}), "answer 1 no: no answer from rtpu spare traj ON>ON\n");
+  EXPECT_EQ(subsystem->next_due(), kNever);
+}
+
+TEST_F(SubsystemTest, AnInitThatIsUnderWayIsWaitedFor) {
+  command(Signal::kKill, {kReserve});
+  report(kReserve, State::kNotCreated);
+  EXPECT_EQ(command(Signal::kSpawn, {kReserve}), "goal reserve 1\nsend spare: spawn reserve\n");
+  seen(kReserve, State::kNotCreated, true);
+  now += seconds(2);
+  EXPECT_EQ(step(Tick{}), "");
+  now += seconds(1);
+  EXPECT_EQ(report(kReserve, State::kOff), "goal reserve 0\nanswer 2 yes reserve NOT-CREATED>OFF\n");
+}
+
+TEST_F(SubsystemTest, ARequestOfATaskIsJudgedAndItsRefusalTold) {
+  EXPECT_EQ(step(Requested{kReserve, Signal::kOn, kTraj}),
+            "refused: on sent by traj: tau would have two producers: pid and reserve\n");
+}
+
+TEST_F(SubsystemTest, ADeadRtpuComesBackWithWhatWasOn) {
+  EXPECT_EQ(die(kServo),
+            "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
+            "goal arm 3\ngoal pid 3\nrestart servo\nhandled servo 1\nstart servo\n"
+            "rtpu-restarted: servo is restarted, 1 of at most 3 times in 10 s\n");
+  EXPECT_EQ(subsystem->state(kPid), State::kError);
+  EXPECT_EQ(step(RtpuUp{kServo, 2}), "send servo: spawn arm\n");
+  EXPECT_EQ(report(kArm, State::kOff), "goal arm 2\nsend servo: spawn pid\n");
+  EXPECT_EQ(report(kPid, State::kOff), "goal pid 2\nsend servo: on arm pid\n");
+  report(kArm, State::kOn);
+  EXPECT_EQ(report(kPid, State::kOn), "goal arm 0\ngoal pid 0\nstarted: arm pid are ON\n");
+}
+
+TEST_F(SubsystemTest, WhoWaitsForADeadRtpuIsToldWhy) {
+  command(Signal::kOff, {kPid});
+  EXPECT_EQ(die(kServo),
+            "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
+            "goal arm 3\ngoal pid 1\nrestart servo\nhandled servo 1\nstart servo\n"
+            "rtpu-restarted: servo is restarted, 1 of at most 3 times in 10 s\n"
+            "answer 1 no: servo ended by signal 11 (SIGSEGV) in pid.cycle pid ERROR>ERROR\n");
+}
+
+TEST_F(SubsystemTest, AfterThreeRestartsInTenSecondsItGivesUpUntilAPersonStartsIt) {
+  for (std::uint32_t i = 1; i <= 3; ++i) {
+    die(kSpare, i);
+    step(RtpuUp{kSpare, i + 1});
+  }
+  const std::string why =
+      ": spare ended 4 times in 10 s and is not restarted; spawn or clear of one of its tasks starts it\n";
+  EXPECT_EQ(die(kSpare, 4),
+            "rtpu-ended: spare ended by signal 11 (SIGSEGV) in pid.cycle\n"
+            "goal traj 0\nrefused" + why + "goal reserve 0\nrefused" + why + "handled spare 4\nrtpu-given-up" + why);
+  EXPECT_EQ(subsystem->state(kTraj), State::kError);
+  EXPECT_EQ(command(Signal::kOn, {kTraj}), "answer 1 no: on is not legal for traj in state ERROR\n");
+  EXPECT_EQ(command(Signal::kKill, {kReserve}), "goal reserve 4\nanswer 2 yes reserve ERROR>NOT-CREATED\n");
+  EXPECT_EQ(command(Signal::kClear, {kTraj}), "goal traj 1\nrestart spare\nstart spare\n");
+  EXPECT_EQ(step(RtpuUp{kSpare, 5}), "goal reserve 0\nsend spare: spawn traj\n");
+  EXPECT_EQ(report(kTraj, State::kOff), "goal traj 0\nanswer 3 yes traj ERROR>OFF\n");
+}
+
+TEST_F(SubsystemTest, TheNextManagerGoesOnWithATransaction) {
+  command(Signal::kOff, {kArm, kTraj, kPid});
+  for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
+  command(Signal::kOn, {kArm, kTraj, kPid});
+  report(kArm, State::kOn);
+  now += seconds(1);
+  EXPECT_EQ(rebirth(), "");
+  for (TaskId task : {kArm, kPid, kTraj, kReserve}) seen(task, states[task.index]);
+  EXPECT_EQ(command(Signal::kOff, {kReserve}), "") << "a command waits for the inventory";
+  step(RtpuUp{kServo, 1});
+  step(RtpuUp{kSpare, 1});
+  EXPECT_EQ(step(InventoryComplete{}),
+            "answer 3 no: off is not legal for reserve in state OFF\nsend spare: on traj\n");
+  report(kTraj, State::kOn);
+  EXPECT_EQ(report(kPid, State::kOn), "goal arm 0\ngoal traj 0\ngoal pid 0\nstarted: arm traj pid are ON\n");
+}
+
+TEST_F(SubsystemTest, TheNextManagerDealsWithADeathThatNobodySaw) {
+  rebirth();
+  for (TaskId task : {kArm, kTraj, kPid}) seen(task, State::kOn);
+  seen(kReserve, State::kOff);
+  step(RtpuUp{kSpare, 1});
+  EXPECT_EQ(die(kServo),
+            "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
+            "goal arm 3\ngoal pid 3\nrestart servo\nhandled servo 1\nstart servo\n"
+            "rtpu-restarted: servo is restarted, 1 of at most 3 times in 10 s\n");
+  rebirth();
+  for (TaskId task : {kArm, kPid}) seen(task, State::kOn);
+  EXPECT_EQ(die(kServo), "start servo\n") << "dealt with, but nobody knows whether it was started";
+}
+
+}  // namespace
+}  // namespace chimera::subsystem
