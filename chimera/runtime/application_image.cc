@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/application_image.h"
+
+#include <bit>
+#include <cstring>
+#include <deque>
+#include <type_traits>
+
+#include "chimera/base/assert.h"
+#include "chimera/runtime/pages.h"
+#include "chimera/table/layout.h"
+
+namespace chimera {
+
+struct ApplicationImage::Parts {
+  ApplicationSpec spec;
+  RunSettings settings;
+  std::vector<RtpuSpec> rtpus;
+  std::vector<TaskSpec> tasks;
+  std::deque<std::vector<PortSpec>> ports;  // of one task each
+  std::vector<GivenSpec> constants, operators;
+  std::vector<TaskId> init_order, start;
+  std::vector<ComponentPlace> places;
+};
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
+constexpr std::uint32_t kVersion = 1;
+
+struct Header {
+  std::uint64_t magic = kMagic;
+  std::uint32_t version = kVersion;
+  std::uint32_t header_bytes = sizeof(Header);
+  std::uint64_t total_bytes = 0;
+  std::uint64_t hash = 0;  ///< of everything behind the header
+};
+static_assert(sizeof(Header) == 32);
+
+std::uint64_t hash_of(std::span<const std::byte> bytes) noexcept {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  for (const std::byte b : bytes) hash = (hash ^ static_cast<unsigned char>(b)) * 0x100000001b3u;
+  return hash;
+}
+
+// Writer and Reader offer the same operations, so that the fields are listed once and cannot drift apart.
+class Writer {
+ public:
+  template <class T>
+  void number(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const auto* at = reinterpret_cast<const std::byte*>(&value);
+    out_.insert(out_.end(), at, at + sizeof value);
+  }
+  template <class T>
+  void choice(const T& value, T) { number(value); }
+  void text(const std::string_view& text) { values(std::as_bytes(std::span(text.data(), text.size()))); }
+  void values(const std::span<const std::byte>& bytes) {
+    number(static_cast<std::uint32_t>(bytes.size()));
+    out_.insert(out_.end(), bytes.begin(), bytes.end());
+  }
+  template <class T, class Each>
+  void list(const std::span<const T>& items, std::vector<T>&, std::size_t, const char*, Each each) {
+    number(static_cast<std::uint32_t>(items.size()));
+    for (const T& item : items) each(item);
+  }
+  void require(bool, const char*) {}
+  bool is_good() const { return true; }
+
+  std::vector<std::byte> out_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <class T>
+  void number(T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const auto from = take(sizeof value);
+    if (!from.empty()) std::memcpy(static_cast<void*>(&value), from.data(), sizeof value);
+  }
+  // An enumeration or a bool: judged before it becomes one.
+  template <class T>
+  void choice(T& value, T last) {
+    unsigned char read = 0;
+    static_assert(sizeof(T) == 1);
+    number(read);
+    require(read <= static_cast<unsigned char>(last), "a choice that does not exist");
+    if (is_good()) value = static_cast<T>(read);
+  }
+  void text(std::string_view& text) {
+    std::span<const std::byte> bytes;
+    values(bytes);
+    text = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+  void values(std::span<const std::byte>& bytes) {
+    std::uint32_t n = 0;
+    number(n);
+    bytes = take(n);
+  }
+  template <class T, class Each>
+  void list(std::span<const T>& items, std::vector<T>& storage, std::size_t most, const char* what, Each each) {
+    std::uint32_t n = 0;
+    number(n);
+    // Every item takes at least a byte: a count beyond them is not believed, and no memory is taken for it.
+    require(n <= most && n <= bytes_.size() - at_, what);
+    if (!is_good()) return;
+    storage.resize(n);
+    for (std::uint32_t i = 0; i < n && is_good(); ++i) each(storage[i]);
+    items = storage;
+  }
+  void require(bool kept, const char* broken) {
+    if (!kept && why_ == nullptr) why_ = broken;
+  }
+  bool is_good() const { return why_ == nullptr; }
+  const char* why() const { return why_; }
+  std::size_t position() const { return at_; }
+
+ private:
+  std::span<const std::byte> take(std::size_t n) {
+    require(n <= bytes_.size() - at_, "cut short");
+    if (!is_good()) return {};
+    at_ += n;
+    return bytes_.subspan(at_ - n, n);
+  }
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+  const char* why_ = nullptr;
+};
+
+template <class T>
+bool is_valued(const T& item) {
+  const std::uint64_t count = std::uint64_t{item.extent[0].max} * item.extent[1].max;
+  const bool fits = item.extent[0].max <= kMaxPayloadBytes && item.extent[1].max <= kMaxPayloadBytes && count > 0 &&
+                    item.element_bytes <= kMaxPayloadBytes && count <= kMaxPayloadBytes &&
+                    count * item.element_bytes <= kMaxPayloadBytes;
+  return fits && (item.value.empty() || item.element_bytes == 0 || item.value.size() == count * item.element_bytes);
+}
+
+// What a PortSpec and a GivenSpec have in common.
+template <class Archive, class Item>
+void value_fields(Archive& archive, Item& item) {
+  archive.number(item.type);
+  archive.number(item.element_bytes);
+  for (auto& extent : item.extent) {
+    archive.number(extent.max);
+    archive.text(extent.constant);
+  }
+  archive.values(item.value);
+  for (auto& listed : item.listed) archive.number(listed);
+  archive.require(item.type < CHIMERA_ANY, "a type that does not exist");
+  archive.require(is_valued(item), "a value that does not fill its variable");
+}
+
+template <class Archive, class Port>
+void port_fields(Archive& archive, Port& port) {
+  archive.number(port.declared);
+  archive.number(port.kind);
+  archive.number(port.instance);
+  archive.text(port.variable);
+  archive.choice(port.safety, true);
+  archive.choice(port.has_range, true);
+  archive.number(port.min);
+  archive.number(port.max);
+  value_fields(archive, port);
+  archive.require(port.declared < CHIMERA_MAX_PORTS && port.kind <= CHIMERA_OUT_STREAM &&
+                      port.instance < CHIMERA_MAX_INSTANCES, "a port that cannot be declared");
+}
+
+template <class Archive, class Task>
+void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std::size_t n_rtpus) {
+  archive.text(task.name);
+  archive.text(task.component);
+  for (auto* time : {&task.period, &task.offset, &task.deadline, &task.budget, &task.min_time}) archive.number(*time);
+  archive.number(task.criticality);
+  archive.number(task.user_priority);
+  archive.choice(task.on_miss, OnMiss::kStop);
+  archive.choice(task.on_overrun, OnMiss::kStop);
+  archive.number(task.max_consecutive);
+  archive.choice(task.aperiodic, true);
+  archive.choice(task.is_hardware, true);
+  archive.number(task.rtpu);
+  archive.list(task.ports, ports, CHIMERA_MAX_PORTS, "too many ports", [&](auto& port) { port_fields(archive, port); });
+  const Nanoseconds zero;
+  archive.require(task.period > zero && task.deadline > zero && task.deadline <= task.period && task.offset >= zero &&
+                      task.budget >= zero && task.min_time >= zero, "times that are not in order");
+  archive.require(task.rtpu.index < n_rtpus, "an rtpu that does not exist");
+}
+
+template <class Archive>
+void task_ids(Archive& archive, std::span<const TaskId>& ids, std::vector<TaskId>& storage, std::size_t n_tasks) {
+  archive.list(ids, storage, n_tasks, "more tasks in an order than there are", [&](auto& id) {
+    archive.number(id);
+    archive.require(id.index < n_tasks, "a task that does not exist");
+  });
+}
+
+// Far beyond what a description of 256 KiB can hold.
+constexpr std::size_t kMostTasks = 4096, kMostGiven = 65536;
+
+// `parts` holds what a Reader makes; a Writer only looks at what spec and places point at.
+template <class Archive>
+void image_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationSpec& spec,
+                  std::span<const ComponentPlace>& places, RunSettings& settings) {
+  archive.number(settings.priority);
+  archive.number(settings.method_limit);
+  archive.require(settings.priority >= 0 && settings.priority <= 99 && settings.method_limit >= Nanoseconds{},
+                  "settings out of range");
+  archive.text(spec.name);
+  archive.list(spec.rtpus, parts.rtpus, kMaxRtpus, "too many rtpus", [&](auto& rtpu) {
+    archive.text(rtpu.name);
+    archive.number(rtpu.cpu);
+    archive.choice(rtpu.policy, Policy::kMufLaxity);
+  });
+  archive.list(spec.tasks, parts.tasks, kMostTasks, "too many tasks", [&](auto& task) {
+    task_fields(archive, task, parts.ports.emplace_back(), spec.rtpus.size());
+  });
+  archive.list(places, parts.places, kMostTasks, "too many places", [&](auto& place) {
+    archive.text(place.object_file);
+    archive.number(place.fingerprint);
+  });
+  archive.require(places.size() == spec.tasks.size(), "not one place for each task");
+  const auto given = [&](auto& item) {
+    archive.text(item.name);
+    value_fields(archive, item);
+  };
+  archive.list(spec.constants, parts.constants, kMostGiven, "too many constants", given);
+  archive.list(spec.operators, parts.operators, kMostGiven, "too many operator variables", given);
+  task_ids(archive, spec.init_order, parts.init_order, spec.tasks.size());
+  task_ids(archive, spec.start, parts.start, spec.tasks.size());
+}
+
+Error refusal(std::string text) { return {ErrorCode::kBadInput, {std::move(text)}, {}}; }
+
+}  // namespace
+
+std::vector<std::byte> encode(const ApplicationSpec& spec, std::span<const ComponentPlace> places,
+                              const RunSettings& settings) {
+  CHIMERA_ASSERT(places.size() == spec.tasks.size());
+  Writer writer;
+  writer.number(Header{});
+  ApplicationImage::Parts unused;
+  ApplicationSpec same = spec;
+  RunSettings same_settings = settings;
+  image_fields(writer, unused, same, places, same_settings);
+  Header header;
+  header.total_bytes = writer.out_.size();
+  header.hash = hash_of(std::span(writer.out_).subspan(sizeof header));
+  std::memcpy(writer.out_.data(), &header, sizeof header);
+  return std::move(writer.out_);
+}
+
+Result<ApplicationImage> ApplicationImage::decode(std::span<const std::byte> bytes) {
+  Header header;
+  if (bytes.size() < sizeof header) {
+    return refusal("not an application image: " + std::to_string(bytes.size()) + " bytes");
+  }
+  std::memcpy(&header, bytes.data(), sizeof header);
+  if (header.magic != kMagic || header.header_bytes != sizeof header) return refusal("not an application image");
+  if (header.version != kVersion) {
+    return refusal("image version " + std::to_string(header.version) + ", this program reads " +
+                   std::to_string(kVersion));
+  }
+  if (header.total_bytes != bytes.size()) {
+    return refusal("the image says it has " + std::to_string(header.total_bytes) + " bytes, here are " +
+                   std::to_string(bytes.size()));
+  }
+  const auto body = bytes.subspan(sizeof header);
+  if (header.hash != hash_of(body)) return refusal("damaged image: its bytes have another hash");
+  auto parts = std::make_shared<Parts>();
+  Reader reader(body);
+  std::span<const ComponentPlace> places;
+  image_fields(reader, *parts, parts->spec, places, parts->settings);
+  reader.require(reader.position() == body.size(), "more than there should be");
+  if (!reader.is_good()) {
+    return refusal("damaged image: " + std::string(reader.why()) + ", before byte " +
+                   std::to_string(sizeof header + reader.position()));
+  }
+  return ApplicationImage(std::move(parts));
+}
+
+const ApplicationSpec& ApplicationImage::spec() const noexcept { return parts_->spec; }
+std::span<const ComponentPlace> ApplicationImage::places() const noexcept { return parts_->places; }
+const RunSettings& ApplicationImage::settings() const noexcept { return parts_->settings; }
+
+}  // namespace chimera

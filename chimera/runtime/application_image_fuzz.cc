@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes as an image: refused with a reason, or an application that holds together and is written back as it was.
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "chimera/runtime/application_image.h"
+
+namespace {
+
+using namespace chimera;
+
+void require(bool kept, const char* property) {
+  if (kept) return;
+  std::fprintf(stderr, "property broken: %s\n", property);
+  std::abort();
+}
+
+/// The bytes behind a header that is right: otherwise the hash would refuse nearly everything.
+std::vector<std::byte> with_header(const std::uint8_t* bytes, std::size_t size) {
+  const std::uint64_t magic = 0x31474d49'4d494843, total = size + 32;
+  const std::uint32_t version = 1, header_bytes = 32;
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  std::vector<std::byte> image(total);
+  std::memcpy(image.data(), &magic, 8);
+  std::memcpy(image.data() + 8, &version, 4);
+  std::memcpy(image.data() + 12, &header_bytes, 4);
+  std::memcpy(image.data() + 16, &total, 8);
+  std::memcpy(image.data() + 24, &hash, 8);
+  if (size > 0) std::memcpy(image.data() + 32, bytes, size);
+  return image;
+}
+
+unsigned sum(std::span<const std::byte> bytes) {
+  unsigned all = 0;
+  for (const std::byte b : bytes) all += static_cast<unsigned char>(b);
+  return all;
+}
+
+unsigned sum(std::string_view text) { return sum(std::as_bytes(std::span(text.data(), text.size()))); }
+
+/// Touches everything it points at.
+unsigned check_spec(const ApplicationSpec& spec) {
+  unsigned all = sum(spec.name);
+  for (const TaskSpec& task : spec.tasks) {
+    require(task.rtpu.index < spec.rtpus.size(), "every task has an rtpu");
+    require(task.deadline.count > 0 && task.deadline <= task.period, "times are in order");
+    all += sum(task.name) + sum(task.component);
+    for (const PortSpec& port : task.ports) {
+      require(port.element_bytes == 0 || port.value.empty() || port.value.size() == port.max_bytes(),
+              "values fill their ports");
+      all += sum(port.variable) + sum(port.value) + sum(port.extent[0].constant) + sum(port.extent[1].constant);
+    }
+#ifdef CHIMERA_PLANTED_DEFECT
+    volatile char marks[17] = {};  // beyond the end for a user priority of more than 16
+    marks[task.user_priority < 17 ? task.user_priority : 17] = 1;
+#endif
+  }
+  for (const auto items : {spec.constants, spec.operators})
+    for (const GivenSpec& given : items) all += sum(given.name) + sum(given.value);
+  for (const auto ids : {spec.init_order, spec.start})
+    for (const TaskId id : ids) require(id.index < spec.tasks.size(), "every task in an order is there");
+  return all;
+}
+
+void check(std::span<const std::byte> bytes) {
+  const auto image = ApplicationImage::decode(bytes);
+  if (!image) return require(!image.error().message.empty(), "a refusal has a reason");
+  volatile unsigned all = check_spec(image->spec());
+  for (const ComponentPlace& place : image->places()) all = all + sum(place.object_file);
+  const std::vector<std::byte> again = encode(image->spec(), image->places(), image->settings());
+  require(again.size() == bytes.size() && std::memcmp(again.data(), bytes.data(), again.size()) == 0,
+          "what is accepted is written back as it was");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  check(std::as_bytes(std::span(bytes, size)));
+  check(with_header(bytes, size));
+  return 0;
+}

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/application_image.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <string>
+
+#include "chimera/runtime/spec_equal.h"
+
+namespace chimera {
+namespace {
+
+using testing::first_difference;
+
+std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+
+// An application in which no field has its default and no two fields of a kind are alike.
+struct Sample {
+  Sample() {
+    ports[0] = {3, CHIMERA_OUT_VAR, 2, "x", 8, {{1, "n"}, {2, "m"}}, true, -1.5, 2.5, true, CHIMERA_INT64,
+                bytes_of("0123456789abcdef"), {1, 2}};
+    ports[1] = {4, CHIMERA_RESOURCE, 0, "", 0, {}, false, 0, 0, false, CHIMERA_STRING, bytes_of("arm.xml"), {}};
+    tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
+                .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
+                .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kStop, .max_consecutive = 5,
+                .aperiodic = true, .is_hardware = true, .rtpu = RtpuId{1u}, .ports = ports};
+    tasks[1] = {.name = "plain", .component = "gain", .period = Nanoseconds{20}, .offset = {},
+                .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .rtpu = RtpuId{0u}, .ports = {}};
+    constants[0] = {"n", CHIMERA_INT32, 4, {{2, ""}, {1, ""}}, bytes_of("abcdefgh"), {2, 0}};
+    operators[0] = {"kp", CHIMERA_FLOAT32, 4, {}, bytes_of("abcd"), {}};
+    operators[1] = {"ki", CHIMERA_FLOAT64, 8, {}, bytes_of("abcdefgh"), {}};
+    spec = {"arm", rtpus, tasks, constants, operators, init_order, start};
+  }
+
+  RtpuSpec rtpus[2] = {{"spare", 3, Policy::kMuf}, {"servo", 1, Policy::kRm}};
+  PortSpec ports[2];
+  TaskSpec tasks[2];
+  GivenSpec constants[1], operators[2];
+  TaskId init_order[2] = {TaskId{1u}, TaskId{0u}}, start[1] = {TaskId{1u}};
+  ComponentPlace places[2] = {{"/usr/lib/pid.so", 0x123456789abcdef0}, {"gain.so", 2}};
+  RunSettings settings{40, milliseconds(5)};
+  ApplicationSpec spec;
+};
+
+// Where the fields of the header lie: docs/formats/image.md.
+constexpr std::size_t kVersionAt = 8, kHashAt = 24, kBodyAt = 32;
+
+void set_hash(std::vector<std::byte>& bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (std::size_t i = kBodyAt; i < bytes.size(); ++i)
+    hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3u;
+  std::memcpy(bytes.data() + kHashAt, &hash, sizeof hash);
+}
+
+std::string refusal(std::span<const std::byte> bytes) {
+  const auto image = ApplicationImage::decode(bytes);
+  return image ? "accepted" : image.error().message.c_str();
+}
+
+TEST(ApplicationImage, EveryFieldComesBack) {
+  const Sample sample;
+  const auto bytes = encode(sample.spec, sample.places, sample.settings);
+  auto image = ApplicationImage::decode(bytes);
+  ASSERT_TRUE(image) << image.error().message.c_str();
+  const ApplicationImage moved = std::move(*image);
+  EXPECT_EQ(first_difference(moved.spec(), sample.spec), "");
+  ASSERT_EQ(moved.places().size(), 2u);
+  EXPECT_EQ(moved.places()[0].object_file, "/usr/lib/pid.so");
+  EXPECT_EQ(moved.places()[0].fingerprint, 0x123456789abcdef0u);
+  EXPECT_EQ(moved.settings().priority, 40);
+  EXPECT_EQ(moved.settings().method_limit, milliseconds(5));
+}
+
+TEST(ApplicationImage, ADifferenceInAnySpecIsSeen) {  // so that the test above is worth something
+  Sample a, b;
+  b.ports[0].listed[1] = 9;
+  EXPECT_EQ(first_difference(a.spec, b.spec), "tasks[0].ports[0].listed");
+  a.operators[1].value = bytes_of("abcdefgi");
+  EXPECT_EQ(first_difference(a.spec, Sample().spec), "operators[1].value");
+}
+
+TEST(ApplicationImage, StrangersAreRefusedByName) {
+  const Sample sample;
+  const auto good = encode(sample.spec, sample.places, sample.settings);
+  EXPECT_EQ(refusal({}), "not an application image: 0 bytes");
+  auto bytes = good;
+  bytes[0] = std::byte{'X'};
+  EXPECT_EQ(refusal(bytes), "not an application image");
+  bytes = good;
+  bytes[kVersionAt] = std::byte{7};
+  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 1");
+  bytes = good;
+  bytes.pop_back();
+  EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +
+                                std::to_string(good.size() - 1));
+  bytes = good;
+  bytes.back() ^= std::byte{1};
+  EXPECT_EQ(refusal(bytes), "damaged image: its bytes have another hash");
+}
+
+template <class Change>
+std::string refusal_of(Change change) {
+  Sample sample;
+  change(sample);
+  return refusal(encode(sample.spec, sample.places, sample.settings));
+}
+
+bool says(const std::string& refusal, const char* why) {
+  return refusal.starts_with(std::string("damaged image: ") + why + ", before byte ");
+}
+
+TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
+  EXPECT_EQ(refusal_of([](Sample&) {}), "accepted");
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].rtpu = RtpuId{2u}; }), "an rtpu that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.start[0] = TaskId{2u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.init_order[0] = TaskId{}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].period = {}; }), "times that are not in order"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].deadline = seconds(1); }), "times that are not in order"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].type = CHIMERA_ANY; }), "a type that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].kind = 99; }), "a port that cannot be declared"));
+  const char* unfilled = "a value that does not fill its variable";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].extent[1].max = 3; }), unfilled));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].extent[0].max = 0; }), unfilled));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) {
+    s.ports[0].value = {};
+    s.ports[0].extent[0].max = s.ports[0].extent[1].max = 1u << 31;
+  }), unfilled));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.rtpus[0].policy = static_cast<Policy>(9); }),
+                   "a choice that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.settings.priority = 100; }), "settings out of range"));
+}
+
+TEST(ApplicationImage, NoTruncationAndNoChangedByteIsEverMoreThanARefusal) {
+  const Sample sample;
+  const auto good = encode(sample.spec, sample.places, sample.settings);
+  int accepted = 0;
+  for (std::size_t size = kBodyAt; size < good.size(); ++size) {
+    std::vector<std::byte> bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
+    const std::uint64_t total = size;
+    std::memcpy(bytes.data() + 16, &total, sizeof total);
+    set_hash(bytes);
+    EXPECT_TRUE(refusal(bytes).starts_with("damaged image: ")) << size;
+  }
+  std::mt19937 random(4);
+  for (std::size_t at = kBodyAt; at < good.size(); ++at) {
+    for (int i = 0; i < 6; ++i) {
+      auto bytes = good;
+      bytes[at] = i == 0 ? std::byte{0xff} : static_cast<std::byte>(random());
+      set_hash(bytes);
+      const auto image = ApplicationImage::decode(bytes);
+      if (!image) continue;
+      ++accepted;
+      EXPECT_EQ(encode(image->spec(), image->places(), image->settings()), bytes);  // nothing was overlooked
+    }
+  }
+  EXPECT_GT(accepted, 0);
+}
+
+TEST(ApplicationImage, BytesBehindTheEndAreRefused) {
+  const Sample sample;
+  auto bytes = encode(sample.spec, sample.places, sample.settings);
+  bytes.push_back({});
+  const std::uint64_t total = bytes.size();
+  std::memcpy(bytes.data() + 16, &total, sizeof total);
+  set_hash(bytes);
+  EXPECT_TRUE(says(refusal(bytes), "more than there should be"));
+}
+
+}  // namespace
+}  // namespace chimera

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "chimera/config/library.h"
+#include "chimera/config/unit_samples.h"
+#include "chimera/config/verify.h"
+#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/spec_equal.h"
+
+namespace chimera {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string place(const char* variable) {
+  const char* value = std::getenv(variable);
+  EXPECT_NE(value, nullptr) << variable << " is set by the test runner";
+  return value != nullptr ? value : "";
+}
+
+TEST(ImageOfTheLessons, EveryLegalDescriptionComesBackAsItWas) {
+  const std::string folders[] = {place("CHIMERA_BUILD") + "/components"};
+  const Library library = Library::make(folders, our_units());
+  int legal = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(place("CHIMERA_SOURCE") + "/examples")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Verdict verdict = verify(read_description_file(entry.path()), library);
+    if (!verdict.configuration) continue;  // a lesson about what is refused
+    SCOPED_TRACE(entry.path());
+    ++legal;
+    const ApplicationSpec& spec = verdict.configuration->spec();
+    std::vector<ComponentPlace> places;
+    for (const TaskSpec& task : spec.tasks) places.push_back({task.component, task.name.size()});
+    const std::vector<std::byte> bytes = encode(spec, places, {});
+    const auto image = ApplicationImage::decode(bytes);
+    ASSERT_TRUE(image) << image.error().message.c_str();
+    EXPECT_EQ(testing::first_difference(image->spec(), spec), "");
+    EXPECT_EQ(encode(image->spec(), image->places(), image->settings()), bytes);
+  }
+  EXPECT_GE(legal, 10);
+}
+
+}  // namespace
+}  // namespace chimera
