@@ -232,7 +232,8 @@ void Releases::end_job(const Job& job, const CycleTime& time, BodyEnd body, Nano
   const State state = end_cycle(task, body, time, end, may_publish);
   if (task.profile.cycles != cycles) t.dropped -= time.dropped;  // this cycle was told of those
   if (failed && is_out_of_patience(task) && state == State::kOn) give_up(task, end);
-  const bool tells = options_.tap != nullptr && task.faults.count != t.faults_seen;
+  const bool listens = options_.tap != nullptr || options_.guest != nullptr;
+  const bool tells = listens && task.faults.count != t.faults_seen;
   if (task.state != State::kOn || !task.outbox.empty() || tells) settle(task, end);
 }
 

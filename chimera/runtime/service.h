@@ -12,6 +12,8 @@ class Service {
  public:
   /// Takes over the task until it is served. Context: edge; wait-free.
   virtual void ask(TaskId task) noexcept = 0;
+  /// A task that was served; false when there is none. Context: edge; wait-free.
+  virtual bool take_served(TaskId& task) noexcept = 0;
 
  protected:
   ~Service() = default;

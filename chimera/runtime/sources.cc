@@ -87,7 +87,7 @@ void Sources::plan_copy(TaskId consumer, const Source& source) {
   if (copy_for(consumer, source) != nullptr) return;
   const std::uint32_t payload = payload_of(source);
   copy_memory_.emplace_back(local_group_bytes(payload), kCacheLine);
-  copies_.push_back({LocalGroup(GroupReader(nullptr, payload), copy_memory_.back().span()), consumer, source, false});
+  copies_.push_back({LocalGroup(GroupReader(nullptr, payload), copy_memory_.back().span()), consumer, source, false, false});
   for (std::uint32_t half = 0; half < 2; ++half) fill(source, copies_.back().group.values_of_half(half));
 }
 
@@ -145,11 +145,11 @@ void Sources::follow_others() noexcept {
 // they have: a restarted process shows a group without values before its tasks are ON again.
 void Sources::refresh_readers() noexcept {
   for (Copy& copy : copies_) {
-    if (copy.of.task.is_valid() && copy.is_bound && others_->state(copy.of.task) != State::kOn) continue;
+    if (copy.of.task.is_valid() && copy.was_bound && others_->state(copy.of.task) != State::kOn) continue;
     const GroupReader reader = reader_of(copy.of);
     if (!reader.is_bound()) continue;
     copy.group.rebind(reader);
-    copy.is_bound = true;
+    copy.is_bound = copy.was_bound = true;
   }
   collect_copies();
 }

@@ -56,7 +56,8 @@ class Sources {
     LocalGroup group;
     TaskId consumer;
     Source of;
-    bool is_bound = false;  ///< to a group that may be read
+    bool is_bound = false;   ///< to a group that may be read
+    bool was_bound = false;  ///< its values are worth keeping
   };
 
   bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }

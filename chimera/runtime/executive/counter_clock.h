@@ -25,13 +25,13 @@ class CounterClock final : public Clock {
     return end;
   }
   const char* describe() const noexcept { return counter_.describe(); }
-
- private:
+  /// After a wait by other means. Context: cycle; wait-free.
   void compare() noexcept {
     counter_.compare();
     compared_ = counter_.now();
   }
 
+ private:
   CycleCounter counter_;
   LinuxClock waits_;
   Nanoseconds compared_;

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The code of a real-time unit's tasks: opens their shared objects and holds each against what verification saw.
+#pragma once
+
+#include <vector>
+
+#include "chimera/base/result.h"
+#include "chimera/runtime/application_image.h"
+#include "chimera/task/abi.h"
+
+namespace chimera {
+
+/// The component of every task of `rtpu`; nullptr for those of others. Refuses, with the task in `where`: what
+/// SharedObject::open refuses, and a component that is no longer the one that was verified.
+/// Context: setup; may block.
+Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image, RtpuId rtpu);
+
+}  // namespace chimera

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/edge.h"
+
+#include <algorithm>
+
+#include "chimera/rtpu/ending.h"
+#include "chimera/runtime/release.h"
+
+namespace chimera {
+namespace {
+
+constexpr std::size_t kShownAtOnce = 4;
+constexpr Nanoseconds kLookWhileEnding = milliseconds(1);
+
+// Did the signal lead where it should?
+bool has_arrived(Signal signal, const SignalReport& report) noexcept {
+  if (!report.is_accepted) return false;
+  switch (signal) {
+    case Signal::kSpawn:
+    case Signal::kOff:
+    case Signal::kClear:
+      return report.after == State::kOff;
+    case Signal::kOn:
+      return report.after == State::kOn;
+    case Signal::kKill:
+      return report.after == State::kNotCreated;
+    default:
+      return report.after == report.before;
+  }
+}
+
+}  // namespace
+
+Edge::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
+           std::uint32_t me, Nanoseconds method_limit)
+    : EdgeGuest(decision.bells[me].word), spec_(spec), tasks_(tasks), others_(others), service_(service),
+      method_limit_(method_limit), seen_changes_(others.changes() - 1), blocked_(spec.tasks.size()),
+      commands_(spec.tasks.size()), ending_order_(ending_order(spec)) {
+  set_due({});  // the first edge looks around
+}
+
+void Edge::take(Releases& releases, Nanoseconds now) noexcept {
+  listen();
+  set_due(kNever);
+  others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
+  look_around();
+  take_served(releases, now);
+  if (ending_) return go_on_ending(releases, now);  // nothing is begun any more
+  take_posts();
+  act_on_waiting(releases, now);
+}
+
+void Edge::look_around() noexcept {
+  const bool is_new = others_.adopt();
+  const std::uint32_t changes = others_.changes();
+  if (!is_new && changes == seen_changes_) return;
+  seen_changes_ = changes;
+  tasks_.follow_others();
+  others_.block().head().seen_changes.store(changes, std::memory_order_release);
+}
+
+void Edge::take_posts() noexcept {
+  for (Post post; !waiting_.is_full() && others_.take(post);) {
+    const bool is_for_us = post.kind == PostKind::kSignal && post.task.index < spec_.tasks.size() &&
+                           tasks_.is_mine(post.task) && post.signal != Signal::kWakeup;
+    if (is_for_us) (void)waiting_.try_push(post);
+  }
+}
+
+void Edge::take_served(Releases& releases, Nanoseconds now) noexcept {
+  for (TaskId task; service_.take_served(task);) {
+    const SignalReport served = releases.served(task, now);
+    if (!served.is_deferred) report(commands_[task.index], served, now);
+    if (!served.is_deferred) commands_[task.index] = {};
+  }
+}
+
+// A step is a signal with those that belong to one transaction with it; 0: the rest of it is still to come.
+std::size_t Edge::step_length(std::size_t first) const noexcept {
+  for (std::size_t i = first; i < waiting_.size(); ++i)
+    if (!waiting_[i].more) return i - first + 1;
+  return waiting_.is_full() ? waiting_.size() - first : 0;
+}
+
+// A task keeps the order of its signals: one that is being served, or that has an earlier signal waiting, waits.
+bool Edge::may_act(std::span<const Post> step) noexcept {
+  bool may = true;
+  for (const Post& post : step) {
+    const Task& task = tasks_.tasks()[post.task.index];
+    may = may && !task.in_service && !blocked_[post.task.index];
+  }
+  if (!may)
+    for (const Post& post : step) blocked_[post.task.index] = true;
+  return may;
+}
+
+void Edge::act_on_waiting(Releases& releases, Nanoseconds now) noexcept {
+  std::fill(blocked_.begin(), blocked_.end(), false);
+  std::size_t kept = 0, at = 0;
+  while (at < waiting_.size()) {
+    const std::size_t n = step_length(at);
+    const std::span<const Post> step(waiting_.begin() + at, n == 0 ? waiting_.size() - at : n);
+    at += step.size();
+    if (n != 0 && may_act(step)) {
+      act(step, releases, now);
+      continue;
+    }
+    for (const Post& post : step) waiting_[kept++] = post;
+  }
+  while (waiting_.size() > kept) waiting_.pop_back();
+}
+
+bool Edge::refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept {
+  const auto is_illegal = [this](const Post& post) {
+    const Task& task = tasks_.tasks()[post.task.index];
+    return next(task.state, post.signal, task.spec->aperiodic).kind == Next::Kind::kImpossible;
+  };
+  const auto culprit = std::find_if(step.begin(), step.end(), is_illegal);
+  if (culprit == step.end()) return false;
+  for (const Post& post : step) {
+    const State state = tasks_.tasks()[post.task.index].state;
+    report(post, state, state, &post == &*culprit ? Refusal::kState : Refusal::kNone, false, now);
+  }
+  return true;
+}
+
+void Edge::act(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept {
+  if (refuse_illegal(step, now)) return;
+  if (step[0].signal == Signal::kOn) return turn_on(step, releases, now);
+  for (const Post& post : step) {
+    const bool is_echo = post.signal == Signal::kReinit && post.detail != 0;
+    if (is_echo && !tasks_.uses_changed_constants(post.task)) continue;
+    const SignalReport done = releases.signal({&post.task, 1}, post.signal, now);
+    if (done.is_deferred) commands_[post.task.index] = post;
+    else report(post, done, now);
+  }
+}
+
+void Edge::turn_on(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept {
+  FixedVector<TaskId, kWaiting> tasks;
+  for (const Post& post : step) (void)tasks.try_push(post.task);
+  const SignalReport done = releases.signal({tasks.begin(), tasks.size()}, Signal::kOn, now);
+  for (const Post& post : step) {
+    const State after = tasks_.tasks()[post.task.index].state;
+    const Refusal why = post.task == done.task ? done.why : Refusal::kNone;
+    report(post, State::kOff, after, why, done.is_accepted && after == State::kOn, now);
+  }
+}
+
+void Edge::report(const Post& signal, const SignalReport& done, Nanoseconds now) noexcept {
+  const bool arrived = has_arrived(done.signal, done);
+  const Refusal why = arrived || done.why != Refusal::kNone ? done.why : Refusal::kFault;
+  report(signal, done.before, done.after, why, arrived, now);
+}
+
+void Edge::report(const Post& signal, State before, State after, Refusal why, bool accepted, Nanoseconds now) noexcept {
+  Post post = signal;
+  post.at = now;
+  post.kind = PostKind::kReport;
+  post.more = false;
+  post.why = static_cast<std::uint8_t>(why);
+  post.before = before;
+  post.after = after;
+  post.detail = accepted ? 1 : 0;
+  if (signal.command == 0) {
+    if (!signal.task.is_valid() || !signal.from.is_valid()) return;  // nobody asked
+    post.kind = PostKind::kEvent;
+    post.happening = accepted ? Happening::kSignalled : Happening::kRefused;
+  }
+  others_.tell(post);
+}
+
+void Edge::told(const SignalReport& done, Nanoseconds now) noexcept {
+  Post post;
+  post.at = now;
+  post.task = done.task;
+  post.signal = done.signal;
+  post.kind = PostKind::kEvent;
+  post.happening = done.is_accepted ? Happening::kSignalled : Happening::kRefused;
+  post.why = static_cast<std::uint8_t>(done.why);
+  post.before = done.before;
+  post.after = done.after;
+  others_.tell(post);
+}
+
+void Edge::stop_all(Releases& releases, Nanoseconds now) noexcept {
+  others_.tell(Happening::kStop, TaskId(), 0, now);
+  for (const TaskId id : ending_order_)
+    if (tasks_.is_mine(id) && tasks_.tasks()[id.index].state == State::kOn)
+      (void)releases.signal({&id, 1}, Signal::kOff, now);
+}
+
+void Edge::show_profiles() noexcept {
+  const std::size_t n = spec_.tasks.size();
+  for (std::size_t looked = 0, shown = 0; looked < n && shown < kShownAtOnce; ++looked) {
+    const TaskId id(shown_);
+    shown_ = (shown_ + 1) % n;
+    if (!tasks_.is_mine(id)) continue;
+    others_.block().profile(id) = tasks_.tasks()[id.index].profile;
+    ++shown;
+  }
+}
+
+void Edge::go_on_ending(Releases& releases, Nanoseconds now) noexcept {
+  if (!has_begun_ending_) {
+    has_begun_ending_ = true;
+    patience_ = now + method_limit_;
+    others_.block().head().phase.store(PeerPhase::kEnding, std::memory_order_release);
+  }
+  if (!turn_off_next(releases, now) || !kill_next(releases, now)) return set_due(now + kLookWhileEnding);
+  others_.block().head().phase.store(PeerPhase::kEnded, std::memory_order_release);
+  over_ = true;
+}
+
+// True when none of ours is ON any more. Tasks of others that come first are waited for, not for ever.
+bool Edge::turn_off_next(Releases& releases, Nanoseconds now) noexcept {
+  for (; next_off_ < ending_order_.size(); ++next_off_) {
+    const TaskId id = ending_order_[next_off_];
+    if (!tasks_.is_mine(id)) {
+      if (others_.state(id) == State::kOn && now < patience_) return false;
+      continue;
+    }
+    if (tasks_.tasks()[id.index].state != State::kOn) continue;
+    (void)releases.signal({&id, 1}, Signal::kOff, now);
+    patience_ = now + method_limit_;
+    ++progress_;
+  }
+  return true;
+}
+
+// True when all of ours are killed.
+bool Edge::kill_next(Releases& releases, Nanoseconds now) noexcept {
+  for (const TaskId id : ending_order_) {
+    if (!tasks_.is_mine(id)) continue;
+    const Task& task = tasks_.tasks()[id.index];
+    if (task.in_service) return false;
+    if (task.state == State::kNotCreated) continue;
+    ++progress_;
+    if (releases.signal({&id, 1}, Signal::kKill, now).is_deferred) return false;
+  }
+  return true;
+}
+
+}  // namespace chimera

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a real-time unit does at its edges beside its own tasks' signals: posts of others, tasks that were served,
+// changes elsewhere, the end. docs/formats/processes.md.
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "chimera/base/fixed.h"
+#include "chimera/rtpu/others.h"
+#include "chimera/runtime/edge_guest.h"
+#include "chimera/runtime/service.h"
+
+namespace chimera {
+
+/// Used by the thread that cycles, but for what is marked.
+class Edge final : public EdgeGuest {
+ public:
+  /// Signals that wait for a task to be served; more stay in the rings.
+  static constexpr std::size_t kWaiting = 512;
+
+  Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
+       std::uint32_t me, Nanoseconds method_limit);
+
+  void take(Releases& releases, Nanoseconds now) noexcept override;
+  void told(const SignalReport& report, Nanoseconds now) noexcept override;
+  /// The reaction `stop` of a task: turns all tasks of the unit OFF.
+  void stop_all(Releases& releases, Nanoseconds now) noexcept;
+  /// Before a wait: shows what the tasks cost, a few of them at a time.
+  void show_profiles() noexcept;
+
+  /// From now on everything ends. Any thread; ring the bell afterwards.
+  void end() noexcept { ending_ = true; }
+  /// How many methods of the end are done: whoever supervises sees it grow. Any thread.
+  std::uint32_t progress() const noexcept { return progress_; }
+  /// Set when all tasks are killed: the loop's RunOptions::stop.
+  const std::atomic<bool>& is_over() const noexcept { return over_; }
+
+ private:
+  void look_around() noexcept;
+  void take_posts() noexcept;
+  void take_served(Releases& releases, Nanoseconds now) noexcept;
+  void act_on_waiting(Releases& releases, Nanoseconds now) noexcept;
+  std::size_t step_length(std::size_t first) const noexcept;
+  bool may_act(std::span<const Post> step) noexcept;
+  void act(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept;
+  void turn_on(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept;
+  bool refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept;
+  void report(const Post& signal, const SignalReport& report, Nanoseconds now) noexcept;
+  void report(const Post& signal, State before, State after, Refusal why, bool accepted, Nanoseconds now) noexcept;
+  void go_on_ending(Releases& releases, Nanoseconds now) noexcept;
+  bool turn_off_next(Releases& releases, Nanoseconds now) noexcept;
+  bool kill_next(Releases& releases, Nanoseconds now) noexcept;
+
+  const ApplicationSpec& spec_;
+  TaskSet& tasks_;
+  Others& others_;
+  Service& service_;
+  const Nanoseconds method_limit_;
+  std::uint32_t seen_changes_;
+  FixedVector<Post, kWaiting> waiting_;
+  std::vector<bool> blocked_;      // by task: an earlier signal for it waits
+  std::vector<Post> commands_;     // by task: the signal that is being served
+  const std::vector<TaskId> ending_order_;
+  std::size_t shown_ = 0;          // the task whose profile is shown next
+  bool has_begun_ending_ = false;
+  std::size_t next_off_ = 0;       // in ending_order_
+  Nanoseconds patience_;           // with the tasks of others, while ending
+  std::atomic<bool> ending_{false};
+  std::atomic<bool> over_{false};
+  std::atomic<std::uint32_t> progress_{0};
+};
+
+}  // namespace chimera

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/edge.h"
+
+#include <gtest/gtest.h>
+
+#include "chimera/rtpu/test_units.h"
+
+namespace chimera {
+namespace {
+
+using testing::component;
+using testing::TestApplication;
+using testing::Units;
+
+struct Source {
+  Out<double> x{"x", "1", initial = 0.0};
+  OutConst<std::int32_t> scale{"scale", "1"};
+  void init(Cycle) { *scale = wanted; }
+  void reinit(Cycle) { *scale = wanted; }
+  void on(Cycle) { n_ = *x; }
+  void cycle(Cycle) { *x = ++n_; }
+  double n_ = 0;
+  static inline std::int32_t wanted = 1;
+};
+
+struct Follower {
+  In<double> x{"x", "1"};
+  InConst<std::int32_t> scale{"scale", "1"};
+  Out<double> y{"y", "1", initial = 0.0};
+  void reinit(Cycle) { ++reinits; }
+  Outcome cycle(Cycle c) {
+    illegal = c.illegal();
+    if (*x == fail_at) return fault("as told", 7);
+    *y = *x * static_cast<double>(*scale);
+    return ok();
+  }
+  static inline bool illegal = false;
+  static inline int reinits = 0;
+  static inline double fail_at = -1;
+};
+
+struct Killer {  // kills the follower when told
+  In<double> y{"y", "1"};
+  void cycle(Cycle c) {
+    if (now && c.signal(Signal::kKill, "follower")) now = false;
+    if (on && c.signal(Signal::kOn, "spare")) on = false;
+  }
+  static inline bool now = false, on = false;
+};
+
+constexpr TaskId kSource{0u}, kFollower{1u}, kKiller{2u}, kSpare{3u};
+
+struct EdgeTest : ::testing::Test {
+  EdgeTest() {
+    Follower::illegal = false;
+    Follower::reinits = 0;
+    Follower::fail_at = -1;
+    Source::wanted = 1;
+    Killer::now = Killer::on = false;
+    app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
+    app.add("source", component<Source>("source")).rtpu = RtpuId(0u);
+    app.add("follower", component<Follower>("follower")).rtpu = RtpuId(1u);
+    app.add("killer", component<Killer>("killer")).rtpu = RtpuId(0u);
+    app.add("spare", component<Source>("source")).rtpu = RtpuId(1u);
+    app.port(3, 1).variable = "spare_scale";
+    app.make({kSource, kFollower, kKiller}, false);
+    units = std::make_unique<Units>(app);
+    units->run(milliseconds(1));
+  }
+  void all_on() { units->bring_up({kSource, kFollower, kKiller}); }
+  testing::Unit& first() { return *units->units[0]; }
+  testing::Unit& second() { return *units->units[1]; }
+
+  TestApplication app;
+  std::unique_ptr<Units> units;
+};
+
+TEST_F(EdgeTest, ValuesAndConstantsCrossFromUnitToUnit) {
+  Source::wanted = 3;
+  all_on();
+  units->run(milliseconds(10));
+  EXPECT_EQ(first().state(kSource), State::kOn);
+  EXPECT_EQ(second().state(kFollower), State::kOn);
+  EXPECT_GT(first().output(kSource), 8);
+  EXPECT_NEAR(second().output(kFollower), 3 * first().output(kSource), 3.1);
+  EXPECT_FALSE(units->flag_is_up());
+}
+
+TEST_F(EdgeTest, EverySignalWithACommandIsReported) {
+  units->send(Signal::kSpawn, {kSource}, 11);
+  units->run(milliseconds(1));
+  units->send(Signal::kOn, {kSource}, 12);
+  units->run(milliseconds(1));
+  units->send(Signal::kOn, {kSource}, 13);
+  units->run(milliseconds(1));
+  const auto reports = units->take(PostKind::kReport);
+  ASSERT_EQ(reports.size(), 3u);
+  EXPECT_EQ(reports[0].command, 11u);
+  EXPECT_EQ(reports[0].detail, 1u);
+  EXPECT_EQ(reports[0].after, State::kOff);
+  EXPECT_EQ(reports[1].detail, 1u);
+  EXPECT_EQ(reports[2].detail, 0u);
+  EXPECT_EQ(static_cast<Refusal>(reports[2].why), Refusal::kState);
+  EXPECT_EQ(first().state(kSource), State::kOn);
+}
+
+TEST_F(EdgeTest, SignalsForATaskInServiceWaitTheirTurn) {
+  units->send(Signal::kSpawn, {kSource}, 1);
+  units->send(Signal::kOn, {kSource}, 2);
+  units->send(Signal::kOff, {kSource}, 3);
+  units->run(milliseconds(1));
+  const auto reports = units->take(PostKind::kReport);
+  ASSERT_EQ(reports.size(), 3u);
+  for (const Post& report : reports) EXPECT_EQ(report.detail, 1u) << report.command;
+  EXPECT_EQ(first().state(kSource), State::kOff);
+}
+
+TEST_F(EdgeTest, AStepWithAnIllegalSignalChangesNothing) {
+  units->send(Signal::kSpawn, {kSource}, 1);
+  units->run(milliseconds(1));
+  units->take(PostKind::kReport);
+  units->send(Signal::kOn, {kSource, kKiller}, 2);
+  units->run(milliseconds(1));
+  const auto reports = units->take(PostKind::kReport);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(static_cast<Refusal>(reports[0].why), Refusal::kNone);
+  EXPECT_EQ(static_cast<Refusal>(reports[1].why), Refusal::kState);
+  EXPECT_EQ(first().state(kSource), State::kOff);
+}
+
+TEST_F(EdgeTest, TheFlagGoesUpEverywhereWhenAProducerLeaves) {
+  all_on();
+  units->send(Signal::kOff, {kSource});
+  units->run(milliseconds(3));
+  EXPECT_TRUE(units->flag_is_up());
+  EXPECT_TRUE(Follower::illegal) << "the consumer in another unit was told";
+  units->send(Signal::kOn, {kSource});
+  units->run(milliseconds(3));
+  EXPECT_FALSE(units->flag_is_up());
+  EXPECT_FALSE(Follower::illegal);
+}
+
+TEST_F(EdgeTest, ATaskKillsATaskOfAnotherUnitWithoutAManager) {
+  all_on();
+  units->keeper.alive[2] = 0;
+  Killer::now = true;
+  units->run(milliseconds(3));
+  EXPECT_FALSE(Killer::now);
+  EXPECT_EQ(second().state(kFollower), State::kNotCreated);
+}
+
+TEST_F(EdgeTest, OnFromATaskIsAskedOfTheManager) {
+  all_on();
+  units->take(PostKind::kRequest);
+  Killer::on = true;
+  units->run(milliseconds(3));
+  const auto requests = units->take(PostKind::kRequest);
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].task, kSpare);
+  EXPECT_EQ(requests[0].from, kKiller);
+}
+
+TEST_F(EdgeTest, AConsumerFollowsAProducerThatTakesOverInAnotherUnit) {
+  all_on();
+  units->send(Signal::kSpawn, {kSpare});
+  units->run(milliseconds(10));
+  const double before = first().output(kSource);
+  units->send(Signal::kOff, {kSource});
+  units->run(milliseconds(1));
+  units->send(Signal::kOn, {kSpare});
+  units->run(milliseconds(5));
+  EXPECT_FALSE(units->flag_is_up());
+  EXPECT_GT(second().output(kSpare), before) << "it began where its predecessor in the other unit stood";
+  EXPECT_LT(second().output(kSpare), before + 7);
+  EXPECT_NEAR(second().output(kFollower), second().output(kSpare), 1.1);
+}
+
+TEST_F(EdgeTest, ADeadUnitRaisesTheFlagAndItsSuccessorIsFollowed) {
+  all_on();
+  units->run(milliseconds(5));
+  const double last = second().output(kFollower);
+  units->die(0);
+  units->run(milliseconds(2));
+  EXPECT_TRUE(Follower::illegal);
+  EXPECT_NEAR(second().output(kFollower), last, 1.1) << "the last good value stands";
+  units->start(0, 2);
+  units->run(milliseconds(2));
+  EXPECT_TRUE(Follower::illegal);
+  EXPECT_NEAR(second().output(kFollower), last, 1.1) << "not the empty group of the new process";
+  units->bring_up({kSource, kKiller});
+  units->run(milliseconds(5));
+  EXPECT_FALSE(Follower::illegal);
+  EXPECT_NEAR(second().output(kFollower), first().output(kSource), 1.1);
+  EXPECT_EQ(second().tasks->tasks()[kFollower.index].state, State::kOn);
+}
+
+TEST_F(EdgeTest, AChangedConstantReinitialisesItsUsersInOtherUnitsAndOnlyThen) {
+  all_on();
+  units->send(Signal::kReinit, {kSource}, 1);
+  units->run(milliseconds(2));
+  EXPECT_EQ(Follower::reinits, 0) << "the same value";
+  Source::wanted = 5;
+  units->send(Signal::kReinit, {kSource}, 2);
+  units->run(milliseconds(3));
+  EXPECT_EQ(Follower::reinits, 1);
+  EXPECT_NEAR(second().output(kFollower), 5 * first().output(kSource), 5.1);
+}
+
+TEST_F(EdgeTest, AFaultIsToldWithItsTextInTheFaultGroup) {
+  all_on();
+  units->take(PostKind::kEvent);
+  Follower::fail_at = first().output(kSource) + 2;
+  units->run(milliseconds(5));
+  EXPECT_EQ(second().state(kFollower), State::kError);
+  EXPECT_TRUE(units->flag_is_up()) << "the killer reads y";
+  const auto events = units->take(PostKind::kEvent);
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events[0].happening, Happening::kFault);
+  EXPECT_EQ(events[0].task, kFollower);
+  EXPECT_EQ(events[0].detail, static_cast<std::uint64_t>(Method::kCycle));
+  const auto layout = PeerLayout::of(app.spec, 1);
+  const GroupPlace& place = layout->place(layout->fault(kFollower));
+  const std::byte* at = second().segment.region.bytes().data() + sizeof(SegmentHeader) + place.offset;
+  FaultRecord fault;
+  chimera_slot slot;
+  ASSERT_TRUE(GroupReader(at, place.payload_bytes).try_read(slot, reinterpret_cast<std::byte*>(&fault)));
+  EXPECT_STREQ(fault.last.text, "as told");
+  EXPECT_EQ(fault.last.code, 7);
+}
+
+TEST_F(EdgeTest, AManagerThatIsReplacedIsServedAndItsPredecessorsSignalsAreNot) {
+  all_on();
+  units->start_manager(2);
+  units->run(milliseconds(1));
+  units->send(Signal::kOff, {kKiller}, 77);
+  units->run(milliseconds(1));
+  EXPECT_EQ(first().state(kKiller), State::kOff);
+  const auto reports = units->take(PostKind::kReport);
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_EQ(reports[0].command, 77u);
+}
+
+TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllUnits) {
+  all_on();
+  first().edge->end();
+  units->change();
+  units->run(milliseconds(3));
+  EXPECT_EQ(first().state(kKiller), State::kOff) << "nobody comes before it";
+  EXPECT_EQ(first().state(kSource), State::kOn) << "the follower in the other unit is still ON";
+  second().edge->end();
+  units->change();
+  units->run(milliseconds(10));
+  EXPECT_EQ(second().state(kFollower), State::kNotCreated);
+  EXPECT_EQ(first().state(kSource), State::kNotCreated);
+  EXPECT_TRUE(first().edge->is_over());
+  EXPECT_TRUE(second().edge->is_over());
+}
+
+TEST_F(EdgeTest, TheEndDoesNotWaitForEverForAnotherUnit) {
+  all_on();
+  first().edge->end();
+  units->change();
+  units->run(milliseconds(1100));
+  EXPECT_TRUE(first().edge->is_over());
+}
+
+}  // namespace
+}  // namespace chimera

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tasks of a real-time unit know of the other processes, through their mapped segments, and what they let
+// them know through the unit's own. docs/formats/processes.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "chimera/platform/doorbell.h"
+#include "chimera/rtpu/peers.h"
+#include "chimera/runtime/neighbours.h"
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+/// Used by the thread that cycles only. Everything given to it outlives it.
+class Others final : public Neighbours {
+ public:
+  /// `segment` is the unit's own, writable; `block` lies in it.
+  Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
+         DecisionPage& decision, const KeeperPage& keeper, Peers& peers);
+  /// By whom the states to publish are known. Context: setup.
+  void attach(TaskSet& tasks) noexcept { tasks_ = &tasks; }
+
+  State state(TaskId task) const noexcept override;
+  GroupReader outputs(TaskId task) const noexcept override;
+  GroupReader constants(TaskId task) const noexcept override;
+  GroupReader operator_variable(std::size_t index) const noexcept override;
+  bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept override;
+  void changed() noexcept override;
+  void faulted(const Task& task) noexcept override;
+
+  /// Takes over segments that the main thread offered; true when there was one. Context: edge.
+  bool adopt() noexcept;
+  /// The next post of any peer. Context: edge; wait-free.
+  bool take(Post& post) noexcept;
+  /// To the manager; what finds no room is counted. Context: edge; wait-free.
+  void tell(const Post& post) noexcept;
+  /// An event for the manager's log.
+  void tell(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
+  /// The count of changes of the decision page. Context: cycle; wait-free.
+  std::uint32_t changes() const noexcept { return decision_->changes.load(std::memory_order_acquire); }
+  std::uint32_t manager() const noexcept { return static_cast<std::uint32_t>(spec_->rtpus.size()); }
+  const BlockOwner& block() const noexcept { return block_; }
+
+ private:
+  bool lives(std::uint32_t peer) const noexcept;
+  GroupReader group(std::uint32_t peer, GroupId id) const noexcept;
+  void watch_flags() noexcept;
+  void ring(std::uint32_t peer) noexcept { Doorbell(decision_->bells[peer].word).ring(); }
+  std::uint32_t flag_word() const noexcept;
+
+  const ApplicationSpec* spec_;
+  std::uint32_t me_;
+  std::span<std::byte> segment_;
+  BlockOwner block_;
+  DecisionPage* decision_;
+  const KeeperPage* keeper_;
+  Peers* peers_;
+  TaskSet* tasks_ = nullptr;
+  std::vector<Outbox> outboxes_;  // by peer
+  std::vector<Inbox> inboxes_;    // by peer
+  std::vector<const std::atomic<std::uint32_t>*> flags_;
+};
+
+}  // namespace chimera

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/rtpu.h"
+
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "chimera/platform/channel.h"
+#include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/process.h"
+#include "chimera/platform/realtime.h"
+#include "chimera/platform/shared_pages.h"
+#include "chimera/rtpu/bell_clock.h"
+#include "chimera/rtpu/components.h"
+#include "chimera/rtpu/keeper_message.h"
+#include "chimera/rtpu/service_thread.h"
+#include "chimera/runtime/executive/executive.h"
+#include "chimera/schedule/bands.h"
+
+namespace chimera {
+namespace {
+
+constexpr int kCouldNotStart = 1, kMethodHangs = 3;
+constexpr int kSuperviseEveryMs = 50;
+
+std::int32_t priority_of(const ApplicationSpec& spec, std::uint32_t me, std::int32_t top) {
+  std::vector<BandMember> members;
+  for (const RtpuSpec& rtpu : spec.rtpus) members.push_back({rtpu.cpu, 0});
+  for (const TaskSpec& task : spec.tasks) {
+    BandMember& member = members[task.rtpu.index];
+    member.criticality = std::max(member.criticality, task.criticality);
+  }
+  return band_top(members, me, top);
+}
+
+/// Everything a unit has, in the order in which it is made.
+class Rtpu {
+ public:
+  explicit Rtpu(const RtpuStart& start) : start_(start), channel_(start.channel) {}
+
+  Result<void> prepare();
+  int run();
+
+ private:
+  Result<void> map();
+  Result<void> make_segment();
+  Result<void> make_tasks();
+  void say(std::string_view text, PeerPhase phase);
+  void announce();
+  void cycle();
+  void listen(int timeout_ms);
+  void take_messages();
+  void take_peer(const KeeperMessage& message, int descriptor);
+  void end();
+  bool hangs();
+
+  const RtpuSpec& self() const { return image_->spec().rtpus[start_.peer]; }
+
+  const RtpuStart start_;
+  Channel channel_;
+  int signals_ = -1;
+  FrozenBytes image_bytes_;
+  SharedPages decision_pages_;
+  MemoryRegion keeper_pages_;
+  std::unique_ptr<ApplicationImage> image_;
+  DecisionPage* decision_ = nullptr;
+  const KeeperPage* keeper_ = nullptr;
+  std::unique_ptr<Peers> peers_;
+  MemoryRegion segment_;
+  BlockOwner block_;
+  std::vector<const chimera_component*> components_;
+  std::unique_ptr<ServiceThread> service_;
+  std::unique_ptr<Others> others_;
+  std::unique_ptr<TaskSet> tasks_;
+  std::unique_ptr<Edge> edge_;
+  std::unique_ptr<BellClock> clock_;
+  std::unique_ptr<ComputingClock> job_clock_;
+  std::unique_ptr<Tap> tap_;
+  std::unique_ptr<Executive> executive_;
+  std::thread cycling_;
+  std::atomic<bool> has_ended_{false};
+  bool is_ending_ = false;
+  std::uint32_t progress_ = 0;
+  Nanoseconds progress_at_;
+  LinuxClock wall_;
+};
+
+Result<void> Rtpu::prepare() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int number : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, number);
+  if (start_.parent != 0) {
+    ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+    signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+    if (!follow_parent(start_.parent, SIGTERM)) return Error{ErrorCode::kRefused, {"the keeper is gone"}, {}};
+  }
+  if (auto mapped = map(); !mapped) return mapped;
+  if (auto made = make_segment(); !made) return made;
+  if (auto made = make_tasks(); !made) {
+    say(made.error().message.view(), PeerPhase::kEnded);
+    announce();
+    return made;
+  }
+  return {};
+}
+
+Result<void> Rtpu::map() {
+  auto image_bytes = FrozenBytes::open(start_.image);
+  if (!image_bytes) return image_bytes.error();
+  image_bytes_ = *std::move(image_bytes);
+  auto image = ApplicationImage::decode(image_bytes_.bytes());
+  if (!image) return image.error();
+  image_ = std::make_unique<ApplicationImage>(*std::move(image));
+  if (start_.peer >= image_->spec().rtpus.size()) return Error{ErrorCode::kBadInput, {"no such rtpu"}, {}};
+  auto decision = SharedPages::open(start_.decision_page, sizeof(DecisionPage));
+  if (!decision) return decision.error();
+  decision_pages_ = *std::move(decision);
+  decision_ = reinterpret_cast<DecisionPage*>(decision_pages_.bytes().data());
+  auto keeper = MemoryRegion::open_read_only(start_.keeper_page, sizeof(KeeperPage));
+  if (!keeper) return keeper.error();
+  keeper_pages_ = *std::move(keeper);
+  keeper_ = reinterpret_cast<const KeeperPage*>(keeper_pages_.bytes().data());
+  auto peers = Peers::create(image_->spec());
+  if (!peers) return peers.error();
+  peers_ = *std::move(peers);
+  return {};
+}
+
+Result<void> Rtpu::make_segment() {
+  const auto n_tasks = static_cast<std::uint32_t>(image_->spec().tasks.size());
+  const TableLayout& table = peers_->layout(start_.peer).table();
+  auto made = MemoryRegion::create("chimera-rtpu", peer_segment_bytes(table, n_tasks));
+  if (!made) return made.error();
+  segment_ = *std::move(made);
+  if (auto owner = SegmentOwner::format(segment_.writable(), table); !owner) return owner.error();
+  std::byte* at = segment_.writable().data() + block_offset(table);
+  block_ = BlockOwner(at, start_.peer, start_.incarnation, n_tasks, peers_->count());
+  return {};
+}
+
+Result<void> Rtpu::make_tasks() {
+  const ApplicationSpec& spec = image_->spec();
+  auto components = load_components(*image_, RtpuId(start_.peer));
+  if (!components) return components.error();
+  components_ = *std::move(components);
+  BlockHead& head = block_.head();
+  const Doorbell bell(decision_->bells[start_.peer].word);
+  service_ = std::make_unique<ServiceThread>(spec.tasks.size(), bell);
+  others_ = std::make_unique<Others>(spec, start_.peer, segment_.writable(), block_, *decision_, *keeper_, *peers_);
+  const ContextPlace place{RtpuId(start_.peer), segment_.writable().subspan(sizeof(SegmentHeader)), others_.get(),
+                           service_.get(), &head.running, &head.serving};
+  auto tasks = TaskSet::create(spec, components_, place);
+  if (!tasks) return tasks.error();
+  tasks_ = *std::move(tasks);
+  others_->attach(*tasks_);
+  edge_ = std::make_unique<Edge>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
+                                 image_->settings().method_limit);
+  clock_ = std::make_unique<BellClock>(bell, head.running);
+  clock_->attach(*edge_);
+  job_clock_ = std::make_unique<ComputingClock>(*clock_);
+  tap_ = std::make_unique<Tap>(block_.tap());
+  RunOptions options;
+  options.policy = self().policy;
+  options.tap = tap_.get();
+  options.rtpu = static_cast<std::uint8_t>(start_.peer);
+  options.guest = edge_.get();
+  options.stop = &edge_->is_over();
+  executive_ = std::make_unique<Executive>(*tasks_, *clock_, *job_clock_, options);
+  return {};
+}
+
+void Rtpu::say(std::string_view text, PeerPhase phase) {
+  char (&grant)[sizeof block_.head().grant] = block_.head().grant;
+  const std::size_t n = std::min(text.size(), sizeof grant - 1);
+  std::memcpy(grant, text.data(), n);
+  grant[n] = '\0';
+  block_.head().phase.store(phase, std::memory_order_release);
+}
+
+void Rtpu::announce() {
+  KeeperMessage message;
+  message.kind = KeeperMessage::Kind::kSegment;
+  message.index = start_.peer;
+  message.incarnation = start_.incarnation;
+  (void)channel_.send(bytes_of(message), segment_.descriptor());
+}
+
+// The thread that cycles.
+void Rtpu::cycle() {
+  const RealtimeRequest wanted{priority_of(image_->spec(), start_.peer, image_->settings().priority),
+                               static_cast<int>(self().cpu), true};
+  say(enter_realtime(wanted).report.view(), PeerPhase::kServing);
+  executive_->start(keeper_->origin);
+  others_->changed();
+  while (executive_->run(kNever) == RunEnd::kTaskStopped) {
+    edge_->stop_all(executive_->releases(), clock_->now());
+    executive_->releases().forget_stop();
+  }
+  has_ended_ = true;
+}
+
+int Rtpu::run() {
+  service_->start(*tasks_);
+  announce();
+  cycling_ = std::thread([this] { cycle(); });
+  while (!has_ended_) {
+    listen(kSuperviseEveryMs);
+    if (is_ending_ && hangs()) return kMethodHangs;
+  }
+  cycling_.join();
+  service_->stop();
+  return 0;
+}
+
+void Rtpu::listen(int timeout_ms) {
+  pollfd fds[] = {{channel_.descriptor(), POLLIN, 0}, {signals_, POLLIN, 0}};
+  if (::poll(fds, signals_ < 0 ? 1 : 2, timeout_ms) <= 0) return peers_->clear();
+  if (fds[0].revents != 0) take_messages();
+  if (signals_ >= 0 && fds[1].revents != 0) {
+    signalfd_siginfo info;
+    while (::read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) end();
+  }
+}
+
+void Rtpu::take_messages() {
+  KeeperMessage message;
+  for (int descriptor = -1;;) {
+    const Channel::Got got = channel_.receive(bytes_of(message), descriptor);
+    if (got == Channel::Got::kNothing) return;
+    if (got == Channel::Got::kClosed) {
+      channel_ = Channel();
+      return end();
+    }
+    if (message.kind == KeeperMessage::Kind::kFinish) end();
+    if (message.kind == KeeperMessage::Kind::kPeer) take_peer(message, descriptor);
+    if (descriptor >= 0) ::close(descriptor);
+  }
+}
+
+// A segment that is not what the application says is passed over: its owner is not who the keeper takes it for.
+void Rtpu::take_peer(const KeeperMessage& message, int descriptor) {
+  if (message.index == start_.peer || !peers_->offer(message.index, message.incarnation, descriptor)) return;
+  Doorbell(decision_->bells[start_.peer].word).ring();
+}
+
+void Rtpu::end() {
+  if (is_ending_) return;
+  is_ending_ = true;
+  progress_at_ = wall_.now();
+  edge_->end();
+  Doorbell(decision_->bells[start_.peer].word).ring();
+}
+
+// No method of the end came to its own end within its limit. What waits for others waits one limit more.
+bool Rtpu::hangs() {
+  const Nanoseconds now = wall_.now();
+  if (edge_->progress() != progress_) {
+    progress_ = edge_->progress();
+    progress_at_ = now;
+  }
+  return now - progress_at_ > image_->settings().method_limit * 2 + milliseconds(100);
+}
+
+}  // namespace
+
+int run_rtpu(const RtpuStart& start) {
+  Rtpu rtpu(start);
+  if (auto ready = rtpu.prepare(); !ready) return kCouldNotStart;
+  const int code = rtpu.run();
+  if (code == kMethodHangs) ::_exit(kMethodHangs);  // threads are still in components: nothing can be taken down
+  return code;
+}
+
+}  // namespace chimera

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/service_thread.h"
+
+#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/runtime/executive/executive.h"
+
+namespace chimera {
+
+void ServiceThread::start(TaskSet& tasks) {
+  thread_ = std::thread([this, &tasks] { run(tasks); });
+}
+
+void ServiceThread::stop() {
+  stopping_ = true;
+  Doorbell(word_).ring();
+  if (thread_.joinable()) thread_.join();
+}
+
+void ServiceThread::ask(TaskId task) noexcept {
+  asked_.push(task);
+  Doorbell(word_).ring();
+}
+
+void ServiceThread::run(TaskSet& tasks) {
+  LinuxClock clock;
+  ComputingClock job_clock(clock);
+  const Doorbell bell(word_);
+  while (!stopping_) {
+    const std::uint32_t heard = bell.read();
+    for (TaskId task; asked_.pop(task);) {
+      tasks.serve(task, job_clock);
+      served_.push(task);
+      cycling_.ring();
+    }
+    if (!stopping_) (void)bell.wait_until(heard, kNever);
+  }
+}
+
+}  // namespace chimera

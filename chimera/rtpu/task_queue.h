@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tasks handed from one thread to one other. Each task is in the queue at most once, so it never overflows.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "chimera/base/ids.h"
+
+namespace chimera {
+
+class TaskQueue {
+ public:
+  /// For tasks 0 to n_tasks - 1. Context: setup.
+  explicit TaskQueue(std::size_t n_tasks) : tasks_(n_tasks + 1) {}
+
+  /// Requires: the task is not in the queue. Context: any, the one writer; wait-free.
+  void push(TaskId task) noexcept {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    tasks_[head % tasks_.size()] = task;
+    head_.store(head + 1, std::memory_order_release);  // pairs with pop(): the entry is whole
+  }
+  /// False when it is empty. Context: any, the one reader; wait-free.
+  bool pop(TaskId& task) noexcept {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    if (tail == head_.load(std::memory_order_acquire)) return false;
+    task = tasks_[tail % tasks_.size()];
+    tail_.store(tail + 1, std::memory_order_release);
+    return true;
+  }
+
+ private:
+  std::vector<TaskId> tasks_;
+  alignas(64) std::atomic<std::size_t> head_{0};
+  alignas(64) std::atomic<std::size_t> tail_{0};
+};
+
+}  // namespace chimera

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: several real-time units and the manager's segment in one process, stepped by hand in virtual time. What
+// the keeper and the manager do, the test does.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "chimera/platform/virtual/virtual_clock.h"
+#include "chimera/rtpu/edge.h"
+#include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/test_application.h"
+
+namespace chimera::testing {
+
+/// init and kill run at once, in ask(); or when the test says so.
+class HandService final : public Service {
+ public:
+  void ask(TaskId task) noexcept override { asked.push_back(task); }
+  bool take_served(TaskId& task) noexcept override {
+    if (done.empty()) return false;
+    task = done.front();
+    done.pop_front();
+    return true;
+  }
+  std::deque<TaskId> asked, done;
+};
+
+/// A segment of a peer, formatted, with its block.
+struct OwnSegment {
+  OwnSegment(const ApplicationSpec& spec, std::uint32_t peer, std::uint32_t incarnation) {
+    const auto layout = PeerLayout::of(spec, peer);
+    const auto n_tasks = static_cast<std::uint32_t>(spec.tasks.size());
+    region = *MemoryRegion::create("test", peer_segment_bytes(layout->table(), n_tasks));
+    EXPECT_TRUE(SegmentOwner::format(region.writable(), layout->table()).has_value());
+    block = BlockOwner(region.writable().data() + block_offset(layout->table()), peer, incarnation, n_tasks,
+                       static_cast<std::uint32_t>(spec.rtpus.size()) + 1);
+  }
+  MemoryRegion region;
+  BlockOwner block;
+};
+
+struct Unit {
+  Unit(const ApplicationSpec& spec, std::span<const chimera_component* const> components, std::uint32_t me,
+       std::uint32_t incarnation, DecisionPage& decision, KeeperPage& keeper)
+      : bell(decision.bells[me].word), segment(spec, me, incarnation), peers(*Peers::create(spec)), clock(decision_now),
+        others(spec, me, segment.region.writable(), segment.block, decision, keeper, *peers) {
+    const ContextPlace place{RtpuId(me), segment.region.writable().subspan(sizeof(SegmentHeader)), &others, &service,
+                             &segment.block.head().running, &segment.block.head().serving};
+    auto made = TaskSet::create(spec, components, place);
+    EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message.c_str());
+    tasks = *std::move(made);
+    others.attach(*tasks);
+    edge = std::make_unique<Edge>(spec, *tasks, others, service, decision, me, seconds(1));
+    RunOptions options;
+    options.policy = spec.rtpus[me].policy;
+    options.guest = edge.get();
+    options.stop = &edge->is_over();
+    executive = std::make_unique<Executive>(*tasks, clock, job_clock, options);
+    executive->start(keeper.origin);
+    others.changed();
+    keeper.alive[me] = incarnation;
+  }
+
+  void serve() {
+    while (!service.asked.empty()) {
+      const TaskId task = service.asked.front();
+      service.asked.pop_front();
+      tasks->serve(task, job_clock);
+      service.done.push_back(task);
+      bell.ring();
+    }
+  }
+  State state(TaskId task) const { return segment.block.view().status(task).state; }
+  double output(TaskId task) const {
+    double value = 0;
+    std::memcpy(&value, tasks->tasks()[task.index].group.staging(), sizeof value);
+    return value;
+  }
+
+  static inline Nanoseconds decision_now{};
+  Doorbell bell;
+  OwnSegment segment;
+  std::unique_ptr<Peers> peers;
+  VirtualClock clock;
+  ComputingClock job_clock{clock};
+  HandService service;
+  Others others;
+  std::unique_ptr<TaskSet> tasks;
+  std::unique_ptr<Edge> edge;
+  std::unique_ptr<Executive> executive;
+};
+
+/// The application of `app` on as many units as it has rtpus.
+class Units {
+ public:
+  explicit Units(TestApplication& application) : app(application) {
+    n = static_cast<std::uint32_t>(app.spec.rtpus.size());
+    keeper.n_rtpus = n;
+    units.resize(n);
+    for (std::uint32_t u = 0; u < n; ++u) start(u, 1);
+    start_manager(1);
+  }
+  void start(std::uint32_t u, std::uint32_t incarnation) {
+    Unit::decision_now = now;
+    units[u] = std::make_unique<Unit>(app.spec, app.components, u, incarnation, decision, keeper);
+    for (std::uint32_t other = 0; other < n; ++other) {
+      if (other == u || units[other] == nullptr) continue;
+      show(u, other);
+      show(other, u);
+    }
+    if (manager != nullptr) show_manager(u);
+  }
+  void start_manager(std::uint32_t incarnation) {
+    manager = std::make_unique<OwnSegment>(app.spec, n, incarnation);
+    keeper.alive[n] = incarnation;
+    inboxes.assign(n, Inbox());
+    for (std::uint32_t u = 0; u < n; ++u) show_manager(u);
+  }
+  /// The keeper's proof of death.
+  void die(std::uint32_t u) {
+    keeper.alive[u] = 0;
+    change();
+  }
+  void change() {
+    decision.changes.fetch_add(1);
+    for (std::uint32_t u = 0; u < n; ++u) Doorbell(decision.bells[u].word).ring();
+  }
+  /// Lets `time` pass in steps of 100 us, unit by unit; services are done at once.
+  void run(Nanoseconds time) {
+    for (const Nanoseconds end = now + time; now < end;) {
+      now += microseconds(100);
+      for (const auto& unit : units) {
+        if (keeper.alive[unit->segment.block.head().peer] == 0) continue;
+        unit->serve();
+        (void)unit->executive->run(now - keeper.origin);
+      }
+      collect();
+    }
+  }
+  /// As the manager would.
+  void send(Signal signal, std::vector<TaskId> tasks, std::uint64_t command = 0) {
+    const std::uint32_t u = app.spec.tasks[tasks[0].index].rtpu.index;
+    Outbox outbox(manager->block.outbox(u), &units[u]->segment.block.progress(n), manager->block.head().incarnation);
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      Post post;
+      post.command = command;
+      post.task = tasks[i];
+      post.signal = signal;
+      post.more = i + 1 < tasks.size();
+      EXPECT_TRUE(outbox.is_followed() && outbox.try_post(post));
+    }
+    Doorbell(decision.bells[u].word).ring();
+  }
+  void bring_up(std::vector<TaskId> tasks) {
+    for (const TaskId task : tasks) {
+      send(Signal::kSpawn, {task});
+      run(milliseconds(1));
+    }
+    for (const TaskId task : tasks) send(Signal::kOn, {task});
+    run(milliseconds(1));
+  }
+  void collect() {
+    for (std::uint32_t u = 0; u < n; ++u)
+      for (Post post; inboxes[u].is_attached() && inboxes[u].take(post);) posts.push_back(post);
+  }
+  std::vector<Post> take(PostKind kind) {
+    std::vector<Post> found;
+    for (const Post& post : posts)
+      if (post.kind == kind) found.push_back(post);
+    posts.clear();
+    return found;
+  }
+  bool flag_is_up() const {
+    for (std::uint32_t u = 0; u < n; ++u)
+      if (keeper.alive[u] != 0 && units[u]->segment.block.head().flag != 0) return true;
+    return manager->block.head().flag != 0;
+  }
+
+  TestApplication& app;
+  std::uint32_t n = 0;
+  DecisionPage decision;
+  KeeperPage keeper;
+  std::vector<std::unique_ptr<Unit>> units;
+  std::unique_ptr<OwnSegment> manager;
+  std::vector<Inbox> inboxes;
+  std::vector<Post> posts;
+  Nanoseconds now;
+
+ private:
+  void show(std::uint32_t to, std::uint32_t of) {
+    const Unit& unit = *units[of];
+    EXPECT_TRUE(units[to]->peers->offer(of, unit.segment.block.head().incarnation, unit.segment.region.descriptor()));
+    Doorbell(decision.bells[to].word).ring();
+  }
+  void show_manager(std::uint32_t to) {
+    EXPECT_TRUE(units[to]->peers->offer(n, manager->block.head().incarnation, manager->region.descriptor()));
+    inboxes[to] = Inbox(units[to]->segment.block.outbox(n), manager->block.progress(to),
+                        units[to]->segment.block.head().incarnation);
+    Doorbell(decision.bells[to].word).ring();
+  }
+};
+
+}  // namespace chimera::testing
