@@ -87,7 +87,8 @@ void Sources::plan_copy(TaskId consumer, const Source& source) {
   if (copy_for(consumer, source) != nullptr) return;
   const std::uint32_t payload = payload_of(source);
   copy_memory_.emplace_back(local_group_bytes(payload), kCacheLine);
-  copies_.push_back({LocalGroup(GroupReader(nullptr, payload), copy_memory_.back().span()), consumer, source, false, false});
+  copies_.push_back(
+      {LocalGroup(GroupReader(nullptr, payload), copy_memory_.back().span()), consumer, source, false, false});
   for (std::uint32_t half = 0; half < 2; ++half) fill(source, copies_.back().group.values_of_half(half));
 }
 
