@@ -115,6 +115,7 @@ bool read_seed(const std::string& text, std::optional<std::uint64_t>& to) {
 bool read_run(Words& words, Nanoseconds& unit) {
   desk::RunRequest& r = words.run;
   r.json = words.json;
+  r.one_process = true;
   if (!read_duration(words.duration, "--for", r.duration) || !read_duration(words.every, "--every", r.every) ||
       !read_duration(words.quantum, "--quantum", r.quantum) || !read_duration(words.timeline, "--timeline", unit) ||
       !read_seed(words.seed, r.seed))

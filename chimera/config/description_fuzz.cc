@@ -82,6 +82,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   check_faults(verdict.report, static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
   if (!verdict.configuration) return 0;
   check_spec(*verdict.configuration);
-  check_faults(unsupported_by_single_context(*verdict.configuration, Executor::kRealTime), size + 1);
+  check_faults(unsupported(*verdict.configuration, Executor::kOneProcess), size + 1);
   return 0;
 }

@@ -102,7 +102,7 @@ Draft read_root(const Node& root, std::string_view file, Report& report) {
 }
 
 Reading unreadable(const std::string& path, std::string_view rule, std::string message, std::string remedy) {
-  Reading reading{std::nullopt, Report(path)};
+  Reading reading{std::nullopt, Report(path), {}};
   reading.report.add({.rule = rule, .at = {}, .message = std::move(message), .found = {}, .expected = {},
                       .nearest = {}, .remedy = std::move(remedy)});
   return reading;
@@ -111,7 +111,7 @@ Reading unreadable(const std::string& path, std::string_view rule, std::string m
 }  // namespace
 
 Reading read_description(std::string_view text, std::string_view file) {
-  Reading reading{std::nullopt, Report(std::string(file))};
+  Reading reading{std::nullopt, Report(std::string(file)), std::string(text)};
   const std::optional<Node> root = read_yaml(text, reading.report);
   if (root && expect(*root, Node::Kind::kMap, "the file", reading.report))
     reading.draft = read_root(*root, file, reading.report);

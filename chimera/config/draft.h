@@ -113,6 +113,7 @@ struct Draft {
 struct Reading {
   std::optional<Draft> draft;
   Report report;
+  std::string text;  ///< as it was read; empty when it could not be
 };
 
 /// Reads `text`, naming it `file` in messages. Context: setup.

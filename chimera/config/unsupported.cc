@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `check` accepts and the single-context executors cannot do yet: refused by name, never passed over.
+// What `check` accepts and the executors cannot do yet: refused by name, never passed over.
 #include <algorithm>
 #include <array>
 
@@ -33,11 +33,12 @@ class Refusals {
 
   void rtpu(std::size_t index) {
     const RtpuSpec& spec = configuration_.rtpus()[index];
-    if (executor_ == Executor::kRealTime && spec.policy == Policy::kLlf)
+    if (executor_ != Executor::kVirtual && spec.policy == Policy::kLlf)
       refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time",
              "use muf-laxity, or run --virtual");
-    if (executor_ == Executor::kRealTime && configuration_.utilisation()[index] > kMaxUtilisation)
+    if (executor_ != Executor::kVirtual && configuration_.utilisation()[index] > kMaxUtilisation)
       refuse(configuration_.tasks()[0].at, "budgets above 0.93 of a CPU in real time", "run --virtual");
+    if (executor_ == Executor::kProcesses) return;
     const auto tasks = configuration_.tasks();
     const auto first =
         std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
@@ -81,7 +82,7 @@ class Refusals {
 
 }  // namespace
 
-Report unsupported_by_single_context(const Configuration& configuration, Executor executor) {
+Report unsupported(const Configuration& configuration, Executor executor) {
   return Refusals(configuration, executor).take();
 }
 

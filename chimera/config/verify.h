@@ -25,10 +25,10 @@ Verdict verify(const Draft& draft, const Library& library);
 /// Judges what was read, faults of the text included: the one call of `check` and `run`. Context: setup.
 Verdict verify(const Reading& reading, const Library& library);
 
-enum class Executor : std::uint8_t { kRealTime, kVirtual };
+enum class Executor : std::uint8_t { kProcesses, kOneProcess, kVirtual };
 
-/// What the single-context executors do not have yet and this configuration asks for, each by name and place;
+/// What the executor does not have yet and this configuration asks for, each by name and place;
 /// empty: it can run. Context: setup.
-Report unsupported_by_single_context(const Configuration& configuration, Executor executor);
+Report unsupported(const Configuration& configuration, Executor executor);
 
 }  // namespace chimera

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 
-#include "chimera/config/nearest.h"
 #include "chimera/load/shared_object.h"
 
 namespace chimera::desk {
@@ -49,25 +48,16 @@ Result<Application> Application::load(Configuration configuration, const Library
 }
 
 Result<Probe> Application::probe(const std::string& variable) const {
+  const auto found = find_variable(configuration_, variable);
+  if (!found) return found.error();
   const auto all = tasks_->variables().all();
   const std::size_t index = tasks_->variables().find(variable);
-  if (index == all.size()) {
-    std::vector<std::string> names;
-    for (const Variable& v : all) names.emplace_back(v.name);
-    const std::string nearest(chimera::nearest(variable, names));
-    return Error{
-        ErrorCode::kNotFound,
-        {"no state variable '" + variable + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?")},
-        {configuration_.file()}};
-  }
+  CHIMERA_ASSERT(index < all.size());  // whatever is configured is laid out
   Probe probe;
   probe.name = variable;
   probe.readers = tasks_->readers_of(index);
-  for (const ConfiguredVariable& known : configuration_.variables())
-    if (known.name == variable && !known.is_constant) {
-      probe.form.unit = known.unit;
-      probe.form.is_scalar = known.shape.empty();
-    }
+  probe.form.unit = (*found)->unit;
+  probe.form.is_scalar = (*found)->shape.empty();
   const VariableView view = tasks_->view(index);
   probe.form.count = view.count;
   if (view.spec != nullptr) {
@@ -98,6 +88,12 @@ bool Probe::read(std::vector<std::byte>& value) const {
     is_valid = ((slot.valid >> bit) & 1u) != 0;
   }
   return is_valid;
+}
+
+Seen Probe::look() const {
+  std::vector<std::byte> bytes;
+  if (!read(bytes)) return {};
+  return {true, value_text(form, bytes), numbers(form, bytes)};
 }
 
 }  // namespace chimera::desk

@@ -10,6 +10,7 @@
 #include "chimera/config/library.h"
 #include "chimera/config/value_text.h"
 #include "chimera/config/verify.h"
+#include "chimera/desk/expectation.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera::desk {
@@ -19,6 +20,8 @@ class Probe {
  public:
   /// The latest publication among `readers`; false when nobody has written it yet. Context: any thread; bounded.
   bool read(std::vector<std::byte>& value) const;
+  /// The same as text and numbers.
+  Seen look() const;
 
   std::string name;
   ValueForm form;

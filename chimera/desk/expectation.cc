@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/expectation.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "chimera/config/nearest.h"
 #include "chimera/config/quantity.h"
 
 namespace chimera::desk {
@@ -24,46 +27,66 @@ bool compare(double value, const std::string& op, double bound) {
   return value >= bound;
 }
 
+// The quantity of `text`, behind the comparison.
+std::string quantity_of(const std::string& text, const std::string& op) {
+  return trimmed(text.substr(text.find_first_of("<>") + op.size()));
+}
+
 }  // namespace
 
-Result<Expectation> Expectation::parse(const std::string& text, const Application& application,
-                                       const UnitSystem& units) {
+Result<const ConfiguredVariable*> find_variable(const Configuration& configuration, const std::string& name) {
+  std::vector<std::string> names;
+  for (const ConfiguredVariable& variable : configuration.variables()) {
+    if (variable.is_constant) continue;
+    if (variable.name == name) return &variable;
+    names.push_back(variable.name);
+  }
+  const std::string near(nearest(name, names));
+  return Error{ErrorCode::kNotFound,
+               {"no state variable '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")},
+               {configuration.file()}};
+}
+
+Result<Expectation> Expectation::with_bound(const std::string& text, double bound) {
   const std::size_t at = text.find_first_of("<>");
   if (at == std::string::npos) return wrong(text, "write 'VARIABLE <= QUANTITY', with < <= > or >=");
   Expectation made;
   made.text_ = text;
+  made.bound_ = bound;
   made.op_ = text.substr(at, at + 1 < text.size() && text[at + 1] == '=' ? 2 : 1);
-  std::string name = trimmed(text.substr(0, at));
-  if (name.size() > 2 && name.front() == '|' && name.back() == '|') {
+  made.variable_ = trimmed(text.substr(0, at));
+  if (made.variable_.size() > 2 && made.variable_.front() == '|' && made.variable_.back() == '|') {
     made.magnitude_ = true;
-    name = trimmed(name.substr(1, name.size() - 2));
+    made.variable_ = trimmed(made.variable_.substr(1, made.variable_.size() - 2));
   }
-  auto probe = application.probe(name);
-  if (!probe) return wrong(text, probe.error().message.c_str());
-  made.probe_ = *std::move(probe);
-  if (made.probe_.form.type == CHIMERA_STRUCT || made.probe_.form.type == CHIMERA_STRING)
-    return wrong(text, name + " is not a number or a list of numbers");
-  const auto quantity = parse_quantity(trimmed(text.substr(at + made.op_.size())), units);
-  if (!quantity) return wrong(text, quantity.error().message.c_str());
-  const auto unit = units.parse(made.probe_.form.unit);
-  if (!unit) return wrong(text, unit.error().message.c_str());
-  const auto bound = value_in(*quantity, *unit, made.probe_.form.unit);
-  if (!bound) return wrong(text, bound.error().message.c_str());
-  made.bound_ = *bound;
   return made;
 }
 
-bool Expectation::holds(std::string& said) const {
-  std::vector<std::byte> bytes;
-  if (!probe_.read(bytes)) {
-    said = probe_.name + " was never written";
-    return false;
-  }
-  said = probe_.name + " is " + value_text(probe_.form, bytes);
-  bool all = true;
-  for (double value : numbers(probe_.form, bytes))
-    all = all && compare(magnitude_ ? std::fabs(value) : value, op_, bound_);
-  return all;
+Result<Expectation> Expectation::parse(const std::string& text, const Configuration& configuration,
+                                       const UnitSystem& units) {
+  auto made = with_bound(text, 0);
+  if (!made) return made;
+  const auto found = find_variable(configuration, made->variable_);
+  if (!found) return wrong(text, found.error().message.c_str());
+  const ConfiguredVariable& variable = **found;
+  constexpr std::array kNumbers = {"bool", "int32", "int64", "float32", "float64"};
+  if (std::find(kNumbers.begin(), kNumbers.end(), variable.type) == kNumbers.end())
+    return wrong(text, variable.name + " is not a number or a list of numbers");
+  const auto quantity = parse_quantity(quantity_of(text, made->op_), units);
+  if (!quantity) return wrong(text, quantity.error().message.c_str());
+  const auto unit = units.parse(variable.unit);
+  if (!unit) return wrong(text, unit.error().message.c_str());
+  const auto bound = value_in(*quantity, *unit, variable.unit);
+  if (!bound) return wrong(text, bound.error().message.c_str());
+  made->bound_ = *bound;
+  return made;
+}
+
+bool Expectation::holds(const Seen& seen, std::string& said) const {
+  said = variable_ + (seen.is_written ? " is " + seen.text : " was never written");
+  return seen.is_written && std::all_of(seen.numbers.begin(), seen.numbers.end(), [this](double value) {
+           return compare(magnitude_ ? std::fabs(value) : value, op_, bound_);
+         });
 }
 
 }  // namespace chimera::desk

@@ -11,7 +11,7 @@ namespace {
 class ExpectationText : public ::testing::Test {
  protected:
   std::string refusal(const std::string& text) {
-    const auto made = Expectation::parse(text, application_, library_.units());
+    const auto made = Expectation::parse(text, application_.configuration(), library_.units());
     return made ? "accepted" : std::string(made.error().message.view());
   }
   Library library_ = test_library();
@@ -47,10 +47,10 @@ TEST_F(ExpectationText, RefusesBoundsThatAreNone) {
 TEST_F(ExpectationText, WhatWasNeverWrittenSatisfiesNothing) {
   const Application source = test_application(
       "subsystem: s\ntasks:\n  a: {component: t_source, constants: {start: 0 m, slope: 1 m/s}}\n", library_);
-  const auto made = Expectation::parse("x >= 0 m", source, library_.units());
+  const auto made = Expectation::parse("x >= 0 m", source.configuration(), library_.units());
   ASSERT_TRUE(made);
   std::string said;
-  EXPECT_FALSE(made->holds(said));
+  EXPECT_FALSE(made->holds(source.probe("x")->look(), said));
   EXPECT_EQ(said, "x was never written");
 }
 

@@ -7,12 +7,10 @@
 #include <atomic>
 #include <chrono>
 
-#include "chimera/desk/check.h"
-#include "chimera/desk/expectation.h"
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/progress.h"
 #include "chimera/desk/run_loop.h"
-#include "chimera/desk/script_text.h"
+#include "chimera/desk/run_plan.h"
 #include "chimera/runtime/tap_ring.h"
 
 namespace chimera::desk {
@@ -88,11 +86,11 @@ class ProgressLine {
 /// One run with everything that is watched and expected of it.
 class Session {
  public:
-  Session(const RunRequest& request, Application application, RecordSink* sink, std::FILE* out, std::FILE* err)
-      : request_(request), application_(std::move(application)), sink_(sink), out_(out), err_(err) {}
+  Session(const RunRequest& request, const RunPlan& plan, Application application, RecordSink* sink, std::FILE* out,
+          std::FILE* err)
+      : request_(request), plan_(plan), application_(std::move(application)), sink_(sink), out_(out), err_(err) {}
 
-  Result<void> prepare(const Library& library);
-  Result<void> start(const Library& library);
+  Result<void> start();
   RunEnd run();
   int report(RunEnd end);
 
@@ -102,32 +100,23 @@ class Session {
   std::string variables_json() const;
 
   const RunRequest& request_;
+  const RunPlan& plan_;
   Application application_;
   RecordSink* sink_;
   std::FILE* out_;
   std::FILE* err_;
-  std::vector<ScriptAct> acts_;
   std::unique_ptr<TapRing> ring_;
   std::optional<Tap> tap_;
   TapReader reader_;
   std::unique_ptr<RunLoop> loop_;
   std::vector<Probe> watched_;
-  std::vector<Expectation> expected_;
   Nanoseconds ran_;
 };
 
-// Names and bounds are judged before anything starts; extents are known after init, so start() asks again.
-Result<void> Session::prepare(const Library& library) {
-  for (const std::string& name : request_.watch)
-    if (auto probe = application_.probe(name); !probe) return probe.error();
-  for (const std::string& text : request_.expect)
-    if (auto judged = Expectation::parse(text, application_, library.units()); !judged) return judged.error();
-  auto acts = parse_script(request_.at, application_.tasks());
-  if (!acts) return acts.error();
-  acts_ = *std::move(acts);
+Result<void> Session::start() {
   RunOptions options;
-  options.policy = application_.configuration().rtpus()[0].policy;
-  options.script = Script(acts_);
+  options.policy = plan_.configuration.rtpus()[0].policy;
+  options.script = Script(plan_.acts);
   options.stop = &stop_requested;
   if (sink_ != nullptr) {
     ring_ = std::make_unique<TapRing>();
@@ -136,14 +125,9 @@ Result<void> Session::prepare(const Library& library) {
   }
   loop_ = request_.virtual_time ? make_virtual_loop(application_, request_, options)
                                 : make_real_time_loop(application_, request_, options);
-  return {};
-}
-
-Result<void> Session::start(const Library& library) {
   if (auto started = loop_->start(); !started) return started;
+  // Now that extents are known.
   for (const std::string& name : request_.watch) watched_.push_back(*application_.probe(name));
-  for (const std::string& text : request_.expect)
-    expected_.push_back(*Expectation::parse(text, application_, library.units()));
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
   if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin());
   return {};
@@ -204,9 +188,9 @@ std::string Session::variables_json() const {
 int Session::report(RunEnd end) {
   std::string lines, rows;
   bool all_hold = true;
-  for (const Expectation& expectation : expected_) {
+  for (const Expectation& expectation : plan_.expectations) {
     std::string said;
-    const bool holds = expectation.holds(said);
+    const bool holds = expectation.holds(application_.probe(expectation.variable())->look(), said);
     all_hold = all_hold && holds;
     lines += (holds ? "holds: " : "FAILS: ") + expectation.text() + " (" + said + ")\n";
     rows += (rows.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(expectation.text()) +
@@ -237,34 +221,17 @@ int Session::report(RunEnd end) {
   return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
 }
 
-int refuse(const Output& output, std::FILE* out, std::FILE* err) {
-  std::fputs(output.out.c_str(), out);
-  std::fputs(output.err.c_str(), err);
-  return output.code;
-}
-
 }  // namespace
 
 void request_stop() noexcept { stop_requested = true; }
 
 int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err) {
-  const auto library = workplace.library();
-  if (!library) return refuse(refused(library.error(), request.json), out, err);
-  Verdict verdict = verify(read_description_file(request.file), *library);
-  if (verdict.configuration)
-    verdict.report.add_all(unsupported_by_single_context(
-        *verdict.configuration, request.virtual_time ? Executor::kVirtual : Executor::kRealTime));
-  if (!request.json) std::fputs(verdict.report.text().c_str(), err);
-  if (!verdict.report.is_legal()) {
-    if (request.json) std::fprintf(out, "%s\n", verdict.report.json().c_str());
-    return kRefused;
-  }
-  if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
-  auto application = Application::load(*verdict.configuration, *library);
-  if (!application) return refuse(refused(application.error(), request.json), out, err);
-  Session session(request, *std::move(application), sink, out, err);
-  if (auto ready = session.prepare(*library); !ready) return refuse(refused(ready.error(), request.json), out, err);
-  if (auto started = session.start(*library); !started) return refuse(refused(started.error(), request.json), out, err);
+  const auto plan = plan_run(request, workplace, out, err);
+  if (!plan) return kRefused;
+  auto application = Application::load(plan->configuration, plan->library);
+  if (!application) return refuse_run(request, application.error(), out, err);
+  Session session(request, *plan, *std::move(application), sink, out, err);
+  if (auto started = session.start(); !started) return refuse_run(request, started.error(), out, err);
   return session.report(session.run());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `chimera run`: an application from its description, in real time or in virtual time, in one context.
+// `chimera run`, as asked for; and as it goes in one process: in virtual time, or in real time for debugging.
 #pragma once
 
 #include <cstdio>
@@ -19,6 +19,7 @@ struct RunRequest {
   std::string file;
   Nanoseconds duration = kNever;        ///< until a signal of the operating system ends it
   bool virtual_time = false;
+  bool one_process = false;             ///< real time without other processes
   bool preemptive = false;              ///< virtual time only
   std::optional<std::uint64_t> seed;    ///< virtual time only
   Nanoseconds quantum = milliseconds(1);
@@ -40,8 +41,8 @@ class RecordSink {
   virtual void end(std::uint64_t lost) = 0;
 };
 
-/// Runs and reports on `out` and `err`; answers the exit code: kOk when it ran to its end and every expectation
-/// holds. `sink` may be null. Blocks for the duration.
+/// Runs in this process and reports on `out` and `err`; answers the exit code: kOk when it ran to its end and every
+/// expectation holds. `sink` may be null. Blocks for the duration.
 int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err);
 
 /// Asks a running run() to end; for signal handlers.

@@ -30,19 +30,19 @@ Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, 
 }
 
 Result<ScriptAct> parse_signal(const std::string& text, const std::string& word, const std::string& task, ScriptAct act,
-                               const TaskSet& tasks) {
+                               const ApplicationSpec& spec) {
   const std::vector<std::string> words = {"spawn", "on", "off", "kill", "clear", "reinit"};
   const auto found = std::find(words.begin(), words.end(), word);
   if (found == words.end()) return wrong(text, unknown("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
-  act.task = tasks.find(task);
-  if (act.task.is_valid()) return act;
   std::vector<std::string> names;
-  for (const Task& t : tasks.tasks()) names.emplace_back(t.spec->name);
+  for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
+  act.task = TaskId(static_cast<std::size_t>(std::find(names.begin(), names.end(), task) - names.begin()));
+  if (act.task.index < names.size()) return act;
   return wrong(text, unknown("task", task, names));
 }
 
-Result<ScriptAct> parse(const std::string& text, const TaskSet& tasks) {
+Result<ScriptAct> parse(const std::string& text, const ApplicationSpec& spec) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return wrong(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
   const auto at = parse_duration(text.substr(0, colon));
@@ -54,15 +54,15 @@ Result<ScriptAct> parse(const std::string& text, const TaskSet& tasks) {
   const std::string object = trimmed(act_text.substr(blank));
   ScriptAct act;
   act.at = *at;
-  return word == "flag" ? parse_flag(text, object, act) : parse_signal(text, word, object, act, tasks);
+  return word == "flag" ? parse_flag(text, object, act) : parse_signal(text, word, object, act, spec);
 }
 
 }  // namespace
 
-Result<std::vector<ScriptAct>> parse_script(std::span<const std::string> texts, const TaskSet& tasks) {
+Result<std::vector<ScriptAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec) {
   std::vector<ScriptAct> acts;
   for (const std::string& text : texts) {
-    auto act = parse(text, tasks);
+    auto act = parse(text, spec);
     if (!act) return act.error();
     acts.push_back(*act);
   }

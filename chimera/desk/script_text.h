@@ -8,12 +8,12 @@
 
 #include "chimera/base/result.h"
 #include "chimera/runtime/script.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/application_spec.h"
 
 namespace chimera::desk {
 
 /// The acts in order of time. Each text is `DURATION: SIGNAL TASK` with spawn, on, off, kill, clear or reinit, or
 /// `DURATION: flag up|down`. Refuses with the text and what would be right. Context: setup.
-Result<std::vector<ScriptAct>> parse_script(std::span<const std::string> texts, const TaskSet& tasks);
+Result<std::vector<ScriptAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec);
 
 }  // namespace chimera::desk

@@ -9,7 +9,7 @@ namespace {
 class ScriptText : public ::testing::Test {
  protected:
   Result<std::vector<ScriptAct>> parse(const std::vector<std::string>& texts) {
-    return parse_script(texts, application_.tasks());
+    return parse_script(texts, application_.tasks().spec());
   }
   std::string refusal(const std::string& text) {
     const auto acts = parse({text});

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/keeper/peers.h"
+#include "chimera/keeper/kept_peers.h"
 
 namespace chimera {
 
@@ -45,7 +45,7 @@ class Keeper {
 
   const KeeperPlan plan_;
   LinuxClock clock_;
-  Peers peers_;
+  KeptPeers peers_;
   Process face_;
   Descriptor signals_;
   sigset_t mask_before_{};

@@ -56,7 +56,7 @@ std::string judged(const fs::path& path) {
   EXPECT_EQ(verdict.configuration.has_value(), verdict.report.is_legal());
   std::string out = verdict.report.text();
   if (!verdict.configuration) return out;
-  const Report run = unsupported_by_single_context(*verdict.configuration, Executor::kRealTime);
+  const Report run = unsupported(*verdict.configuration, Executor::kProcesses);
   return run.is_legal() ? out + "legal\n" : out + "run:\n" + run.text();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/keeper/peers.h"
+#include "chimera/keeper/kept_peers.h"
 
 #include <algorithm>
 #include <array>
@@ -13,15 +13,15 @@ namespace chimera {
 
 using Kind = KeeperMessage::Kind;
 
-Peers::Peers(PeerPlan plan) : plan_(std::move(plan)), peers_(plan_.n_rtpus + 1) {}
+KeptPeers::KeptPeers(PeerPlan plan) : plan_(std::move(plan)), peers_(plan_.n_rtpus + 1) {}
 
-Peers::~Peers() {
+KeptPeers::~KeptPeers() {
   ProcessEnd how;
   for (Peer& peer : peers_) peer.process.signal(SIGKILL);
   for (Peer& peer : peers_) peer.process.wait(how, seconds(1).count);
 }
 
-Result<void> Peers::start_all() {
+Result<void> KeptPeers::start_all() {
   if (plan_.n_rtpus > kMaxRtpus) return Message("more rtpus than a subsystem can have").error(ErrorCode::kBadInput);
   auto decision = SharedPages::create("chimera-decision", sizeof(DecisionPage));
   if (!decision) return decision.error();
@@ -38,7 +38,7 @@ Result<void> Peers::start_all() {
   return {};
 }
 
-Result<void> Peers::start(std::uint32_t index) {
+Result<void> KeptPeers::start(std::uint32_t index) {
   Peer& peer = peers_[index];
   auto ends = Channel::pair();
   if (!ends) return ends.error();
@@ -61,7 +61,7 @@ Result<void> Peers::start(std::uint32_t index) {
   return {};
 }
 
-void Peers::restart(std::uint32_t index) {
+void KeptPeers::restart(std::uint32_t index) {
   const auto started = start(index);
   if (started) return;
   std::fprintf(stderr, "%s\n", started.error().message.c_str());
@@ -70,7 +70,7 @@ void Peers::restart(std::uint32_t index) {
 }
 
 /// The newcomer is told of the others, and the manager of a new rtpu.
-void Peers::introduce(std::uint32_t newcomer) {
+void KeptPeers::introduce(std::uint32_t newcomer) {
   if (newcomer != manager()) {
     for (std::uint32_t other = 0; other < size(); ++other)
       if (other != newcomer) tell_segment(newcomer, other);
@@ -86,28 +86,28 @@ void Peers::introduce(std::uint32_t newcomer) {
 }
 
 /// A child that does not take its messages any more would see a world that is not there: it is ended.
-void Peers::tell(std::uint32_t index, const KeeperMessage& message, int passed) {
+void KeptPeers::tell(std::uint32_t index, const KeeperMessage& message, int passed) {
   const Peer& peer = peers_[index];
   if (peer.channel.is_open() && !peer.channel.send(bytes_of(message), passed) && errno == EAGAIN)
     peer.process.signal(SIGKILL);
 }
 
-void Peers::tell_segment(std::uint32_t to, std::uint32_t of) {
+void KeptPeers::tell_segment(std::uint32_t to, std::uint32_t of) {
   const Peer& peer = peers_[of];
   if (peer.segment.fd < 0) return;
   tell(to, {.kind = Kind::kPeer, .index = of, .incarnation = peer.segment_incarnation}, peer.segment.fd);
 }
 
-void Peers::tell_life(std::uint32_t of) { tell(manager(), peers_[of].last, peers_[of].process.pidfd()); }
+void KeptPeers::tell_life(std::uint32_t of) { tell(manager(), peers_[of].last, peers_[of].process.pidfd()); }
 
-void Peers::publish_life(std::uint32_t index, std::uint32_t incarnation) {
+void KeptPeers::publish_life(std::uint32_t index, std::uint32_t incarnation) {
   page().alive[index].store(incarnation, std::memory_order_release);
   auto* decision = reinterpret_cast<DecisionPage*>(decision_.bytes().data());
   decision->changes.fetch_add(1, std::memory_order_release);  // pairs with the look at an edge: who lives
   for (std::uint32_t i = 0; i < size(); ++i) Doorbell(decision->bells[i].word).ring();
 }
 
-void Peers::take_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
+void KeptPeers::take_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
   Peer& peer = peers_[index];
   KeeperMessage message;
   int passed = -1;
@@ -130,7 +130,7 @@ void Peers::take_messages(std::uint32_t index, std::vector<KeeperMessage>& wishe
   }
 }
 
-bool Peers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
+bool KeptPeers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
   ProcessEnd how;
   if (!peers_[index].process.has_ended(how)) return false;
   take_messages(index, wishes);  // its last words
@@ -138,7 +138,7 @@ bool Peers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
   return true;
 }
 
-void Peers::end(std::uint32_t index, const ProcessEnd& how) {
+void KeptPeers::end(std::uint32_t index, const ProcessEnd& how) {
   Peer& peer = peers_[index];
   peer.channel = Channel();
   peer.last = {.kind = Kind::kEnded, .index = index, .incarnation = peer.last.incarnation, .code = how.code,
@@ -147,12 +147,12 @@ void Peers::end(std::uint32_t index, const ProcessEnd& how) {
   if (index != manager()) tell_life(index);
 }
 
-void Peers::finish_rtpus() {
+void KeptPeers::finish_rtpus() {
   page().ending.store(1, std::memory_order_release);
   for (std::uint32_t index = 0; index < manager(); ++index) tell(index, {.kind = Kind::kFinish});
 }
 
-bool Peers::any_rtpu_lives() const noexcept {
+bool KeptPeers::any_rtpu_lives() const noexcept {
   return std::any_of(peers_.begin(), peers_.end() - 1, [](const Peer& peer) { return peer.process.is_held(); });
 }
 

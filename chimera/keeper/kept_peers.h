@@ -27,13 +27,13 @@ struct PeerPlan {
 };
 
 /// By number: the rtpus, then the manager. Single-threaded. Context: setup; never blocks.
-class Peers {
+class KeptPeers {
  public:
-  explicit Peers(PeerPlan plan);
+  explicit KeptPeers(PeerPlan plan);
   /// Nobody outlives it.
-  ~Peers();
-  Peers(const Peers&) = delete;
-  Peers& operator=(const Peers&) = delete;
+  ~KeptPeers();
+  KeptPeers(const KeptPeers&) = delete;
+  KeptPeers& operator=(const KeptPeers&) = delete;
 
   /// Makes the decision page and the keeper page and starts everybody; refuses when one cannot be.
   Result<void> start_all();

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `chimera run` finds out before anything starts: is the description legal, can it be run, and does every word
+// of the command line mean something in it.
+#pragma once
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chimera/config/configuration.h"
+#include "chimera/config/library.h"
+#include "chimera/desk/expectation.h"
+#include "chimera/desk/workplace.h"
+#include "chimera/runtime/script.h"
+
+namespace chimera::desk {
+
+struct RunRequest;
+
+/// A run that may begin.
+struct RunPlan {
+  Library library;
+  std::string description;  ///< the text of the file, as it was read
+  Configuration configuration;
+  std::vector<ScriptAct> acts;
+  std::vector<Expectation> expectations;
+};
+
+/// Prints the report and the verdict; nothing when the run is refused, which has been said then. Context: setup; may
+/// block.
+std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err);
+
+/// Prints a refusal as the request wants it, and answers kRefused.
+int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err);
+
+}  // namespace chimera::desk
