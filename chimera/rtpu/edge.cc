@@ -210,6 +210,7 @@ void Edge::go_on_ending(Releases& releases, Nanoseconds now) noexcept {
   if (!turn_off_next(releases, now) || !kill_next(releases, now)) return set_due(now + kLookWhileEnding);
   others_.block().head().phase.store(PeerPhase::kEnded, std::memory_order_release);
   over_ = true;
+  set_due(now);  // no wait comes between this and the look at it
 }
 
 // True when none of ours is ON any more. Tasks of others that come first are waited for, not for ever.
