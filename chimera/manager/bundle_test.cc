@@ -3,21 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <cstring>
 
-#include "chimera/config/descriptor_json.h"
+#include "chimera/manager/test_bundle.h"
 
 namespace chimera::manager {
 namespace {
-
-Library installed() {
-  const std::string source = std::getenv("CHIMERA_SOURCE"), build = std::getenv("CHIMERA_BUILD");
-  const std::string units[] = {source + "/share/chimera/units.xml"}, folders[] = {build + "/components"};
-  auto loaded = UnitSystem::load(units);
-  EXPECT_TRUE(loaded) << loaded.error().message.c_str();
-  return Library::make(folders, *std::move(loaded));
-}
 
 constexpr const char* kText = R"(subsystem: small
 rtpus: {servo: {cpu: 1, policy: muf}}
@@ -25,7 +16,7 @@ tasks:
   counter: {component: t_counter, rtpu: servo, rate: 3 Hz}
 )";
 
-Bundle sample() { return {"0.1.0", "small.yaml", kText, 7, std::nullopt, 9, installed()}; }
+Bundle sample() { return {"0.1.0", "small.yaml", kText, 7, std::nullopt, 9, test_library()}; }
 
 TEST(Bundle, ReadsBackAsItWas) {
   const Bundle made = sample();
@@ -112,7 +103,7 @@ TEST(Bundle, RefusesADescriptorThatIsNoneNamingItsFile) {
 }
 
 TEST(Bundle, CutShortAnywhereItIsRefused) {
-  const std::string text = encode({"0.1.0", "", "", {}, {}, {}, Library::of_entries({}, installed().units())});
+  const std::string text = encode({"0.1.0", "", "", {}, {}, {}, Library::of_entries({}, test_library().units())});
   ASSERT_TRUE(decode_bundle(text));
   for (std::size_t n = 0; n < text.size(); n += 97) EXPECT_FALSE(decode_bundle(text.substr(0, n))) << n;
 }

@@ -66,6 +66,7 @@ struct ManagerMemory {
   std::atomic<std::uint32_t> handled[kMaxRtpus];                ///< incarnation whose death was dealt with
   std::atomic<std::int64_t> restarts[kMaxRtpus][4];             ///< instants of the last restarts
   std::atomic<std::uint32_t> started{0};                        ///< 1: the start set has been asked for
+  std::atomic<std::int64_t> started_at{0};                      ///< instant at which it went ON; 0: not yet
 };
 
 /// Views into a block over mapped bytes. Plain value; every accessor is O(1) and wait-free.

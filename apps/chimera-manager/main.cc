@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The manager of a subsystem, started by its keeper: chimera-manager --peer N --incarnation I --parent PID.
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <string_view>
+
+#include "chimera/manager/driver.h"
+#include "chimera/platform/process.h"
+
+namespace {
+
+/// The number behind `word`; 0 when it is not there or is none.
+std::int32_t number_after(std::string_view word, int argc, char** argv) {
+  for (int i = 1; i + 1 < argc; ++i) {
+    if (argv[i] != word) continue;
+    std::int32_t number = 0;
+    const char* end = argv[i + 1] + std::strlen(argv[i + 1]);
+    return std::from_chars(argv[i + 1], end, number).ptr == end ? number : 0;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace chimera;  // NOLINT: a main() of this project
+  const std::int32_t parent = number_after("--parent", argc, argv);
+  const std::int32_t incarnation = number_after("--incarnation", argc, argv);
+  if (parent <= 0 || incarnation <= 0) {
+    std::fputs("chimera-manager is started by `chimera run`, with --peer N --incarnation I --parent PID\n", stderr);
+    return 2;
+  }
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  if (!follow_parent(parent, SIGTERM)) return 0;
+  auto driver = manager::Driver::start({}, static_cast<std::uint32_t>(incarnation), parent);
+  if (!driver) {
+    std::fprintf(stderr, "chimera-manager: %s\n", driver.error().message.c_str());
+    return 1;
+  }
+  while (*driver != nullptr && (*driver)->step()) {}
+  return 0;
+}

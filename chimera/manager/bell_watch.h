@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// A doorbell as a descriptor: who waits in epoll cannot sleep on a word in memory, so a small thread does it.
+#pragma once
+
+#include <atomic>
+#include <thread>
+
+#include "chimera/platform/doorbell.h"
+
+namespace chimera::manager {
+
+/// Context: setup. One reader.
+class BellWatch {
+ public:
+  /// `bell` outlives it.
+  explicit BellWatch(Doorbell bell);
+  BellWatch(const BellWatch&) = delete;
+  BellWatch& operator=(const BellWatch&) = delete;
+  ~BellWatch();
+
+  /// Readable after the bell rang.
+  int descriptor() const noexcept { return descriptor_; }
+  /// Until it rings again. To be called before looking at what the bell was rung for.
+  void reset() const noexcept;
+
+ private:
+  void watch() noexcept;
+
+  Doorbell bell_;
+  int descriptor_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace chimera::manager

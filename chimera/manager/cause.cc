@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/cause.h"
+
+#include <cstring>
+
+#include "chimera/task/signal.h"
+
+namespace chimera::manager {
+
+std::string running_text(const ApplicationSpec& spec, std::uint32_t running) {
+  const std::uint32_t task = (running >> 8) - 1, method = running & 255u;
+  if (running == 0 || task >= spec.tasks.size() || method >= CHIMERA_METHODS) return "";
+  return std::string(spec.tasks[task].name) + "." + method_name(static_cast<Method>(method));
+}
+
+std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left) {
+  std::string text = "ended with status " + std::to_string(ended.code);
+  if (ended.by_signal != 0) {
+    const char* name = ::sigabbrev_np(ended.code);
+    text = "ended by signal " + std::to_string(ended.code) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");
+  }
+  if (left.is_there()) {
+    const std::string running = running_text(spec, left.head().running);
+    const std::string service = running_text(spec, left.head().serving);
+    if (!running.empty() || !service.empty())
+      text += " in " + running + (running.empty() || service.empty() ? "" : " or ") + service;
+  } else {
+    text += " before it was ready";
+  }
+  return text + (ended.core_dumped != 0 ? "; core dumped" : "");
+}
+
+}  // namespace chimera::manager

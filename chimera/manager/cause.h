@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a real-time unit ended, in words.
+#pragma once
+
+#include <string>
+
+#include "chimera/rtpu/keeper_message.h"
+#include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/rtpu_block.h"
+
+namespace chimera::manager {
+
+/// "pid.cycle" for BlockHead::running; "" between jobs, and for a word that no rtpu would write. Context: setup.
+std::string running_text(const ApplicationSpec& spec, std::uint32_t running);
+
+/// "ended by signal 11 (SIGSEGV) in pid.cycle; core dumped". `left` is the block of the incarnation that ended; not
+/// there: it never showed one. Context: setup.
+std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left);
+
+}  // namespace chimera::manager

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/driver.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "chimera/manager/command_text.h"
+#include "chimera/platform/doorbell.h"
+
+namespace chimera::manager {
+namespace {
+
+constexpr Nanoseconds kCountersEvery = milliseconds(100);
+constexpr Nanoseconds kPatience = milliseconds(500);  // for rtpus to serve this manager before it goes on without
+constexpr Nanoseconds kLookEvery = milliseconds(2);   // while one does not serve it yet: nothing rings for that
+
+}  // namespace
+
+/// What stays mapped as long as the driver lives. Members refer to those before them.
+struct Driver::Mapped {
+  Channel channel;
+  FrozenBytes image_bytes, bundle_bytes;
+  SharedPages decision;
+  MemoryRegion keeper;
+  std::optional<ApplicationImage> image;
+  std::optional<Bundle> bundle;
+  int listening = -1;
+
+  ~Mapped() {
+    if (listening >= 0) ::close(listening);
+  }
+  DecisionPage& decision_page() const noexcept { return *reinterpret_cast<DecisionPage*>(decision.bytes().data()); }
+  const KeeperPage& keeper_page() const noexcept {
+    return *reinterpret_cast<const KeeperPage*>(keeper.bytes().data());
+  }
+
+  Result<void> open(const Inherited& from) {
+    channel = Channel(from.channel);
+    listening = from.listening;
+    auto frozen_image = FrozenBytes::open(from.image);
+    auto frozen_bundle = FrozenBytes::open(from.bundle);
+    auto shared = SharedPages::open(from.decision_page, sizeof(DecisionPage));
+    auto keepers = MemoryRegion::open_read_only(from.keeper_page, sizeof(KeeperPage));
+    for (const int descriptor : {from.image, from.bundle, from.decision_page, from.keeper_page}) ::close(descriptor);
+    if (!frozen_image) return frozen_image.error();
+    if (!frozen_bundle) return frozen_bundle.error();
+    if (!shared) return shared.error();
+    if (!keepers) return keepers.error();
+    image_bytes = *std::move(frozen_image);
+    bundle_bytes = *std::move(frozen_bundle);
+    decision = *std::move(shared);
+    keeper = *std::move(keepers);
+    auto decoded = ApplicationImage::decode(image_bytes.bytes());
+    if (!decoded) return decoded.error();
+    image.emplace(*std::move(decoded));
+    const auto text = bundle_bytes.bytes();
+    auto read = decode_bundle({reinterpret_cast<const char*>(text.data()), text.size()});
+    if (!read) return read.error();
+    bundle.emplace(*std::move(read));
+    return {};
+  }
+};
+
+Driver::Driver(std::unique_ptr<Mapped> mapped) : mapped_(std::move(mapped)) {}
+
+Driver::~Driver() = default;
+
+Result<std::unique_ptr<Driver>> Driver::start(const Inherited& inherited, std::uint32_t incarnation,
+                                              std::int32_t keeper_pid) {
+  auto mapped = std::make_unique<Mapped>();
+  if (const auto opened = mapped->open(inherited); !opened) return opened.error();
+  std::unique_ptr<Driver> driver(new Driver(std::move(mapped)));
+  const auto complete = driver->take_inventory(incarnation, keeper_pid);
+  if (!complete) return complete.error();
+  if (!*complete) return std::unique_ptr<Driver>();
+  return driver;
+}
+
+/// Everything the keeper has to say before `complete`; only then there is a predecessor to take over from.
+Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keeper_pid) {
+  std::vector<std::pair<KeeperMessage, int>> inventory;
+  for (KeeperMessage message; inventory.empty() || message.kind != KeeperMessage::Kind::kComplete;) {
+    int passed = -1;
+    const Channel::Got got = mapped_->channel.receive(bytes_of(message), passed);
+    if (got == Channel::Got::kClosed) return false;
+    if (got == Channel::Got::kMessage) {
+      inventory.emplace_back(message, passed);
+    } else {
+      pollfd readable{mapped_->channel.descriptor(), POLLIN, 0};
+      ::poll(&readable, 1, -1);
+    }
+  }
+  auto peers = Peers::create(mapped_->image->spec());
+  if (!peers) return peers.error();
+  PeerSegment predecessor;
+  for (auto& [message, passed] : inventory) {
+    if (message.kind != KeeperMessage::Kind::kPeer || message.index != peers->n_rtpus() || passed < 0) continue;
+    auto opened = PeerSegment::open(passed, peers->manager_layout(), peers->n_tasks(), peers->n_rtpus(),
+                                    message.incarnation);
+    passed = -1;
+    if (opened) predecessor = *std::move(opened);
+  }
+  auto own = OwnSegment::make(*peers, incarnation, predecessor.is_there() ? &predecessor : nullptr, now());
+  if (!own) return own.error();
+  KeeperMessage made;
+  if (!mapped_->channel.send(bytes_of(made), own->descriptor())) return false;
+  world_ = std::make_unique<World>(*std::move(mapped_->bundle), *std::move(peers), *std::move(own),
+                                   mapped_->decision_page(), mapped_->keeper_page());
+  world_->keeper_pid = keeper_pid;
+  fleet_ = std::make_unique<Fleet>(*world_);
+  bell_ = std::make_unique<BellWatch>(Doorbell(mapped_->decision_page().bells[world_->own.peer()].word));
+  begin();
+  for (const auto& [message, passed] : inventory) take(message, passed);
+  return true;
+}
+
+void Driver::begin() {
+  const ManagerMemory& memory = world_->own.block().memory();
+  begun_ = counters_due_ = now();
+  subsystem::Begun begun;
+  for (std::uint32_t t = 0; t < world_->peers.n_tasks(); ++t)
+    begun.goals.push_back(world_->own.block().view().goal(TaskId(t)));
+  for (std::uint32_t r = 0; r < world_->peers.n_rtpus(); ++r) {
+    begun.handled.push_back(memory.handled[r]);
+    auto& instants = begun.restarts.emplace_back();
+    for (std::size_t i = 0; i < instants.size(); ++i) instants[i] = {memory.restarts[r][i]};
+  }
+  begun.started = memory.started != 0;
+  say_hello();
+  feed(begun);
+}
+
+/// The first event of every manager; the numbers of its predecessors' are not kept by anybody.
+void Driver::say_hello() {
+  const std::uint64_t gone = world_->log.last();
+  std::string text = "manager started";
+  if (world_->own.incarnation() > 1)
+    text += " again, incarnation " + std::to_string(world_->own.incarnation()) +
+            (gone == 0 ? "" : "; events 1 to " + std::to_string(gone) + " are not kept");
+  world_->tell("manager-started", TaskId{}, RtpuId{}, text, now());
+}
+
+bool Driver::take_messages() {
+  KeeperMessage message;
+  int passed = -1;
+  while (true) {
+    switch (mapped_->channel.receive(bytes_of(message), passed)) {
+      case Channel::Got::kClosed: return false;
+      case Channel::Got::kNothing: return true;
+      case Channel::Got::kMessage: take(message, passed);
+    }
+  }
+}
+
+void Driver::take(const KeeperMessage& message, int passed) {
+  using Kind = KeeperMessage::Kind;
+  Events events;
+  if (message.kind == Kind::kPeer && passed >= 0 && message.index < world_->peers.n_rtpus()) {
+    fleet_->mapped(message, std::exchange(passed, -1));
+  } else if (message.kind == Kind::kStarted) {
+    fleet_->started(message);
+  } else if (message.kind == Kind::kEnded) {
+    fleet_->ended(message, events);
+  }
+  if (passed >= 0) ::close(passed);
+  feed(events);
+}
+
+void Driver::look() {
+  Events events;
+  fleet_->look(events);
+  feed(events);
+  if (!is_ready_ && (fleet_->all_up() || now() - begun_ > kPatience)) become_ready();
+}
+
+void Driver::become_ready() {
+  is_ready_ = true;
+  feed(subsystem::InventoryComplete{});
+}
+
+void Driver::feed(Events& events) {
+  for (const subsystem::Event& event : events) feed(event);
+  events.clear();
+}
+
+void Driver::feed(const subsystem::Event& event) {
+  std::vector<subsystem::Action> actions;
+  world_->logic.step(event, now(), actions);
+  for (const subsystem::Action& action : actions) carry_out(action);
+}
+
+void Driver::carry_out(const subsystem::Action& action) {
+  using namespace subsystem;  // NOLINT: the names of the actions
+  ManagerMemory& memory = world_->own.block().memory();
+  if (const auto* send = std::get_if<Send>(&action)) {
+    fleet_->send(*send, now());  // what found no room is not reported on, so it fails in time
+  } else if (const auto* start = std::get_if<StartRtpu>(&action)) {
+    KeeperMessage message;
+    message.kind = KeeperMessage::Kind::kStart;
+    message.index = start->rtpu.index;
+    [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: the keeper is gone
+  } else if (const auto* goal = std::get_if<RememberGoal>(&action)) {
+    world_->own.block().set_goal(goal->task, goal->goal);
+  } else if (const auto* handled = std::get_if<RememberHandled>(&action)) {
+    memory.handled[handled->rtpu.index] = handled->incarnation;
+  } else if (const auto* restart = std::get_if<RememberRestart>(&action)) {
+    for (std::size_t i = 0; i < restart->instants.size(); ++i)
+      memory.restarts[restart->rtpu.index][i] = restart->instants[i].count;
+  } else if (std::holds_alternative<RememberStarted>(action)) {
+    memory.started = 1;
+  } else if (const auto* answer = std::get_if<subsystem::Answer>(&action)) {
+    if (auto found = waiting_.extract(answer->id); !found.empty()) found.mapped()(*answer);
+  } else if (const auto* tell = std::get_if<Tell>(&action)) {
+    if (tell->kind == "started" && memory.started_at == 0) memory.started_at = now().count;
+    world_->tell(tell->kind, tell->task, tell->rtpu, tell->text, now());
+  }
+}
+
+void Driver::command(Signal signal, std::vector<TaskId> tasks, Answered answered) {
+  const std::uint64_t id = ++last_command_;
+  waiting_[id] = [this, words = command_text(world_->spec(), signal, tasks),
+                  answered = std::move(answered)](const subsystem::Answer& answer) {
+    world_->tell("command", answer.accepted ? TaskId{} : answer.at, RtpuId{},
+                 words + (answer.accepted ? ": done" : ": refused: " + answer.text), now());
+    answered(answer);
+  };
+  feed(subsystem::Commanded{id, signal, std::move(tasks)});
+}
+
+void Driver::end(std::int32_t code) {
+  KeeperMessage message;
+  message.kind = KeeperMessage::Kind::kEnd;
+  message.code = code;
+  [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: it ends already
+}
+
+void Driver::look_at_keeper() {
+  if (is_ending_ || world_->keeper.ending.load(std::memory_order_acquire) == 0) return;
+  is_ending_ = true;
+  world_->tell("ending", TaskId{}, RtpuId{}, "everything ends", now());
+}
+
+Nanoseconds Driver::next_due() const noexcept {
+  Nanoseconds due = std::min(world_->logic.next_due(), counters_due_);
+  if (!is_ready_ || !fleet_->all_up()) due = std::min(due, now() + kLookEvery);
+  return due;
+}
+
+void Driver::wait(Nanoseconds until) {
+  std::array<pollfd, 2> watched = {{{mapped_->channel.descriptor(), POLLIN, 0}, {bell_->descriptor(), POLLIN, 0}}};
+  const std::int64_t left = std::clamp<std::int64_t>((until - now()).count, 0, seconds(1).count);
+  const timespec limit{left / 1'000'000'000, left % 1'000'000'000};
+  ::ppoll(watched.data(), watched.size(), &limit, nullptr);
+}
+
+bool Driver::step(Nanoseconds at_most) {
+  wait(std::min(next_due(), at_most));
+  bell_->reset();
+  if (!take_messages()) return false;
+  look_at_keeper();
+  look();
+  if (now() >= counters_due_) {
+    fleet_->look_at_counters(now());
+    counters_due_ = now() + kCountersEvery;
+  }
+  if (world_->logic.next_due() <= now()) feed(subsystem::Tick{});
+  return true;
+}
+
+}  // namespace chimera::manager

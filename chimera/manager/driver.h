@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Linux driver of a subsystem: feeds its step function with what the keeper, the real-time units and the faces
+// say, and carries out what it decides. Killed at any moment, its successor picks everything up from the segments.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+
+#include "chimera/manager/bell_watch.h"
+#include "chimera/manager/fleet.h"
+#include "chimera/manager/world.h"
+#include "chimera/platform/channel.h"
+#include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/shared_pages.h"
+#include "chimera/runtime/application_image.h"
+
+namespace chimera::manager {
+
+/// Descriptors that the keeper hands over. Taken over by the driver.
+struct Inherited {
+  int channel = kChannelDescriptor;
+  int image = kImageDescriptor;
+  int decision_page = kDecisionPageDescriptor;
+  int keeper_page = kKeeperPageDescriptor;
+  int listening = kListeningDescriptor;
+  int bundle = kBundleDescriptor;
+};
+
+/// What became of a command.
+using Answered = std::function<void(const subsystem::Answer&)>;
+
+/// Context: setup. Single-threaded but for the bell watch.
+class Driver {
+ public:
+  /// Maps what was inherited, waits for the keeper's inventory, makes the own segment and hands it on. Refuses what is
+  /// not as documented; null when the keeper is gone. May block until the inventory is complete.
+  static Result<std::unique_ptr<Driver>> start(const Inherited& inherited, std::uint32_t incarnation,
+                                               std::int32_t keeper_pid);
+  Driver(const Driver&) = delete;
+  Driver& operator=(const Driver&) = delete;
+  ~Driver();
+
+  /// One round: waits at most until something is due, deals with everything. False when the keeper is gone.
+  bool step(Nanoseconds at_most = kNever);
+  /// Asks for a signal; `answered` is called when it is over, maybe at once.
+  void command(Signal signal, std::vector<TaskId> tasks, Answered answered);
+  /// Tells the keeper to end everything.
+  void end(std::int32_t code);
+
+  World& world() noexcept { return *world_; }
+  /// Has the step function been given the whole inventory? Faces are served from then on.
+  bool is_ready() const noexcept { return is_ready_; }
+
+ private:
+  struct Mapped;
+  explicit Driver(std::unique_ptr<Mapped> mapped);
+  Result<bool> take_inventory(std::uint32_t incarnation, std::int32_t keeper_pid);
+  void begin();
+  void say_hello();
+  bool take_messages();
+  void take(const KeeperMessage& message, int passed);
+  void look();
+  void become_ready();
+  void feed(const subsystem::Event& event);
+  void feed(Events& events);
+  void carry_out(const subsystem::Action& action);
+  void look_at_keeper();
+  Nanoseconds next_due() const noexcept;
+  void wait(Nanoseconds until);
+
+  std::unique_ptr<Mapped> mapped_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<Fleet> fleet_;
+  std::unique_ptr<BellWatch> bell_;
+  std::map<std::uint64_t, Answered> waiting_;
+  std::uint64_t last_command_ = 0;
+  Nanoseconds begun_;
+  Nanoseconds counters_due_;
+  bool is_ready_ = false;
+  bool is_ending_ = false;
+};
+
+}  // namespace chimera::manager

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/driver.h"
+
+#include <gtest/gtest.h>
+
+#include "chimera/manager/fake_subsystem.h"
+#include "chimera/manager/subject_values.h"
+
+namespace chimera::manager {
+namespace {
+
+TEST(Driver, BringsTheStartSetUp) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  EXPECT_TRUE(fake.until_on("law")) << fake.told("refused");
+  EXPECT_TRUE(fake.until([&] { return !fake.told("started").empty(); }));
+  EXPECT_EQ(fake.told("manager-started"), "manager started\n");
+  EXPECT_EQ(fake.told("started"), "sensor filter law are ON\n");
+  EXPECT_NE(fake.driver().world().own.block().memory().started_at, 0);
+  EXPECT_NE(fake.told("state").find("law: OFF -> ON\n"), std::string::npos) << fake.told("state");
+}
+
+TEST(Driver, CarriesOutACommandAndSaysWhatBecameOfIt) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  std::optional<subsystem::Answer> got;
+  fake.driver().command(Signal::kOff, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
+  EXPECT_TRUE(got->accepted) << got->text;
+  ASSERT_EQ(got->outcomes.size(), 1u);
+  EXPECT_EQ(got->outcomes[0].before, State::kOn);
+  EXPECT_EQ(got->outcomes[0].after, State::kOff);
+  EXPECT_EQ(fake.told("command"), "off law: done\n");
+}
+
+TEST(Driver, ARefusedCommandChangesNothing) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  std::optional<subsystem::Answer> got;
+  fake.driver().command(Signal::kOn, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
+  EXPECT_FALSE(got->accepted);
+  EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOn);
+}
+
+TEST(Driver, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.rtpu(0).block().head().running = (fake.task("filter").index + 1) << 8 | CHIMERA_CYCLE;
+  fake.kill_rtpu(0, SIGSEGV);
+  ASSERT_TRUE(fake.until([&] { return !fake.told("rtpu-ended").empty(); }));
+  EXPECT_EQ(fake.told("rtpu-ended"), "servo ended by signal 11 (SIGSEGV) in filter.cycle\n");
+  EXPECT_TRUE(fake.until_on("filter"));
+  EXPECT_EQ(fake.rtpu(0).incarnation(), 2u);
+  EXPECT_EQ(fake.driver().world().rtpus[0].restarts, 1u);
+  EXPECT_EQ(fake.driver().world().rtpus[0].last_end, "ended by signal 11 (SIGSEGV) in filter.cycle");
+}
+
+TEST(Driver, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  const double tuned[] = {7, 8};
+  fake.driver().world().own.publish_operator(0, std::as_bytes(std::span(tuned)), now());
+  const std::uint64_t last = fake.driver().world().log.last();
+  fake.kill_manager();
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([&] { return fake.driver().is_ready(); }));
+  World& world = fake.driver().world();
+  EXPECT_EQ(world.log.first(), last + 1);
+  EXPECT_EQ(fake.told("manager-started"),
+            "manager started again, incarnation 2; events 1 to " + std::to_string(last) + " are not kept\n");
+  EXPECT_EQ(fake.told("started"), "");
+  const Reading kp = world.readings->read(*world.readings->find("kp"));
+  EXPECT_EQ(numbers(kp.form, kp.value), (std::vector<double>{7, 8}));
+  EXPECT_EQ(world.state(fake.task("law")), State::kOn);
+  std::optional<subsystem::Answer> got;
+  fake.driver().command(Signal::kOff, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
+  EXPECT_TRUE(got->accepted) << got->text;
+}
+
+TEST(Driver, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.kill_manager();
+  fake.kill_rtpu(1, SIGKILL);
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
+  EXPECT_EQ(fake.told("rtpu-ended"), "spare ended by signal 9 (SIGKILL)\n");
+  EXPECT_TRUE(fake.until_on("law"));
+}
+
+TEST(Driver, TellsTheFaultOfATaskInItsWords) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.rtpu(0).fail(fake.task("filter"), "joint 3 at its limit");
+  ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
+  EXPECT_EQ(fake.told("fault"), "filter: cycle: joint 3 at its limit\n");
+  EXPECT_TRUE(fake.until([&] { return fake.driver().world().state(fake.task("filter")) == State::kError; }));
+}
+
+TEST(Driver, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.rtpu(1).block().profile(fake.task("law")).missed = 3;
+  ASSERT_TRUE(fake.until([&] { return !fake.told("miss").empty(); }));
+  EXPECT_EQ(fake.told("miss"), "law: 3 deadlines missed\n");
+  fake.rtpu(1).block().profile(fake.task("law")).missed = 4;
+  fake.rtpu(1).block().profile(fake.task("law")).overrun = 2;
+  ASSERT_TRUE(fake.until([&] { return !fake.told("overrun").empty(); }));
+  EXPECT_EQ(fake.told("miss"), "law: 3 deadlines missed\nlaw: 1 deadline missed (4 in all)\n");
+  EXPECT_EQ(fake.told("overrun"), "law: 2 cycles over budget\n");
+}
+
+TEST(Driver, ADeafRtpuFailsTheCommandInTime) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.rtpu(1).is_deaf = true;
+  std::optional<subsystem::Answer> got;
+  fake.driver().command(Signal::kOff, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
+  EXPECT_FALSE(got->accepted);
+  EXPECT_EQ(got->text, "no answer from rtpu spare");
+}
+
+TEST(Driver, WithoutTasksItIsReadyAtOnce) {
+  FakeSubsystem fake("");
+  fake.start_manager();
+  EXPECT_TRUE(fake.until([&] { return fake.driver().is_ready(); }));
+  EXPECT_FALSE(fake.driver().world().configuration.has_value());
+}
+
+TEST(Driver, EndsWhenTheKeeperIsGoneAndAsksItToEnd) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.driver().end(3);
+  ASSERT_TRUE(fake.until([&] { return fake.end_asked.has_value(); }));
+  EXPECT_EQ(*fake.end_asked, 3);
+}
+
+}  // namespace
+}  // namespace chimera::manager

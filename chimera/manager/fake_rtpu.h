@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: what the manager sees of a real-time unit, played by a thread: a segment, a block, signals served by the
+// table of the state machine, cycles that publish a count.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "chimera/manager/peers.h"
+#include "chimera/platform/doorbell.h"
+#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/task/fault_record.h"
+
+namespace chimera::manager {
+
+/// Answers every method with ok. Its thread ends with die(); the segment stays.
+class FakeRtpu {
+ public:
+  FakeRtpu(const ApplicationSpec& spec, std::uint32_t peer, std::uint32_t incarnation, DecisionPage& page)
+      : spec_(spec), layout_(*PeerLayout::of(spec, peer)), manager_layout_(*PeerLayout::of(spec, manager())),
+        page_(page), peer_(peer), incarnation_(incarnation) {
+    const auto tasks = static_cast<std::uint32_t>(spec.tasks.size());
+    region_ = *MemoryRegion::create("fake-rtpu", peer_segment_bytes(layout_.table(), tasks));
+    const auto table = SegmentOwner::format(region_.writable(), layout_.table());
+    EXPECT_TRUE(table);
+    block_ = BlockOwner(region_.writable().data() + block_offset(layout_.table()), peer, incarnation, tasks,
+                        manager() + 1);
+    std::strcpy(block_.head().grant, "as an ordinary process");
+    for (std::uint32_t t = 0; t < tasks; ++t) {
+      if (!layout_.has(TaskId(t))) continue;
+      for (std::uint32_t half : {0u, 1u}) writers_.push_back(writer(*table, layout_.outputs(TaskId(t), half)));
+      faults_.push_back(writer(*table, layout_.fault(TaskId(t))));
+      mine_.push_back(TaskId(t));
+    }
+    block_.head().phase = PeerPhase::kServing;
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~FakeRtpu() { die(); }
+  FakeRtpu(const FakeRtpu&) = delete;
+
+  int descriptor() const noexcept { return region_.descriptor(); }
+  std::uint32_t incarnation() const noexcept { return incarnation_; }
+  const BlockOwner& block() const noexcept { return block_; }
+  std::uint32_t manager() const noexcept { return static_cast<std::uint32_t>(spec_.rtpus.size()); }
+  /// Takes over the descriptor of a manager's segment.
+  void meet(int descriptor, std::uint32_t incarnation) {
+    auto segment = PeerSegment::open(descriptor, manager_layout_, tasks(), manager(), incarnation);
+    ASSERT_TRUE(segment) << segment.error().message.c_str();
+    const std::scoped_lock lock(mutex_);
+    manager_ = *std::move(segment);
+    inbox_ = Inbox(manager_.block().outbox(peer_), block_.progress(manager()), incarnation);
+    outbox_ = Outbox(block_.outbox(manager()), &manager_.block().progress(peer_), incarnation_);
+    ring();
+  }
+  /// As if the task's method failed: its words, the state, the event.
+  void fail(TaskId task, const char* text) {
+    const std::scoped_lock lock(mutex_);
+    FaultRecord record;
+    record.count = 1;
+    record.at = clock_.now();
+    record.method = Method::kCycle;
+    std::strncpy(record.last.text, text, sizeof record.last.text - 1);
+    std::vector<std::byte> payload(layout_.place(layout_.fault(task)).payload_bytes);
+    std::memcpy(payload.data(), &record, sizeof record);
+    faults_[index(task)].write(payload.data(), record.at, 1);
+    Post post = about(task, PostKind::kEvent);
+    post.happening = Happening::kFault;
+    post.detail = CHIMERA_CYCLE;
+    tell(post);
+    enter(task, State::kError);
+  }
+  /// As if `from` had sent `on` to `task`.
+  void request(TaskId task, TaskId from) {
+    const std::scoped_lock lock(mutex_);
+    Post post = about(task, PostKind::kRequest);
+    post.from = from;
+    post.signal = Signal::kOn;
+    tell(post);
+  }
+  /// Serves no signal until set again.
+  std::atomic<bool> is_deaf{false};
+
+  void die() {
+    stop_ = true;
+    Doorbell(page_.bells[peer_].word).ring();
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  std::uint32_t tasks() const noexcept { return static_cast<std::uint32_t>(spec_.tasks.size()); }
+  GroupWriter writer(const SegmentOwner& table, GroupId group) const {
+    return table.writer(SegmentView::planned(layout_.table(), group, 0));
+  }
+  std::size_t index(TaskId task) const {
+    for (std::size_t i = 0; i < mine_.size(); ++i)
+      if (mine_[i] == task) return i;
+    ADD_FAILURE() << "a signal for a task of another rtpu";
+    return 0;
+  }
+  Post about(TaskId task, PostKind kind) {
+    Post post;
+    post.kind = kind;
+    post.task = task;
+    post.at = clock_.now();
+    return post;
+  }
+  void tell(const Post& post) {
+    if (!outbox_.try_post(post)) ++block_.head().lost_posts;
+    ring();
+  }
+  void ring() {
+    ++page_.changes;
+    for (std::uint32_t p = 0; p <= manager(); ++p) Doorbell(page_.bells[p].word).ring();
+  }
+
+  void serve() {
+    while (!stop_) {
+      const Doorbell bell(page_.bells[peer_].word);
+      const std::uint32_t seen = bell.read();
+      {
+        const std::scoped_lock lock(mutex_);
+        for (Post post; !is_deaf && inbox_.take(post);) {
+          step_.push_back(post);
+          if (!post.more) carry_out();
+        }
+        for (const TaskId task : mine_)
+          if (block_.view().status(task).state == State::kOn) cycle(task);
+        ++block_.head().beats;
+      }
+      bell.wait_until(seen, clock_.now() + milliseconds(1));
+    }
+  }
+
+  void carry_out() {
+    std::size_t bad = step_.size();
+    for (std::size_t i = 0; i < step_.size(); ++i)
+      if (after(step_[i]) == State::kError) bad = std::min(bad, i);
+    for (std::size_t i = 0; i < step_.size(); ++i) {
+      Post report = about(step_[i].task, PostKind::kReport);
+      report.command = step_[i].command;
+      report.signal = step_[i].signal;
+      report.before = report.after = block_.view().status(report.task).state;
+      report.why = static_cast<std::uint8_t>(i == bad ? Refusal::kState : Refusal::kNone);
+      report.detail = bad == step_.size() ? 1 : 0;
+      if (bad == step_.size()) enter(report.task, report.after = after(step_[i]));
+      if (report.command != 0) tell(report);
+    }
+    step_.clear();
+  }
+  /// The state that the signal leads to; ERROR when it is not legal (no signal leads there when all is ok).
+  State after(const Post& post) const {
+    Next at = next(block_.view().status(post.task).state, post.signal, false);
+    while (at.kind == Next::Kind::kStep) at = rule(at.step).next[0];
+    return at.kind == Next::Kind::kState ? at.state : State::kError;
+  }
+  void enter(TaskId task, State state) {
+    TaskStatus status = block_.view().status(task);
+    Post post = about(task, PostKind::kEvent);
+    post.happening = Happening::kState;
+    post.before = status.state;
+    post.after = status.state;
+    if (status.state == State::kNotCreated) ++status.incarnation;
+    status.state = post.after = state;
+    block_.set_status(task, status);
+    tell(post);
+  }
+  void cycle(TaskId task) {
+    GroupWriter& out = writers_[2 * index(task) + block_.view().status(task).incarnation % 2];
+    Profile& profile = block_.profile(task);
+    profile.execution[CHIMERA_CYCLE].add(microseconds(3));
+    ++profile.cycles;
+    std::vector<std::byte> payload(out.payload_bytes());
+    const auto count = static_cast<double>(profile.cycles);
+    for (std::size_t at = 0; at + sizeof count <= payload.size(); at += sizeof count)
+      std::memcpy(payload.data() + at, &count, sizeof count);
+    out.write(payload.data(), clock_.now(), ~std::uint64_t{0});
+  }
+
+  const ApplicationSpec& spec_;
+  PeerLayout layout_, manager_layout_;
+  DecisionPage& page_;
+  std::uint32_t peer_, incarnation_;
+  LinuxClock clock_;
+  MemoryRegion region_;
+  BlockOwner block_;
+  std::vector<GroupWriter> writers_, faults_;
+  std::vector<TaskId> mine_;
+  std::mutex mutex_;
+  PeerSegment manager_;
+  Inbox inbox_;
+  Outbox outbox_;
+  std::vector<Post> step_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace chimera::manager

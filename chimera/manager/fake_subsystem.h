@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: a keeper's end of the channel, played by the test, and real-time units played by threads.
+#pragma once
+
+#include <fcntl.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chimera/manager/driver.h"
+#include "chimera/manager/fake_rtpu.h"
+#include "chimera/manager/test_bundle.h"
+
+namespace chimera::manager {
+
+inline PortDescriptor test_port(const std::string& name, std::uint32_t kind, const std::string& unit = "1",
+                                const std::string& shape = "") {
+  PortDescriptor port;
+  port.name = name;
+  port.kind = kind;
+  port.unit = unit;
+  port.shape = shape;
+  return port;
+}
+
+inline Descriptor test_component(const std::string& name, std::vector<PortDescriptor> ports) {
+  Descriptor d;
+  d.name = name;
+  d.doc = "For tests.";
+  d.default_rate_hz = 1000;
+  d.state_size = 64;
+  d.methods[CHIMERA_CYCLE] = true;
+  d.ports = std::move(ports);
+  EXPECT_TRUE(complete(d)) << complete(d).error().message.c_str();
+  return d;
+}
+
+/// Two rtpus: sensor and filter on `servo`, law on `spare`; kp is the operator's. x of the sensor has two elements.
+inline constexpr const char* kFakeText = R"(subsystem: fake
+rtpus: {servo: {cpu: 0, policy: edf}, spare: {cpu: 1, policy: muf}}
+tasks:
+  sensor: {rtpu: servo}
+  filter: {rtpu: servo, rate: 500 Hz}
+  law:    {rtpu: spare, rate: 100 Hz}
+operator: {kp: [1 N.m/rad, 2 N.m/rad]}
+configurations: {run: [sensor, filter, law], rest: [sensor]}
+start: run
+)";
+
+inline Bundle fake_bundle(const std::string& text = kFakeText) {
+  Library library = Library::of(
+      {test_component("sensor", {test_port("x", CHIMERA_OUT_VAR, "rad", "[2]")}),
+       test_component("filter", {test_port("x", CHIMERA_IN_VAR, "rad", "[2]"), test_port("y", CHIMERA_OUT_VAR, "rad")}),
+       test_component("law", {test_port("y", CHIMERA_IN_VAR, "rad"), test_port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"),
+                              test_port("tau", CHIMERA_OUT_VAR, "N.m")})},
+      test_units());
+  return {"0.1.0", text.empty() ? "" : "fake.yaml", text, {}, {}, {}, std::move(library)};
+}
+
+/// Everything outside the manager.
+class FakeSubsystem {
+ public:
+  explicit FakeSubsystem(const std::string& text = kFakeText) : bundle_(fake_bundle(text)) {
+    if (!bundle_.is_idle()) {
+      const Verdict verdict = verify(bundle_);
+      EXPECT_TRUE(verdict.configuration) << verdict.report.text();
+      configuration_ = verdict.configuration;
+      spec_ = configuration_->spec();
+    } else {
+      spec_.name = "idle";
+    }
+    const std::vector<ComponentPlace> places(spec_.tasks.size());
+    image_ = *FrozenBytes::create("image", encode(spec_, places, RunSettings{}));
+    const std::string packed = encode(bundle_);
+    frozen_bundle_ = *FrozenBytes::create("bundle", std::as_bytes(std::span(packed)));
+    decision_ = *SharedPages::create("decision", sizeof(DecisionPage));
+    new (decision_.bytes().data()) DecisionPage;
+    keeper_ = *MemoryRegion::create("keeper", sizeof(KeeperPage));
+    auto* page = new (keeper_.writable().data()) KeeperPage;
+    page->origin = now();
+    page->n_rtpus = n_rtpus();
+    for (std::uint32_t r = 0; r < n_rtpus(); ++r) revive(r);
+  }
+  ~FakeSubsystem() {
+    driver_.reset();
+    rtpus_.clear();
+  }
+
+  const ApplicationSpec& spec() const noexcept { return spec_; }
+  std::uint32_t n_rtpus() const noexcept { return static_cast<std::uint32_t>(spec_.rtpus.size()); }
+  FakeRtpu& rtpu(std::uint32_t index) { return *rtpus_[index]; }
+  KeeperPage& page() { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
+  Driver& driver() { return *driver_; }
+  TaskId task(std::string_view name) const {
+    for (std::size_t t = 0; t < spec_.tasks.size(); ++t)
+      if (spec_.tasks[t].name == name) return TaskId(t);
+    ADD_FAILURE() << "no task " << name;
+    return TaskId(std::size_t{0});
+  }
+
+  /// A manager begins; `listening` is taken over.
+  void start_manager(int listening = -1) {
+    auto ends = Channel::pair();
+    ASSERT_TRUE(ends);
+    channel_ = std::move(ends->first);
+    ++manager_incarnation_;
+    for (std::uint32_t r = 0; r < n_rtpus(); ++r) introduce(r);
+    if (manager_segment_ >= 0) send(KeeperMessage::Kind::kPeer, n_rtpus(), manager_incarnation_ - 1, manager_segment_);
+    send(KeeperMessage::Kind::kComplete, 0, 0);
+    const Inherited inherited{again(ends->second.descriptor()), again(image_.descriptor()),
+                              again(decision_.descriptor()),    again(keeper_.descriptor()),
+                              listening,                        again(frozen_bundle_.descriptor())};
+    auto made = Driver::start(inherited, manager_incarnation_, ::getpid());
+    ASSERT_TRUE(made) << made.error().message.c_str();
+    driver_ = *std::move(made);
+    ASSERT_NE(driver_, nullptr);
+  }
+  /// As by SIGKILL: it says nothing to anybody.
+  void kill_manager() {
+    driver_.reset();
+    channel_ = Channel();
+  }
+  /// As by a signal of that number; the segment stays for the last words.
+  void kill_rtpu(std::uint32_t index, int number) {
+    rtpus_[index]->die();
+    ended_[index] = KeeperMessage{.kind = KeeperMessage::Kind::kEnded,
+                                  .index = index,
+                                  .incarnation = rtpus_[index]->incarnation(),
+                                  .code = number,
+                                  .by_signal = 1,
+                                  .at = now()};
+    EXPECT_TRUE(!channel_.is_open() || channel_.send(bytes_of(*ended_[index])));
+  }
+
+  /// Lets the driver and the keeper work until `holds`; false after five seconds.
+  bool until(const std::function<bool()>& holds) {
+    for (const Nanoseconds limit = now() + seconds(5); now() < limit;) {
+      if (!driver_->step(now() + milliseconds(1))) return false;
+      keep();
+      if (holds()) return true;
+    }
+    return false;
+  }
+  bool until_on(std::string_view name) {
+    return until([&] { return driver_->world().state(task(name)) == State::kOn; });
+  }
+  /// The texts of all events of a kind, with the task's name before it.
+  std::string told(const std::string& kind) {
+    std::string text;
+    const World& world = driver_->world();
+    for (std::uint64_t n = world.log.first(); n <= world.log.last(); ++n) {
+      const LoggedEvent& event = world.log.at(n);
+      if (event.kind == kind)
+        text += (event.task.is_valid() ? world.name(event.task) + ": " : "") + event.text + "\n";
+    }
+    return text;
+  }
+  std::optional<std::int32_t> end_asked;
+
+ private:
+  static int again(int descriptor) { return ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0); }
+  void send(KeeperMessage::Kind kind, std::uint32_t index, std::uint32_t incarnation, int passed = -1) {
+    const KeeperMessage message{.kind = kind, .index = index, .incarnation = incarnation, .pid = 1000, .at = now()};
+    EXPECT_TRUE(channel_.send(bytes_of(message), passed));
+  }
+  void introduce(std::uint32_t r) {
+    if (!ended_[r]) send(KeeperMessage::Kind::kStarted, r, rtpus_[r]->incarnation());
+    send(KeeperMessage::Kind::kPeer, r, rtpus_[r]->incarnation(), rtpus_[r]->descriptor());
+    EXPECT_TRUE(!ended_[r] || channel_.send(bytes_of(*ended_[r])));
+  }
+  void revive(std::uint32_t r) {
+    ended_[r].reset();
+    auto& page = *reinterpret_cast<DecisionPage*>(decision_.bytes().data());
+    const std::uint32_t incarnation = rtpus_[r] == nullptr ? 1 : rtpus_[r]->incarnation() + 1;
+    rtpus_[r] = std::make_unique<FakeRtpu>(spec_, r, incarnation, page);
+    if (manager_segment_ >= 0) rtpus_[r]->meet(again(manager_segment_), manager_incarnation_);
+  }
+  void keep() {
+    KeeperMessage message;
+    int passed = -1;
+    while (channel_.receive(bytes_of(message), passed) == Channel::Got::kMessage) {
+      if (message.kind == KeeperMessage::Kind::kSegment) {
+        if (manager_segment_ >= 0) ::close(manager_segment_);
+        manager_segment_ = passed;
+        for (auto& [r, rtpu] : rtpus_)
+          if (!ended_[r]) rtpu->meet(again(passed), manager_incarnation_);
+      } else if (message.kind == KeeperMessage::Kind::kStart && ended_[message.index]) {
+        revive(message.index);
+        introduce(message.index);
+      } else if (message.kind == KeeperMessage::Kind::kEnd) {
+        end_asked = message.code;
+      }
+    }
+  }
+
+  Bundle bundle_;
+  std::optional<Configuration> configuration_;
+  ApplicationSpec spec_;
+  FrozenBytes image_, frozen_bundle_;
+  SharedPages decision_;
+  MemoryRegion keeper_;
+  Channel channel_;
+  int manager_segment_ = -1;
+  std::uint32_t manager_incarnation_ = 0;
+  std::map<std::uint32_t, std::unique_ptr<FakeRtpu>> rtpus_;
+  std::map<std::uint32_t, std::optional<KeeperMessage>> ended_;
+  std::unique_ptr<Driver> driver_;
+};
+
+}  // namespace chimera::manager

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/fleet.h"
+
+#include "chimera/manager/cause.h"
+#include "chimera/manager/post_text.h"
+#include "chimera/manager/subject_status.h"
+#include "chimera/platform/doorbell.h"
+
+namespace chimera::manager {
+
+Fleet::Fleet(World& world)
+    : world_(world), links_(world.peers.n_rtpus()), seen_(world.peers.n_tasks()), counted_(world.peers.n_tasks()) {
+  for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t)
+    links_[world.spec().tasks[t].rtpu.index].tasks.push_back(TaskId(t));
+}
+
+bool Fleet::is_current(RtpuId rtpu) const noexcept {
+  const PeerSegment& segment = world_.peers[rtpu];
+  return segment.is_there() && segment.incarnation() == world_.rtpus[rtpu.index].incarnation;
+}
+
+void Fleet::started(const KeeperMessage& message) {
+  if (message.index >= links_.size()) return;
+  RtpuRecord& rtpu = record(RtpuId(message.index));
+  rtpu.pid = message.pid;
+  rtpu.incarnation = message.incarnation;
+  rtpu.restarts = message.incarnation - 1;
+  rtpu.is_alive = true;
+  rtpu.is_up = false;
+}
+
+void Fleet::mapped(const KeeperMessage& message, int descriptor) {
+  const RtpuId rtpu(message.index);
+  Link& link = links_[rtpu.index];
+  link.inbox = {};  // both point into the mapping that goes away
+  link.outbox = {};
+  if (const auto mapped = world_.peers.map(rtpu, message.incarnation, descriptor); !mapped) {
+    world_.tell("fault", TaskId{}, rtpu, std::string(mapped.error().message.view()), now());
+    return;
+  }
+  const BlockView& block = world_.peers[rtpu].block();
+  const BlockOwner& own = world_.own.block();
+  link.inbox = Inbox(block.outbox(world_.own.peer()), own.progress(rtpu.index), message.incarnation);
+  link.outbox = Outbox(own.outbox(rtpu.index), &block.progress(world_.own.peer()), world_.own.incarnation());
+  link.lost = block.head().lost_posts;
+  for (const TaskId task : link.tasks) {
+    const Profile p = block.profile(task);
+    counted_[task.index] = {p.missed, p.overrun, p.stale};
+  }
+  // Its bell is rung, so that it looks whether this manager serves it.
+  Doorbell(world_.page.bells[rtpu.index].word).ring();
+}
+
+void Fleet::ended(const KeeperMessage& message, Events& events) {
+  if (message.index >= links_.size()) return;
+  const RtpuId rtpu(message.index);
+  RtpuRecord& record = this->record(rtpu);
+  record.incarnation = message.incarnation;
+  record.restarts = message.incarnation - 1;
+  const bool left_words = is_current(rtpu);
+  if (left_words) {
+    take_posts(rtpu, events);
+    for (const TaskId task : links_[rtpu.index].tasks) see(task, events, true);
+  }
+  record.is_alive = record.is_up = false;
+  record.last_end = cause_text(world_.spec(), message, left_words ? world_.peers[rtpu].block() : BlockView());
+  events.push_back(subsystem::RtpuDown{rtpu, message.incarnation, record.last_end});
+}
+
+bool Fleet::all_up() const noexcept {
+  for (const RtpuRecord& rtpu : world_.rtpus)
+    if (rtpu.is_alive && !rtpu.is_up) return false;
+  return true;
+}
+
+void Fleet::look(Events& events) {
+  for (std::uint32_t r = 0; r < links_.size(); ++r) {
+    const RtpuId rtpu(r);
+    RtpuRecord& record = this->record(rtpu);
+    if (!record.is_alive || !is_current(rtpu)) continue;
+    const PeerPhase phase = world_.peers[rtpu].block().head().phase.load(std::memory_order_acquire);
+    const bool rises = !record.is_up && phase == PeerPhase::kServing && links_[r].outbox.is_followed();
+    take_posts(rtpu, events);
+    if (record.is_up || rises)
+      for (const TaskId task : links_[r].tasks) see(task, events, rises);
+    if (!rises) continue;
+    record.is_up = true;
+    events.push_back(subsystem::RtpuUp{rtpu, record.incarnation});
+  }
+}
+
+void Fleet::see(TaskId task, Events& events, bool always) {
+  const TaskStatus status = world_.peers.status(task);
+  if (!always && status == seen_[task.index]) return;
+  seen_[task.index] = status;
+  events.push_back(subsystem::TaskSeen{task, status});
+}
+
+void Fleet::take_posts(RtpuId rtpu, Events& events) {
+  Post post;
+  for (std::size_t n = 0; n < 4 * kPosts && links_[rtpu.index].inbox.take(post); ++n) take(post, rtpu, events);
+}
+
+void Fleet::take(const Post& post, RtpuId rtpu, Events& events) {
+  const bool is_its = post.task.index < seen_.size() && world_.spec().tasks[post.task.index].rtpu == rtpu;
+  if (post.kind == PostKind::kEvent) return log(post, rtpu);
+  if (post.kind == PostKind::kRequest && post.task.index < seen_.size()) {
+    events.push_back(subsystem::Requested{post.task, post.signal, post.from});
+  } else if (post.kind == PostKind::kReport && is_its) {
+    see(post.task, events);
+    const auto why = static_cast<Refusal>(post.why);
+    events.push_back(subsystem::Reported{post.command, post.task, post.signal, post.detail == 1, why, post.before,
+                                         post.after, why == Refusal::kFault ? fault_text(world_, post.task) : ""});
+  }
+}
+
+void Fleet::log(const Post& post, RtpuId rtpu) {
+  const bool has_task = post.task.index < seen_.size();
+  const std::string words = has_task ? fault_text(world_, post.task) : "";
+  world_.tell(event_kind(post.happening), has_task ? post.task : TaskId{}, rtpu,
+              event_text(world_.spec(), post, words), post.at);
+}
+
+void Fleet::look_at_counters(Nanoseconds at) {
+  for (std::uint32_t r = 0; r < links_.size(); ++r) {
+    if (!world_.peers[RtpuId(r)].is_there()) continue;
+    for (const TaskId task : links_[r].tasks) count(task, at);
+    const std::uint64_t lost = world_.peers[RtpuId(r)].block().head().lost_posts;
+    if (lost > links_[r].lost)
+      world_.tell("lost", TaskId{}, RtpuId(r), counted("event", "found no room", lost - links_[r].lost, lost), at);
+    links_[r].lost = lost;
+  }
+}
+
+void Fleet::count(TaskId task, Nanoseconds at) {
+  const Profile p = world_.peers.of(task).block().profile(task);
+  Counted& before = counted_[task.index];
+  const RtpuId rtpu = world_.spec().tasks[task.index].rtpu;
+  if (p.missed > before.missed)
+    world_.tell("miss", task, rtpu, counted("deadline", "missed", p.missed - before.missed, p.missed), at);
+  if (p.overrun > before.overrun)
+    world_.tell("overrun", task, rtpu, counted("cycle", "over budget", p.overrun - before.overrun, p.overrun), at);
+  if (p.stale > before.stale)
+    world_.tell("stale", task, rtpu, counted("input", "kept stale", p.stale - before.stale, p.stale), at);
+  before = {p.missed, p.overrun, p.stale};
+}
+
+bool Fleet::send(const subsystem::Send& send, Nanoseconds at) {
+  Outbox& outbox = links_[send.rtpu.index].outbox;
+  if (!record(send.rtpu).is_alive || !outbox.is_followed() || outbox.room() < send.tasks.size()) return false;
+  for (std::size_t i = 0; i < send.tasks.size(); ++i) {
+    Post post;
+    post.command = send.command;
+    post.at = at;
+    post.task = send.tasks[i];
+    post.signal = send.signal;
+    post.more = i + 1 < send.tasks.size();
+    if (!outbox.try_post(post)) return false;  // cannot be: there was room, and nobody else writes
+  }
+  Doorbell(world_.page.bells[send.rtpu.index].word).ring();
+  return true;
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/peers.h"
+
+#include <unistd.h>
+
+#include <cstring>
+
+#include "chimera/base/message.h"
+
+namespace chimera::manager {
+
+Result<PeerSegment> PeerSegment::open(int descriptor, const PeerLayout& layout, std::uint32_t n_tasks,
+                                      std::uint32_t peer, std::uint32_t incarnation) {
+  auto region = MemoryRegion::open_read_only(descriptor, peer_segment_bytes(layout.table(), n_tasks));
+  ::close(descriptor);
+  if (!region) return region.error();
+  if (auto table = SegmentView::open(region->bytes(), layout.table().hash()); !table) return table.error();
+  PeerSegment made;
+  made.block_ = BlockView(region->bytes().data() + block_offset(layout.table()), n_tasks);
+  const BlockHead& head = made.block_.head();
+  if (head.magic != kBlockMagic || head.peer != peer || head.incarnation != incarnation || head.n_tasks != n_tasks)
+    return (Message() << "segment says peer " << head.peer << " in incarnation " << head.incarnation << " with "
+                      << head.n_tasks << " tasks, expected " << peer << ", " << incarnation << ", " << n_tasks)
+        .error(ErrorCode::kBadInput);
+  made.region_ = *std::move(region);
+  made.layout_ = &layout;
+  made.incarnation_ = incarnation;
+  return made;
+}
+
+GroupReader PeerSegment::group(GroupId id) const noexcept {
+  const Link link = SegmentView::planned(layout_->table(), id, 0);
+  return GroupReader(region_.bytes().data() + link.offset, link.payload_bytes);
+}
+
+Result<Peers> Peers::create(const ApplicationSpec& spec) {
+  Peers made(spec);
+  for (std::uint32_t peer = 0; peer <= spec.rtpus.size(); ++peer) {
+    auto layout = PeerLayout::of(spec, peer);
+    if (!layout) return layout.error();
+    made.layouts_.push_back(*std::move(layout));
+  }
+  made.segments_.resize(spec.rtpus.size());
+  return made;
+}
+
+Result<void> Peers::map(RtpuId rtpu, std::uint32_t incarnation, int descriptor) {
+  auto segment = PeerSegment::open(descriptor, layout(rtpu), n_tasks(), rtpu.index, incarnation);
+  if (!segment) return segment.error();
+  segments_[rtpu.index] = *std::move(segment);
+  return {};
+}
+
+TaskStatus Peers::status(TaskId task) const noexcept {
+  const PeerSegment& segment = of(task);
+  return segment.is_there() ? segment.block().status(task) : TaskStatus{};
+}
+
+FaultRecord Peers::fault(TaskId task) const noexcept {
+  const PeerSegment& segment = of(task);
+  FaultRecord record;
+  if (!segment.is_there()) return record;
+  const GroupReader reader = segment.group(layout(spec_->tasks[task.index].rtpu).fault(task));
+  std::vector<std::byte> payload(reader.payload_bytes());
+  chimera_slot slot;
+  if (!reader.try_read(slot, payload.data()) || slot.sequence == 0) return record;
+  std::memcpy(static_cast<void*>(&record), payload.data(), sizeof record);
+  record.last.text[sizeof record.last.text - 1] = '\0';
+  if (static_cast<std::uint32_t>(record.method) >= CHIMERA_METHODS) record.method = Method::kError;
+  return record;
+}
+
+}  // namespace chimera::manager

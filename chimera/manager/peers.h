@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The segments of the real-time units as the manager maps them: read-only, each kept until its successor's came, so
+// that the last words and values of a dead one can still be read.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "chimera/platform/memory_region.h"
+#include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/rtpu_block.h"
+#include "chimera/table/segment.h"
+#include "chimera/task/fault_record.h"
+
+namespace chimera::manager {
+
+/// A segment of peer number `peer`, checked and mapped. Move-only.
+class PeerSegment {
+ public:
+  PeerSegment() noexcept = default;
+  /// Refuses what is not the segment of that incarnation of that peer, laid out as `layout` (which outlives it).
+  /// Takes over `descriptor` in any case. Context: setup; may block.
+  static Result<PeerSegment> open(int descriptor, const PeerLayout& layout, std::uint32_t n_tasks, std::uint32_t peer,
+                                  std::uint32_t incarnation);
+
+  bool is_there() const noexcept { return block_.is_there(); }
+  const BlockView& block() const noexcept { return block_; }
+  std::uint32_t incarnation() const noexcept { return incarnation_; }
+  GroupReader group(GroupId id) const noexcept;
+
+ private:
+  MemoryRegion region_;
+  BlockView block_;
+  const PeerLayout* layout_ = nullptr;
+  std::uint32_t incarnation_ = 0;
+};
+
+/// All real-time units. Context: setup.
+class Peers {
+ public:
+  /// `spec` outlives it.
+  static Result<Peers> create(const ApplicationSpec& spec);
+
+  const ApplicationSpec& spec() const noexcept { return *spec_; }
+  std::uint32_t n_rtpus() const noexcept { return static_cast<std::uint32_t>(segments_.size()); }
+  std::uint32_t n_tasks() const noexcept { return static_cast<std::uint32_t>(spec_->tasks.size()); }
+  const PeerLayout& layout(RtpuId rtpu) const noexcept { return layouts_[rtpu.index]; }
+  const PeerLayout& manager_layout() const noexcept { return layouts_.back(); }
+  const PeerSegment& operator[](RtpuId rtpu) const noexcept { return segments_[rtpu.index]; }
+  /// Puts another incarnation in the place of the present one.
+  Result<void> map(RtpuId rtpu, std::uint32_t incarnation, int descriptor);
+
+  /// The segment of the task's rtpu; not there before it came.
+  const PeerSegment& of(TaskId task) const noexcept { return segments_[spec_->tasks[task.index].rtpu.index]; }
+  /// As it stands in the segment, dead or alive.
+  TaskStatus status(TaskId task) const noexcept;
+  FaultRecord fault(TaskId task) const noexcept;
+
+ private:
+  explicit Peers(const ApplicationSpec& spec) noexcept : spec_(&spec) {}
+
+  const ApplicationSpec* spec_;
+  std::vector<PeerLayout> layouts_;  // of the rtpus, then of the manager
+  std::vector<PeerSegment> segments_;
+};
+
+}  // namespace chimera::manager

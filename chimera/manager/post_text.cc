@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/post_text.h"
+
+#include "chimera/runtime/refusal.h"
+
+namespace chimera::manager {
+namespace {
+
+std::string sender(const ApplicationSpec& spec, const Post& post) {
+  return post.from.index < spec.tasks.size() ? " sent by " + std::string(spec.tasks[post.from.index].name) : "";
+}
+
+std::string refusal(const Post& post, const std::string& fault) {
+  switch (static_cast<Refusal>(post.why)) {
+    case Refusal::kState: return std::string("not legal in state ") + state_name(post.before);
+    case Refusal::kIllegalSet: return "the tasks ON would be no legal set";
+    case Refusal::kFault: return fault;
+    case Refusal::kNone: break;
+  }
+  return "another task of the same list refused";
+}
+
+std::string flag_text(std::uint64_t word) {
+  if (word == 0) return "the illegal-configuration flag is down";
+  std::string text = "the illegal-configuration flag is up";
+  if ((word & 1u) != 0) text += ": the tasks ON are no legal set";
+  if ((word & 2u) != 0) text += ": raised by a task";
+  return text;
+}
+
+}  // namespace
+
+const char* event_kind(Happening happening) noexcept {
+  switch (happening) {
+    case Happening::kState: return "state";
+    case Happening::kFault: return "fault";
+    case Happening::kRefused: return "refused";
+    case Happening::kSignalled: return "signal";
+    case Happening::kFlag: return "flag";
+    case Happening::kStop: break;
+  }
+  return "stop";
+}
+
+std::string event_text(const ApplicationSpec& spec, const Post& post, const std::string& fault) {
+  switch (post.happening) {
+    case Happening::kState: return std::string(state_name(post.before)) + " -> " + state_name(post.after);
+    case Happening::kFault: return fault;
+    case Happening::kRefused:
+      return std::string(signal_name(post.signal)) + sender(spec, post) + ": " + refusal(post, fault);
+    case Happening::kSignalled: return signal_name(post.signal) + sender(spec, post);
+    case Happening::kFlag: return flag_text(post.detail);
+    case Happening::kStop: break;
+  }
+  return "stopped by its reaction: all tasks of this real-time unit go OFF";
+}
+
+std::string counted(const char* what, const char* how, std::uint64_t more, std::uint64_t all) {
+  const std::string first = std::to_string(more) + " " + what + (more == 1 ? " " : "s ") + how;
+  return more == all ? first : first + " (" + std::to_string(all) + " in all)";
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/readings.h"
+
+#include <algorithm>
+
+namespace chimera::manager {
+namespace {
+
+const PortSpec& port_of(const ApplicationSpec& spec, const PortOf& at, std::uint32_t kind) {
+  std::uint32_t index = 0;
+  for (const PortSpec& port : spec.tasks[at.task.index].ports)
+    if (port.kind == kind && index++ == at.index) return port;
+  CHIMERA_ASSERT(false);
+  return spec.tasks[at.task.index].ports[0];
+}
+
+std::vector<FieldDescriptor> fields_of(const Library& library, std::string_view component, std::uint32_t declared) {
+  const LibraryEntry* entry = library.find(component);
+  if (entry == nullptr || declared >= entry->descriptor.ports.size()) return {};
+  return entry->descriptor.ports[declared].fields;
+}
+
+}  // namespace
+
+Readings::Readings(const Peers& peers, const OwnSegment& own, const Configuration& configuration,
+                   const Library& library, StateOf state_of)
+    : peers_(peers), own_(own), state_of_(std::move(state_of)), variables_(peers.spec()) {
+  for (std::size_t v = 0; v < variables_.all().size(); ++v)
+    forms_.push_back(form_of(v, configuration, library));
+}
+
+Readings::Form Readings::form_of(std::size_t variable, const Configuration& configuration,
+                                 const Library& library) const {
+  const Variable& v = variables_.all()[variable];
+  const ApplicationSpec& spec = peers_.spec();
+  Form made;
+  const auto known = configuration.variables();
+  const auto at = std::find_if(known.begin(), known.end(),
+                               [&](const ConfiguredVariable& c) { return !c.is_constant && c.name == v.name; });
+  CHIMERA_ASSERT(at != known.end());  // both come from one verification
+  made.configured = &*at;
+  made.form.unit = at->unit;
+  made.form.is_scalar = at->shape.empty();
+  const bool is_operators = v.producers.empty();
+  const PortOf& from = is_operators ? v.consumers[0] : v.producers[0];
+  const PortSpec& port = port_of(spec, from, is_operators ? CHIMERA_IN_VAR : CHIMERA_OUT_VAR);
+  made.form.type = port.type;
+  made.form.element_bytes = port.element_bytes;
+  made.extents = v.operator_index != UINT32_MAX ? spec.operators[v.operator_index].extent : port.extent;
+  if (port.type == CHIMERA_STRUCT)
+    made.form.fields = fields_of(library, spec.tasks[from.task.index].component, port.declared);
+  return made;
+}
+
+std::optional<VariableId> Readings::find(std::string_view name) const noexcept {
+  const std::size_t found = variables_.find(name);
+  return found < size() ? std::optional(VariableId(found)) : std::nullopt;
+}
+
+TaskId Readings::producer(VariableId variable) const {
+  const Variable& v = variables_.all()[variable.index];
+  TaskId last;
+  std::int64_t latest = INT64_MIN;
+  for (const PortOf& port : v.producers) {
+    if (state_of_(port.task) == State::kOn) return port.task;
+    Reading reading;
+    if (!read_output(port, reading) || reading.slot.sequence == 0 || reading.slot.published_ns <= latest) continue;
+    latest = reading.slot.published_ns;
+    last = port.task;
+  }
+  return last;
+}
+
+Reading Readings::read(VariableId variable) const {
+  const Variable& v = variables_.all()[variable.index];
+  Reading reading;
+  reading.form = form(variable);
+  if (is_operators(variable)) {
+    const GroupReader reader = own_.operator_reader(v.operator_index);
+    reading.value.resize(reader.payload_bytes());
+    reading.is_valid = reader.try_read(reading.slot, reading.value.data()) && (reading.slot.valid & 1u) != 0;
+  } else {
+    const TaskId from = producer(variable);
+    const auto at = std::find_if(v.producers.begin(), v.producers.end(),
+                                 [&](const PortOf& port) { return port.task == from; });
+    if (at != v.producers.end() && read_output(*at, reading)) {
+      reading.producer = from;
+      reading.is_valid = ((reading.slot.valid >> at->index) & 1u) != 0;
+    }
+  }
+  reading.value.resize(std::size_t{reading.form.count} * reading.form.element_bytes);
+  return reading;
+}
+
+bool Readings::read_output(const PortOf& port, Reading& reading) const {
+  const PeerSegment& segment = peers_.of(port.task);
+  if (!segment.is_there()) return false;
+  const PeerLayout& layout = peers_.layout(peers_.spec().tasks[port.task.index].rtpu);
+  const GroupId group = layout.outputs(port.task, peers_.status(port.task).incarnation);
+  const VariablePlace& place = layout.variables(group)[port.index];
+  std::vector<std::byte> payload(layout.place(group).payload_bytes);
+  if (!segment.group(group).try_read(reading.slot, payload.data())) return false;
+  reading.value.assign(payload.begin() + place.offset, payload.begin() + place.offset + place.bytes);
+  return true;
+}
+
+ValueForm Readings::form(VariableId variable) const {
+  const Form& known = forms_[variable.index];
+  ValueForm form = known.form;
+  form.count = extent(known.extents[0]) * extent(known.extents[1]);
+  return form;
+}
+
+std::uint32_t Readings::extent(const ExtentSpec& extent) const {
+  if (extent.constant.empty()) return extent.max;
+  const auto value = constant(extent.constant);
+  return value && *value >= 1 && *value <= extent.max ? static_cast<std::uint32_t>(*value) : extent.max;
+}
+
+std::optional<std::int64_t> Readings::constant(std::string_view name) const {
+  const auto whole = [](std::uint32_t type, std::uint32_t bytes, std::span<const std::byte> at) {
+    ValueForm form;
+    form.type = type;
+    form.element_bytes = bytes;
+    const std::vector<double> value = numbers(form, at);
+    return value.empty() ? std::nullopt : std::optional(static_cast<std::int64_t>(value[0]));
+  };
+  const ApplicationSpec& spec = peers_.spec();
+  for (const GivenSpec& given : spec.constants)
+    if (given.name == name) return whole(given.type, given.element_bytes, given.value);
+  for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
+    std::uint32_t index = 0;
+    for (const PortSpec& port : spec.tasks[t].ports) {
+      if (port.kind != CHIMERA_OUT_CONST) continue;
+      const std::uint32_t mine = index++;
+      const PeerSegment& segment = peers_.of(TaskId(t));
+      if (port.variable != name || !segment.is_there()) continue;
+      const PeerLayout& layout = peers_.layout(spec.tasks[t].rtpu);
+      const GroupId group = layout.constants(TaskId(t));
+      std::vector<std::byte> payload(layout.place(group).payload_bytes);
+      chimera_slot slot;
+      if (segment.group(group).try_read(slot, payload.data()) && slot.sequence > 0)
+        return whole(port.type, port.element_bytes,
+                     std::span(payload).subspan(layout.variables(group)[mine].offset, port.element_bytes));
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The present values of state variables, out of the segments of all processes: from the producer that is ON, else from
+// the one that wrote last.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/config/configuration.h"
+#include "chimera/config/library.h"
+#include "chimera/config/value_text.h"
+#include "chimera/manager/own_segment.h"
+#include "chimera/manager/peers.h"
+#include "chimera/runtime/variables.h"
+
+namespace chimera::manager {
+
+/// A variable at one instant.
+struct Reading {
+  std::vector<std::byte> value;  ///< as many elements as its extents have now
+  chimera_slot slot{};           ///< of the publication it came with; sequence 0: never published
+  TaskId producer;               ///< invalid: the operator, or nobody
+  bool is_valid = false;         ///< written at least once, or given an initial value
+  ValueForm form;
+};
+
+/// Context: setup; may allocate. What it is made of outlives it.
+class Readings {
+ public:
+  /// State of a task as people see it.
+  using StateOf = std::function<State(TaskId)>;
+
+  Readings(const Peers& peers, const OwnSegment& own, const Configuration& configuration, const Library& library,
+           StateOf state_of);
+
+  const Variables& variables() const noexcept { return variables_; }
+  const ConfiguredVariable& configured(VariableId variable) const noexcept {
+    return *forms_[variable.index].configured;
+  }
+  std::size_t size() const noexcept { return variables_.all().size(); }
+  /// The variable of that name.
+  std::optional<VariableId> find(std::string_view name) const noexcept;
+  bool is_operators(VariableId variable) const noexcept {
+    return variables_.all()[variable.index].operator_index != UINT32_MAX;
+  }
+  /// Who produces it now, or did last; invalid: the operator, or no task that does was ever created.
+  TaskId producer(VariableId variable) const;
+  Reading read(VariableId variable) const;
+  /// How a value of the variable is to be read, with its present extents.
+  ValueForm form(VariableId variable) const;
+
+ private:
+  struct Form {
+    const ConfiguredVariable* configured = nullptr;
+    ValueForm form;
+    const ExtentSpec* extents = nullptr;  // of the first producer, or the operator's
+  };
+  Form form_of(std::size_t variable, const Configuration& configuration, const Library& library) const;
+  std::uint32_t extent(const ExtentSpec& extent) const;
+  std::optional<std::int64_t> constant(std::string_view name) const;
+  bool read_output(const PortOf& port, Reading& reading) const;
+
+  const Peers& peers_;
+  const OwnSegment& own_;
+  StateOf state_of_;
+  Variables variables_;
+  std::vector<Form> forms_;
+};
+
+}  // namespace chimera::manager

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/subject_status.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "chimera/config/task_profile.h"
+#include "chimera/manager/cause.h"
+
+namespace chimera::manager {
+namespace {
+
+using Json = nlohmann::json;
+
+const char* policy_text(Policy policy) {
+  constexpr const char* kNames[] = {"rm", "edf", "llf", "muf", "muf-laxity"};
+  return kNames[static_cast<std::size_t>(policy)];
+}
+
+const char* phase_text(PeerPhase phase) {
+  switch (phase) {
+    case PeerPhase::kStarting: return "starting";
+    case PeerPhase::kServing: return "serving";
+    case PeerPhase::kEnding: return "ending";
+    case PeerPhase::kEnded: break;
+  }
+  return "ended";
+}
+
+Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+/// What the rtpu says of itself, one that was cut short included.
+std::string grant_of(const BlockHead& head) {
+  return {head.grant, ::strnlen(head.grant, sizeof head.grant)};
+}
+
+Json rtpu_json(const World& world, RtpuId rtpu) {
+  const RtpuSpec& spec = world.spec().rtpus[rtpu.index];
+  const RtpuRecord& record = world.rtpus[rtpu.index];
+  const PeerSegment& segment = world.peers[rtpu];
+  const bool is_current = segment.is_there() && segment.incarnation() == record.incarnation;
+  const PeerPhase phase = !record.is_alive ? PeerPhase::kEnded
+                          : is_current     ? segment.block().head().phase.load(std::memory_order_acquire)
+                                           : PeerPhase::kStarting;
+  Json json = {{"name", spec.name},
+               {"cpu", spec.cpu},
+               {"policy", policy_text(spec.policy)},
+               {"pid", record.pid},
+               {"incarnation", record.incarnation},
+               {"alive", record.is_alive},
+               {"phase", phase_text(phase)},
+               {"grant", ""},
+               {"running", nullptr},
+               {"restarts", record.restarts},
+               {"last_end", or_null(record.last_end)},
+               {"lost_events", 0},
+               {"flag", false}};
+  if (!segment.is_there()) return json;
+  const BlockHead& head = segment.block().head();
+  json["grant"] = grant_of(head);
+  if (record.is_alive) json["running"] = or_null(running_text(world.spec(), head.running));
+  json["lost_events"] = head.lost_posts.load(std::memory_order_relaxed);
+  json["flag"] = head.flag.load(std::memory_order_relaxed) != 0;
+  return json;
+}
+
+Json flag_json(const World& world) {
+  Json by = Json::array();
+  for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) {
+    const PeerSegment& segment = world.peers[RtpuId(r)];
+    if (segment.is_there() && segment.block().head().flag.load(std::memory_order_acquire) != 0)
+      by.push_back(world.name(RtpuId(r)));
+  }
+  if (world.own.block().head().flag.load(std::memory_order_acquire) != 0) by.push_back("operator");
+  return {{"up", !by.empty()}, {"by", std::move(by)}};
+}
+
+Json inputs_json(const World& world, TaskId task, Nanoseconds at) {
+  Json inputs = Json::array();
+  for (const ConfiguredPort& port : world.configuration->tasks()[task.index].ports) {
+    if (port.kind != CHIMERA_IN_VAR) continue;
+    const auto variable = world.readings->find(port.variable);
+    if (!variable) continue;
+    const Reading reading = world.readings->read(*variable);
+    const bool is_there = reading.is_valid && reading.slot.sequence > 0;
+    inputs.push_back({{"port", port.name},
+                      {"variable", port.variable},
+                      {"age_ns", is_there ? Json(at.count - reading.slot.published_ns) : Json()}});
+  }
+  return inputs;
+}
+
+Json spread_json(const Spread& spread) {
+  if (spread.count == 0) return {{"mean", 0}, {"max", 0}};
+  return {{"mean", spread.mean().count}, {"max", spread.max.count}};
+}
+
+Profile profile_of(const World& world, TaskId task) {
+  const PeerSegment& segment = world.peers.of(task);
+  return segment.is_there() ? segment.block().profile(task) : Profile{};
+}
+
+Json task_json(const World& world, TaskId task, Nanoseconds at) {
+  const TaskSpec& spec = world.spec().tasks[task.index];
+  const TaskStatus status = world.peers.status(task);
+  const Profile p = profile_of(world, task);
+  const FaultRecord fault = world.peers.fault(task);
+  return {{"task", spec.name},
+          {"component", spec.component},
+          {"rtpu", world.name(spec.rtpu)},
+          {"state", state_name(world.state(task))},
+          {"in_service", status.in_service},
+          {"incarnation", status.incarnation},
+          {"rate_hz", world.configuration ? world.configuration->tasks()[task.index].rate_hz : 0},
+          {"period_ns", spec.period.count},
+          {"budget_ns", spec.budget.count},
+          {"cycles", p.cycles},
+          {"execution_ns", spread_json(p.execution[CHIMERA_CYCLE])},
+          {"response_ns", {{"max", p.response.count == 0 ? 0 : p.response.max.count}}},
+          {"jitter_ns", p.start_delay.count == 0 ? 0 : (p.start_delay.max - p.start_delay.min).count},
+          {"missed", p.missed},
+          {"overrun", p.overrun},
+          {"dropped", p.dropped},
+          {"stale", p.stale},
+          {"rejected", p.rejected},
+          {"fault", or_null(fault_text(world, task))},
+          {"faults", fault.count},
+          {"inputs", world.configuration ? inputs_json(world, task, at) : Json::array()}};
+}
+
+Json port_json(const ConfiguredPort& port) {
+  return {{"port", port.name},         {"kind", kind_name(port.kind)}, {"variable", port.variable},
+          {"type", port.type},         {"unit", port.unit},            {"shape", port.shape}};
+}
+
+Json described_task(const World& world, const ConfiguredTask& task) {
+  Json ports = Json::array();
+  for (const ConfiguredPort& port : task.ports) ports.push_back(port_json(port));
+  return {{"task", task.name},
+          {"component", task.component},
+          {"doc", task.doc},
+          {"rtpu", world.name(RtpuId(task.rtpu))},
+          {"rate_hz", task.rate_hz},
+          {"aperiodic", task.is_aperiodic},
+          {"hardware", task.is_hardware},
+          {"standby_for", task.standby_for},
+          {"ports", std::move(ports)}};
+}
+
+Json described_variable(const Configuration& configuration, const ConfiguredVariable& variable) {
+  const auto names = [&](const std::vector<PortRef>& refs) {
+    Json all = Json::array();
+    for (const PortRef& ref : refs) {
+      const ConfiguredTask& task = configuration.tasks()[ref.task];
+      all.push_back({{"task", task.name}, {"port", task.ports[ref.port].name}});
+    }
+    return all;
+  };
+  return {{"variable", variable.name}, {"constant", variable.is_constant},
+          {"given", variable.is_given}, {"type", variable.type},
+          {"unit", variable.unit},      {"shape", variable.shape},
+          {"producers", names(variable.producers)}, {"consumers", names(variable.consumers)}};
+}
+
+}  // namespace
+
+std::string fault_text(const World& world, TaskId task) {
+  const FaultRecord fault = world.peers.fault(task);
+  if (fault.count == 0) return "";
+  return std::string(method_name(fault.method)) + ": " + fault.last.text;
+}
+
+std::string configuration_name(const World& world) {
+  if (!world.configuration) return "";
+  const Configuration& configuration = *world.configuration;
+  std::vector<bool> on(world.spec().tasks.size());
+  for (std::size_t t = 0; t < on.size(); ++t) on[t] = world.state(TaskId(t)) == State::kOn;
+  for (const ConfiguredSet& set : configuration.sets()) {
+    std::vector<bool> wanted(on.size());
+    for (const TaskId task : set.order) wanted[task.index] = true;
+    if (wanted == on) return set.name;
+  }
+  return "";
+}
+
+Json status_json(const World& world, Nanoseconds at) {
+  Json rtpus = Json::array(), tasks = Json::array();
+  for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) rtpus.push_back(rtpu_json(world, RtpuId(r)));
+  for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) tasks.push_back(task_json(world, TaskId(t), at));
+  const std::int64_t started = world.own.block().memory().started_at;
+  return {{"subsystem", world.spec().name},
+          {"configuration", configuration_name(world)},
+          {"now_ns", at.count},
+          {"origin_ns", world.keeper.origin.count},
+          {"started_ns", started == 0 ? Json() : Json(started)},
+          {"ending", world.keeper.ending.load(std::memory_order_acquire) != 0},
+          {"flag", flag_json(world)},
+          {"rtpus", std::move(rtpus)},
+          {"tasks", std::move(tasks)}};
+}
+
+Json describe_json(const World& world) {
+  Json tasks = Json::array(), variables = Json::array(), sets = Json::array();
+  std::string start;
+  if (world.configuration) {
+    const Configuration& configuration = *world.configuration;
+    for (const ConfiguredTask& task : configuration.tasks()) tasks.push_back(described_task(world, task));
+    for (const ConfiguredVariable& v : configuration.variables())
+      variables.push_back(described_variable(configuration, v));
+    for (const ConfiguredSet& set : configuration.sets()) {
+      Json names = Json::array();
+      for (const TaskId task : set.order) names.push_back(world.name(task));
+      sets.push_back({{"name", set.name}, {"tasks", std::move(names)}});
+    }
+    start = configuration.sets()[configuration.start()].name;
+  }
+  return {{"tasks", std::move(tasks)},
+          {"variables", std::move(variables)},
+          {"configurations", std::move(sets)},
+          {"start", start}};
+}
+
+Json profile_json(const World& world) {
+  std::vector<TaskProfile> tasks;
+  for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) {
+    const TaskSpec& spec = world.spec().tasks[t];
+    tasks.push_back({std::string(spec.name), std::string(spec.component), world.state(TaskId(t)), spec.period,
+                     profile_of(world, TaskId(t)), world.peers.fault(TaskId(t))});
+  }
+  return {{"tasks", Json::parse(chimera::profile_json(tasks, world.keeper.origin))}};
+}
+
+Json event_json(const World& world, const LoggedEvent& event) {
+  Json json = {{"number", event.number},
+               {"at_ns", event.at.count},
+               {"wall_ns", event.wall_ns},
+               {"kind", event.kind},
+               {"text", event.text}};
+  if (event.task.is_valid()) json["task"] = world.name(event.task);
+  if (event.rtpu.is_valid()) json["rtpu"] = world.name(event.rtpu);
+  return json;
+}
+
+Json events_json(const World& world, std::uint64_t since, std::size_t limit) {
+  Json events = Json::array();
+  const EventLog& log = world.log;
+  for (std::uint64_t n = std::max(since, log.first()); n <= log.last() && events.size() < limit; ++n)
+    events.push_back(event_json(world, log.at(n)));
+  return {{"events", std::move(events)}, {"first", log.first()}, {"last", log.last()}};
+}
+
+Json library_json(const World& world) {
+  Json components = Json::array();
+  for (const LibraryEntry& entry : world.bundle.library.entries())
+    components.push_back(
+        {{"name", entry.descriptor.name}, {"doc", entry.descriptor.doc}, {"file", entry.object_file}});
+  return {{"components", std::move(components)}};
+}
+
+Json check_json(const World& world, const std::string& text, const std::string& file) {
+  return Json::parse(chimera::verify(read_description(text, file), world.bundle.library).report.json());
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The answers about what there is and what it does: docs/formats/control.md, objects rtpu, task, profile, event.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "chimera/manager/world.h"
+
+namespace chimera::manager {
+
+/// Context of all: setup; may block for the time of a copy.
+nlohmann::json status_json(const World& world, Nanoseconds at);
+nlohmann::json describe_json(const World& world);
+nlohmann::json profile_json(const World& world);
+nlohmann::json event_json(const World& world, const LoggedEvent& event);
+/// At most `limit` events from number `since` on.
+nlohmann::json events_json(const World& world, std::uint64_t since, std::size_t limit);
+nlohmann::json library_json(const World& world);
+nlohmann::json check_json(const World& world, const std::string& text, const std::string& file);
+/// The last fault of a task as "cycle: its words"; "" when there was none.
+std::string fault_text(const World& world, TaskId task);
+/// Name of the configuration whose tasks are ON, exactly; "" when it has no name.
+std::string configuration_name(const World& world);
+
+}  // namespace chimera::manager

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/subject_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "chimera/manager/subject_status.h"
+
+namespace chimera::manager {
+namespace {
+
+using Json = nlohmann::json;
+
+bool is_finite(const ValueForm& form, std::span<const std::byte> bytes) {
+  const std::vector<double> all = numbers(form, bytes);
+  return std::all_of(all.begin(), all.end(), [](double n) { return std::isfinite(n); });
+}
+
+std::string producer_name(const World& world, VariableId variable, TaskId producer) {
+  if (producer.is_valid()) return world.name(producer);
+  return world.readings->is_operators(variable) ? "operator" : "";
+}
+
+std::string state_text(const World& world, VariableId variable, TaskId producer) {
+  if (producer.is_valid()) return state_name(world.state(producer));
+  return state_name(world.readings->is_operators(variable) ? State::kOn : State::kNotCreated);
+}
+
+/// The only candidate, or the one that wrote last; invalid: several, and none of them was ever created.
+TaskId likely_producer(const World& world, VariableId variable) {
+  const TaskId producer = world.readings->producer(variable);
+  const auto& candidates = world.readings->variables().all()[variable.index].producers;
+  return producer.is_valid() || candidates.size() != 1 ? producer : candidates[0].task;
+}
+
+void add_producer(const World& world, TaskId task, VariableFacts& facts) {
+  const TaskSpec& spec = world.spec().tasks[task.index];
+  const RtpuRecord& rtpu = world.rtpus[spec.rtpu.index];
+  facts.producer = spec.name;
+  facts.component = spec.component;
+  facts.rtpu = world.name(spec.rtpu);
+  facts.state = world.state(task);
+  facts.is_rtpu_dead = !rtpu.is_alive;
+  facts.last_words = rtpu.is_alive ? fault_text(world, task) : facts.rtpu + " " + rtpu.last_end;
+  facts.period = spec.aperiodic ? Nanoseconds{} : spec.period;
+  for (const PortSpec& port : spec.ports)
+    if (port.kind == CHIMERA_IN_VAR) facts.inputs.emplace_back(port.variable);
+}
+
+/// The shortest stale_after of the tasks that read it; 0: none says so.
+Nanoseconds patience(const World& world, VariableId variable) {
+  Nanoseconds shortest;
+  for (const PortOf& reader : world.readings->variables().all()[variable.index].consumers) {
+    const auto& limit = world.configuration->draft().tasks[reader.task.index].stale_after;
+    if (limit && (shortest.count == 0 || limit->value < shortest)) shortest = limit->value;
+  }
+  return shortest;
+}
+
+VariableFacts facts_of(const World& world, VariableId variable, Nanoseconds at) {
+  const Reading reading = world.readings->read(variable);
+  VariableFacts facts;
+  facts.variable = world.readings->configured(variable).name;
+  facts.stale_after = patience(world, variable);
+  facts.is_written = reading.is_valid;
+  facts.published = {reading.slot.published_ns};
+  facts.age = at - facts.published;
+  facts.is_finite = is_finite(reading.form, reading.value);
+  facts.value = value_text(reading.form, reading.value);
+  if (world.readings->is_operators(variable)) {
+    facts.producer = "operator";
+    facts.state = State::kOn;
+    facts.stale_after = {};
+  } else if (const TaskId producer = likely_producer(world, variable); producer.is_valid()) {
+    add_producer(world, producer, facts);
+  }
+  return facts;
+}
+
+Json link_json(const WhyLink& link) {
+  const VariableFacts& f = link.facts;
+  return {{"depth", link.depth},
+          {"variable", f.variable},
+          {"producer", f.producer},
+          {"component", f.component},
+          {"rtpu", f.rtpu},
+          {"state", state_name(f.state)},
+          {"period_ns", f.period.count},
+          {"published_ns", f.published.count},
+          {"age_ns", f.age.count},
+          {"valid", f.is_written},
+          {"value", f.value},
+          {"verdict", trouble_name(link.trouble)},
+          {"inputs", f.inputs}};
+}
+
+}  // namespace
+
+Json value_of(const ValueForm& form, std::span<const std::byte> bytes) { return Json::parse(value_json(form, bytes)); }
+
+Json reading_json(const World& world, VariableId variable, Nanoseconds at) {
+  const Reading reading = world.readings->read(variable);
+  const ConfiguredVariable& known = world.readings->configured(variable);
+  return {{"value", reading.is_valid ? value_of(reading.form, reading.value) : Json()},
+          {"text", reading.is_valid ? value_text(reading.form, reading.value) : "never written"},
+          {"unit", known.unit},
+          {"type", known.type},
+          {"shape", known.shape},
+          {"producer", producer_name(world, variable, reading.producer)},
+          {"state", state_text(world, variable, reading.producer)},
+          {"published_ns", reading.slot.published_ns},
+          {"age_ns", at.count - reading.slot.published_ns},
+          {"sequence", reading.slot.sequence},
+          {"valid", reading.is_valid}};
+}
+
+Json readings_json(const World& world, std::span<const VariableId> variables, Nanoseconds at) {
+  Json values = Json::object();
+  for (const VariableId variable : variables)
+    values[world.readings->configured(variable).name] = reading_json(world, variable, at);
+  return values;
+}
+
+Json why_json(const World& world, VariableId variable, Nanoseconds at) {
+  const Why answer = why(world.readings->configured(variable).name, [&](std::string_view name) {
+    return facts_of(world, *world.readings->find(name), at);
+  });
+  Json chain = Json::array();
+  for (const WhyLink& link : answer.chain) chain.push_back(link_json(link));
+  return {{"variable", answer.chain[0].facts.variable}, {"chain", std::move(chain)}, {"verdict", answer.verdict}};
+}
+
+}  // namespace chimera::manager

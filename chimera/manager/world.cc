@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/world.h"
+
+#include <ctime>
+
+#include "chimera/platform/doorbell.h"
+
+namespace chimera::manager {
+namespace {
+
+std::int64_t read_clock(clockid_t clock) noexcept {
+  timespec t{};
+  ::clock_gettime(clock, &t);
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+}  // namespace
+
+Nanoseconds now() noexcept { return {read_clock(CLOCK_MONOTONIC)}; }
+
+std::int64_t wall_ns(Nanoseconds at) noexcept {
+  return read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC) + at.count;
+}
+
+World::World(Bundle given, Peers mapped, OwnSegment segment, DecisionPage& shared, const KeeperPage& keepers)
+    : bundle(std::move(given)), peers(std::move(mapped)), own(std::move(segment)), page(shared), keeper(keepers),
+      logic(peers.spec()), log(own.block().memory().events), rtpus(peers.n_rtpus()) {
+  if (bundle.is_idle()) return;
+  configuration = verify(bundle).configuration;
+  if (configuration)
+    readings.emplace(peers, own, *configuration, bundle.library, [this](TaskId task) { return state(task); });
+}
+
+void World::tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at) {
+  own.block().memory().events.store(log.last() + 1, std::memory_order_release);
+  log.add({0, at, wall_ns(at), std::move(kind), task, rtpu, std::move(text)});
+}
+
+void World::announce() noexcept {
+  page.changes.fetch_add(1, std::memory_order_release);
+  for (std::uint32_t peer = 0; peer < peers.n_rtpus(); ++peer) Doorbell(page.bells[peer].word).ring();
+}
+
+}  // namespace chimera::manager

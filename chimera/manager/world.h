@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that the answers of the manager are made of.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chimera/manager/bundle.h"
+#include "chimera/manager/event_log.h"
+#include "chimera/manager/own_segment.h"
+#include "chimera/manager/peers.h"
+#include "chimera/manager/readings.h"
+#include "chimera/runtime/pages.h"
+#include "chimera/subsystem/subsystem.h"
+
+namespace chimera::manager {
+
+/// What the keeper told about a real-time unit.
+struct RtpuRecord {
+  std::int32_t pid = 0;
+  std::uint32_t incarnation = 0;  ///< that was started last
+  bool is_alive = false;
+  bool is_up = false;             ///< serves this manager
+  std::uint32_t restarts = 0;     ///< starts beyond the first
+  std::string last_end;           ///< "ended by signal 9 (SIGKILL)"; "" when it never ended
+};
+
+/// Owned by the driver; the rest reads, and acts through publish_operator(), raise_flag() and tap().
+struct World {
+  World(Bundle given, Peers mapped, OwnSegment segment, DecisionPage& shared, const KeeperPage& keepers);
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  Bundle bundle;
+  std::optional<Configuration> configuration;  ///< none: idle
+  Peers peers;
+  OwnSegment own;
+  DecisionPage& page;
+  const KeeperPage& keeper;
+  subsystem::Subsystem logic;
+  EventLog log;
+  std::optional<Readings> readings;            ///< none: idle
+  std::vector<RtpuRecord> rtpus;
+  std::int32_t keeper_pid = 0;
+
+  const ApplicationSpec& spec() const noexcept { return peers.spec(); }
+  State state(TaskId task) const noexcept { return logic.state(task); }
+  std::string name(TaskId task) const { return std::string(spec().tasks[task.index].name); }
+  std::string name(RtpuId rtpu) const { return std::string(spec().rtpus[rtpu.index].name); }
+
+  /// Numbers and keeps an event: the number is remembered before anybody can see it.
+  void tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at);
+  /// Everybody looks again: something in this manager's block changed.
+  void announce() noexcept;
+};
+
+/// CLOCK_MONOTONIC. Context: any; wait-free.
+Nanoseconds now() noexcept;
+/// Nanoseconds since 1970 at the monotonic instant `at`.
+std::int64_t wall_ns(Nanoseconds at) noexcept;
+
+}  // namespace chimera::manager
