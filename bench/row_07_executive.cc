@@ -100,6 +100,40 @@ void beyond(const Comparison& c, std::size_t executive, std::size_t bare, const 
   print(figure);
 }
 
+// What a task of 100 float64 outputs pays for each publication that goes to the tap.
+void print_tapped_row(int repetitions) {
+  constexpr std::uint32_t kValues = 100;
+  struct {
+    chimera_slot header{};
+    double values[kValues] = {};
+  } slot;
+  const auto ring = std::make_unique<TapRing>();
+  Tap tap(*ring);
+  std::uint32_t row = 0;
+  std::array<TapRecord, kValues + 1> records{};
+  std::size_t at = 0;
+  Comparison c(repetitions);
+  const auto copied = c.add("copied", [&](std::uint64_t n) {
+    while (n--) {
+      std::memcpy(static_cast<void*>(&ring->records[at]), records.data(), sizeof records);
+      at = (at + records.size()) % (kTapRecords - records.size());
+      keep(*ring);
+    }
+  });
+  const auto tapped = c.add("tapped", [&](std::uint64_t n) {
+    while (n--) tap.append_row(slot.header, sizeof slot.values, TaskId{0u}, 0, row++);
+  });
+  c.run(copied);
+  Figure figure{.row = 7, .what = "the tap of 100 float64 outputs, per cycle", .goal = {}};
+  figure.figure = c.cost(tapped);
+  figure.baseline = c.cost(copied);
+  figure.baseline_name = "memcpy of as many records";
+  figure.ratio = c.ratio(tapped, copied);
+  figure.aa_spread = c.aa_spread();
+  figure.n = c.n();
+  print(figure);
+}
+
 // For row_07_linuxcnc_peer.py: 201 tasks at 1 kHz in real time for a second, waits and cold caches included.
 // The end of one job is the start of the next, so the execution times of one wake add up to all of its work.
 int run_in_real_time() {
@@ -165,4 +199,5 @@ int main(int argc, char** argv) {
   growth.aa_spread = c.aa_spread();
   growth.n = c.n();
   print(growth);
+  print_tapped_row(repetitions(argc, argv));
 }

@@ -14,7 +14,9 @@ namespace {
 
 using testing::first_difference;
 
-std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
 
 // An application in which no field has its default and no two fields of a kind are alike.
 struct Sample {

@@ -49,6 +49,14 @@ void Releases::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a
   options_.tap->append(r);
 }
 
+// Appends the latest publication of a tapped task, unless that was done before.
+void Releases::tap_row(const Task& task) noexcept {
+  OfTask& t = of_[task.id.index];
+  if (options_.tap == nullptr || task.group.sequence() == t.tapped || task.group.sequence() == 0) return;
+  t.tapped = task.group.sequence();
+  options_.tap->append_row(*task.group.published(), task.group.payload_bytes(), task.id, options_.rtpu, t.rows++);
+}
+
 void Releases::record_faults(Task& task) noexcept {
   OfTask& t = of_[task.id.index];
   if (task.faults.count == t.faults_seen) return;
@@ -117,7 +125,10 @@ SignalReport Releases::served(TaskId task, Nanoseconds now) noexcept {
 }
 
 void Releases::refresh_members(Nanoseconds now) noexcept {
-  for (Task& task : tasks_) refresh(task, now);
+  for (Task& task : tasks_) {
+    refresh(task, now);
+    if (task.is_tapped) tap_row(task);
+  }
 }
 
 // Makes the queue follow the state of the task.
@@ -169,6 +180,7 @@ void Releases::give_up_starved(Nanoseconds now) noexcept {
 // After methods of the task ran outside an edge: what they left behind.
 void Releases::settle(Task& task, Nanoseconds now) noexcept {
   record_faults(task);
+  if (task.is_tapped) tap_row(task);
   if (!task.outbox.empty()) set_.deliver(task);
   if (task.state == State::kOn) return;
   set_.on_set_changed();
@@ -235,6 +247,7 @@ void Releases::end_job(const Job& job, const CycleTime& time, BodyEnd body, Nano
   const bool listens = options_.tap != nullptr || options_.guest != nullptr;
   const bool tells = listens && task.faults.count != t.faults_seen;
   if (task.state != State::kOn || !task.outbox.empty() || tells) settle(task, end);
+  else if (task.is_tapped) tap_row(task);
 }
 
 // A failure of time was seen: counts it and says whether the result may still be published.

@@ -149,9 +149,12 @@ class Releases {
     bool skip_next = false;
     bool is_on = false;
     bool is_busy = false;
+    std::uint32_t rows = 0;     // appended to the tap
+    std::uint64_t tapped = 0;   // sequence of the last of them
   };
 
   void append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept;
+  void tap_row(const Task& task) noexcept;
   void drop(const DroppedRelease& dropped) noexcept;
   void drop_on_purpose(const DroppedRelease& dropped) noexcept;
   void give_up_starved(Nanoseconds now) noexcept;

@@ -20,9 +20,11 @@ enum class TapKind : std::uint8_t {
   kFault,    ///< a = method
   kState,    ///< a = new state
   kFlag,     ///< a = 1 raised, 0 lowered
+  kGroup,    ///< a row begins: what `task` published at `at`; a = words that follow, b = sequence of the publication
+  kValue,    ///< a word of the row; a = its place from 0, b = 8 bytes of the payload as they lie in memory
 };
 
-/// 32 bytes. Context: cycle; wait-free.
+/// 32 bytes, none of them padding. Context: cycle; wait-free.
 struct TapRecord {
   Nanoseconds at;
   std::int64_t b = 0;
@@ -30,7 +32,8 @@ struct TapRecord {
   TaskId task;
   TapKind kind = TapKind::kRelease;
   std::uint8_t rtpu = 0;
-  std::uint8_t reserved[6] = {};
+  std::uint16_t reserved = 0;
+  std::uint32_t row = 0;  ///< kGroup, kValue: number of the row among those of its task in this ring, from 0
 };
 static_assert(sizeof(TapRecord) == 32);
 

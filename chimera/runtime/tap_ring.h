@@ -12,6 +12,7 @@
 #include <span>
 
 #include "chimera/runtime/tap_record.h"
+#include "chimera/table/slot_header.h"
 
 namespace chimera {
 
@@ -24,13 +25,19 @@ struct TapRing {
   TapRecord records[kTapRecords];
 };
 
-/// The writing side. One writer. Context of append(): cycle; wait-free.
+/// The writing side. One writer. Context of appending: cycle; wait-free.
 class Tap {
  public:
   explicit Tap(TapRing& ring) noexcept : ring_(&ring), head_(ring.head.load(std::memory_order_relaxed)) {}
   void append(const TapRecord& record) noexcept;
+  /// What `task` published, as one kGroup and a kValue for each 8 bytes: row number `row` of the task. The payload
+  /// follows `slot`. O(payload). Requires: payload_bytes a multiple of 8.
+  void append_row(const chimera_slot& slot, std::uint32_t payload_bytes, TaskId task, std::uint8_t rtpu,
+                  std::uint32_t row) noexcept;
 
  private:
+  void append(std::uint64_t at, std::uint64_t b, std::uint64_t a_and_task, std::uint64_t rest) noexcept;
+
   TapRing* ring_;
   std::uint64_t head_;
 };

@@ -41,7 +41,10 @@ struct Situation {
 
   std::string name(TaskId task) const { return std::string(spec.tasks[task.index].name); }
   std::string name(RtpuId rtpu) const { return std::string(spec.rtpus[rtpu.index].name); }
-  void act(Action action) const { actions->push_back(std::move(action)); }
+  template <class OneAction>
+  void act(OneAction action) const {
+    actions->emplace_back(std::move(action));
+  }
   void tell(const char* kind, TaskId task, RtpuId rtpu, std::string text) const;
   /// Sends and returns the number of the command. The tasks are of one rtpu.
   std::uint64_t send(Signal signal, std::span<const TaskId> tasks);

@@ -46,6 +46,11 @@ class GroupWriter {
   /// Copies the latest published values into staging, so that outputs stand until overwritten.
   /// Context: cycle; wait-free; O(payload).
   void prefill() noexcept;
+  /// The latest publication, its values behind the header; nobody changes it before the next but one.
+  /// Context: cycle; wait-free.
+  const chimera_slot* published() const noexcept {
+    return reinterpret_cast<const chimera_slot*>(base_ + kCacheLine + latest_ % kSlots * stride_);
+  }
   /// Publications so far. Context: cycle; wait-free.
   std::uint64_t sequence() const noexcept { return latest_; }
   std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }

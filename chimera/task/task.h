@@ -55,6 +55,7 @@ struct Task {
   TaskId id;
   std::span<Output> outputs;
   bool has_safety = false;
+  bool is_tapped = false;  ///< set at edges: every publication goes to the tap as a row
   std::atomic<std::uint32_t>* running =
       &running_untold;  ///< told which method runs, for whoever finds the process dead
 

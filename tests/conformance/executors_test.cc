@@ -2,6 +2,7 @@
 // What every executor of one context must do, whatever its idea of time.
 #include <gtest/gtest.h>
 
+#include "chimera/runtime/tap_rows.h"
 #include "tests/conformance/runner.h"
 
 namespace chimera::toy {
@@ -96,6 +97,31 @@ TEST_P(Executors, PublishAtCompletionSoAReaderInBetweenSeesTheOldValue) {
   // Released at 3 while the writer works till 6: preempted, it is read as it was; else it ran afterwards.
   EXPECT_EQ(cycles[0].in, GetParam() == Kind::kPreemptive ? 0 : 1);
   EXPECT_EQ(cycles[1].in, 1);
+}
+
+TEST_P(Executors, TellEveryPublicationOfATappedTaskAndNoneOfOthers) {
+  app.add("a", milliseconds(10), microseconds(100));
+  app.add("b", milliseconds(10), microseconds(100));
+  acts = {signal_at(25, Signal::kOff, app.id("a")), signal_at(35, Signal::kOn, app.id("a"))};
+  TaskSet& set = app.build();
+  set.tasks()[app.id("a").index].is_tapped = true;
+  runner = std::make_unique<Runner>(set, GetParam(), Policy::kEdf, acts);
+  ASSERT_TRUE(runner->start());
+  runner->run(milliseconds(50));
+  const std::uint32_t bytes[] = {8, 8};
+  TapRows rows(bytes);
+  std::string text;
+  for (const TapRecord& r : runner->records()) {
+    const TapRow* row = rows.take(r);
+    if (row == nullptr) continue;
+    EXPECT_EQ(row->task, app.id("a"));
+    EXPECT_EQ(row->lost, 0u);
+    double value;
+    std::memcpy(&value, row->payload.data(), sizeof value);
+    text += std::to_string(row->number) + ":" + std::to_string(static_cast<int>(value)) + "@" +
+            std::to_string(row->at.count / 100'000) + " ";
+  }
+  EXPECT_EQ(text, "0:0@0 1:1@1 2:2@101 3:3@201 4:3@250 5:3@350 6:4@401 ");
 }
 
 TEST_P(Executors, AskAnAperiodicTaskForAnEventAndRunNoCycleWithoutOne) {
