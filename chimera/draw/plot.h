@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values over time as a picture: one panel for each unit, one below the other over the same time, a colour a channel.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace chimera::draw {
+
+struct PlotPoint {
+  double at = 0;     ///< s
+  double value = 0;  ///< in the unit of the curve; not finite: the line ends here and starts again behind it
+};
+
+struct Curve {
+  std::string name;
+  std::string unit = "1";
+  std::vector<PlotPoint> points;  ///< in order of time
+};
+
+/// A time from which something is missing: hatched over the whole height, with its text.
+struct PlotGap {
+  double from = 0, to = 0;  ///< s
+  std::string text;         ///< "12 rows of pid lost"
+};
+
+struct Plot {
+  std::string title;
+  std::string note;  ///< a line under the title; may be empty
+  std::vector<Curve> curves;
+  std::vector<PlotGap> gaps;
+  std::optional<double> mark;  ///< a dashed line at this time, such as the trigger
+  /// A level drawn in the panel of `level_unit`, such as the trigger's.
+  double level = std::numeric_limits<double>::quiet_NaN();
+  std::string level_unit;
+};
+
+/// Marks of an axis: round numbers (1, 2, 5 times a power of ten) that lie within [low, high], about `wanted` of them,
+/// at least 2 where low < high. Context: setup.
+std::vector<double> axis_marks(double low, double high, int wanted);
+
+/// A whole SVG document. A curve with more points than the picture has columns shows the least and the greatest of each
+/// column, so that no peak is lost. Without any finite point the axes stand alone and say so. Context: setup.
+std::string svg(const Plot& plot);
+
+}  // namespace chimera::draw

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/fields.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace chimera::shell {
+namespace {
+
+using Json = nlohmann::json;
+
+std::optional<std::int64_t> whole(const Json& value) {
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX) return std::nullopt;
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (!value.is_number_float() || !(std::fabs(value.get<double>()) < 9e18)) return std::nullopt;
+  return static_cast<std::int64_t>(value.get<double>());
+}
+
+}  // namespace
+
+const Json& field(const Json& object, std::string_view key) {
+  static const Json kNull;
+  if (!object.is_object()) return kNull;
+  const auto found = object.find(key);
+  return found == object.end() ? kNull : *found;
+}
+
+std::string text_of(const Json& object, std::string_view key) {
+  const Json& value = field(object, key);
+  return value.is_string() ? plain_line(value.get_ref<const std::string&>()) : "";
+}
+
+std::int64_t whole_of(const Json& object, std::string_view key) { return whole(field(object, key)).value_or(0); }
+
+std::optional<std::int64_t> whole_or_none(const Json& object, std::string_view key) {
+  return whole(field(object, key));
+}
+
+double number_of(const Json& object, std::string_view key) {
+  const Json& value = field(object, key);
+  return value.is_number() ? value.get<double>() : 0;
+}
+
+bool truth_of(const Json& object, std::string_view key) {
+  const Json& value = field(object, key);
+  return value.is_boolean() && value.get<bool>();
+}
+
+std::vector<std::string> texts_of(const Json& object, std::string_view key) {
+  std::vector<std::string> texts;
+  for (const Json& item : field(object, key))
+    if (item.is_string()) texts.push_back(plain_line(item.get_ref<const std::string&>()));
+  return texts;
+}
+
+std::string plain_line(std::string_view text) {
+  std::string line;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    // 0xC2 0x80..0x9F are control characters too (CSI is one of them).
+    const bool is_c1 = c == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    if (is_c1) ++i;
+    line += is_c1 || c < 0x20 || c == 0x7F ? ' ' : text[i];
+  }
+  return line;
+}
+
+}  // namespace chimera::shell

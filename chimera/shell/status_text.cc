@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/status_text.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "chimera/shell/columns.h"
+#include "chimera/shell/fields.h"
+#include "chimera/shell/figures.h"
+
+namespace chimera::shell {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string or_dash(std::string text) { return text.empty() ? "-" : text; }
+
+std::string count_of(const Json& object, std::string_view key) { return count_text(whole_of(object, key)); }
+
+/// A time of which 0 means that there is none.
+std::string time_of(const Json& object, std::string_view key) {
+  const std::int64_t ns = whole_of(object, key);
+  return ns == 0 ? "-" : duration_text(ns);
+}
+
+std::string input_text(const Json& task) {
+  const OldestInput oldest = oldest_input(task);
+  if (oldest.age_ns >= 0) return duration_text(oldest.age_ns) + " " + oldest.variable;
+  return oldest.variable.empty() ? "-" : "never " + oldest.variable;
+}
+
+Columns rtpu_table(const Json& status) {
+  Columns table({"rtpu", ">cpu", "policy", "phase", ">pid", ">restarts", "running", "flag"});
+  for (const Json& rtpu : field(status, "rtpus"))
+    table.add({text_of(rtpu, "name"), std::to_string(whole_of(rtpu, "cpu")), text_of(rtpu, "policy"),
+               text_of(rtpu, "phase"), std::to_string(whole_of(rtpu, "pid")),
+               std::to_string(whole_of(rtpu, "restarts")), or_dash(text_of(rtpu, "running")),
+               truth_of(rtpu, "flag") ? "UP" : "-"});
+  return table;
+}
+
+Columns task_table(const Json& status) {
+  Columns table({"task", "state", "rtpu", ">rate", ">cycles", ">mean", ">max", ">budget", ">jitter", ">missed",
+                 ">faults", "oldest input"});
+  for (const Json& task : field(status, "tasks"))
+    table.add({text_of(task, "task"), text_of(task, "state"), text_of(task, "rtpu"),
+               rate_text(number_of(task, "rate_hz")), count_of(task, "cycles"),
+               time_of(field(task, "execution_ns"), "mean"), time_of(field(task, "execution_ns"), "max"),
+               time_of(task, "budget_ns"), time_of(task, "jitter_ns"), count_of(task, "missed"),
+               count_of(task, "faults"), input_text(task)});
+  return table;
+}
+
+std::string load_text(const Json& task) {
+  const auto period = static_cast<double>(whole_of(task, "period_ns"));
+  const Json& cycle = field(field(task, "execution_ns"), "cycle");
+  if (period <= 0 || whole_of(cycle, "count") == 0) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f %%", 100 * number_of(cycle, "mean") / period);
+  return text;
+}
+
+}  // namespace
+
+std::string headline(const Json& status) {
+  std::string line = text_of(status, "subsystem") + ": ";
+  const std::string configuration = text_of(status, "configuration");
+  line += configuration.empty() ? "no configuration" : configuration;
+  const auto started = whole_or_none(status, "started_ns");
+  line += started ? ", up " + duration_text(whole_of(status, "now_ns") - *started) : ", starting";
+  const Json& flag = field(status, "flag");
+  line += truth_of(flag, "up") ? ", flag UP" : ", flag down";
+  std::string by;
+  for (const std::string& who : texts_of(flag, "by")) by += (by.empty() ? " by " : ", ") + who;
+  return line + by + (truth_of(status, "ending") ? ", ENDING" : "");
+}
+
+std::string rtpu_remarks(const Json& rtpu) {
+  std::string line = text_of(rtpu, "name") + " " + (truth_of(rtpu, "alive") ? text_of(rtpu, "phase") : "DEAD");
+  if (const std::int64_t n = whole_of(rtpu, "restarts"); n > 0)
+    line += ", restarted " + (n == 1 ? std::string("once") : std::to_string(n) + " times");
+  if (const std::string running = text_of(rtpu, "running"); !running.empty()) line += ", running " + running;
+  if (truth_of(rtpu, "flag")) line += ", FLAG";
+  if (const std::int64_t lost = whole_of(rtpu, "lost_events"); lost > 0)
+    line += ", " + std::to_string(lost) + " events lost";
+  if (const std::string end = text_of(rtpu, "last_end"); !end.empty()) line += "; last end: " + end;
+  return line;
+}
+
+OldestInput oldest_input(const Json& task) {
+  OldestInput oldest;
+  for (const Json& input : field(task, "inputs")) {
+    const auto age = whole_or_none(input, "age_ns");
+    if (!age) return {-1, text_of(input, "variable")};  // never written is older than any age
+    if (*age > oldest.age_ns) oldest = {*age, text_of(input, "variable")};
+  }
+  return oldest;
+}
+
+std::string status_text(const Json& status) {
+  std::string text = headline(status) + "\n";
+  if (const Columns rtpus = rtpu_table(status); !rtpus.empty()) text += "\n" + rtpus.text();
+  for (const Json& rtpu : field(status, "rtpus"))
+    if (const std::string end = text_of(rtpu, "last_end"); !end.empty())
+      text += text_of(rtpu, "name") + ": last end: " + end + "\n";
+  if (const Columns tasks = task_table(status); !tasks.empty()) text += "\n" + tasks.text();
+  for (const Json& task : field(status, "tasks"))
+    if (const std::string fault = text_of(task, "fault"); !fault.empty())
+      text += text_of(task, "task") + ": last fault: " + fault + "\n";
+  return text;
+}
+
+std::string profile_text(const Json& answer) {
+  Columns table({"task", "state", ">cycles", ">mean", ">max", ">load", ">response", ">jitter", ">missed", ">overrun",
+                 ">dropped", ">stale", ">rejected", ">faults"});
+  std::string faults;
+  for (const Json& task : field(answer, "tasks")) {
+    const Json& cycle = field(field(task, "execution_ns"), "cycle");
+    const Json& delay = field(task, "start_delay_ns");
+    const bool has_delay = whole_of(delay, "count") > 0;
+    table.add({text_of(task, "task"), text_of(task, "state"), count_of(task, "cycles"), time_of(cycle, "mean"),
+               time_of(cycle, "max"), load_text(task), time_of(field(task, "response_ns"), "max"),
+               has_delay ? duration_text(whole_of(delay, "max") - whole_of(delay, "min")) : "-",
+               count_of(task, "missed"), count_of(task, "overrun"), count_of(task, "dropped"), count_of(task, "stale"),
+               count_of(task, "rejected"), count_of(task, "faults")});
+    const Json& fault = field(task, "last_fault");
+    if (fault.is_object())
+      faults += text_of(task, "task") + ": last fault in " + text_of(fault, "method") + " at " +
+                duration_text(whole_of(fault, "at_ns")) + ": " + text_of(fault, "text") + "\n";
+  }
+  return table.text() + faults;
+}
+
+}  // namespace chimera::shell

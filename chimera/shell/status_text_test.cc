@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/status_text.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "chimera/shell/test_answers.h"
+
+namespace chimera::shell {
+namespace {
+
+nlohmann::json status() { return nlohmann::json::parse(test::kStatus); }
+
+TEST(StatusText, TellsTheWholeTheUnitsAndTheTasks) {
+  EXPECT_EQ(status_text(status()),
+            "puma_pid: run, up 12.5 min, flag UP by spare, operator\n"
+            "\n"
+            "rtpu   cpu  policy  phase     pid  restarts  running    flag\n"
+            "servo    1  muf     serving  4711         0  pid.cycle  -\n"
+            "spare    0  edf     ended    4712         2  -          UP\n"
+            "spare: last end: signal 11 in trajectory.cycle\n"
+            "\n"
+            "task        state        rtpu     rate  cycles     mean      max   budget   jitter  missed  faults"
+            "  oldest input\n"
+            "trajectory  ERROR        spare  100 Hz   41234  4.10 us  18.2 us        -  12.3 us       3       1"
+            "  -\n"
+            "pid         ON           servo   1 kHz    750k  12.1 us  30.2 us  40.0 us  3.10 us       0       0"
+            "  3.12 s q_ref\n"
+            "arm         ON           servo   1 kHz    750k  98.7 us   149 us   150 us        -      12       0"
+            "  530 us tau\n"
+            "pid_spare   NOT-CREATED  spare   1 kHz       0        -        -        -        -       0       0"
+            "  never q_ref\n"
+            "trajectory: last fault: cycle: goal out of reach\n");
+}
+
+TEST(StatusText, AnIdleSubsystemHasOnlyItsHeadline) {
+  EXPECT_EQ(status_text(nlohmann::json::parse(R"({"subsystem": "idle", "configuration": "", "started_ns": null,
+              "ending": true, "flag": {"up": false, "by": []}, "rtpus": [], "tasks": []})")),
+            "idle: no configuration, starting, flag down, ENDING\n");
+}
+
+TEST(StatusText, TheRemarksOnAnRtpu) {
+  const auto rtpus = status().at("rtpus");
+  EXPECT_EQ(rtpu_remarks(rtpus[0]), "servo serving, running pid.cycle");
+  EXPECT_EQ(rtpu_remarks(rtpus[1]),
+            "spare DEAD, restarted 2 times, FLAG, 4 events lost; last end: signal 11 in trajectory.cycle");
+}
+
+TEST(StatusText, TheProfileHasALineForEachTaskAndItsFaults) {
+  EXPECT_EQ(profile_text(nlohmann::json::parse(R"({"tasks": [
+              {"task": "pid", "component": "pid_joint", "state": "ON", "period_ns": 1000000, "cycles": 750000,
+               "execution_ns": {"init": {"count": 1, "min": 9, "mean": 9, "max": 9},
+                                "cycle": {"count": 750000, "min": 8000, "mean": 12100, "max": 30200}},
+               "response_ns": {"count": 750000, "min": 9000, "mean": 20000, "max": 71000},
+               "start_delay_ns": {"count": 750000, "min": 100, "mean": 300, "max": 3200}, "missed": 1, "overrun": 2,
+               "min_refused": 0, "dropped": 3, "held": 0, "aborted": 0, "stale": 4, "rejected": 5, "faults": 1,
+               "last_fault": {"method": "cycle", "at_ns": 1500000000, "code": 3, "text": "too hot"}},
+              {"task": "arm", "state": "OFF", "period_ns": 0, "cycles": 0, "execution_ns": {},
+               "response_ns": {"count": 0}, "start_delay_ns": {"count": 0}}]})")),
+            "task  state  cycles     mean      max    load  response   jitter  missed  overrun  dropped  stale"
+            "  rejected  faults\n"
+            "pid   ON       750k  12.1 us  30.2 us  1.21 %   71.0 us  3.10 us       1        2        3      4"
+            "         5       1\n"
+            "arm   OFF         0        -        -       -         -        -       0        0        0      0"
+            "         0       0\n"
+            "pid: last fault in cycle at 1.50 s: too hot\n");
+}
+
+}  // namespace
+}  // namespace chimera::shell
