@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The `chimera` command: words of the command line to the commands of chimera/desk.
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 
 #include <CLI/CLI.hpp>
 
-#include "apps/chimera/record_files.h"
-#include "chimera/config/quantity.h"
+#include "apps/chimera/run_command.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
 #include "chimera/desk/new.h"
-#include "chimera/desk/run.h"
 
 namespace {
 
@@ -25,9 +20,7 @@ struct Words {
   std::string component;
   desk::NewRequest made;
   bool in_c = false;
-  desk::RunRequest run;
-  std::string duration, every, quantum, seed;
-  std::string trace, timeline;
+  RunWords run;
 };
 
 int print(const desk::Output& output) {
@@ -55,27 +48,6 @@ void add_list(CLI::App& app, Words& words) {
   d->footer("Example: chimera describe pid_joint");
 }
 
-void add_run(CLI::App& app, Words& words) {
-  CLI::App* r = app.add_subcommand("run", "Run an application in real time, or in virtual time");
-  r->add_option("FILE", words.run.file, "the description")->required();
-  r->add_option("--for", words.duration, "how long, such as '10 s'; without it until Ctrl-C");
-  r->add_flag("--virtual", words.run.virtual_time, "in virtual time: as fast as it goes, the same result every time");
-  r->add_flag("--preemptive", words.run.preemptive, "virtual time: schedule preemptively");
-  r->add_option("--seed", words.seed, "virtual time: draw execution times from [min, budget]");
-  r->add_option("--quantum", words.quantum, "virtual time, laxity policies: compare again this often (1 ms)");
-  r->add_option("--priority", words.run.priority, "real time: SCHED_FIFO priority; 0 runs as an ordinary process (80)")
-      ->check(CLI::Range(0, 99));
-  r->add_option("--at", words.run.at, "a timed act: '2 s: off pid', '3 s: flag up'; may be repeated");
-  r->add_option("--watch", words.run.watch, "print these state variables while it runs");
-  r->add_option("--every", words.every, "how often --watch prints (1 s)");
-  r->add_option("--expect", words.run.expect, "at the end must hold: 'error <= 2 mrad'; may be repeated");
-  r->add_option("--trace", words.trace, "write a Chrome trace to this file (ui.perfetto.dev opens it)");
-  r->add_option("--timeline", words.timeline, "at the end print one letter for each unit of time, such as '1 ms'");
-  r->add_flag("--json", words.json, "the result as one JSON object");
-  r->footer("Exit code 0 only if the run came to its end and every --expect holds.\n"
-            "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
-}
-
 void add_new(CLI::App& app, Words& words) {
   CLI::App* n = app.add_subcommand("new", "Make a project that builds and passes its tests at once");
   n->require_subcommand(1);
@@ -94,57 +66,6 @@ desk::Output make_new(const CLI::App& app, Words& words) {
   return desk::new_project(words.made, desk::program_path());
 }
 
-bool read_duration(const std::string& text, const char* option, Nanoseconds& to) {
-  if (text.empty()) return true;
-  const auto value = parse_duration(text);
-  if (value && value->count > 0) return to = *value, true;
-  std::fprintf(stderr, "%s: %s\n", option, value ? "must be longer than 0" : value.error().message.c_str());
-  return false;
-}
-
-bool read_seed(const std::string& text, std::optional<std::uint64_t>& to) {
-  if (text.empty()) return true;
-  char* end = nullptr;
-  errno = 0;
-  to = std::strtoull(text.c_str(), &end, 10);
-  if (*end == '\0' && errno == 0 && text[0] != '-') return true;
-  std::fprintf(stderr, "--seed: '%s' is not a whole number from 0 to 2^64-1\n", text.c_str());
-  return false;
-}
-
-bool read_run(Words& words, Nanoseconds& unit) {
-  desk::RunRequest& r = words.run;
-  r.json = words.json;
-  r.one_process = true;
-  if (!read_duration(words.duration, "--for", r.duration) || !read_duration(words.every, "--every", r.every) ||
-      !read_duration(words.quantum, "--quantum", r.quantum) || !read_duration(words.timeline, "--timeline", unit) ||
-      !read_seed(words.seed, r.seed))
-    return false;
-  const char* wrong = nullptr;
-  if (!r.virtual_time && (r.preemptive || r.seed || !words.quantum.empty()))
-    wrong = "--preemptive, --seed and --quantum belong to --virtual";
-  if (r.virtual_time && r.duration == kNever) wrong = "--virtual needs --for: virtual time has no end of its own";
-  if (!words.timeline.empty() && r.duration == kNever) wrong = "--timeline needs --for";
-  if (!words.timeline.empty() && r.json) wrong = "--timeline and --json exclude each other";
-  if (wrong != nullptr) std::fprintf(stderr, "%s\n", wrong);
-  return wrong == nullptr;
-}
-
-int run_application(Words& words, const desk::Workplace& workplace) {
-  Nanoseconds unit;
-  if (!read_run(words, unit)) return desk::kUsage;
-  std::signal(SIGINT, [](int) { desk::request_stop(); });
-  std::signal(SIGTERM, [](int) { desk::request_stop(); });
-  if (words.trace.empty() && words.timeline.empty()) return desk::run(words.run, workplace, nullptr, stdout, stderr);
-  RecordFiles files(words.trace, unit, words.run.duration);
-  if (!files.is_open()) {
-    std::fprintf(stderr, "%s: cannot be written: %s\n", words.trace.c_str(), files.why().c_str());
-    return desk::kRefused;
-  }
-  const int code = desk::run(words.run, workplace, &files, stdout, stderr);
-  return files.finish(stdout, stderr) ? code : desk::kRefused;
-}
-
 int carry_out(CLI::App& app, Words& words) {
   const desk::Workplace workplace = desk::Workplace::around(desk::program_path());
   words.check.json = words.json;
@@ -152,7 +73,8 @@ int carry_out(CLI::App& app, Words& words) {
   if (app.got_subcommand("new")) return print(make_new(app, words));
   if (app.got_subcommand("list")) return print(desk::list(workplace, words.json));
   if (app.got_subcommand("describe")) return print(desk::describe_component(words.component, workplace, words.json));
-  return run_application(words, workplace);
+  if (app.got_subcommand("attend")) return carry_out_attend(words.run);
+  return carry_out_run(words.run, workplace);
 }
 
 bool is_command(const CLI::App& app, const std::string& word) {
@@ -169,7 +91,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", CHIMERA_VERSION);
   Words words;
   add_check(app, words);
-  add_run(app, words);
+  add_run(app, words.run);
   add_list(app, words);
   add_new(app, words);
   if (argc > 1 && argv[1][0] != '-' && !is_command(app, argv[1])) {

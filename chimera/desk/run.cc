@@ -11,6 +11,7 @@
 #include "chimera/desk/progress.h"
 #include "chimera/desk/run_loop.h"
 #include "chimera/desk/run_plan.h"
+#include "chimera/desk/run_report.h"
 #include "chimera/runtime/tap_ring.h"
 
 namespace chimera::desk {
@@ -21,26 +22,6 @@ std::atomic<bool> stop_requested{false};
 constexpr Nanoseconds kDrainEvery = milliseconds(10);
 constexpr Nanoseconds kLookEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
 constexpr Nanoseconds kTellEvery = seconds(3);         // of wall time
-
-const char* word(RunEnd end) {
-  switch (end) {
-    case RunEnd::kTime: return "time";
-    case RunEnd::kStopped: return "stopped";
-    case RunEnd::kNothingLeft: return "nothing-left";
-    case RunEnd::kTaskStopped: return "stopped-by-task";
-  }
-  return "?";
-}
-
-const char* sentence(RunEnd end) {
-  switch (end) {
-    case RunEnd::kTime: return "";
-    case RunEnd::kStopped: return ", ended by the operator";
-    case RunEnd::kNothingLeft: return ", ended because no task was ON any more";
-    case RunEnd::kTaskStopped: return ", ended by the reaction `stop` of a task";
-  }
-  return "";
-}
 
 std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
   const std::string name(task.spec->name);
@@ -97,7 +78,6 @@ class Session {
  private:
   void drain();
   void watch_line(Nanoseconds at);
-  std::string variables_json() const;
 
   const RunRequest& request_;
   const RunPlan& plan_;
@@ -175,55 +155,34 @@ RunEnd Session::run() {
   }
 }
 
-std::string Session::variables_json() const {
-  std::string rows;
-  std::vector<std::byte> value;
-  for (const Probe& probe : watched_) {
-    rows += (rows.empty() ? "" : ", ") + json_string(probe.name) + ": {\"unit\": " + json_string(probe.form.unit) +
-            ", \"value\": " + (probe.read(value) ? value_json(probe.form, value) : "null") + "}";
-  }
-  return rows;
-}
-
 int Session::report(RunEnd end) {
-  std::string lines, rows;
-  bool all_hold = true;
-  for (const Expectation& expectation : plan_.expectations) {
-    std::string said;
-    const bool holds = expectation.holds(application_.probe(expectation.variable())->look(), said);
-    all_hold = all_hold && holds;
-    lines += (holds ? "holds: " : "FAILS: ") + expectation.text() + " (" + said + ")\n";
-    rows += (rows.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(expectation.text()) +
-            ", \"holds\": " + (holds ? "true" : "false") + ", \"said\": " + json_string(said) + "}";
-  }
-  const std::string variables = variables_json();
-  const std::vector<TaskProfile> profiles =
-      profiles_of(application_.tasks(), states_of(application_.tasks()));
-  std::string refused;
+  RunReport report{.end = end, .ran = ran_, .subsystem = plan_.configuration.subsystem(),
+                   .executor = loop_->description(), .refused = {}, .profiles = {}, .origin = loop_->origin(),
+                   .variables = {}, .expectations = {}};
+  for (const Expectation& expectation : plan_.expectations)
+    report.judge(expectation, application_.probe(expectation.variable())->look());
+  std::vector<std::byte> value;
+  for (const Probe& probe : watched_)
+    report.variables.push_back(
+        {probe.name, probe.form.unit, probe.read(value) ? value_json(probe.form, value) : "null"});
+  const std::vector<State> states = states_of(application_.tasks());
   for (const RefusedSignal& r : loop_->refused())
-    refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
+    report.refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
   loop_->shut_down();
+  report.profiles = profiles_of(application_.tasks(), states);  // what `off` and `kill` cost, and their faults, too
   if (sink_ != nullptr) {
     drain();
     sink_->end(reader_.lost());
   }
-  if (request_.json) {
-    std::fprintf(out_,
-                 "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"tasks\": %s, "
-                 "\"variables\": {%s}, \"expectations\": [%s]}\n",
-                 json_string(application_.configuration().subsystem()).c_str(),
-                 json_string(loop_->description()).c_str(), static_cast<long long>(ran_.count), word(end),
-                 profile_json(profiles, loop_->origin()).c_str(), variables.c_str(), rows.c_str());
-  } else {
-    std::fprintf(out_, "ran %.3f s%s\n%s%s%s", to_seconds(ran_), sentence(end), refused.c_str(),
-                 profile_table(profiles, ran_, loop_->origin()).c_str(), lines.c_str());
-  }
-  return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
+  print(report, request_.json, out_);
+  return report.code();
 }
 
 }  // namespace
 
 void request_stop() noexcept { stop_requested = true; }
+
+bool stop_is_requested() noexcept { return stop_requested; }
 
 int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err) {
   const auto plan = plan_run(request, workplace, out, err);

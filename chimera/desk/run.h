@@ -45,7 +45,8 @@ class RecordSink {
 /// expectation holds. `sink` may be null. Blocks for the duration.
 int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err);
 
-/// Asks a running run() to end; for signal handlers.
+/// Asks a running run() or attend() to end; for signal handlers.
 void request_stop() noexcept;
+bool stop_is_requested() noexcept;
 
 }  // namespace chimera::desk

@@ -29,7 +29,7 @@ Result<void> Keeper::start() {
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) ::sigaddset(&mask, number);
   ::pthread_sigmask(SIG_BLOCK, &mask, &mask_before_);
   ::sigdelset(&mask, SIGPIPE);
-  signals_ = Descriptor(::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK));
+  signals_ = OwnedDescriptor(::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK));
   if (signals_.fd < 0) return system_error(Message("keeper"), "signalfd");
   if (auto started = peers_.start_all(); !started || plan_.face.empty()) return started;
   std::vector<const char*> words;

@@ -47,7 +47,7 @@ class Keeper {
   LinuxClock clock_;
   KeptPeers peers_;
   Process face_;
-  Descriptor signals_;
+  OwnedDescriptor signals_;
   sigset_t mask_before_{};
   Phase phase_ = Phase::kRunning;
   Nanoseconds phase_due_ = kNever;

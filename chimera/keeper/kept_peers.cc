@@ -118,7 +118,7 @@ void KeptPeers::take_messages(std::uint32_t index, std::vector<KeeperMessage>& w
       peer.channel = Channel();
       return;
     }
-    Descriptor segment(passed);
+    OwnedDescriptor segment(passed);
     if (message.kind == Kind::kSegment && segment.fd >= 0) {
       peer.segment = std::move(segment);
       peer.segment_incarnation = peer.last.incarnation;

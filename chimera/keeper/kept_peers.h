@@ -9,7 +9,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/platform/channel.h"
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/platform/memory_region.h"
 #include "chimera/platform/process.h"
@@ -61,7 +61,7 @@ class KeptPeers {
   struct Peer {
     Process process;
     Channel channel;
-    Descriptor segment;                     // of its last incarnation that made one
+    OwnedDescriptor segment;                     // of its last incarnation that made one
     std::uint32_t segment_incarnation = 0;
     KeeperMessage last;                     // kStarted or kEnded: what a new manager is told
   };

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera {
 namespace {
@@ -19,9 +19,9 @@ Error refusal(const std::string& text, const std::string& where) {
 }
 
 /// The folder, opened and found to be ours alone to write to.
-Result<Descriptor> open_folder(const std::string& path, bool for_others) {
+Result<OwnedDescriptor> open_folder(const std::string& path, bool for_others) {
   if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) return failed(path, "mkdir");
-  Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  OwnedDescriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   if (folder.fd < 0)
     return refusal("the folder of the sockets is no folder, or a symbolic link: remove it", path);
   struct stat status {};
@@ -49,7 +49,7 @@ const sockaddr* plain(const sockaddr_un& address) noexcept { return reinterpret_
 
 /// Refuses when somebody listens there; else nothing is left of a former socket. Under the lock of the folder.
 Result<void> clear_way(const sockaddr_un& address, const std::string& subsystem) {
-  const Descriptor asking(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const OwnedDescriptor asking(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (asking.fd < 0) return failed(address.sun_path, "socket");
   if (::connect(asking.fd, plain(address), sizeof address) == 0 || errno == EAGAIN) {
     ucred keeper{};
@@ -77,7 +77,7 @@ Result<SocketPlace> SocketPlace::open(const std::string& path, const std::string
   if (!address) return address.error();
   if (::flock(folder->fd, LOCK_EX) != 0) return failed(path, "flock");
   if (auto clear = clear_way(*address, subsystem); !clear) return clear.error();
-  Descriptor listening(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  OwnedDescriptor listening(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (listening.fd < 0) return failed(place.path_, "socket");
   struct stat status {};
   // Nobody else can pass the folder between bind and chmod unless it was opened for others, whom the door judges.

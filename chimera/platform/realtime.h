@@ -32,4 +32,8 @@ struct RealtimeGrant {
 /// without rights the same program runs, late. Context: setup; may block.
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept;
 
+/// True when the system grants SCHED_FIFO at `priority` to this user. The calling thread is left as it was.
+/// Context: setup.
+bool may_be_realtime(int priority) noexcept;
+
 }  // namespace chimera

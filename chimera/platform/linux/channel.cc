@@ -3,7 +3,7 @@
 
 #include <sys/socket.h>
 
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera {
 namespace {

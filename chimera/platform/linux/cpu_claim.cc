@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera {
 namespace {
@@ -23,13 +23,13 @@ struct Address {
   socklen_t size = 0;
 };
 
-Descriptor make_socket() noexcept {
-  return Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+OwnedDescriptor make_socket() noexcept {
+  return OwnedDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
 }
 
 // Process that holds the claim; 0 when it cannot be told.
 pid_t holder(const Address& address) noexcept {
-  const Descriptor asking = make_socket();
+  const OwnedDescriptor asking = make_socket();
   ucred credentials{};
   socklen_t size = sizeof credentials;
   if (asking.fd < 0 || ::connect(asking.fd, address.get(), address.size) != 0) return 0;
@@ -41,7 +41,7 @@ pid_t holder(const Address& address) noexcept {
 Result<CpuClaim> CpuClaim::take(int cpu) noexcept {
   const Message what = Message() << "claim of CPU " << cpu;
   const Address address(cpu);
-  Descriptor claim = make_socket();
+  OwnedDescriptor claim = make_socket();
   if (claim.fd < 0) return system_error(what, "socket");
   if (::bind(claim.fd, address.get(), address.size) == 0) {
     if (::listen(claim.fd, 64) != 0) return system_error(what, "listen");

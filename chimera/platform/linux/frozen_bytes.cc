@@ -34,7 +34,7 @@ Result<FrozenBytes> FrozenBytes::open(int descriptor) noexcept {
   const auto size = sealed_size(descriptor, kSeals);
   if (!size) return size.error();
   if (*size == 0) return Message("memory file of 0 bytes makes no sense").error(ErrorCode::kBadInput);
-  Descriptor file(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
+  OwnedDescriptor file(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
   if (file.fd < 0) return memory_error("dup", *size);
   std::byte* base = map_memory(file.fd, *size, PROT_READ);
   if (base == nullptr) return memory_error("mmap", *size);

@@ -6,9 +6,9 @@
 
 namespace chimera {
 
-Result<Descriptor> make_memory_file(const char* name, std::uint64_t bytes, std::uint64_t size) noexcept {
+Result<OwnedDescriptor> make_memory_file(const char* name, std::uint64_t bytes, std::uint64_t size) noexcept {
   if (bytes == 0) return Message("shared memory of 0 bytes makes no sense").error(ErrorCode::kBadInput);
-  Descriptor file(::memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  OwnedDescriptor file(::memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (file.fd < 0) return memory_error("memfd_create", bytes);
   if (::fchmod(file.fd, 0600) != 0) return memory_error("fchmod", bytes);
   if (size > INT64_MAX || ::ftruncate(file.fd, static_cast<off_t>(size)) != 0) return memory_error("ftruncate", bytes);

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "chimera/base/result.h"
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera {
 
@@ -21,7 +21,7 @@ inline Error memory_error(const char* call, std::uint64_t bytes) noexcept {
 }
 
 /// A memfd of `size` zeroed bytes, mode 0600, not sealed yet. `bytes` is what was asked for, for the message.
-Result<Descriptor> make_memory_file(const char* name, std::uint64_t bytes, std::uint64_t size) noexcept;
+Result<OwnedDescriptor> make_memory_file(const char* name, std::uint64_t bytes, std::uint64_t size) noexcept;
 /// Size of the file behind `descriptor`; refuses one that is no memory file or lacks one of `seals`.
 Result<std::uint64_t> sealed_size(int descriptor, int seals) noexcept;
 /// Null when the system refuses.

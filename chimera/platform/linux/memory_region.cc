@@ -35,7 +35,7 @@ Result<MemoryRegion> MemoryRegion::open_read_only(int descriptor, std::uint64_t 
   if (expected_bytes == 0 || *present != size)
     return (Message() << "memory region has " << *present << " bytes, expected " << size)
         .error(ErrorCode::kBadInput);
-  Descriptor file(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
+  OwnedDescriptor file(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
   if (file.fd < 0) return memory_error("dup", expected_bytes);
   std::byte* base = map_memory(file.fd, size, PROT_READ);
   if (base == nullptr) return memory_error("mmap", expected_bytes);

@@ -14,7 +14,7 @@
 #include <ctime>
 
 #include "chimera/base/time.h"
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera {
 namespace {
@@ -25,7 +25,7 @@ bool pidfd_send_signal(int pidfd, int number) noexcept {
   return ::syscall(SYS_pidfd_send_signal, pidfd, number, nullptr, 0) == 0;
 }
 
-constexpr std::size_t kMaxArguments = 63;
+constexpr std::size_t kMaxArguments = 1000;
 constexpr std::size_t kMaxPassed = 16;
 constexpr int kFirst = 3;  // of the descriptors that are passed on
 
@@ -70,8 +70,8 @@ Result<Process> Process::start(const char* program, std::span<const char* const>
   for (std::size_t i = 0; i < arguments.size(); ++i) words[i] = const_cast<char*>(arguments[i]);
   int pipe_ends[2];
   if (::pipe2(pipe_ends, O_CLOEXEC) != 0) return system_error(what, "pipe");
-  const Descriptor answer(pipe_ends[0]);
-  Descriptor failed(pipe_ends[1]);
+  const OwnedDescriptor answer(pipe_ends[0]);
+  OwnedDescriptor failed(pipe_ends[1]);
   // No handler of this process may run in the child.
   sigset_t all, before;
   ::sigfillset(&all);
@@ -86,7 +86,7 @@ Result<Process> Process::start(const char* program, std::span<const char* const>
   child.pid_ = pid;
   child.pidfd_ = pidfd_open(pid);  // close-on-exec; the number is the child's as long as it is not reaped
   const int pidfd_error = errno;
-  failed = Descriptor();
+  failed = OwnedDescriptor();
   int error = 0;
   ssize_t got;
   do got = ::read(answer.fd, &error, sizeof error);

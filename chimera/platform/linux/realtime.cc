@@ -136,4 +136,14 @@ RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
   return grant;
 }
 
+bool may_be_realtime(int priority) noexcept {
+  int policy = 0;
+  sched_param before{}, wanted{};
+  wanted.sched_priority = priority;
+  if (::pthread_getschedparam(::pthread_self(), &policy, &before) != 0) return false;
+  const bool granted = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &wanted) == 0 && has_priority(priority);
+  ::pthread_setschedparam(::pthread_self(), policy, &before);
+  return granted;
+}
+
 }  // namespace chimera

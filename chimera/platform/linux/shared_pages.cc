@@ -26,7 +26,7 @@ Result<SharedPages> SharedPages::open(int descriptor, std::uint64_t expected_byt
   const std::uint64_t size = whole_pages(expected_bytes);
   if (expected_bytes == 0 || *present != size)
     return (Message() << "shared pages have " << *present << " bytes, expected " << size).error(ErrorCode::kBadInput);
-  Descriptor file(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
+  OwnedDescriptor file(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
   if (file.fd < 0) return memory_error("dup", expected_bytes);
   std::byte* base = map_memory(file.fd, size, PROT_READ | PROT_WRITE);
   if (base == nullptr) return memory_error("mmap", expected_bytes);

@@ -7,8 +7,8 @@ _chimera_words() {
   case $1 in
     '') echo '--help --version check run list describe new' ;;
     check) echo '--help --json --graph' ;;
-    run) echo '--help --for --virtual --preemptive --seed --quantum --priority --at --watch --every --expect --trace' \
-      '--timeline --json' ;;
+    run) echo '--help --for --at --watch --every --expect --trace --timeline --virtual --preemptive --seed --quantum' \
+      '--priority --isolation --observe-group --operate-group --configure-group --json' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
     new) echo '--help component app' ;;
@@ -27,6 +27,9 @@ _chimera() {
   if [[ $command == new ]] && ((COMP_CWORD > 2)); then command="new ${COMP_WORDS[2]}"; fi
   COMPREPLY=()
   case $before in
+    --isolation) mapfile -t COMPREPLY < <(compgen -W 'process none' -- "$word"); return ;;
+    --observe-group | --operate-group | --configure-group)
+      mapfile -t COMPREPLY < <(compgen -g -- "$word"); return ;;
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
     --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline) return ;;

@@ -12,14 +12,14 @@
 namespace chimera {
 
 /// Closes unless released. Move-only.
-struct Descriptor {
-  explicit Descriptor(int f = -1) noexcept : fd(f) {}
-  Descriptor(Descriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
+struct OwnedDescriptor {
+  explicit OwnedDescriptor(int f = -1) noexcept : fd(f) {}
+  OwnedDescriptor(OwnedDescriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
+  OwnedDescriptor& operator=(OwnedDescriptor&& other) noexcept {
     std::swap(fd, other.fd);
     return *this;
   }
-  ~Descriptor() {
+  ~OwnedDescriptor() {
     if (fd >= 0) ::close(fd);
   }
   int release() noexcept { return std::exchange(fd, -1); }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/chimera/keep.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "chimera/desk/output.h"
+#include "chimera/desk/run_plan.h"
+#include "chimera/keeper/keeper.h"
+#include "chimera/keeper/socket_place.h"
+#include "chimera/load/descriptor.h"
+#include "chimera/manager/bundle.h"
+#include "chimera/platform/cpu_claim.h"
+#include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/realtime.h"
+#include "chimera/platform/socket_folder.h"
+#include "chimera/runtime/application_image.h"
+
+namespace {
+
+using namespace chimera;  // NOLINT: a main() of this project
+
+Result<FrozenBytes> make_image(const desk::RunPlan& plan, const RunSettings& settings) {
+  std::vector<ComponentPlace> places;
+  for (const ConfiguredTask& task : plan.configuration.tasks()) {
+    const LibraryEntry* entry = plan.library.find(task.component);
+    CHIMERA_ASSERT(entry != nullptr);  // verified
+    places.push_back({entry->object_file, fingerprint(entry->descriptor)});
+  }
+  return FrozenBytes::create("chimera-image", encode(plan.configuration.spec(), places, settings));
+}
+
+Result<FrozenBytes> make_bundle(const KeepRequest& request, const desk::RunPlan& plan) {
+  const manager::Bundle bundle{CHIMERA_VERSION,       request.run.file,      plan.description,
+                               request.observe_group, request.operate_group, request.configure_group,
+                               plan.library};
+  const std::string text = encode(bundle);
+  return FrozenBytes::create("chimera-bundle", std::as_bytes(std::span(text)));
+}
+
+/// One claim for each CPU on which tasks run at real-time priorities; none when this user gets no such priority.
+Result<std::vector<CpuClaim>> claim_cpus(const desk::RunPlan& plan, int priority) {
+  std::vector<CpuClaim> claims;
+  if (priority == 0 || !may_be_realtime(priority)) return claims;
+  std::vector<std::uint32_t> cpus;
+  for (const ConfiguredTask& task : plan.configuration.tasks())
+    cpus.push_back(plan.configuration.rtpus()[task.rtpu].cpu);
+  std::sort(cpus.begin(), cpus.end());
+  cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());
+  for (const std::uint32_t cpu : cpus) {
+    auto claim = CpuClaim::take(static_cast<int>(cpu));
+    if (!claim) return claim.error();
+    claims.push_back(*std::move(claim));
+  }
+  return claims;
+}
+
+std::string exact(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::vector<std::string> face_of(const KeepRequest& request, const desk::RunPlan& plan, const std::string& socket) {
+  std::vector<std::string> words = {desk::program_path(), "attend", "--socket=" + socket,
+                                    "--parent=" + std::to_string(::getpid())};
+  words.insert(words.end(), request.face.begin(), request.face.end());
+  for (const desk::Expectation& expectation : plan.expectations)
+    words.push_back("--bound=" + exact(expectation.bound()));
+  return words;
+}
+
+/// Beside this program.
+std::string sibling(const char* name) {
+  const std::string mine = desk::program_path();
+  return mine.substr(0, mine.rfind('/') + 1) + name;
+}
+
+Result<int> keep(const KeepRequest& request, const desk::RunPlan& plan) {
+  RunSettings settings;
+  settings.priority = request.run.priority;
+  const auto claims = claim_cpus(plan, request.run.priority);
+  if (!claims) return claims.error();
+  const auto image = make_image(plan, settings);
+  if (!image) return image.error();
+  const auto bundle = make_bundle(request, plan);
+  if (!bundle) return bundle.error();
+  const bool for_others = request.observe_group || request.operate_group || request.configure_group;
+  const auto place = SocketPlace::open(socket_folder().c_str(), plan.configuration.subsystem(), for_others);
+  if (!place) return place.error();
+  const auto n_rtpus = static_cast<std::uint32_t>(plan.configuration.rtpus().size());
+  Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"), .manager_program = sibling("chimera-manager"),
+                           .n_rtpus = n_rtpus, .image = image->descriptor(), .bundle = bundle->descriptor(),
+                           .listening = place->descriptor()},
+                 .face = face_of(request, plan, place->path()),
+                 .ending_limit = settings.method_limit * (n_rtpus + 1) + seconds(1)});
+  std::fflush(stdout);  // what the face prints comes after it
+  if (auto started = keeper.start(); !started) return started.error();
+  return keeper.run();
+}
+
+}  // namespace
+
+int keep(const KeepRequest& request, const desk::Workplace& workplace) {
+  const auto plan = desk::plan_run(request.run, workplace, stdout, stderr);
+  if (!plan) return desk::kRefused;
+  const auto code = keep(request, *plan);
+  return code ? *code : desk::refuse_run(request.run, code.error(), stdout, stderr);
+}

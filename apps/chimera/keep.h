@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// `chimera run` in real time: verified here, then run by processes of which this one is the keeper.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chimera/desk/run.h"
+#include "chimera/desk/workplace.h"
+
+/// What the keeper needs to know beside the request.
+struct KeepRequest {
+  chimera::desk::RunRequest run;
+  std::vector<std::string> face;  ///< the arguments of `chimera attend` that stand on the command line of `run`
+  std::optional<std::uint32_t> observe_group, operate_group, configure_group;
+};
+
+/// Answers the exit code of the run. Context: setup, the first thread; blocks for the duration.
+int keep(const KeepRequest& request, const chimera::desk::Workplace& workplace);

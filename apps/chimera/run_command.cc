@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/chimera/run_command.h"
+
+#include <grp.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include "apps/chimera/keep.h"
+#include "apps/chimera/record_files.h"
+#include "chimera/config/quantity.h"
+#include "chimera/desk/output.h"
+#include "chimera/platform/process.h"
+
+using namespace chimera;  // NOLINT: a main() of this project
+
+namespace {
+
+/// What the face of a run does, and so what both commands know.
+void add_face_options(CLI::App* command, RunWords& words) {
+  command->add_option("--for", words.duration, "how long, such as '10 s'; without it until Ctrl-C");
+  command->add_option("--at", words.run.at, "a timed act: '2 s: off pid', '3 s: flag up'; may be repeated");
+  command->add_option("--watch", words.run.watch, "print these state variables while it runs");
+  command->add_option("--every", words.every, "how often --watch prints (1 s)");
+  command->add_option("--expect", words.run.expect, "at the end must hold: 'error <= 2 mrad'; may be repeated");
+  command->add_option("--trace", words.trace, "write a Chrome trace to this file (ui.perfetto.dev opens it)");
+  command->add_option("--timeline", words.timeline,
+                      "at the end print one letter for each unit of time, such as '1 ms'");
+}
+
+bool read_duration(const std::string& text, const char* option, Nanoseconds& to) {
+  if (text.empty()) return true;
+  const auto value = parse_duration(text);
+  if (value && value->count > 0) return to = *value, true;
+  std::fprintf(stderr, "%s: %s\n", option, value ? "must be longer than 0" : value.error().message.c_str());
+  return false;
+}
+
+bool read_seed(const std::string& text, std::optional<std::uint64_t>& to) {
+  if (text.empty()) return true;
+  char* end = nullptr;
+  errno = 0;
+  to = std::strtoull(text.c_str(), &end, 10);
+  if (*end == '\0' && errno == 0 && text[0] != '-') return true;
+  std::fprintf(stderr, "--seed: '%s' is not a whole number from 0 to 2^64-1\n", text.c_str());
+  return false;
+}
+
+bool read_group(const std::string& name, const char* option, std::optional<std::uint32_t>& to) {
+  if (name.empty()) return true;
+  if (const group* found = ::getgrnam(name.c_str()); found != nullptr) return to = found->gr_gid, true;
+  std::fprintf(stderr, "%s: no group '%s' on this machine\n", option, name.c_str());
+  return false;
+}
+
+bool read_times(RunWords& words, Nanoseconds& unit) {
+  desk::RunRequest& r = words.run;
+  return read_duration(words.duration, "--for", r.duration) && read_duration(words.every, "--every", r.every) &&
+         read_duration(words.quantum, "--quantum", r.quantum) && read_duration(words.timeline, "--timeline", unit) &&
+         read_seed(words.seed, r.seed);
+}
+
+bool read_run(RunWords& words, Nanoseconds& unit) {
+  desk::RunRequest& r = words.run;
+  if (!read_times(words, unit)) return false;
+  r.one_process = words.isolation == "none";
+  const char* wrong = nullptr;
+  if (!r.virtual_time && (r.preemptive || r.seed || !words.quantum.empty()))
+    wrong = "--preemptive, --seed and --quantum belong to --virtual";
+  if (r.virtual_time && r.duration == kNever) wrong = "--virtual needs --for: virtual time has no end of its own";
+  if (!words.timeline.empty() && r.duration == kNever) wrong = "--timeline needs --for";
+  if (!words.timeline.empty() && r.json) wrong = "--timeline and --json exclude each other";
+  if (wrong != nullptr) std::fprintf(stderr, "%s\n", wrong);
+  return wrong == nullptr;
+}
+
+/// The words for `attend`, as they stood on the command line of `run`.
+std::vector<std::string> words_for_face(const RunWords& words) {
+  std::vector<std::string> made;
+  const auto add = [&made](const char* option, const std::string& value) {
+    if (!value.empty()) made.push_back(std::string(option) + "=" + value);
+  };
+  add("--for", words.duration);
+  add("--every", words.every);
+  add("--trace", words.trace);
+  add("--timeline", words.timeline);
+  for (const std::string& text : words.run.at) add("--at", text);
+  for (const std::string& name : words.run.watch) add("--watch", name);
+  for (const std::string& text : words.run.expect) add("--expect", text);
+  if (words.run.json) made.push_back("--json");
+  return made;
+}
+
+/// Runs `body` with what writes the trace and the timeline; with null when neither is wanted.
+template <class Body>
+int with_records(const RunWords& words, Nanoseconds unit, Body body) {
+  if (words.trace.empty() && words.timeline.empty()) return body(nullptr);
+  RecordFiles files(words.trace, unit, words.run.duration);
+  if (!files.is_open()) {
+    std::fprintf(stderr, "%s: cannot be written: %s\n", words.trace.c_str(), files.why().c_str());
+    return desk::kRefused;
+  }
+  const int code = body(&files);
+  return files.finish(stdout, stderr) ? code : desk::kRefused;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, RunWords& words) {
+  CLI::App* r = app.add_subcommand("run", "Run an application in real time, or in virtual time");
+  r->add_option("FILE", words.run.file, "the description")->required();
+  add_face_options(r, words);
+  r->add_flag("--virtual", words.run.virtual_time, "in virtual time: as fast as it goes, the same result every time");
+  r->add_flag("--preemptive", words.run.preemptive, "virtual time: schedule preemptively");
+  r->add_option("--seed", words.seed, "virtual time: draw execution times from [min, budget]");
+  r->add_option("--quantum", words.quantum, "virtual time, laxity policies: compare again this often (1 ms)");
+  r->add_option("--priority", words.run.priority, "real time: SCHED_FIFO priority; 0 runs as an ordinary process (80)")
+      ->check(CLI::Range(0, 99));
+  r->add_option("--isolation", words.isolation, "real time: 'process', or 'none' to debug one rtpu in this process")
+      ->check(CLI::IsMember({"process", "none"}));
+  r->add_option("--observe-group", words.observe_group, "real time: members of this group may look on");
+  r->add_option("--operate-group", words.operate_group, "real time: they may also send signals and set values");
+  r->add_option("--configure-group", words.configure_group, "real time: they may do everything");
+  r->add_flag("--json", words.run.json, "the result as one JSON object");
+  r->footer("Exit code 0 only if the run came to its end and every --expect holds.\n"
+            "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
+  CLI::App* a = app.add_subcommand("attend", "The face of a run; started by it");
+  a->group("");  // not for people
+  a->add_option("--socket", words.socket)->required();
+  a->add_option("--parent", words.parent)->required();
+  a->add_option("--bound", words.bounds);
+  a->add_flag("--json", words.run.json);
+  add_face_options(a, words);
+}
+
+int carry_out_run(RunWords& words, const desk::Workplace& workplace) {
+  Nanoseconds unit;
+  KeepRequest kept;
+  if (!read_run(words, unit) || !read_group(words.observe_group, "--observe-group", kept.observe_group) ||
+      !read_group(words.operate_group, "--operate-group", kept.operate_group) ||
+      !read_group(words.configure_group, "--configure-group", kept.configure_group))
+    return desk::kUsage;
+  if (!words.run.virtual_time && !words.run.one_process) {
+    kept.run = words.run;
+    kept.face = words_for_face(words);
+    return keep(kept, workplace);
+  }
+  std::signal(SIGINT, [](int) { desk::request_stop(); });
+  std::signal(SIGTERM, [](int) { desk::request_stop(); });
+  return with_records(words, unit, [&](desk::RecordSink* sink) {
+    return desk::run(words.run, workplace, sink, stdout, stderr);
+  });
+}
+
+int carry_out_attend(RunWords& words) {
+  std::signal(SIGTERM, [](int) { desk::request_stop(); });
+  std::signal(SIGPIPE, SIG_IGN);  // seen as a failed write
+  Nanoseconds unit;
+  if (!read_times(words, unit) || words.bounds.size() != words.run.expect.size()) return desk::kUsage;
+  if (!follow_parent(words.parent, SIGTERM)) return desk::kRefused;
+  return with_records(words, unit, [&](desk::RecordSink* sink) {
+    return desk::attend({words.socket, words.run, words.bounds}, sink, stdout, stderr);
+  });
+}

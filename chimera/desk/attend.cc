@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/attend.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <nlohmann/json.hpp>
+
+#include "chimera/config/json_text.h"
+#include "chimera/config/task_profile.h"
+#include "chimera/desk/control_line.h"
+#include "chimera/desk/expectation.h"
+#include "chimera/desk/output.h"
+#include "chimera/desk/profile_report.h"
+#include "chimera/desk/record_line.h"
+#include "chimera/desk/run_report.h"
+#include "chimera/desk/script_text.h"
+#include "chimera/platform/linux/linux_clock.h"
+
+namespace chimera::desk {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr Nanoseconds kLookEvery = milliseconds(100);  // for what has happened, and whether to stop
+constexpr Nanoseconds kStartLook = milliseconds(5);
+
+Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.get<std::int64_t>()} : kNever; }
+
+void add_numbers(const Json& value, std::vector<double>& numbers) {
+  if (value.is_number()) numbers.push_back(value.get<double>());
+  else if (value.is_boolean()) numbers.push_back(value.get<bool>() ? 1 : 0);
+  else if (value.is_null()) numbers.push_back(std::numeric_limits<double>::quiet_NaN());
+  else if (value.is_array())
+    for (const Json& element : value) add_numbers(element, numbers);
+}
+
+Seen seen_of(const Json& reading) {
+  Seen seen;
+  seen.is_written = reading.value("valid", false);
+  seen.text = reading.value("text", "");
+  if (seen.is_written) add_numbers(reading.value("value", Json()), seen.numbers);
+  return seen;
+}
+
+class Attendance {
+ public:
+  Attendance(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err)
+      : request_(request), run_(request.run), sink_(sink), out_(out), err_(err), line_(request.socket) {}
+
+  /// Waits until the tasks are ON. Refuses when they will not be.
+  Result<void> begin();
+  RunEnd attend();
+  int report(RunEnd end);
+
+ private:
+  Result<void> know_tasks(const Json& status);
+  void print_grants(const Json& status);
+  void look_at_events();
+  /// Told to, or nobody reads what it prints.
+  bool is_to_stop() const { return stop_is_requested() || std::ferror(out_) != 0; }
+  void act(const ScriptAct& act);
+  void watch_line(Nanoseconds at);
+  Json readings(std::vector<std::string> names);
+  std::string since_start(Nanoseconds at) const;
+
+  const AttendRequest& request_;
+  const RunRequest& run_;
+  RecordSink* sink_;
+  std::FILE* out_;
+  std::FILE* err_;
+  ControlLine line_;
+  LinuxClock clock_;
+  TaskNames names_;
+  std::vector<ScriptAct> acts_;
+  std::optional<RecordLine> records_;
+  std::string grants_, refused_;
+  std::optional<Error> failure_;  // of the start
+  Nanoseconds started_ = kNever;
+  std::uint64_t next_event_ = 0;
+  bool task_stopped_ = false;
+};
+
+Result<void> Attendance::begin() {
+  while (!stop_is_requested()) {
+    const auto status = line_.ask("status", Json::object(), seconds(20));
+    if (!status) return status.error();
+    started_ = instant((*status)["started_ns"]);
+    if (started_ == kNever) {
+      look_at_events();
+      if (failure_) return *failure_;
+      clock_.wait_until(clock_.now() + kStartLook);
+      continue;
+    }
+    print_grants(*status);
+    return know_tasks(*status);
+  }
+  return Error{ErrorCode::kRefused, std::string_view("ended before its tasks were ON"), {}};
+}
+
+Result<void> Attendance::know_tasks(const Json& status) {
+  names_ = TaskNames::of(status);
+  auto acts = parse_script(run_.at, names_.spec());
+  if (!acts) return acts.error();
+  acts_ = *std::move(acts);
+  if (sink_ == nullptr) return {};
+  sink_->begin(names_.spec(), started_);
+  records_.emplace(request_.socket, names_);
+  return records_->subscribe();
+}
+
+void Attendance::print_grants(const Json& status) {
+  const Json& rtpus = status["rtpus"];
+  for (const Json& rtpu : rtpus) {
+    const std::string grant = rtpu.value("grant", "");
+    grants_ += (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : rtpu.value("name", "") + ": ") + grant;
+    if (run_.json) continue;
+    std::fprintf(out_, "%s%s\n", rtpus.size() == 1 ? "" : (rtpu.value("name", "") + ": ").c_str(), grant.c_str());
+  }
+  std::fflush(out_);
+}
+
+/// Before the start a task that cannot be made, or an `on` refused, is the end of it.
+void Attendance::look_at_events() {
+  const auto answer = line_.ask("events", {{"since", next_event_}, {"limit", 1000}});
+  if (!answer) return;
+  for (const Json& event : (*answer)["events"]) {
+    next_event_ = event["number"].get<std::uint64_t>() + 1;
+    const std::string kind = event.value("kind", ""), text = event.value("text", "");
+    const Json about = event.value("task", Json());
+    const std::string task = about.is_string() ? about.get<std::string>() : "";
+    const bool is_refusal = kind == "refused" || kind == "fault" || kind == "rtpu-given-up";
+    if (started_ == kNever && is_refusal && !failure_)
+      failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
+    else if (started_ != kNever && kind == "refused")
+      refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
+    task_stopped_ = task_stopped_ || kind == "stop";
+  }
+}
+
+std::string Attendance::since_start(Nanoseconds at) const {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f s", to_seconds(at - started_));
+  return text;
+}
+
+void Attendance::act(const ScriptAct& act) {
+  const bool is_signal = act.kind == ScriptAct::Kind::kSignal;
+  const std::string task = is_signal ? names_.tasks[act.task.index] : "";
+  const auto answer =
+      is_signal ? line_.ask("signal", {{"signal", signal_name(act.signal)}, {"tasks", {task}}})
+                : line_.ask("flag", {{"up", act.kind == ScriptAct::Kind::kRaiseFlag}});
+  if (answer) return;
+  const std::string what = is_signal ? std::string(signal_name(act.signal)) + " " + task : "flag";
+  refused_ += "refused at " + since_start(clock_.now()) + ": " + what + ": " + answer.error().message.c_str() + "\n";
+}
+
+Json Attendance::readings(std::vector<std::string> names) {
+  if (names.empty()) return Json::object();
+  const auto answer = line_.ask("get", {{"variables", std::move(names)}});
+  return answer ? answer->value("values", Json::object()) : Json::object();
+}
+
+void Attendance::watch_line(Nanoseconds at) {
+  if (run_.watch.empty() || run_.json) return;
+  const Json values = readings(run_.watch);
+  std::string line = "t " + since_start(at);
+  for (const std::string& name : run_.watch) {
+    const Seen seen = seen_of(values.value(name, Json::object()));
+    line += "  " + name + " " + (seen.is_written ? seen.text : "not written yet");
+  }
+  std::fprintf(out_, "%s\n", line.c_str());
+  std::fflush(out_);
+}
+
+RunEnd Attendance::attend() {
+  const Nanoseconds end = run_.duration == kNever ? kNever : started_ + run_.duration;
+  Nanoseconds next_watch = run_.watch.empty() ? kNever : started_ + run_.every;
+  Nanoseconds next_look = started_;
+  for (std::size_t next_act = 0;;) {
+    const Nanoseconds act_at = next_act < acts_.size() ? started_ + acts_[next_act].at : kNever;
+    const Nanoseconds next = std::min({next_watch, next_look, act_at, end});
+    while (clock_.now() < next && !is_to_stop()) {
+      if (records_) records_->take(next, *sink_);
+      else clock_.wait_until(next);
+    }
+    if (is_to_stop()) {
+      watch_line(clock_.now());
+      return RunEnd::kStopped;
+    }
+    if (next == act_at) act(acts_[next_act++]);
+    if (next == next_watch) {
+      watch_line(next);
+      next_watch += run_.every;
+    }
+    if (next == next_look) {
+      look_at_events();
+      next_look += kLookEvery;
+    }
+    if (task_stopped_) return RunEnd::kTaskStopped;
+    if (next == end) return RunEnd::kTime;
+  }
+}
+
+int Attendance::report(RunEnd end) {
+  const Nanoseconds now = clock_.now();
+  std::vector<std::string> names = run_.watch;
+  RunReport report{.end = end, .ran = std::min(now - started_, run_.duration), .subsystem = names_.subsystem,
+                   .executor = grants_, .refused = {}, .profiles = {}, .origin = started_, .variables = {},
+                   .expectations = {}};
+  for (std::size_t i = 0; i < run_.expect.size(); ++i)
+    if (auto expectation = Expectation::with_bound(run_.expect[i], request_.bounds[i]); expectation)
+      names.push_back(expectation->variable());
+  const Json values = readings(names);
+  const auto status = line_.ask("status", Json::object());
+  if (const auto profile = line_.ask("profile", Json::object()); profile && status)
+    if (auto profiles = parse_profiles((*profile)["tasks"].dump(), instant((*status)["origin_ns"])); profiles)
+      report.profiles = *std::move(profiles);
+  look_at_events();
+  report.refused = refused_;
+  for (std::size_t i = 0; i < run_.expect.size(); ++i) {
+    const auto expectation = Expectation::with_bound(run_.expect[i], request_.bounds[i]);
+    if (expectation)
+      report.judge(*expectation, seen_of(values.value(expectation->variable(), Json::object())));
+  }
+  for (const std::string& name : run_.watch) {
+    const Json reading = values.value(name, Json::object());
+    report.variables.push_back({name, reading.value("unit", "1"), reading.value("value", Json()).dump()});
+  }
+  if (records_) records_->finish(*sink_);
+  print(report, run_.json, out_);
+  return report.code();
+}
+
+}  // namespace
+
+int attend(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err) {
+  Attendance attendance(request, sink, out, err);
+  if (auto begun = attendance.begin(); !begun) {
+    const Output output = refused(begun.error(), request.run.json);
+    std::fputs(output.out.c_str(), out);
+    std::fputs(output.err.c_str(), err);
+    return output.code;
+  }
+  return attendance.report(attendance.attend());
+}
+
+}  // namespace chimera::desk

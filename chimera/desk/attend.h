@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The face of one `chimera run` in real time: watches, acts at stated times, judges, prints. It is a process of its
+// own that talks the control protocol and nothing else, so a run goes on without it.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "chimera/desk/run.h"
+
+namespace chimera::desk {
+
+struct AttendRequest {
+  std::string socket;          ///< path of the subsystem's
+  RunRequest run;              ///< of these: duration, every, watch, at, expect, json
+  std::vector<double> bounds;  ///< of run.expect, each in the unit of its variable
+};
+
+/// Waits for the start, attends until the end of the duration or request_stop(), reports; answers the exit code of the
+/// run. `sink` may be null. Context: setup; blocks.
+int attend(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err);
+
+}  // namespace chimera::desk

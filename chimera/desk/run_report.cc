@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/run_report.h"
+
+#include <algorithm>
+
+#include "chimera/config/json_text.h"
+#include "chimera/desk/output.h"
+#include "chimera/desk/profile_report.h"
+
+namespace chimera::desk {
+namespace {
+
+const char* word(RunEnd end) {
+  switch (end) {
+    case RunEnd::kTime: return "time";
+    case RunEnd::kStopped: return "stopped";
+    case RunEnd::kNothingLeft: return "nothing-left";
+    case RunEnd::kTaskStopped: return "stopped-by-task";
+  }
+  return "?";
+}
+
+const char* sentence(RunEnd end) {
+  switch (end) {
+    case RunEnd::kTime: return "";
+    case RunEnd::kStopped: return ", ended by the operator";
+    case RunEnd::kNothingLeft: return ", ended because no task was ON any more";
+    case RunEnd::kTaskStopped: return ", ended by the reaction `stop` of a task";
+  }
+  return "";
+}
+
+void print_json(const RunReport& report, std::FILE* out) {
+  std::string variables, expectations;
+  for (const RunReport::Watched& v : report.variables)
+    variables += (variables.empty() ? "" : ", ") + json_string(v.name) + ": {\"unit\": " + json_string(v.unit) +
+                 ", \"value\": " + v.value + "}";
+  for (const RunReport::Judged& e : report.expectations)
+    expectations += (expectations.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(e.text) +
+                    ", \"holds\": " + (e.holds ? "true" : "false") + ", \"said\": " + json_string(e.said) + "}";
+  std::fprintf(out,
+               "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"tasks\": %s, "
+               "\"variables\": {%s}, \"expectations\": [%s]}\n",
+               json_string(report.subsystem).c_str(), json_string(report.executor).c_str(),
+               static_cast<long long>(report.ran.count), word(report.end),
+               profile_json(report.profiles, report.origin).c_str(), variables.c_str(), expectations.c_str());
+}
+
+}  // namespace
+
+void RunReport::judge(const Expectation& expectation, const Seen& seen) {
+  Judged judged{expectation.text(), {}, false};
+  judged.holds = expectation.holds(seen, judged.said);
+  expectations.push_back(std::move(judged));
+}
+
+int RunReport::code() const {
+  const bool all_hold =
+      std::all_of(expectations.begin(), expectations.end(), [](const Judged& judged) { return judged.holds; });
+  return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
+}
+
+void print(const RunReport& report, bool json, std::FILE* out) {
+  if (json) return print_json(report, out);
+  std::string lines;
+  for (const RunReport::Judged& e : report.expectations)
+    lines += (e.holds ? "holds: " : "FAILS: ") + e.text + " (" + e.said + ")\n";
+  std::fprintf(out, "ran %.3f s%s\n%s%s%s", to_seconds(report.ran), sentence(report.end), report.refused.c_str(),
+               profile_table(report.profiles, report.ran, report.origin).c_str(), lines.c_str());
+}
+
+}  // namespace chimera::desk

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run says at its end, however it was run: docs/formats/run.md.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "chimera/config/task_profile.h"
+#include "chimera/desk/expectation.h"
+#include "chimera/runtime/release.h"
+
+namespace chimera::desk {
+
+/// Plain value.
+struct RunReport {
+  struct Watched {
+    std::string name, unit;
+    std::string value;  ///< JSON
+  };
+  struct Judged {
+    std::string text, said;
+    bool holds = false;
+  };
+
+  RunEnd end = RunEnd::kTime;
+  Nanoseconds ran;
+  std::string subsystem;
+  std::string executor;                ///< how it was run, for people
+  std::string refused;                 ///< a line for each refused signal
+  std::vector<TaskProfile> profiles;
+  Nanoseconds origin;                  ///< of `ran`; faults are timed from it
+  std::vector<Watched> variables;
+  std::vector<Judged> expectations;
+
+  void judge(const Expectation& expectation, const Seen& seen);
+  /// kOk when it came to its end and every expectation holds.
+  int code() const;
+};
+
+/// As text or as one JSON object. Context: setup.
+void print(const RunReport& report, bool json, std::FILE* out);
+
+}  // namespace chimera::desk
