@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The real-time program links no YAML, JSON or HTTP: judged by its symbols, with the `chimera` command as the proof that the
-look finds them where they are."""
+"""The real-time program links no YAML, JSON or HTTP: judged by its symbols. The `chimera` command, which does, proves
+that the look finds them where they are."""
 import subprocess
 import sys
 
