@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dies, hangs or writes everywhere, in the method it is told to, while a file exists.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+struct Crash {
+  InConst<Text<16>> where{"where", initial = "cycle", doc = "the method that does it"};
+  InConst<Text<16>> how{"how", initial = "segv",
+                        doc = "segv abort bus fpe ill stack exit kill hang block nan scribble"};
+  Resource armed{"armed", doc = "the file whose existence lets it happen"};
+  Out<double> y{"y", "1", initial = 0.0, safety};
+
+  void init() { act("init"); }
+  void reinit() { act("reinit"); }
+  void on(Cycle) { act("on"); }
+  void cycle(Cycle c) {
+    *y = static_cast<double>(c.count());
+    act("cycle");
+  }
+  void off() { act("off"); }
+  void kill() { act("kill"); }
+
+ private:
+  bool is(const char* way) const { return *how == way; }
+  void act(const char* method) {
+    if (!(*where == method) || ::access(armed.c_str(), F_OK) != 0) return;
+    for (const auto& [way, number] : {std::pair{"segv", SIGSEGV}, std::pair{"abort", SIGABRT}, std::pair{"bus", SIGBUS},
+                                      std::pair{"fpe", SIGFPE}, std::pair{"ill", SIGILL}, std::pair{"kill", SIGKILL}})
+      if (is(way)) ::kill(::getpid(), number), ::pause();
+    if (is("stack")) *y = overflow(1);
+    if (is("exit")) ::_exit(42);
+    if (is("nan")) *y = std::nan("");
+    if (is("block")) ::usleep(2'000);
+    if (is("scribble")) scribble();
+    while (is("hang")) ::access(armed.c_str(), F_OK);
+  }
+  // As deep as a stack that is locked can be and deeper.
+  double overflow(int depth) {
+    volatile char page[4096];
+    page[0] = static_cast<char>(depth);
+    return depth < 1'000'000 ? overflow(depth + 1) + page[0] : 0;
+  }
+  // Writes over everything that this process may write to but its own code's data, one mapping after the other.
+  static void scribble() {
+    std::FILE* maps = std::fopen("/proc/self/maps", "r");
+    char line[512];
+    constexpr int kWritable = PROT_READ | PROT_WRITE;
+    while (maps != nullptr && std::fgets(line, sizeof line, maps) != nullptr) {
+      unsigned long begin = 0, end = 0;
+      char rights[5] = {};
+        const bool is_memory = std::sscanf(line, "%lx-%lx %4s", &begin, &end, rights) == 3;
+      const bool is_shared = std::strstr(line, "memfd:") != nullptr;
+      if (!is_memory || !is_shared) continue;
+      // Also what is mapped read-only: first asked for, then tried through the file.
+      const bool may = rights[1] == 'w' || ::mprotect(reinterpret_cast<void*>(begin), end - begin, kWritable) == 0;
+      if (!may) continue;
+      for (unsigned long at = begin; at < end; at += 64) *reinterpret_cast<volatile unsigned long*>(at) = 0xdeadbeef;
+    }
+    ::abort();
+  }
+};
+CHIMERA_COMPONENT(Crash, "t_crash", "Dies, hangs or scribbles on demand.", rate = 1000.0);

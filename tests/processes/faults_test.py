@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a fault of one real-time unit does to the others: nothing but what is declared. Bounded counts here; the same with
+more of them is the campaign `process_faults`. CHIMERA_ROUNDS says how often each is repeated."""
+import os
+import signal
+import sys
+import time
+import unittest
+
+from system import Client, Refused, System, await_that
+
+ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
+
+# `steady` and `reader` must never notice what happens to `victim`, which nobody needs.
+APPLICATION = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  victim: {component: t_crash, rtpu: second, rate: 200 Hz, alias: {y: y_victim}, constants: {where: WHERE, how: HOW}, resources: {armed: ARMED}}
+  beside: {component: t_source, rtpu: second, rate: 100 Hz}
+configurations:
+  all: [steady, victim, beside]
+start: all
+"""
+
+THROWER = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  thrower: {component: t_thrower, rtpu: second, rate: 200 Hz, alias: {count: n}, constants: {where: WHERE, how: HOW, at: AT, times: 1, recovers: RECOVERS}}
+configurations:
+  all: [steady, thrower]
+start: all
+"""
+
+
+def filled(text, **words):
+    for word, value in words.items():
+        text = text.replace(word.upper(), str(value))
+    return text
+
+
+class Faults(unittest.TestCase):
+    injections = {}
+
+    def count(self, kind, n=1):
+        Faults.injections[kind] = Faults.injections.get(kind, 0) + n
+
+    @classmethod
+    def tearDownClass(cls):
+        for kind, n in sorted(cls.injections.items()):
+            print(f"{kind}: {n} injections", file=sys.stderr)
+
+    def steady_goes_on(self, system, before):
+        after = await_that(lambda: (t := system.task("steady"))["cycles"] > before["cycles"] + 10 and t, 5, "cycling on")
+        self.assertEqual(after["state"], "ON")
+        self.assertEqual(after["incarnation"], before["incarnation"])
+        self.assertEqual(after["faults"], 0)
+
+    def test_row_5_a_unit_that_dies_is_seen_with_its_cause_and_restarted_with_what_was_on(self):
+        for how, words in (("segv", "signal 11 (SIGSEGV)"), ("abort", "signal 6 (SIGABRT)"), ("bus", "signal 7 (SIGBUS)"),
+                           ("fpe", "signal 8 (SIGFPE)"), ("ill", "signal 4 (SIGILL)"), ("kill", "signal 9 (SIGKILL)"),
+                           ("stack", "signal 11 (SIGSEGV)"), ("exit", "42")):
+            with self.subTest(how), System(filled(APPLICATION, where="cycle", how=how)) as system:
+                for _ in range(ROUNDS):
+                    before, unit = system.task("steady"), system.rtpu("second")
+                    system.arm()
+                    await_that(lambda: system.rtpu("second")["incarnation"] > unit["incarnation"], 5, "a new incarnation")
+                    system.disarm()
+                    self.count(f"row 5 {how}")
+                    await_that(lambda: system.state("victim") == "ON" and system.state("beside") == "ON", 15, "recovery")
+                    self.steady_goes_on(system, before)
+                told = [e["text"] for e in system.events() if e["kind"] == "rtpu-ended"]
+                self.assertTrue(told)
+                for text in told:
+                    self.assertIn(words, text)
+                    self.assertIn("victim.cycle", text)
+
+    def test_a_unit_that_dies_too_often_is_given_up_until_a_person_says_clear(self):
+        with System(filled(APPLICATION, where="cycle", how="segv")) as system:
+            system.arm()
+            await_that(lambda: any(e["kind"] == "rtpu-given-up" for e in system.events()), 20, "giving up")
+            self.assertEqual(system.state("victim"), "ERROR")
+            self.assertEqual(system.state("beside"), "ERROR")
+            restarts = [e for e in system.events() if e["kind"] == "rtpu-restarted"]
+            self.assertEqual(len(restarts), 3)
+            system.disarm()
+            system.signal("clear", "victim")
+            system.await_state("victim", "OFF")
+            system.signal("on", "victim")
+            system.await_state("victim", "ON")
+            self.count("row 5 given up", 4)
+
+    def test_row_6_a_unit_that_scribbles_over_its_memory_spoils_only_its_own(self):
+        with System(filled(APPLICATION, where="cycle", how="scribble")) as system:
+            for _ in range(ROUNDS):
+                before, unit = system.task("steady"), system.rtpu("second")
+                count = system.call("get", variables=["count"])["values"]["count"]["value"]
+                system.arm()
+                await_that(lambda: system.rtpu("second")["incarnation"] > unit["incarnation"], 5, "a new incarnation")
+                system.disarm()
+                self.count("row 6 scribble")
+                system.await_state("victim", "ON", 15)
+                self.steady_goes_on(system, before)
+                self.assertGreater(system.call("get", variables=["count"])["values"]["count"]["value"], count)
+                self.assertTrue(system.call("hello")["manager"]["pid"])
+
+    def test_rows_1_and_2_an_error_in_any_method_stays_with_its_task(self):
+        for where in ("init", "on", "cycle", "off", "reinit", "kill"):
+            for how in (1, 2, 3):
+                at = 20 if where == "cycle" else 0
+                text = filled(THROWER, where=where, how=how, at=at, recovers="false")
+                with self.subTest(where=where, how=how), System(text, wait=False) as system:
+                    await_that(lambda: system.socket.exists(), 10, "the socket")
+                    await_that(lambda: system.call("status")["tasks"][0]["state"] != "NOT-CREATED", 10, "the start")
+                    if where in ("off", "reinit", "kill"):
+                        system.await_state("thrower", "ON")
+                        try:
+                            system.signal(where, "thrower")
+                        except Refused:
+                            pass  # the words are judged by the unit tests
+                    expected = {"init": "NOT-CREATED", "kill": "NOT-CREATED", "on": "ERROR"}.get(where, "ERROR")
+                    system.await_state("thrower", expected)
+                    self.assertEqual([r["incarnation"] for r in system.call("status")["rtpus"]], [1, 1])
+                    self.assertTrue(any(e["kind"] == "fault" and e["task"] == "thrower" for e in system.events()))
+                    self.count(f"row 1-2 {where}")
+
+    def test_row_7_not_a_number_is_never_published(self):
+        with System(filled(APPLICATION, where="cycle", how="nan")) as system:
+            system.arm()
+            system.await_state("victim", "ERROR")
+            reading = system.call("get", variables=["y_victim"])["values"]["y_victim"]
+            self.assertIsNotNone(reading["value"])
+            self.assertGreaterEqual(system.task("victim")["rejected"], 1)
+            self.count("row 7")
+
+    def test_row_10_a_unit_killed_at_any_step_from_spawn_to_off_comes_back_or_is_told(self):
+        for where in ("init", "on", "off", "kill"):
+            with self.subTest(where), System(filled(APPLICATION, where=where, how="kill")) as system:
+                before = system.task("steady")
+                system.signal("off", "victim")
+                system.signal("kill", "victim") if where in ("init",) else None
+                if where in ("off",):
+                    system.signal("on", "victim")
+                system.arm()
+                word = {"init": "spawn"}.get(where, where)
+                with self.assertRaises(Refused):
+                    system.signal(word, "victim")
+                system.disarm()
+                self.count(f"row 10 {where}")
+                await_that(lambda: system.rtpu("second")["phase"] == "serving" and
+                           system.state("victim") in ("OFF", "ON", "NOT-CREATED"), 15, "recovery")
+                system.await_state("beside", "ON", 15)
+                self.steady_goes_on(system, before)
+
+    def test_row_11_the_manager_may_die_at_any_moment(self):
+        with System(filled(APPLICATION, where="cycle", how="segv")) as system:
+            for n in range(3 * ROUNDS):
+                before = {t["task"]: t for t in system.call("status")["tasks"]}
+                began = time.monotonic()
+                os.kill(system.pids()["manager"], signal.SIGKILL)
+                system.client = None
+                status = system.call("status")
+                self.assertLess(time.monotonic() - began, 1.0, "picked up again within a second")
+                self.count("row 11 manager killed")
+                for task in status["tasks"]:
+                    self.assertEqual(task["state"], "ON")
+                    self.assertEqual(task["incarnation"], before[task["task"]]["incarnation"])
+                    self.assertEqual(task["dropped"], before[task["task"]]["dropped"], task["task"])
+            numbers = [e["number"] for e in system.events()]
+            self.assertEqual(numbers, sorted(set(numbers)))
+            self.assertEqual(system.call("hello")["manager"]["starts"], 3 * ROUNDS + 1)
+
+    def test_a_command_waits_for_a_manager_that_is_being_restarted(self):
+        with System(filled(APPLICATION, where="cycle", how="segv")) as system:
+            manager = system.pids()["manager"]
+            os.kill(manager, signal.SIGKILL)
+            client = Client(system.socket)
+            client.call("signal", signal="off", tasks=["victim"])
+            client.close()
+            self.assertEqual(system.state("victim"), "OFF")
+            self.count("command without a manager")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A whole subsystem of real processes under test: started by `chimera run`, seen through its control protocol and /proc."""
+import json
+import os
+import pathlib
+import select
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+
+BUILD = pathlib.Path(os.environ["CHIMERA_BUILD"]).resolve()
+CHIMERA = BUILD / "bin" / "chimera"
+# A sanitizer that catches the signal would hide how the process died.
+QUIET = "handle_segv=0:handle_abort=0:handle_sigbus=0:handle_sigfpe=0:handle_sigill=0:detect_leaks=0:use_sigaltstack=0"
+
+
+class Refused(Exception):
+    """An error of the protocol."""
+
+    def __init__(self, error):
+        super().__init__(error["message"])
+        self.code, self.data = error["code"], error.get("data")
+
+
+class Client:
+    """One connection to the control protocol."""
+
+    def __init__(self, path, limit=10):
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.socket.settimeout(limit)
+        self.socket.connect(str(path))
+        self.bytes, self.number, self.notes = b"", 0, []
+
+    def close(self):
+        self.socket.close()
+
+    def line(self):
+        while b"\n" not in self.bytes:
+            got = self.socket.recv(1 << 16)
+            if not got:
+                raise ConnectionError("closed")
+            self.bytes += got
+        line, self.bytes = self.bytes.split(b"\n", 1)
+        return json.loads(line)
+
+    def call(self, method, **parameters):
+        self.number += 1
+        request = {"jsonrpc": "2.0", "id": self.number, "method": method, "params": parameters}
+        self.socket.sendall(json.dumps(request).encode() + b"\n")
+        while True:
+            answer = self.line()
+            if answer.get("id") == self.number:
+                break
+            self.notes.append(answer)
+        if "error" in answer:
+            raise Refused(answer["error"])
+        return answer["result"]
+
+    def note(self):
+        return self.notes.pop(0) if self.notes else self.line()
+
+
+def await_that(condition, limit=10.0, what="it"):
+    """Polls until condition() is true; fails after `limit` seconds."""
+    end = time.monotonic() + limit
+    while True:
+        got = condition()
+        if got:
+            return got
+        if time.monotonic() > end:
+            raise AssertionError(f"{what} did not come true within {limit} s")
+        time.sleep(0.002)
+
+
+def processes_of(marker):
+    """Pids whose environment carries the marker: everything a system under test started, whoever its parent is by now."""
+    found = []
+    for entry in os.listdir("/proc"):
+        if not entry.isdigit():
+            continue
+        try:
+            environment = pathlib.Path(f"/proc/{entry}/environ").read_bytes()
+            state = pathlib.Path(f"/proc/{entry}/stat").read_text().rsplit(")", 1)[1].split()[0]
+        except OSError:
+            continue
+        if marker.encode() in environment and state != "Z":
+            found.append(int(entry))
+    return found
+
+
+class System:
+    """`chimera run` of a description, in a place of its own."""
+
+    def __init__(self, text, arguments=(), environment=None, name="subject", wait=True):
+        self.place = pathlib.Path(tempfile.mkdtemp(prefix="chimera-processes-"))
+        self.runtime = self.place / "runtime"
+        self.runtime.mkdir(mode=0o700)
+        self.record = self.place / "record"
+        self.armed = self.place / "armed"
+        self.file = self.place / f"{name}.yaml"
+        self.file.write_text(text.replace("ARMED", str(self.armed)))
+        self.marker = f"CHIMERA_TEST_MARK={self.place}"
+        self.environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), CHIMERA_TEST_MARK=str(self.place),
+                                CHIMERA_TEST_RECORD=str(self.record), ASAN_OPTIONS=QUIET, **(environment or {}))
+        self.output = open(self.place / "output", "w+b")
+        self.process = subprocess.Popen([str(CHIMERA), "run", str(self.file), *arguments], stdout=self.output,
+                                        stderr=self.output, stdin=subprocess.DEVNULL, env=self.environment, cwd=self.place)
+        self.socket = self.runtime / "chimera" / f"{name}.sock"
+        self.client = None
+        if wait:
+            self.await_started()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.end()
+
+    def said(self):
+        self.output.flush()
+        return (self.place / "output").read_text(errors="replace")
+
+    def await_started(self):
+        def ready():
+            if self.process.poll() is not None:
+                raise AssertionError(f"chimera run ended with {self.process.returncode}:\n{self.said()}")
+            try:
+                if self.client is None:
+                    self.client = Client(self.socket)
+                return self.client.call("status")["started_ns"] is not None
+            except (OSError, ConnectionError):
+                self.client = None
+                return False
+        await_that(ready, 20, f"the start ({self.said()})")
+
+    def call(self, method, **parameters):
+        """Over a connection that survives a restart of the manager."""
+        for attempt in range(200):
+            try:
+                if self.client is None:
+                    self.client = Client(self.socket)
+                return self.client.call(method, **parameters)
+            except (OSError, ConnectionError):
+                self.client = None
+                if attempt == 199:
+                    raise
+                time.sleep(0.01)
+
+    def task(self, name):
+        return next(t for t in self.call("status")["tasks"] if t["task"] == name)
+
+    def rtpu(self, name):
+        return next(r for r in self.call("status")["rtpus"] if r["name"] == name)
+
+    def state(self, name):
+        return self.task(name)["state"]
+
+    def await_state(self, name, state, limit=10):
+        await_that(lambda: self.state(name) == state, limit, f"{name} {state}")
+
+    def signal(self, word, *tasks):
+        return self.call("signal", signal=word, tasks=list(tasks))
+
+    def events(self, since=0):
+        return self.call("events", since=since)["events"]
+
+    def pids(self):
+        status = self.call("status")
+        hello = self.call("hello")
+        return {"keeper": hello["keeper_pid"], "manager": hello["manager"]["pid"],
+                **{r["name"]: r["pid"] for r in status["rtpus"] if r["alive"]}}
+
+    def arm(self):
+        self.armed.write_text("")
+
+    def disarm(self):
+        self.armed.unlink(missing_ok=True)
+
+    def lines(self):
+        """What t_recorder wrote: (label, method, ns)."""
+        if not self.record.exists():
+            return []
+        return [(w[0], w[1], int(w[2])) for w in (line.split() for line in self.record.read_text().splitlines())]
+
+    def left_over(self):
+        return processes_of(self.marker)
+
+    def await_nothing_left(self, limit=10):
+        await_that(lambda: not self.left_over(), limit, f"the end of {self.left_over()}")
+
+    def end(self, how=signal.SIGTERM):
+        """Ends it in order; whatever is left is killed by its pid and is a failure."""
+        try:
+            if self.client is not None:
+                self.client.close()
+            if self.process.poll() is None:
+                self.process.send_signal(how)
+                self.process.wait(15)
+            self.await_nothing_left(10)
+        finally:
+            for pid in self.left_over():
+                os.kill(pid, signal.SIGKILL)
+            if self.process.poll() is None:
+                self.process.kill()
+                self.process.wait()
+            self.output.close()
+            shutil.rmtree(self.place, ignore_errors=True)
+        return self.process.returncode
+
+
+def readable(descriptor, seconds):
+    return bool(select.select([descriptor], [], [], seconds)[0])
