@@ -19,7 +19,13 @@ rtpus:
   second: {cpu: 1, policy: edf}
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
-  victim: {component: t_crash, rtpu: second, rate: 200 Hz, alias: {y: y_victim}, constants: {where: WHERE, how: HOW}, resources: {armed: ARMED}}
+  victim:
+    component: t_crash
+    rtpu: second
+    rate: 200 Hz
+    alias: {y: y_victim}
+    constants: {where: WHERE, how: HOW}
+    resources: {armed: ARMED}
   beside: {component: t_source, rtpu: second, rate: 100 Hz}
 configurations:
   all: [steady, victim, beside]
@@ -33,7 +39,12 @@ rtpus:
   second: {cpu: 1, policy: edf}
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
-  thrower: {component: t_thrower, rtpu: second, rate: 200 Hz, alias: {count: n}, constants: {where: WHERE, how: HOW, at: AT, times: 1, recovers: RECOVERS}}
+  thrower:
+    component: t_thrower
+    rtpu: second
+    rate: 200 Hz
+    alias: {count: n}
+    constants: {where: WHERE, how: HOW, at: AT, times: 1, recovers: RECOVERS}
 configurations:
   all: [steady, thrower]
 start: all
@@ -58,23 +69,28 @@ class Faults(unittest.TestCase):
             print(f"{kind}: {n} injections", file=sys.stderr)
 
     def steady_goes_on(self, system, before):
-        after = await_that(lambda: (t := system.task("steady"))["cycles"] > before["cycles"] + 10 and t, 5, "cycling on")
+        after = await_that(lambda: (t := system.task("steady"))["cycles"] > before["cycles"] + 10 and t, 5, "cycles")
         self.assertEqual(after["state"], "ON")
         self.assertEqual(after["incarnation"], before["incarnation"])
         self.assertEqual(after["faults"], 0)
 
+    def await_successor(self, system, unit):
+        await_that(lambda: system.rtpu("second")["incarnation"] > unit["incarnation"], 5, "a new incarnation")
+
     def test_row_5_a_unit_that_dies_is_seen_with_its_cause_and_restarted_with_what_was_on(self):
-        for how, words in (("segv", "signal 11 (SIGSEGV)"), ("abort", "signal 6 (SIGABRT)"), ("bus", "signal 7 (SIGBUS)"),
-                           ("fpe", "signal 8 (SIGFPE)"), ("ill", "signal 4 (SIGILL)"), ("kill", "signal 9 (SIGKILL)"),
-                           ("stack", "signal 11 (SIGSEGV)"), ("exit", "42")):
+        ways = {"segv": "signal 11 (SIGSEGV)", "abort": "signal 6 (SIGABRT)", "bus": "signal 7 (SIGBUS)",
+                "fpe": "signal 8 (SIGFPE)", "ill": "signal 4 (SIGILL)", "kill": "signal 9 (SIGKILL)",
+                "stack": "signal 11 (SIGSEGV)", "exit": "42"}
+        for how, words in ways.items():
             with self.subTest(how), System(filled(APPLICATION, where="cycle", how=how)) as system:
                 for _ in range(ROUNDS):
                     before, unit = system.task("steady"), system.rtpu("second")
                     system.arm()
-                    await_that(lambda: system.rtpu("second")["incarnation"] > unit["incarnation"], 5, "a new incarnation")
+                    self.await_successor(system, unit)
                     system.disarm()
                     self.count(f"row 5 {how}")
-                    await_that(lambda: system.state("victim") == "ON" and system.state("beside") == "ON", 15, "recovery")
+                    system.await_state("victim", "ON", 15)
+                    system.await_state("beside", "ON", 15)
                     self.steady_goes_on(system, before)
                 told = [e["text"] for e in system.events() if e["kind"] == "rtpu-ended"]
                 self.assertTrue(told)
@@ -103,7 +119,7 @@ class Faults(unittest.TestCase):
                 before, unit = system.task("steady"), system.rtpu("second")
                 count = system.call("get", variables=["count"])["values"]["count"]["value"]
                 system.arm()
-                await_that(lambda: system.rtpu("second")["incarnation"] > unit["incarnation"], 5, "a new incarnation")
+                self.await_successor(system, unit)
                 system.disarm()
                 self.count("row 6 scribble")
                 system.await_state("victim", "ON", 15)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A whole subsystem of real processes under test: started by `chimera run`, seen through its control protocol and /proc."""
+"""A whole subsystem of real processes: started by `chimera run`, seen through its control protocol and /proc."""
 import json
 import os
 import pathlib
@@ -76,7 +76,7 @@ def await_that(condition, limit=10.0, what="it"):
 
 
 def processes_of(marker):
-    """Pids whose environment carries the marker: everything a system under test started, whoever its parent is by now."""
+    """Pids whose environment carries the marker: everything a system started, whoever its parent is by now."""
     found = []
     for entry in os.listdir("/proc"):
         if not entry.isdigit():
@@ -107,7 +107,8 @@ class System:
                                 CHIMERA_TEST_RECORD=str(self.record), ASAN_OPTIONS=QUIET, **(environment or {}))
         self.output = open(self.place / "output", "w+b")
         self.process = subprocess.Popen([str(CHIMERA), "run", str(self.file), *arguments], stdout=self.output,
-                                        stderr=self.output, stdin=subprocess.DEVNULL, env=self.environment, cwd=self.place)
+                                        stderr=self.output, stdin=subprocess.DEVNULL, env=self.environment,
+                                        cwd=self.place)
         self.socket = self.runtime / "chimera" / f"{name}.sock"
         self.client = None
         if wait:

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/control/answer.h"
+
+#include <nlohmann/json.hpp>
+
+namespace chimera::control {
+
+Answer Answer::good(const Json& result) { return {0, {}, std::make_shared<const Json>(result), nullptr}; }
+
+Answer Answer::error(int code, std::string message) { return {code, std::move(message), nullptr, nullptr}; }
+
+Answer Answer::error(int code, std::string message, const Json& data) {
+  return {code, std::move(message), nullptr, std::make_shared<const Json>(data)};
+}
+
+Answer Answer::unknown(std::string message, const std::string& where, const std::string& nearest) {
+  Json data{{"where", where}};
+  if (!nearest.empty()) data["nearest"] = nearest;
+  return error(kUnknown, std::move(message), data);
+}
+
+std::string Answer::detail(const char* key) const {
+  if (data == nullptr || !data->is_object()) return {};
+  const auto found = data->find(key);
+  return found != data->end() && found->is_string() ? found->get<std::string>() : std::string{};
+}
+
+const char* role_name(Role role) noexcept {
+  constexpr const char* kNames[] = {"nothing", "observe", "operate", "configure"};
+  return kNames[static_cast<unsigned>(role)];
+}
+
+}  // namespace chimera::control

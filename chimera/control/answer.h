@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a request leads to: a result, or an error of docs/formats/control.md.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace chimera::control {
+
+using Json = nlohmann::json;
+
+/// Numbers of errors, as in the document.
+enum : int {
+  kParseError = -32700,
+  kNoRequest = -32600,
+  kNoMethod = -32601,
+  kBadParameters = -32602,
+  kRefused = -32000,
+  kTooLarge = -32001,
+  kTooMany = -32002,
+  kTooFast = -32003,
+  kNoRight = -32004,
+  kUnknown = -32005,
+  kNoAnswer = -32006,
+  kEnding = -32007,
+  kNoConnection = -1,  ///< never sent: the client lost the other end
+};
+
+/// Cheap to copy. Context: setup.
+struct Answer {
+  int code = 0;  ///< 0: `result` is there; else `message` is
+  std::string message;
+  std::shared_ptr<const Json> result;
+  std::shared_ptr<const Json> data;  ///< of an error; may be null
+
+  static Answer good(const Json& result);
+  static Answer error(int code, std::string message);
+  static Answer error(int code, std::string message, const Json& data);
+  /// "no task 'pod'" with the nearest of `names` in the data, if one is near.
+  static Answer unknown(std::string message, const std::string& where, const std::string& nearest);
+
+  bool is_good() const noexcept { return code == 0; }
+  /// Text of `key` in the data, or "".
+  std::string detail(const char* key) const;
+};
+
+/// Takes the one answer of a request, now or later.
+using Reply = std::function<void(const Answer&)>;
+
+enum class Role : unsigned char { kNone, kObserve, kOperate, kConfigure };
+/// "operate".
+const char* role_name(Role role) noexcept;
+
+}  // namespace chimera::control

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The methods of the control protocol, in one table: who may call them and what they take.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "chimera/control/answer.h"
+
+namespace chimera::control {
+
+enum class ParameterKind : unsigned char { kText, kTexts, kBool, kCount, kObject };
+
+struct Parameter {
+  const char* name = nullptr;
+  ParameterKind kind = ParameterKind::kText;
+  bool is_required = false;
+};
+
+struct MethodRule {
+  const char* name = nullptr;
+  Role role = Role::kObserve;
+  bool is_act = false;  ///< changes something: has a rate of its own
+  Parameter parameters[5];
+};
+
+std::span<const MethodRule> methods() noexcept;
+/// The rule of that name; nullptr: there is none.
+const MethodRule* find_method(std::string_view name) noexcept;
+/// Judges the parameters of a call: an error, or an answer without result when they are as the rule says.
+Answer check_parameters(const MethodRule& rule, const Json& parameters);
+
+}  // namespace chimera::control

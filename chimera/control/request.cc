@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/control/request.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "chimera/control/limits.h"
+
+namespace chimera::control {
+namespace {
+
+std::string line_of(const Json& message) {
+  return message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Request refused(const Json& id, int code, const char* message, bool must_close = false) {
+  Request request;
+  request.id = std::make_shared<const Json>(id);
+  request.refusal = Answer::error(code, message);
+  request.must_close = must_close;
+  return request;
+}
+
+bool is_id(const Json& id) { return id.is_string() || id.is_number_integer() || id.is_null(); }
+
+}  // namespace
+
+std::size_t depth_of(std::string_view text) noexcept {
+  std::size_t depth = 0, deepest = 0;
+  bool in_text = false, escaped = false;
+  for (const char c : text) {
+    if (in_text) {
+      if (!escaped && c == '"') in_text = false;
+      escaped = !escaped && c == '\\';
+    } else if (c == '"') {
+      in_text = true;
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if ((c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+Request read_request(std::string_view line) {
+  if (line.size() > kMaxLine) return refused(nullptr, kTooLarge, "a line may have 1 MiB", true);
+  if (depth_of(line) > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32", true);
+  const Json message = Json::parse(line, nullptr, false);
+  if (message.is_discarded()) return refused(nullptr, kParseError, "this is no JSON");
+  if (message.is_array()) return refused(nullptr, kNoRequest, "batches are not taken: one message a line");
+  if (!message.is_object()) return refused(nullptr, kNoRequest, "a request is an object");
+  const auto id = message.find("id");
+  if (id != message.end() && !is_id(*id)) return refused(nullptr, kNoRequest, "'id' must be a text or a whole number");
+  const Json known_id = id == message.end() ? Json(nullptr) : *id;
+  const auto version = message.find("jsonrpc");
+  if (version == message.end() || *version != "2.0") return refused(known_id, kNoRequest, "'jsonrpc' must be \"2.0\"");
+  const auto method = message.find("method");
+  if (method == message.end() || !method->is_string()) return refused(known_id, kNoRequest, "'method' must be a text");
+  for (const auto& [key, value] : message.items())
+    if (key != "jsonrpc" && key != "id" && key != "method" && key != "params")
+      return refused(known_id, kNoRequest, "a request has 'jsonrpc', 'id', 'method' and 'params' only");
+  Request request;
+  request.id = std::make_shared<const Json>(known_id);
+  request.wants_answer = id != message.end();
+  request.method = method->get<std::string>();
+  const auto parameters = message.find("params");
+  request.parameters = std::make_shared<const Json>(parameters == message.end() ? Json::object() : *parameters);
+  return request;
+}
+
+std::string answer_line(const Json& id, const Answer& answer) {
+  Json message{{"jsonrpc", "2.0"}, {"id", id}};
+  if (answer.is_good()) {
+    message["result"] = answer.result == nullptr ? Json::object() : *answer.result;
+  } else {
+    message["error"] = {{"code", answer.code}, {"message", answer.message}};
+    if (answer.data != nullptr) message["error"]["data"] = *answer.data;
+  }
+  return line_of(message);
+}
+
+std::string note_line(std::string_view method, std::uint64_t subscription, const Json& parameters) {
+  Json message{{"jsonrpc", "2.0"}, {"method", method}, {"params", parameters}};
+  message["params"]["subscription"] = subscription;
+  return line_of(message);
+}
+
+std::string request_line(std::uint64_t id, std::string_view method, const Json& parameters) {
+  return line_of({{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", parameters}});
+}
+
+}  // namespace chimera::control

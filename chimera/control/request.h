@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// One line of the control protocol, read as a request; and the lines that go back.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "chimera/control/answer.h"
+
+namespace chimera::control {
+
+/// A request as read. `refusal` says why it is none; then only `id` counts (null when it could not be told).
+struct Request {
+  std::shared_ptr<const Json> id;          ///< never null
+  bool wants_answer = true;                ///< false: a notification of JSON-RPC
+  std::string method;
+  std::shared_ptr<const Json> parameters;  ///< an object
+  Answer refusal;
+  bool must_close = false;                 ///< the line breaks a limit: the connection ends
+};
+
+/// Reads a line; never throws, whatever the bytes. Context: setup.
+Request read_request(std::string_view line);
+/// The lines to send, each with its line end. Text that is no UTF-8 is sent with replacements.
+std::string answer_line(const Json& id, const Answer& answer);
+std::string note_line(std::string_view method, std::uint64_t subscription, const Json& parameters);
+std::string request_line(std::uint64_t id, std::string_view method, const Json& parameters);
+
+/// How deep arrays and objects are nested in a text, as far as brackets outside of texts tell.
+std::size_t depth_of(std::string_view text) noexcept;
+
+}  // namespace chimera::control

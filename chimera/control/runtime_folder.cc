@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/control/runtime_folder.h"
+
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "chimera/platform/linux/descriptor.h"
+
+namespace chimera::control {
+namespace {
+
+bool listens(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) return false;
+  std::memcpy(address.sun_path, path.c_str(), path.size());
+  const Descriptor asking(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const auto* plain = reinterpret_cast<const sockaddr*>(&address);
+  return ::connect(asking.fd, plain, sizeof address) == 0 || errno == EAGAIN;
+}
+
+}  // namespace
+
+std::string socket_folder() {
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  if (runtime != nullptr && runtime[0] == '/') return std::string(runtime) + "/chimera";
+  const std::string user = std::to_string(::getuid());
+  struct stat status {};
+  const std::string common = "/run/user/" + user;
+  if (::stat(common.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == ::getuid())
+    return common + "/chimera";
+  return "/tmp/chimera-" + user;
+}
+
+std::string socket_path(const std::string& folder, const std::string& subsystem) {
+  return folder + "/" + subsystem + ".sock";
+}
+
+std::vector<std::string> running_subsystems(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().extension() == ".sock" && listens(entry.path().string()))
+      names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace chimera::control

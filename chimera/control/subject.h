@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the door opens to: the subsystem, as the manager knows it; or a model of one in tests.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "chimera/control/answer.h"
+#include "chimera/control/methods.h"
+
+namespace chimera::control {
+
+/// Called by Door::serve() only, on its thread; must not throw and must not call the door back from within, but for
+/// the Reply it is given. Context: setup.
+class Subject {
+ public:
+  /// Carries out a call whose role and parameters have been checked; `reply` takes its one answer, now or later.
+  virtual void call(const MethodRule& method, const Json& parameters, Role role, Reply reply) = 0;
+  /// Somebody subscribes; refuses what cannot be. `parameters` as those of `subscribe`.
+  virtual Answer open(std::uint64_t subscription, const Json& parameters) = 0;
+  virtual void close(std::uint64_t subscription) = 0;
+  /// What the subscription is to be sent now, as the parameters of its notification (without `subscription`); null:
+  /// nothing new. Asked at each period (status, values), or whenever the peer has room (events, tap): who is slow is
+  /// asked less often, and what is gone by then is counted in the answer.
+  virtual std::shared_ptr<const Json> pull(std::uint64_t subscription) = 0;
+
+ protected:
+  ~Subject() = default;
+};
+
+}  // namespace chimera::control
