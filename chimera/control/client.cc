@@ -46,7 +46,7 @@ Result<Client> Client::connect_to(const std::string& path) {
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) return Error{ErrorCode::kBadInput, {"the path is too long"}, {path}};
   std::memcpy(address.sun_path, path.c_str(), path.size());
-  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  OwnedDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (::connect(socket.fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     const bool is_closed = errno == EACCES || errno == EPERM;
     return Error{ErrorCode::kRefused, {is_closed ? "you may not talk to this subsystem" : "no subsystem listens here"},

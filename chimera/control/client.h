@@ -10,7 +10,7 @@
 #include "chimera/base/result.h"
 #include "chimera/base/time.h"
 #include "chimera/control/answer.h"
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera::control {
 
@@ -40,13 +40,13 @@ class Client {
   const std::string& path() const noexcept { return path_; }
 
  private:
-  Client(Descriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
+  Client(OwnedDescriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
   bool send(std::string_view line, Nanoseconds until);
   /// A line, or why there is none: kClosed, or kLate at `until`.
   enum class Got { kLine, kLate, kClosed };
   Got receive(std::string& line, Nanoseconds until);
 
-  Descriptor socket_;
+  OwnedDescriptor socket_;
   std::string path_;
   std::string input_;
   std::deque<Note> notes_;

@@ -29,8 +29,8 @@ bool watch(int epoll, int operation, int descriptor, std::uint32_t events, std::
 
 Result<std::unique_ptr<Door>> Door::open(int listening, Subject& subject, uid_t owner, const RoleGroups& groups) {
   std::unique_ptr<Door> door(new Door(subject, owner, groups));
-  door->listening_ = Descriptor(listening);
-  door->epoll_ = Descriptor(::epoll_create1(EPOLL_CLOEXEC));
+  door->listening_ = OwnedDescriptor(listening);
+  door->epoll_ = OwnedDescriptor(::epoll_create1(EPOLL_CLOEXEC));
   if (door->epoll_.fd < 0 || !watch(door->epoll_.fd, EPOLL_CTL_ADD, listening, EPOLLIN, kListening))
     return Error{ErrorCode::kSystem, {"the control socket cannot be watched"}, {}};
   return door;
@@ -65,7 +65,7 @@ bool Door::may_enter(const PeerIdentity& peer) const {
 
 void Door::accept(Nanoseconds now) {
   for (;;) {
-    Descriptor socket(::accept4(listening_.fd, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    OwnedDescriptor socket(::accept4(listening_.fd, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (socket.fd < 0) return;
     const PeerIdentity peer = identify(socket.fd, owner_, groups_);
     const bool enters = may_enter(peer);

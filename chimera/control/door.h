@@ -56,7 +56,7 @@ class Door {
   Subject& subject_;
   uid_t owner_;
   RoleGroups groups_;
-  Descriptor listening_, epoll_;
+  OwnedDescriptor listening_, epoll_;
   std::map<std::uint64_t, std::unique_ptr<Session>> sessions_;
   std::map<std::uint64_t, Subscription> subscriptions_;
   std::uint64_t last_session_ = 0, last_subscription_ = 0;

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera::control {
 namespace {
@@ -21,7 +21,7 @@ bool listens(const std::string& path) {
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) return false;
   std::memcpy(address.sun_path, path.c_str(), path.size());
-  const Descriptor asking(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const OwnedDescriptor asking(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto* plain = reinterpret_cast<const sockaddr*>(&address);
   return ::connect(asking.fd, plain, sizeof address) == 0 || errno == EAGAIN;
 }

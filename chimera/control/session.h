@@ -10,14 +10,14 @@
 #include "chimera/control/allowance.h"
 #include "chimera/control/limits.h"
 #include "chimera/control/rights.h"
-#include "chimera/platform/linux/descriptor.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera::control {
 
 /// Context: setup; never blocks.
 class Session {
  public:
-  Session(std::uint64_t number, Descriptor socket, PeerIdentity peer, Nanoseconds now)
+  Session(std::uint64_t number, OwnedDescriptor socket, PeerIdentity peer, Nanoseconds now)
       : number_(number), socket_(std::move(socket)), peer_(peer), moved_(now) {}
 
   std::uint64_t number() const noexcept { return number_; }
@@ -45,7 +45,7 @@ class Session {
 
  private:
   std::uint64_t number_;
-  Descriptor socket_;
+  OwnedDescriptor socket_;
   PeerIdentity peer_;
   std::string input_, output_;
   std::size_t sent_ = 0;
