@@ -13,8 +13,9 @@
 
 #include "chimera/config/nearest.h"
 #include "chimera/control/request.h"
-#include "chimera/control/runtime_folder.h"
+#include "chimera/control/running.h"
 #include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/socket_folder.h"
 
 namespace chimera::control {
 namespace {
@@ -56,7 +57,7 @@ Result<Client> Client::connect_to(const std::string& path) {
 }
 
 Result<Client> Client::connect(const std::string& subsystem) {
-  const std::string folder = socket_folder();
+  const std::string folder(socket_folder().view());
   const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
   const std::string name = !subsystem.empty() || chosen == nullptr ? subsystem : chosen;
   const auto running = running_subsystems(folder);

@@ -68,22 +68,26 @@ void Door::accept(Nanoseconds now) {
     OwnedDescriptor socket(::accept4(listening_.fd, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (socket.fd < 0) return;
     const PeerIdentity peer = identify(socket.fd, owner_, groups_);
-    const bool enters = may_enter(peer);
-    auto session = std::make_unique<Session>(++last_session_, std::move(socket), peer, now);
-    if (peer.role == Role::kNone) {
-      session->say(answer_line(nullptr, Answer::error(kNoRight, "you have no right here: you are neither the user of "
-                                                                "the subsystem nor in a group with a role",
-                                                      {{"needs", "observe"}, {"has", "nothing"}})));
-    } else if (!enters) {
-      session->say(answer_line(nullptr, Answer::error(kTooMany, "too many connections")));
-    }
-    if (peer.role == Role::kNone || !enters) {
-      (void)session->flush(now);
-      continue;
-    }
-    watch(epoll_.fd, EPOLL_CTL_ADD, session->descriptor(), EPOLLIN, session->number());
-    sessions_.emplace(session->number(), std::move(session));
+    enter(std::move(socket), peer, now);
   }
+}
+
+void Door::enter(OwnedDescriptor socket, const PeerIdentity& peer, Nanoseconds now) {
+  const bool enters = may_enter(peer);
+  auto session = std::make_unique<Session>(++last_session_, std::move(socket), peer, now);
+  if (peer.role == Role::kNone) {
+    session->say(answer_line(nullptr, Answer::error(kNoRight, "you have no right here: you are neither the user of the "
+                                                              "subsystem nor in a group with a role",
+                                                    {{"needs", "observe"}, {"has", "nothing"}})));
+  } else if (!enters) {
+    session->say(answer_line(nullptr, Answer::error(kTooMany, "too many connections")));
+  }
+  if (peer.role == Role::kNone || !enters) {
+    (void)session->flush(now);
+    return;
+  }
+  watch(epoll_.fd, EPOLL_CTL_ADD, session->descriptor(), EPOLLIN, session->number());
+  sessions_.emplace(session->number(), std::move(session));
 }
 
 void Door::read(Session& session, Nanoseconds now) {

@@ -25,6 +25,8 @@ class Door {
 
   /// Readable when serve() has something to do: for the owner's poll or epoll.
   int descriptor() const noexcept { return epoll_.fd; }
+  /// Lets in somebody who did not come by the listening socket, or tells why not. Context: setup.
+  void enter(OwnedDescriptor socket, const PeerIdentity& peer, Nanoseconds now);
   /// Accepts, reads, answers, notifies, sends. `now` never goes back.
   void serve(Nanoseconds now);
   /// When serve() is due though nothing came; kNever: not before something comes.

@@ -16,7 +16,8 @@
 #include <thread>
 
 #include "chimera/control/client.h"
-#include "chimera/control/runtime_folder.h"
+#include "chimera/control/running.h"
+#include "chimera/platform/socket_folder.h"
 
 namespace chimera::control {
 namespace {
@@ -94,8 +95,9 @@ struct DoorTest : ::testing::Test {
 
 TEST_F(DoorTest, AnswersARequestWithItsId) {
   const int fd = plain();
-  EXPECT_EQ(ask(fd, "{\"jsonrpc\":\"2.0\",\"id\":\"a\",\"method\":\"hello\"}\n"),
-            "{\"id\":\"a\",\"jsonrpc\":\"2.0\",\"result\":{\"method\":\"hello\",\"params\":{},\"role\":\"configure\"}}\n");
+  EXPECT_EQ(
+      ask(fd, "{\"jsonrpc\":\"2.0\",\"id\":\"a\",\"method\":\"hello\"}\n"),
+      "{\"id\":\"a\",\"jsonrpc\":\"2.0\",\"result\":{\"method\":\"hello\",\"params\":{},\"role\":\"configure\"}}\n");
   ::close(fd);
 }
 
@@ -288,13 +290,13 @@ TEST_F(DoorTest, TheClientCallsAndHearsNotifications) {
 
 TEST_F(DoorTest, TheClientFindsTheOneSubsystemThatRuns) {
   ::setenv("XDG_RUNTIME_DIR", folder.c_str(), 1);
-  EXPECT_EQ(socket_folder(), folder + "/chimera");
+  EXPECT_EQ(socket_folder().view(), folder + "/chimera");
   const auto none = Client::connect("");
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().message.view(), "no subsystem runs; start one with `chimera run FILE`");
   std::filesystem::create_directory(folder + "/chimera");
   std::filesystem::rename(path, folder + "/chimera/subject.sock");
-  EXPECT_EQ(running_subsystems(socket_folder()), std::vector<std::string>{"subject"});
+  EXPECT_EQ(running_subsystems(folder + "/chimera"), std::vector<std::string>{"subject"});
   EXPECT_TRUE(Client::connect(""));
   EXPECT_TRUE(Client::connect("subject"));
   const auto wrong = Client::connect("subjetc");

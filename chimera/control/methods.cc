@@ -41,9 +41,12 @@ bool fits(Kind kind, const Json& value) {
   switch (kind) {
     case Kind::kText: return value.is_string();
     case Kind::kTexts: return is_texts(value);
-    case Kind::kBool: return value.is_boolean();
-    case Kind::kCount: return value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
-    case Kind::kObject: return value.is_object();
+    case Kind::kBool:
+      return value.is_boolean();
+    case Kind::kCount:
+      return value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
+    case Kind::kObject:
+      return value.is_object();
   }
   return false;
 }
@@ -84,7 +87,8 @@ Answer check_parameters(const MethodRule& rule, const Json& parameters) {
     if (parameter.name == nullptr) break;
     const auto found = parameters.find(parameter.name);
     if (found == parameters.end()) {
-      if (parameter.is_required) return bad(in_quotes(rule.name) + " needs " + in_quotes(parameter.name), parameter.name);
+      if (parameter.is_required)
+        return bad(in_quotes(rule.name) + " needs " + in_quotes(parameter.name), parameter.name);
     } else if (!fits(parameter.kind, *found)) {
       return bad(in_quotes(parameter.name) + " must be " + words(parameter.kind), parameter.name);
     }

@@ -2,12 +2,9 @@
 #include "chimera/control/runtime_folder.h"
 
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/un.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -27,17 +24,6 @@ bool listens(const std::string& path) {
 }
 
 }  // namespace
-
-std::string socket_folder() {
-  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  if (runtime != nullptr && runtime[0] == '/') return std::string(runtime) + "/chimera";
-  const std::string user = std::to_string(::getuid());
-  struct stat status {};
-  const std::string common = "/run/user/" + user;
-  if (::stat(common.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == ::getuid())
-    return common + "/chimera";
-  return "/tmp/chimera-" + user;
-}
 
 std::string socket_path(const std::string& folder, const std::string& subsystem) {
   return folder + "/" + subsystem + ".sock";

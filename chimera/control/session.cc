@@ -31,7 +31,8 @@ bool Session::take_line(std::string& line) {
 
 bool Session::flush(Nanoseconds now) {
   while (has_output()) {
-    const ssize_t sent = ::send(socket_.fd, output_.data() + sent_, output_.size() - sent_, MSG_DONTWAIT | MSG_NOSIGNAL);
+    const ssize_t sent =
+        ::send(socket_.fd, output_.data() + sent_, output_.size() - sent_, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK) return false;
     if (sent < 0) return now - moved_ < kPatience;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a fault of one real-time unit does to the others: nothing but what is declared. Bounded counts here; the same with
-more of them is the campaign `process_faults`. CHIMERA_ROUNDS says how often each is repeated."""
+"""What a fault of one real-time unit does to the others: nothing but what is declared. Bounded counts here; the same
+with more of them is the campaign `process_faults`. CHIMERA_ROUNDS says how often each is repeated."""
 import os
 import signal
 import sys

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the sockets of a user's subsystems are: docs/formats/control.md, "The socket".
+// Which subsystems of this user run, by their sockets (platform/socket_folder.h): docs/formats/control.md, "The socket".
 #pragma once
 
 #include <string>
@@ -7,8 +7,6 @@
 
 namespace chimera::control {
 
-/// $XDG_RUNTIME_DIR/chimera, else /run/user/UID/chimera where that user has one, else /tmp/chimera-UID. Context: setup.
-std::string socket_folder();
 /// FOLDER/SUBSYSTEM.sock.
 std::string socket_path(const std::string& folder, const std::string& subsystem);
 /// The names of the subsystems that listen in the folder, in alphabetical order. May block a moment.
