@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes from several peers, interleaved, into the real door before a model of a subsystem. Whatever they are: nobody gets
-// beyond its role, every well-formed request is answered exactly once, what is answered is JSON-RPC.
+// Bytes from several peers, interleaved, into the real door before a model of a subsystem. Whatever they are: nobody
+// gets beyond its role, every well-formed request is answered exactly once, what is answered is JSON-RPC.
 //
 // The input is a program: an opcode, then what it takes. Well-formed requests have ids of their own, so that their
 // answers are known among those to garbage.
@@ -130,7 +130,8 @@ class World {
     }
     for (const Peer& peer : peers_)
       for (const auto& [id, answers] : peer.answers)
-        require(answers <= 1 && (answers == 1 || !peer.must_answer), "every well-formed request is answered exactly once");
+        require(answers <= 1 && (answers == 1 || !peer.must_answer),
+                "every well-formed request is answered exactly once");
   }
 
  private:

@@ -79,7 +79,8 @@ struct DoorTest : ::testing::Test {
   static std::string take(int fd) {
     std::string got;
     char bytes[4096];
-    for (ssize_t n; (n = ::recv(fd, bytes, sizeof bytes, MSG_DONTWAIT)) > 0;) got.append(bytes, static_cast<std::size_t>(n));
+    for (ssize_t n; (n = ::recv(fd, bytes, sizeof bytes, MSG_DONTWAIT)) > 0;)
+      got.append(bytes, static_cast<std::size_t>(n));
     return got;
   }
   static std::string error(const char* id, int code, const char* message) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which subsystems of this user run, by their sockets (platform/socket_folder.h): docs/formats/control.md, "The socket".
+// Which subsystems of this user run, by their sockets (platform/socket_folder.h): docs/formats/control.md, "The
+// socket".
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/control/runtime_folder.h"
+#include "chimera/control/running.h"
 
 #include <sys/socket.h>
 #include <sys/un.h>
