@@ -16,7 +16,7 @@ void Deaths::recall(const Begun& begun) {
 }
 
 // What is remembered comes in an order in which every beginning of it leads the next manager to the same end: goals
-// first, then that the death was dealt with, then the start.
+// first, then the start, then that the death was dealt with: that alone says given up.
 bool Deaths::take(const RtpuDown& down) {
   const Life life = at_.roster.life(down.rtpu);
   const bool is_old = life == Life::kDown || life == Life::kStarting;
@@ -61,10 +61,10 @@ void Deaths::restart(const RtpuDown& down, const std::vector<std::uint32_t>& goa
   auto& instants = at_.roster.restarts(down.rtpu);
   *std::min_element(instants.begin(), instants.end()) = at_.now;
   at_.act(RememberRestart{down.rtpu, instants});
-  handled_[down.rtpu.index] = down.incarnation;
-  at_.act(RememberHandled{down.rtpu, down.incarnation});
   at_.roster.starting(down.rtpu, at_.now);
   at_.act(StartRtpu{down.rtpu});
+  handled_[down.rtpu.index] = down.incarnation;
+  at_.act(RememberHandled{down.rtpu, down.incarnation});
   at_.tell("rtpu-restarted", TaskId{}, down.rtpu,
            at_.name(down.rtpu) + " is restarted, " + std::to_string(recent(down.rtpu)) + " of at most " +
                std::to_string(kRestartIntensity) + " times in " +
@@ -77,9 +77,9 @@ void Deaths::give_up(const RtpuDown& down) {
                           " s and is not restarted; spawn or clear of one of its tasks starts it";
   for (TaskId task : at_.order)
     if (is_of(task, down.rtpu) && goals_.is_pursued(task)) goals_.fail(task, "refused", why);
+  at_.tell("rtpu-given-up", TaskId{}, down.rtpu, why);
   handled_[down.rtpu.index] = down.incarnation;
   at_.act(RememberHandled{down.rtpu, down.incarnation});
-  at_.tell("rtpu-given-up", TaskId{}, down.rtpu, why);
 }
 
 void Deaths::start_for_goals(RtpuId rtpu) {

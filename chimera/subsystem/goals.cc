@@ -31,8 +31,8 @@ std::vector<TaskId> Goals::with(std::uint32_t bits) const {
 void Goals::fail(TaskId task, const char* kind, std::string why) {
   goals_[task.index].failure = why;
   if (at_.roster.life_of(task) == Life::kUp) at_.roster.forget(task);
-  clear(task, kGoalSpawn | kGoalOn);
   at_.tell(kind, task, at_.roster.rtpu(task), std::move(why));
+  clear(task, kGoalSpawn | kGoalOn);
 }
 
 void Goals::pursue() {

@@ -29,7 +29,8 @@ class Goals {
   bool any(std::uint32_t bits) const noexcept;
   std::vector<TaskId> with(std::uint32_t bits) const;
 
-  /// Gives the goals of the task up and tells why.
+  /// Tells why and gives the goals of the task up, in this order: a manager that dies between the two lets the next one
+  /// tell again.
   void fail(TaskId task, const char* kind, std::string why);
   /// Why the last goals of the task were given up.
   const std::string& failure(TaskId task) const noexcept { return goals_[task.index].failure; }

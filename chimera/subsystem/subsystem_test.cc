@@ -47,8 +47,8 @@ TEST_F(StartTest, AFaultyInitGivesItsGoalsUpAndTheRestIsRefusedWhenItIsNoLegalSe
   step(InventoryComplete{});
   for (TaskId task : {kArm, kPid, kReserve}) report(task, State::kOff);
   EXPECT_EQ(report(kTraj, State::kNotCreated, "no file"),
-            "goal traj 0\nfault: spawn: traj: no file\ngoal arm 0\ngoal pid 0\n"
-            "refused: ref would have no producer; the smallest legal set is: arm pid traj\n");
+            "fault: spawn: traj: no file\ngoal traj 0\n"
+            "refused: ref would have no producer; the smallest legal set is: arm pid traj\ngoal arm 0\ngoal pid 0\n");
   EXPECT_TRUE(subsystem->is_settled());
 }
 
@@ -61,8 +61,8 @@ TEST_F(StartTest, AnRtpuThatNeverServesIsNotWaitedForForever) {
   EXPECT_EQ(subsystem->next_due(), now + seconds(10));
   now += seconds(10);
   EXPECT_EQ(step(Tick{}),
-            "goal traj 0\nrefused: no answer from rtpu spare\ngoal reserve 0\nrefused: no answer from rtpu spare\n"
-            "goal arm 0\ngoal pid 0\nrefused: ref would have no producer; the smallest legal set is: arm pid traj\n");
+            "refused: no answer from rtpu spare\ngoal traj 0\nrefused: no answer from rtpu spare\ngoal reserve 0\n"
+            "refused: ref would have no producer; the smallest legal set is: arm pid traj\ngoal arm 0\ngoal pid 0\n");
 }
 
 TEST_F(SubsystemTest, OffOfAListIsOneStepAgainstTheDataFlow) {
@@ -153,7 +153,7 @@ TEST_F(SubsystemTest, ARequestOfATaskIsJudgedAndItsRefusalTold) {
 TEST_F(SubsystemTest, ADeadRtpuComesBackWithWhatWasOn) {
   EXPECT_EQ(die(kServo),
             "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
-            "goal arm 3\ngoal pid 3\nrestart servo\nhandled servo 1\nstart servo\n"
+            "goal arm 3\ngoal pid 3\nrestart servo\nstart servo\nhandled servo 1\n"
             "rtpu-restarted: servo is restarted, 1 of at most 3 times in 10 s\n");
   EXPECT_EQ(subsystem->state(kPid), State::kError);
   EXPECT_EQ(step(RtpuUp{kServo, 2}), "send servo: spawn arm\n");
@@ -167,7 +167,7 @@ TEST_F(SubsystemTest, WhoWaitsForADeadRtpuIsToldWhy) {
   command(Signal::kOff, {kPid});
   EXPECT_EQ(die(kServo),
             "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
-            "goal arm 3\ngoal pid 1\nrestart servo\nhandled servo 1\nstart servo\n"
+            "goal arm 3\ngoal pid 1\nrestart servo\nstart servo\nhandled servo 1\n"
             "rtpu-restarted: servo is restarted, 1 of at most 3 times in 10 s\n"
             "answer 1 no: servo ended by signal 11 (SIGSEGV) in pid.cycle pid ERROR>ERROR\n");
 }
@@ -181,7 +181,8 @@ TEST_F(SubsystemTest, AfterThreeRestartsInTenSecondsItGivesUpUntilAPersonStartsI
       ": spare ended 4 times in 10 s and is not restarted; spawn or clear of one of its tasks starts it\n";
   EXPECT_EQ(die(kSpare, 4),
             "rtpu-ended: spare ended by signal 11 (SIGSEGV) in pid.cycle\n"
-            "goal traj 0\nrefused" + why + "goal reserve 0\nrefused" + why + "handled spare 4\nrtpu-given-up" + why);
+            "refused" + why + "goal traj 0\nrefused" + why + "goal reserve 0\nrtpu-given-up" + why +
+                "handled spare 4\n");
   EXPECT_EQ(subsystem->state(kTraj), State::kError);
   EXPECT_EQ(command(Signal::kOn, {kTraj}), "answer 1 no: on is not legal for traj in state ERROR\n");
   EXPECT_EQ(command(Signal::kKill, {kReserve}), "goal reserve 4\nanswer 2 yes reserve ERROR>NOT-CREATED\n");
@@ -214,11 +215,11 @@ TEST_F(SubsystemTest, TheNextManagerDealsWithADeathThatNobodySaw) {
   step(RtpuUp{kSpare, 1});
   EXPECT_EQ(die(kServo),
             "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
-            "goal arm 3\ngoal pid 3\nrestart servo\nhandled servo 1\nstart servo\n"
+            "goal arm 3\ngoal pid 3\nrestart servo\nstart servo\nhandled servo 1\n"
             "rtpu-restarted: servo is restarted, 1 of at most 3 times in 10 s\n");
   rebirth();
   for (TaskId task : {kArm, kPid}) seen(task, State::kOn);
-  EXPECT_EQ(die(kServo), "start servo\n") << "dealt with, but nobody knows whether it was started";
+  EXPECT_EQ(die(kServo), "start servo\n") << "dealt with, but a task of it has goals";
 }
 
 }  // namespace

@@ -126,30 +126,33 @@ void Transaction::roll_back() {
 void Transaction::finish() {
   is_under_way_ = false;
   const bool keeps_goals = has_failed_ && wish_.is_goals && !is_final_;
-  std::vector<Outcome> outcomes;
-  for (const Member& member : members_) {
-    if (!keeps_goals) goals_.clear(member.task, kGoalOn);
-    if (!has_failed_) outcomes.push_back({member.task, member.before, at_.roster.state(member.task)});
-  }
   if (keeps_goals) return;
+  std::vector<Outcome> outcomes;
+  for (const Member& member : members_)
+    outcomes.push_back({member.task, member.before, at_.roster.state(member.task)});
+  // Before an answer, so that it cannot be undone by the next manager; but goals go with a word about them, not before.
+  if (!wish_.is_goals || !has_failed_)
+    for (const Member& member : members_) goals_.clear(member.task, kGoalOn);
   if (has_failed_) return refuse(wish_, failed_at_, why_.empty() ? at_.name(failed_at_) + ": on failed" : why_);
   answer(wish_, TaskId{}, {}, std::move(outcomes));
 }
 
 void Transaction::refuse(const OnWish& wish, TaskId at, std::string why) {
-  if (wish.is_goals)
-    for (TaskId task : wish.tasks) goals_.clear(task, kGoalOn);
   if (wish.from.is_valid()) why = "on sent by " + at_.name(wish.from) + ": " + why;
   if (wish.id == 0) at_.tell("refused", at, at_.roster.rtpu(at), std::move(why));
   else answer(wish, at, std::move(why), {});
+  if (wish.is_goals)
+    for (TaskId task : wish.tasks) goals_.clear(task, kGoalOn);
 }
 
 void Transaction::answer(const OnWish& wish, TaskId at, std::string why, std::vector<Outcome> outcomes) const {
   if (wish.id != 0) return at_.act(Answer{wish.id, why.empty(), std::move(why), at, std::move(outcomes)});
-  if (!wish.is_goals) return;
   std::string names;
   for (const Outcome& outcome : outcomes) names += (names.empty() ? "" : " ") + at_.name(outcome.task);
-  at_.tell("started", TaskId{}, RtpuId{}, names + (outcomes.size() == 1 ? " is ON" : " are ON"));
+  names += outcomes.size() == 1 ? " is ON" : " are ON";
+  if (wish.is_goals) return at_.tell("started", TaskId{}, RtpuId{}, names);
+  const TaskId task = wish.tasks.front();
+  at_.tell("signal", task, at_.roster.rtpu(task), "on sent by " + at_.name(wish.from) + ": " + names);
 }
 
 }  // namespace chimera::subsystem

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// A simulated face: asks for one thing after the other and waits for each answer; what a dead manager owed it, it asks
+// the next one.
+#pragma once
+
+#include <vector>
+
+#include "tests/subsystem/world.h"
+
+namespace chimera::simulated {
+
+class Face {
+ public:
+  Face(World& world, std::size_t index) : world_(world), index_(index) {}
+
+  /// Asks by chance again and again until the world is calm.
+  void live();
+  void ask(Signal signal, std::vector<TaskId> tasks);
+
+  bool is_waiting() const noexcept { return is_waiting_; }
+  bool is_waiting_at_door(std::uint32_t manager) const noexcept { return is_waiting_ && asked_of_ != manager; }
+  bool wants_down(TaskId task) const noexcept;
+  void let_in(std::uint32_t manager);
+  void answered(const subsystem::Answer& answer);
+  Signal signal() const noexcept { return signal_; }
+  const std::vector<TaskId>& tasks() const noexcept { return tasks_; }
+  const subsystem::Answer& last() const noexcept { return last_; }
+
+ private:
+  void ask_by_chance();
+  bool swap();
+  std::vector<TaskId> in_state(State state, bool starters_only) const;
+
+  World& world_;
+  std::size_t index_;
+  bool is_waiting_ = false;
+  std::uint32_t asked_of_ = 0;
+  Signal signal_ = Signal::kOn;
+  std::vector<TaskId> tasks_;
+  subsystem::Answer last_;
+};
+
+}  // namespace chimera::simulated

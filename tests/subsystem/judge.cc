@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/subsystem/judge.h"
+
+#include <algorithm>
+
+#include "tests/subsystem/driver.h"
+#include "tests/subsystem/face.h"
+#include "tests/subsystem/keeper.h"
+#include "tests/subsystem/process.h"
+
+namespace chimera::simulated {
+
+using namespace subsystem;
+
+bool Judge::is_on(TaskId task) const { return world_.process_of(task).state(task) == State::kOn; }
+
+bool Judge::shares_output(TaskId a, TaskId b) const {
+  for (const Variable& variable : world_.variables.all()) {
+    const auto makes = [&](TaskId task) {
+      return std::any_of(variable.producers.begin(), variable.producers.end(),
+                         [task](const PortOf& port) { return port.task == task; });
+    };
+    if (makes(a) && makes(b)) return true;
+  }
+  return false;
+}
+
+std::vector<TaskId> Judge::rivals(TaskId task) const {
+  std::vector<TaskId> found;
+  for (std::size_t t = 0; t < world_.n_tasks(); ++t)
+    if (TaskId(t) != task && is_on(TaskId(t)) && shares_output(task, TaskId(t))) found.push_back(TaskId(t));
+  return found;
+}
+
+void Judge::changed() {
+  ++world_.changes;
+  for (const auto& process : world_.processes) process->look_soon();
+  for (const Variable& variable : world_.variables.all()) {
+    const auto n = std::count_if(variable.producers.begin(), variable.producers.end(),
+                                 [this](const PortOf& port) { return is_on(port.task); });
+    if (n > 1) world_.fail("two tasks that are ON produce " + std::string(variable.name));
+  }
+}
+
+std::vector<bool> Judge::on_as_seen() const {
+  std::vector<bool> on(world_.n_tasks());
+  for (std::size_t t = 0; t < on.size(); ++t)
+    on[t] = world_.keeper->is_alive(world_.plan.spec.tasks[t].rtpu) &&
+            world_.process_of(TaskId(t)).word(TaskId(t)).state == State::kOn;
+  return on;
+}
+
+void Judge::look() {
+  bool has_looked = false;
+  for (const auto& process : world_.processes) {
+    if (process->has_flag()) return;
+    has_looked = has_looked || (process->is_alive() && process->seen_changes() == world_.changes);
+  }
+  if (has_looked && !world_.variables.is_legal(on_as_seen())) world_.fail("the ON set is illegal and no flag is up");
+}
+
+void Judge::count_revivals(const Event& event, std::span<const Action> actions) {
+  const auto* command = std::get_if<Commanded>(&event);
+  if (command == nullptr) return;
+  for (const Action& action : actions) {
+    if (std::holds_alternative<RememberRestart>(action))
+      world_.tally.count(std::string("revived by ") + signal_name(command->signal));
+    const auto* goal = std::get_if<RememberGoal>(&action);
+    if (goal != nullptr && goal->goal != 0 && command->signal == Signal::kKill)
+      world_.tally.count("killed while dead");
+  }
+}
+
+// A goal goes when it is reached, when somebody takes it back, or with a word about it.
+void Judge::stepped(const Event& event, std::span<const Action> actions) {
+  count_revivals(event, actions);
+  bool says_something = std::holds_alternative<RtpuDown>(event);
+  for (const Action& action : actions)
+    if (std::holds_alternative<Tell>(action) || std::holds_alternative<subsystem::Answer>(action))
+      says_something = true;
+  if (says_something) return;
+  const auto* report = std::get_if<Reported>(&event);
+  for (const Action& action : actions) {
+    const auto* goal = std::get_if<RememberGoal>(&action);
+    if (goal == nullptr || is_excused(goal->task)) continue;
+    const std::uint32_t gone = world_.keeper->memory.goals[goal->task.index] & ~goal->goal;
+    const State state = world_.driver->subsystem().state(goal->task);
+    const bool is_spawned = report != nullptr && report->task == goal->task && report->signal == Signal::kSpawn;
+    if ((gone & kGoalSpawn) != 0 && state == State::kNotCreated && !is_spawned)
+      world_.fail("the goal spawn of " + name(goal->task) + " is lost without a word");
+    if ((gone & kGoalOn) != 0 && state != State::kOn)
+      world_.fail("the goal on of " + name(goal->task) + " is lost without a word");
+  }
+}
+
+// Somebody wants it OFF anyway.
+bool Judge::is_excused(TaskId task) const {
+  return std::any_of(world_.faces.begin(), world_.faces.end(),
+                     [task](const auto& face) { return face->wants_down(task); });
+}
+
+bool Judge::is_turning() const noexcept { return std::find(turning_.begin(), turning_.end(), true) != turning_.end(); }
+
+bool Judge::sent(const Send& send) {
+  bool is_roll_back = false;
+  for (TaskId task : send.tasks) {
+    if (send.signal == Signal::kOff || send.signal == Signal::kKill) wanted_down(task);
+    if (send.signal == Signal::kKill) debts_[task.index].is_gone = true;
+    if (send.signal == Signal::kOff && turning_[task.index] && !is_excused(task)) is_roll_back = true;
+    if (send.signal != Signal::kOn) continue;
+    turning_[task.index] = true;
+    for (TaskId rival : rivals(task))
+      world_.fail("on is sent to " + name(task) + " while " + name(rival) + " produces the same and is ON");
+  }
+  if (is_roll_back) world_.tally.count("transaction rolled back");
+  is_rolling_back_ = is_rolling_back_ || is_roll_back;
+  return is_roll_back;
+}
+
+void Judge::goal(const RememberGoal& goal) {
+  if ((goal.goal & kGoalOn) != 0 || !turning_[goal.task.index]) return;
+  turning_[goal.task.index] = false;
+  ended_[goal.task.index] = true;
+}
+
+void Judge::answered(const subsystem::Answer& answer) { end_transaction(!answer.accepted); }
+
+void Judge::told(const Tell& tell) {
+  if (tell.kind == "rtpu-given-up") given_up_[tell.rtpu.index] = world_.keeper->incarnation(tell.rtpu);
+  for (std::size_t t = 0; t < debts_.size(); ++t) {
+    const bool is_meant = tell.task == TaskId(t) || (tell.kind == "rtpu-given-up" && rtpu_of(TaskId(t)) == tell.rtpu);
+    if (is_meant) debts_[t].there = false;
+    if (is_meant || tell.kind == "refused" || tell.kind == "rtpu-given-up") debts_[t].on = false;
+  }
+  const bool is_failed = tell.kind == "refused";
+  if (is_failed || tell.kind == "started" || tell.kind == "signal") end_transaction(is_failed);
+}
+
+void Judge::end_transaction(bool is_failed) {
+  for (std::size_t t = 0; t < ended_.size(); ++t) {
+    const TaskId task(t);
+    if (ended_[t] && is_failed && is_on(task) && !is_excused(task) && !world_.process_of(task).is_hung())
+      world_.fail("a transaction failed and " + name(task) + " stays ON");
+    ended_[t] = false;
+  }
+  if (!is_turning()) is_rolling_back_ = false;
+}
+
+void Judge::manager_dies() {
+  turning_.assign(turning_.size(), false);
+  ended_.assign(ended_.size(), false);
+  is_rolling_back_ = false;
+}
+
+void Judge::wanted_down(TaskId task) {
+  debts_[task.index].on = false;
+  debts_[task.index].is_down = true;
+}
+
+void Judge::published(TaskId task, State state) {
+  Debt& debt = debts_[task.index];
+  if (state != State::kNotCreated) debt.there = debt.is_gone = false;
+  if (state == State::kOn) debt.on = debt.is_down = false;
+  if (state == State::kError) debt.on = false;
+}
+
+void Judge::process_dies(RtpuId rtpu) {
+  for (std::size_t t = 0; t < debts_.size(); ++t) {
+    const TaskId task(t);
+    if (rtpu_of(task) != rtpu) continue;
+    const State last = world_.process_of(task).word(task).state;
+    const bool is_wanted = !is_excused(task) && !debts_[t].is_gone;
+    if (last != State::kNotCreated && is_wanted) debts_[t].there = true;
+    if (last == State::kOn && is_wanted && !debts_[t].is_down && !turning_[t]) debts_[t].on = true;
+  }
+  if (is_rolling_back_) world_.tally.count("death in a rollback");
+  else if (is_turning()) world_.tally.count("death in a transaction");
+}
+
+void Judge::process_hangs() {
+  if (is_turning()) world_.tally.count("hang in a transaction");
+}
+
+void Judge::look_at_the_end() {
+  if (!world_.driver->is_alive()) return world_.fail("no manager at the end");
+  const Subsystem& subsystem = world_.driver->subsystem();
+  if (!subsystem.is_settled()) world_.fail("not settled at the end");
+  for (const auto& face : world_.faces)
+    if (face->is_waiting()) world_.fail("a command is never answered");
+  for (std::size_t r = 0; r < Plan::kRtpus; ++r)
+    if (!world_.processes[r]->is_alive() && given_up_[r] != world_.processes[r]->incarnation())
+      world_.fail("an rtpu is dead and nobody was told that it is given up");
+  for (std::size_t t = 0; t < world_.n_tasks(); ++t) {
+    const TaskId task(t);
+    if (debts_[t].there && world_.process_of(task).state(task) == State::kNotCreated)
+      world_.fail(name(task) + " is lost: its process died and it did not come back");
+    if (debts_[t].on && world_.process_of(task).state(task) == State::kOff)
+      world_.fail(name(task) + " was ON when its process died and did not go ON again");
+    const std::uint32_t goal = world_.keeper->memory.goals[t];
+    if ((goal & (kGoalSpawn | kGoalOn)) != 0) world_.fail("the goal of " + name(task) + " is neither reached nor told");
+    const Process& process = world_.process_of(task);
+    const State last = process.word(task).state;
+    const bool is_lost = !process.is_alive() && last != State::kNotCreated && goal == 0;
+    const State truth = is_lost ? State::kError : process.state(task);
+    // One that died again before it was brought back is missed too, though the last words do not know it.
+    const bool is_missed = !process.is_alive() && subsystem.state(task) == State::kError && goal == 0;
+    if (subsystem.state(task) != truth && !is_missed)
+      world_.fail(name(task) + " is said to be " + state_name(subsystem.state(task)) + " and is " + state_name(truth));
+  }
+}
+
+}  // namespace chimera::simulated

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// What must always hold in the simulation, checked at every event.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tests/subsystem/world.h"
+
+namespace chimera::simulated {
+
+class Judge {
+ public:
+  explicit Judge(World& world) : world_(world), turning_(world.n_tasks()), ended_(world.n_tasks()),
+                                 debts_(world.n_tasks()), given_up_(Plan::kRtpus) {}
+
+  /// A status word or somebody's life changed: two producers?
+  void changed();
+  /// After every event: the flag.
+  void look();
+  /// Nothing goes on any more: nothing may be lost.
+  void look_at_the_end();
+  /// The ON set by the words, of processes that live by the keeper's page.
+  std::vector<bool> on_as_seen() const;
+
+  void stepped(const subsystem::Event& event, std::span<const subsystem::Action> actions);
+  /// All its actions are carried out.
+  void step_ended() { ended_.assign(ended_.size(), false); }
+  void goal(const subsystem::RememberGoal& goal);
+  void answered(const subsystem::Answer& answer);
+  void told(const subsystem::Tell& tell);
+  /// True: it turns OFF what a transaction turned ON.
+  bool sent(const subsystem::Send& send);
+  /// A face or a task wants the task OFF or gone.
+  void wanted_down(TaskId task);
+  void asked_down(TaskId task, Signal signal) {
+    debts_[task.index].on = false;
+    if (signal == Signal::kKill) debts_[task.index].there = false;
+  }
+  void published(TaskId task, State state);
+  void manager_dies();
+  void process_dies(RtpuId rtpu);
+  void process_hangs();
+  bool is_turning() const noexcept;
+  /// Those that are ON and produce what the task produces.
+  std::vector<TaskId> rivals(TaskId task) const;
+
+ private:
+  void count_revivals(const subsystem::Event& event, std::span<const subsystem::Action> actions);
+  bool shares_output(TaskId a, TaskId b) const;
+  bool is_on(TaskId task) const;
+  void end_transaction(bool is_failed);
+  bool is_excused(TaskId task) const;
+  RtpuId rtpu_of(TaskId task) const { return world_.plan.spec.tasks[task.index].rtpu; }
+  std::string name(TaskId task) const { return std::string(world_.plan.spec.tasks[task.index].name); }
+
+  World& world_;
+  std::vector<bool> turning_;  // `on` was sent, its transaction is not over
+  std::vector<bool> ended_;    // its transaction is over, how will be told
+  bool is_rolling_back_ = false;
+  /// What is owed to a task since its process died: to be there again, or ON again, or a word why not.
+  struct Debt {
+    bool there = false;
+    bool on = false;
+    bool is_down = false;   ///< `off` or `kill` was sent since it went ON
+    bool is_gone = false;   ///< `kill` was sent since it was created
+  };
+  std::vector<Debt> debts_;
+  std::vector<std::uint32_t> given_up_;  // incarnation, by rtpu
+};
+
+}  // namespace chimera::simulated

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/subsystem/process.h"
+
+#include <algorithm>
+
+#include "tests/subsystem/driver.h"
+#include "tests/subsystem/judge.h"
+#include "tests/subsystem/keeper.h"
+
+namespace chimera::simulated {
+
+Process::Process(World& world, RtpuId id) : world_(world), id_(id), words_(world.n_tasks()) {}
+
+void Process::later(Nanoseconds from, Nanoseconds to, std::function<void()> what) {
+  world_.agenda.after(world_.chance.between(from, to), [this, life = life_, what = std::move(what)] {
+    if (is_alive_ && !is_hung_ && life_ == life) what();
+  });
+}
+
+// ---- life and death ----
+
+void Process::start(std::uint32_t incarnation) {
+  world_.note("process starts", id_.index, incarnation);
+  is_alive_ = true;
+  is_hung_ = is_serving_ = is_busy_ = flag_ = look_is_due_ = false;
+  incarnation_ = incarnation;
+  manager_ = 0;
+  next_manager_ = world_.driver->is_alive() ? world_.driver->life() : 0;
+  letters_.clear();
+  service_.clear();
+  notes_.clear();
+  for (TaskStatus& word : words_) word = {State::kNotCreated, false, incarnation};
+  later(milliseconds(1), milliseconds(20), [this] { serve(); });
+}
+
+void Process::serve() {
+  if (passes(Point::kStarting, "death starting")) return;
+  is_serving_ = true;
+  look_soon();
+  try_attach();
+}
+
+void Process::meet(std::uint32_t manager) {
+  next_manager_ = manager;
+  if (is_alive_ && !is_hung_) later(microseconds(100), milliseconds(3), [this] { try_attach(); });
+}
+
+// Between two edges only: what the old manager sent and nobody took yet is not taken any more.
+void Process::try_attach() {
+  if (!is_serving_ || is_busy_ || next_manager_ == manager_) return;
+  const auto old = [this](const Letter& letter) { return letter.manager != 0 && letter.manager != next_manager_; };
+  const std::size_t dropped = std::erase_if(letters_, old);
+  if (dropped > 0) world_.tally.count("posts of a dead manager dropped");
+  manager_ = next_manager_;
+  world_.driver->serves(id_, incarnation_, manager_);
+  poke();
+}
+
+void Process::die(const std::string& point) {
+  if (!is_alive_) return;
+  world_.note("process dies", id_.index, incarnation_);
+  world_.tally.count(is_hung_ ? "death of a hung one" : point);
+  world_.judge->process_dies(id_);
+  if (!service_.empty()) world_.tally.count("death with work in service");
+  if (!world_.driver->is_alive()) world_.tally.count("death without a manager");
+  ++world_.deaths;
+  ++life_;
+  is_alive_ = is_hung_ = false;
+  doom_ = Point::kNone;
+  static const char* const kCauses[] = {"ended by signal 11 (SIGSEGV) in t3.cycle; core dumped",
+                                        "ended by signal 9 (SIGKILL)", "ended with exit status 3 in t1.init"};
+  cause_ = kCauses[world_.chance.below(3)];
+  world_.keeper->dies(id_);
+}
+
+void Process::hang(const char* point) {
+  if (!is_alive_ || is_hung_) return;
+  world_.note("process hangs", id_.index);
+  world_.tally.count(point);
+  world_.judge->process_hangs();
+  ++life_;
+  is_hung_ = true;
+  doom_ = Point::kNone;
+  world_.agenda.after(world_.chance.between(milliseconds(100), seconds(4)), [this, incarnation = incarnation_] {
+    if (is_hung_ && incarnation_ == incarnation) die("death of a hung one");
+  });
+}
+
+// True: it is dead or hangs now.
+bool Process::passes(Point point, const char* name) {
+  if (doom_ != point) return false;
+  if (doom_hangs_) hang("hang in a method");
+  else die(name);
+  return true;
+}
+
+// ---- signals ----
+
+void Process::receive(Letter letter) {
+  if (!is_alive_) return;
+  if (letter.signal == Signal::kOff || letter.signal == Signal::kKill)
+    for (TaskId task : letter.tasks) world_.judge->wanted_down(task);
+  letters_.push_back(std::move(letter));
+  poke();
+}
+
+void Process::request(TaskId from, TaskId target) {
+  notes_.emplace_back(subsystem::Requested{target, Signal::kOn, from});
+  world_.driver->poke();
+}
+
+// A signal that meets a method under way is taken after it; of one task all are taken in their order.
+bool Process::is_blocked(const Letter& letter, std::size_t before) const {
+  return std::any_of(letter.tasks.begin(), letter.tasks.end(), [&](TaskId task) {
+    if (word(task).in_service) return true;
+    for (std::size_t l = 0; l < before; ++l)
+      if (std::find(letters_[l].tasks.begin(), letters_[l].tasks.end(), task) != letters_[l].tasks.end()) return true;
+    return false;
+  });
+}
+
+void Process::poke() {
+  if (!is_alive_ || is_hung_ || is_busy_ || !is_serving_) return;
+  for (std::size_t l = 0; l < letters_.size(); ++l) {
+    if (is_blocked(letters_[l], l)) continue;
+    Letter letter = std::move(letters_[l]);
+    letters_.erase(letters_.begin() + static_cast<std::ptrdiff_t>(l));
+    is_busy_ = true;
+    later(microseconds(20), milliseconds(1), [this, letter = std::move(letter)] { begin(letter); });
+    return;
+  }
+}
+
+void Process::begin(Letter letter) {
+  work_ = {};
+  work_.letter = std::move(letter);
+  const Letter& mine = work_.letter;
+  const auto n = mine.tasks.size();
+  work_.in_service.assign(n, false);
+  std::size_t wrong = n;
+  for (std::size_t i = 0; i < n; ++i) {
+    const TaskId task = mine.tasks[i];
+    const bool aperiodic = world_.plan.spec.tasks[task.index].aperiodic;
+    const State state = word(task).state;
+    world_.tally.count_signal(state, mine.signal, aperiodic);
+    world_.note("takes", static_cast<int>(mine.signal), task.index, static_cast<int>(state));
+    work_.before.push_back(state);
+    if (wrong == n && next(state, mine.signal, aperiodic).kind == Next::Kind::kImpossible) wrong = i;
+  }
+  if (wrong == n) return next_task();
+  for (std::size_t i = 0; i < n; ++i) {
+    const State state = work_.before[i];
+    report(mine, mine.tasks[i], false, i == wrong ? Refusal::kState : Refusal::kNone, state, state);
+  }
+  end_work();
+}
+
+void Process::next_task() {
+  if (work_.index > 0 && passes(Point::kInsideList, "death inside a list")) return;
+  if (work_.index == work_.letter.tasks.size()) return finish();
+  const TaskId task = work_.letter.tasks[work_.index];
+  const bool aperiodic = world_.plan.spec.tasks[task.index].aperiodic;
+  const Next at = next(word(task).state, work_.letter.signal, aperiodic);
+  if (at.kind != Next::Kind::kStep) {  // a wakeup that is ignored
+    ++work_.index;
+    return next_task();
+  }
+  if (at.step == Step::kInit || at.step == Step::kKill) {
+    work_.in_service[work_.index] = true;
+    errand(task, at.step, work_.letter, work_.before[work_.index]);
+    ++work_.index;
+    return next_task();
+  }
+  walk(task, at.step);
+}
+
+void Process::walk(TaskId task, Step step) {
+  later(microseconds(10), microseconds(300), [this, task, step] {
+    if (passes(Point::kBeforeStep, "death before a step")) return;
+    const Answer answer = draw(step);
+    const Next at = rule(step).next[static_cast<int>(answer)];
+    if (at.kind == Next::Kind::kState) publish(task, at.state, false);
+    if (passes(Point::kAfterStep, "death after a step")) return;
+    if (at.kind == Next::Kind::kState) return walked(task, at.state);
+    if (at.step != Step::kKill) return walk(task, at.step);
+    publish(task, State::kOff, true);
+    work_.in_service[work_.index] = true;
+    errand(task, Step::kKill, work_.letter, work_.before[work_.index]);
+    ++work_.index;
+    next_task();
+  });
+}
+
+void Process::walked(TaskId, State state) {
+  if (work_.has_failed) {  // one of the list that goes OFF again
+    work_.undo.pop_back();
+  } else if (work_.letter.signal == Signal::kOn && state != State::kOn) {
+    work_.has_failed = true;
+    work_.failed = work_.index;
+    for (std::size_t i = 0; i < work_.index; ++i) work_.undo.push_back(i);
+  } else {
+    ++work_.index;
+    return next_task();
+  }
+  if (!work_.undo.empty()) return walk(work_.letter.tasks[work_.undo.back()], Step::kOff);
+  finish();
+}
+
+void Process::finish() {
+  if (work_.letter.command != 0 && passes(Point::kBeforeReport, "death before a report")) return;
+  for (std::size_t i = 0; i < work_.letter.tasks.size(); ++i) {
+    if (work_.in_service[i]) continue;
+    const TaskId task = work_.letter.tasks[i];
+    const bool at_fault = work_.has_failed && work_.failed == i;
+    report(work_.letter, task, !work_.has_failed, at_fault ? Refusal::kFault : Refusal::kNone, work_.before[i],
+           word(task).state);
+  }
+  if (work_.letter.command != 0 && passes(Point::kAfterReport, "death after a report")) return;
+  end_work();
+}
+
+void Process::end_work() {
+  is_busy_ = false;
+  try_attach();
+  poke();
+}
+
+// ---- the service thread ----
+
+void Process::errand(TaskId task, Step step, const Letter& letter, State before) {
+  publish(task, word(task).state, true);
+  service_.push_back({task, step, letter, before});
+  if (service_.size() == 1) run_errand();
+}
+
+void Process::run_errand() {
+  const bool is_slow = world_.chance.permille(10);
+  const Nanoseconds from = is_slow ? seconds(2) : milliseconds(1);
+  later(from, from + milliseconds(30), [this] {
+    if (passes(Point::kInService, "death with work in service")) return;
+    errand_step(service_.front().step);
+  });
+}
+
+void Process::errand_step(Step step) {
+  const Next at = rule(step).next[static_cast<int>(draw(step))];
+  if (at.kind == Next::Kind::kStep) {
+    later(microseconds(100), milliseconds(2), [this, next = at.step] { errand_step(next); });
+    return;
+  }
+  const Errand done = service_.front();
+  publish(done.task, at.state, false);
+  report(done.letter, done.task, true, Refusal::kNone, done.before, at.state);
+  service_.pop_front();
+  if (!service_.empty()) run_errand();
+  poke();
+}
+
+// ---- what others see ----
+
+Answer Process::draw(Step step) {
+  Answer answer = Answer::kOk;
+  const auto may = [&](unsigned percent, Answer other) {
+    if (answer == Answer::kOk && !world_.is_calm && world_.chance.percent(percent)) answer = other;
+  };
+  switch (step) {
+    case Step::kInit: may(4, Answer::kFault); break;
+    case Step::kKillAfterInit: may(30, Answer::kFault); break;
+    case Step::kOn: may(5, Answer::kFault); break;
+    case Step::kSync: may(10, Answer::kFault), may(30, Answer::kNoEvent); break;
+    case Step::kCycle: may(15, Answer::kFault), may(15, Answer::kAborted); break;
+    case Step::kErrorToOff:
+    case Step::kErrorToOn: may(40, Answer::kFault); break;
+    default: may(8, Answer::kFault); break;
+  }
+  world_.tally.count_answer(step, answer);
+  world_.note("step", static_cast<int>(step), static_cast<int>(answer));
+  return answer;
+}
+
+void Process::publish(TaskId task, State state, bool in_service) {
+  words_[task.index] = {state, in_service, incarnation_};
+  world_.note("word", task.index, static_cast<int>(state), in_service);
+  world_.judge->changed();
+  world_.judge->published(task, state);
+  world_.driver->poke();
+}
+
+void Process::report(const Letter& letter, TaskId task, bool accepted, Refusal why, State before, State after) {
+  if (letter.command == 0) return;
+  const std::string text = why == Refusal::kFault ? "said no" : "";
+  notes_.emplace_back(subsystem::Reported{letter.command, task, letter.signal, accepted, why, before, after, text});
+  world_.driver->poke();
+}
+
+void Process::look_soon() {
+  if (!is_alive_ || is_hung_ || !is_serving_ || look_is_due_) return;
+  look_is_due_ = true;
+  later(microseconds(50), milliseconds(1), [this] { look(); });
+}
+
+void Process::look() {
+  look_is_due_ = false;
+  seen_changes_ = world_.changes;
+  const bool was_up = flag_;
+  flag_ = !world_.variables.is_legal(world_.judge->on_as_seen());
+  if (flag_ != was_up) world_.tally.count(flag_ ? "flag up" : "flag down");
+}
+
+}  // namespace chimera::simulated
