@@ -95,7 +95,7 @@ class Rtpu {
 Result<void> Rtpu::prepare() {
   sigset_t set;
   ::sigemptyset(&set);
-  for (const int number : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, number);
+  ::sigaddset(&set, SIGTERM);  // a SIGINT or SIGHUP of the terminal is the keeper's to answer
   if (start_.parent != 0) {
     ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
     signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
