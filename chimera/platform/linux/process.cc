@@ -41,7 +41,8 @@ constexpr int kFirst = 3;  // of the descriptors that are passed on
     good = good && copies[i] >= 0 && ::dup2(copies[i], kFirst + static_cast<int>(i)) >= 0;
   // Whatever the parent was careless with ends at exec too.
   good = good && ::close_range(static_cast<unsigned>(above), UINT_MAX, CLOSE_RANGE_CLOEXEC) == 0;
-  for (int number = 1; number < NSIG; ++number) ::signal(number, number == SIGINT || number == SIGHUP ? SIG_IGN : SIG_DFL);
+  for (int number = 1; number < NSIG; ++number) ::signal(number, SIG_DFL);
+  for (const int number : {SIGINT, SIGHUP}) ::signal(number, SIG_IGN);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);

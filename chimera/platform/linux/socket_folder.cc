@@ -15,7 +15,8 @@ SocketFolder socket_folder() noexcept {
   if (runtime != nullptr && runtime[0] == '/') return (Message() << runtime << "/chimera").view();
   const Message given = Message() << "/run/user/" << ::geteuid();
   struct stat status {};
-  if (::stat(SocketFolder(given.view()).c_str(), &status) == 0 && S_ISDIR(status.st_mode))
+  if (::stat(SocketFolder(given.view()).c_str(), &status) == 0 && S_ISDIR(status.st_mode) &&
+      status.st_uid == ::geteuid())
     return (Message() << given.view() << "/chimera").view();
   return (Message() << "/tmp/chimera-" << ::geteuid()).view();
 }
