@@ -38,7 +38,7 @@ void print_methods(const Descriptor& descriptor) {
   std::printf("%s:", descriptor.name.c_str());
   for (std::uint32_t i = 0; i < CHIMERA_METHODS; ++i)
     if (descriptor.methods[i]) std::printf(" %s", method_name(static_cast<Method>(i)));
-  std::printf("\n");
+  std::printf("%s\n", descriptor.background ? "; background" : "");
 }
 
 int describe_object(const std::string& object, const std::string& output) {

@@ -26,6 +26,7 @@ Descriptor rich() {
   d.state_size = 640;
   d.state_align = 16;
   d.methods[CHIMERA_ON] = d.methods[CHIMERA_CYCLE] = true;
+  d.background = true;
   PortDescriptor q{.name = "q", .doc = "\xc2\xb5", .unit = "rad", .shape = "[ndof<=3]", .frame = "base"};
   PortDescriptor tau{.name = "tau", .unit = "N.m", .kind = CHIMERA_OUT_VAR, .safety = true, .has_range = true};
   tau.min = -0.1;

@@ -36,6 +36,8 @@ class Application {
 
   const Configuration& configuration() const noexcept { return configuration_; }
   TaskSet& tasks() noexcept { return *tasks_; }
+  /// For real time: what components do beside their cycles gets threads. Before anything is signalled.
+  void use_background_threads() { tasks_->attach(*writer_); }
   /// A probe for the state variable of that name; refuses an unknown name with the nearest one.
   /// Extents that constants fix are read when the tasks have been initialised.
   Result<Probe> probe(const std::string& variable) const;
@@ -45,6 +47,7 @@ class Application {
 
   Configuration configuration_;
   std::vector<const chimera_component*> components_;
+  std::unique_ptr<BackgroundWriter> writer_ = std::make_unique<BackgroundWriter>();
   std::unique_ptr<TaskSet> tasks_;
 };
 

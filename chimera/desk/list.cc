@@ -50,6 +50,7 @@ std::string sheet(const LibraryEntry& entry) {
   text += "methods ";
   for (std::size_t m = 0; m < CHIMERA_METHODS; ++m)
     if (d.methods[m]) text += std::string(" ") + kMethodWords[m];
+  if (d.background) text += ", and background beside them";
   text += "\nports\n";
   std::size_t name_width = 4, type_width = 4, unit_width = 4;
   for (const PortDescriptor& port : d.ports) {

@@ -46,7 +46,9 @@ class RealTimeLoop final : public RunLoop {
  public:
   RealTimeLoop(Application& application, const RunRequest& request, const RunOptions& options)
       : request_(request), cpu_(static_cast<int>(application.configuration().rtpus()[0].cpu)), job_clock_(clock_),
-        executive_(application.tasks(), clock_, job_clock_, options) {}
+        executive_(application.tasks(), clock_, job_clock_, options) {
+    application.use_background_threads();
+  }
   ~RealTimeLoop() override {
     if (thread_.joinable()) thread_.join();
   }

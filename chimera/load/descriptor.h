@@ -65,6 +65,7 @@ struct Descriptor {
   std::uint32_t state_size = 0;
   std::uint32_t state_align = 8;
   std::array<bool, CHIMERA_METHODS> methods{};  ///< which of the nine are written
+  bool background = false;                      ///< does something beside its cycles
   std::vector<PortDescriptor> ports{};
 
   /// Has a sync method, so it is released by events.

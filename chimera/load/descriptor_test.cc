@@ -97,6 +97,18 @@ TEST(Describe, RefusesAnotherVersionOfTheInterface) {
   EXPECT_EQ(sample.refusal(), "component: ABI version 7, this framework speaks 1");
 }
 
+TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
+  Sample sample;
+  sample.component.background = [](void*, chimera_fault*) -> std::int32_t { return CHIMERA_OK; };
+  EXPECT_TRUE(sample.described().value().background);
+  sample.component.struct_size = offsetof(chimera_component, background);
+  EXPECT_FALSE(sample.described().value().background);  // what stands there is none of its
+  const std::uint32_t size = sizeof(chimera_component);
+  sample.component.struct_size = size + 8;
+  EXPECT_EQ(sample.refusal(), "component: declaration of " + std::to_string(size + 8) + " bytes, expected " +
+                                  std::to_string(size));
+}
+
 TEST(Describe, RefusesSizesThatDoNotFitTheType) {
   Sample sample;
   sample.ports[0].element_size = 4;

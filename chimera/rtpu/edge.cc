@@ -56,6 +56,7 @@ void Edge::look_around() noexcept {
   if (!is_new && changes == seen_changes_) return;
   seen_changes_ = changes;
   tasks_.follow_others();
+  for (Task& task : tasks_.tasks()) task.is_tapped = tasks_.is_mine(task.id) && others_.is_wanted_on_tap(task.id);
   others_.block().head().seen_changes.store(changes, std::memory_order_release);
 }
 

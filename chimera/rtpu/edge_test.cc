@@ -104,6 +104,22 @@ TEST_F(EdgeTest, EverySignalWithACommandIsReported) {
   EXPECT_EQ(first().state(kSource), State::kOn);
 }
 
+TEST_F(EdgeTest, TheManagersWishDecidesWhatGoesToTheTap) {
+  all_on();
+  EXPECT_FALSE(first().tasks->tasks()[kSource.index].is_tapped);
+  units->manager->block.set_tapped(kSource, true);
+  units->manager->block.set_tapped(kFollower, true);
+  units->change();
+  units->run(milliseconds(1));
+  EXPECT_TRUE(first().tasks->tasks()[kSource.index].is_tapped);
+  EXPECT_FALSE(first().tasks->tasks()[kFollower.index].is_tapped);  // of the other unit
+  EXPECT_TRUE(second().tasks->tasks()[kFollower.index].is_tapped);
+  units->manager->block.set_tapped(kSource, false);
+  units->change();
+  units->run(milliseconds(1));
+  EXPECT_FALSE(first().tasks->tasks()[kSource.index].is_tapped);
+}
+
 TEST_F(EdgeTest, SignalsForATaskInServiceWaitTheirTurn) {
   units->send(Signal::kSpawn, {kSource}, 1);
   units->send(Signal::kOn, {kSource}, 2);

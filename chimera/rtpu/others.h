@@ -40,6 +40,11 @@ class Others final : public Neighbours {
   void tell(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
   /// The count of changes of the decision page. Context: cycle; wait-free.
   std::uint32_t changes() const noexcept { return decision_->changes.load(std::memory_order_acquire); }
+  /// Does the manager want the task's publications on the tap? Not while there is no manager. Context: edge; wait-free.
+  bool is_wanted_on_tap(TaskId task) const noexcept {
+    const MappedPeer* there = peers_->at(manager());
+    return there != nullptr && there->block.is_tapped(task);
+  }
   std::uint32_t manager() const noexcept { return static_cast<std::uint32_t>(spec_->rtpus.size()); }
   const BlockOwner& block() const noexcept { return block_; }
 

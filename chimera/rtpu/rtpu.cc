@@ -78,6 +78,7 @@ class Rtpu {
   std::vector<const chimera_component*> components_;
   std::unique_ptr<ServiceThread> service_;
   std::unique_ptr<Others> others_;
+  BackgroundWriter writer_;
   std::unique_ptr<TaskSet> tasks_;
   std::unique_ptr<Edge> edge_;
   std::unique_ptr<BellClock> clock_;
@@ -159,6 +160,7 @@ Result<void> Rtpu::make_tasks() {
   auto tasks = TaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);
+  tasks_->attach(writer_);
   others_->attach(*tasks_);
   edge_ = std::make_unique<Edge>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
                                  image_->settings().method_limit);

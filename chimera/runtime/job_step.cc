@@ -67,6 +67,14 @@ void record_fault(Task& task, Method method, const char* text, Nanoseconds at) n
   note_fault(task, method, at);
 }
 
+void run_background(Task& task, Method method, Nanoseconds at) noexcept {
+  chimera_fault fault{};
+  if (task.background(task.instance, &fault) == CHIMERA_OK) return;
+  task.background = nullptr;
+  fault.text[CHIMERA_FAULT_TEXT - 1] = '\0';
+  record_fault(task, method, fault.text, at);
+}
+
 Answer call_method(Task& task, Method method, Nanoseconds at) noexcept {
   const chimera_method body = task.component->methods[static_cast<int>(method)];
   if (body == nullptr) return default_answer(method);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
 
 #include "chimera/runtime/job_step.h"
 #include "chimera/table/never_written.h"
@@ -191,6 +192,17 @@ void TaskMemory::wire(Task& task) noexcept {
 
 void TaskMemory::destroy(Task& task) noexcept {
   if (is_constructed_) component_->destroy(state_.data());
+  is_constructed_ = false;
+  task.instance = nullptr;
+}
+
+void TaskMemory::abandon(Task& task) {
+  static auto& never_freed = *new std::vector<AlignedBytes>;
+  static std::mutex guard;
+  AlignedBytes left(component_->state_size, component_->state_align);
+  state_ = std::move(left);  // changes places
+  const std::lock_guard lock(guard);
+  never_freed.push_back(std::move(left));
   is_constructed_ = false;
   task.instance = nullptr;
 }

@@ -40,6 +40,8 @@ class TaskMemory {
   /// Leaves task.group published with the initial values (never-written fill where there are none).
   Result<void> construct(Task& task, Nanoseconds now);
   void destroy(Task& task) noexcept;
+  /// As destroy, but the state is left as it is for ever: somebody may still be in it.
+  void abandon(Task& task);
 
   /// Copies constants in; false with `why` when one has no value. Sets extents that constants fix.
   bool read_constants(const ConstantStore& store, FixedString<160>& why) noexcept;

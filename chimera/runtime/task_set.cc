@@ -17,8 +17,11 @@ Result<std::unique_ptr<TaskSet>> TaskSet::create(const ApplicationSpec& spec,
 }
 
 TaskSet::~TaskSet() {
-  for (std::size_t t = 0; t < memories_.size(); ++t)
-    if (memories_[t].is_planned()) memories_[t].destroy(tasks_[t]);
+  for (std::size_t t = 0; t < memories_.size(); ++t) {
+    if (!memories_[t].is_planned()) continue;
+    (void)end_background(tasks_[t], {});
+    memories_[t].destroy(tasks_[t]);
+  }
 }
 
 Result<void> TaskSet::build(std::span<const chimera_component* const> components) {

@@ -11,6 +11,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/background_writer.h"
 #include "chimera/runtime/constant_store.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/job_clock.h"
@@ -77,6 +78,10 @@ class TaskSet {
 
   /// The clock that methods see; by the executor, before anything is signalled. Context: setup.
   void attach(JobClock& clock) noexcept { clock_ = &clock; }
+  /// Whose threads run what components do beside their cycles; by the owner of the executor, before anything is
+  /// signalled. Without one that is done before kill alone (and by executors of virtual time). It outlives the set.
+  /// Context: setup.
+  void attach(BackgroundWriter& writer) noexcept { writer_ = &writer; }
 
   /// Spawns all tasks in the order of their constants and turns the start set ON as one transaction.
   /// Refuses with the first task that said no; whatever was spawned stays as it is. Context: edge.
@@ -184,6 +189,8 @@ class TaskSet {
   SignalReport advance(Task& task, Next at, Nanoseconds now);
   void hand_over(Task& task, Step step);
   Answer construct(Task& task, Nanoseconds now);
+  bool begin_background(Task& task, Nanoseconds now);
+  bool end_background(Task& task, Nanoseconds now);
   Answer run_method(Task& task, Method method, Nanoseconds now, JobClock* clock);
   Next conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now);
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
@@ -217,6 +224,7 @@ class TaskSet {
   std::vector<ForeignConstant> foreign_constants_;
   AlignedBytes constant_scratch_;
   JobClock* clock_ = nullptr;
+  BackgroundWriter* writer_ = nullptr;
   std::span<const std::atomic<std::uint32_t>* const> foreign_flags_;
   std::vector<bool> on_;
   std::vector<bool> wanted_;  // the ON set that was asked for last

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "chimera/runtime/task_set.h"
+#include "chimera/task/background.h"
 
 namespace chimera {
 Result<void> TaskSet::start(Nanoseconds now) {
@@ -152,7 +153,9 @@ Next TaskSet::conclude(Task& task, const StepRule& step, Answer answer, Nanoseco
 
 Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock* clock) {
   const Nanoseconds began = clock == nullptr ? now : clock->now();
-  const Answer answer = call_method(task, method, now);
+  if (method == Method::kKill && !end_background(task, now)) return Answer::kFault;
+  Answer answer = call_method(task, method, now);
+  if (method == Method::kInit && answer == Answer::kOk && !begin_background(task, now)) answer = Answer::kFault;
   const Nanoseconds ended = clock == nullptr ? now : clock->now();
   task.profile.execution[static_cast<int>(method)].add(ended - began);
   return answer;
@@ -163,6 +166,31 @@ Answer TaskSet::construct(Task& task, Nanoseconds now) {
   if (constructed) return Answer::kOk;
   record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
   return Answer::kFault;
+}
+
+bool TaskSet::begin_background(Task& task, Nanoseconds now) {
+  task.background = background_of(*task.component);
+  if (task.background == nullptr || writer_ == nullptr || writer_->add(task.instance, task.background)) return true;
+  task.background = nullptr;
+  record_fault(task, Method::kInit, "there is no thread for its background", now);
+  return false;
+}
+
+// False: it hangs. Then the instance is not touched any more, not even by kill.
+bool TaskSet::end_background(Task& task, Nanoseconds now) {
+  if (task.background == nullptr) return true;
+  if (writer_ == nullptr) {
+    run_background(task, Method::kKill, now);
+    task.background = nullptr;
+    return true;
+  }
+  task.background = nullptr;
+  chimera_fault fault{};
+  const BackgroundWriter::End end = writer_->remove(task.instance, fault);
+  if (end != BackgroundWriter::End::kDone) record_fault(task, Method::kKill, fault.text, now);
+  if (end != BackgroundWriter::End::kStalled) return true;
+  memories_[task.id.index].abandon(task);
+  return false;
 }
 
 // A task that is being killed is ON no more, whatever its kill does.

@@ -173,10 +173,15 @@ typedef struct chimera_call {
 
 typedef int32_t (*chimera_method)(void* state, const chimera_call* call);
 
+/* What may wait: files, sockets. Called about every 10 ms by a thread without real-time rights from the end of init
+ * on, and once more before kill; beside the other methods, so what both sides touch crosses by atomics. Reads and
+ * writes no port. CHIMERA_OK, or CHIMERA_FAULT with a text: then it is not called again. */
+typedef int32_t (*chimera_background)(void* state, chimera_fault* fault);
+
 /* A component. Constant, lives as long as the shared object. */
 typedef struct chimera_component {
   uint32_t abi_version; /* CHIMERA_ABI_VERSION */
-  uint32_t struct_size; /* sizeof(chimera_component) */
+  uint32_t struct_size; /* sizeof(chimera_component); an object that ends before `background` has none */
   const char* name;
   const char* doc;
   const char* source;   /* paper or book behind it; "" for none */
@@ -189,6 +194,7 @@ typedef struct chimera_component {
   int32_t (*construct)(void* state, chimera_fault* fault);
   void (*destroy)(void* state);
   chimera_method methods[CHIMERA_METHODS]; /* NULL: not written */
+  chimera_background background;           /* NULL: not written */
 } chimera_component;
 
 /* The one symbol of a shared object. NULL when `abi_version` is not the one it was built with. */

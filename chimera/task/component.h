@@ -17,6 +17,8 @@
 //   init reinit on cycle off kill   return nothing, or an Outcome: ok(), fault("text", code); cycle also aborted()
 //   sync                            returns bool (an event was taken), or an Outcome with no_event()
 //   error clear                     return bool (recovered; the cause is gone), or an Outcome
+// Beside them void background(), for what may wait: called every 10 ms or so by a thread without real-time rights,
+// while other methods run. docs/howto/write-a-component.md.
 // An exception that leaves a method is a fault with its text.
 #pragma once
 
@@ -97,6 +99,20 @@ constexpr chimera_method method_of() {
   else return nullptr;
 }
 
+template <class T>
+std::int32_t run_background(void* state, chimera_fault* fault) noexcept {
+  return guard(fault, [&]() -> std::int32_t {
+    static_cast<T*>(state)->background();
+    return CHIMERA_OK;
+  });
+}
+
+template <class T>
+constexpr chimera_background background_of() {
+  if constexpr (Name_background<T>::kCallable) return &run_background<T>;
+  else return nullptr;
+}
+
 /// The declaration of T in this object.
 template <class T>
 inline Declaration declared;
@@ -148,6 +164,7 @@ const chimera_component* declare() noexcept {
   made.methods[CHIMERA_KILL] = method_of<T, Name_kill<T>, Method::kKill>();
   made.methods[CHIMERA_ERROR] = method_of<T, Name_error<T>, Method::kError>();
   made.methods[CHIMERA_CLEAR] = method_of<T, Name_clear<T>, Method::kClear>();
+  made.background = background_of<T>();
   return &made;
 }
 

@@ -43,6 +43,7 @@ CHIMERA_FACE_NAME(off)
 CHIMERA_FACE_NAME(kill)
 CHIMERA_FACE_NAME(error)
 CHIMERA_FACE_NAME(clear)
+CHIMERA_FACE_NAME(background)
 
 // The usual misspellings, and the method that is meant: the one list. Only words that nobody chooses for something
 // else; a member counts only when it could be called as a method is.
@@ -103,6 +104,10 @@ constexpr bool check_signatures() {
   CHIMERA_FACE_ACTS(kill)
   CHIMERA_FACE_ANSWERS(error, "true: recovered")
   CHIMERA_FACE_ANSWERS(clear, "true: the cause is gone")
+  static_assert(!Name_background<T>::kFound || (Name_background<T>::kCallable && !Name_background<T>::kTakesCycle &&
+                                                Name_background<T>::kVoid),
+                "'background' runs beside the cycles: write it as void background(), public, or give this member "
+                "another name");
 #undef CHIMERA_FACE_ANSWERS
 #undef CHIMERA_FACE_ACTS
 #undef CHIMERA_FACE_CALLS

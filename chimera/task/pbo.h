@@ -217,6 +217,13 @@ static inline void pboDestroy(void* state) { (void)state; }
 #define PBO_OPTIONAL(m, Name, METHOD)                                     \
   int m##Name(m##Local_t* local) __attribute__((weak, visibility("hidden"))); \
   PBO_RUN(m, Name, METHOD)
+#define PBO_BACKGROUND(m)                                                                   \
+  void m##Background(m##Local_t* local) __attribute__((weak, visibility("hidden")));        \
+  static int32_t m##RunBackground(void* state, chimera_fault* fault) {                      \
+    (void)fault;                                                                            \
+    m##Background(&((m##State_t*)state)->local);                                            \
+    return CHIMERA_OK;                                                                      \
+  }
 #define PBO_TAKE(m, Name, METHOD) \
   if (m##Name != NULL) m##Component.methods[METHOD] = m##Run##Name;
 
@@ -234,6 +241,7 @@ static inline void pboDestroy(void* state) { (void)state; }
   PBO_OPTIONAL(m, Kill, CHIMERA_KILL)                                                               \
   PBO_OPTIONAL(m, Error, CHIMERA_ERROR)                                                             \
   PBO_OPTIONAL(m, Clear, CHIMERA_CLEAR)                                                             \
+  PBO_BACKGROUND(m)                                                                                 \
   static chimera_port_decl m##Declared[sizeof m##PortList / sizeof m##PortList[0]];                 \
   static chimera_component m##Component = {.name = #m, __VA_ARGS__};                                \
   static const chimera_component* m##Declare(void) {                                                \
@@ -259,6 +267,7 @@ static inline void pboDestroy(void* state) { (void)state; }
     PBO_TAKE(m, Kill, CHIMERA_KILL)                                                                 \
     PBO_TAKE(m, Error, CHIMERA_ERROR)                                                               \
     PBO_TAKE(m, Clear, CHIMERA_CLEAR)                                                               \
+    if (m##Background != NULL) m##Component.background = m##RunBackground;                          \
     return &m##Component;                                                                           \
   }                                                                                                 \
   __attribute__((constructor)) static void m##Offer(void) { (void)chimera_offer(m##Declare); }      \

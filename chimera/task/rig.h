@@ -111,6 +111,13 @@ class Rig {
   RigAnswer kill() { return run(Method::kKill); }
   RigAnswer error() { return run(Method::kError); }
   RigAnswer clear() { return run(Method::kClear); }
+  /// What the framework's thread without real-time rights calls; true when the component has none.
+  RigAnswer background() {
+    if (component_->background == nullptr) return {};
+    chimera_fault fault{};
+    const std::int32_t status = component_->background(state_.get(), &fault);
+    return {status, fault.code, fault.text};
+  }
 
   /// What Cycle::expired(), illegal() and dropped() say from now on.
   void expire(bool is_expired) { expired_ = is_expired; }

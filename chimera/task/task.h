@@ -75,6 +75,7 @@ struct Task {
   FixedVector<SentSignal, kOutboxSize> outbox;
 
   // Written by the executor and the task set at edges.
+  chimera_background background = nullptr;  ///< from the end of init to kill; null: the component has none
   bool in_service = false;  ///< init or kill is run by the service thread: nobody else touches the task
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
 };

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps its inputs of every cycle in memory and writes them as a CSV file when killed. README.md is the data sheet.
+// Writes its inputs of every cycle to a CSV file, beside the cycles. README.md is the data sheet.
+//
+//   cycle (one writer)                         background (one reader)
+//   ring[put mod capacity] = row               put (acquire) | text of the row | taken = taken + 1 (release)
+//   put = put + 1 (release)                    write; what the disk refuses stays in text_ and is offered again
+// A row is lost only here: when cycle finds capacity rows between taken and put.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chimera/task/component.h"
@@ -15,9 +24,7 @@ using namespace chimera;
 
 namespace {
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
+constexpr std::size_t kTextBytes = 1 << 16;  // gathered for one write
 
 double number_at(const std::byte* at, std::uint32_t type) noexcept {
   const auto as = [at]<class T>(T value) {
@@ -35,47 +42,75 @@ double number_at(const std::byte* at, std::uint32_t type) noexcept {
 
 struct CsvLog {
   Many<In<Any[]>>       in{"in*", "U", "[n<=16]", type = "T", doc = "What is kept: numbers or truth values."};
-  InConst<std::int32_t> capacity{"capacity", "1", initial = 10000, range(1, 1000000), doc = "Rows there is room for."};
-  Out<std::int32_t>     rows{"rows", "1", initial = 0, doc = "Rows kept."};
+  InConst<std::int32_t> capacity{"capacity", "1", initial = 10000, range(1, 1000000),
+                                 doc = "Rows that may wait for the disk."};
+  Out<std::int64_t>     rows{"rows", "1", initial = 0, doc = "Rows that found room: in the file, or on the way."};
   Out<std::int64_t>     lost{"lost", "1", initial = 0, doc = "Rows that found no room."};
+  Out<std::int32_t>     disk_error{"disk_error", "1", initial = 0,
+                                   doc = "0: the disk takes what it is given; else the error number of its refusal."};
   Resource              file{"file", doc = "The file to write; what was in it is lost."};
 
   void init() {
     check_inputs();
-    file_.reset(std::fopen(file.c_str(), "w"));
-    if (!file_) throw std::runtime_error(file.c_str() + std::string(": ") + std::strerror(errno));
+    file_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (file_ < 0) throw std::runtime_error(file.c_str() + std::string(": ") + std::strerror(errno));
+    columns_ = 1;
+    for (const auto& port : in) columns_ += port.size();
+    capacity_ = static_cast<std::uint64_t>(*capacity);
     // Filled, not reserved: the first touch of a page is a fault of the memory, and that belongs here.
-    values_.assign(columns() * static_cast<std::size_t>(*capacity), 0.0);
-    used_ = 0;
+    ring_.assign(columns_ * capacity_, 0.0);
+    text_.reserve(2 * kTextBytes);
+    text_ = header();
   }
   void on(Cycle c) {
-    if (used_ == 0) origin_ = c.now();
+    if (put_.load(std::memory_order_relaxed) == 0) origin_ = c.now();
   }
   void cycle(Cycle c) {
-    if (used_ + columns() > values_.size()) {
+    *disk_error = error_.load(std::memory_order_relaxed);
+    const std::uint64_t put = put_.load(std::memory_order_relaxed);
+    // SYNC: pairs with the release in background(): it is done with the rows it passed.
+    if (put - taken_.load(std::memory_order_acquire) >= capacity_) {
       *lost += 1;
       return;
     }
-    values_[used_++] = static_cast<double>((c.now() - origin_).count) * 1e-9;
+    double* row = ring_.data() + put % capacity_ * columns_;
+    *row++ = static_cast<double>((c.now() - origin_).count) * 1e-9;
     for (const auto& port : in) {
       const std::span<const std::byte> bytes = port.bytes();
       for (std::size_t i = 0; i < port.size(); ++i)
-        values_[used_++] = port.valid() ? number_at(bytes.data() + i * port.element_size(), port.element_type())
-                                        : std::nan("");
+        *row++ = port.valid() ? number_at(bytes.data() + i * port.element_size(), port.element_type()) : std::nan("");
     }
+    // SYNC: pairs with the acquire in background(): the row is whole before it is counted.
+    put_.store(put + 1, std::memory_order_release);
     *rows += 1;
   }
-  // Not in off(): that runs between the cycles of others and may not wait for a disk.
+  void background() {
+    // SYNC: pairs with the release in cycle().
+    const std::uint64_t put = put_.load(std::memory_order_acquire);
+    std::uint64_t taken = taken_.load(std::memory_order_relaxed);
+    do {
+      // What the disk has refused is offered again before more is taken.
+      const bool was_empty = text_.empty();
+      while (was_empty && taken != put && text_.size() < kTextBytes)
+        add_text(ring_.data() + taken++ % capacity_ * columns_);
+      // SYNC: pairs with the acquire in cycle(): those places are free.
+      taken_.store(taken, std::memory_order_release);
+    } while (!text_.empty() && write_text());
+  }
+  // The last background() has been: what is still here the disk refused.
   Outcome kill() {
-    if (!file_) return ok();
-    write_header();
-    for (std::size_t i = 0; i < used_; ++i) {
-      if (i % columns() != 0) std::fputc(',', file_.get());
-      if (!std::isnan(values_[i])) std::fprintf(file_.get(), "%.15g", values_[i]);
-      if ((i + 1) % columns() == 0) std::fputc('\n', file_.get());
+    if (file_ < 0) return ok();
+    const std::uint64_t left = rows_left();
+    const int refusal = error_.load(std::memory_order_relaxed);
+    const bool is_closed = ::close(std::exchange(file_, -1)) == 0;
+    if (left > 0) {
+      const std::string text = std::to_string(left) + " rows were not written: " + std::strerror(refusal);
+      return fault(text.c_str(), refusal);
     }
-    const bool is_written = std::ferror(file_.get()) == 0 && std::fclose(file_.release()) == 0;
-    return is_written ? ok() : fault("the file could not be written");
+    return is_closed ? ok() : fault("the file could not be closed");
+  }
+  ~CsvLog() {
+    if (file_ >= 0) ::close(file_);
   }
 
  private:
@@ -84,27 +119,62 @@ struct CsvLog {
     for (const auto& port : in)
       if (port.element_type() > CHIMERA_FLOAT64) throw std::runtime_error("texts and structs cannot be logged");
   }
-  std::size_t columns() const noexcept {
-    std::size_t count = 1;
-    for (const auto& port : in) count += port.size();
-    return count;
-  }
   // A component does not know the names of the variables it is joined to.
-  void write_header() const {
-    std::fputc('t', file_.get());
-    for (std::size_t p = 0; p < in.size(); ++p)
+  std::string header() const {
+    std::string line = "t";
+    for (std::size_t p = 0; p < in.size(); ++p) {
+      const std::string name = ",in[" + std::to_string(p) + "]";
       for (std::size_t i = 0; i < in[p].size(); ++i)
-        if (in[p].size() == 1) std::fprintf(file_.get(), ",in[%zu]", p);
-        else std::fprintf(file_.get(), ",in[%zu][%zu]", p, i);
-    std::fputc('\n', file_.get());
+        line += in[p].size() == 1 ? name : name + "[" + std::to_string(i) + "]";
+    }
+    return line + "\n";
+  }
+  void add_text(const double* row) {
+    char number[40];
+    for (std::size_t i = 0; i < columns_; ++i) {
+      if (i > 0) text_ += ',';
+      if (std::isnan(row[i])) continue;
+      std::snprintf(number, sizeof number, "%.15g", row[i]);
+      text_ += number;
+    }
+    text_ += '\n';
+  }
+  // False when the disk did not take all of it: the rest is offered again the next time.
+  bool write_text() {
+    std::size_t done = 0;
+    while (done < text_.size()) {
+      const ssize_t n = ::write(file_, text_.data() + done, text_.size() - done);
+      if (n > 0) done += static_cast<std::size_t>(n);
+      else if (n == 0 || errno != EINTR) break;
+    }
+    const bool is_whole = done == text_.size();
+    error_.store(is_whole ? 0 : errno, std::memory_order_relaxed);
+    text_.erase(0, done);
+    return is_whole;
+  }
+  // Begun ones counted; the first line of the file is none.
+  std::uint64_t rows_left() const {
+    std::uint64_t lines = 0;
+    for (const char c : text_) lines += c == '\n' ? 1 : 0;
+    const std::uint64_t in_ring = put_.load(std::memory_order_relaxed) - taken_.load(std::memory_order_relaxed);
+    const bool has_header = lines > 0 && lines > taken_.load(std::memory_order_relaxed);
+    return in_ring + lines - (has_header ? 1 : 0);
   }
 
-  std::unique_ptr<std::FILE, CloseFile> file_;
-  std::vector<double> values_;  // row by row
-  std::size_t used_ = 0;
+  // Fixed by init.
+  std::size_t columns_ = 1;
+  std::uint64_t capacity_ = 0;
+  std::vector<double> ring_;  // row by row
+  // Of cycle.
   Nanoseconds origin_;
+  alignas(64) std::atomic<std::uint64_t> put_{0};  // rows, ever
+  // Of background.
+  alignas(64) std::atomic<std::uint64_t> taken_{0};
+  std::atomic<int> error_{0};
+  std::string text_;  // on its way to the disk
+  int file_ = -1;
 };
 
-CHIMERA_COMPONENT(CsvLog, "csv_log", "Keeps its inputs of every cycle and writes a CSV file at the end.");
+CHIMERA_COMPONENT(CsvLog, "csv_log", "Writes its inputs of every cycle to a CSV file, beside the cycles.");
 
 }  // namespace

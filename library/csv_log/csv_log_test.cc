@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include "chimera/task/rig.h"
 
@@ -17,8 +24,8 @@ struct CsvLogTest : testing::Test {
 
   ~CsvLogTest() override { ::unlink(path.c_str()); }
 
-  void start(std::int32_t capacity) {
-    rig.instances("in", 2);
+  void start(std::int32_t capacity, std::uint32_t instances = 2) {
+    rig.instances("in", instances);
     rig.extent("n", 2);
     rig.set("capacity", capacity);
     rig.resource("file", path.c_str());
@@ -26,36 +33,61 @@ struct CsvLogTest : testing::Test {
     ASSERT_TRUE(made) << made.text;
     ASSERT_TRUE(rig.on());
   }
+  // As the framework ends a task: a last background, then kill.
+  RigAnswer end() {
+    EXPECT_TRUE(rig.background());
+    return rig.kill();
+  }
+  std::int64_t rows() { return rig.get<std::int64_t>("rows"); }
+  std::int64_t lost() { return rig.get<std::int64_t>("lost"); }
+  std::int32_t disk_error() { return rig.get<std::int32_t>("disk_error"); }
   std::string text() const {
     std::ostringstream all;
     all << std::ifstream(path).rdbuf();
     return all.str();
   }
+  // Rows in the file, each of them whole: five columns.
+  std::int64_t rows_in_file() const {
+    std::istringstream all(text());
+    std::string line;
+    std::int64_t n = -1;
+    while (std::getline(all, line)) {
+      EXPECT_EQ(std::count(line.begin(), line.end(), ','), 4) << line;
+      ++n;
+    }
+    return n;
+  }
 };
 
-TEST_F(CsvLogTest, WritesARowForEachCycleWhenItIsKilled) {
+TEST_F(CsvLogTest, WritesARowForEachCycleBesideTheCycles) {
   start(10);
   rig.set("in", 1.5, 0, 0);
   rig.set("in", -2.0, 1, 0);
   ASSERT_TRUE(rig.cycle());
   rig.set("in", 0.1, 0, 1);
   rig.set("in", 1e20, 1, 1);
+  EXPECT_EQ(text(), "");  // nothing on its way to the disk in a cycle
+  ASSERT_TRUE(rig.background());
+  EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,1.5,-2,,\n");
   ASSERT_TRUE(rig.cycle());
-  EXPECT_EQ(rig.get<std::int32_t>("rows"), 2);
-  EXPECT_EQ(text(), "");  // nothing on its way to the disk while others run
-  ASSERT_TRUE(rig.kill());
+  EXPECT_EQ(rows(), 2);
+  ASSERT_TRUE(end());
   EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n"
                     "0.001,1.5,-2,,\n"
                     "0.002,1.5,-2,0.1,1e+20\n");
 }
 
-TEST_F(CsvLogTest, CountsTheRowsThatFindNoRoom) {
+TEST_F(CsvLogTest, CountsTheRowsThatFindNoRoomAndGoesOnWhenThereIsSome) {
   start(2);
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(rig.cycle());
-  EXPECT_EQ(rig.get<std::int32_t>("rows"), 2);
-  EXPECT_EQ(rig.get<std::int64_t>("lost"), 3);
-  ASSERT_TRUE(rig.kill());
-  EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n");
+  EXPECT_EQ(rows(), 2);
+  EXPECT_EQ(lost(), 3);
+  ASSERT_TRUE(rig.background());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(rows(), 3);
+  EXPECT_EQ(lost(), 3);
+  ASSERT_TRUE(end());
+  EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n0.006,,,,\n");
 }
 
 TEST_F(CsvLogTest, GoesOnInTheSameFileAfterItWasOff) {
@@ -64,7 +96,7 @@ TEST_F(CsvLogTest, GoesOnInTheSameFileAfterItWasOff) {
   ASSERT_TRUE(rig.off());
   ASSERT_TRUE(rig.on());
   ASSERT_TRUE(rig.cycle());
-  ASSERT_TRUE(rig.kill());
+  ASSERT_TRUE(end());
   EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n");
 }
 
@@ -75,6 +107,94 @@ TEST_F(CsvLogTest, RefusesAFileThatCannotBeWrittenAndNothingToLog) {
   EXPECT_EQ(rig.init().text, "/no/such/folder/log.csv: No such file or directory");
   rig.instances("in", 0);
   EXPECT_EQ(rig.init().text, "there is nothing to log: name at least one input");
+}
+
+TEST_F(CsvLogTest, AFullDiskCostsRowsAndNoCycleAndKillSaysHowMany) {
+  path = "/dev/full";
+  start(10);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(disk_error(), 0);
+  ASSERT_TRUE(rig.background());
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(disk_error(), ENOSPC);
+  EXPECT_EQ(rows(), 10);
+  EXPECT_EQ(lost(), 14);
+  const RigAnswer killed = end();
+  EXPECT_EQ(killed.text, "10 rows were not written: No space left on device");
+  EXPECT_EQ(killed.code, ENOSPC);
+  path = "";
+}
+
+TEST_F(CsvLogTest, ADiskThatFailsIsTold) {
+  path = "/proc/self/mem";  // at its start nothing is mapped: EIO
+  start(10);
+  ASSERT_TRUE(rig.cycle());
+  ASSERT_TRUE(rig.background());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(disk_error(), EIO);
+  EXPECT_EQ(end().text, "2 rows were not written: Input/output error");
+  path = "";
+}
+
+// A limit of the file's size refuses as a full disk does, in the middle of a row, and can be lifted.
+TEST_F(CsvLogTest, ADiskThatHasRoomAgainGetsEveryRowThatWasKeptWhole) {
+  start(50);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit tight{.rlim_cur = 500, .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
+  std::int64_t cycles = 0;
+  for (; cycles < 200; ++cycles) {
+    ASSERT_TRUE(rig.cycle());
+    if (cycles % 10 == 9) (void)rig.background();
+  }
+  EXPECT_EQ(disk_error(), EFBIG);
+  EXPECT_GT(lost(), 0);
+  EXPECT_EQ(rows() + lost(), cycles);
+  EXPECT_EQ(text().size(), 500u);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  const std::int64_t lost_by_then = lost();
+  ASSERT_TRUE(rig.background());
+  for (; cycles < 230; ++cycles) ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(disk_error(), 0);
+  EXPECT_EQ(lost(), lost_by_then);
+  ASSERT_TRUE(end());
+  EXPECT_EQ(rows_in_file(), rows());
+  EXPECT_EQ(rows() + lost(), cycles);
+}
+
+// A pipe that nobody empties stalls whoever writes to it. Cycles go on meanwhile, here as fast as they can.
+TEST_F(CsvLogTest, AStalledDiskHoldsUpNoCycleAndEveryRowIsWrittenOrCounted) {
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const int reading = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);
+  start(1000);
+  std::atomic<bool> ending{false};
+  std::thread disk([&] {
+    while (!ending) (void)rig.background();
+  });
+  constexpr std::int64_t kCycles = 200'000;
+  for (std::int64_t i = 0; i < kCycles; ++i) (void)rig.cycle();
+  EXPECT_GT(lost(), 0);
+  EXPECT_EQ(rows() + lost(), kCycles);
+  std::int64_t lines = 0;
+  std::atomic<bool> is_over{false};
+  std::thread reader([&] {
+    char bytes[4096];
+    for (;;) {
+      const bool last = is_over;
+      const ssize_t n = ::read(reading, bytes, sizeof bytes);
+      if (n > 0) lines += std::count(bytes, bytes + n, '\n');
+      else if (last) return;
+    }
+  });
+  ending = true;
+  disk.join();
+  EXPECT_TRUE(end());
+  is_over = true;
+  reader.join();
+  ::close(reading);
+  EXPECT_EQ(lines - 1, rows());
 }
 
 }  // namespace

@@ -164,6 +164,8 @@ bool Preemptive::take_processor(const Job& job, Nanoseconds now) noexcept {
     a.first_start = now;
     a.used = Nanoseconds{};
     const bool had_event = a.body.answer != Answer::kNoEvent;
+    Task& task = releases_.task(job.task);
+    if (task.background != nullptr && had_event) run_background(task, Method::kCycle, now);
     a.remaining = modelled_time(tasks_[job.task.index], job.task, job.release - releases_.origin(), clock_.spent(),
                                 had_event, options_.seed ? &*options_.seed : nullptr);
     a.has_begun = true;

@@ -9,6 +9,7 @@ namespace {
 
 // Virtual time without preemption: a job ends when its modelled time is used up; nothing else makes time pass.
 struct ModelledTime {
+  Releases& releases;
   ModelledClock& clock;
   std::span<const TaskSpec> tasks;
   const std::uint64_t* seed;  // null: none
@@ -22,6 +23,8 @@ struct ModelledTime {
   void wait_until(Nanoseconds instant) noexcept { set(instant); }
   Nanoseconds end_of(const Job& job, BodyEnd body, Nanoseconds start) noexcept {
     const bool had_event = body.answer != Answer::kNoEvent;
+    Task& task = releases.task(job.task);
+    if (task.background != nullptr && had_event) run_background(task, Method::kCycle, start);
     set(start + modelled_time(tasks[job.task.index], job.task, job.release - origin, clock.spent(), had_event, seed));
     return now_;
   }
@@ -58,7 +61,7 @@ RunEnd VirtualExecutor::run(Nanoseconds duration) noexcept {
   const Nanoseconds until = duration == kNever ? kNever : origin() + duration;
   clock_.set(now_);
   if (how_.preemptive) return preemptive_.run(now_, until);
-  ModelledTime time{clock_, set_.spec().tasks, how_.seed ? &*how_.seed : nullptr, origin(), now_};
+  ModelledTime time{releases_, clock_, set_.spec().tasks, how_.seed ? &*how_.seed : nullptr, origin(), now_};
   return run_cycles(releases_, time, until);
 }
 

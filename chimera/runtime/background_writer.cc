@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/background_writer.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstring>
+#include <mutex>
+
+#include "chimera/base/assert.h"
+
+namespace chimera {
+
+/// One instance and its thread.
+struct BackgroundWriter::Worker {
+  void* instance = nullptr;
+  chimera_background background = nullptr;
+  Nanoseconds every;
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool ending = false;  // under the mutex, as all below
+  bool ended = false;
+  bool failed = false;
+  chimera_fault fault{};
+
+  void run() {
+    std::unique_lock lock(mutex);
+    for (bool last = false; !last;) {
+      changed.wait_for(lock, std::chrono::nanoseconds(every.count), [this] { return ending; });
+      last = ending;
+      if (failed) continue;
+      chimera_fault said{};
+      lock.unlock();
+      const bool good = background(instance, &said) == CHIMERA_OK;
+      lock.lock();
+      if (good) continue;
+      failed = true;
+      fault = said;
+      fault.text[CHIMERA_FAULT_TEXT - 1] = '\0';
+    }
+    ended = true;
+    changed.notify_all();
+  }
+};
+
+namespace {
+
+template <class Worker>
+void* run_worker(void* shared) {
+  sigset_t all;
+  sigfillset(&all);
+  pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals are for the threads that wait for them
+  const std::unique_ptr<std::shared_ptr<Worker>> worker(static_cast<std::shared_ptr<Worker>*>(shared));
+  (*worker)->run();
+  return nullptr;
+}
+
+// An ordinary thread on any CPU, whatever the thread is that makes it.
+void make_ordinary(pthread_attr_t& attributes) {
+  const sched_param none{.sched_priority = 0};
+  cpu_set_t any;
+  std::memset(&any, 0xff, sizeof any);
+  pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+  pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
+  pthread_attr_setschedparam(&attributes, &none);
+  pthread_attr_setaffinity_np(&attributes, sizeof any, &any);
+  pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
+}
+
+}  // namespace
+
+BackgroundWriter::BackgroundWriter(Nanoseconds every, Nanoseconds limit) noexcept : every_(every), limit_(limit) {}
+
+BackgroundWriter::~BackgroundWriter() {
+  chimera_fault unheard{};
+  for (const auto& worker : workers_) (void)end(*worker, unheard);
+}
+
+bool BackgroundWriter::add(void* instance, chimera_background background) {
+  auto worker = std::make_shared<Worker>();
+  worker->instance = instance;
+  worker->background = background;
+  worker->every = every_;
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) != 0) return false;
+  make_ordinary(attributes);
+  auto* shared = new std::shared_ptr<Worker>(worker);
+  pthread_t thread;
+  const bool made = pthread_create(&thread, &attributes, &run_worker<Worker>, shared) == 0;
+  pthread_attr_destroy(&attributes);
+  if (made) workers_.push_back(std::move(worker));
+  else delete shared;
+  return made;
+}
+
+BackgroundWriter::End BackgroundWriter::remove(void* instance, chimera_fault& fault) {
+  const auto at = std::find_if(workers_.begin(), workers_.end(),
+                               [instance](const auto& worker) { return worker->instance == instance; });
+  CHIMERA_ASSERT(at != workers_.end());
+  const auto worker = *at;
+  workers_.erase(at);
+  return end(*worker, fault);
+}
+
+BackgroundWriter::End BackgroundWriter::end(Worker& worker, chimera_fault& fault) const {
+  std::unique_lock lock(worker.mutex);
+  worker.ending = true;
+  worker.changed.notify_all();
+  if (!worker.changed.wait_for(lock, std::chrono::nanoseconds(limit_.count), [&] { return worker.ended; })) {
+    fault.code = 0;
+    std::snprintf(fault.text, sizeof fault.text, "its background did not return within %.3g s: what it holds is lost",
+                  to_seconds(limit_));
+    return End::kStalled;
+  }
+  fault = worker.fault;
+  return worker.failed ? End::kFault : End::kDone;
+}
+
+}  // namespace chimera

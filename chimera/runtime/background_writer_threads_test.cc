@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/background_writer.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+namespace chimera {
+namespace {
+
+struct Disk {
+  std::atomic<int> calls{0};
+  std::atomic<bool> is_stalled{false}, fails{false};
+  std::atomic<int> policy{-1};
+};
+
+std::int32_t write(void* state, chimera_fault* fault) {
+  Disk& disk = *static_cast<Disk*>(state);
+  ++disk.calls;
+  disk.policy = sched_getscheduler(0);
+  while (disk.is_stalled) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (!disk.fails) return CHIMERA_OK;
+  std::strcpy(fault->text, "it burns");
+  return CHIMERA_FAULT;
+}
+
+// Bounded: a call that never comes fails the test, and does not hang it.
+void await(const Disk& disk, int calls) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (disk.calls < calls && std::chrono::steady_clock::now() < until) std::this_thread::yield();
+  ASSERT_GE(disk.calls, calls);
+}
+
+struct BackgroundWriters : testing::Test {
+  BackgroundWriter writer{milliseconds(1), milliseconds(200)};
+  chimera_fault fault{};
+};
+
+TEST_F(BackgroundWriters, CallAgainAndAgainAndOnceMoreAtTheEnd) {
+  Disk disk;
+  ASSERT_TRUE(writer.add(&disk, write));
+  await(disk, 3);
+  EXPECT_EQ(disk.policy, SCHED_OTHER);
+  EXPECT_EQ(writer.remove(&disk, fault), BackgroundWriter::End::kDone);
+  EXPECT_STREQ(fault.text, "");
+  const int calls = disk.calls;
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(disk.calls, calls);
+}
+
+TEST_F(BackgroundWriters, CallOnceEvenWhenTheEndComesAtOnce) {
+  Disk disk;
+  BackgroundWriter slow(seconds(3600), seconds(20));
+  ASSERT_TRUE(slow.add(&disk, write));
+  EXPECT_EQ(slow.remove(&disk, fault), BackgroundWriter::End::kDone);
+  EXPECT_EQ(disk.calls, 1);
+}
+
+TEST_F(BackgroundWriters, DoNotCallAgainWhatFailedAndSayWhy) {
+  Disk disk;
+  disk.fails = true;
+  ASSERT_TRUE(writer.add(&disk, write));
+  await(disk, 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(writer.remove(&disk, fault), BackgroundWriter::End::kFault);
+  EXPECT_STREQ(fault.text, "it burns");
+  EXPECT_EQ(disk.calls, 1);
+}
+
+TEST_F(BackgroundWriters, DoNotWaitForAStalledOneNorLetItHoldUpOthers) {
+  Disk other;
+  static Disk stalled;  // must stay: its thread is in it
+  stalled.is_stalled = true;
+  ASSERT_TRUE(writer.add(&stalled, write));
+  ASSERT_TRUE(writer.add(&other, write));
+  await(stalled, 1);
+  await(other, 5);
+  EXPECT_EQ(writer.remove(&stalled, fault), BackgroundWriter::End::kStalled);
+  EXPECT_STREQ(fault.text, "its background did not return within 0.2 s: what it holds is lost");
+  const int calls = other.calls;
+  await(other, calls + 3);
+  EXPECT_EQ(writer.remove(&other, fault), BackgroundWriter::End::kDone);
+  stalled.is_stalled = false;
+}
+
+}  // namespace
+}  // namespace chimera

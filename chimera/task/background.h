@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "chimera/task/abi.h"
+
+namespace chimera {
+
+/// What the component does beside its cycles; null: nothing, or it was built before there was such a thing.
+/// Context: any; wait-free.
+inline chimera_background background_of(const chimera_component& component) noexcept {
+  return component.struct_size >= sizeof(chimera_component) ? component.background : nullptr;
+}
+
+}  // namespace chimera
