@@ -33,8 +33,13 @@ Result<void> KeptPeers::start_all() {
   new (keeper_.writable().data()) KeeperPage;
   page().origin = clock_.now();
   page().n_rtpus = plan_.n_rtpus;
-  for (std::uint32_t index = 0; index < size(); ++index)
-    if (auto started = start(index); !started) return started;
+  // The manager has most to do before it can serve; the inventory it is owed is told as it comes into being.
+  if (auto started = start(manager()); !started) return started;
+  for (std::uint32_t rtpu = 0; rtpu < manager(); ++rtpu) {
+    if (auto started = start(rtpu); !started) return started;
+    introduce(rtpu);
+  }
+  tell(manager(), {.kind = Kind::kComplete});
   return {};
 }
 
@@ -57,13 +62,12 @@ Result<void> KeptPeers::start(std::uint32_t index) {
   peer.channel = std::move(ends->first);
   peer.last = {.kind = Kind::kStarted, .index = index, .incarnation = incarnation, .pid = peer.process.pid(),
                .at = clock_.now()};
-  introduce(index);
   return {};
 }
 
 void KeptPeers::restart(std::uint32_t index) {
   const auto started = start(index);
-  if (started) return;
+  if (started) return introduce(index);
   std::fprintf(stderr, "%s\n", started.error().message.c_str());
   ++peers_[index].last.incarnation;
   end(index, {.by_signal = false, .code = 127});
