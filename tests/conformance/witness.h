@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// For real-time tests: nothing is judged while the host did not let even a thread above everything else run in time.
+#pragma once
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <thread>
+
+#include "chimera/platform/linux/linux_clock.h"
+
+namespace chimera::toy {
+
+inline constexpr Nanoseconds kWitnessPeriod = milliseconds(1);
+inline constexpr Nanoseconds kGapAllowed = microseconds(200);  // 10 % of the shortest period
+
+inline void pin_here(int priority) {
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(static_cast<unsigned>(std::max(1u, std::thread::hardware_concurrency()) - 1), &one);
+  pthread_setaffinity_np(pthread_self(), sizeof one, &one);
+  const sched_param p{.sched_priority = priority};
+  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &p) != 0) {
+    std::printf("no real-time rights: the run is more likely not to be judged\n");
+  }
+}
+
+// Sleeps to absolute instants on the same processor, above everything, and keeps the largest lateness it saw.
+class Witness {
+ public:
+  Witness() : thread_([this] { watch(); }) {}
+  Nanoseconds worst() {
+    stop_.store(true);
+    thread_.join();
+    return worst_;
+  }
+
+ private:
+  void watch() {
+    pin_here(60);
+    LinuxClock clock;
+    for (Nanoseconds next = clock.now() + kWitnessPeriod; !stop_.load(); next += kWitnessPeriod) {
+      clock.wait_until(next);
+      worst_ = std::max(worst_, clock.now() - next);
+    }
+  }
+  std::atomic<bool> stop_{false};
+  Nanoseconds worst_;
+  std::thread thread_;
+};
+
+}  // namespace chimera::toy
