@@ -45,17 +45,19 @@ inline constexpr const char* kDescribed = R"({
                                        {"name": "hand", "tasks": ["pid", "arm"]}],
     "tasks": [{"task": "trajectory", "component": "joint_trajectory", "rtpu": "spare", "ports": []},
               {"task": "pid", "component": "pid_joint", "rtpu": "servo",
-               "ports": [{"name": "q", "kind": "in-var", "variable": "q", "type": "float64", "unit": "rad",
+               "ports": [{"port": "q", "kind": "in-var", "variable": "q", "type": "float64", "unit": "rad",
                           "shape": "[2]"}]},
               {"task": "arm", "component": "puma_torque", "rtpu": "servo", "ports": []}],
     "variables": [
-      {"name": "q", "type": "float64", "unit": "rad", "shape": "[2]", "producers": ["arm"], "consumers": ["pid"],
-       "operator": false},
-      {"name": "q_ref", "type": "float64", "unit": "rad", "shape": "[2]", "producers": ["trajectory"],
-       "consumers": ["pid"], "operator": false},
-      {"name": "error", "type": "float64", "unit": "rad", "shape": "", "producers": ["pid"], "consumers": [],
-       "operator": false},
-      {"name": "kp", "type": "float64", "unit": "N.m/rad", "shape": "[2]", "producers": [], "consumers": ["pid"],
-       "operator": true}]})";
+      {"variable": "q", "type": "float64", "unit": "rad", "shape": "[2]", "constant": false, "given": false,
+       "producers": [{"task": "arm", "port": "q"}], "consumers": [{"task": "pid", "port": "q"}]},
+      {"variable": "q_ref", "type": "float64", "unit": "rad", "shape": "[2]", "constant": false, "given": false,
+       "producers": [{"task": "trajectory", "port": "q_ref"}], "consumers": [{"task": "pid", "port": "q_ref"}]},
+      {"variable": "error", "type": "float64", "unit": "rad", "shape": "", "constant": false, "given": false,
+       "producers": [{"task": "pid", "port": "error"}], "consumers": []},
+      {"variable": "ndof", "type": "int32", "unit": "1", "shape": "", "constant": true, "given": true,
+       "producers": [], "consumers": []},
+      {"variable": "kp", "type": "float64", "unit": "N.m/rad", "shape": "[2]", "constant": false, "given": true,
+       "producers": [], "consumers": [{"task": "pid", "port": "kp"}]}]})";
 
 }  // namespace chimera::shell::test

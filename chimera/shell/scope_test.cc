@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/scope.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+namespace chimera::shell {
+namespace {
+
+using Json = nlohmann::json;
+
+const UnitSystem& units() {
+  static const std::string file = std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml";
+  static const UnitSystem system = UnitSystem::load(std::span(&file, 1)).value();
+  return system;
+}
+
+ScopeChannel channel(const std::string& name, const std::string& unit, bool is_scalar = true) {
+  return {read_channel(name).value(), unit, is_scalar};
+}
+
+ScopeRequest request(const std::string& trigger, std::int64_t pre_ms, std::int64_t for_ms) {
+  ScopeRequest asked;
+  asked.channels = {channel("error", "rad"), channel("q", "rad", false)};
+  if (!trigger.empty()) {
+    asked.trigger = Trigger::read(trigger, units()).value();
+    EXPECT_TRUE(asked.trigger->settle("rad", units()));
+  }
+  asked.pre = milliseconds(pre_ms);
+  asked.duration = milliseconds(for_ms);
+  return asked;
+}
+
+/// A message of pid with rows [at ms, sequence, error].
+Json pid(std::uint64_t first, std::vector<std::array<double, 3>> rows) {
+  Json json = {{"rtpu", "servo"}, {"task", "pid"}, {"variables", {"error"}}, {"first", first}, {"lost", 0}};
+  json["rows"] = Json::array();
+  for (const auto& [at, sequence, error] : rows)
+    json["rows"].push_back({std::int64_t(at * 1e6), std::int64_t(sequence), Json::array({error})});
+  return json;
+}
+
+/// A message of arm with one row, both elements `value`.
+Json arm(std::uint64_t first, std::int64_t at_ms, double value) {
+  return {{"rtpu", "servo"}, {"task", "arm"}, {"variables", {"q"}}, {"first", first}, {"lost", 0},
+          {"rows", Json::array({Json::array({at_ms * 1'000'000, first + 1, {value, value}})})}};
+}
+
+TEST(Scope, KeepsWhatWasBeforeTheTriggerAndEndsAfterIt) {
+  Scope scope(request("error > 2 mrad", 2, 1));
+  scope.take(pid(0, {{1000, 1, 0}, {1001, 2, 0}, {1002, 3, 0.001}, {1003, 4, 0.002}}));
+  scope.take(arm(0, 1002, 7));
+  EXPECT_FALSE(scope.is_triggered());
+  scope.take(pid(4, {{1004, 5, 0.003}, {1005, 6, 0.004}, {1006, 7, 0}}));
+  ASSERT_TRUE(scope.is_triggered());
+  EXPECT_EQ(scope.begin(), milliseconds(1004));
+  EXPECT_FALSE(scope.is_complete()) << "arm has not come so far";
+  scope.take(arm(1, 1005, 8));
+  EXPECT_TRUE(scope.is_complete());
+  EXPECT_EQ(scope.csv(),
+            "t [s],error [rad],q[0] [rad],q[1] [rad],lost\n"
+            "-0.002000000,0.001,7,7,0\n"
+            "-0.001000000,0.002,,,0\n"
+            "0.000000000,0.0030000000000000001,,,0\n"
+            "0.001000000,0.0040000000000000001,8,8,0\n");
+  EXPECT_EQ(scope.summary(), "6 rows, no gap");
+}
+
+TEST(Scope, WithoutATriggerItBeginsWithTheFirstRow) {
+  ScopeRequest asked = request("", 0, 2);
+  asked.channels.pop_back();
+  Scope scope(asked);
+  scope.take(pid(0, {{5, 1, 1}, {6, 2, 2}}));
+  EXPECT_TRUE(scope.is_triggered());
+  EXPECT_FALSE(scope.is_complete());
+  scope.take(pid(2, {{7, 3, 3}, {8, 4, 4}}));
+  EXPECT_TRUE(scope.is_complete());
+  EXPECT_EQ(scope.rows(), 3u);
+}
+
+TEST(Scope, RowsThatWereLostAreCountedAndShown) {
+  ScopeRequest asked = request("", 0, 10);
+  asked.channels.pop_back();
+  Scope scope(asked);
+  scope.take(pid(0, {{1, 1, 1}, {2, 2, 2}}));
+  scope.take(pid(5, {{6, 6, 3}, {7, 7, 4}, {9, 9, 5}}));  // three rows of the tap, then one publication
+  EXPECT_EQ(scope.summary(), "5 rows; 2 gaps, 4 rows lost");
+  EXPECT_EQ(scope.csv(),
+            "t [s],error [rad],lost\n0.000000000,1,0\n0.001000000,2,0\n0.005000000,3,3\n0.006000000,4,0\n"
+            "0.008000000,5,1\n");
+  const draw::Plot plot = scope.plot("t", "");
+  ASSERT_EQ(plot.gaps.size(), 2u);
+  EXPECT_DOUBLE_EQ(plot.gaps[0].from, 0.001);
+  EXPECT_DOUBLE_EQ(plot.gaps[0].to, 0.005);
+  EXPECT_EQ(plot.gaps[0].text, "3 rows of pid lost");
+  EXPECT_EQ(plot.gaps[1].text, "1 row of pid lost");
+  ASSERT_EQ(plot.curves.size(), 1u);
+  ASSERT_EQ(plot.curves[0].points.size(), 7u);
+  EXPECT_TRUE(std::isnan(plot.curves[0].points[2].value)) << "the line is broken there";
+}
+
+TEST(Scope, ATaskThatWasMadeAnewBreaksTheLineButLosesNothing) {
+  ScopeRequest asked = request("", 0, 10);
+  asked.channels.pop_back();
+  Scope scope(asked);
+  scope.take(pid(0, {{1, 100, 1}, {2, 1, 2}}));
+  EXPECT_EQ(scope.lost_rows(), 0u);
+  EXPECT_EQ(scope.plot("t", "").curves[0].points.size(), 3u);
+}
+
+TEST(Scope, ThePictureHasTheTriggerAndItsLevel) {
+  Scope scope(request("error > 2 mrad", 5, 5));
+  scope.take(pid(0, {{1, 1, 0}, {2, 2, 0.003}}));
+  const draw::Plot plot = scope.plot("arm", "note");
+  EXPECT_EQ(plot.mark, 0);
+  EXPECT_DOUBLE_EQ(plot.level, 0.002);
+  EXPECT_EQ(plot.level_unit, "rad");
+  EXPECT_DOUBLE_EQ(plot.curves[0].points[0].at, -0.001);
+}
+
+TEST(Scope, MemoryIsBoundedWhileItWaits) {
+  Scope scope(request("error > 2 mrad", 3, 1));
+  for (int i = 0; i < 1000; ++i) scope.take(pid(std::uint64_t(i), {{i * 1.0, i + 1.0, 0}}));
+  scope.take(pid(1000, {{1000, 1001, 1}}));
+  EXPECT_EQ(scope.rows(), 4u);
+}
+
+TEST(Scope, OddMessagesArePassedOver) {
+  Scope scope(request("", 0, 1));
+  for (const char* odd : {"null", "{}", R"({"rows": 3})", R"({"rows": [1, [], ["a", 1], [1]]})",
+                          R"({"variables": ["q"], "rows": [[1, 2]]})", R"({"variables": ["x"], "rows": [[1, 2, 3]]})"})
+    scope.take(Json::parse(odd));
+  EXPECT_EQ(scope.lost_rows(), 0u);
+  EXPECT_EQ(scope.csv().substr(0, 12), "t [s],lost\n");
+}
+
+}  // namespace
+}  // namespace chimera::shell
