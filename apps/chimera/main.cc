@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/chimera/run_command.h"
+#include "apps/chimera/shell_words.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
 #include "chimera/desk/new.h"
@@ -21,6 +22,7 @@ struct Words {
   desk::NewRequest made;
   bool in_c = false;
   RunWords run;
+  std::shared_ptr<ShellWords> shell;
 };
 
 int print(const desk::Output& output) {
@@ -73,6 +75,8 @@ int carry_out(CLI::App& app, Words& words) {
   if (app.got_subcommand("new")) return print(make_new(app, words));
   if (app.got_subcommand("list")) return print(desk::list(workplace, words.json));
   if (app.got_subcommand("describe")) return print(desk::describe_component(words.component, workplace, words.json));
+  const int code = carry_out_shell_command(app, *words.shell, workplace.unit_files);
+  if (code >= 0) return code;
   if (app.got_subcommand("attend")) return carry_out_attend(words.run);
   return carry_out_run(words.run, workplace);
 }
@@ -94,6 +98,7 @@ int main(int argc, char** argv) {
   add_run(app, words.run);
   add_list(app, words);
   add_new(app, words);
+  words.shell = add_shell_commands(app);
   if (argc > 1 && argv[1][0] != '-' && !is_command(app, argv[1])) {
     std::fprintf(stderr, "no command '%s'; `chimera --help` lists them\n", argv[1]);
     return desk::kUsage;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/shell/columns.h"
+#include "chimera/shell/command.h"
 #include "chimera/shell/fields.h"
 
 namespace chimera::shell {
@@ -28,7 +28,7 @@ std::vector<std::string> candidates(const std::vector<std::string>& words, const
   const Takes takes = words.empty() ? Takes::kCommands : taken_by(words[0]);
   switch (takes) {
     case Takes::kCommands:
-      for (const CommandHelp& command : command_helps()) all.emplace_back(command.name);
+      for (const Command& command : commands()) all.emplace_back(command.name);
       break;
     case Takes::kTasks:
       all = names.tasks;
@@ -68,7 +68,8 @@ Result<std::vector<std::string>> words_of(std::string_view line) {
       else words.back() += c;
     }
   }
-  if (quote != 0) return Error{ErrorCode::kBadInput, {std::string("a ") + quote + " is not closed"}, {}};
+  if (quote == '"') return Error{ErrorCode::kBadInput, {"a \" is not closed"}, {}};
+  if (quote == '\'') return Error{ErrorCode::kBadInput, {"a ' is not closed"}, {}};
   return words;
 }
 
@@ -82,39 +83,6 @@ Names names_of(const nlohmann::json& described) {
   }
   for (const auto& set : field(described, "configurations")) names.configurations.push_back(text_of(set, "name"));
   return names;
-}
-
-const std::vector<CommandHelp>& command_helps() {
-  static const std::vector<CommandHelp> kHelps = {
-      {"clear", "clear TASK...", "bring tasks from ERROR to OFF"},
-      {"end", "end", "off, kill, and the end of every process"},
-      {"events", "events [--since N]", "what happened, numbered"},
-      {"flag", "flag up|down", "raise or lower the operator's part of the illegal-configuration flag"},
-      {"get", "get [VAR...]", "present values; without a name all"},
-      {"help", "help [COMMAND]", "this list, or one line of it"},
-      {"kill", "kill TASK...", "end tasks: back to NOT-CREATED"},
-      {"off", "off TASK...", "take tasks out of service"},
-      {"on", "on TASK...|CONFIGURATION", "put tasks into service together, in one step"},
-      {"profile", "profile", "what each task costs and how punctual it is"},
-      {"quit", "quit", "leave the shell; the subsystem goes on"},
-      {"reinit", "reinit TASK...", "read constants anew"},
-      {"save", "save [--write]", "values of the operator variables for the description; --write edits the file"},
-      {"scope", "scope VAR... --for T [--trigger EXPR]", "record what is published, to CSV and SVG"},
-      {"set", "set VAR VALUE", "a value with its unit for an operator variable"},
-      {"spawn", "spawn TASK...", "create and init tasks: OFF"},
-      {"status", "status", "real-time units, tasks, flag"},
-      {"top", "top", "the same live, on the whole screen"},
-      {"watch", "watch VAR...", "values live, with their recent course"},
-      {"why", "why VAR", "where a value comes from, and what is wrong with it"},
-  };
-  return kHelps;
-}
-
-std::string help_text(std::string_view command) {
-  std::string text;
-  for (const CommandHelp& help : command_helps())
-    if (command.empty() || command == help.name) text += fitted(help.usage, 40) + help.help + "\n";
-  return text;
 }
 
 std::vector<std::string> completions(std::string_view before, const Names& names) {

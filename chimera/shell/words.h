@@ -21,16 +21,6 @@ struct Names {
 };
 Names names_of(const nlohmann::json& described);
 
-/// The commands of `chimera shell`, in order of the alphabet, each with a line of help.
-struct CommandHelp {
-  const char* name;
-  const char* usage;
-  const char* help;
-};
-const std::vector<CommandHelp>& command_helps();
-/// What `help` prints; with a word the line of this command, or "" when there is none.
-std::string help_text(std::string_view command = {});
-
 /// What the last word of `before` (the line up to the cursor) could become, whole words in order: commands at the
 /// beginning, then what the command takes.
 std::vector<std::string> completions(std::string_view before, const Names& names);

@@ -60,13 +60,5 @@ TEST(Words, TheSharedBeginningIsWhatATabCanAdd) {
   EXPECT_EQ(shared_beginning({}), "");
 }
 
-TEST(Words, EveryCommandHasALineOfHelpInOrder) {
-  const auto& helps = command_helps();
-  for (std::size_t i = 1; i < helps.size(); ++i) EXPECT_LT(std::string(helps[i - 1].name), helps[i].name);
-  for (const CommandHelp& help : helps) EXPECT_TRUE(std::string(help.usage).starts_with(help.name));
-  EXPECT_EQ(help_text("why"), "why VAR                                 where a value comes from, and what is wrong with it\n");
-  EXPECT_EQ(help_text("nonsense"), "");
-}
-
 }  // namespace
 }  // namespace chimera::shell

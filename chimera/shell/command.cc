@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/command.h"
+
+#include <algorithm>
+
+#include "chimera/config/nearest.h"
+#include "chimera/shell/columns.h"
+
+namespace chimera::shell {
+namespace {
+
+constexpr std::size_t kAny = 10'000;
+
+std::vector<Command> table() {
+  const Option every{"--every", "TIME", "how often, such as '100 ms'"};
+  return {
+      {"clear", "TASK...", 1, kAny, "Bring tasks from ERROR to OFF", {}, "chimera clear pid"},
+      {"end", "", 0, 0, "End the subsystem: off, kill, and every process", {}, "chimera end"},
+      {"events", "", 0, 0, "What happened, numbered without a gap",
+       {{"--since", "N", "from this number on"}, {"--follow", nullptr, "go on with what happens, until Ctrl-C"}},
+       "chimera events --follow"},
+      {"flag", "up|down", 1, 1, "Raise or lower the operator's part of the illegal-configuration flag", {},
+       "chimera flag up"},
+      {"get", "VAR...", 0, kAny, "Present values; without a name all",
+       {{"--every", "TIME", "again and again, such as '1 s', until Ctrl-C"}}, "chimera get q kp"},
+      {"help", "[COMMAND]", 0, 1, "This list, or more about one command", {}, "help set", true},
+      {"kill", "TASK...", 1, kAny, "End tasks: back to NOT-CREATED", {}, "chimera kill pid"},
+      {"off", "TASK...", 1, kAny, "Take tasks out of service, in one step", {}, "chimera off pid arm"},
+      {"on", "TASK...", 1, kAny, "Put tasks, or those of a configuration, into service in one step", {},
+       "chimera on pid arm"},
+      {"profile", "", 0, 0, "What each task costs and how punctual it is", {}, "chimera profile"},
+      {"quit", "", 0, 0, "Leave the shell; the subsystem goes on", {}, "quit", true},
+      {"reinit", "TASK...", 1, kAny, "Have tasks read their constants anew", {}, "chimera reinit pid"},
+      {"save", "", 0, 0, "Show the operator's values in the words of the description",
+       {{"--write", nullptr, "write them into the description file; nothing else in it changes"}},
+       "chimera save --write"},
+      {"scope", "VAR...", 1, kAny, "Record everything that is published, round a trigger",
+       {{"--trigger", "EXPR", "begin when this comes true, such as 'error > 2 mrad'"},
+        {"--pre", "TIME", "keep this much from before the trigger, such as '50 ms'"},
+        {"--for", "TIME", "how long from the trigger on ('1 s')"},
+        {"--wait", "TIME", "how long to wait for the trigger ('60 s')"},
+        {"--csv", "FILE", "write the rows to this file"},
+        {"--svg", "FILE", "draw them into this file"}},
+       "chimera scope q tau --trigger 'error > 2 mrad' --pre '50 ms' --for '200 ms' --svg scope.svg"},
+      {"set", "VAR VALUE", 2, kAny, "Give an operator variable a value with its unit", {},
+       "chimera set kp '[100 90] N.m/rad'"},
+      {"spawn", "TASK...", 1, kAny, "Create and init tasks: OFF", {}, "chimera spawn pid"},
+      {"status", "", 0, 0, "Real-time units, tasks, flag", {}, "chimera status"},
+      {"top", "", 0, 0, "The same live, on the whole screen: q ends it", {every}, "chimera top"},
+      {"watch", "VAR...", 1, kAny, "Values live, with their recent course", {every}, "chimera watch q tau[2]"},
+      {"why", "VAR", 1, 1, "Where a value comes from, and what is wrong with it", {}, "chimera why tau"},
+  };
+}
+
+Error refused(const std::string& message) { return {ErrorCode::kBadInput, std::string_view(message), {}}; }
+
+std::string with_nearest(std::string message, const std::string& wrong, const std::vector<std::string>& names) {
+  const std::string near = nearest(wrong, names);
+  return near.empty() ? message : message + "; did you mean '" + near + "'?";
+}
+
+std::string usage(const Command& command) {
+  std::string text = command.name;
+  if (*command.operands != '\0') text += std::string(" ") + command.operands;
+  for (const Option& option : command.options)
+    text += std::string(" [") + option.name + (option.value ? std::string(" ") + option.value : "") + "]";
+  return text;
+}
+
+/// Takes the option at words[i], and its value if it has one.
+Result<void> read_option(Call& call, const std::vector<std::string>& words, std::size_t& i) {
+  if (words[i] == "--json") return call.json = true, Result<void>();
+  std::vector<std::string> names = {"--json"};
+  for (const Option& option : call.command->options) {
+    names.emplace_back(option.name);
+    if (words[i] != option.name) continue;
+    if (option.value == nullptr) return call.options[option.name] = "", Result<void>();
+    if (i + 1 == words.size()) return refused(words[i] + " needs a value: " + option.value);
+    ++i;
+    return call.options[option.name] = words[i], Result<void>();
+  }
+  return refused(with_nearest(std::string(call.command->name) + " has no option '" + words[i] + "'", words[i], names));
+}
+
+}  // namespace
+
+const std::vector<Command>& commands() {
+  static const std::vector<Command> kCommands = table();
+  return kCommands;
+}
+
+const Command* command_named(std::string_view name) {
+  for (const Command& command : commands())
+    if (name == command.name) return &command;
+  return nullptr;
+}
+
+std::string Call::value(std::string_view option) const {
+  const auto found = options.find(option);
+  return found == options.end() ? "" : found->second;
+}
+
+Result<Call> read_call(const std::vector<std::string>& words) {
+  Call call;
+  call.command = command_named(words.at(0));
+  if (call.command == nullptr) {
+    std::vector<std::string> names;
+    for (const Command& command : commands()) names.emplace_back(command.name);
+    return refused(with_nearest("no command '" + words[0] + "'", words[0], names) + "; `help` lists them");
+  }
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (!words[i].starts_with("--")) {
+      call.operands.push_back(words[i]);
+    } else if (const auto read = read_option(call, words, i); !read) {
+      return read.error();
+    }
+  }
+  if (call.operands.size() < call.command->least || call.operands.size() > call.command->most)
+    return refused("usage: " + usage(*call.command));
+  return call;
+}
+
+std::string help_text(std::string_view name) {
+  std::string text;
+  if (name.empty()) {
+    for (const Command& command : commands())
+      text += fitted(std::string(command.name) + " " + command.operands, 18) + command.help + "\n";
+    return text;
+  }
+  const Command* command = command_named(name);
+  if (command == nullptr) return "";
+  text = usage(*command) + "\n  " + command->help + "\n";
+  for (const Option& option : command->options)
+    text += "  " + fitted(std::string(option.name) + (option.value ? std::string(" ") + option.value : ""), 18) +
+            option.help + "\n";
+  return text + "  Example: " + command->example + "\n";
+}
+
+}  // namespace chimera::shell

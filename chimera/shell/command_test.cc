@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/command.h"
+
+#include <gtest/gtest.h>
+
+namespace chimera::shell {
+namespace {
+
+std::string refusal(const std::vector<std::string>& words) {
+  const auto call = read_call(words);
+  return call ? "none" : std::string(call.error().message.view());
+}
+
+TEST(Command, OperandsAndOptionsComeInAnyOrder) {
+  const auto call = read_call({"scope", "--for", "1 s", "q", "--json", "tau", "--csv", "a.csv"});
+  ASSERT_TRUE(call);
+  EXPECT_EQ(call->operands, (std::vector<std::string>{"q", "tau"}));
+  EXPECT_EQ(call->value("--for"), "1 s");
+  EXPECT_EQ(call->value("--svg"), "");
+  EXPECT_TRUE(call->has("--csv"));
+  EXPECT_TRUE(call->json);
+}
+
+TEST(Command, RefusesWithTheNearestName) {
+  EXPECT_EQ(refusal({"statsu"}), "no command 'statsu'; did you mean 'status'?; `help` lists them");
+  EXPECT_EQ(refusal({"events", "--sinc", "3"}), "events has no option '--sinc'; did you mean '--since'?");
+  EXPECT_EQ(refusal({"events", "--since"}), "--since needs a value: N");
+  EXPECT_EQ(refusal({"why"}), "usage: why VAR");
+  EXPECT_EQ(refusal({"status", "x"}), "usage: status");
+  EXPECT_EQ(refusal({"get"}), "none");
+}
+
+TEST(Command, TheTableIsInOrderAndComplete) {
+  for (std::size_t i = 0; i < commands().size(); ++i) {
+    const Command& command = commands()[i];
+    EXPECT_LT(i == 0 ? "" : std::string(commands()[i - 1].name), command.name);
+    const std::string begins = command.is_shells ? command.name : std::string("chimera ") + command.name;
+    EXPECT_TRUE(std::string(command.example).starts_with(begins)) << command.example;
+  }
+}
+
+TEST(Command, HelpTellsUsageOptionsAndAnExample) {
+  EXPECT_EQ(help_text("events"),
+            "events [--since N] [--follow]\n"
+            "  What happened, numbered without a gap\n"
+            "  --since N         from this number on\n"
+            "  --follow          go on with what happens, until Ctrl-C\n"
+            "  Example: chimera events --follow\n");
+  EXPECT_EQ(help_text("nonsense"), "");
+  EXPECT_NE(help_text().find("why VAR           Where a value comes from, and what is wrong with it\n"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace chimera::shell

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/interactive.h"
+
+#include <histedit.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <clocale>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "chimera/shell/carry_out.h"
+#include "chimera/shell/fields.h"
+#include "chimera/shell/place.h"
+#include "chimera/shell/terminal.h"
+#include "chimera/shell/words.h"
+
+namespace chimera::shell {
+namespace {
+
+int print(const Said& said, std::FILE* out, std::FILE* err) {
+  std::fputs(said.out.c_str(), out);
+  std::fputs(said.err.c_str(), err);
+  std::fflush(out);
+  return said.code;
+}
+
+struct Outcome {
+  int code = kOk;
+  bool is_quit = false;
+};
+
+/// One line, wherever it comes from.
+Outcome carry_out_line(Session& session, std::string_view line, std::FILE* out, std::FILE* err) {
+  const auto words = words_of(line);
+  if (!words) return {print(refused(words.error(), false, kUsage), out, err)};
+  if (words.value().empty()) return {};
+  const auto call = read_call(words.value());
+  if (!call) return {print(refused(call.error(), false, kUsage), out, err)};
+  const std::string_view name = call.value().command->name;
+  if (name == "quit") return {kOk, true};
+  if (name != "help") return {carry_out(session, call.value(), out, err)};
+  const std::string asked = call.value().operands.empty() ? "" : call.value().operands[0];
+  const std::string text = help_text(asked);
+  if (text.empty()) return {print({"", "no command '" + asked + "'; `help` lists them\n", kUsage}, out, err)};
+  return {print({text, "", kOk}, out, err)};
+}
+
+/// The line editor with its history and completion. One at a time.
+class Editor {
+ public:
+  Editor(const std::string& subsystem, Names names) : prompt_(subsystem + "> "), names_(std::move(names)) {
+    std::setlocale(LC_CTYPE, "");
+    edit_.reset(::el_init("chimera", stdin, stdout, stderr));
+    history_.reset(::history_init());
+    HistEvent event{};
+    ::history(history_.get(), &event, H_SETSIZE, 1000);
+    ::history(history_.get(), &event, H_SETUNIQUE, 1);
+    if (make_state_folder()) file_ = state_folder() + "/history";
+    if (!file_.empty()) ::history(history_.get(), &event, H_LOAD, file_.c_str());
+    ::el_set(edit_.get(), EL_CLIENTDATA, this);
+    ::el_set(edit_.get(), EL_PROMPT, &Editor::prompt);
+    ::el_set(edit_.get(), EL_EDITOR, "emacs");
+    ::el_set(edit_.get(), EL_SIGNAL, 1);
+    ::el_set(edit_.get(), EL_HIST, ::history, history_.get());
+    ::el_set(edit_.get(), EL_ADDFN, "complete", "complete a name", &Editor::complete);
+    ::el_set(edit_.get(), EL_BIND, "^I", "complete", nullptr);
+    ::el_set(edit_.get(), EL_BIND, "^R", "em-inc-search-prev", nullptr);
+  }
+  Editor(const Editor&) = delete;
+  Editor& operator=(const Editor&) = delete;
+
+  /// False at the end of the input. An interrupted line is empty.
+  bool read(std::string& line) {
+    int length = 0;
+    errno = 0;
+    const char* typed = ::el_gets(edit_.get(), &length);
+    line.clear();
+    if (typed == nullptr || length <= 0) {
+      std::fputc('\n', stdout);
+      ::el_reset(edit_.get());
+      return typed == nullptr && errno == EINTR;
+    }
+    line.assign(typed, static_cast<std::size_t>(length));
+    HistEvent event{};
+    if (line.find_first_not_of(" \t\n") != std::string::npos) {
+      ::history(history_.get(), &event, H_ENTER, line.c_str());
+      if (!file_.empty()) ::history(history_.get(), &event, H_SAVE, file_.c_str());
+    }
+    while (!line.empty() && line.back() == '\n') line.pop_back();
+    return true;
+  }
+
+ private:
+  struct End {
+    void operator()(EditLine* edit) const { ::el_end(edit); }
+    void operator()(History* history) const { ::history_end(history); }
+  };
+
+  static Editor& of(EditLine* edit) {
+    void* self = nullptr;
+    ::el_get(edit, EL_CLIENTDATA, &self);
+    return *static_cast<Editor*>(self);
+  }
+  static char* prompt(EditLine* edit) { return of(edit).prompt_.data(); }
+  static unsigned char complete(EditLine* edit, int) {
+    const LineInfo* line = ::el_line(edit);
+    const std::string before(line->buffer, static_cast<std::size_t>(line->cursor - line->buffer));
+    const std::vector<std::string> words = completions(before, of(edit).names_);
+    if (words.empty()) return CC_ERROR;
+    const std::size_t typed = before.size() - (before.find_last_of(" \t") + 1);  // npos + 1 is 0
+    std::string more = shared_beginning(words).substr(typed);
+    if (words.size() == 1) more += ' ';
+    if (!more.empty()) return ::el_insertstr(edit, more.c_str()) == 0 ? CC_REFRESH : CC_ERROR;
+    std::fputc('\n', stdout);
+    for (const std::string& word : words) std::printf("%s  ", word.c_str());
+    std::fputc('\n', stdout);
+    return CC_REDISPLAY;
+  }
+
+  std::string prompt_, file_;
+  Names names_;
+  std::unique_ptr<EditLine, End> edit_;
+  std::unique_ptr<History, End> history_;
+};
+
+/// At the prompt SIGINT gives up the line; while a command runs it acts as ever.
+class Interruptible {
+ public:
+  Interruptible() {
+    struct sigaction nothing {};
+    nothing.sa_handler = [](int) {};
+    ::sigaction(SIGINT, &nothing, &before_);
+  }
+  ~Interruptible() { ::sigaction(SIGINT, &before_, nullptr); }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+ private:
+  struct sigaction before_ {};
+};
+
+int typed(Session& session) {
+  const control::Answer hello = session.ask("hello"), described = session.ask("describe");
+  if (!hello.is_good()) return print(refused(hello, false), stdout, stderr);
+  Editor editor(text_of(*hello.result, "subsystem"), described.is_good() ? names_of(*described.result) : Names{});
+  for (std::string line;;) {
+    {
+      const Interruptible prompt;
+      if (!editor.read(line)) return kOk;
+    }
+    if (carry_out_line(session, line, stdout, stderr).is_quit) return kOk;
+  }
+}
+
+}  // namespace
+
+int run_script(Session& session, std::istream& script, const std::string& name, bool keeps_going, std::FILE* out,
+               std::FILE* err) {
+  int code = kOk, number = 0;
+  for (std::string line; std::getline(script, line);) {
+    ++number;
+    const Outcome outcome = carry_out_line(session, line, out, err);
+    if (outcome.is_quit) break;
+    if (outcome.code == kOk) continue;
+    if (code == kOk) code = outcome.code;
+    std::fprintf(err, "%s:%d: refused: %s\n", name.c_str(), number, plain_line(line).c_str());
+    if (!keeps_going) break;
+  }
+  return code;
+}
+
+int interactive(const Surroundings& surroundings, const std::string& script, bool keeps_going) {
+  std::ifstream file;
+  const bool is_file = !script.empty() && script != "-";
+  if (is_file) file.open(script);
+  if (is_file && !file) {
+    const std::string why = std::string("cannot be read: ") + std::strerror(errno);
+    const Error error{ErrorCode::kNotFound, std::string_view(why), std::string_view(script)};
+    return print(refused(error, false), stdout, stderr);
+  }
+  auto session = Session::open(surroundings);
+  if (!session) return print(refused(session.error(), false), stdout, stderr);
+  if (is_file) return run_script(*session, file, script, keeps_going, stdout, stderr);
+  if (script == "-" || !is_terminal(STDIN_FILENO))
+    return run_script(*session, std::cin, "-", keeps_going, stdout, stderr);
+  return typed(*session);
+}
+
+}  // namespace chimera::shell

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/live.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "chimera/config/quantity.h"
+#include "chimera/shell/answer_text.h"
+#include "chimera/shell/fields.h"
+#include "chimera/shell/one_shot.h"
+#include "chimera/shell/sparkline.h"
+#include "chimera/shell/terminal.h"
+#include "chimera/shell/top.h"
+#include "chimera/shell/watch.h"
+
+namespace chimera::shell {
+namespace {
+
+using Json = nlohmann::json;
+using By = Woken::By;
+
+int print(const Said& said, std::FILE* out, std::FILE* err) {
+  std::fputs(said.out.c_str(), out);
+  std::fputs(said.err.c_str(), err);
+  std::fflush(out);
+  return said.code;
+}
+
+/// The period of --every in whole milliseconds, as the protocol takes it.
+Result<std::int64_t> period_ms(const Call& call, std::int64_t otherwise) {
+  if (!call.has("--every")) return otherwise;
+  const auto every = parse_duration(call.value("--every"));
+  if (!every) return Error{ErrorCode::kBadInput, {"--every: " + std::string(every.error().message.view())}, {}};
+  const std::int64_t ms = every->count / 1'000'000;
+  if (ms < 20 || ms > 60'000)
+    return Error{ErrorCode::kBadInput, {"--every: found '" + call.value("--every") + "', expected 20 ms to 60 s"}, {}};
+  return ms;
+}
+
+/// What the session says when the connection ends under a command that goes on.
+int lost(const Error& error, const Call& call, std::FILE* out, std::FILE* err) {
+  return print(refused(error, call.json), out, err);
+}
+
+const char* style(TopLine::Look look) {
+  switch (look) {
+    case TopLine::Look::kHeading: return "\x1b[7m";
+    case TopLine::Look::kAlarm: return "\x1b[1;31m";
+    case TopLine::Look::kFaint: return "\x1b[2m";
+    default: return "";
+  }
+}
+
+std::string drawn(const std::vector<TopLine>& lines) {
+  std::string text;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    text += (i == 0 ? "" : "\r\n") + std::string(style(lines[i].look)) + lines[i].text + "\x1b[0m";
+  return text;
+}
+
+/// One screen for what is no terminal: without the keys and what is empty at its end.
+std::string printed(const Json& status) {
+  ScreenSize size = screen_size(STDOUT_FILENO);
+  size.height = std::max<std::size_t>(5 + field(status, "rtpus").size() + field(status, "tasks").size(), 6);
+  std::string text;
+  for (TopLine& line : top_lines(status, nullptr, {.width = size.width, .height = size.height})) {
+    line.text.erase(line.text.find_last_not_of(' ') + 1);
+    text += line.text + "\n";
+  }
+  return text.substr(0, text.find("q quit"));
+}
+
+/// Moves the view as a key asks; false when it asks for the end.
+bool obey(int key, TopView& view, const Json& status) {
+  if (key == 'q' || key == 'Q' || key == kKeyEnd) return false;
+  if (const auto order = order_of_key(key)) view.order = *order, view.skipped = 0;
+  const std::size_t page = view.height / 2;
+  if (key == kKeyUp || key == kKeyPageUp) view.skipped -= std::min(view.skipped, key == kKeyUp ? 1 : page);
+  if (key == kKeyDown || key == kKeyPageDown) view.skipped += key == kKeyDown ? 1 : page;
+  view.skipped = std::min(view.skipped, most_skipped(status, view));
+  return true;
+}
+
+/// Until somebody ends it; the error that ended it otherwise.
+std::optional<Error> top_on_screen(Session& session, const Json& first) {
+  Attention attention(true);
+  FullScreen screen;
+  Json now = first, before;
+  TopView view;
+  for (;;) {
+    const ScreenSize size = screen_size(STDOUT_FILENO);
+    view.width = size.width;
+    view.height = size.height;
+    screen.show(drawn(top_lines(now, before, view)));
+    Woken woken = attention.wait(&session.client(), seconds(60));
+    if (woken.by == By::kStop || (woken.by == By::kKey && !obey(woken.key, view, now))) return std::nullopt;
+    if (woken.by == By::kLost) return woken.error;
+    if (woken.by == By::kNote && woken.note.method == "status") before = std::move(now), now = *woken.note.parameters;
+  }
+}
+
+int top(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
+  const auto period = period_ms(call, 500);
+  if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
+  const control::Answer first = session.ask("status");
+  if (!first.is_good()) return print(refused(first, call.json), out, err);
+  const bool is_live = is_terminal(STDOUT_FILENO) && is_terminal(STDIN_FILENO) && !call.json;
+  if (!is_live) return print({call.json ? first.result->dump() + "\n" : printed(*first.result), "", kOk}, out, err);
+  const control::Answer subscribed = session.ask("subscribe", {{"to", "status"}, {"period_ms", period.value()}});
+  if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
+  const auto end = top_on_screen(session, *first.result);
+  session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
+  return end ? lost(*end, call, out, err) : kOk;
+}
+
+Result<std::vector<ChannelName>> channels_of(const Call& call) {
+  std::vector<ChannelName> channels;
+  for (const std::string& operand : call.operands) {
+    auto channel = read_channel(operand);
+    if (!channel) return channel.error();
+    channels.push_back(std::move(*channel));
+  }
+  return channels;
+}
+
+Json variables_of(const std::vector<ChannelName>& channels) {
+  Json names = Json::array();
+  for (const ChannelName& channel : channels)
+    if (std::find(names.begin(), names.end(), channel.variable) == names.end()) names.push_back(channel.variable);
+  return names;
+}
+
+/// Draws over the lines of the last time. They are no wider than the terminal, so that none wraps.
+void redraw(const std::vector<std::string>& lines, bool is_first, std::FILE* out) {
+  std::string text = is_first ? "" : "\r\x1b[" + std::to_string(lines.size()) + "A";
+  for (const std::string& line : lines) text += line + "\x1b[K\n";
+  std::fputs(text.c_str(), out);
+  std::fflush(out);
+}
+
+/// Prints what a subscription brings until somebody ends it. `show` prints one notification.
+template <class Show>
+int follow(Session& session, const Call& call, const Json& subscription, std::FILE* out, std::FILE* err,
+           const Show& show) {
+  const control::Answer subscribed = session.ask("subscribe", subscription);
+  if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
+  Attention attention(false);
+  for (;;) {
+    const Woken woken = attention.wait(&session.client(), seconds(60));
+    if (woken.by == By::kStop) break;
+    if (woken.by == By::kLost) return lost(woken.error, call, out, err);
+    if (woken.by != By::kNote) continue;
+    if (call.json) std::fprintf(out, "%s\n", woken.note.parameters->dump().c_str());
+    else show(woken.note);
+    std::fflush(out);
+  }
+  session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
+  return kOk;
+}
+
+int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
+  const bool is_live = is_terminal(STDOUT_FILENO);
+  const auto period = period_ms(call, is_live ? 100 : 1000);
+  if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
+  const auto channels = channels_of(call);
+  if (!channels) return print(refused(channels.error(), call.json, kUsage), out, err);
+  Watch shown(channels.value());
+  bool is_first = true;
+  const Json wanted = {{"to", "values"}, {"period_ms", period.value()}, {"variables", variables_of(channels.value())}};
+  return follow(session, call, wanted, out, err, [&](const control::Note& note) {
+    shown.take(field(*note.parameters, "values"));
+    const std::size_t width = screen_size(STDOUT_FILENO).width;
+    if (is_live) redraw(shown.lines(width > 1 ? width - 1 : 1, writes_unicode()), is_first, out);
+    else std::fprintf(out, "%s\n", shown.plain().c_str());
+    is_first = false;
+  });
+}
+
+int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
+  Call once = call;
+  once.options.erase("--follow");
+  const Said said = one_shot(session, once, {});
+  if (said.code != kOk) return print(said, out, err);
+  const std::string since = call.value("--since");
+  Json wanted = {{"to", "events"}};
+  wanted["since"] = since.empty() ? 0 : std::stoll(since);
+  return follow(session, call, wanted, out, err, [&](const control::Note& note) {
+    if (const std::int64_t gone = whole_of(*note.parameters, "lost"); gone > 0)
+      std::fprintf(out, "(%lld older events are gone)\n", static_cast<long long>(gone));
+    for (const Json& event : field(*note.parameters, "events")) std::fputs(event_line(event).c_str(), out);
+  });
+}
+
+int get_every(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
+  const auto period = period_ms(call, 1000);
+  if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
+  Attention attention(false);
+  for (;;) {
+    const Said said = one_shot(session, call, {});
+    if (print(said, out, err) != kOk) return said.code;
+    const Woken woken = attention.wait(nullptr, milliseconds(period.value()));
+    if (woken.by == By::kStop) return kOk;
+  }
+}
+
+}  // namespace
+
+bool is_live(const Call& call) {
+  const std::string_view name = call.command->name;
+  return name == "top" || name == "watch" || (name == "events" && call.has("--follow")) ||
+         (name == "get" && call.has("--every"));
+}
+
+int live(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
+  const std::string_view name = call.command->name;
+  if (name == "top") return top(session, call, out, err);
+  if (name == "watch") return watch(session, call, out, err);
+  return name == "events" ? follow_events(session, call, out, err) : get_every(session, call, out, err);
+}
+
+}  // namespace chimera::shell

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/one_shot.h"
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "chimera/shell/answer_text.h"
+#include "chimera/shell/fields.h"
+#include "chimera/shell/status_text.h"
+#include "chimera/shell/words.h"
+
+namespace chimera::shell {
+namespace {
+
+using Json = nlohmann::json;
+
+Said wrong(const std::string& message, bool json) {
+  return refused(Error{ErrorCode::kBadInput, std::string_view(message), {}}, json, kUsage);
+}
+
+/// The raw answer, or what `words` makes of it; or the refusal.
+template <class Words>
+Said tell(const control::Answer& answer, bool json, const Words& words) {
+  if (!answer.is_good()) return refused(answer, json);
+  return {json ? answer.result->dump() + "\n" : words(*answer.result), "", kOk};
+}
+
+/// A configuration stands for its tasks, unless a task has that name.
+std::vector<std::string> with_configuration(Session& session, std::vector<std::string> tasks) {
+  const control::Answer described = session.ask("describe");
+  if (tasks.size() != 1 || !described.is_good()) return tasks;
+  const Names names = names_of(*described.result);
+  if (std::find(names.tasks.begin(), names.tasks.end(), tasks[0]) != names.tasks.end()) return tasks;
+  for (const Json& set : field(*described.result, "configurations"))
+    if (text_of(set, "name") == tasks[0]) return texts_of(set, "tasks");
+  return tasks;
+}
+
+Said signal(Session& session, const Call& call) {
+  std::vector<std::string> tasks = call.operands;
+  if (std::string_view(call.command->name) == "on") tasks = with_configuration(session, std::move(tasks));
+  return tell(session.ask("signal", {{"signal", call.command->name}, {"tasks", tasks}}), call.json, signal_text);
+}
+
+Said set(Session& session, const Call& call) {
+  std::string value = call.operands[1];
+  for (std::size_t i = 2; i < call.operands.size(); ++i) value += " " + call.operands[i];
+  return tell(session.ask("set", {{"values", {{call.operands[0], value}}}}), call.json, readings_text);
+}
+
+Said events(Session& session, const Call& call) {
+  std::int64_t since = 0;
+  const std::string text = call.value("--since");
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), since);
+  if (call.has("--since") && (error != std::errc() || end != text.data() + text.size() || since < 0))
+    return wrong("--since: '" + text + "' is no number of an event", call.json);
+  return tell(session.ask("events", {{"since", since}}), call.json,
+              [&](const Json& answer) { return events_text(answer, since); });
+}
+
+Said flag(Session& session, const Call& call) {
+  if (call.operands[0] != "up" && call.operands[0] != "down")
+    return wrong("flag: found '" + call.operands[0] + "', expected up or down", call.json);
+  return tell(session.ask("flag", {{"up", call.operands[0] == "up"}}), call.json, flag_text);
+}
+
+}  // namespace
+
+Said one_shot(Session& session, const Call& call, const Look& look) {
+  const std::string_view name = call.command->name;
+  if (name == "status") return tell(session.ask("status"), call.json, status_text);
+  if (name == "profile") return tell(session.ask("profile"), call.json, profile_text);
+  if (name == "save") return tell(session.ask("save"), call.json, save_text);
+  if (name == "set") return set(session, call);
+  if (name == "events") return events(session, call);
+  if (name == "flag") return flag(session, call);
+  if (name == "get") {
+    const Json asked = call.operands.empty() ? Json::object() : Json{{"variables", call.operands}};
+    return tell(session.ask("get", asked), call.json, readings_text);
+  }
+  if (name == "why")
+    return tell(session.ask("why", {{"variable", call.operands[0]}}), call.json,
+                [&](const Json& answer) { return why_text(answer, look.height); });
+  if (name == "end")
+    return tell(session.ask("end", {{"code", 0}}), call.json, [](const Json&) { return std::string("ending\n"); });
+  return signal(session, call);
+}
+
+}  // namespace chimera::shell

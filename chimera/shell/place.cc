@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/place.h"
+
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace chimera::shell {
+
+std::string state_folder() {
+  const char* given = std::getenv("XDG_STATE_HOME");
+  if (given != nullptr && *given == '/') return std::string(given) + "/chimera";
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home == '/' ? std::string(home) + "/.local/state/chimera" : "";
+}
+
+bool make_state_folder() {
+  const std::filesystem::path folder = state_folder();
+  if (folder.empty()) return false;
+  std::error_code error;
+  std::filesystem::create_directories(folder.parent_path(), error);
+  return ::mkdir(folder.c_str(), 0700) == 0 || std::filesystem::is_directory(folder, error);
+}
+
+}  // namespace chimera::shell

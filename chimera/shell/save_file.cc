@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/save_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "chimera/config/draft.h"
+#include "chimera/config/yaml_reader.h"
+#include "chimera/shell/fields.h"
+#include "chimera/shell/place.h"
+
+namespace chimera::shell {
+namespace {
+
+using Json = nlohmann::json;
+
+Error refusal(const std::string& message, const std::string& where = {}) {
+  return {ErrorCode::kRefused, std::string_view(message), std::string_view(where)};
+}
+
+// ---- the text ----
+
+std::size_t offset_of(std::string_view text, Place at) {
+  std::size_t offset = 0;
+  for (std::uint32_t line = 1; line < at.line && offset != std::string_view::npos; ++line) {
+    offset = text.find('\n', offset);
+    if (offset != std::string_view::npos) ++offset;
+  }
+  return offset == std::string_view::npos ? text.size() : std::min(offset + at.column - 1, text.size());
+}
+
+/// End of what is quoted from `at` on.
+std::size_t quoted_end(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  for (std::size_t i = at + 1; i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') ++i;
+    else if (text[i] == quote && quote == '\'' && i + 1 < text.size() && text[i + 1] == quote) ++i;
+    else if (text[i] == quote) return i + 1;
+  }
+  return text.size();
+}
+
+bool begins_comment(std::string_view text, std::size_t at) {
+  return text[at] == '#' && at > 0 && (text[at - 1] == ' ' || text[at - 1] == '\t' || text[at - 1] == '\n');
+}
+
+/// End of a list or map in brackets.
+std::size_t bracket_end(std::string_view text, std::size_t at) {
+  int depth = 0;
+  for (std::size_t i = at; i < text.size(); ++i) {
+    const char c = text[i];
+    if (begins_comment(text, i)) i = std::min(text.find('\n', i), text.size() - 1);
+    else if (c == '"' || c == '\'') i = quoted_end(text, i) - 1;
+    else if (c == '[' || c == '{') ++depth;
+    else if ((c == ']' || c == '}') && --depth == 0) return i + 1;
+  }
+  return text.size();
+}
+
+std::size_t plain_end(std::string_view text, std::size_t at, bool is_in_brackets) {
+  std::size_t end = at;
+  while (end < text.size() && text[end] != '\n' && !begins_comment(text, end) &&
+         !(is_in_brackets && (text[end] == ',' || text[end] == '}' || text[end] == ']')))
+    ++end;
+  while (end > at && (text[end - 1] == ' ' || text[end - 1] == '\t' || text[end - 1] == '\r')) --end;
+  return end;
+}
+
+/// A value written as lines of its own ("- 1"): these cannot be replaced without touching what stands between them.
+bool is_block(const Node& value, std::string_view text, std::size_t at) {
+  return (value.is_list() && text[at] != '[') || (value.is_map() && text[at] != '{');
+}
+
+struct Edit {
+  std::size_t from = 0, to = 0;
+  std::string with;
+};
+
+// ---- the values ----
+
+bool same_scalar(const Node& a, const Node& b, const UnitSystem& units) {
+  if (a.text == b.text) return true;
+  const auto x = parse_quantity(a.text, units), y = parse_quantity(b.text, units);
+  if (!x || !y) return false;
+  const auto in_unit = value_in(x.value(), y.value().unit, y.value().unit_text);
+  return in_unit && std::fabs(in_unit.value() - y.value().value) <= 1e-12 * std::fabs(y.value().value);
+}
+
+/// Whether `now` says what `before` says; a value that is no list fills all elements.
+bool same_value(const Node& before, const Node& now, const UnitSystem& units) {
+  if (now.is_list() && !before.is_list())
+    return std::all_of(now.items.begin(), now.items.end(),
+                       [&](const Node& item) { return same_value(before, item, units); });
+  if (before.kind != now.kind || before.items.size() != now.items.size()) return false;
+  if (before.is_scalar()) return same_scalar(before, now, units);
+  for (std::size_t i = 0; i < before.items.size(); ++i) {
+    const Node* item = before.is_map() ? now.find(before.keys[i].text) : &now.items[i];
+    if (item == nullptr || !same_value(before.items[i], *item, units)) return false;
+  }
+  return true;
+}
+
+Result<Node> node_of(const std::string& name, const std::string& words) {
+  Report report;
+  const auto tree = read_yaml("value: " + words + "\n", report);
+  const Node* value = tree ? tree->find("value") : nullptr;
+  if (value == nullptr || !report.is_legal()) return refusal("'" + words + "' is no value", name);
+  return *value;
+}
+
+bool is_in_brackets(std::string_view text, const Draft& draft) {
+  const std::size_t at = offset_of(text, draft.operators[0].name.at);
+  const std::size_t before = text.find_last_not_of(" \t\r\n", at == 0 ? 0 : at - 1);
+  return before != std::string_view::npos && text[before] == '{';
+}
+
+// ---- the file ----
+
+struct File {
+  std::string path, text;
+  struct stat state{};
+};
+
+std::int64_t changed_ns(const struct stat& state) {
+  return state.st_ctim.tv_sec * 1'000'000'000 + state.st_ctim.tv_nsec;
+}
+
+Result<File> read_file(const std::string& path) {
+  char real[PATH_MAX];
+  File file;
+  if (::realpath(path.c_str(), real) == nullptr) return refusal(std::strerror(errno), path);
+  file.path = real;
+  std::ifstream stream(file.path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream || ::stat(real, &file.state) != 0) return refusal("cannot be read", path);
+  file.text = text.str();
+  return file;
+}
+
+std::string own_record(const File& file) {
+  return file.path + "\n" + std::to_string(file.state.st_ino) + " " + std::to_string(changed_ns(file.state)) + "\n";
+}
+
+std::string record_path(const std::string& subsystem) { return state_folder() + "/saved-" + subsystem; }
+
+/// The file is as it was when the subsystem read it, or as this command left it.
+bool is_as_known(const File& file, std::int64_t started_wall_ns, const std::string& subsystem) {
+  if (changed_ns(file.state) < started_wall_ns) return true;
+  std::ifstream record(record_path(subsystem), std::ios::binary);
+  std::ostringstream text;
+  text << record.rdbuf();
+  return text.str() == own_record(file);
+}
+
+Result<void> replace(const File& file, const std::string& text) {
+  std::string made = file.path + ".XXXXXX";
+  const int descriptor = ::mkstemp(made.data());
+  if (descriptor < 0) return refusal(std::string("cannot be written: ") + std::strerror(errno), file.path);
+  bool is_good = ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+                 ::fchmod(descriptor, file.state.st_mode & 07777) == 0 && ::fsync(descriptor) == 0;
+  ::close(descriptor);
+  struct stat now{};
+  const bool is_same = ::stat(file.path.c_str(), &now) == 0 && now.st_ino == file.state.st_ino &&
+                       changed_ns(now) == changed_ns(file.state);
+  is_good = is_good && is_same && ::rename(made.c_str(), file.path.c_str()) == 0;
+  if (is_good) return {};
+  const std::string why = is_same ? std::string("cannot be written: ") + std::strerror(errno) : "changed just now";
+  ::unlink(made.c_str());
+  return refusal(why, file.path);
+}
+
+/// Where the keeper found the file: its name may be relative to the folder in which it was started.
+std::string file_of(const Json& hello) {
+  const std::string file = text_of(hello, "file");
+  if (file.empty() || file[0] == '/') return file;
+  return "/proc/" + std::to_string(whole_of(hello, "keeper_pid")) + "/cwd/" + file;
+}
+
+/// Nanoseconds since 1970 at which the subsystem started, from CLOCK_MONOTONIC.
+std::int64_t started_wall_ns(const Json& status) {
+  timespec wall{}, monotonic{};
+  ::clock_gettime(CLOCK_REALTIME, &wall);
+  ::clock_gettime(CLOCK_MONOTONIC, &monotonic);
+  const std::int64_t shift = (wall.tv_sec - monotonic.tv_sec) * 1'000'000'000 + wall.tv_nsec - monotonic.tv_nsec;
+  return whole_of(status, "origin_ns") + shift;
+}
+
+std::string first_fault(const Json& report) {
+  for (const Json& fault : field(report, "faults"))
+    if (text_of(fault, "severity") == "error") return text_of(fault, "message");
+  return "not legal";
+}
+
+Result<std::string> edited(Session& session, const File& file, const Json& values) {
+  const auto units = UnitSystem::load(session.surroundings().unit_files);
+  if (!units) return units.error();
+  std::map<std::string, std::string> words;
+  for (const auto& item : values.items()) words[item.key()] = text_of(values, item.key());
+  auto text = with_operator_values(file.text, words, units.value());
+  if (!text || text.value() == file.text) return text;
+  const control::Answer checked = session.ask("check", {{"text", text.value()}, {"file", file.path}});
+  if (!checked.is_good()) return refusal(checked.message);
+  if (!truth_of(*checked.result, "legal"))
+    return refusal("with these values the description is not legal: " + first_fault(*checked.result), file.path);
+  return text;
+}
+
+}  // namespace
+
+Result<std::string> with_operator_values(std::string_view text, const std::map<std::string, std::string>& values,
+                                         const UnitSystem& units) {
+  const Reading reading = read_description(text, "");
+  if (!reading.draft) return refusal("the description cannot be read");
+  const Draft& draft = *reading.draft;
+  std::vector<Edit> edits;
+  for (const auto& [name, words] : values) {
+    const auto given = std::find_if(draft.operators.begin(), draft.operators.end(),
+                                    [&key = name](const NamedNode& node) { return node.name.text == key; });
+    if (given == draft.operators.end()) return refusal("is not under `operator:`", name);
+    const auto now = node_of(name, words);
+    if (!now) return now.error();
+    if (same_value(given->value, now.value(), units)) continue;
+    const std::size_t at = offset_of(text, given->value.at);
+    if (given->value.is_none() || at >= text.size() || is_block(given->value, text, at))
+      return refusal("is written over several lines; write it as [...] or {...} first", name);
+    const bool is_bracket = text[at] == '[' || text[at] == '{';
+    const bool is_quoted = text[at] == '"' || text[at] == '\'';
+    edits.push_back({at, is_bracket  ? bracket_end(text, at)
+                         : is_quoted ? quoted_end(text, at)
+                                     : plain_end(text, at, is_in_brackets(text, draft)), words});
+  }
+  std::sort(edits.begin(), edits.end(), [](const Edit& a, const Edit& b) { return a.from > b.from; });
+  std::string result(text);
+  for (const Edit& edit : edits) result.replace(edit.from, edit.to - edit.from, edit.with);
+  // The proof: what is read now has these values, and everything else where it was.
+  const Reading again = read_description(result, "");
+  if (!again.draft || again.draft->operators.size() != draft.operators.size()) return refusal("cannot be edited");
+  for (const NamedNode& given : again.draft->operators) {
+    const auto wanted = values.find(given.name.text);
+    if (wanted == values.end()) continue;
+    const auto node = node_of(wanted->first, wanted->second);
+    if (!node || !same_value(given.value, node.value(), units)) return refusal("cannot be edited", given.name.text);
+  }
+  return result;
+}
+
+Said save_to_file(Session& session, const Call& call) {
+  const control::Answer hello = session.ask("hello"), status = session.ask("status"), saved = session.ask("save");
+  for (const control::Answer* answer : {&hello, &status, &saved})
+    if (!answer->is_good()) return refused(*answer, call.json);
+  const std::string subsystem = text_of(*hello.result, "subsystem");
+  const Json& values = field(*saved.result, "operator");
+  auto file = read_file(file_of(*hello.result));
+  if (!file) return refused(file.error(), call.json);
+  if (!is_as_known(file.value(), started_wall_ns(*status.result), subsystem))
+    return refused(refusal("has changed since the subsystem was started from it; nothing was written", file->path),
+                   call.json);
+  const auto text = edited(session, file.value(), values);
+  if (!text) return refused(text.error(), call.json);
+  const bool is_new = text.value() != file->text;
+  if (is_new) {
+    if (const auto replaced = replace(file.value(), text.value()); !replaced)
+      return refused(replaced.error(), call.json);
+    File written = file.value();
+    if (::stat(written.path.c_str(), &written.state) == 0 && make_state_folder())
+      std::ofstream(record_path(subsystem), std::ios::binary) << own_record(written);
+  }
+  if (call.json) return {Json{{"file", file->path}, {"changed", is_new}, {"operator", values}}.dump() + "\n", "", kOk};
+  return {file->path + (is_new ? ": written\n" : ": says so already\n"), "", kOk};
+}
+
+}  // namespace chimera::shell

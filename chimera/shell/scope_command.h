@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// `chimera scope`: records what is published round a trigger, into a table and a picture.
+#pragma once
+
+#include "chimera/shell/command.h"
+#include "chimera/shell/session.h"
+
+namespace chimera::shell {
+
+/// Subscribes, waits for the trigger, records, writes the files that were asked for; without --csv and --svg the table
+/// is what it says. Refuses: a variable that is none, a trigger that cannot be (kUsage), one that did not come in time,
+/// nothing published, a file that cannot be written. Context: setup; blocks at most --wait + --for and 2 s.
+Said scope(Session& session, const Call& call);
+
+}  // namespace chimera::shell

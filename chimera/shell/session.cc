@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/session.h"
+
+#include <nlohmann/json.hpp>
+
+#include "chimera/shell/answer_text.h"
+#include "chimera/shell/fields.h"
+
+namespace chimera::shell {
+namespace {
+
+// A signal may run `init` of many tasks, each with seconds of its own.
+constexpr Nanoseconds kPatience = seconds(60);
+
+}  // namespace
+
+Said refused(const control::Answer& answer, bool json) {
+  const nlohmann::json data = answer.data ? *answer.data : nlohmann::json();
+  if (!json) return {"", refusal_text(answer.message, data) + "\n", kRefused};
+  nlohmann::json error = data.is_object() ? data : nlohmann::json::object();
+  error["message"] = answer.message;
+  error["code"] = answer.code;
+  if (!error.contains("where")) error["where"] = "";
+  return {nlohmann::json{{"error", std::move(error)}}.dump() + "\n", "", kRefused};
+}
+
+Said refused(const Error& error, bool json, int code) {
+  const std::string message(error.message.view()), where(error.where.view());
+  if (json) return {nlohmann::json{{"error", {{"where", where}, {"message", message}}}}.dump() + "\n", "", code};
+  return {"", (where.empty() ? "" : where + ": ") + plain_line(message) + "\n", code};
+}
+
+Result<Session> Session::open(const Surroundings& surroundings) {
+  auto client = control::Client::connect(surroundings.subsystem);
+  if (!client) return client.error();
+  return Session(std::move(client).value(), surroundings);
+}
+
+control::Answer Session::ask(std::string_view method) { return ask(method, nlohmann::json::object()); }
+
+control::Answer Session::ask(std::string_view method, const nlohmann::json& parameters) {
+  const control::Answer answer = client_.call(method, parameters, kPatience);
+  if (answer.code != control::kNoConnection) return answer;
+  // The manager died. Its successor answers at the same door; what may have been carried out is not asked for twice.
+  auto client = control::Client::connect_to(client_.path());
+  if (client) client_ = std::move(*client);
+  const bool may_repeat = method != "signal" && method != "end" && method != "unsubscribe";
+  return client && may_repeat ? client_.call(method, parameters, kPatience) : answer;
+}
+
+}  // namespace chimera::shell

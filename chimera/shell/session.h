@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// A connection to one subsystem, asked the way commands ask.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/control/client.h"
+#include "chimera/shell/said.h"
+
+namespace chimera::shell {
+
+/// What a session needs to know of its surroundings.
+struct Surroundings {
+  std::string subsystem;                ///< as asked for; "" when the choice is clear
+  std::vector<std::string> unit_files;  ///< in the order in which they are tried
+};
+
+/// A refusal as a command says it: the words on standard error, or {"error": {...}} on standard output.
+/// Context of all: setup.
+Said refused(const control::Answer& answer, bool json);
+Said refused(const Error& error, bool json, int code = kRefused);
+
+/// Context: setup; calls block, never longer than their limit.
+class Session {
+ public:
+  /// Refuses as control::Client does.
+  static Result<Session> open(const Surroundings& surroundings);
+
+  control::Client& client() noexcept { return client_; }
+  const Surroundings& surroundings() const noexcept { return surroundings_; }
+  control::Answer ask(std::string_view method);
+  control::Answer ask(std::string_view method, const nlohmann::json& parameters);
+
+ private:
+  Session(control::Client client, Surroundings surroundings)
+      : client_(std::move(client)), surroundings_(std::move(surroundings)) {}
+
+  control::Client client_;
+  Surroundings surroundings_;
+};
+
+}  // namespace chimera::shell

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands over a real socket, before a subject that is a test's.
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "chimera/control/door.h"
+#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/shell/carry_out.h"
+#include "chimera/shell/interactive.h"
+#include "chimera/shell/test_answers.h"
+
+namespace chimera::shell {
+namespace {
+
+using control::Answer;
+using control::Json;
+
+/// Two tasks and the variables of test_answers.h; `error` rises by 1 mrad a row.
+struct FakeSubject final : control::Subject {
+  void call(const control::MethodRule& method, const Json& parameters, control::Role, control::Reply reply) override {
+    const std::string name = method.name;
+    calls += name + " " + parameters.dump() + "\n";
+    if (name == "status") {
+      Json status = Json::parse(test::kStatus);
+      if (origin.count > 0) status["origin_ns"] = origin.count;
+      return reply(Answer::good(status));
+    }
+    if (name == "describe") return reply(Answer::good(Json::parse(test::kDescribed)));
+    if (name == "hello") return reply(Answer::good({{"subsystem", "puma_pid"}, {"file", file}, {"keeper_pid", 1}}));
+    if (name == "save") return reply(Answer::good({{"operator", {{"kp", "[1 N.m/rad, 2 N.m/rad]"}}}}));
+    if (name == "check") return reply(Answer::good({{"legal", is_legal}, {"faults", Json::array()}}));
+    if (name == "signal") return signal(parameters, reply);
+    if (name == "get") return reply(Answer::good({{"values", {{"error", reading(0.5)}}}}));
+    if (name == "events") return reply(Answer::good({{"events", Json::array()}, {"first", 1}, {"last", 0}}));
+    reply(Answer::error(control::kRefused, "not now", {{"where", "kp"}, {"remedy", "off first"}}));
+  }
+  void signal(const Json& parameters, const control::Reply& reply) {
+    Json tasks = Json::array();
+    for (const Json& task : parameters["tasks"]) {
+      if (task == "pdi") return reply(Answer::unknown("no task 'pdi'", "pdi", "pid"));
+      tasks.push_back({{"task", task}, {"before", "OFF"}, {"after", "ON"}});
+    }
+    reply(Answer::good({{"tasks", tasks}}));
+  }
+  static Json reading(double value) {
+    return {{"value", value}, {"text", Json(value).dump() + " rad"}, {"unit", "rad"}, {"producer", "pid"},
+            {"state", "ON"}, {"sequence", 1}, {"age_ns", 1000}, {"valid", true}};
+  }
+  Answer open(std::uint64_t subscription, const Json& parameters) override {
+    to[subscription] = parameters["to"];
+    return {};
+  }
+  void close(std::uint64_t subscription) override { to.erase(subscription); }
+  std::shared_ptr<const Json> pull(std::uint64_t subscription) override {
+    if (to[subscription] == "values") return std::make_shared<const Json>(Json{{"values", {{"error", reading(0)}}}});
+    if (to[subscription] != "tap" || row >= 20) return nullptr;
+    if (row == 0) begun = LinuxClock().now();
+    const std::int64_t n = row++, at = (begun + milliseconds(n)).count;
+    const std::int64_t lost = n >= 12 ? 3 : 0;  // three rows are gone there
+    const Json line = Json::array({at, n + lost + 1, Json::array({static_cast<double>(n) * 1e-3})});
+    return std::make_shared<const Json>(Json{{"rtpu", "servo"}, {"task", "pid"}, {"variables", {"error"}},
+                                             {"first", n + lost}, {"lost", n == 12 ? 3 : 0},
+                                             {"rows", Json::array({line})}});
+  }
+
+  std::string calls, file;
+  std::map<std::uint64_t, std::string> to;
+  std::int64_t row = 0;
+  Nanoseconds begun;   ///< when the first row was asked for
+  Nanoseconds origin;  ///< 0: that of test_answers.h
+  bool is_legal = true;
+};
+
+/// A door on a thread of its own, a folder for everything, and what commands print.
+struct ShellTest : ::testing::Test {
+  void SetUp() override {
+    char made[] = "/tmp/chimera-shell-XXXXXX";
+    folder = ::mkdtemp(made);
+    ::setenv("XDG_RUNTIME_DIR", folder.c_str(), 1);
+    ::setenv("XDG_STATE_HOME", folder.c_str(), 1);
+    ::unsetenv("CHIMERA_SUBSYSTEM");
+  }
+  void serve() {
+    ::mkdir((folder + "/chimera").c_str(), 0700);
+    const std::string path = folder + "/chimera/puma_pid.sock";
+    const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strcpy(address.sun_path, path.c_str());
+    ASSERT_EQ(::bind(listening, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    ASSERT_EQ(::listen(listening, 64), 0);
+    door = *control::Door::open(listening, subject, ::getuid(), {});
+    server = std::thread([this] {
+      sigset_t all;
+      ::sigfillset(&all);
+      ::pthread_sigmask(SIG_BLOCK, &all, nullptr);
+      while (!is_over) {
+        pollfd one{door->descriptor(), POLLIN, 0};
+        ::poll(&one, 1, 2);
+        door->serve(LinuxClock().now());
+      }
+    });
+  }
+  void TearDown() override {
+    is_over = true;
+    if (server.joinable()) server.join();
+    door.reset();
+    std::filesystem::remove_all(folder);
+  }
+  Surroundings surroundings(const std::string& subsystem = "") const {
+    return {subsystem, {std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml"}};
+  }
+  /// Exit code, standard output and standard error of a command.
+  std::string run(const std::vector<std::string>& words, const std::string& subsystem = "") {
+    std::FILE *out = std::tmpfile(), *err = std::tmpfile();
+    const int code = carry_out(surroundings(subsystem), read_call(words).value(), out, err);
+    return std::to_string(code) + "|" + text(out) + "|" + text(err);
+  }
+  static std::string text(std::FILE* file) {
+    std::string all(static_cast<std::size_t>(std::ftell(file)), ' ');
+    std::rewind(file);
+    all.resize(std::fread(all.data(), 1, all.size(), file));
+    std::fclose(file);
+    return all;
+  }
+  std::string path(const std::string& name) const { return folder + "/" + name; }
+  static std::string content(const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+
+  std::string folder;
+  FakeSubject subject;
+  std::unique_ptr<control::Door> door;
+  std::thread server;
+  std::atomic<bool> is_over{false};
+};
+
+TEST_F(ShellTest, NoSubsystemIsOneClearSentence) {
+  EXPECT_EQ(run({"status"}), "1||" + folder + "/chimera: no subsystem runs; start one with `chimera run FILE`\n");
+  EXPECT_EQ(run({"status"}, "arm"), "1||no subsystem 'arm' runs; start one with `chimera run FILE`\n");
+}
+
+TEST_F(ShellTest, AnAnswerIsTextOrRaw) {
+  serve();
+  EXPECT_EQ(run({"status"}).substr(0, 56), "0|puma_pid: run, up 12.5 min, flag UP by spare, operator");
+  EXPECT_EQ(run({"status", "--json"}), "0|" + Json::parse(test::kStatus).dump() + "\n|");
+  EXPECT_EQ(run({"get", "error"}), "0|error = 0.5 rad  (pid, 1.00 us ago)\n|");
+}
+
+TEST_F(ShellTest, ARefusalHasTheServersWordsAndTheNearestName) {
+  serve();
+  EXPECT_EQ(run({"off", "pdi"}), "1||no task 'pdi'; did you mean 'pid'?\n");
+  EXPECT_EQ(run({"set", "kp", "[100", "90]", "N.m/rad"}), "1||kp: not now; off first\n");
+  EXPECT_NE(subject.calls.find(R"(set {"values":{"kp":"[100 90] N.m/rad"}})"), std::string::npos) << subject.calls;
+  const std::string raw = run({"off", "pdi", "--json"});
+  const Json error = Json::parse(raw.substr(2, raw.size() - 3));
+  EXPECT_EQ(error["error"]["code"], control::kUnknown);
+  EXPECT_EQ(error["error"]["nearest"], "pid");
+  EXPECT_EQ(run({"flag", "sideways"}), "2||flag: found 'sideways', expected up or down\n");
+  EXPECT_EQ(run({"events", "--since", "x"}), "2||--since: 'x' is no number of an event\n");
+}
+
+TEST_F(ShellTest, AConfigurationStandsForItsTasks) {
+  serve();
+  EXPECT_EQ(run({"on", "hand"}), "0|pid: OFF -> ON\narm: OFF -> ON\n|");
+}
+
+TEST_F(ShellTest, AScriptStopsAtTheFirstRefusalAndNamesItsLine) {
+  serve();
+  auto session = Session::open(surroundings());
+  ASSERT_TRUE(session);
+  for (const bool keeps_going : {false, true}) {
+    std::istringstream script("# take it\non pid\n\noff pdi   # a slip\nstatsu\noff arm\nquit\non arm\n");
+    std::FILE *out = std::tmpfile(), *err = std::tmpfile();
+    EXPECT_EQ(run_script(*session, script, "a.txt", keeps_going, out, err), kRefused);
+    EXPECT_EQ(text(out), keeps_going ? "pid: OFF -> ON\narm: OFF -> ON\n" : "pid: OFF -> ON\n");
+    const std::string first = "no task 'pdi'; did you mean 'pid'?\na.txt:4: refused: off pdi   # a slip\n";
+    const std::string second = "no command 'statsu'; did you mean 'status'?; `help` lists them\n"
+                               "a.txt:5: refused: statsu\n";
+    EXPECT_EQ(text(err), keeps_going ? first + second : first);
+  }
+}
+
+TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
+  serve();
+  const std::string said = run({"scope", "error", "--trigger", "error > 9.5 mrad", "--pre", "1 s", "--for", "5 ms",
+                                "--csv", path("a.csv"), "--svg", path("a.svg"), "--wait", "10 s"});
+  EXPECT_EQ(said.substr(0, 3), "0||") << said;
+  EXPECT_NE(said.find("; 1 gap, 3 rows lost\n"), std::string::npos) << said;
+  const std::string csv = content(path("a.csv"));
+  EXPECT_EQ(csv.rfind("t [s],error [rad],lost\n", 0), 0u) << csv;
+  EXPECT_NE(csv.find("\n0.000000000,0.01,0\n"), std::string::npos) << csv;
+  EXPECT_NE(content(path("a.svg")).find("3 rows of pid lost"), std::string::npos);
+}
+
+TEST_F(ShellTest, AScopeRefusesWhatCannotBe) {
+  serve();
+  EXPECT_EQ(run({"scope", "eror"}), "2||no state variable 'eror'; did you mean 'error'?\n");
+  EXPECT_EQ(run({"scope", "ndof"}), "2||'ndof' is a constant: nobody publishes it\n");
+  EXPECT_EQ(run({"scope", "error", "--pre", "1 s"}), "2||--pre belongs to --trigger\n");
+  EXPECT_EQ(run({"scope", "error", "--trigger", "q > 1 rad"}),
+            "2||trigger 'q > 1 rad': say which element, such as q[0]\n");
+  EXPECT_EQ(run({"scope", "error", "--trigger", "error > 9 rad", "--wait", "300 ms"}),
+            "1||no trigger 'error > 9 rad' within 300 ms\n");
+}
+
+TEST_F(ShellTest, WatchGoesOnUntilCtrlC) {
+  serve();
+  sigset_t interrupt;
+  ::sigemptyset(&interrupt);
+  ::sigaddset(&interrupt, SIGINT);
+  const pthread_t me = ::pthread_self();
+  std::thread user([me] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    ::pthread_kill(me, SIGINT);
+  });
+  ::pthread_sigmask(SIG_BLOCK, &interrupt, nullptr);  // as it is while the command runs, from before the user types
+  const std::string said = run({"watch", "error", "--every", "20 ms"});
+  user.join();
+  EXPECT_EQ(said.rfind("0|error = 0.0 rad\nerror = 0.0 rad\n", 0), 0u) << said;
+}
+
+TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyWhenItIsAsItWas) {
+  subject.file = path("arm.yaml");
+  const std::string before = "subsystem: puma_pid\ntasks: {a: }\noperator:\n  kp: [3 N.m/rad, 2 N.m/rad]  # gains\n";
+  std::ofstream(subject.file) << before;
+  serve();
+  EXPECT_EQ(run({"save"}), "0|operator:\n  kp: [1 N.m/rad, 2 N.m/rad]\n|");
+  const std::string refusal =
+      "1||" + subject.file + ": has changed since the subsystem was started from it; nothing was written\n";
+  EXPECT_EQ(run({"save", "--write"}), refusal) << "it started when the machine did, before the file was written";
+  EXPECT_EQ(content(subject.file), before);
+  subject.origin = LinuxClock().now();
+  subject.is_legal = false;
+  EXPECT_EQ(run({"save", "--write"}),
+            "1||" + subject.file + ": with these values the description is not legal: not legal\n");
+  EXPECT_EQ(content(subject.file), before);
+  subject.is_legal = true;
+  EXPECT_EQ(run({"save", "--write"}), "0|" + subject.file + ": written\n|");
+  const std::string after = "subsystem: puma_pid\ntasks: {a: }\noperator:\n  kp: [1 N.m/rad, 2 N.m/rad]  # gains\n";
+  EXPECT_EQ(content(subject.file), after);
+  EXPECT_EQ(run({"save", "--write"}), "0|" + subject.file + ": says so already\n|") << "its own writing is no change";
+  std::ofstream(subject.file, std::ios::app) << "# by hand\n";
+  EXPECT_EQ(run({"save", "--write"}), refusal);
+  EXPECT_EQ(content(subject.file), after + "# by hand\n");
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    EXPECT_EQ(entry.path().string().find("arm.yaml."), std::string::npos) << "nothing is left behind";
+}
+
+}  // namespace
+}  // namespace chimera::shell

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The terminal while something live is on it, and waiting for whatever comes first. Ctrl-C, `q`, a signal and an
+// exception all leave the terminal as it was found.
+#pragma once
+
+#include <signal.h>
+#include <termios.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "chimera/control/client.h"
+
+namespace chimera::shell {
+
+bool is_terminal(int descriptor);
+
+struct ScreenSize {
+  std::size_t width = 80, height = 24;
+};
+/// Of the terminal at `descriptor`; COLUMNS and LINES, else 80 by 24, where there is none.
+ScreenSize screen_size(int descriptor);
+
+/// The whole screen, keys one by one and without echo. Context of all: setup.
+class FullScreen {
+ public:
+  FullScreen();
+  ~FullScreen();
+  FullScreen(const FullScreen&) = delete;
+  FullScreen& operator=(const FullScreen&) = delete;
+
+  /// Shows `text` (whole lines, escape sequences allowed) from the upper left corner, in one write.
+  void show(const std::string& text);
+
+ private:
+  termios before_{};
+  bool has_before_ = false;
+};
+
+/// What a wait ended with.
+struct Woken {
+  enum class By : char { kNote, kKey, kResize, kStop, kTime, kLost };
+  By by = By::kTime;
+  control::Note note;  ///< kNote
+  int key = 0;         ///< kKey: a letter, or one of the arrows below
+  Error error{};       ///< kLost
+};
+inline constexpr int kKeyUp = 1000, kKeyDown = 1001, kKeyPageUp = 1002, kKeyPageDown = 1003, kKeyEnd = -1;
+
+/// While it lives, SIGINT, SIGTERM, SIGHUP and SIGWINCH are taken here instead of acting. Context: setup.
+class Attention {
+ public:
+  /// `keys`: also listen to standard input.
+  explicit Attention(bool keys);
+  ~Attention();
+  Attention(const Attention&) = delete;
+  Attention& operator=(const Attention&) = delete;
+
+  /// The first thing that comes, at most until `limit` has passed. `client` may be null: no notes.
+  Woken wait(control::Client* client, Nanoseconds limit);
+
+ private:
+  std::optional<Woken> take_signal();
+  Woken take_key();
+
+  sigset_t before_{};
+  OwnedDescriptor signals_;
+  bool keys_;
+};
+
+}  // namespace chimera::shell
