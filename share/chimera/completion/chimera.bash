@@ -5,12 +5,22 @@
 # The options of each command, and at the top level the commands too.
 _chimera_words() {
   case $1 in
-    '') echo '--help --version check run list describe new' ;;
+    '') echo '--help --version check run list describe new clear end events flag get kill off on profile' \
+      'reinit save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --graph' ;;
     run) echo '--help --for --at --watch --every --expect --trace --timeline --virtual --preemptive --seed --quantum' \
       '--priority --isolation --observe-group --operate-group --configure-group --json' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
+    clear | end | flag | kill | off | on | profile | reinit | set | spawn | status | why)
+      echo '--help --json --subsystem' ;;
+    events) echo '--help --json --subsystem --since --follow' ;;
+    get) echo '--help --json --subsystem --every' ;;
+    save) echo '--help --json --subsystem --write' ;;
+    scope) echo '--help --json --subsystem --trigger --pre --for --wait --csv --svg' ;;
+    top) echo '--help --json --subsystem --every' ;;
+    watch) echo '--help --json --subsystem --every' ;;
+    shell) echo '--help --keep-going --subsystem' ;;
     new) echo '--help component app' ;;
     'new component') echo '--help --c' ;;
     'new app') echo '--help' ;;
@@ -19,6 +29,14 @@ _chimera_words() {
 
 _chimera_components() {
   "${COMP_WORDS[0]}" list --json 2>/dev/null | grep -o '"name": "[^"]*"' | cut -d '"' -f 4
+}
+
+# Variables and tasks of the running subsystem.
+_chimera_names() {
+  "${COMP_WORDS[0]}" get --json 2>/dev/null | grep -o '"[a-z][a-z0-9_]*":{' | cut -d '"' -f 2 | grep -v '^values*$'
+}
+_chimera_tasks() {
+  "${COMP_WORDS[0]}" status --json 2>/dev/null | grep -o '"task":"[^"]*"' | cut -d '"' -f 4
 }
 
 _chimera() {
@@ -31,13 +49,22 @@ _chimera() {
     --observe-group | --operate-group | --configure-group)
       mapfile -t COMPREPLY < <(compgen -g -- "$word"); return ;;
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
-    --trace) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
-    --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline) return ;;
+    --trace | --csv | --svg) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | --since | --trigger | \
+      --pre | --wait | --subsystem) return ;;
   esac
   if [[ $word == -* || -z $command || $command == new ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_words "$command")" -- "$word")
   elif [[ $command == check || $command == run ]]; then
     mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -- "$word")
+  elif [[ " get set watch why scope " == *" $command "* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$(_chimera_names)" -- "$word")
+  elif [[ " on off kill clear reinit spawn " == *" $command "* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$(_chimera_tasks)" -- "$word")
+  elif [[ $command == flag ]]; then
+    mapfile -t COMPREPLY < <(compgen -W 'up down' -- "$word")
+  elif [[ $command == shell ]]; then
+    mapfile -t COMPREPLY < <(compgen -f -- "$word")
   elif [[ $command == describe ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_components)" -- "$word")
   fi
