@@ -71,6 +71,7 @@ Nanoseconds Acts::due_for_rtpu(const Act& act, const Part& part) const noexcept 
 Acts::Verdict Acts::judge(Act& act, Part& part) const {
   const Nanoseconds due = due_for_rtpu(act, part);
   if (due <= at_.now) return Verdict::kNoAnswer;
+  if (due != kNever && !at_.roster.is_seen(part.task)) return Verdict::kWait;
   if (takes_down(act)) return judge_taking_down(act, part, due != kNever);
   if (goals_.is_pursued(part.task) || at_.is_busy(part.task)) {
     part.has_waited = part.has_waited || goals_.has(part.task, kGoalSpawn) || at_.roster.status(part.task).in_service;

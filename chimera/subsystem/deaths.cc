@@ -38,12 +38,12 @@ bool Deaths::take(const RtpuDown& down) {
   return true;
 }
 
-// As it was at the end, but a person's or a transaction's last word counts more than a state on the way to it.
+// As it was at the end, but a person's last word counts more than a state on the way to it. A transaction that fails by
+// this death takes its goals back itself.
 std::uint32_t Deaths::goal_after(TaskId task) const {
   const State last = at_.roster.status(task).state;
   if (at_.mail.is_possible(task, Signal::kKill)) return 0;
   if (last == State::kNotCreated && !goals_.has(task, kGoalSpawn)) return 0;
-  if (transaction_.is_asked(task)) return kGoalSpawn;
   const bool was_on = last == State::kOn && !at_.mail.is_possible(task, Signal::kOff);
   return was_on || goals_.has(task, kGoalOn) ? kGoalSpawn | kGoalOn : kGoalSpawn;
 }

@@ -5,6 +5,7 @@ namespace chimera::subsystem {
 
 void Roster::see(TaskId task, TaskStatus status) noexcept {
   tasks_[task.index].status = status;
+  tasks_[task.index].is_seen = true;
   if (status.state != State::kNotCreated) tasks_[task.index].is_lost = false;
 }
 
@@ -20,7 +21,12 @@ void Roster::down(RtpuId rtpu, std::uint32_t incarnation) noexcept {
     if (spec_.tasks[t].rtpu != rtpu) continue;
     if (tasks_[t].status.state != State::kNotCreated) tasks_[t].is_lost = true;
     tasks_[t].status = {};
+    tasks_[t].is_seen = true;
   }
+}
+
+void Roster::begin_empty() noexcept {
+  for (Task& task : tasks_) task.is_seen = true;
 }
 
 void Roster::starting(RtpuId rtpu, Nanoseconds now) noexcept {

@@ -25,6 +25,8 @@ class Roster {
   explicit Roster(const ApplicationSpec& spec) : spec_(spec), tasks_(spec.tasks.size()), rtpus_(spec.rtpus.size()) {}
 
   void see(TaskId task, TaskStatus status) noexcept;
+  /// Nothing was ever asked for: no task is there.
+  void begin_empty() noexcept;
   void up(RtpuId rtpu, std::uint32_t incarnation) noexcept;
   /// Its tasks are not there any more; those that were created are lost.
   void down(RtpuId rtpu, std::uint32_t incarnation) noexcept;
@@ -37,6 +39,8 @@ class Roster {
   /// Of the task in the process that lives, or the last words of one not yet known to be dead.
   const TaskStatus& status(TaskId task) const noexcept { return tasks_[task.index].status; }
   bool is_lost(TaskId task) const noexcept { return tasks_[task.index].is_lost; }
+  /// Has anybody told what it is?
+  bool is_seen(TaskId task) const noexcept { return tasks_[task.index].is_seen; }
   bool is_created(TaskId task) const noexcept { return status(task).state != State::kNotCreated; }
   Life life(RtpuId rtpu) const noexcept { return rtpus_[rtpu.index].life; }
   Life life_of(TaskId task) const noexcept { return life(rtpu(task)); }
@@ -51,6 +55,7 @@ class Roster {
   struct Task {
     TaskStatus status;
     bool is_lost = false;
+    bool is_seen = false;
   };
   struct Rtpu {
     Life life = Life::kUnknown;

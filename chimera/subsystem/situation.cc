@@ -35,11 +35,11 @@ std::size_t Situation::run_at(std::span<const TaskId> tasks, std::size_t first) 
   return n;
 }
 
-// A process that does not serve us yet may still carry out what an earlier manager sent.
+// A process that does not serve us yet may still carry out what an earlier manager sent, or be mute.
 bool Situation::may_be_on(TaskId task) const {
   const State seen = roster.status(task).state;
   return seen == State::kOn || mail.is_possible(task, Signal::kOn) ||
-         (roster.life_of(task) == Life::kUnknown && seen == State::kOff);
+         (roster.life_of(task) == Life::kUnknown && (seen == State::kOff || !roster.is_seen(task)));
 }
 
 bool Situation::is_busy(TaskId task) const { return mail.is_awaited(task) || roster.status(task).in_service; }

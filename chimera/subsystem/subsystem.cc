@@ -71,6 +71,7 @@ void Subsystem::Parts::take(const Begun& begun) {
   deaths.recall(begun);
   for (std::size_t r = 0; r < at.spec.rtpus.size(); ++r) at.roster.starting(RtpuId(r), at.now);
   if (begun.started) return;
+  at.roster.begin_empty();
   for (TaskId task : at.spec.init_order) {
     const bool starts = std::find(at.spec.start.begin(), at.spec.start.end(), task) != at.spec.start.end();
     goals.set(task, starts ? kGoalSpawn | kGoalOn : kGoalSpawn);

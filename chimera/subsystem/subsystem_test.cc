@@ -87,7 +87,7 @@ TEST_F(SubsystemTest, OnWaitsForAnOffThatIsNotReportedYet) {
   EXPECT_EQ(command(Signal::kOff, {kPid}), "send servo: off pid\n");
   EXPECT_EQ(command(Signal::kOn, {kReserve}), "");
   EXPECT_EQ(report(kPid, State::kOff),
-            "answer 1 yes pid ON>OFF\ngoal reserve 2\nsend spare: on reserve\n");
+            "goal reserve 2\nsend spare: on reserve\nanswer 1 yes pid ON>OFF\n") << "the word says OFF already";
   EXPECT_EQ(report(kReserve, State::kOn), "goal reserve 0\nanswer 2 yes reserve OFF>ON\n");
 }
 

@@ -30,8 +30,6 @@ class Transaction {
 
   bool is_under_way() const noexcept { return is_under_way_; }
   bool has(TaskId task) const noexcept;
-  /// Of a face or a task, not of goals: then a dead rtpu comes back as it was before.
-  bool is_asked(TaskId task) const noexcept { return is_under_way_ && !wish_.is_goals && has(task); }
 
   /// Judges and begins, or refuses. Requires: none is under way, no task of it is busy.
   void begin(OnWish wish);

@@ -10,6 +10,8 @@ void Wishes::add(const Commanded& command) {
 }
 
 void Wishes::add(const Requested& request) {
+  const std::size_t n = at_.spec.tasks.size();
+  if (request.task.index >= n || request.from.index >= n) return;
   for (const Waiting& waiting : queue_)
     if (waiting.wish.from == request.from && waiting.wish.tasks.front() == request.task) return;
   queue_.push_back({{0, {request.task}, request.from, false}, at_.now, false});
@@ -51,7 +53,7 @@ bool Wishes::begin_goals() {
 bool Wishes::must_wait(const std::vector<TaskId>& tasks) const {
   if (std::any_of(tasks.begin(), tasks.end(), [this](TaskId task) { return at_.is_busy(task); })) return true;
   return std::any_of(at_.order.begin(), at_.order.end(), [this](TaskId task) {
-    return at_.mail.is_awaited(task, Signal::kOff) || at_.mail.is_awaited(task, Signal::kKill);
+    return at_.may_be_on(task) && (at_.mail.is_awaited(task, Signal::kOff) || at_.mail.is_awaited(task, Signal::kKill));
   });
 }
 

@@ -17,7 +17,7 @@ class Wishes {
       : at_(situation), goals_(goals), transaction_(transaction) {}
 
   void add(const Commanded& command);
-  /// The same request while it waits is one: a task may send at every cycle.
+  /// The same request while it waits is one: a task may send at every cycle. Of a task that does not exist: none.
   void add(const Requested& request);
   /// Begins the next transaction when none is under way.
   void advance();

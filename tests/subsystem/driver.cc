@@ -37,6 +37,8 @@ void Driver::start() {
   believed_.clear();
   asked_.clear();
   tick_ = kNever;
+  is_served_.assign(Plan::kRtpus, false);
+  tells_of_mute_ = world_.chance.percent(50);
   told_.assign(told_.size(), std::nullopt);
   Begun begun = world_.keeper->memory;
   for (std::size_t r = 0; r < Plan::kRtpus; ++r) {
@@ -99,7 +101,7 @@ void Driver::poll() {
     if (!take(message)) return;
   }
   for (std::size_t r = 0; r < Plan::kRtpus; ++r)
-    if (world_.keeper->is_alive(RtpuId(r)) && (!tell_words(RtpuId(r)) || !take_notes(RtpuId(r)))) return;
+    if (is_readable(RtpuId(r)) && (!tell_words(RtpuId(r)) || !take_notes(RtpuId(r)))) return;
   if (!take_commands()) return;
   if (subsystem_->next_due() <= world_.now() && world_.defect != Defect::kHasNoClock) feed(Tick{});
 }
@@ -110,11 +112,12 @@ bool Driver::take(const Message& message) {
     case Message::Kind::kServes:
       taken_[message.rtpu.index] =
           std::min(taken_[message.rtpu.index], world_.processes[message.rtpu.index]->notes().size());
+      is_served_[message.rtpu.index] = true;
       return tell_words(message.rtpu) && feed(RtpuUp{message.rtpu, message.incarnation});
     case Message::Kind::kEnded: return take_ended(message);
     case Message::Kind::kComplete:
       for (std::size_t r = 0; r < Plan::kRtpus; ++r)
-        if (world_.keeper->is_alive(RtpuId(r)) && !tell_words(RtpuId(r))) return false;
+        if (is_readable(RtpuId(r)) && !tell_words(RtpuId(r))) return false;
       is_complete_ = true;
       return feed(InventoryComplete{});
   }
@@ -127,7 +130,12 @@ bool Driver::take_ended(const Message& message) {
   for (std::size_t t = 0; t < told_.size(); ++t)
     if (world_.plan.spec.tasks[t].rtpu == message.rtpu) told_[t] = TaskStatus{};
   taken_[message.rtpu.index] = 0;
+  is_served_[message.rtpu.index] = false;
   return feed(RtpuDown{message.rtpu, message.incarnation, world_.processes[message.rtpu.index]->cause()});
+}
+
+bool Driver::is_readable(RtpuId rtpu) const {
+  return world_.keeper->is_alive(rtpu) && (tells_of_mute_ || is_served_[rtpu.index]);
 }
 
 bool Driver::tell_words(RtpuId rtpu) {
@@ -258,13 +266,13 @@ void Driver::send(const Send& send) {
 void Driver::answer(const subsystem::Answer& answer) {
   world_.tally.count(answer.accepted ? "action answer yes" : "action answer no");
   world_.trace.note(world_.now(), "answer", {static_cast<std::int64_t>(answer.id), answer.accepted}, answer.text);
-  world_.judge->answered(answer);
   const auto is_it = [&](const auto& one) { return one.first == answer.id; };
   const auto asked = std::find_if(asked_.begin(), asked_.end(), is_it);
   if (asked == asked_.end()) return world_.fail("a command was answered that nobody asked, or twice");
   Face& face = *world_.faces[asked->second];
   asked_.erase(asked);
   face.answered(answer);
+  world_.judge->answered(answer, face);
 }
 
 void Driver::tell(const Tell& tell) {

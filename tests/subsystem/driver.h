@@ -41,6 +41,7 @@ class Driver {
   void poll();
   bool take(const Message& message);
   bool take_ended(const Message& message);
+  bool is_readable(RtpuId rtpu) const;
   bool tell_words(RtpuId rtpu);
   bool tell_word(TaskId task);
   bool take_notes(RtpuId rtpu);
@@ -59,6 +60,8 @@ class Driver {
   bool is_complete_ = false;
   bool is_doomed_ = false;
   bool poll_is_due_ = false;
+  bool tells_of_mute_ = false;    // the words of a process that does not serve it yet, too
+  std::vector<bool> is_served_;
   std::deque<Message> messages_;
   std::vector<std::optional<TaskStatus>> told_;
   std::vector<std::size_t> taken_;  // notes, by rtpu

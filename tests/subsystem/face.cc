@@ -20,11 +20,13 @@ void Face::live() {
 void Face::ask(Signal signal, std::vector<TaskId> tasks) {
   is_waiting_ = true;
   asked_of_ = 0;
+  asked_at_ = world_.now();
   signal_ = signal;
   tasks_ = std::move(tasks);
   ++world_.signals;
   for (TaskId task : tasks_)
     if (wants_down(task)) world_.judge->asked_down(task, signal);
+    else world_.judge->asked_up(task);
   world_.note("face asks", index_, static_cast<int>(signal));
   world_.driver->poke();
 }

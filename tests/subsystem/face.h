@@ -22,6 +22,7 @@ class Face {
   bool wants_down(TaskId task) const noexcept;
   void let_in(std::uint32_t manager);
   void answered(const subsystem::Answer& answer);
+  Nanoseconds asked_at() const noexcept { return asked_at_; }
   Signal signal() const noexcept { return signal_; }
   const std::vector<TaskId>& tasks() const noexcept { return tasks_; }
   const subsystem::Answer& last() const noexcept { return last_; }
@@ -35,6 +36,7 @@ class Face {
   std::size_t index_;
   bool is_waiting_ = false;
   std::uint32_t asked_of_ = 0;
+  Nanoseconds asked_at_;
   Signal signal_ = Signal::kOn;
   std::vector<TaskId> tasks_;
   subsystem::Answer last_;

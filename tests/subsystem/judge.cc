@@ -107,6 +107,10 @@ bool Judge::sent(const Send& send) {
     if (send.signal == Signal::kOff || send.signal == Signal::kKill) wanted_down(task);
     if (send.signal == Signal::kKill) debts_[task.index].is_gone = true;
     if (send.signal == Signal::kOff && turning_[task.index] && !is_excused(task)) is_roll_back = true;
+    const Debt& debt = debts_[task.index];
+    if (send.signal == Signal::kSpawn) check_constants(task);
+    if (send.signal == Signal::kSpawn && debt.no_spawn) world_.fail(name(task) + " is spawned against a promise");
+    if (send.signal == Signal::kOn && debt.no_on) world_.fail(name(task) + " is turned ON against a promise");
     if (send.signal != Signal::kOn) continue;
     turning_[task.index] = true;
     for (TaskId rival : rivals(task))
@@ -123,7 +127,52 @@ void Judge::goal(const RememberGoal& goal) {
   ended_[goal.task.index] = true;
 }
 
-void Judge::answered(const subsystem::Answer& answer) { end_transaction(!answer.accepted); }
+void Judge::answered(const subsystem::Answer& answer, const Face& face) {
+  end_transaction(!answer.accepted);
+  promise(answer, face);
+  if (!answer.accepted) return;
+  for (const auto& outcome : answer.outcomes) {
+    if (face.signal() == Signal::kOn && outcome.after != State::kOn) world_.fail("on is accepted and a task is not ON");
+    if (face.signal() == Signal::kKill && outcome.after != State::kNotCreated)
+      world_.fail("kill is accepted and a task is there");
+  }
+}
+
+bool Judge::is_awaited(TaskId task, Signal signal) const {
+  return std::any_of(world_.faces.begin(), world_.faces.end(), [&](const auto& face) {
+    const auto& tasks = face->tasks();
+    return face->is_waiting() && face->signal() == signal && std::find(tasks.begin(), tasks.end(), task) != tasks.end();
+  });
+}
+
+// Whoever was told that a task is OFF or gone, or that its init ended the process, must not find it up again by itself.
+void Judge::promise(const subsystem::Answer& answer, const Face& face) {
+  const bool goes_down = answer.accepted && (face.signal() == Signal::kOff || face.signal() == Signal::kKill);
+  const bool was_deadly = !answer.accepted && face.signal() == Signal::kSpawn &&
+                          answer.text.find(" ended ") != std::string::npos;
+  for (TaskId task : face.tasks()) {
+    const bool is_there = world_.process_of(task).word(task).state != State::kNotCreated;
+    Debt& debt = debts_[task.index];
+    if (goes_down && debt.requested + seconds(10) < world_.now() && debt.asked_up < face.asked_at()) {
+      debt.no_on = !is_awaited(task, Signal::kOn);
+      debt.no_spawn = face.signal() == Signal::kKill && !is_there && !is_awaited(task, Signal::kSpawn) &&
+                      !is_awaited(task, Signal::kClear);
+    }
+    if (was_deadly && !is_there && task == answer.at)
+      debt.no_spawn = !is_awaited(task, Signal::kSpawn) && !is_awaited(task, Signal::kClear);
+  }
+}
+
+void Judge::check_constants(TaskId task) {
+  const auto& tasks = world_.plan.spec.tasks;
+  for (const PortSpec& in : tasks[task.index].ports)
+    for (std::size_t m = 0; in.kind == CHIMERA_IN_CONST && m < tasks.size(); ++m)
+      for (const PortSpec& out : tasks[m].ports)
+        if (out.kind == CHIMERA_OUT_CONST && out.variable == in.variable && TaskId(m) != task &&
+            (world_.keeper->memory.goals[m] & kGoalSpawn) != 0 && world_.defect != Defect::kForgetsGoals &&
+            world_.process_of(TaskId(m)).word(TaskId(m)).state == State::kNotCreated)
+          world_.fail(name(task) + " is spawned before " + name(TaskId(m)) + ", which makes a constant of it");
+}
 
 void Judge::told(const Tell& tell) {
   if (tell.kind == "rtpu-given-up") given_up_[tell.rtpu.index] = world_.keeper->incarnation(tell.rtpu);
@@ -133,6 +182,9 @@ void Judge::told(const Tell& tell) {
     if (is_meant || tell.kind == "refused" || tell.kind == "rtpu-given-up") debts_[t].on = false;
   }
   const bool is_failed = tell.kind == "refused";
+  const auto says = [&](const char* words) { return tell.text.find(words) != std::string::npos; };
+  if (is_failed && says(" ended ") && !says("is not restarted") && !says("on sent by"))
+    world_.fail("goals are given up because a process died: " + tell.text);
   if (is_failed || tell.kind == "started" || tell.kind == "signal") end_transaction(is_failed);
 }
 
@@ -150,6 +202,7 @@ void Judge::manager_dies() {
   turning_.assign(turning_.size(), false);
   ended_.assign(ended_.size(), false);
   is_rolling_back_ = false;
+  for (TaskId task : world_.plan.spec.init_order) asked_up(task);  // what it was about to do, the next one may finish
 }
 
 void Judge::wanted_down(TaskId task) {
@@ -159,8 +212,11 @@ void Judge::wanted_down(TaskId task) {
 
 void Judge::published(TaskId task, State state) {
   Debt& debt = debts_[task.index];
-  if (state != State::kNotCreated) debt.there = debt.is_gone = false;
-  if (state == State::kOn) debt.on = debt.is_down = false;
+  if (state != State::kNotCreated) debt.there = debt.no_spawn = false;  // tasks spawn each other too
+  if (state == State::kOn) debt.on = false;
+  if (state != State::kNotCreated && debt.last == State::kNotCreated) debt.is_gone = false;
+  if (state == State::kOn && debt.last != State::kOn) debt.is_down = false;
+  debt.last = state;
   if (state == State::kError) debt.on = false;
 }
 
@@ -172,6 +228,7 @@ void Judge::process_dies(RtpuId rtpu) {
     const bool is_wanted = !is_excused(task) && !debts_[t].is_gone;
     if (last != State::kNotCreated && is_wanted) debts_[t].there = true;
     if (last == State::kOn && is_wanted && !debts_[t].is_down && !turning_[t]) debts_[t].on = true;
+    debts_[t].last = State::kNotCreated;
   }
   if (is_rolling_back_) world_.tally.count("death in a rollback");
   else if (is_turning()) world_.tally.count("death in a transaction");

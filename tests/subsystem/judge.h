@@ -27,7 +27,16 @@ class Judge {
   /// All its actions are carried out.
   void step_ended() { ended_.assign(ended_.size(), false); }
   void goal(const subsystem::RememberGoal& goal);
-  void answered(const subsystem::Answer& answer);
+  void answered(const subsystem::Answer& answer, const Face& face);
+  /// Somebody wants it up: promises to the contrary are over.
+  void asked_up(TaskId task) {
+    debts_[task.index].no_on = debts_[task.index].no_spawn = false;
+    debts_[task.index].asked_up = world_.now();
+  }
+  void requested(TaskId task) {
+    asked_up(task);
+    debts_[task.index].requested = world_.now();
+  }
   void told(const subsystem::Tell& tell);
   /// True: it turns OFF what a transaction turned ON.
   bool sent(const subsystem::Send& send);
@@ -64,7 +73,15 @@ class Judge {
     bool on = false;
     bool is_down = false;   ///< `off` or `kill` was sent since it went ON
     bool is_gone = false;   ///< `kill` was sent since it was created
+    bool no_on = false;     ///< somebody was promised that it is not turned ON
+    bool no_spawn = false;  ///< nor spawned
+    State last = State::kNotCreated;
+    Nanoseconds asked_up;   ///< when somebody wanted it up last
+    Nanoseconds requested;  ///< when a task asked for it last
   };
+  void promise(const subsystem::Answer& answer, const Face& face);
+  bool is_awaited(TaskId task, Signal signal) const;
+  void check_constants(TaskId task);
   std::vector<Debt> debts_;
   std::vector<std::uint32_t> given_up_;  // incarnation, by rtpu
 };

@@ -12,9 +12,22 @@ namespace chimera::simulated {
 Process::Process(World& world, RtpuId id) : world_(world), id_(id), words_(world.n_tasks()) {}
 
 void Process::later(Nanoseconds from, Nanoseconds to, std::function<void()> what) {
-  world_.agenda.after(world_.chance.between(from, to), [this, life = life_, what = std::move(what)] {
-    if (is_alive_ && !is_hung_ && life_ == life) what();
+  at(world_.now() + world_.chance.between(from, to), std::move(what));
+}
+
+void Process::at(Nanoseconds when, std::function<void()> what) {
+  world_.agenda.at(when, [this, life = life_, what = std::move(what)] {
+    if (!is_alive_ || is_hung_ || life_ != life) return;
+    if (world_.now() < stalled_until_) at(stalled_until_, what);
+    else what();
   });
+}
+
+void Process::stall() {
+  if (!is_alive_ || is_hung_) return;
+  world_.note("process stalls", id_.index);
+  world_.tally.count("stall");
+  stalled_until_ = world_.now() + world_.chance.between(milliseconds(500), milliseconds(4500));
 }
 
 // ---- life and death ----
@@ -24,6 +37,7 @@ void Process::start(std::uint32_t incarnation) {
   is_alive_ = true;
   is_hung_ = is_serving_ = is_busy_ = flag_ = look_is_due_ = false;
   incarnation_ = incarnation;
+  stalled_until_ = {};
   manager_ = 0;
   next_manager_ = world_.driver->is_alive() ? world_.driver->life() : 0;
   letters_.clear();
@@ -105,6 +119,7 @@ void Process::receive(Letter letter) {
 }
 
 void Process::request(TaskId from, TaskId target) {
+  world_.judge->requested(target);
   notes_.emplace_back(subsystem::Requested{target, Signal::kOn, from});
   world_.driver->poke();
 }

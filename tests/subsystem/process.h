@@ -42,9 +42,11 @@ class Process {
   void doom(Point point, bool hangs) noexcept { doom_ = point, doom_hangs_ = hangs; }
   void hang(const char* point);
   bool is_doomed() const noexcept { return doom_ != Point::kNone; }
+  /// Stands still for a time longer than an answer may take, then goes on where it was.
+  void stall();
 
   bool is_alive() const noexcept { return is_alive_; }
-  bool is_hung() const noexcept { return is_hung_; }
+  bool is_hung() const noexcept { return is_hung_ || world_.now() < stalled_until_; }
   bool is_busy() const noexcept { return is_busy_ || !service_.empty(); }
   std::uint32_t incarnation() const noexcept { return incarnation_; }
   /// As its segment says, also after its death.
@@ -71,6 +73,7 @@ class Process {
     Letter letter;
     State before{};
   };
+  void at(Nanoseconds when, std::function<void()> what);
   void later(Nanoseconds from, Nanoseconds to, std::function<void()> what);
   bool passes(Point point, const char* name);
   void serve();
@@ -111,6 +114,7 @@ class Process {
   std::uint32_t seen_changes_ = 0;
   Point doom_ = Point::kNone;
   bool doom_hangs_ = false;
+  Nanoseconds stalled_until_;
   std::string cause_;
 };
 

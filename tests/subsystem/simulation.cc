@@ -22,6 +22,8 @@ class Chaos {
   void plan() {
     Chance& chance = world_.chance;
     for (std::size_t n = 5 + chance.below(4); n > 0; --n) sometime([this] { kill_process(); });
+    for (std::size_t n = chance.below(3); n > 0; --n)
+      sometime([this] { world_.processes[world_.chance.below(Plan::kRtpus)]->stall(); });
     for (std::size_t n = 1 + chance.below(4); n > 0; --n) sometime([this] { kill_manager(); });
     for (std::size_t n = 60; n > 0; --n) sometime([this] { send_between_tasks(); });
     for (std::size_t n = 60; n > 0; --n) sometime([this] { wake_a_task(); });

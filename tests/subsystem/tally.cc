@@ -26,7 +26,7 @@ constexpr const char* kRequired[] = {
     "death starting", "death idle", "death before a step", "death after a step", "death inside a list",
     "death in a transaction", "death in a rollback", "death before a report", "death after a report",
     "death with work in service", "death without a manager", "death of a hung one", "death of a crasher",
-    "hang idle", "hang in a method", "hang in a transaction",
+    "stall", "hang idle", "hang in a method", "hang in a transaction",
     "manager death at the first action", "manager death between actions", "manager death after the last action",
     "manager death idle", "manager death in the inventory", "manager death in a transaction",
     "manager death in a restart", "manager and rtpu dead together",
