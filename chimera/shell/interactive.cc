@@ -2,7 +2,6 @@
 #include "chimera/shell/interactive.h"
 
 #include <histedit.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -65,26 +64,29 @@ class Editor {
     ::el_set(edit_.get(), EL_CLIENTDATA, this);
     ::el_set(edit_.get(), EL_PROMPT, &Editor::prompt);
     ::el_set(edit_.get(), EL_EDITOR, "emacs");
-    ::el_set(edit_.get(), EL_SIGNAL, 1);
+    // Ctrl-C at the prompt is a key that gives up the line; while a command runs it is the signal it always was.
+    ::el_set(edit_.get(), EL_SETTY, "-d", "-isig", nullptr);
     ::el_set(edit_.get(), EL_HIST, ::history, history_.get());
     ::el_set(edit_.get(), EL_ADDFN, "complete", "complete a name", &Editor::complete);
     ::el_set(edit_.get(), EL_BIND, "^I", "complete", nullptr);
+    ::el_set(edit_.get(), EL_ADDFN, "give-up", "give up the line", &Editor::give_up);
+    ::el_set(edit_.get(), EL_BIND, "^C", "give-up", nullptr);
     ::el_set(edit_.get(), EL_BIND, "^R", "em-inc-search-prev", nullptr);
   }
   Editor(const Editor&) = delete;
   Editor& operator=(const Editor&) = delete;
 
-  /// False at the end of the input. An interrupted line is empty.
+  /// False at the end of the input. A line that was given up is empty.
   bool read(std::string& line) {
     int length = 0;
-    errno = 0;
+    is_given_up_ = false;
     const char* typed = ::el_gets(edit_.get(), &length);
     line.clear();
     if (typed == nullptr || length <= 0) {
       std::fputc('\n', stdout);
-      ::el_reset(edit_.get());
-      return typed == nullptr && errno == EINTR;
+      return false;
     }
+    if (is_given_up_) return true;
     line.assign(typed, static_cast<std::size_t>(length));
     HistEvent event{};
     if (line.find_first_not_of(" \t\n") != std::string::npos) {
@@ -122,26 +124,17 @@ class Editor {
     return CC_REDISPLAY;
   }
 
+  static unsigned char give_up(EditLine* edit, int) {
+    of(edit).is_given_up_ = true;
+    std::fputs("^C\n", stdout);
+    return CC_NEWLINE;
+  }
+
   std::string prompt_, file_;
+  bool is_given_up_ = false;
   Names names_;
   std::unique_ptr<EditLine, End> edit_;
   std::unique_ptr<History, End> history_;
-};
-
-/// At the prompt SIGINT gives up the line; while a command runs it acts as ever.
-class Interruptible {
- public:
-  Interruptible() {
-    struct sigaction nothing {};
-    nothing.sa_handler = [](int) {};
-    ::sigaction(SIGINT, &nothing, &before_);
-  }
-  ~Interruptible() { ::sigaction(SIGINT, &before_, nullptr); }
-  Interruptible(const Interruptible&) = delete;
-  Interruptible& operator=(const Interruptible&) = delete;
-
- private:
-  struct sigaction before_ {};
 };
 
 int typed(Session& session) {
@@ -149,10 +142,7 @@ int typed(Session& session) {
   if (!hello.is_good()) return print(refused(hello, false), stdout, stderr);
   Editor editor(text_of(*hello.result, "subsystem"), described.is_good() ? names_of(*described.result) : Names{});
   for (std::string line;;) {
-    {
-      const Interruptible prompt;
-      if (!editor.read(line)) return kOk;
-    }
+    if (!editor.read(line)) return kOk;
     if (carry_out_line(session, line, stdout, stderr).is_quit) return kOk;
   }
 }

@@ -2,10 +2,14 @@
 // Commands over a real socket, before a subject that is a test's.
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <pty.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -262,6 +266,134 @@ TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyWhenItIsAsItWas) {
   EXPECT_EQ(content(subject.file), after + "# by hand\n");
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     EXPECT_EQ(entry.path().string().find("arm.yaml."), std::string::npos) << "nothing is left behind";
+}
+
+/// A command in a process of its own, on a terminal of 80 by 24.
+class OnTerminal {
+ public:
+  /// Starts before the door's thread does: what is forked has one thread.
+  template <class Run>
+  explicit OnTerminal(const Run& run) {
+    winsize size{24, 80, 0, 0};
+    child_ = ::forkpty(&terminal_, nullptr, nullptr, &size);
+    if (child_ != 0) return;
+    ::setenv("TERM", "xterm", 1);
+    for (int i = 0; i < 1000 && !Session::open({}); ++i) ::usleep(10'000);
+    ::_exit(run());
+  }
+  ~OnTerminal() {
+    if (child_ > 0) ::kill(child_, SIGKILL), ::waitpid(child_, nullptr, 0);
+    ::close(terminal_);
+  }
+  OnTerminal(const OnTerminal&) = delete;
+  OnTerminal& operator=(const OnTerminal&) = delete;
+
+  void type(const std::string& keys) const {
+    EXPECT_EQ(::write(terminal_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
+  }
+  void resize(unsigned short columns, unsigned short lines) const {
+    const winsize size{lines, columns, 0, 0};
+    EXPECT_EQ(::ioctl(terminal_, TIOCSWINSZ, &size), 0);
+  }
+  /// Whether `text` is shown within ten seconds, behind what was waited for before.
+  bool shows(const std::string& text) {
+    const Nanoseconds until = LinuxClock().now() + seconds(10);
+    while (LinuxClock().now() < until) {
+      const std::size_t at = shown_.find(text, seen_);
+      if (at != std::string::npos) return seen_ = at + text.size(), true;
+      pollfd one{terminal_, POLLIN, 0};
+      char bytes[4096];
+      if (::poll(&one, 1, 100) <= 0) continue;
+      const ssize_t n = ::read(terminal_, bytes, sizeof bytes);
+      if (n <= 0) break;
+      shown_.append(bytes, static_cast<std::size_t>(n));
+    }
+    ADD_FAILURE() << "not shown: " << text << "\nbut: " << shown_.substr(seen_);
+    return false;
+  }
+  /// Exit code within ten seconds; -1: still there.
+  int ended() {
+    for (int i = 0; i < 1000; ++i) {
+      int status = 0;
+      if (::waitpid(child_, &status, WNOHANG) == child_) {
+        child_ = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -2;
+      }
+      ::usleep(10'000);
+    }
+    return -1;
+  }
+  bool is_sane() const {
+    termios now{};
+    return ::tcgetattr(terminal_, &now) == 0 && (now.c_lflag & (ICANON | ECHO)) == (ICANON | ECHO);
+  }
+
+ private:
+  int terminal_ = -1;
+  pid_t child_ = -1;
+  std::string shown_;
+  std::size_t seen_ = 0;
+};
+
+constexpr const char* kLeave = "\x1b[?25h\x1b[?1049l";
+
+TEST_F(ShellTest, TopFillsTheScreenFollowsItsSizeAndLeavesItAsItWas) {
+  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
+  serve();
+  EXPECT_TRUE(terminal.shows("\x1b[?1049h"));
+  EXPECT_TRUE(terminal.shows("TASK         STATE    RATE    EXEC     MAX  BUDGET USED  JITTER MISSED  INPUT   "));
+  EXPECT_FALSE(terminal.is_sane()) << "keys come one by one";
+  terminal.resize(100, 30);
+  EXPECT_TRUE(terminal.shows("3.12 s   q_ref"));
+  terminal.type("n");
+  terminal.type("q");
+  EXPECT_TRUE(terminal.shows(kLeave));
+  EXPECT_EQ(terminal.ended(), kOk);
+  EXPECT_TRUE(terminal.is_sane());
+}
+
+TEST_F(ShellTest, CtrlCLeavesTheTerminalAsItWas) {
+  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
+  serve();
+  EXPECT_TRUE(terminal.shows("q quit"));
+  terminal.type("\x03");
+  EXPECT_TRUE(terminal.shows(kLeave));
+  EXPECT_EQ(terminal.ended(), kOk);
+  EXPECT_TRUE(terminal.is_sane());
+}
+
+TEST_F(ShellTest, TopEndsWithASentenceWhenTheSubsystemDoes) {
+  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
+  serve();
+  EXPECT_TRUE(terminal.shows("q quit"));
+  is_over = true;
+  server.join();
+  door.reset();
+  EXPECT_TRUE(terminal.shows(kLeave));
+  EXPECT_TRUE(terminal.shows("the connection to the subsystem was lost"));
+  EXPECT_EQ(terminal.ended(), kRefused);
+  EXPECT_TRUE(terminal.is_sane());
+}
+
+TEST_F(ShellTest, TheShellCompletesRemembersAndGoesOnAfterCtrlC) {
+  OnTerminal terminal([this] { return interactive(surroundings(), "", false); });
+  serve();
+  EXPECT_TRUE(terminal.shows("puma_pid> "));
+  terminal.type("of\tpi\t\r");
+  EXPECT_TRUE(terminal.shows("pid: OFF -> ON"));
+  terminal.type("watch error\r");
+  EXPECT_TRUE(terminal.shows("0.0 rad"));
+  terminal.type("\x03");
+  EXPECT_TRUE(terminal.shows("puma_pid> "));
+  terminal.type("half a line\x03");
+  EXPECT_TRUE(terminal.shows("^C"));
+  EXPECT_TRUE(terminal.shows("puma_pid> "));
+  terminal.type("get q\t\t");
+  EXPECT_TRUE(terminal.shows("q  q_ref  "));
+  terminal.type("\x15quit\r");
+  EXPECT_EQ(terminal.ended(), kOk);
+  EXPECT_TRUE(terminal.is_sane());
+  EXPECT_NE(content(path("chimera/history")).find("pid"), std::string::npos);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "chimera/platform/linux/linux_clock.h"
 
@@ -82,18 +83,24 @@ std::optional<Woken> Attention::take_signal() {
   return woken;
 }
 
-Woken Attention::take_key() {
-  char bytes[16];
+void Attention::read_keys() {
+  char bytes[64];
   const ssize_t n = ::read(STDIN_FILENO, bytes, sizeof bytes);
+  if (n > 0) typed_.append(bytes, static_cast<std::size_t>(n));
+  else keys_ = false;
+}
+
+Woken Attention::take_key() {
+  constexpr std::pair<std::string_view, int> kArrows[] = {{"\x1b[A", kKeyUp},      {"\x1bOA", kKeyUp},
+                                                          {"\x1b[B", kKeyDown},    {"\x1bOB", kKeyDown},
+                                                          {"\x1b[5~", kKeyPageUp}, {"\x1b[6~", kKeyPageDown}};
   Woken woken;
   woken.by = Woken::By::kKey;
-  const std::string_view typed(bytes, n > 0 ? static_cast<std::size_t>(n) : 0);
-  if (typed.empty()) woken.key = kKeyEnd, keys_ = false;
-  else if (typed == "\x1b[A" || typed == "\x1bOA") woken.key = kKeyUp;
-  else if (typed == "\x1b[B" || typed == "\x1bOB") woken.key = kKeyDown;
-  else if (typed == "\x1b[5~") woken.key = kKeyPageUp;
-  else if (typed == "\x1b[6~") woken.key = kKeyPageDown;
-  else if (typed.size() == 1) woken.key = static_cast<unsigned char>(typed[0]);
+  woken.key = typed_.empty() ? kKeyEnd : static_cast<unsigned char>(typed_[0]);
+  std::size_t length = std::min<std::size_t>(typed_.size(), 1);
+  for (const auto& [sequence, key] : kArrows)
+    if (typed_.starts_with(sequence)) woken.key = key, length = sequence.size();
+  typed_.erase(0, length);
   return woken;
 }
 
@@ -102,6 +109,7 @@ Woken Attention::wait(control::Client* client, Nanoseconds limit) {
   const Nanoseconds until = clock.now() + limit;
   for (;;) {
     if (auto woken = take_signal()) return std::move(*woken);
+    if (!typed_.empty()) return take_key();
     Woken woken;
     if (client != nullptr) {
       auto note = client->next(Nanoseconds{0});
@@ -112,7 +120,10 @@ Woken Attention::wait(control::Client* client, Nanoseconds limit) {
                     {keys_ ? STDIN_FILENO : -1, POLLIN, 0}};
     const std::int64_t left_ms = ((until - clock.now()).count + 999'999) / 1'000'000;
     const int n = ::poll(all, 3, static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 60'000)));
-    if (n > 0 && all[2].revents != 0) return take_key();
+    if (n > 0 && all[2].revents != 0) {
+      read_keys();
+      return take_key();
+    }
     if (n == 0 && clock.now() >= until) return woken;
   }
 }

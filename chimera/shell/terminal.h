@@ -62,11 +62,13 @@ class Attention {
 
  private:
   std::optional<Woken> take_signal();
+  void read_keys();
   Woken take_key();
 
   sigset_t before_{};
   OwnedDescriptor signals_;
   bool keys_;
+  std::string typed_;  ///< read and not yet taken
 };
 
 }  // namespace chimera::shell
