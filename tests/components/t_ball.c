@@ -5,6 +5,7 @@
 typedef struct {
   double position[3];
   int32_t offs;
+  int32_t backgrounds;
 } t_ballLocal_t;
 
 PBO_PORTS(t_ball,
@@ -55,4 +56,9 @@ int t_ballOff(t_ballLocal_t *local) {
   return PBO_OK;
 }
 
-int t_ballTerm(t_ballLocal_t *local) { return local->offs > 0 ? PBO_OK : PBO_FAULT("killed without off"); }
+void t_ballBackground(t_ballLocal_t *local) { ++local->backgrounds; }
+
+int t_ballTerm(t_ballLocal_t *local) {
+  if (local->offs > 0) return PBO_OK;
+  return local->backgrounds == 0 ? PBO_FAULT("killed without off") : PBO_FAULT("killed without off, after background");
+}

@@ -91,6 +91,12 @@ TEST(CFace, FaultsCarryTheirText) {
   EXPECT_EQ(rig.kill().text, "killed without off");
 }
 
+TEST(CFace, BackgroundIsCalledBesideTheMethods) {
+  Ball rig;
+  EXPECT_TRUE(rig.background());
+  EXPECT_EQ(rig.kill().text, "killed without off, after background");
+}
+
 TEST(CFace, AnUnknownAnswerIsAFaultWithItsNumber) {
   Ball rig;
   rig.set("turn", 101.0, 0);
