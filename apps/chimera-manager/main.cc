@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "chimera/manager/driver.h"
+#include "chimera/manager/run.h"
 #include "chimera/platform/process.h"
 
 namespace {
@@ -35,11 +35,8 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   if (!follow_parent(parent, SIGTERM)) return 0;
-  auto driver = manager::Driver::start({}, static_cast<std::uint32_t>(incarnation), parent);
-  if (!driver) {
-    std::fprintf(stderr, "chimera-manager: %s\n", driver.error().message.c_str());
-    return 1;
-  }
-  while (*driver != nullptr && (*driver)->step()) {}
-  return 0;
+  const auto ran = manager::run({}, static_cast<std::uint32_t>(incarnation), parent);
+  if (ran) return *ran;
+  std::fprintf(stderr, "chimera-manager: %s\n", ran.error().message.c_str());
+  return 1;
 }

@@ -237,6 +237,8 @@ void Driver::end(std::int32_t code) {
   [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: it ends already
 }
 
+int Driver::take_listening() noexcept { return std::exchange(mapped_->listening, -1); }
+
 void Driver::look_at_keeper() {
   if (is_ending_ || world_->keeper.ending.load(std::memory_order_acquire) == 0) return;
   is_ending_ = true;
@@ -249,15 +251,17 @@ Nanoseconds Driver::next_due() const noexcept {
   return due;
 }
 
-void Driver::wait(Nanoseconds until) {
-  std::array<pollfd, 2> watched = {{{mapped_->channel.descriptor(), POLLIN, 0}, {bell_->descriptor(), POLLIN, 0}}};
+/// A negative descriptor is passed over.
+void Driver::wait(Nanoseconds until, int also) {
+  std::array<pollfd, 3> watched = {
+      {{mapped_->channel.descriptor(), POLLIN, 0}, {bell_->descriptor(), POLLIN, 0}, {also, POLLIN, 0}}};
   const std::int64_t left = std::clamp<std::int64_t>((until - now()).count, 0, seconds(1).count);
   const timespec limit{left / 1'000'000'000, left % 1'000'000'000};
   ::ppoll(watched.data(), watched.size(), &limit, nullptr);
 }
 
-bool Driver::step(Nanoseconds at_most) {
-  wait(std::min(next_due(), at_most));
+bool Driver::step(Nanoseconds at_most, int also) {
+  wait(std::min(next_due(), at_most), also);
   bell_->reset();
   if (!take_messages()) return false;
   look_at_keeper();

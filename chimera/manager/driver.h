@@ -41,12 +41,15 @@ class Driver {
   Driver& operator=(const Driver&) = delete;
   ~Driver();
 
-  /// One round: waits at most until something is due, deals with everything. False when the keeper is gone.
-  bool step(Nanoseconds at_most = kNever);
+  /// One round: waits until something is due, `at_most`, or until `also` is readable; deals with everything that is
+  /// the driver's. False when the keeper is gone.
+  bool step(Nanoseconds at_most = kNever, int also = -1);
   /// Asks for a signal; `answered` is called when it is over, maybe at once.
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered);
   /// Tells the keeper to end everything.
   void end(std::int32_t code);
+  /// Hands over the listening socket, once.
+  int take_listening() noexcept;
 
   World& world() noexcept { return *world_; }
   /// Has the step function been given the whole inventory? Faces are served from then on.
@@ -67,7 +70,7 @@ class Driver {
   void carry_out(const subsystem::Action& action);
   void look_at_keeper();
   Nanoseconds next_due() const noexcept;
-  void wait(Nanoseconds until);
+  void wait(Nanoseconds until, int also);
 
   std::unique_ptr<Mapped> mapped_;
   std::unique_ptr<World> world_;

@@ -7,7 +7,9 @@
 
 #include <atomic>
 #include <cstring>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -30,6 +32,7 @@ class FakeRtpu {
     EXPECT_TRUE(table);
     block_ = BlockOwner(region_.writable().data() + block_offset(layout_.table()), peer, incarnation, tasks,
                         manager() + 1);
+    tap_.emplace(block_.tap());
     std::strcpy(block_.head().grant, "as an ordinary process");
     for (std::uint32_t t = 0; t < tasks; ++t) {
       if (!layout_.has(TaskId(t))) continue;
@@ -179,6 +182,14 @@ class FakeRtpu {
     for (std::size_t at = 0; at + sizeof count <= payload.size(); at += sizeof count)
       std::memcpy(payload.data() + at, &count, sizeof count);
     out.write(payload.data(), clock_.now(), ~std::uint64_t{0});
+    tap_->append({.at = clock_.now(), .a = CHIMERA_CYCLE, .task = task, .kind = TapKind::kRun});
+    if (!manager_.is_there() || !manager_.block().is_tapped(task)) return;
+    std::vector<std::byte> slot(sizeof(chimera_slot) + payload.size());
+    const chimera_slot header{clock_.now().count, profile.cycles, ~std::uint64_t{0}, 0};
+    std::memcpy(slot.data(), &header, sizeof header);
+    std::memcpy(slot.data() + sizeof header, payload.data(), payload.size());
+    tap_->append_row(*reinterpret_cast<const chimera_slot*>(slot.data()), out.payload_bytes(), task,
+                    static_cast<std::uint8_t>(peer_), rows_[index(task)]++);
   }
 
   const ApplicationSpec& spec_;
@@ -188,6 +199,8 @@ class FakeRtpu {
   LinuxClock clock_;
   MemoryRegion region_;
   BlockOwner block_;
+  std::optional<Tap> tap_;
+  std::map<std::size_t, std::uint32_t> rows_;
   std::vector<GroupWriter> writers_, faults_;
   std::vector<TaskId> mine_;
   std::mutex mutex_;

@@ -38,13 +38,14 @@ inline Descriptor test_component(const std::string& name, std::vector<PortDescri
   return d;
 }
 
-/// Two rtpus: sensor and filter on `servo`, law on `spare`; kp is the operator's. x of the sensor has two elements.
+/// Slow, so that a busy machine makes nothing stale. Two rtpus: sensor and filter on `servo`, law on `spare`; kp is the
+/// operator's. x of the sensor has two elements.
 inline constexpr const char* kFakeText = R"(subsystem: fake
 rtpus: {servo: {cpu: 0, policy: edf}, spare: {cpu: 1, policy: muf}}
 tasks:
-  sensor: {rtpu: servo}
-  filter: {rtpu: servo, rate: 500 Hz}
-  law:    {rtpu: spare, rate: 100 Hz}
+  sensor: {rtpu: servo, rate: 10 Hz}
+  filter: {rtpu: servo, rate: 10 Hz}
+  law:    {rtpu: spare, rate: 10 Hz}
 operator: {kp: [1 N.m/rad, 2 N.m/rad]}
 configurations: {run: [sensor, filter, law], rest: [sensor]}
 start: run
@@ -135,11 +136,18 @@ class FakeSubsystem {
     EXPECT_TRUE(!channel_.is_open() || channel_.send(bytes_of(*ended_[index])));
   }
 
+  /// One round of the driver, what comes after it, and the keeper.
+  bool step() {
+    if (!driver_->step(now() + milliseconds(1))) return false;
+    if (after_step) after_step();
+    keep();
+    return true;
+  }
+  std::function<void()> after_step;
   /// Lets the driver and the keeper work until `holds`; false after five seconds.
   bool until(const std::function<bool()>& holds) {
     for (const Nanoseconds limit = now() + seconds(5); now() < limit;) {
-      if (!driver_->step(now() + milliseconds(1))) return false;
-      keep();
+      if (!step()) return false;
       if (holds()) return true;
     }
     return false;

@@ -3,6 +3,7 @@
 // the one that wrote last.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -25,6 +26,11 @@ struct Reading {
   TaskId producer;               ///< invalid: the operator, or nobody
   bool is_valid = false;         ///< written at least once, or given an initial value
   ValueForm form;
+
+  /// At `at`; 0 when it was published after that.
+  Nanoseconds age(Nanoseconds at) const noexcept {
+    return {std::max<std::int64_t>(at.count - slot.published_ns, 0)};
+  }
 };
 
 /// Context: setup; may allocate. What it is made of outlives it.

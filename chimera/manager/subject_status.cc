@@ -85,7 +85,7 @@ Json inputs_json(const World& world, TaskId task, Nanoseconds at) {
     const bool is_there = reading.is_valid && reading.slot.sequence > 0;
     inputs.push_back({{"port", port.name},
                       {"variable", port.variable},
-                      {"age_ns", is_there ? Json(at.count - reading.slot.published_ns) : Json()}});
+                      {"age_ns", is_there ? Json(reading.age(at).count) : Json()}});
   }
   return inputs;
 }

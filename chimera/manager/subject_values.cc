@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "chimera/config/descriptor_value.h"
 #include "chimera/manager/subject_status.h"
 
 namespace chimera::manager {
@@ -15,6 +16,23 @@ using Json = nlohmann::json;
 bool is_finite(const ValueForm& form, std::span<const std::byte> bytes) {
   const std::vector<double> all = numbers(form, bytes);
   return std::all_of(all.begin(), all.end(), [](double n) { return std::isfinite(n); });
+}
+
+/// NaN and infinity become null where the JSON is written.
+Json plain_of(std::uint32_t type, std::span<const std::byte> at) {
+  return std::visit([](const auto& value) { return Json(value); }, load_plain(type, at));
+}
+
+Json element_of(const ValueForm& form, std::span<const std::byte> at) {
+  if (form.type != CHIMERA_STRUCT) return plain_of(form.type, at.first(form.element_bytes));
+  Json fields = Json::object();
+  for (const FieldDescriptor& field : form.fields) {
+    Json values = Json::array();
+    for (std::uint32_t i = 0; i < field.count; ++i)
+      values.push_back(plain_of(field.type, at.subspan(field.offset + i * field.size, field.size)));
+    fields[field.name] = field.count == 1 ? values[0] : std::move(values);
+  }
+  return fields;
 }
 
 std::string producer_name(const World& world, VariableId variable, TaskId producer) {
@@ -65,7 +83,7 @@ VariableFacts facts_of(const World& world, VariableId variable, Nanoseconds at) 
   facts.stale_after = patience(world, variable);
   facts.is_written = reading.is_valid;
   facts.published = {reading.slot.published_ns};
-  facts.age = at - facts.published;
+  facts.age = reading.age(at);
   facts.is_finite = is_finite(reading.form, reading.value);
   facts.value = value_text(reading.form, reading.value);
   if (world.readings->is_operators(variable)) {
@@ -97,7 +115,13 @@ Json link_json(const WhyLink& link) {
 
 }  // namespace
 
-Json value_of(const ValueForm& form, std::span<const std::byte> bytes) { return Json::parse(value_json(form, bytes)); }
+Json value_of(const ValueForm& form, std::span<const std::byte> bytes) {
+  if (form.is_scalar) return element_of(form, bytes);
+  Json list = Json::array();
+  for (std::uint32_t i = 0; i < form.count; ++i)
+    list.push_back(element_of(form, bytes.subspan(std::size_t{i} * form.element_bytes, form.element_bytes)));
+  return list;
+}
 
 Json reading_json(const World& world, VariableId variable, Nanoseconds at) {
   const Reading reading = world.readings->read(variable);
@@ -110,7 +134,7 @@ Json reading_json(const World& world, VariableId variable, Nanoseconds at) {
           {"producer", producer_name(world, variable, reading.producer)},
           {"state", state_text(world, variable, reading.producer)},
           {"published_ns", reading.slot.published_ns},
-          {"age_ns", at.count - reading.slot.published_ns},
+          {"age_ns", reading.age(at).count},
           {"sequence", reading.slot.sequence},
           {"valid", reading.is_valid}};
 }

@@ -24,7 +24,7 @@ std::int64_t wall_ns(Nanoseconds at) noexcept {
 
 World::World(Bundle given, Peers mapped, OwnSegment segment, DecisionPage& shared, const KeeperPage& keepers)
     : bundle(std::move(given)), peers(std::move(mapped)), own(std::move(segment)), page(shared), keeper(keepers),
-      logic(peers.spec()), log(own.block().memory().events), rtpus(peers.n_rtpus()) {
+      logic(peers.spec()), log(own.block().memory().events), rtpus(peers.n_rtpus()), tap_users(peers.n_tasks()) {
   if (bundle.is_idle()) return;
   configuration = verify(bundle).configuration;
   if (configuration)

@@ -43,6 +43,7 @@ struct World {
   EventLog log;
   std::optional<Readings> readings;            ///< none: idle
   std::vector<RtpuRecord> rtpus;
+  std::vector<std::uint32_t> tap_users;        ///< by task: subscriptions that want what it publishes
   std::int32_t keeper_pid = 0;
 
   const ApplicationSpec& spec() const noexcept { return peers.spec(); }

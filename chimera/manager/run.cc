@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/run.h"
+
+#include <unistd.h>
+
+#include "chimera/control/door.h"
+#include "chimera/manager/subject.h"
+
+namespace chimera::manager {
+
+Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int32_t keeper_pid) {
+  auto started = Driver::start(inherited, incarnation, keeper_pid);
+  if (!started) return started.error();
+  if (*started == nullptr) return 0;
+  Driver& driver = **started;
+  // Until everything is known connections wait in the backlog, so that no command meets half a picture.
+  while (!driver.is_ready())
+    if (!driver.step()) return 0;
+  const Bundle& bundle = driver.world().bundle;
+  Subject subject(driver);
+  auto door = control::Door::open(driver.take_listening(), subject, ::getuid(),
+                                  {bundle.observe_group, bundle.operate_group, bundle.configure_group});
+  if (!door) return door.error();
+  do (*door)->serve(now());
+  while (driver.step((*door)->next_due(), (*door)->descriptor()));
+  return 0;
+}
+
+}  // namespace chimera::manager

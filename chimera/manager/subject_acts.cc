@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/subject_acts.h"
+
+#include <nlohmann/json.hpp>
+
+#include "chimera/config/nearest.h"
+#include "chimera/manager/operator_values.h"
+#include "chimera/manager/subject_values.h"
+
+namespace chimera::manager {
+namespace {
+
+using control::Answer;
+using control::Json;
+
+constexpr std::uint32_t kOperatorFlag = 4;  // bit 2 of BlockHead::flag
+
+Answer unknown(const char* what, const std::string& name, const std::vector<std::string>& names) {
+  const std::string near = nearest(name, names);
+  const std::string message = std::string("no ") + what + " '" + name + "'";
+  return Answer::unknown(message + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near);
+}
+
+std::vector<std::string> variable_names(const World& world) {
+  std::vector<std::string> names;
+  if (world.readings)
+    for (const Variable& variable : world.readings->variables().all()) names.emplace_back(variable.name);
+  return names;
+}
+
+/// Elements of a row of an operator variable; 0 for what has one dimension.
+std::size_t columns(const World& world, VariableId variable) {
+  const std::uint32_t index = world.readings->variables().all()[variable.index].operator_index;
+  const std::string& shape = world.readings->configured(variable).shape;
+  const bool has_rows = shape.find("][") != std::string::npos;
+  return has_rows ? world.spec().operators[index].extent[1].max : 0;
+}
+
+Answer no_operators(const World& world, VariableId variable, const std::string& name) {
+  const TaskId task = world.readings->producer(variable);
+  const std::string who = task.is_valid() ? "task " + world.name(task) : "a task";
+  return Answer::error(control::kRefused, name + " is produced by " + who + ", not by the operator", {{"where", name}});
+}
+
+}  // namespace
+
+std::variant<std::vector<VariableId>, Answer> variables_named(const World& world,
+                                                              const std::vector<std::string>& names) {
+  std::vector<VariableId> found;
+  if (names.empty() && world.readings)
+    for (std::size_t v = 0; v < world.readings->size(); ++v) found.emplace_back(v);
+  for (const std::string& name : names) {
+    const auto variable = world.readings ? world.readings->find(name) : std::nullopt;
+    if (!variable) return unknown("state variable", name, variable_names(world));
+    found.push_back(*variable);
+  }
+  return found;
+}
+
+std::variant<std::vector<TaskId>, Answer> tasks_named(const World& world, const std::vector<std::string>& names) {
+  if (names.empty())
+    return Answer::error(control::kBadParameters, "'tasks' must name at least one", {{"where", "tasks"}});
+  std::vector<TaskId> found;
+  std::vector<std::string> known;
+  for (const TaskSpec& task : world.spec().tasks) known.emplace_back(task.name);
+  for (const std::string& name : names) {
+    const auto at = std::find(known.begin(), known.end(), name);
+    if (at == known.end()) return unknown("task", name, known);
+    found.emplace_back(static_cast<std::size_t>(at - known.begin()));
+  }
+  return found;
+}
+
+Answer set_values(World& world, const Json& values) {
+  std::vector<VariableId> variables;
+  std::map<std::string, ValueForm> forms;
+  for (const auto& [name, value] : values.items()) {
+    const auto found = variables_named(world, {name});
+    if (const auto* refused = std::get_if<Answer>(&found)) return *refused;
+    const VariableId variable = std::get<0>(found)[0];
+    if (!world.readings->is_operators(variable)) return no_operators(world, variable, name);
+    variables.push_back(variable);
+    forms[name] = world.readings->form(variable);
+  }
+  if (variables.empty())
+    return Answer::error(control::kBadParameters, "'values' must name at least one variable", {{"where", "values"}});
+  const auto bytes = operator_bytes(*world.configuration, world.bundle.library, values, forms);
+  if (!bytes)
+    return Answer::error(control::kBadParameters, std::string(bytes.error().message.view()),
+                         {{"where", bytes.error().where.view()}});
+  const Nanoseconds at = now();
+  for (const auto& [index, value] : *bytes) world.own.publish_operator(index, value, at);
+  Json answer = {{"values", readings_json(world, variables, at)}};
+  for (const auto& [name, reading] : answer["values"].items())
+    world.tell("set", TaskId{}, RtpuId{}, name + " = " + reading["text"].get<std::string>(), at);
+  return Answer::good(answer);
+}
+
+Answer set_flag(World& world, bool up) {
+  auto& flag = world.own.block().head().flag;
+  const std::uint32_t before = flag.load(std::memory_order_relaxed);
+  flag.store(up ? before | kOperatorFlag : before & ~kOperatorFlag, std::memory_order_release);
+  if (flag.load(std::memory_order_relaxed) != before) {
+    const char* words = up ? "the operator raised the flag" : "the operator lowered the flag";
+    world.tell("flag", TaskId{}, RtpuId{}, words, now());
+    world.announce();
+  }
+  return Answer::good({{"up", up}});
+}
+
+Answer saved_values(const World& world) {
+  Json saved = Json::object();
+  for (std::size_t v = 0; world.readings && v < world.readings->size(); ++v) {
+    const VariableId variable(v);
+    if (!world.readings->is_operators(variable)) continue;
+    const Reading reading = world.readings->read(variable);
+    saved[world.readings->configured(variable).name] =
+        description_text(reading.form, reading.value, columns(world, variable));
+  }
+  return Answer::good({{"operator", std::move(saved)}});
+}
+
+}  // namespace chimera::manager

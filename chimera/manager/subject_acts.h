@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What faces may do beside signals: set operator variables, raise the operator's flag, ask for tuned values in
+// the words of a description.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "chimera/control/answer.h"
+#include "chimera/manager/world.h"
+
+namespace chimera::manager {
+
+/// Context of all: setup.
+/// The variables of these names, none: all of them; refuses an unknown one with the nearest.
+std::variant<std::vector<VariableId>, control::Answer> variables_named(const World& world,
+                                                                       const std::vector<std::string>& names);
+/// The tasks of these names; refuses none at all, and an unknown one with the nearest.
+std::variant<std::vector<TaskId>, control::Answer> tasks_named(const World& world,
+                                                               const std::vector<std::string>& names);
+/// {name: value}: sets operator variables, all or none. The answer has their readings.
+control::Answer set_values(World& world, const nlohmann::json& values);
+/// Raises or lowers the operator's part of the flag.
+control::Answer set_flag(World& world, bool up);
+/// Present values of the operator variables in the words of a description.
+control::Answer saved_values(const World& world);
+
+}  // namespace chimera::manager

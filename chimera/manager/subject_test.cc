@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/subject.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "chimera/manager/fake_subsystem.h"
+
+namespace chimera::manager {
+namespace {
+
+using control::Json;
+using control::Role;
+
+class SubjectTest : public testing::Test {
+ protected:
+  explicit SubjectTest(const std::string& text = kFakeText) : fake_(text) {}
+  void SetUp() override {
+    fake_.start_manager();
+    ASSERT_TRUE(fake_.until([&] { return fake_.driver().is_ready(); }));
+    subject_ = std::make_unique<Subject>(fake_.driver());
+    ASSERT_TRUE(fake_.until([&] { return fake_.n_rtpus() == 0 || (!fake_.told("started").empty() && all_cycle()); }));
+  }
+  bool all_cycle() {
+    for (std::uint32_t t = 0; t < fake_.spec().tasks.size(); ++t)
+      if (world().peers.of(TaskId(t)).block().profile(TaskId(t)).cycles < 3) return false;
+    return true;
+  }
+  control::Answer ask(const char* method, const Json& parameters = Json::object()) {
+    std::optional<control::Answer> got;
+    subject_->call(*control::find_method(method), parameters, Role::kConfigure,
+                   [&](const control::Answer& answer) { got = answer; });
+    EXPECT_TRUE(fake_.until([&] { return got.has_value(); })) << method;
+    return got.value_or(control::Answer{});
+  }
+  Json good(const char* method, const Json& parameters = Json::object()) {
+    const control::Answer answer = ask(method, parameters);
+    EXPECT_TRUE(answer.is_good()) << method << ": " << answer.message;
+    return answer.is_good() ? *answer.result : Json();
+  }
+  /// "CODE MESSAGE DATA" of a refusal.
+  std::string refusal(const char* method, const Json& parameters) {
+    const control::Answer answer = ask(method, parameters);
+    if (answer.is_good()) return "accepted " + answer.result->dump();
+    return std::to_string(answer.code) + " " + answer.message + (answer.data ? " " + answer.data->dump() : "");
+  }
+  World& world() { return fake_.driver().world(); }
+
+  FakeSubsystem fake_;
+  std::unique_ptr<Subject> subject_;
+};
+
+TEST_F(SubjectTest, HelloSaysWhoSpeaks) {
+  const Json hello = good("hello");
+  EXPECT_EQ(hello["protocol"], 1);
+  EXPECT_EQ(hello["program"], "0.1.0");
+  EXPECT_EQ(hello["subsystem"], "fake");
+  EXPECT_EQ(hello["role"], "configure");
+  EXPECT_EQ(hello["file"], "fake.yaml");
+  EXPECT_EQ(hello["keeper_pid"], ::getpid());
+  EXPECT_EQ(hello["manager"]["starts"], 1);
+}
+
+TEST_F(SubjectTest, StatusIsReadOutOfTheBlocks) {
+  fake_.rtpu(1).block().profile(fake_.task("law")).dropped = 5;
+  const Json status = good("status");
+  EXPECT_EQ(status["configuration"], "run");
+  EXPECT_EQ(status["flag"], (Json{{"up", false}, {"by", Json::array()}}));
+  EXPECT_GT(status["started_ns"], status["origin_ns"]);
+  ASSERT_EQ(status["rtpus"].size(), 2u);
+  const Json& servo = status["rtpus"][0];
+  EXPECT_EQ(servo["name"], "servo");
+  EXPECT_EQ(servo["policy"], "edf");
+  EXPECT_EQ(servo["phase"], "serving");
+  EXPECT_EQ(servo["grant"], "as an ordinary process");
+  EXPECT_EQ(servo["running"], nullptr);
+  EXPECT_EQ(servo["last_end"], nullptr);
+  EXPECT_EQ(servo["alive"], true);
+  const Json& law = status["tasks"][2];
+  EXPECT_EQ(law["task"], "law");
+  EXPECT_EQ(law["rtpu"], "spare");
+  EXPECT_EQ(law["state"], "ON");
+  EXPECT_EQ(law["rate_hz"], 10.0);
+  EXPECT_EQ(law["dropped"], 5);
+  EXPECT_EQ(law["execution_ns"], (Json{{"mean", 3000}, {"max", 3000}}));
+  EXPECT_EQ(law["fault"], nullptr);
+  ASSERT_EQ(law["inputs"].size(), 2u);
+  EXPECT_EQ(law["inputs"][0]["port"], "y");
+  EXPECT_GE(law["inputs"][0]["age_ns"], 0);
+}
+
+TEST_F(SubjectTest, DescribeTellsWhatVerificationKnows) {
+  const Json described = good("describe");
+  EXPECT_EQ(described["start"], "run");
+  EXPECT_EQ(described["configurations"][1], (Json{{"name", "rest"}, {"tasks", {"sensor"}}}));
+  const Json& filter = described["tasks"][1];
+  EXPECT_EQ(filter["ports"][0], (Json{{"port", "x"}, {"kind", "in-var"}, {"variable", "x"}, {"type", "float64"},
+                                      {"unit", "rad"}, {"shape", "[2]"}}));
+  for (const Json& variable : described["variables"]) {
+    if (variable["variable"] != "y") continue;
+    EXPECT_EQ(variable["consumers"], (Json::array({Json{{"task", "law"}, {"port", "y"}}})));
+  }
+}
+
+TEST_F(SubjectTest, GetReadsTheRegisters) {
+  ASSERT_TRUE(fake_.until([&] { return good("get")["values"]["tau"]["sequence"] > 2; }));
+  const Json values = good("get", {{"variables", {"x", "kp"}}})["values"];
+  EXPECT_EQ(values.size(), 2u);
+  const Json& x = values["x"];
+  EXPECT_EQ(x["value"].size(), 2u);
+  EXPECT_EQ(x["unit"], "rad");
+  EXPECT_EQ(x["type"], "float64");
+  EXPECT_EQ(x["shape"], "[2]");
+  EXPECT_EQ(x["producer"], "sensor");
+  EXPECT_EQ(x["state"], "ON");
+  EXPECT_EQ(x["valid"], true);
+  EXPECT_LT(x["age_ns"], 1'000'000'000);
+  EXPECT_EQ(values["kp"]["value"], Json::array({1.0, 2.0}));
+  EXPECT_EQ(values["kp"]["text"], "[1 2] N.m/rad");
+  EXPECT_EQ(values["kp"]["producer"], "operator");
+  EXPECT_EQ(refusal("get", {{"variables", {"tua"}}}),
+            "-32005 no state variable 'tua'; did you mean 'tau'? {\"nearest\":\"tau\",\"where\":\"tua\"}");
+}
+
+TEST_F(SubjectTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
+  EXPECT_EQ(good("signal", {{"signal", "off"}, {"tasks", {"law"}}})["tasks"],
+            Json::array({Json{{"task", "law"}, {"before", "ON"}, {"after", "OFF"}}}));
+  EXPECT_EQ(good("status")["configuration"], "");
+  EXPECT_EQ(refusal("signal", {{"signal", "onn"}, {"tasks", {"law"}}}),
+            "-32005 no signal 'onn'; did you mean 'on'? {\"nearest\":\"on\",\"where\":\"onn\"}");
+  EXPECT_EQ(refusal("signal", {{"signal", "on"}, {"tasks", {"low"}}}),
+            "-32005 no task 'low'; did you mean 'law'? {\"nearest\":\"law\",\"where\":\"low\"}");
+  EXPECT_EQ(refusal("signal", {{"signal", "on"}, {"tasks", Json::array()}}),
+            "-32602 'tasks' must name at least one {\"where\":\"tasks\"}");
+  const std::string refused = refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}});
+  EXPECT_TRUE(refused.starts_with("-32000 ")) << refused;
+  EXPECT_NE(refused.find("\"where\":\"law\""), std::string::npos) << refused;
+  EXPECT_EQ(good("signal", {{"signal", "on"}, {"tasks", {"law"}}})["tasks"][0]["after"], "ON");
+}
+
+TEST_F(SubjectTest, NoAnswerNamesTheRtpuAndWhatItWasDoing) {
+  fake_.rtpu(1).block().head().running = (fake_.task("law").index + 1) << 8 | CHIMERA_CYCLE;
+  fake_.rtpu(1).is_deaf = true;
+  EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}),
+            "-32006 no answer from rtpu spare {\"rtpu\":\"spare\",\"running\":\"law.cycle\"}");
+}
+
+TEST_F(SubjectTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescription) {
+  const Json answer = good("set", {{"values", {{"kp", "[100 90] N.m/rad"}}}});
+  EXPECT_EQ(answer["values"]["kp"]["value"], Json::array({100.0, 90.0}));
+  EXPECT_EQ(good("get", {{"variables", {"kp"}}})["values"]["kp"]["text"], "[100 90] N.m/rad");
+  EXPECT_EQ(good("save"), (Json{{"operator", {{"kp", "[100.0 N.m/rad, 90.0 N.m/rad]"}}}}));
+  EXPECT_EQ(fake_.told("set"), "kp = [100 90] N.m/rad\n");
+  EXPECT_TRUE(refusal("set", {{"values", {{"kp", "3 m"}}}}).starts_with("-32602 operator variable 'kp': expected"));
+  EXPECT_EQ(refusal("set", {{"values", {{"tau", 3}}}}),
+            "-32000 tau is produced by task law, not by the operator {\"where\":\"tau\"}");
+  EXPECT_EQ(good("get", {{"variables", {"kp"}}})["values"]["kp"]["text"], "[100 90] N.m/rad");
+}
+
+TEST_F(SubjectTest, TheOperatorsFlagStaysUntilItIsLowered) {
+  EXPECT_EQ(good("flag", {{"up", true}}), (Json{{"up", true}}));
+  EXPECT_EQ(good("status")["flag"], (Json{{"up", true}, {"by", {"operator"}}}));
+  EXPECT_EQ(world().own.block().head().flag, 4u);
+  EXPECT_EQ(good("flag", {{"up", false}}), (Json{{"up", false}}));
+  EXPECT_EQ(good("status")["flag"]["up"], false);
+  EXPECT_EQ(fake_.told("flag"), "the operator raised the flag\nthe operator lowered the flag\n");
+}
+
+TEST_F(SubjectTest, EventsAreNumberedWithoutAGap) {
+  const Json events = good("events", {{"since", 0}, {"limit", 3}});
+  EXPECT_EQ(events["first"], 1);
+  ASSERT_EQ(events["events"].size(), 3u);
+  EXPECT_EQ(events["events"][0]["kind"], "manager-started");
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(events["events"][i]["number"], i + 1);
+  const std::uint64_t last = events["last"];
+  EXPECT_EQ(good("events", {{"since", last + 1}})["events"].size(), 0u);
+}
+
+TEST_F(SubjectTest, WhyFindsTheProducerThatIsOff) {
+  const std::string before = good("why", {{"variable", "tau"}})["verdict"];
+  EXPECT_TRUE(before.starts_with("tau is good: law wrote it")) << before;
+  (void)good("signal", {{"signal", "off"}, {"tasks", {"sensor"}}});
+  const Json why = good("why", {{"variable", "tau"}});
+  EXPECT_EQ(why["verdict"], "tau depends on x: its producer sensor is OFF");
+  EXPECT_EQ(why["chain"][0]["variable"], "tau");
+  EXPECT_EQ(why["chain"].back()["verdict"], "producer-off");
+}
+
+TEST_F(SubjectTest, WhySeesADeadRtpu) {
+  fake_.kill_rtpu(0, SIGKILL);
+  ASSERT_TRUE(fake_.until([&] { return !world().rtpus[0].is_alive; }));
+  const std::string verdict = good("why", {{"variable", "x"}})["verdict"];
+  EXPECT_TRUE(verdict.starts_with("x: the real-time unit servo of its producer sensor is dead: ")) << verdict;
+}
+
+TEST_F(SubjectTest, ProfileIsThatOfEveryOtherFace) {
+  const Json profile = good("profile");
+  ASSERT_EQ(profile["tasks"].size(), 3u);
+  EXPECT_EQ(profile["tasks"][0]["task"], "sensor");
+  EXPECT_GT(profile["tasks"][0]["execution_ns"]["cycle"]["count"], 0);
+}
+
+TEST_F(SubjectTest, EndGoesToTheKeeper) {
+  EXPECT_EQ(good("end", {{"code", 3}}), Json::object());
+  ASSERT_TRUE(fake_.until([&] { return fake_.end_asked.has_value(); }));
+  EXPECT_EQ(*fake_.end_asked, 3);
+}
+
+TEST_F(SubjectTest, WhileEverythingEndsNoSignalIsTaken) {
+  fake_.page().ending = 1;
+  EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}), "-32007 everything ends");
+  ASSERT_TRUE(fake_.until([&] { return !fake_.told("ending").empty(); }));
+}
+
+TEST_F(SubjectTest, SubscribersOfEventsMissNone) {
+  ASSERT_TRUE(subject_->open(7, {{"to", "events"}, {"since", 0}}).is_good());
+  (void)good("flag", {{"up", true}});
+  std::uint64_t next = 1;
+  for (std::shared_ptr<const Json> news; (news = subject_->pull(7)) != nullptr;) {
+    EXPECT_EQ((*news)["lost"], 0);
+    for (const Json& event : (*news)["events"]) EXPECT_EQ(event["number"], next++);
+  }
+  EXPECT_EQ(next, world().log.last() + 1);
+  subject_->close(7);
+}
+
+TEST_F(SubjectTest, SubscribersOfEventsThatAreGoneAreToldHowMany) {
+  ASSERT_TRUE(subject_->open(7, {{"to", "events"}, {"since", 1}}).is_good());
+  for (std::size_t i = 0; i < kEventsKept + 5; ++i) world().tell("command", TaskId{}, RtpuId{}, "x", now());
+  const auto news = subject_->pull(7);
+  ASSERT_NE(news, nullptr);
+  EXPECT_EQ((*news)["lost"], world().log.first() - 1);
+  EXPECT_EQ((*news)["events"][0]["number"], world().log.first());
+}
+
+TEST_F(SubjectTest, SubscriptionsOfStateGiveTheLatest) {
+  ASSERT_TRUE(subject_->open(1, {{"to", "status"}}).is_good());
+  ASSERT_TRUE(subject_->open(2, {{"to", "values"}, {"variables", {"x"}}}).is_good());
+  EXPECT_EQ((*subject_->pull(1))["subsystem"], "fake");
+  EXPECT_EQ((*subject_->pull(2))["values"].size(), 1u);
+  EXPECT_EQ(subject_->open(3, {{"to", "values"}, {"variables", {"nix"}}}).code, control::kUnknown);
+}
+
+TEST_F(SubjectTest, SubscriptionsOfTheTapGiveRows) {
+  ASSERT_TRUE(subject_->open(1, {{"to", "tap"}, {"variables", {"x"}}}).is_good());
+  std::shared_ptr<const Json> news;
+  ASSERT_TRUE(fake_.until([&] { return (news = subject_->pull(1)) != nullptr; }));
+  EXPECT_EQ((*news)["task"], "sensor");
+  EXPECT_EQ((*news)["first"], 0);
+  EXPECT_GT((*news)["rows"].size(), 0u);
+  subject_->close(1);
+  EXPECT_FALSE(world().own.block().view().is_tapped(fake_.task("sensor")));
+}
+
+TEST_F(SubjectTest, ChecksATextWithTheLibraryOfTheStart) {
+  EXPECT_EQ(good("check", {{"text", kFakeText}, {"file", "mine.yaml"}})["legal"], true);
+  const Json report = good("check", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}, {"file", "mine.yaml"}});
+  EXPECT_EQ(report["legal"], false);
+  EXPECT_EQ(report["faults"][0]["file"], "mine.yaml");
+  EXPECT_EQ(report["faults"][0]["nearest"], "sensor");
+}
+
+class IdleTest : public SubjectTest {
+ protected:
+  IdleTest() : SubjectTest("") {}
+};
+
+TEST_F(IdleTest, ServesEditors) {
+  EXPECT_EQ(good("hello")["file"], "");
+  EXPECT_EQ(good("check", {{"text", kFakeText}})["legal"], true);
+  EXPECT_EQ(good("library")["components"].size(), 3u);
+  EXPECT_EQ(good("status")["tasks"], Json::array());
+  EXPECT_EQ(good("describe")["tasks"], Json::array());
+  EXPECT_EQ(good("get")["values"], Json::object());
+  EXPECT_EQ(good("save")["operator"], Json::object());
+  EXPECT_EQ(refusal("why", {{"variable", "x"}}), "-32005 no state variable 'x' {\"where\":\"x\"}");
+  EXPECT_EQ(refusal("signal", {{"signal", "on"}, {"tasks", {"x"}}}), "-32005 no task 'x' {\"where\":\"x\"}");
+  EXPECT_EQ(good("profile")["tasks"], Json::array());
+}
+
+}  // namespace
+}  // namespace chimera::manager

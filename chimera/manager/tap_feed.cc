@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/tap_feed.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "chimera/manager/subject_values.h"
+
+namespace chimera::manager {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kAtOnce = 4096;            // records of one read
+constexpr std::size_t kValuesOfMessage = 10'000;  // about 200 kB
+
+const char* kind_text(TapKind kind) {
+  constexpr const char* kNames[] = {"release", "run", "preempt", "miss", "drop", "signal", "fault", "state", "flag"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<std::uint32_t> payload_sizes(const Peers& peers) {
+  std::vector<std::uint32_t> bytes;
+  for (std::size_t t = 0; t < peers.spec().tasks.size(); ++t) {
+    const PeerLayout& layout = peers.layout(peers.spec().tasks[t].rtpu);
+    bytes.push_back(layout.place(layout.outputs(TaskId(t), 0)).payload_bytes);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+TapFeed::TapFeed(World& world, std::vector<VariableId> variables) : world_(world), buffer_(kAtOnce) {
+  for (const VariableId variable : variables)
+    for (const PortOf& port : world.readings->variables().all()[variable.index].producers)
+      add_producer(variable, port);
+  for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) {
+    const auto is_its = [&](const Rows& rows) { return world.spec().tasks[rows.task.index].rtpu == RtpuId(r); };
+    if (!variables.empty() && std::none_of(rows_.begin(), rows_.end(), is_its)) continue;
+    rings_.emplace_back().rtpu = RtpuId(r);
+    follow(rings_.back());
+  }
+  for (const Rows& rows : rows_) tap(rows.task, true);
+  if (!rows_.empty()) world.announce();
+}
+
+TapFeed::~TapFeed() {
+  for (const Rows& rows : rows_) tap(rows.task, false);
+  if (!rows_.empty()) world_.announce();
+}
+
+void TapFeed::add_producer(VariableId variable, const PortOf& port) {
+  auto rows = std::find_if(rows_.begin(), rows_.end(), [&](const Rows& r) { return r.task == port.task; });
+  if (rows == rows_.end()) {
+    rows = rows_.emplace(rows_.end());
+    rows->task = port.task;
+  }
+  const PeerLayout& layout = world_.peers.layout(world_.spec().tasks[port.task.index].rtpu);
+  const auto places = layout.variables(layout.outputs(port.task, 0));
+  rows->columns.push_back({variable, places[port.index].offset});
+}
+
+/// Several subscriptions may want the same task: the first turns the tap on, the last off.
+void TapFeed::tap(TaskId task, bool up) {
+  std::uint32_t& users = world_.tap_users[task.index];
+  users += up ? 1 : -1u;
+  world_.own.block().set_tapped(task, users > 0);
+}
+
+/// Another incarnation has a ring of its own, and everything in it is new.
+void TapFeed::follow(Ring& ring) {
+  const PeerSegment& segment = world_.peers[ring.rtpu];
+  if (!segment.is_there() || segment.incarnation() == ring.incarnation) return;
+  ring.reader = TapReader(segment.block().tap(), ring.incarnation != 0);
+  ring.incarnation = segment.incarnation();
+  ring.assembler = std::make_unique<TapRows>(payload_sizes(world_.peers));
+  ring.lost_before = 0;
+}
+
+void TapFeed::pump(const TapSink& sink) {
+  for (Ring& ring : rings_) {
+    follow(ring);
+    if (ring.assembler == nullptr) continue;
+    for (std::size_t rounds = 0; rounds < kTapRecords / kAtOnce; ++rounds) {
+      const std::size_t n = ring.reader.read(buffer_);
+      const std::uint64_t lost = ring.reader.lost() - std::exchange(ring.lost_before, ring.reader.lost());
+      if (rows_.empty() && lost > 0) flush(ring, lost, sink);
+      for (std::size_t i = 0; i < n; ++i) take(ring, buffer_[i], sink);
+      if (n < buffer_.size()) break;
+    }
+    flush(ring, 0, sink);
+  }
+  for (Rows& rows : rows_) flush(rows, sink);
+}
+
+void TapFeed::take(Ring& ring, const TapRecord& record, const TapSink& sink) {
+  if (record.kind > TapKind::kFlag) {
+    if (rows_.empty()) return;
+    if (const TapRow* row = ring.assembler->take(record); row != nullptr) take_row(*row, sink);
+  } else if (rows_.empty()) {
+    const bool has_task = record.task.index < world_.peers.n_tasks();
+    ring.waiting.push_back(Json::array({record.at.count, kind_text(record.kind),
+                                        has_task ? Json(world_.name(record.task)) : Json(), record.a, record.b}));
+    if (ring.waiting.size() > kValuesOfMessage / 5) flush(ring, 0, sink);
+  }
+}
+
+void TapFeed::take_row(const TapRow& row, const TapSink& sink) {
+  const auto rows = std::find_if(rows_.begin(), rows_.end(), [&](const Rows& r) { return r.task == row.task; });
+  if (rows == rows_.end()) return;  // another subscription wants it
+  if (row.lost > 0 || rows->waiting.size() * row.payload.size() > 8 * kValuesOfMessage) flush(*rows, sink);
+  rows->lost += row.lost;
+  Json made = Json::array({row.at.count, row.sequence});
+  for (const Column& column : rows->columns) {
+    ValueForm form = world_.readings->form(column.variable);
+    form.is_scalar = false;  // always a list, so that a reader need not look
+    made.push_back(value_of(form, row.payload.subspan(column.offset, std::size_t{form.count} * form.element_bytes)));
+  }
+  rows->waiting.push_back(std::move(made));
+}
+
+void TapFeed::flush(Rows& rows, const TapSink& sink) {
+  if (rows.waiting.empty()) return;
+  Json names = Json::array();
+  for (const Column& column : rows.columns) names.push_back(world_.readings->configured(column.variable).name);
+  const std::uint64_t next = rows.first + rows.lost + rows.waiting.size();
+  sink({{"rtpu", world_.name(world_.spec().tasks[rows.task.index].rtpu)},
+        {"task", world_.name(rows.task)},
+        {"variables", std::move(names)},
+        {"first", rows.first},
+        {"lost", rows.lost},
+        {"rows", std::exchange(rows.waiting, {})}});
+  rows.first = next;
+  rows.lost = 0;
+}
+
+/// What was lost came behind the records that wait: they are handed on first.
+void TapFeed::flush(Ring& ring, std::uint64_t lost, const TapSink& sink) {
+  const auto say = [&](std::vector<Json> records, std::uint64_t gone) {
+    const std::uint64_t next = ring.first + records.size() + gone;
+    sink({{"rtpu", world_.name(ring.rtpu)}, {"first", ring.first}, {"lost", gone}, {"records", std::move(records)}});
+    ring.first = next;
+  };
+  if (!ring.waiting.empty()) say(std::exchange(ring.waiting, {}), 0);
+  if (lost > 0) say({}, lost);
+}
+
+}  // namespace chimera::manager

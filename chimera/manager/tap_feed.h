@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tap as a subscriber gets it: lossless rows of what the producers of some variables published, or the scheduling
+// records of all real-time units. docs/formats/control.md, "Notifications".
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "chimera/manager/world.h"
+#include "chimera/runtime/tap_rows.h"
+
+namespace chimera::manager {
+
+/// Takes the parameters of one notification, the subscription left out.
+using TapSink = std::function<void(nlohmann::json)>;
+
+/// As long as one lives its tasks are tapped: their rtpus append what they publish. Context: setup.
+class TapFeed {
+ public:
+  /// `variables` empty: scheduling records. Requires: not idle; `world` outlives it.
+  TapFeed(World& world, std::vector<VariableId> variables);
+  ~TapFeed();
+  TapFeed(const TapFeed&) = delete;
+  TapFeed& operator=(const TapFeed&) = delete;
+
+  /// Hands on what has come since: to be called several times within 0.3 s, for the ring holds no more.
+  void pump(const TapSink& sink);
+
+ private:
+  /// One task whose publications are wanted.
+  struct Column {
+    VariableId variable;
+    std::uint32_t offset = 0;  // in the payload
+  };
+  struct Rows {
+    TaskId task;
+    std::vector<Column> columns;
+    std::uint64_t first = 0, lost = 0;
+    std::vector<nlohmann::json> waiting;  // rows for the next message
+  };
+  struct Ring {
+    RtpuId rtpu;
+    std::uint32_t incarnation = 0;
+    TapReader reader;
+    std::unique_ptr<TapRows> assembler;
+    std::uint64_t lost_before = 0;
+    std::uint64_t first = 0;              // of scheduling records
+    std::vector<nlohmann::json> waiting;
+  };
+
+  void add_producer(VariableId variable, const PortOf& port);
+  void tap(TaskId task, bool up);
+  void follow(Ring& ring);
+  void take(Ring& ring, const TapRecord& record, const TapSink& sink);
+  void take_row(const TapRow& row, const TapSink& sink);
+  void flush(Rows& rows, const TapSink& sink);
+  void flush(Ring& ring, std::uint64_t lost, const TapSink& sink);
+
+  World& world_;
+  std::vector<Rows> rows_;
+  std::vector<Ring> rings_;
+  std::vector<TapRecord> buffer_;
+};
+
+}  // namespace chimera::manager

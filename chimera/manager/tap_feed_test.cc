@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/tap_feed.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "chimera/manager/fake_subsystem.h"
+
+namespace chimera::manager {
+namespace {
+
+using Json = nlohmann::json;
+
+class TapFeedTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    fake_.start_manager();
+    ASSERT_TRUE(fake_.until_on("law"));
+  }
+  World& world() { return fake_.driver().world(); }
+  VariableId variable(const char* name) { return *world().readings->find(name); }
+  void pump(TapFeed& feed) {
+    feed.pump([this](Json message) { messages_.push_back(std::move(message)); });
+  }
+  bool pump_until(TapFeed& feed, std::size_t rows, const char* key = "rows") {
+    return fake_.until([&] {
+      pump(feed);
+      std::size_t n = 0;
+      for (const Json& message : messages_) n += message.at(key).size();
+      return n >= rows;
+    });
+  }
+  bool is_tapped(const char* task) { return world().own.block().view().is_tapped(fake_.task(task)); }
+
+  FakeSubsystem fake_;
+  std::vector<Json> messages_;
+};
+
+TEST_F(TapFeedTest, EveryPublicationComesOnceInOrder) {
+  TapFeed feed(world(), {variable("x"), variable("tau")});
+  EXPECT_TRUE(is_tapped("sensor") && is_tapped("law"));
+  EXPECT_FALSE(is_tapped("filter"));
+  ASSERT_TRUE(pump_until(feed, 200));
+  std::map<std::string, std::uint64_t> next, sequence;
+  for (const Json& message : messages_) {
+    const std::string task = message["task"];
+    EXPECT_EQ(message["rtpu"], task == "sensor" ? "servo" : "spare");
+    EXPECT_EQ(message["variables"], Json::array({task == "sensor" ? "x" : "tau"}));
+    EXPECT_EQ(message["first"], next[task]);
+    EXPECT_EQ(message["lost"], 0);
+    next[task] += message["rows"].size();
+    for (const Json& row : message["rows"]) {
+      ASSERT_EQ(row.size(), 3u);
+      EXPECT_EQ(row[2].size(), task == "sensor" ? 2u : 1u);
+      EXPECT_EQ(row[2][0].get<double>(), row[1].get<double>());  // the fake publishes its count
+      EXPECT_TRUE(sequence[task] == 0 || row[1] == sequence[task] + 1);
+      sequence[task] = row[1];
+    }
+  }
+  EXPECT_GT(next["sensor"], 0u);
+  EXPECT_GT(next["law"], 0u);
+}
+
+TEST_F(TapFeedTest, ATaskIsTappedAsLongAsSomebodyWantsIt) {
+  auto first = std::make_unique<TapFeed>(world(), std::vector{variable("x")});
+  auto second = std::make_unique<TapFeed>(world(), std::vector{variable("x")});
+  first.reset();
+  EXPECT_TRUE(is_tapped("sensor"));
+  second.reset();
+  EXPECT_FALSE(is_tapped("sensor"));
+}
+
+TEST_F(TapFeedTest, WithoutVariablesItGivesTheSchedulingRecords) {
+  TapFeed feed(world(), {});
+  ASSERT_TRUE(pump_until(feed, 50, "records"));
+  const Json& record = messages_[0]["records"][0];
+  ASSERT_EQ(record.size(), 5u);
+  EXPECT_EQ(record[1], "run");
+  EXPECT_EQ(record[3], CHIMERA_CYCLE);
+}
+
+TEST_F(TapFeedTest, WhatWasOverwrittenIsCounted) {
+  TapFeed feed(world(), {});
+  Tap writer(const_cast<TapRing&>(fake_.rtpu(1).block().tap()));
+  fake_.rtpu(1).die();
+  for (std::size_t i = 0; i < kTapRecords + 10; ++i) writer.append(TapRecord{});
+  pump(feed);
+  std::uint64_t lost = 0, records = 0;
+  for (const Json& message : messages_) {
+    if (message["rtpu"] != "spare") continue;
+    EXPECT_EQ(message["first"], lost + records);
+    lost += message["lost"].get<std::uint64_t>();
+    records += message["records"].size();
+  }
+  EXPECT_GE(lost, 10u);
+  EXPECT_GE(lost + records, kTapRecords + 10);
+  fake_.kill_rtpu(1, SIGKILL);
+}
+
+TEST_F(TapFeedTest, GoesOnWithTheNextIncarnation) {
+  TapFeed feed(world(), {variable("tau")});
+  ASSERT_TRUE(pump_until(feed, 5));
+  messages_.clear();
+  fake_.kill_rtpu(1, SIGKILL);
+  ASSERT_TRUE(fake_.until([&] {
+    pump(feed);
+    return world().rtpus[1].restarts == 1 && world().state(fake_.task("law")) == State::kOn;
+  }));
+  messages_.clear();
+  EXPECT_TRUE(pump_until(feed, 5));
+}
+
+}  // namespace
+}  // namespace chimera::manager
