@@ -147,15 +147,16 @@ bool Judge::is_awaited(TaskId task, Signal signal) const {
 
 // Whoever was told that a task is OFF or gone, or that its init ended the process, must not find it up again by itself.
 void Judge::promise(const subsystem::Answer& answer, const Face& face) {
-  const bool goes_down = answer.accepted && (face.signal() == Signal::kOff || face.signal() == Signal::kKill);
-  const bool was_deadly = !answer.accepted && face.signal() == Signal::kSpawn &&
-                          answer.text.find(" ended ") != std::string::npos;
+  const bool met_death = !answer.accepted && answer.text.find(" ended ") != std::string::npos;
+  const bool was_deadly = met_death && face.signal() == Signal::kSpawn;
   for (TaskId task : face.tasks()) {
+    const bool is_done = answer.accepted || (met_death && rtpu_of(task) == rtpu_of(answer.at));
+    const bool goes_down = is_done && (face.signal() == Signal::kOff || face.signal() == Signal::kKill);
     const bool is_there = world_.process_of(task).word(task).state != State::kNotCreated;
     Debt& debt = debts_[task.index];
     if (goes_down && debt.requested + seconds(10) < world_.now() && debt.asked_up < face.asked_at()) {
       debt.no_on = !is_awaited(task, Signal::kOn);
-      debt.no_spawn = face.signal() == Signal::kKill && !is_there && !is_awaited(task, Signal::kSpawn) &&
+      debt.no_spawn = face.signal() == Signal::kKill && (!is_there || met_death) && !is_awaited(task, Signal::kSpawn) &&
                       !is_awaited(task, Signal::kClear);
     }
     if (was_deadly && !is_there && task == answer.at)
