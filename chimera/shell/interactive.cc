@@ -2,6 +2,7 @@
 #include "chimera/shell/interactive.h"
 
 #include <histedit.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -142,7 +143,11 @@ int typed(Session& session) {
   if (!hello.is_good()) return print(refused(hello, false), stdout, stderr);
   Editor editor(text_of(*hello.result, "subsystem"), described.is_good() ? names_of(*described.result) : Names{});
   for (std::string line;;) {
-    if (!editor.read(line)) return kOk;
+    // The editor takes Ctrl-C as a key, but for the moments in which it sets the terminal up.
+    ::signal(SIGINT, SIG_IGN);
+    const bool is_there = editor.read(line);
+    ::signal(SIGINT, SIG_DFL);
+    if (!is_there) return kOk;
     if (carry_out_line(session, line, stdout, stderr).is_quit) return kOk;
   }
 }

@@ -40,9 +40,10 @@ Result<std::int64_t> period_ms(const Call& call, std::int64_t otherwise) {
   return ms;
 }
 
-/// What the session says when the connection ends under a command that goes on.
-int lost(const Error& error, const Call& call, std::FILE* out, std::FILE* err) {
-  return print(refused(error, call.json), out, err);
+/// Somebody ended a command that goes on: a connection without subscriptions is what the next command of a shell wants.
+int end_of_notes(Session& session) {
+  session.reopen();
+  return kOk;
 }
 
 const char* style(TopLine::Look look) {
@@ -84,8 +85,8 @@ bool obey(int key, TopView& view, const Json& status) {
   return true;
 }
 
-/// Until somebody ends it; the error that ended it otherwise.
-std::optional<Error> top_on_screen(Session& session, const Json& first) {
+/// Until somebody ends it; the error that ended it otherwise. A manager that is restarted is waited for.
+std::optional<Error> top_on_screen(Session& session, const Json& first, const Json& subscription) {
   Attention attention(true);
   FullScreen screen;
   Json now = first, before;
@@ -97,7 +98,8 @@ std::optional<Error> top_on_screen(Session& session, const Json& first) {
     screen.show(drawn(top_lines(now, before, view)));
     Woken woken = attention.wait(&session.client(), seconds(60));
     if (woken.by == By::kStop || (woken.by == By::kKey && !obey(woken.key, view, now))) return std::nullopt;
-    if (woken.by == By::kLost) return woken.error;
+    if (woken.by == By::kLost && !(session.reopen() && session.ask("subscribe", subscription).is_good()))
+      return woken.error;
     if (woken.by == By::kNote && woken.note.method == "status") before = std::move(now), now = *woken.note.parameters;
   }
 }
@@ -109,11 +111,11 @@ int top(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   if (!first.is_good()) return print(refused(first, call.json), out, err);
   const bool is_live = is_terminal(STDOUT_FILENO) && is_terminal(STDIN_FILENO) && !call.json;
   if (!is_live) return print({call.json ? first.result->dump() + "\n" : printed(*first.result), "", kOk}, out, err);
-  const control::Answer subscribed = session.ask("subscribe", {{"to", "status"}, {"period_ms", period.value()}});
+  const Json subscription = {{"to", "status"}, {"period_ms", period.value()}};
+  const control::Answer subscribed = session.ask("subscribe", subscription);
   if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
-  const auto end = top_on_screen(session, *first.result);
-  session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
-  return end ? lost(*end, call, out, err) : kOk;
+  const auto end = top_on_screen(session, *first.result, subscription);
+  return end ? print(refused(*end, call.json), out, err) : end_of_notes(session);
 }
 
 Result<std::vector<ChannelName>> channels_of(const Call& call) {
@@ -141,24 +143,23 @@ void redraw(const std::vector<std::string>& lines, bool is_first, std::FILE* out
   std::fflush(out);
 }
 
-/// Prints what a subscription brings until somebody ends it. `show` prints one notification.
+/// Prints what a subscription brings until somebody ends it; a manager that is restarted is waited for. `show` prints
+/// one notification, and may change the subscription to what a new manager is to be asked for.
 template <class Show>
-int follow(Session& session, const Call& call, const Json& subscription, std::FILE* out, std::FILE* err,
-           const Show& show) {
+int follow(Session& session, const Call& call, Json subscription, std::FILE* out, std::FILE* err, const Show& show) {
   const control::Answer subscribed = session.ask("subscribe", subscription);
   if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
   Attention attention(false);
   for (;;) {
     const Woken woken = attention.wait(&session.client(), seconds(60));
-    if (woken.by == By::kStop) break;
-    if (woken.by == By::kLost) return lost(woken.error, call, out, err);
+    if (woken.by == By::kStop) return end_of_notes(session);
+    if (woken.by == By::kLost && !(session.reopen() && session.ask("subscribe", subscription).is_good()))
+      return print(refused(woken.error, call.json), out, err);
     if (woken.by != By::kNote) continue;
+    show(woken.note, subscription);
     if (call.json) std::fprintf(out, "%s\n", woken.note.parameters->dump().c_str());
-    else show(woken.note);
     std::fflush(out);
   }
-  session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
-  return kOk;
 }
 
 int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
@@ -170,7 +171,8 @@ int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   Watch shown(channels.value());
   bool is_first = true;
   const Json wanted = {{"to", "values"}, {"period_ms", period.value()}, {"variables", variables_of(channels.value())}};
-  return follow(session, call, wanted, out, err, [&](const control::Note& note) {
+  return follow(session, call, wanted, out, err, [&](const control::Note& note, Json&) {
+    if (call.json) return;
     shown.take(field(*note.parameters, "values"));
     const std::size_t width = screen_size(STDOUT_FILENO).width;
     if (is_live) redraw(shown.lines(width > 1 ? width - 1 : 1, writes_unicode()), is_first, out);
@@ -187,7 +189,9 @@ int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE*
   const std::string since = call.value("--since");
   Json wanted = {{"to", "events"}};
   wanted["since"] = since.empty() ? 0 : std::stoll(since);
-  return follow(session, call, wanted, out, err, [&](const control::Note& note) {
+  return follow(session, call, wanted, out, err, [&](const control::Note& note, Json& next) {
+    for (const Json& event : field(*note.parameters, "events")) next["since"] = whole_of(event, "number") + 1;
+    if (call.json) return;
     if (const std::int64_t gone = whole_of(*note.parameters, "lost"); gone > 0)
       std::fprintf(out, "(%lld older events are gone)\n", static_cast<long long>(gone));
     for (const Json& event : field(*note.parameters, "events")) std::fputs(event_line(event).c_str(), out);

@@ -42,10 +42,15 @@ control::Answer Session::ask(std::string_view method, const nlohmann::json& para
   const control::Answer answer = client_.call(method, parameters, kPatience);
   if (answer.code != control::kNoConnection) return answer;
   // The manager died. Its successor answers at the same door; what may have been carried out is not asked for twice.
-  auto client = control::Client::connect_to(client_.path());
-  if (client) client_ = std::move(*client);
   const bool may_repeat = method != "signal" && method != "end" && method != "unsubscribe";
-  return client && may_repeat ? client_.call(method, parameters, kPatience) : answer;
+  return reopen() && may_repeat ? client_.call(method, parameters, kPatience) : answer;
+}
+
+bool Session::reopen() {
+  auto client = control::Client::connect_to(client_.path());
+  if (!client || !client->call("hello", nlohmann::json::object(), seconds(3)).is_good()) return false;
+  client_ = std::move(*client);
+  return true;
 }
 
 }  // namespace chimera::shell

@@ -31,6 +31,9 @@ class Session {
 
   control::Client& client() noexcept { return client_; }
   const Surroundings& surroundings() const noexcept { return surroundings_; }
+  /// A new connection to the same subsystem, whose manager may have been restarted; false when nobody answers at its
+  /// door within 3 s. Subscriptions have to be made again.
+  bool reopen();
   control::Answer ask(std::string_view method);
   control::Answer ask(std::string_view method, const nlohmann::json& parameters);
 

@@ -21,6 +21,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include "chimera/control/door.h"
 #include "chimera/platform/linux/linux_clock.h"
@@ -72,6 +73,7 @@ struct FakeSubject final : control::Subject {
   void close(std::uint64_t subscription) override { to.erase(subscription); }
   std::shared_ptr<const Json> pull(std::uint64_t subscription) override {
     if (to[subscription] == "values") return std::make_shared<const Json>(Json{{"values", {{"error", reading(0)}}}});
+    if (to[subscription] == "status") return std::make_shared<const Json>(Json::parse(test::kStatus));
     if (to[subscription] != "tap" || row >= 20) return nullptr;
     if (row == 0) begun = LinuxClock().now();
     const std::int64_t n = row++, at = (begun + milliseconds(n)).count;
@@ -108,6 +110,16 @@ struct ShellTest : ::testing::Test {
     std::strcpy(address.sun_path, path.c_str());
     ASSERT_EQ(::bind(listening, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
     ASSERT_EQ(::listen(listening, 64), 0);
+    keepers = ::dup(listening);
+    open(listening);
+  }
+  /// As a keeper does: another door behind the same socket.
+  void restart() {
+    stop();
+    is_over = false;
+    open(::dup(keepers));
+  }
+  void open(int listening) {
     door = *control::Door::open(listening, subject, ::getuid(), {});
     server = std::thread([this] {
       sigset_t all;
@@ -120,10 +132,14 @@ struct ShellTest : ::testing::Test {
       }
     });
   }
-  void TearDown() override {
+  void stop() {
     is_over = true;
     if (server.joinable()) server.join();
     door.reset();
+  }
+  void TearDown() override {
+    stop();
+    ::close(keepers);
     std::filesystem::remove_all(folder);
   }
   Surroundings surroundings(const std::string& subsystem = "") const {
@@ -150,6 +166,7 @@ struct ShellTest : ::testing::Test {
   }
 
   std::string folder;
+  int keepers = -1;  ///< the listening socket, which outlives a door
   FakeSubject subject;
   std::unique_ptr<control::Door> door;
   std::thread server;
@@ -323,6 +340,12 @@ class OnTerminal {
     }
     return -1;
   }
+  /// Shows the prompt and has the keys one by one.
+  bool prompts() {
+    if (!shows("puma_pid> ")) return false;
+    for (int i = 0; i < 1000 && is_sane(); ++i) ::usleep(10'000);
+    return !is_sane();
+  }
   bool is_sane() const {
     termios now{};
     return ::tcgetattr(terminal_, &now) == 0 && (now.c_lflag & (ICANON | ECHO)) == (ICANON | ECHO);
@@ -366,28 +389,44 @@ TEST_F(ShellTest, TopEndsWithASentenceWhenTheSubsystemDoes) {
   OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
   serve();
   EXPECT_TRUE(terminal.shows("q quit"));
-  is_over = true;
-  server.join();
-  door.reset();
+  stop();
+  ::close(std::exchange(keepers, -1));
   EXPECT_TRUE(terminal.shows(kLeave));
   EXPECT_TRUE(terminal.shows("the connection to the subsystem was lost"));
   EXPECT_EQ(terminal.ended(), kRefused);
   EXPECT_TRUE(terminal.is_sane());
 }
 
+TEST_F(ShellTest, WhatGoesOnOutlivesARestartOfTheManager) {
+  OnTerminal top([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
+  OnTerminal watch([this] { return carry_out(surroundings(), read_call({"watch", "error"}).value(), stdout, stderr); });
+  serve();
+  EXPECT_TRUE(top.shows("q quit"));
+  EXPECT_TRUE(watch.shows("0.0 rad"));
+  for (int restarts = 0; restarts < 3; ++restarts) {
+    restart();
+    EXPECT_TRUE(top.shows("q quit"));
+    EXPECT_TRUE(watch.shows("0.0 rad"));
+  }
+  top.type("q");
+  watch.type("\x03");
+  EXPECT_EQ(top.ended(), kOk);
+  EXPECT_EQ(watch.ended(), kOk);
+}
+
 TEST_F(ShellTest, TheShellCompletesRemembersAndGoesOnAfterCtrlC) {
   OnTerminal terminal([this] { return interactive(surroundings(), "", false); });
   serve();
-  EXPECT_TRUE(terminal.shows("puma_pid> "));
+  EXPECT_TRUE(terminal.prompts());
   terminal.type("of\tpi\t\r");
   EXPECT_TRUE(terminal.shows("pid: OFF -> ON"));
   terminal.type("watch error\r");
   EXPECT_TRUE(terminal.shows("0.0 rad"));
   terminal.type("\x03");
-  EXPECT_TRUE(terminal.shows("puma_pid> "));
+  EXPECT_TRUE(terminal.prompts());
   terminal.type("half a line\x03");
   EXPECT_TRUE(terminal.shows("^C"));
-  EXPECT_TRUE(terminal.shows("puma_pid> "));
+  EXPECT_TRUE(terminal.prompts());
   terminal.type("get q\t\t");
   EXPECT_TRUE(terminal.shows("q  q_ref  "));
   terminal.type("\x15quit\r");
