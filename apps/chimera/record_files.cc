@@ -28,12 +28,11 @@ RecordFiles::~RecordFiles() {
 
 void RecordFiles::begin(const chimera::ApplicationSpec& spec, Nanoseconds origin) {
   origin_ = origin;
-  std::vector<std::string> rtpus;
   for (const chimera::TaskSpec& task : spec.tasks) names_.emplace_back(task.name);
-  for (const chimera::RtpuSpec& rtpu : spec.rtpus) rtpus.emplace_back(rtpu.name);
+  for (const chimera::RtpuSpec& rtpu : spec.rtpus) rtpus_.emplace_back(rtpu.name);
   if (trace_ != nullptr)
     trace_->writer =
-        std::make_unique<chimera::ChromeTrace>(trace_->file, std::string(spec.name), rtpus, names_, origin);
+        std::make_unique<chimera::ChromeTrace>(trace_->file, std::string(spec.name), rtpus_, names_, origin);
 }
 
 void RecordFiles::take(std::span<const chimera::TapRecord> records) {
@@ -48,12 +47,22 @@ void RecordFiles::end(std::uint64_t lost) {
   if (trace_ != nullptr && !trace_->writer->end(lost)) write_error_ = errno;
 }
 
+// One for each rtpu: each has a processor of its own.
+void RecordFiles::print_timelines(std::FILE* out) const {
+  for (std::size_t rtpu = 0; rtpu < rtpus_.size(); ++rtpu) {
+    std::vector<chimera::TapRecord> mine;
+    for (const chimera::TapRecord& record : kept_)
+      if (record.rtpu == rtpu) mine.push_back(record);
+    if (rtpus_.size() > 1) std::fprintf(out, "%s:\n", rtpus_[rtpu].c_str());
+    std::fputs(chimera::draw::text(chimera::draw::timeline(mine, names_, origin_, unit_, duration_)).c_str(), out);
+  }
+}
+
 bool RecordFiles::finish(std::FILE* out, std::FILE* err) {
   bool good = lost_ == 0;
   if (!good)
     std::fprintf(err, "%llu records were lost: the trace has a gap\n", static_cast<unsigned long long>(lost_));
-  if (unit_.count > 0)
-    std::fputs(chimera::draw::text(chimera::draw::timeline(kept_, names_, origin_, unit_, duration_)).c_str(), out);
+  if (unit_.count > 0) print_timelines(out);
   if (trace_ != nullptr) {
     if (std::fclose(trace_->file) != 0 && write_error_ == 0) write_error_ = errno;
     trace_->file = nullptr;

@@ -26,11 +26,12 @@ class RecordFiles final : public chimera::desk::RecordSink {
 
  private:
   struct Trace;
+  void print_timelines(std::FILE* out) const;
   std::unique_ptr<Trace> trace_;
   std::string why_;
   chimera::Nanoseconds unit_, duration_, origin_;
   std::vector<chimera::TapRecord> kept_;  ///< for the timeline
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, rtpus_;
   std::uint64_t lost_ = 0;
   int write_error_ = 0;  ///< errno of the first failure that was seen
 };

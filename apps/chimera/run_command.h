@@ -17,7 +17,7 @@ struct RunWords {
   chimera::desk::RunRequest run;
   std::string duration, every, quantum, seed;
   std::string trace, timeline;
-  std::string isolation = "none";
+  std::string isolation = "process";
   std::string observe_group, operate_group, configure_group;
   // of `attend` only
   std::string socket;

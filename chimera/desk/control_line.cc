@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "chimera/desk/run.h"
 #include "chimera/platform/linux/linux_clock.h"
 
 namespace chimera::desk {
@@ -13,13 +14,14 @@ using control::Answer;
 using control::Json;
 
 constexpr Nanoseconds kTryAgain = milliseconds(10);
+constexpr Nanoseconds kLastPatience = milliseconds(500);  // once told to end: the keeper itself may be gone
 
 Nanoseconds now() noexcept { return LinuxClock().now(); }
 
 }  // namespace
 
 Result<Json> ControlLine::ask(std::string_view method, const Json& parameters, Nanoseconds patience) {
-  const Nanoseconds until = now() + patience;
+  const Nanoseconds begun = now(), until = begun + patience;
   do {
     if (!client_)
       if (auto made = control::Client::connect_to(path_); made) client_ = *std::move(made);
@@ -31,7 +33,7 @@ Result<Json> ControlLine::ask(std::string_view method, const Json& parameters, N
       client_.reset();
     }
     LinuxClock().wait_until(now() + kTryAgain);
-  } while (now() < until);
+  } while (now() < (stop_is_requested() ? std::min(until, begun + kLastPatience) : until));
   return Error{ErrorCode::kSystem, std::string_view("the manager of the subsystem does not answer"),
                std::string_view(path_)};
 }

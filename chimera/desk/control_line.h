@@ -16,7 +16,8 @@ class ControlLine {
   explicit ControlLine(std::string path) : path_(std::move(path)) {}
 
   /// The result of one request. When the manager dies meanwhile it is sent again to the next one, for at most
-  /// `patience`. An error of the door comes with its words, its `where` as place.
+  /// `patience`, and not much longer once request_stop() was called. An error of the door comes with its words, its
+  /// `where` as place.
   Result<control::Json> ask(std::string_view method, const control::Json& parameters,
                             Nanoseconds patience = seconds(5));
   /// The parameters of the next notification; nothing when none comes until `instant` (CLOCK_MONOTONIC), or when the

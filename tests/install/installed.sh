@@ -9,7 +9,7 @@ fail() { echo "installed: $*"; exit 1; }
 
 cmake --install "$tree" --prefix "$place/prefix" > "$place/log" 2>&1 || { cat "$place/log"; fail "cmake --install"; }
 cd "$place/prefix"
-for file in bin/chimera bin/chimera-describe lib/chimera/components/gain.so \
+for file in bin/chimera bin/chimera-rtpu bin/chimera-manager bin/chimera-describe lib/chimera/components/gain.so \
   lib/chimera/components/gain.component.json lib/chimera/components/puma560.xml share/chimera/units.xml \
   share/chimera/schema/description.schema.json share/chimera/schema/descriptor.schema.json \
   share/chimera/schema/run.schema.json share/chimera/templates/component/CMakeLists.txt \
@@ -32,4 +32,8 @@ example=$(ls "$place"/prefix/share/chimera/examples/01_*/*.yaml | head -1)
 "$chimera" run "$example" --virtual --for '50 ms' > out 2>&1 || { cat out; fail "run $example"; }
 grep -q '^ran 0.050 s' out || { cat out; fail "run $example did not come to its end"; }
 "$chimera" run "$example" --virtual --for '50 ms' --json > out || fail "run --json"
+mkdir -m 700 "$place/runtime"
+XDG_RUNTIME_DIR=$place/runtime "$chimera" run "$example" --priority 0 --for '50 ms' > out 2>&1 ||
+  { cat out; fail "run $example by processes"; }
+grep -q '^ran 0.050 s' out || { cat out; fail "run $example by processes did not come to its end"; }
 echo "installed: works from any folder"

@@ -192,7 +192,7 @@ class System:
     def await_nothing_left(self, limit=10):
         await_that(lambda: not self.left_over(), limit, f"the end of {self.left_over()}")
 
-    def end(self, how=signal.SIGTERM):
+    def end(self, how=15):  # SIGTERM; `signal` is a method here
         """Ends it in order; whatever is left is killed by its pid and is a failure."""
         try:
             if self.client is not None:

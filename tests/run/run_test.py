@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `chimera run` prints and answers when it runs an application by processes."""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "processes"))
+from system import System, await_that  # noqa: E402
+
+OUTPUTS = "count dt now deadline cycles dropped illegal".split()
+
+
+def counter(task, rtpu):
+    alias = ", ".join(f"{name}: {task}_{name}" for name in OUTPUTS)
+    return f"  {task}: {{component: t_counter, rtpu: {rtpu}, rate: 100 Hz, alias: {{{alias}}}}}\n"
+
+
+TWO = ("subsystem: subject\nrtpus: {first: {cpu: 0}, second: {cpu: 0}}\ntasks:\n" +
+       counter("one", "first") + counter("two", "second"))
+
+
+def run(text, *arguments, **more):
+    """What a run that ends by itself said, and its exit code."""
+    with System(text, ("--priority", "0", *arguments), wait=False, **more) as system:
+        code = system.process.wait(30)
+        said = system.said()
+        system.await_nothing_left()
+        assert not system.socket.exists(), "a socket is left behind"
+        return code, said
+
+
+class Run(unittest.TestCase):
+    def test_tells_what_was_granted_what_it_sees_and_how_it_went(self):
+        code, said = run(TWO, "--for", "0.3 s", "--watch", "one_count", "--every", "0.1 s",
+                         "--expect", "two_count >= 10")
+        self.assertEqual(code, 0, said)
+        lines = said.splitlines()
+        self.assertTrue(lines[0].startswith("subject: legal. 2 tasks"), said)
+        self.assertRegex(said, r"\nfirst: real time: .*\nsecond: real time: .*\nt 0\.100 s  one_count \d+\n")
+        self.assertRegex(said, r"\nt 0\.300 s  one_count \d+\nran 0\.300 s\ntask ")
+        self.assertRegex(said, r"\none   ON  +\d+ .*\ntwo   ON  +\d+ .*\n"
+                               r"holds: two_count >= 10 \(two_count is \d+\)\n$")
+
+    def test_an_expectation_that_fails_is_no_success(self):
+        code, said = run(TWO, "--for", "0.1 s", "--expect", "two_count < 0", "--json")
+        self.assertEqual(code, 1, said)
+        told = json.loads(said)
+        self.assertEqual(told["ended"], "time")
+        self.assertEqual(told["ran_ns"], 100_000_000)
+        self.assertEqual([task["task"] for task in told["tasks"]], ["one", "two"])
+        self.assertFalse(told["expectations"][0]["holds"])
+
+    def test_acts_at_stated_times(self):
+        code, said = run(TWO, "--for", "0.3 s", "--at", "0.1 s: off one", "--at", "0.2 s: off one")
+        self.assertEqual(code, 0, said)
+        self.assertRegex(said, r"\none   OFF ")
+        self.assertRegex(said, r"\nrefused at 0\.\d+ s: off one: .*OFF")
+
+    def test_records_what_every_rtpu_does(self):
+        trace = pathlib.Path(os.environ["CHIMERA_BUILD"]) / f"run_test_{os.getpid()}.json"
+        try:
+            code, said = run(TWO, "--for", "0.2 s", "--trace", str(trace), "--timeline", "10 ms")
+            self.assertEqual(code, 0, said)
+            events = json.loads(trace.read_text())["traceEvents"]
+            self.assertEqual({event["pid"] for event in events if event.get("name") == "cycle"}, {0, 1})
+            self.assertIn("\nfirst:\n", said)
+            self.assertIn("\nsecond:\n", said)
+        finally:
+            trace.unlink(missing_ok=True)
+
+    def test_refuses_before_anything_starts(self):
+        code, said = run(TWO, "--watch", "one_cont")
+        self.assertEqual(code, 1, said)
+        self.assertIn(": error: no state variable 'one_cont'; did you mean 'one_count'?\n", said)
+        code, said = run(TWO, "--isolation", "none")
+        self.assertEqual(code, 1, said)
+        self.assertIn("task 'two' on a second rtpu, 'second': run cannot do this yet", said)
+
+    def test_a_start_that_fails_is_refused_in_the_words_of_its_task(self):
+        text = ("subsystem: subject\ntasks:\n"
+                "  bad: {component: t_thrower, constants: {where: init}}\n")
+        code, said = run(text, "--for", "1 s")
+        self.assertEqual(code, 1, said)
+        self.assertRegex(said, r"\nbad: error: .*thrown on demand\n")
+
+    def test_ctrl_c_ends_it_in_order(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number), System(TWO, ("--priority", "0")) as system:
+                await_that(lambda: "second: real time" in system.said(), what="the face")
+                system.process.send_signal(number)
+                self.assertEqual(system.process.wait(20), 0, system.said())
+                self.assertRegex(system.said(), r"ran \d+\.\d+ s, ended by the operator\n")
+                self.assertRegex(system.said(), r"\none   ON ")
+                system.await_nothing_left()
+
+    def test_a_second_run_of_that_name_is_refused(self):
+        with System(TWO, ("--priority", "0")) as system:
+            environment = dict(system.environment, CHIMERA_TEST_MARK="none")
+            second = subprocess.run([system.process.args[0], "run", str(system.file), "--priority", "0"],
+                                    env=environment, capture_output=True, text=True, timeout=30)
+            self.assertEqual(second.returncode, 1)
+            self.assertIn(f"a subsystem 'subject' runs already (process {system.process.pid}): end it", second.stderr)
+            self.assertEqual(system.state("one"), "ON")
+
+    def test_the_death_of_the_manager_or_the_face_ends_nothing(self):
+        with System(TWO, ("--priority", "0", "--for", "1.5 s", "--watch", "one_count", "--every", "0.5 s")) as system:
+            os.kill(system.pids()["manager"], signal.SIGKILL)
+            self.assertEqual(system.process.wait(30), 0, system.said())
+            self.assertEqual(len(re.findall(r"\nt \d\.\d00 s  one_count \d+", system.said())), 3, system.said())
+        with System(TWO, ("--priority", "0")) as system:
+            face = next(pid for pid in system.left_over()
+                        if b"attend" in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes())
+            os.kill(face, signal.SIGKILL)
+            await_that(lambda: face not in system.left_over())
+            time.sleep(0.1)
+            self.assertEqual(system.state("one"), "ON")
+
+    def test_nobody_outlives_the_keeper(self):
+        with System(TWO, ("--priority", "0")) as system:
+            system.process.kill()
+            system.process.wait()
+            system.await_nothing_left()
+
+
+if __name__ == "__main__":
+    unittest.main()
