@@ -189,9 +189,12 @@ void Door::flush(Nanoseconds now) {
   std::vector<std::uint64_t> gone;
   for (const auto& [number, session] : sessions_) {
     const bool stays = session->flush(now);
-    if (!stays) gone.push_back(number);
-    else watch(epoll_.fd, EPOLL_CTL_MOD, session->descriptor(),
-               (session->has_room() && !session->is_closing() ? EPOLLIN : 0u) | (session->has_output() ? EPOLLOUT : 0u), number);
+    if (!stays)
+      gone.push_back(number);
+    else
+      watch(epoll_.fd, EPOLL_CTL_MOD, session->descriptor(),
+            (session->has_room() && !session->is_closing() ? EPOLLIN : 0u) | (session->has_output() ? EPOLLOUT : 0u),
+            number);
   }
   for (const std::uint64_t number : gone) end(number);
 }
