@@ -26,20 +26,30 @@ Said tell(const control::Answer& answer, bool json, const Words& words) {
   return {json ? answer.result->dump() + "\n" : words(*answer.result), "", kOk};
 }
 
-/// A configuration stands for its tasks, unless a task has that name.
+/// Those of `tasks` that are not ON so far.
+std::vector<std::string> still_off(Session& session, std::vector<std::string> tasks) {
+  const control::Answer status = session.ask("status");
+  if (!status.is_good()) return tasks;
+  for (const Json& task : field(*status.result, "tasks"))
+    if (text_of(task, "state") == "ON") std::erase(tasks, text_of(task, "task"));
+  return tasks;
+}
+
+/// A configuration stands for those of its tasks that are not ON, unless a task has that name.
 std::vector<std::string> with_configuration(Session& session, std::vector<std::string> tasks) {
   const control::Answer described = session.ask("describe");
   if (tasks.size() != 1 || !described.is_good()) return tasks;
   const Names names = names_of(*described.result);
   if (std::find(names.tasks.begin(), names.tasks.end(), tasks[0]) != names.tasks.end()) return tasks;
   for (const Json& set : field(*described.result, "configurations"))
-    if (text_of(set, "name") == tasks[0]) return texts_of(set, "tasks");
+    if (text_of(set, "name") == tasks[0]) return still_off(session, texts_of(set, "tasks"));
   return tasks;
 }
 
 Said signal(Session& session, const Call& call) {
   std::vector<std::string> tasks = call.operands;
   if (std::string_view(call.command->name) == "on") tasks = with_configuration(session, std::move(tasks));
+  if (tasks.empty()) return {call.json ? "{\"tasks\":[]}\n" : "all of its tasks are ON\n", "", kOk};
   return tell(session.ask("signal", {{"signal", call.command->name}, {"tasks", tasks}}), call.json, signal_text);
 }
 

@@ -200,7 +200,8 @@ TEST_F(ShellTest, ARefusalHasTheServersWordsAndTheNearestName) {
 
 TEST_F(ShellTest, AConfigurationStandsForItsTasks) {
   serve();
-  EXPECT_EQ(run({"on", "hand"}), "0|pid: OFF -> ON\narm: OFF -> ON\n|");
+  EXPECT_EQ(run({"on", "run"}), "0|trajectory: OFF -> ON\n|") << "the others are ON";
+  EXPECT_EQ(run({"on", "hand"}), "0|all of its tasks are ON\n|");
 }
 
 TEST_F(ShellTest, AScriptStopsAtTheFirstRefusalAndNamesItsLine) {
