@@ -39,14 +39,15 @@ class KeeperProcess : public ::testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
-  void start(std::uint32_t n, bool with_face = true) {
+  /// `limit`: of the face and of the rtpus when they end.
+  void start(std::uint32_t n, bool with_face = true, Nanoseconds limit = kPatience) {
     keeper_ = ::fork();
     if (keeper_ != 0) return;
     const auto image = FrozenBytes::create("image", text("the image"));
     const auto bundle = FrozenBytes::create("bundle", text("the bundle"));
     KeeperPlan plan{.peers = {.rtpu_program = KEEPER_TEST_CHILD, .manager_program = KEEPER_TEST_CHILD, .n_rtpus = n,
                               .image = image->descriptor(), .bundle = bundle->descriptor(), .listening = 0},
-                    .face = {}, .face_limit = milliseconds(200), .ending_limit = milliseconds(300)};
+                    .face = {}, .face_limit = limit, .ending_limit = limit};
     if (with_face) plan.face = {KEEPER_TEST_CHILD, "face", std::to_string(::getpid())};
     Keeper keeper(plan);
     if (const auto started = keeper.start(); !started) ::_exit(99);
@@ -198,7 +199,7 @@ TEST_F(KeeperProcess, EndsWithoutAFaceToo) {
 
 TEST_F(KeeperProcess, WhoeverDoesNotFinishIsKilledAfterItsLimit) {
   ::setenv("CHIMERA_TEST_DEAF", "1", 1);
-  start(2);
+  start(2, true, milliseconds(200));
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("2.1 peer 0 1"));
   order("0", "stubborn");

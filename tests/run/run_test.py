@@ -63,16 +63,13 @@ class Run(unittest.TestCase):
         self.assertRegex(said, r"\nrefused at 0\.\d+ s: off one: .*OFF")
 
     def test_records_what_every_rtpu_does(self):
-        trace = pathlib.Path(os.environ["CHIMERA_BUILD"]) / f"run_test_{os.getpid()}.json"
-        try:
-            code, said = run(TWO, "--for", "0.2 s", "--trace", str(trace), "--timeline", "10 ms")
-            self.assertEqual(code, 0, said)
-            events = json.loads(trace.read_text())["traceEvents"]
+        words = ("--priority", "0", "--for", "0.2 s", "--trace", "trace.json", "--timeline", "10 ms")
+        with System(TWO, words, wait=False) as system:
+            self.assertEqual(system.process.wait(30), 0, system.said())
+            events = json.loads((system.place / "trace.json").read_text())["traceEvents"]
             self.assertEqual({event["pid"] for event in events if event.get("name") == "cycle"}, {0, 1})
-            self.assertIn("\nfirst:\n", said)
-            self.assertIn("\nsecond:\n", said)
-        finally:
-            trace.unlink(missing_ok=True)
+            self.assertIn("\nfirst:\n", system.said())
+            self.assertIn("\nsecond:\n", system.said())
 
     def test_refuses_before_anything_starts(self):
         code, said = run(TWO, "--watch", "one_cont")
