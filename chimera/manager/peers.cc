@@ -40,14 +40,14 @@ Result<Peers> Peers::create(const ApplicationSpec& spec) {
     if (!layout) return layout.error();
     made.layouts_.push_back(*std::move(layout));
   }
-  made.segments_.resize(spec.rtpus.size());
+  made.segments_.assign(spec.rtpus.size(), std::make_shared<const PeerSegment>());
   return made;
 }
 
 Result<void> Peers::map(RtpuId rtpu, std::uint32_t incarnation, int descriptor) {
   auto segment = PeerSegment::open(descriptor, layout(rtpu), n_tasks(), rtpu.index, incarnation);
   if (!segment) return segment.error();
-  segments_[rtpu.index] = *std::move(segment);
+  segments_[rtpu.index] = std::make_shared<const PeerSegment>(*std::move(segment));
   return {};
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "chimera/platform/memory_region.h"
@@ -46,12 +47,14 @@ class Peers {
   std::uint32_t n_tasks() const noexcept { return static_cast<std::uint32_t>(spec_->tasks.size()); }
   const PeerLayout& layout(RtpuId rtpu) const noexcept { return layouts_[rtpu.index]; }
   const PeerLayout& manager_layout() const noexcept { return layouts_.back(); }
-  const PeerSegment& operator[](RtpuId rtpu) const noexcept { return segments_[rtpu.index]; }
+  const PeerSegment& operator[](RtpuId rtpu) const noexcept { return *segments_[rtpu.index]; }
+  /// The same to be kept: it stays mapped as long as somebody holds it.
+  std::shared_ptr<const PeerSegment> hold(RtpuId rtpu) const noexcept { return segments_[rtpu.index]; }
   /// Puts another incarnation in the place of the present one.
   Result<void> map(RtpuId rtpu, std::uint32_t incarnation, int descriptor);
 
   /// The segment of the task's rtpu; not there before it came.
-  const PeerSegment& of(TaskId task) const noexcept { return segments_[spec_->tasks[task.index].rtpu.index]; }
+  const PeerSegment& of(TaskId task) const noexcept { return *segments_[spec_->tasks[task.index].rtpu.index]; }
   /// As it stands in the segment, dead or alive.
   TaskStatus status(TaskId task) const noexcept;
   FaultRecord fault(TaskId task) const noexcept;
@@ -61,7 +64,7 @@ class Peers {
 
   const ApplicationSpec* spec_;
   std::vector<PeerLayout> layouts_;  // of the rtpus, then of the manager
-  std::vector<PeerSegment> segments_;
+  std::vector<std::shared_ptr<const PeerSegment>> segments_;  // never null
 };
 
 }  // namespace chimera::manager

@@ -67,30 +67,34 @@ void TapFeed::tap(TaskId task, bool up) {
   world_.own.block().set_tapped(task, users > 0);
 }
 
-/// Another incarnation has a ring of its own, and everything in it is new.
-void TapFeed::follow(Ring& ring) {
-  const PeerSegment& segment = world_.peers[ring.rtpu];
-  if (!segment.is_there() || segment.incarnation() == ring.incarnation) return;
-  ring.reader = TapReader(segment.block().tap(), ring.incarnation != 0);
-  ring.incarnation = segment.incarnation();
+/// Goes over to the ring of another incarnation, in which everything is new; false when there is none.
+bool TapFeed::follow(Ring& ring) {
+  auto present = world_.peers.hold(ring.rtpu);
+  if (!present->is_there() || present == ring.segment) return false;
+  ring.reader = TapReader(present->block().tap(), ring.segment != nullptr);
+  ring.segment = std::move(present);
   ring.assembler = std::make_unique<TapRows>(payload_sizes(world_.peers));
   ring.lost_before = 0;
+  return true;
 }
 
 void TapFeed::pump(const TapSink& sink) {
   for (Ring& ring : rings_) {
-    follow(ring);
-    if (ring.assembler == nullptr) continue;
-    for (std::size_t rounds = 0; rounds < kTapRecords / kAtOnce; ++rounds) {
-      const std::size_t n = ring.reader.read(buffer_);
-      const std::uint64_t lost = ring.reader.lost() - std::exchange(ring.lost_before, ring.reader.lost());
-      if (rows_.empty() && lost > 0) flush(ring, lost, sink);
-      for (std::size_t i = 0; i < n; ++i) take(ring, buffer_[i], sink);
-      if (n < buffer_.size()) break;
-    }
+    drain(ring, sink);
+    if (follow(ring)) drain(ring, sink);
     flush(ring, 0, sink);
   }
   for (Rows& rows : rows_) flush(rows, sink);
+}
+
+void TapFeed::drain(Ring& ring, const TapSink& sink) {
+  for (std::size_t rounds = 0; rounds < kTapRecords / kAtOnce; ++rounds) {
+    const std::size_t n = ring.reader.read(buffer_);
+    const std::uint64_t lost = ring.reader.lost() - std::exchange(ring.lost_before, ring.reader.lost());
+    if (rows_.empty() && lost > 0) flush(ring, lost, sink);
+    for (std::size_t i = 0; i < n; ++i) take(ring, buffer_[i], sink);
+    if (n < buffer_.size()) return;
+  }
 }
 
 void TapFeed::take(Ring& ring, const TapRecord& record, const TapSink& sink) {

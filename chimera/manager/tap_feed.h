@@ -43,7 +43,7 @@ class TapFeed {
   };
   struct Ring {
     RtpuId rtpu;
-    std::uint32_t incarnation = 0;
+    std::shared_ptr<const PeerSegment> segment;  // whose ring it reads: a dead one's to its end
     TapReader reader;
     std::unique_ptr<TapRows> assembler;
     std::uint64_t lost_before = 0;
@@ -53,7 +53,8 @@ class TapFeed {
 
   void add_producer(VariableId variable, const PortOf& port);
   void tap(TaskId task, bool up);
-  void follow(Ring& ring);
+  bool follow(Ring& ring);
+  void drain(Ring& ring, const TapSink& sink);
   void take(Ring& ring, const TapRecord& record, const TapSink& sink);
   void take_row(const TapRow& row, const TapSink& sink);
   void flush(Rows& rows, const TapSink& sink);

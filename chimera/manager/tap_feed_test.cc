@@ -98,6 +98,19 @@ TEST_F(TapFeedTest, WhatWasOverwrittenIsCounted) {
   fake_.kill_rtpu(1, SIGKILL);
 }
 
+TEST_F(TapFeedTest, TheLastRowsOfADeadOneAreReadFromItsSegment) {
+  TapFeed feed(world(), {variable("tau")});
+  ASSERT_TRUE(pump_until(feed, 5));
+  fake_.kill_rtpu(1, SIGKILL);
+  const std::uint64_t cycles = fake_.rtpu(1).block().profile(fake_.task("law")).cycles;
+  ASSERT_TRUE(fake_.until([&] { return world().rtpus[1].restarts == 1 && world().rtpus[1].is_up; }));
+  pump(feed);
+  std::uint64_t last = 0;
+  for (const Json& message : messages_)
+    for (const Json& row : message["rows"]) last = std::max(last, row[1].get<std::uint64_t>());
+  EXPECT_EQ(last, cycles);
+}
+
 TEST_F(TapFeedTest, GoesOnWithTheNextIncarnation) {
   TapFeed feed(world(), {variable("tau")});
   ASSERT_TRUE(pump_until(feed, 5));
