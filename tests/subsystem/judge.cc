@@ -106,6 +106,7 @@ bool Judge::sent(const Send& send) {
   for (TaskId task : send.tasks) {
     if (send.signal == Signal::kOff || send.signal == Signal::kKill) wanted_down(task);
     if (send.signal == Signal::kKill) debts_[task.index].is_gone = true;
+    debts_[task.index].sent = send.signal;
     if (send.signal == Signal::kOff && turning_[task.index] && !is_excused(task)) is_roll_back = true;
     const Debt& debt = debts_[task.index];
     if (send.signal == Signal::kSpawn) check_constants(task);
@@ -227,8 +228,9 @@ void Judge::process_dies(RtpuId rtpu) {
     if (rtpu_of(task) != rtpu) continue;
     const State last = world_.process_of(task).word(task).state;
     const bool is_wanted = !is_excused(task) && !debts_[t].is_gone;
+    const bool goes_off = debts_[t].is_down || debts_[t].sent == Signal::kOff || turning_[t];
     if (last != State::kNotCreated && is_wanted) debts_[t].there = true;
-    if (last == State::kOn && is_wanted && !debts_[t].is_down && !turning_[t]) debts_[t].on = true;
+    if (last == State::kOn && is_wanted && !goes_off) debts_[t].on = true;
     debts_[t].last = State::kNotCreated;
   }
   if (is_rolling_back_) world_.tally.count("death in a rollback");

@@ -76,6 +76,7 @@ class Judge {
     bool no_on = false;     ///< somebody was promised that it is not turned ON
     bool no_spawn = false;  ///< nor spawned
     State last = State::kNotCreated;
+    Signal sent = Signal::kSpawn;  ///< last by the manager
     Nanoseconds asked_up;   ///< when somebody wanted it up last
     Nanoseconds requested;  ///< when a task asked for it last
   };

@@ -44,6 +44,7 @@ class Process {
   bool is_doomed() const noexcept { return doom_ != Point::kNone; }
   /// Stands still for a time longer than an answer may take, then goes on where it was.
   void stall();
+  void wake() noexcept { stalled_until_ = {}; }
 
   bool is_alive() const noexcept { return is_alive_; }
   bool is_hung() const noexcept { return is_hung_ || world_.now() < stalled_until_; }

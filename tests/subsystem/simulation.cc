@@ -113,7 +113,10 @@ class Repair {
   explicit Repair(World& world) : world_(world) {}
 
   void run() {
-    for (auto& process : world_.processes) process->doom(Point::kNone, false);
+    for (auto& process : world_.processes) {
+      process->doom(Point::kNone, false);
+      process->wake();
+    }
     if (!world_.driver->is_alive()) world_.fail("no manager");
     step(Signal::kOff, State::kOn);
     step(Signal::kClear, State::kError);
