@@ -15,20 +15,20 @@ class Allowance {
   constexpr Allowance(std::int64_t per_second, std::int64_t burst) noexcept
       : interval_{1'000'000'000 / per_second}, burst_(burst), left_(burst) {}
 
-  /// Takes one; false when there is none left at `now`.
-  constexpr bool take(Nanoseconds now) noexcept {
+  /// Takes `n`, at most the burst; takes nothing and is false when there are not so many left at `now`.
+  constexpr bool take(Nanoseconds now, std::int64_t n = 1) noexcept {
     if (now > filled_) {
       const std::int64_t gained = (now - filled_).count / interval_.count;
-      left_ = std::min(burst_, left_ + gained);
+      left_ = std::min(burst_, left_ + std::min(burst_, gained));
       filled_ = left_ == burst_ ? now : filled_ + interval_ * gained;
     }
-    if (left_ == 0) return false;
-    --left_;
+    if (left_ < n) return false;
+    left_ -= n;
     return true;
   }
-  /// How long until there is one again.
-  constexpr Nanoseconds wait(Nanoseconds now) const noexcept {
-    return left_ > 0 ? Nanoseconds{} : interval_ - (now - filled_);
+  /// After take(now, n) said no: how long until it will not.
+  constexpr Nanoseconds wait(Nanoseconds now, std::int64_t n = 1) const noexcept {
+    return left_ >= n ? Nanoseconds{} : interval_ * (n - left_) - (now - filled_);
   }
 
  private:

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/config/nearest.h"
+#include "chimera/control/methods.h"
 #include "chimera/control/request.h"
 #include "chimera/control/running.h"
 #include "chimera/platform/linux/linux_clock.h"
@@ -19,6 +20,9 @@
 
 namespace chimera::control {
 namespace {
+
+constexpr const char* kLost = "the connection to the subsystem was lost";
+constexpr std::size_t kMaxInput = std::size_t{64} << 20;  // of one line: whoever sends more is no subsystem of ours
 
 Nanoseconds now() { return LinuxClock().now(); }
 
@@ -38,33 +42,67 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-Answer lost() { return Answer::error(kNoConnection, "the connection to the subsystem was lost"); }
+Error refusal(const std::string& text, const std::string& where = {}) {
+  return Message(text).error(ErrorCode::kRefused, where);
+}
+
+bool acts(std::string_view method) {
+  const MethodRule* rule = find_method(method);
+  return rule == nullptr || (rule->is_act && rule->role > Role::kObserve);
+}
+
+Result<OwnedDescriptor> connected(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) return refusal("the path of the socket is too long", path);
+  std::memcpy(address.sun_path, path.c_str(), path.size());
+  OwnedDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (socket.fd >= 0 && ::connect(socket.fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0)
+    return socket;
+  const bool is_closed = errno == EACCES || errno == EPERM;
+  return refusal(is_closed ? "you may not talk to this subsystem" : "no subsystem listens here", path);
+}
+
+/// A message of the other end, whatever it is: never more than an answer or a note.
+Answer answer_of(const Json& message) {
+  const auto error = message.find("error");
+  if (error == message.end()) return Answer::good(message.value("result", Json::object()));
+  const auto code = error->find("code");
+  const auto words = error->find("message");
+  if (code == error->end() || !code->is_number_integer() || words == error->end() || !words->is_string())
+    return Answer::error(kNoConnection, "the other end does not speak the control protocol");
+  return Answer::error(code->get<int>(), words->get<std::string>(), error->value("data", Json::object()));
+}
 
 }  // namespace
 
 Result<Client> Client::connect_to(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) return Error{ErrorCode::kBadInput, {"the path is too long"}, {path}};
-  std::memcpy(address.sun_path, path.c_str(), path.size());
-  OwnedDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (::connect(socket.fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    const bool is_closed = errno == EACCES || errno == EPERM;
-    return Error{ErrorCode::kRefused, {is_closed ? "you may not talk to this subsystem" : "no subsystem listens here"},
-                 {path}};
-  }
-  return Client(std::move(socket), path);
+  auto socket = connected(path);
+  if (!socket) return socket.error();
+  return Client(*std::move(socket), path);
+}
+
+Result<void> Client::reconnect() {
+  auto socket = connected(path_);
+  if (!socket) return socket.error();
+  socket_ = *std::move(socket);
+  input_.clear();
+  has_subscribed_ = false;
+  return {};
 }
 
 Result<Client> Client::connect(const std::string& subsystem) {
   const std::string folder(socket_folder().view());
   const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
   const std::string name = !subsystem.empty() || chosen == nullptr ? subsystem : chosen;
+  if (name.find('/') != std::string::npos) return connect_to(name);
   const auto running = running_subsystems(folder);
   if (running.empty() && name.empty())
-    return Error{ErrorCode::kNotFound, {"no subsystem runs; start one with `chimera run FILE`"}, {folder}};
+    return Message("no subsystem runs; start one with `chimera run FILE`").error(ErrorCode::kNotFound, folder);
+  if (!running.empty() && !is_safe_folder(folder.c_str()))
+    return refusal("others may write to the folder of the sockets", folder);
   if (name.empty() && running.size() > 1)
-    return Error{ErrorCode::kRefused, {"several subsystems run: " + listed(running) + "; say --subsystem NAME"}, {}};
+    return refusal("several subsystems run: " + listed(running) + "; say --subsystem NAME");
   const std::string wanted = name.empty() ? running[0] : name;
   if (std::find(running.begin(), running.end(), wanted) != running.end())
     return connect_to(socket_path(folder, wanted));
@@ -72,17 +110,17 @@ Result<Client> Client::connect(const std::string& subsystem) {
   const std::string hint = !near.empty()     ? "; did you mean '" + near + "'?"
                            : running.empty() ? "; start one with `chimera run FILE`"
                                              : "; these run: " + listed(running);
-  return Error{ErrorCode::kNotFound, {"no subsystem '" + wanted + "' runs" + hint}, {}};
+  return Message("no subsystem '" + wanted + "' runs" + hint).error(ErrorCode::kNotFound);
 }
 
-bool Client::send(std::string_view line, Nanoseconds until) {
+Client::Got Client::send(std::string_view line, Nanoseconds until) {
   while (!line.empty()) {
     const ssize_t sent = ::send(socket_.fd, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent > 0) line.remove_prefix(static_cast<std::size_t>(sent));
-    else if (errno == EINTR) continue;
-    else if (errno != EAGAIN || !wait_for(socket_.fd, POLLOUT, until)) return false;
+    if (sent >= 0) line.remove_prefix(static_cast<std::size_t>(sent));
+    else if (errno == EAGAIN && !wait_for(socket_.fd, POLLOUT, until)) return Got::kLate;
+    else if (errno != EAGAIN && errno != EINTR) return Got::kReset;
   }
-  return true;
+  return Got::kLine;
 }
 
 Client::Got Client::receive(std::string& line, Nanoseconds until) {
@@ -97,8 +135,36 @@ Client::Got Client::receive(std::string& line, Nanoseconds until) {
     char bytes[1 << 16];
     const ssize_t got = ::recv(socket_.fd, bytes, sizeof bytes, MSG_DONTWAIT);
     if (got > 0) input_.append(bytes, static_cast<std::size_t>(got));
-    else if (got == 0 || (errno != EAGAIN && errno != EINTR)) return Got::kClosed;
+    else if (got == 0 || input_.size() > kMaxInput) return Got::kClosed;
     else if (errno == EAGAIN && !wait_for(socket_.fd, POLLIN, until)) return Got::kLate;
+    else if (errno != EAGAIN && errno != EINTR) return Got::kReset;  // the other end closed with our line unread
+  }
+}
+
+/// Keeps a note, or takes the answer to `id` and is true; what is neither is passed over.
+bool Client::take(const std::string& line, std::uint64_t id, Answer& answer) {
+  const Json message = Json::parse(line, nullptr, false);
+  if (!message.is_object()) return false;
+  const auto method = message.find("method");
+  if (method != message.end() && method->is_string()) {
+    auto parameters = std::make_shared<const Json>(message.value("params", Json::object()));
+    notes_.push_back({method->get<std::string>(), std::move(parameters)});
+    return false;
+  }
+  const auto known = message.find("id");
+  const bool is_for_all = known == message.end() || known->is_null();  // the connection itself is refused
+  if (id == 0 || (is_for_all ? !message.contains("error") : *known != id)) return false;
+  answer = answer_of(message);
+  return true;
+}
+
+Client::Got Client::exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Answer& answer) {
+  const Got sent = send(line, until);
+  if (sent == Got::kLate) return sent;
+  for (std::string text;;) {  // even if it could not be sent: why not may stand there to read
+    const Got got = receive(text, until);
+    if (got != Got::kLine) return sent == Got::kReset && got == Got::kClosed ? sent : got;
+    if (take(text, id, answer)) return got;
   }
 }
 
@@ -107,38 +173,29 @@ Answer Client::call(std::string_view method) { return call(method, Json::object(
 Answer Client::call(std::string_view method, const Json& parameters, Nanoseconds limit) {
   const Nanoseconds until = now() + limit;
   const std::uint64_t id = ++last_id_;
-  if (!send(request_line(id, method, parameters), until)) return lost();
-  for (std::string line;;) {
-    const Got got = receive(line, until);
-    if (got == Got::kLate) return Answer::error(kNoAnswer, "no answer in time");
-    if (got == Got::kClosed) return lost();
-    const Json message = Json::parse(line, nullptr, false);
-    if (!message.is_object()) return lost();
-    if (message.contains("method") && message.contains("params") && message["method"].is_string()) {
-      notes_.push_back({message["method"].get<std::string>(), std::make_shared<const Json>(message["params"])});
-      continue;
+  const std::string line = request_line(id, method, parameters);
+  for (;;) {
+    Answer answer;
+    const Got got = exchange(id, line, until, answer);
+    if (got == Got::kLine) {
+      has_subscribed_ = has_subscribed_ || (method == "subscribe" && answer.is_good());
+      return answer;
     }
-    const Json known = message.value("id", Json(nullptr));
-    const bool is_for_all = known.is_null() && message.contains("error");  // the connection itself is refused
-    if (known != id && !is_for_all) continue;
-    const auto error = message.find("error");
-    if (error == message.end()) return Answer::good(message.value("result", Json::object()));
-    return Answer::error(error->value("code", 0), error->value("message", std::string("?")),
-                         error->value("data", Json::object()));
+    if (got == Got::kLate) return Answer::error(kNoAnswer, "no answer in time");
+    if (got == Got::kClosed && acts(method))
+      return Answer::error(kNoConnection, "the manager ended before it answered; `chimera status` says what was done");
+    if (has_subscribed_ || now() >= until || !reconnect()) return Answer::error(kNoConnection, kLost);
   }
 }
 
 Result<std::optional<Note>> Client::next(Nanoseconds limit) {
   const Nanoseconds until = now() + limit;
+  Answer ignored;
   for (std::string line; notes_.empty();) {
     const Got got = receive(line, until);
     if (got == Got::kLate) return std::optional<Note>{};
-    if (got == Got::kClosed)
-      return Error{ErrorCode::kSystem, {"the connection to the subsystem was lost"}, {path_}};
-    const Json message = Json::parse(line, nullptr, false);
-    if (message.is_object() && message.contains("method") && message["method"].is_string())
-      notes_.push_back({message["method"].get<std::string>(),
-                        std::make_shared<const Json>(message.value("params", Json::object()))});
+    if (got != Got::kLine) return Message(kLost).error(ErrorCode::kSystem, path_);
+    (void)take(line, 0, ignored);
   }
   std::optional<Note> note = std::move(notes_.front());
   notes_.pop_front();

@@ -2,7 +2,9 @@
 // A face's end of the control protocol.
 #pragma once
 
+#include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,34 +25,41 @@ struct Note {
 /// One connection. Move-only. Context: setup; every call blocks, never longer than its limit.
 class Client {
  public:
-  /// To the subsystem of that name; "" takes CHIMERA_SUBSYSTEM, else the one that runs. Refuses, saying what runs,
-  /// when there is none or the choice is not clear.
+  /// To the subsystem of that name; "" takes CHIMERA_SUBSYSTEM, else the one that runs. A name with a '/' is the path
+  /// of a socket: another user's subsystem. Refuses, saying what runs, when there is none or the choice is not clear.
   static Result<Client> connect(const std::string& subsystem);
   /// To the socket at `path`.
   static Result<Client> connect_to(const std::string& path);
 
-  /// Calls and waits for the answer; a manager that is being restarted is waited for. A connection that is lost
-  /// answers kNoConnection. Notifications that come meanwhile are kept for next().
+  /// Calls and waits for the answer; a manager that is being restarted is waited for. When it dies meanwhile the call
+  /// is made again on a new connection, unless it acts and may have been carried out; after subscribe() it is not: the
+  /// subscriptions would be missing. A connection that is lost answers kNoConnection. Notifications that come
+  /// meanwhile are kept for next().
   Answer call(std::string_view method, const Json& parameters, Nanoseconds limit = seconds(10));
-  Answer call(std::string_view method) ;
+  Answer call(std::string_view method);
   /// The next notification; nullopt: none came within `limit`. Refuses when the connection is lost.
   Result<std::optional<Note>> next(Nanoseconds limit);
+  /// A new connection to the same socket, without subscriptions.
+  Result<void> reconnect();
   /// Readable when a notification may have come: for poll. next() must have been asked until it said nullopt.
   int descriptor() const noexcept { return socket_.fd; }
   const std::string& path() const noexcept { return path_; }
 
  private:
+  enum class Got { kLine, kLate, kClosed, kReset };  ///< kReset: what was sent last was not read
+
   Client(OwnedDescriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
-  bool send(std::string_view line, Nanoseconds until);
-  /// A line, or why there is none: kClosed, or kLate at `until`.
-  enum class Got { kLine, kLate, kClosed };
+  Got send(std::string_view line, Nanoseconds until);
   Got receive(std::string& line, Nanoseconds until);
+  Got exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Answer& answer);
+  bool take(const std::string& line, std::uint64_t id, Answer& answer);
 
   OwnedDescriptor socket_;
   std::string path_;
   std::string input_;
   std::deque<Note> notes_;
   std::uint64_t last_id_ = 0;
+  bool has_subscribed_ = false;
 };
 
 }  // namespace chimera::control

@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "chimera/config/nearest.h"
-#include "chimera/control/request.h"
 
 namespace chimera::control {
 namespace {
 
-constexpr std::uint64_t kListening = 0;                // of epoll; sessions count from 1
-constexpr Nanoseconds kLookAtNews = milliseconds(10);  // for subscriptions without a period
-constexpr const char* kTopics[] = {"status", "events", "values", "tap"};
+constexpr std::uint64_t kListening = 0;                  // of epoll; sessions count from 1
+constexpr int kAcceptAtOnce = 64;                        // a crowd of strangers must not stop the others
+constexpr Nanoseconds kAcceptPause = milliseconds(100);  // when there is no descriptor left
 
 bool watch(int epoll, int operation, int descriptor, std::uint32_t events, std::uint64_t number) {
   epoll_event event{};
@@ -25,13 +24,60 @@ bool watch(int epoll, int operation, int descriptor, std::uint32_t events, std::
   return ::epoll_ctl(epoll, operation, descriptor, &event) == 0;
 }
 
+Answer too_fast(Nanoseconds wait) {
+  return Answer::error(kTooFast, "too many requests", {{"retry_ms", (wait.count + 999'999) / 1'000'000}});
+}
+
+Answer no_role() {
+  return Answer::error(kNoRight,
+                       "you have no right here: you are neither the user of the subsystem nor in a group with a role",
+                       {{"needs", "observe"}, {"has", "nothing"}});
+}
+
+Answer no_method(const std::string& name) {
+  std::vector<std::string> names;
+  for (const MethodRule& known : methods()) names.emplace_back(known.name);
+  const std::string near = name.size() < 40 ? nearest(name, names) : "";
+  Answer unknown = Answer::unknown("no method '" + name.substr(0, 40) + "'", "method", near);
+  unknown.code = kNoMethod;
+  return unknown;
+}
+
 }  // namespace
+
+/// The one answer of a call that was handed to the subject: the first one counts, and if its reply is dropped without
+/// any, the caller is told.
+struct Door::Call {
+  Call(Door& opened, Session& from, const Request& asked)
+      : door(&opened), is_alive(opened.is_alive_), session(from.number()), request(asked) {
+    ++from.open_calls;
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+  ~Call() {
+    if (!is_answered) take(Answer::error(kNoAnswer, "the subsystem gave no answer"));
+  }
+  void take(const Answer& said) {
+    if (std::exchange(is_answered, true) || !*is_alive) return;
+    const auto found = door->sessions_.find(session);
+    if (found == door->sessions_.end()) return;
+    --found->second->open_calls;
+    door->answer(*found->second, request, said);
+  }
+
+  Door* door;
+  std::shared_ptr<bool> is_alive;
+  std::uint64_t session;
+  Request request;
+  bool is_answered = false;
+};
 
 Result<std::unique_ptr<Door>> Door::open(int listening, Subject& subject, uid_t owner, const RoleGroups& groups) {
   std::unique_ptr<Door> door(new Door(subject, owner, groups));
   door->listening_ = OwnedDescriptor(listening);
   door->epoll_ = OwnedDescriptor(::epoll_create1(EPOLL_CLOEXEC));
-  if (door->epoll_.fd < 0 || !watch(door->epoll_.fd, EPOLL_CTL_ADD, listening, EPOLLIN, kListening))
+  const bool is_watched = listening < 0 || watch(door->epoll_.fd, EPOLL_CTL_ADD, listening, EPOLLIN, kListening);
+  if (door->epoll_.fd < 0 || !is_watched)
     return Error{ErrorCode::kSystem, {"the control socket cannot be watched"}, {}};
   return door;
 }
@@ -39,22 +85,24 @@ Result<std::unique_ptr<Door>> Door::open(int listening, Subject& subject, uid_t 
 Door::~Door() { *is_alive_ = false; }
 
 void Door::serve(Nanoseconds now) {
-  epoll_event events[32];
-  const int n = ::epoll_wait(epoll_.fd, events, 32, 0);
-  for (int i = 0; i < n; ++i) {
-    if (events[i].data.u64 == kListening) {
-      accept(now);
-      continue;
-    }
-    const auto found = sessions_.find(events[i].data.u64);
-    if (found == sessions_.end()) continue;
-    if ((events[i].events & (EPOLLIN | EPOLLHUP | EPOLLERR)) != 0) found->second->receive();
+  now_ = now;
+  has_more_ = false;
+  if (now >= accepts_again_) {
+    accepts_again_ = kNever;
+    watch(epoll_.fd, EPOLL_CTL_MOD, listening_.fd, EPOLLIN, kListening);
   }
-  std::vector<std::uint64_t> numbers;
-  for (const auto& [number, session] : sessions_) numbers.push_back(number);
-  for (const std::uint64_t number : numbers) read(*sessions_.at(number), now);
-  notify(now);
-  flush(now);
+  epoll_event events[kMaxConnections + 1];
+  const int n = ::epoll_wait(epoll_.fd, events, static_cast<int>(std::size(events)), 0);
+  for (int i = 0; i < n; ++i) {
+    const auto found = sessions_.find(events[i].data.u64);
+    if (events[i].data.u64 == kListening) accept(now);
+    if (found == sessions_.end() || (events[i].events & (EPOLLIN | EPOLLHUP | EPOLLERR)) == 0) continue;
+    found->second->receive();
+    if ((events[i].events & (EPOLLHUP | EPOLLERR)) != 0) found->second->is_gone = true;
+  }
+  for (const auto& [number, session] : sessions_) read(*session, now);
+  subscriptions_.notify([this](std::uint64_t number) -> Session& { return *sessions_.at(number); }, now);
+  settle(now);
 }
 
 bool Door::may_enter(const PeerIdentity& peer) const {
@@ -64,156 +112,130 @@ bool Door::may_enter(const PeerIdentity& peer) const {
 }
 
 void Door::accept(Nanoseconds now) {
-  for (;;) {
-    OwnedDescriptor socket(::accept4(listening_.fd, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    if (socket.fd < 0) return;
-    const PeerIdentity peer = identify(socket.fd, owner_, groups_);
-    enter(std::move(socket), peer, now);
+  for (int n = 0; n < kAcceptAtOnce; ++n) {
+    const int connected = ::accept4(listening_.fd, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (connected >= 0) {
+      enter(OwnedDescriptor(connected), identify(connected, owner_, groups_), now);
+    } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
+      accepts_again_ = now + kAcceptPause;  // the socket stays readable: not to be woken by it all the time
+      watch(epoll_.fd, EPOLL_CTL_MOD, listening_.fd, 0, kListening);
+      return;
+    } else if (errno != EINTR && errno != ECONNABORTED) {
+      return;
+    }
   }
 }
 
-void Door::enter(OwnedDescriptor socket, const PeerIdentity& peer, Nanoseconds now) {
-  const bool enters = may_enter(peer);
-  auto session = std::make_unique<Session>(++last_session_, std::move(socket), peer, now);
-  if (peer.role == Role::kNone) {
-    session->say(answer_line(nullptr, Answer::error(kNoRight, "you have no right here: you are neither the user of the "
-                                                              "subsystem nor in a group with a role",
-                                                    {{"needs", "observe"}, {"has", "nothing"}})));
-  } else if (!enters) {
-    session->say(answer_line(nullptr, Answer::error(kTooMany, "too many connections")));
-  }
-  if (peer.role == Role::kNone || !enters) {
+void Door::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now) {
+  auto session = std::make_unique<Session>(++last_session_, std::move(connected), peer, now);
+  const bool enters = peer.role != Role::kNone && may_enter(peer);
+  if (!enters) {
+    const Answer why = peer.role == Role::kNone ? no_role() : Answer::error(kTooMany, "too many connections");
+    session->say(answer_line(nullptr, why), now);
     (void)session->flush(now);
     return;
   }
-  watch(epoll_.fd, EPOLL_CTL_ADD, session->descriptor(), EPOLLIN, session->number());
+  session->watched = EPOLLIN;
+  if (!watch(epoll_.fd, EPOLL_CTL_ADD, session->descriptor(), EPOLLIN, session->number())) return;
+  session->receive();  // whoever has only one question has asked it by now
   sessions_.emplace(session->number(), std::move(session));
 }
 
 void Door::read(Session& session, Nanoseconds now) {
+  const auto is_open = [&] { return !session.is_closing() && session.has_room(); };
   std::string line;
-  while (!session.is_closing() && session.has_room() && session.take_line(line)) take(session, line, now);
-  if (session.has_ended()) session.close_after();  // what it asked is answered as far as it can be at once
+  std::size_t bytes = 0;
+  for (int n = 0; n < kLinesAtOnce && bytes < kMaxLine / 4 && is_open() && session.take_line(line); ++n) {
+    take(session, line, now);
+    bytes += line.size();
+  }
+  if (is_open() && session.has_line()) has_more_ = true;
 }
 
 void Door::take(Session& session, const std::string& line, Nanoseconds now) {
+  const std::size_t pieces = 1 + std::min(line.size(), kMaxLine) / kLongLine;
+  const bool may = session.requests.take(now, static_cast<std::int64_t>(pieces));
+  const Answer refusal = may ? Answer{} : too_fast(session.requests.wait(now, static_cast<std::int64_t>(pieces)));
+  const bool is_long = pieces > 1 && line.size() <= kMaxLine;
+  if (!may && is_long) return session.say(answer_line(nullptr, refusal), now);  // its id is not worth the search
   const Request request = read_request(line);
-  const std::uint64_t number = session.number();
   if (!request.refusal.is_good()) {
-    answer(number, *request.id, request.refusal);
+    session.say(answer_line(*request.id, request.refusal), now);
     if (request.must_close) session.close_after();
-    return;
+  } else if (!may) {
+    answer(session, request, refusal);
+  } else {
+    carry_out(session, request, now);
   }
-  const MethodRule* rule = find_method(request.method);
-  const Answer judged = judge(session, request.method, rule, *request.parameters, now);
-  Reply reply = [this, number, id = request.id, wanted = request.wants_answer, alive = is_alive_](const Answer& said) {
-    if (*alive && wanted) answer(number, *id, said);
-  };
-  if (!judged.is_good()) return reply(judged);
-  if (request.method == "subscribe") return reply(subscribe(session, *request.parameters, now));
-  if (request.method == "unsubscribe") return reply(unsubscribe(session, *request.parameters));
-  subject_.call(*rule, *request.parameters, session.peer().role, std::move(reply));
 }
 
-Answer Door::judge(Session& session, const std::string& method, const MethodRule* rule, const Json& parameters,
-                   Nanoseconds now) {
-  const auto too_fast = [now](const Allowance& allowance) {
-    const auto ms = (allowance.wait(now).count + 999'999) / 1'000'000;
-    return Answer::error(kTooFast, "too many requests", {{"retry_ms", ms}});
-  };
-  if (!session.requests.take(now)) return too_fast(session.requests);
-  if (rule == nullptr) {
-    std::vector<std::string> names;
-    for (const MethodRule& known : methods()) names.emplace_back(known.name);
-    Answer unknown = Answer::unknown("no method '" + method + "'", "method", nearest(method, names));
-    unknown.code = kNoMethod;
-    return unknown;
-  }
+void Door::carry_out(Session& session, const Request& request, Nanoseconds now) {
+  const MethodRule* rule = find_method(request.method);
+  const Answer judged = judge(session, request, rule, now);
+  if (!judged.is_good()) return answer(session, request, judged);
+  if (request.method == "subscribe")
+    return answer(session, request, subscriptions_.open(session.number(), *request.parameters, now));
+  if (request.method == "unsubscribe")
+    return answer(session, request, subscriptions_.close(session.number(), *request.parameters));
+  auto call = std::make_shared<Call>(*this, session, request);
+  subject_.call(*rule, *request.parameters, session.peer().role,
+                [call = std::move(call)](const Answer& said) { call->take(said); });
+}
+
+Answer Door::judge(Session& session, const Request& request, const MethodRule* rule, Nanoseconds now) {
+  if (rule == nullptr) return no_method(request.method);
   const Role has = session.peer().role;
   if (has < rule->role)
     return Answer::error(kNoRight,
                          std::string("'") + rule->name + "' needs the role " + role_name(rule->role) + ", you have " +
                              role_name(has),
                          {{"needs", role_name(rule->role)}, {"has", role_name(has)}});
-  if (rule->is_act && !session.acts.take(now)) return too_fast(session.acts);
-  return check_parameters(*rule, parameters);
+  if (rule->is_act && !session.acts.take(now)) return too_fast(session.acts.wait(now));
+  return check_parameters(*rule, *request.parameters);
 }
 
-void Door::answer(std::uint64_t session, const Json& id, const Answer& answer) {
-  const auto found = sessions_.find(session);
-  if (found != sessions_.end()) found->second->say(answer_line(id, answer));
+void Door::answer(Session& session, const Request& request, const Answer& answer) {
+  if (!request.wants_answer) return;
+  session.say(answer_line(*request.id, answer), now_);
+  has_more_ = true;  // outside of serve(): to be sent
 }
 
-Answer Door::subscribe(Session& session, const Json& parameters, Nanoseconds now) {
-  const std::string to = parameters.at("to").get<std::string>();
-  if (std::find(std::begin(kTopics), std::end(kTopics), to) == std::end(kTopics))
-    return Answer::error(kBadParameters, "'to' must be status, events, values or tap", {{"where", "to"}});
-  const auto is_of = [&](const auto& one) { return one.second.session == session.number(); };
-  if (std::count_if(subscriptions_.begin(), subscriptions_.end(), is_of) >= static_cast<long>(kMaxSubscriptions))
-    return Answer::error(kBadParameters, "a connection may have 32 subscriptions", {{"where", "to"}});
-  const std::int64_t period_ms = parameters.value("period_ms", std::int64_t{100});
-  if (period_ms < 20 || period_ms > 60'000)
-    return Answer::error(kBadParameters, "'period_ms' must be from 20 to 60000", {{"where", "period_ms"}});
-  const std::uint64_t number = ++last_subscription_;
-  const Answer opened = subject_.open(number, parameters);
-  if (!opened.is_good()) return opened;
-  const bool has_period = to == "status" || to == "values";
-  subscriptions_[number] = {session.number(), to, has_period ? milliseconds(period_ms) : Nanoseconds{}, now};
-  return Answer::good({{"subscription", number}});
+/// What a peer said before it went is still carried out. One that says nothing more but listens is told what it asked
+/// for and subscribed to.
+bool Door::is_over(Session& session, Nanoseconds now) {
+  if (session.is_gone && !session.has_line()) return true;
+  const bool wants_more = session.open_calls > 0 || session.has_line() || subscriptions_.count_of(session.number()) > 0;
+  if (session.has_ended() && !wants_more) session.close_after();
+  return !session.flush(now);
 }
 
-Answer Door::unsubscribe(Session& session, const Json& parameters) {
-  const auto number = parameters.at("subscription").get<std::uint64_t>();
-  const auto found = subscriptions_.find(number);
-  if (found == subscriptions_.end() || found->second.session != session.number())
-    return Answer::unknown("no subscription " + std::to_string(number), "subscription", "");
-  subject_.close(number);
-  subscriptions_.erase(found);
-  return Answer::good(Json::object());
-}
-
-// What has a period is made when it is due and the peer has taken what came before: who is slow skips to the latest.
-void Door::notify(Nanoseconds now) {
-  for (auto& [number, subscription] : subscriptions_) {
-    if (now < subscription.due) continue;
-    Session& session = *sessions_.at(subscription.session);
-    const bool has_period = subscription.period > Nanoseconds{};
-    subscription.due = now + (has_period ? subscription.period : kLookAtNews);
-    if (has_period ? session.has_output() : !session.has_room()) continue;
-    if (const auto news = subject_.pull(number); news != nullptr)
-      session.say(note_line(subscription.to, number, *news));
-  }
-}
-
-void Door::flush(Nanoseconds now) {
-  std::vector<std::uint64_t> gone;
+void Door::settle(Nanoseconds now) {
+  std::vector<std::uint64_t> over;
+  bool waits = false;
   for (const auto& [number, session] : sessions_) {
-    const bool stays = session->flush(now);
-    if (!stays)
-      gone.push_back(number);
-    else
-      watch(epoll_.fd, EPOLL_CTL_MOD, session->descriptor(),
-            (session->has_room() && !session->is_closing() ? EPOLLIN : 0u) | (session->has_output() ? EPOLLOUT : 0u),
-            number);
+    if (is_over(*session, now)) {
+      over.push_back(number);
+      continue;
+    }
+    const bool listens = session->has_room() && !session->is_closing() && !session->has_ended();
+    const std::uint32_t wanted = (listens ? EPOLLIN : 0u) | (session->has_output() ? EPOLLOUT : 0u);
+    if (wanted != session->watched) watch(epoll_.fd, EPOLL_CTL_MOD, session->descriptor(), wanted, number);
+    session->watched = wanted;
+    waits = waits || (!session->is_closing() && session->has_room() && session->has_line());
   }
-  for (const std::uint64_t number : gone) end(number);
+  for (const std::uint64_t number : over) end(number);
+  has_more_ = waits;
 }
 
 void Door::end(std::uint64_t session) {
-  for (auto at = subscriptions_.begin(); at != subscriptions_.end();) {
-    if (at->second.session != session) {
-      ++at;
-      continue;
-    }
-    subject_.close(at->first);
-    at = subscriptions_.erase(at);
-  }
+  subscriptions_.end(session);
   sessions_.erase(session);
 }
 
 Nanoseconds Door::next_due() const noexcept {
-  Nanoseconds next = kNever;
-  for (const auto& [number, subscription] : subscriptions_) next = std::min(next, subscription.due);
+  if (has_more_) return now_;
+  Nanoseconds next = std::min(subscriptions_.next_due(), accepts_again_);
+  for (const auto& [number, session] : sessions_) next = std::min(next, session->patience_ends());
   return next;
 }
 

@@ -9,15 +9,18 @@
 #include <string>
 
 #include "chimera/base/result.h"
+#include "chimera/control/request.h"
 #include "chimera/control/session.h"
 #include "chimera/control/subject.h"
+#include "chimera/control/subscriptions.h"
 
 namespace chimera::control {
 
 /// Context: setup.
 class Door {
  public:
-  /// Takes over `listening`. `owner` is the user of the keeper; `subject` outlives the door.
+  /// Takes over `listening` (-1: connections only come by enter()). `owner` is the user of the keeper; `subject`
+  /// outlives the door.
   static Result<std::unique_ptr<Door>> open(int listening, Subject& subject, uid_t owner, const RoleGroups& groups);
   Door(const Door&) = delete;
   Door& operator=(const Door&) = delete;
@@ -25,43 +28,42 @@ class Door {
 
   /// Readable when serve() has something to do: for the owner's poll or epoll.
   int descriptor() const noexcept { return epoll_.fd; }
-  /// Lets in somebody who did not come by the listening socket, or tells why not. Context: setup.
-  void enter(OwnedDescriptor socket, const PeerIdentity& peer, Nanoseconds now);
   /// Accepts, reads, answers, notifies, sends. `now` never goes back.
   void serve(Nanoseconds now);
-  /// When serve() is due though nothing came; kNever: not before something comes.
+  /// When serve() is due though nothing came; kNever: not before something comes. Never later than `now` of the last
+  /// serve() when an answer has been given since.
   Nanoseconds next_due() const noexcept;
+  /// Takes over a connected socket whose other end is known; refuses it with words when it has no role or there are
+  /// too many.
+  void enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now);
   std::size_t connections() const noexcept { return sessions_.size(); }
 
  private:
-  struct Subscription {
-    std::uint64_t session = 0;
-    std::string to;
-    Nanoseconds period;  ///< 0: whenever there is something new
-    Nanoseconds due;
-  };
+  struct Call;
 
-  Door(Subject& subject, uid_t owner, const RoleGroups& groups) : subject_(subject), owner_(owner), groups_(groups) {}
+  Door(Subject& subject, uid_t owner, const RoleGroups& groups)
+      : subject_(subject), subscriptions_(subject), owner_(owner), groups_(groups) {}
   void accept(Nanoseconds now);
   bool may_enter(const PeerIdentity& peer) const;
   void read(Session& session, Nanoseconds now);
   void take(Session& session, const std::string& line, Nanoseconds now);
-  Answer judge(Session& session, const std::string& method, const MethodRule* rule, const Json& parameters,
-               Nanoseconds now);
-  void answer(std::uint64_t session, const Json& id, const Answer& answer);
-  Answer subscribe(Session& session, const Json& parameters, Nanoseconds now);
-  Answer unsubscribe(Session& session, const Json& parameters);
-  void notify(Nanoseconds now);
-  void flush(Nanoseconds now);
+  void carry_out(Session& session, const Request& request, Nanoseconds now);
+  Answer judge(Session& session, const Request& request, const MethodRule* rule, Nanoseconds now);
+  void answer(Session& session, const Request& request, const Answer& answer);
+  bool is_over(Session& session, Nanoseconds now);
+  void settle(Nanoseconds now);
   void end(std::uint64_t session);
 
   Subject& subject_;
+  Subscriptions subscriptions_;
   uid_t owner_;
   RoleGroups groups_;
   OwnedDescriptor listening_, epoll_;
   std::map<std::uint64_t, std::unique_ptr<Session>> sessions_;
-  std::map<std::uint64_t, Subscription> subscriptions_;
-  std::uint64_t last_session_ = 0, last_subscription_ = 0;
+  std::uint64_t last_session_ = 0;
+  Nanoseconds now_;                    // of the last serve()
+  Nanoseconds accepts_again_ = kNever;  // while nobody can be let in for lack of descriptors
+  bool has_more_ = false;              // to do at once
   std::shared_ptr<bool> is_alive_ = std::make_shared<bool>(true);  // for replies that come after the end
 };
 

@@ -10,9 +10,14 @@ namespace chimera::control {
 
 inline constexpr std::size_t kMaxLine = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxDepth = 32;
+inline constexpr std::size_t kLongLine = std::size_t{1} << 14;  ///< a longer one counts once for each such piece
+inline constexpr int kRequestsPerSecond = 1000, kRequestBurst = 200;
+inline constexpr int kActsPerSecond = 100, kActBurst = 50;
 inline constexpr std::size_t kMaxConnections = 64, kMaxConnectionsOfUser = 16;
 inline constexpr std::size_t kMaxSubscriptions = 32;
 inline constexpr std::size_t kMaxOutput = std::size_t{1} << 20;  ///< beyond it nothing more is read from the peer
 inline constexpr Nanoseconds kPatience = seconds(5);             ///< with a peer that takes nothing
+/// Of one connection in one turn: the others, and what else the owner of the door does, come in between.
+inline constexpr int kLinesAtOnce = 32;
 
 }  // namespace chimera::control

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <vector>
 
 #include "chimera/config/nearest.h"
@@ -12,25 +13,30 @@ namespace {
 
 using Kind = ParameterKind;
 
+constexpr Parameter count(const char* name, std::uint64_t least, std::uint64_t most, bool is_required = false) {
+  return {name, Kind::kCount, is_required, nullptr, least, most};
+}
+
 constexpr MethodRule kMethods[] = {
     {"hello", Role::kObserve, false, {}},
     {"status", Role::kObserve, false, {}},
     {"describe", Role::kObserve, false, {}},
     {"get", Role::kObserve, false, {{"variables", Kind::kTexts, false}}},
     {"profile", Role::kObserve, false, {}},
-    {"events", Role::kObserve, false, {{"since", Kind::kCount, false}, {"limit", Kind::kCount, false}}},
+    {"events", Role::kObserve, false, {count("since", 0, INT64_MAX), count("limit", 1, 1000)}},
     {"why", Role::kObserve, false, {{"variable", Kind::kText, true}}},
     {"subscribe", Role::kObserve, false,
-     {{"to", Kind::kText, true}, {"period_ms", Kind::kCount, false}, {"variables", Kind::kTexts, false},
-      {"since", Kind::kCount, false}}},
-    {"unsubscribe", Role::kObserve, false, {{"subscription", Kind::kCount, true}}},
+     {{"to", Kind::kText, true, "status events values tap"}, count("period_ms", 20, 60'000),
+      {"variables", Kind::kTexts, false}, count("since", 0, INT64_MAX)}},
+    {"unsubscribe", Role::kObserve, false, {count("subscription", 1, INT64_MAX, true)}},
     {"check", Role::kObserve, true, {{"text", Kind::kText, true}, {"file", Kind::kText, false}}},
     {"library", Role::kObserve, false, {}},
-    {"signal", Role::kOperate, true, {{"signal", Kind::kText, true}, {"tasks", Kind::kTexts, true}}},
+    {"signal", Role::kOperate, true,
+     {{"signal", Kind::kText, true, "spawn on off kill clear reinit"}, {"tasks", Kind::kTexts, true}}},
     {"set", Role::kOperate, true, {{"values", Kind::kObject, true}}},
     {"flag", Role::kOperate, true, {{"up", Kind::kBool, true}}},
     {"save", Role::kConfigure, true, {}},
-    {"end", Role::kConfigure, true, {{"code", Kind::kCount, false}}},
+    {"end", Role::kConfigure, true, {count("code", 0, 255)}},
 };
 
 bool is_texts(const Json& value) {
@@ -41,17 +47,15 @@ bool fits(Kind kind, const Json& value) {
   switch (kind) {
     case Kind::kText: return value.is_string();
     case Kind::kTexts: return is_texts(value);
-    case Kind::kBool:
-      return value.is_boolean();
+    case Kind::kBool: return value.is_boolean();
     case Kind::kCount:
       return value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
-    case Kind::kObject:
-      return value.is_object();
+    case Kind::kObject: return value.is_object();
   }
   return false;
 }
 
-const char* words(Kind kind) {
+const char* meaning(Kind kind) {
   constexpr const char* kWords[] = {"a text", "an array of texts", "true or false", "a whole number from 0 on",
                                     "an object"};
   return kWords[static_cast<unsigned>(kind)];
@@ -63,6 +67,37 @@ Answer bad(std::string message, const std::string& where, const std::string& nea
   Json data{{"where", where}};
   if (!nearest.empty()) data["nearest"] = nearest;
   return Answer::error(kBadParameters, std::move(message), data);
+}
+
+/// Of what a client sent: as much as a message needs.
+std::string quotable(const std::string& text) { return text.substr(0, 40); }
+
+std::string near_of(const std::string& wrong, const std::vector<std::string>& names) {
+  return wrong.size() <= 40 ? nearest(wrong, names) : "";
+}
+
+Answer check_word(const Parameter& parameter, const std::string& word) {
+  std::vector<std::string> words;
+  std::istringstream in(parameter.words);
+  for (std::string one; in >> one;) words.push_back(one);
+  if (std::find(words.begin(), words.end(), word) != words.end()) return {};
+  std::string listed;
+  for (const std::string& one : words) listed += (&one == &words[0] ? "" : &one == &words.back() ? " or " : ", ") + one;
+  return bad(in_quotes(parameter.name) + " must be " + listed, parameter.name, near_of(word, words));
+}
+
+Answer check_count(const Parameter& parameter, std::uint64_t count) {
+  if (count >= parameter.least && count <= parameter.most) return {};
+  const bool has_limit = parameter.most < INT64_MAX;
+  const std::string range = has_limit ? "from " + std::to_string(parameter.least) + " to " : "at most ";
+  return bad(in_quotes(parameter.name) + " must be " + range + std::to_string(parameter.most), parameter.name);
+}
+
+Answer check_value(const Parameter& parameter, const Json& value) {
+  if (!fits(parameter.kind, value))
+    return bad(in_quotes(parameter.name) + " must be " + meaning(parameter.kind), parameter.name);
+  if (parameter.words != nullptr) return check_word(parameter, value.get<std::string>());
+  return parameter.kind == Kind::kCount ? check_count(parameter, value.get<std::uint64_t>()) : Answer{};
 }
 
 }  // namespace
@@ -82,15 +117,16 @@ Answer check_parameters(const MethodRule& rule, const Json& parameters) {
     if (parameter.name != nullptr) names.emplace_back(parameter.name);
   for (const auto& [key, value] : parameters.items())
     if (std::find(names.begin(), names.end(), key) == names.end())
-      return bad(in_quotes(rule.name) + " has no parameter " + in_quotes(key), key, nearest(key, names));
+      return bad(in_quotes(rule.name) + " has no parameter " + in_quotes(quotable(key)), quotable(key),
+                 near_of(key, names));
   for (const Parameter& parameter : rule.parameters) {
     if (parameter.name == nullptr) break;
     const auto found = parameters.find(parameter.name);
     if (found == parameters.end()) {
-      if (parameter.is_required)
-        return bad(in_quotes(rule.name) + " needs " + in_quotes(parameter.name), parameter.name);
-    } else if (!fits(parameter.kind, *found)) {
-      return bad(in_quotes(parameter.name) + " must be " + words(parameter.kind), parameter.name);
+      if (!parameter.is_required) continue;
+      return bad(in_quotes(rule.name) + " needs " + in_quotes(parameter.name), parameter.name);
+    } else if (const Answer judged = check_value(parameter, *found); !judged.is_good()) {
+      return judged;
     }
   }
   return {};

@@ -2,6 +2,7 @@
 // The methods of the control protocol, in one table: who may call them and what they take.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,8 @@ struct Parameter {
   const char* name = nullptr;
   ParameterKind kind = ParameterKind::kText;
   bool is_required = false;
+  const char* words = nullptr;            ///< of a text: the words it may be, a blank between each two; null: any
+  std::uint64_t least = 0, most = INT64_MAX;  ///< of a count
 };
 
 struct MethodRule {

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <vector>
 
 #include "chimera/control/limits.h"
 
@@ -13,12 +16,25 @@ std::string line_of(const Json& message) {
   return message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Request refused(const Json& id, int code, const char* message, bool must_close = false) {
+Request refused(const Json& id, int code, std::string message, bool must_close = false) {
   Request request;
   request.id = std::make_shared<const Json>(id);
-  request.refusal = Answer::error(code, message);
+  request.refusal = Answer::error(code, std::move(message));
   request.must_close = must_close;
   return request;
+}
+
+/// Parses, and tells a key that stands twice in one object: who would know which one counts? Discarded: no JSON.
+Json parse(std::string_view line, std::optional<std::string>& twice) {
+  std::vector<std::set<std::string>> keys;
+  const auto look = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    else if (event == Json::parse_event_t::object_end) keys.pop_back();
+    else if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      twice = parsed.get<std::string>().substr(0, 40);
+    return true;
+  };
+  return Json::parse(line, look, false);
 }
 
 bool is_id(const Json& id) { return id.is_string() || id.is_number_integer() || id.is_null(); }
@@ -46,8 +62,10 @@ std::size_t depth_of(std::string_view text) noexcept {
 Request read_request(std::string_view line) {
   if (line.size() > kMaxLine) return refused(nullptr, kTooLarge, "a line may have 1 MiB", true);
   if (depth_of(line) > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32", true);
-  const Json message = Json::parse(line, nullptr, false);
+  std::optional<std::string> twice;
+  const Json message = parse(line, twice);
   if (message.is_discarded()) return refused(nullptr, kParseError, "this is no JSON");
+  if (twice) return refused(nullptr, kNoRequest, "the key '" + *twice + "' stands twice");
   if (message.is_array()) return refused(nullptr, kNoRequest, "batches are not taken: one message a line");
   if (!message.is_object()) return refused(nullptr, kNoRequest, "a request is an object");
   const auto id = message.find("id");

@@ -32,9 +32,11 @@ std::string socket_path(const std::string& folder, const std::string& subsystem)
 std::vector<std::string> running_subsystems(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (entry.path().extension() == ".sock" && listens(entry.path().string()))
-      names.push_back(entry.path().stem().string());
+  std::filesystem::directory_iterator entries(folder, error);
+  for (; !error && entries != std::filesystem::directory_iterator(); entries.increment(error)) {
+    const std::filesystem::path path = entries->path();
+    if (path.extension() == ".sock" && listens(path.string())) names.push_back(path.stem().string());
+  }
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -3,45 +3,66 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 
 namespace chimera::control {
+namespace {
+
+constexpr std::size_t kReadAtOnce = std::size_t{1} << 16;
+
+}  // namespace
 
 void Session::receive() {
-  char bytes[1 << 16];
+  if (taken_ > 0) {  // once a turn, not once a line
+    input_.erase(0, taken_);
+    looked_ -= taken_;
+    taken_ = 0;
+  }
+  char bytes[kReadAtOnce];
   while (input_.size() <= kMaxLine) {
     const ssize_t got = ::recv(socket_.fd, bytes, sizeof bytes, MSG_DONTWAIT);
-    if (got > 0) {
-      input_.append(bytes, static_cast<std::size_t>(got));
-      continue;
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) {
+      has_ended_ = got == 0 || errno != EAGAIN;
+      return;
     }
-    has_ended_ = got == 0 || (errno != EAGAIN && errno != EINTR);
-    return;
+    input_.append(bytes, static_cast<std::size_t>(got));
   }
 }
 
+bool Session::has_line() const noexcept {
+  return input_.size() - taken_ > kMaxLine || input_.find('\n', looked_) != std::string::npos;
+}
+
 bool Session::take_line(std::string& line) {
-  const std::size_t end = input_.find('\n');
-  if (end == std::string::npos && input_.size() <= kMaxLine) return false;
-  const std::size_t length = end == std::string::npos ? input_.size() : end;
-  line = input_.substr(0, length);
-  input_.erase(0, end == std::string::npos ? length : length + 1);
+  const std::size_t end = input_.find('\n', looked_);
+  if (end == std::string::npos && input_.size() - taken_ <= kMaxLine) {
+    looked_ = input_.size();
+    return false;
+  }
+  line.assign(input_, taken_, std::min(end, input_.size()) - taken_);
+  looked_ = taken_ = end == std::string::npos ? input_.size() : end + 1;
   return true;
+}
+
+void Session::say(const std::string& line, Nanoseconds now) {
+  if (!has_output()) moved_ = now;
+  output_ += line;
 }
 
 bool Session::flush(Nanoseconds now) {
   while (has_output()) {
-    const ssize_t sent =
-        ::send(socket_.fd, output_.data() + sent_, output_.size() - sent_, MSG_DONTWAIT | MSG_NOSIGNAL);
+    const std::size_t left = output_.size() - sent_;
+    const ssize_t sent = ::send(socket_.fd, output_.data() + sent_, left, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK) return false;
+    if (sent < 0 && errno != EAGAIN) return false;
     if (sent < 0) return now - moved_ < kPatience;
     sent_ += static_cast<std::size_t>(sent);
     moved_ = now;
   }
   output_.clear();
   sent_ = 0;
-  moved_ = now;
   return !is_closing_;
 }
 

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <map>
 #include <string>
 
 #include "chimera/control/allowance.h"
@@ -24,32 +22,41 @@ class Session {
   int descriptor() const noexcept { return socket_.fd; }
   const PeerIdentity& peer() const noexcept { return peer_; }
 
-  /// Takes what has come.
+  /// Takes what has come, at most a line of the greatest length and one read more.
   void receive();
-  /// The peer says nothing more.
+  /// The peer says nothing more; it may still listen.
   bool has_ended() const noexcept { return has_ended_; }
-  /// The next whole line, without its end. A line longer than the limit comes cut behind it.
+  /// The next whole line, without its end. A line longer than the limit comes cut behind it, or whole.
   bool take_line(std::string& line);
+  bool has_line() const noexcept;
+
   /// Queues a line that has its end.
-  void say(std::string line) { output_ += line; }
-  /// Sends what can be sent. False when the peer is gone, or took nothing for too long.
+  void say(const std::string& line, Nanoseconds now);
+  /// Sends what can be sent. False when the connection is over: the peer is gone, took nothing for too long, or
+  /// everything was sent and it is closing.
   bool flush(Nanoseconds now);
   bool has_output() const noexcept { return sent_ < output_.size(); }
-  /// Room for more: the peer takes what it is sent.
+  /// The peer takes what it is sent: more may be read from it and made for it.
   bool has_room() const noexcept { return output_.size() - sent_ < kMaxOutput; }
+  /// When flush() will find that the peer took nothing for too long; kNever: nothing waits.
+  Nanoseconds patience_ends() const noexcept { return has_output() ? moved_ + kPatience : kNever; }
   /// After what is queued the connection ends.
   void close_after() noexcept { is_closing_ = true; }
   bool is_closing() const noexcept { return is_closing_; }
 
-  Allowance requests{1000, 200}, acts{100, 50};
+  Allowance requests{kRequestsPerSecond, kRequestBurst}, acts{kActsPerSecond, kActBurst};
+  std::size_t open_calls = 0;   ///< whose answers are still to come
+  bool is_gone = false;         ///< the peer closed: nobody will read
+  std::uint32_t watched = 0;    ///< events of epoll asked for, kept by the door
 
  private:
   std::uint64_t number_;
   OwnedDescriptor socket_;
   PeerIdentity peer_;
   std::string input_, output_;
+  std::size_t taken_ = 0, looked_ = 0;  // of the input: handed out; known to hold no line end
   std::size_t sent_ = 0;
-  Nanoseconds moved_;  // when output last went, or there was none
+  Nanoseconds moved_;  // when output last went, or the first of it was queued
   bool is_closing_ = false;
   bool has_ended_ = false;
 };

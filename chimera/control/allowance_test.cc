@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/control/allowance.h"
+
+#include <gtest/gtest.h>
+
+#include "chimera/control/rights.h"
+
+namespace chimera::control {
+namespace {
+
+TEST(Allowance, GivesTheBurstAndThenTheRate) {
+  Allowance allowance(100, 5);
+  Nanoseconds now = seconds(1);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(allowance.take(now));
+  EXPECT_FALSE(allowance.take(now));
+  EXPECT_EQ(allowance.wait(now), milliseconds(10));
+  EXPECT_FALSE(allowance.take(now += milliseconds(9)));
+  EXPECT_EQ(allowance.wait(now), milliseconds(1));
+  EXPECT_TRUE(allowance.take(now += milliseconds(1)));
+  EXPECT_FALSE(allowance.take(now));
+}
+
+TEST(Allowance, SavesNoMoreThanTheBurst) {
+  Allowance allowance(100, 5);
+  EXPECT_TRUE(allowance.take(seconds(1), 5));
+  EXPECT_TRUE(allowance.take(seconds(1'000'000'000), 5));
+  EXPECT_FALSE(allowance.take(seconds(1'000'000'000)));
+}
+
+TEST(Allowance, TakesSeveralOrNone) {
+  Allowance allowance(100, 5);
+  EXPECT_TRUE(allowance.take(seconds(1), 3));
+  EXPECT_FALSE(allowance.take(seconds(1), 3));
+  EXPECT_EQ(allowance.wait(seconds(1), 3), milliseconds(10));
+  EXPECT_TRUE(allowance.take(seconds(1), 2));
+}
+
+TEST(Rights, AreTheHighestThatUserOrGroupsGive) {
+  const gid_t groups[] = {100, 200};
+  EXPECT_EQ(role_of(5, groups, 5, {}), Role::kConfigure);
+  EXPECT_EQ(role_of(0, groups, 5, {}), Role::kConfigure);
+  EXPECT_EQ(role_of(6, groups, 5, {}), Role::kNone);
+  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, {}, {}}), Role::kObserve);
+  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, gid_t{100}, {}}), Role::kOperate);
+  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, gid_t{100}, gid_t{300}}), Role::kOperate);
+}
+
+}  // namespace
+}  // namespace chimera::control

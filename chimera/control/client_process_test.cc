@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/control/client.h"
+
+#include <poll.h>
+
+#include <atomic>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "chimera/control/door_rig.h"
+#include "chimera/control/running.h"
+#include "chimera/platform/socket_folder.h"
+
+namespace chimera::control {
+namespace {
+
+/// Serves the door until it is stopped.
+struct ClientTest : DoorTest {
+  void start() {
+    done = false;
+    server = std::thread([this] {
+      while (!done) {
+        pollfd one{door->descriptor(), POLLIN, 0};
+        ::poll(&one, 1, 5);
+        door->serve(now = now + milliseconds(5));
+      }
+    });
+  }
+  void stop() {
+    done = true;
+    if (server.joinable()) server.join();
+  }
+  void TearDown() override {
+    stop();
+    DoorTest::TearDown();
+  }
+  std::thread server;
+  std::atomic<bool> done = false;
+};
+
+TEST_F(ClientTest, CallsAndHearsNotifications) {
+  start();
+  auto client = Client::connect_to(path);
+  ASSERT_TRUE(client);
+  const Answer hello = client->call("hello");
+  ASSERT_TRUE(hello.is_good()) << hello.message;
+  EXPECT_EQ((*hello.result)["role"], "configure");
+  const Answer wrong = client->call("helo");
+  EXPECT_EQ(wrong.code, kNoMethod);
+  EXPECT_EQ(wrong.detail("nearest"), "hello");
+  ASSERT_TRUE(client->call("subscribe", {{"to", "status"}, {"period_ms", 20}}).is_good());
+  const auto note = client->next(seconds(5));
+  ASSERT_TRUE(note && *note);
+  EXPECT_EQ((*note)->method, "status");
+  EXPECT_EQ(client->call("signal", {{"signal", "off"}, {"tasks", {"a"}}}, milliseconds(50)).code, kNoAnswer);
+}
+
+TEST_F(ClientTest, WaitsForAManagerThatIsBeingRestarted) {
+  auto client = Client::connect_to(path);  // the socket is the keeper's: somebody will look
+  ASSERT_TRUE(client);
+  std::thread later([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    start();
+  });
+  EXPECT_TRUE(client->call("hello").is_good());
+  later.join();
+}
+
+TEST_F(ClientTest, AsksAgainWhenTheManagerDiedAndMayHaveActedOnlyWhereItDoesNotMatter) {
+  start();
+  auto client = Client::connect_to(path);
+  ASSERT_TRUE(client && client->call("hello").is_good());
+  stop();
+  open_door();  // the former one and its connections are gone
+  start();
+  EXPECT_TRUE(client->call("status").is_good()) << "the line was never read";
+  EXPECT_TRUE(client->call("flag", {{"up", true}}).is_good());
+  stop();
+  open_door();
+  start();
+  EXPECT_TRUE(client->call("flag", {{"up", true}}).is_good()) << "the line was never read";
+  const auto die = [this] {
+    for (int i = 0; i < 5000 && subject.later.empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    stop();
+    open_door();
+    start();
+  };
+  std::thread killer(die);
+  const Answer lost = client->call("signal", {{"signal", "off"}, {"tasks", {"a"}}});
+  killer.join();
+  EXPECT_EQ(lost.code, kNoConnection);
+  EXPECT_EQ(lost.message, "the manager ended before it answered; `chimera status` says what was done");
+}
+
+TEST_F(ClientTest, DoesNotHideThatSubscriptionsAreLost) {
+  start();
+  auto client = Client::connect_to(path);
+  ASSERT_TRUE(client && client->call("subscribe", {{"to", "events"}}).is_good());
+  stop();
+  open_door();
+  start();
+  EXPECT_EQ(client->call("status").message, "the connection to the subsystem was lost");
+  ASSERT_TRUE(client->reconnect());
+  EXPECT_TRUE(client->call("status").is_good());
+}
+
+TEST_F(ClientTest, HearsWhyItIsNotLetIn) {
+  start();
+  std::vector<int> fds;
+  for (int i = 0; i < 16; ++i) fds.push_back(plain());
+  auto client = Client::connect_to(path);
+  ASSERT_TRUE(client);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));  // refused before it says a word
+  const Answer refused = client->call("hello");
+  EXPECT_EQ(refused.code, kTooMany);
+  EXPECT_EQ(refused.message, "too many connections");
+  for (const int fd : fds) ::close(fd);
+}
+
+TEST_F(ClientTest, WhateverTheOtherEndSaysItGoesOn) {
+  auto client = Client::connect_to(path);
+  ASSERT_TRUE(client);
+  const int other = ::accept(listening, nullptr, nullptr);
+  for (const char* line : {R"({"id":1,"error":7})", R"({"id":2,"error":{"code":"x","message":1}})",
+                           R"({"id":3,"error":{"code":-32000,"message":"no","data":[]}})", R"({"id":4})"})
+    say(other, std::string("garbage\n[]\n7\n{\"id\":99}\n{\"method\":\"m\",\"params\":5}\n") + line + "\n");
+  EXPECT_EQ(client->call("hello").message, "the other end does not speak the control protocol");
+  EXPECT_EQ(client->call("hello").code, kNoConnection);
+  EXPECT_EQ(client->call("hello").message, "no");
+  EXPECT_TRUE(client->call("hello").is_good());
+  const auto note = client->next(Nanoseconds{});
+  ASSERT_TRUE(note && *note);
+  EXPECT_EQ(*(*note)->parameters, 5);
+  ::close(other);
+}
+
+struct FindTest : DoorTest {
+  void SetUp() override {
+    DoorTest::SetUp();
+    ::setenv("XDG_RUNTIME_DIR", folder.c_str(), 1);
+    ::unsetenv("CHIMERA_SUBSYSTEM");
+  }
+  void TearDown() override {
+    ::unsetenv("XDG_RUNTIME_DIR");
+    ::unsetenv("CHIMERA_SUBSYSTEM");
+    DoorTest::TearDown();
+  }
+  void place(const char* name) {
+    std::filesystem::create_directory(folder + "/chimera");
+    std::filesystem::permissions(folder + "/chimera", std::filesystem::perms::owner_all);
+    std::filesystem::rename(path, socket_path(folder + "/chimera", name));
+  }
+  static std::string said(const std::string& name) {
+    const auto found = Client::connect(name);
+    return found ? found->path().substr(found->path().rfind('/') + 1) : std::string(found.error().message.view());
+  }
+};
+
+TEST_F(FindTest, WithoutASubsystemItSaysHowToStartOne) {
+  EXPECT_EQ(said(""), "no subsystem runs; start one with `chimera run FILE`");
+  EXPECT_EQ(said("arm"), "no subsystem 'arm' runs; start one with `chimera run FILE`");
+}
+
+TEST_F(FindTest, TheOneThatRunsNeedsNoName) {
+  place("subject");
+  EXPECT_EQ(running_subsystems(folder + "/chimera"), std::vector<std::string>{"subject"});
+  EXPECT_EQ(said(""), "subject.sock");
+  EXPECT_EQ(said("subject"), "subject.sock");
+  EXPECT_EQ(said("subjetc"), "no subsystem 'subjetc' runs; did you mean 'subject'?");
+  EXPECT_EQ(said("arm"), "no subsystem 'arm' runs; these run: subject");
+  EXPECT_EQ(said(folder + "/chimera/subject.sock"), "subject.sock");
+  EXPECT_EQ(said(folder + "/chimera/other.sock"), "no subsystem listens here");
+}
+
+TEST_F(FindTest, AmongSeveralOneMustBeNamed) {
+  place("subject");
+  listening = -1;
+  open_door();
+  place("arm");
+  EXPECT_EQ(said(""), "several subsystems run: arm, subject; say --subsystem NAME");
+  ::setenv("CHIMERA_SUBSYSTEM", "arm", 1);
+  EXPECT_EQ(said(""), "arm.sock");
+  EXPECT_EQ(said("subject"), "subject.sock");
+}
+
+TEST_F(FindTest, ASocketThatNobodyListensAtIsNone) {
+  place("subject");
+  door.reset();
+  ::close(listening);
+  EXPECT_EQ(said(""), "no subsystem runs; start one with `chimera run FILE`");
+}
+
+TEST_F(FindTest, AFolderThatOthersMayWriteToIsNotTrusted) {
+  place("subject");
+  std::filesystem::permissions(folder + "/chimera", std::filesystem::perms::all);
+  EXPECT_EQ(said(""), "others may write to the folder of the sockets");
+}
+
+}  // namespace
+}  // namespace chimera::control

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/control/subscriptions.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "chimera/control/request.h"
+
+namespace chimera::control {
+namespace {
+
+constexpr Nanoseconds kLookAtNews = milliseconds(10);  // for what has no period
+constexpr int kNewsAtOnce = 64;                        // messages of one subscription in one turn
+
+}  // namespace
+
+Answer Subscriptions::open(std::uint64_t session, const Json& parameters, Nanoseconds now) {
+  if (count_of(session) >= kMaxSubscriptions)
+    return Answer::error(kBadParameters, "a connection may have 32 subscriptions", {{"where", "to"}});
+  const std::uint64_t number = ++last_;
+  const Answer opened = subject_.open(number, parameters);
+  if (!opened.is_good()) return opened;
+  const std::string to = parameters.at("to").get<std::string>();
+  const bool skips = to == "status" || to == "values";
+  const Nanoseconds period = skips ? milliseconds(parameters.value("period_ms", std::int64_t{100})) : kLookAtNews;
+  all_[number] = {session, to, period, skips, now};
+  return Answer::good({{"subscription", number}});
+}
+
+Answer Subscriptions::close(std::uint64_t session, const Json& parameters) {
+  const auto number = parameters.at("subscription").get<std::uint64_t>();
+  const auto found = all_.find(number);
+  if (found == all_.end() || found->second.session != session)
+    return Answer::unknown("no subscription " + std::to_string(number), "subscription", "");
+  subject_.close(number);
+  all_.erase(found);
+  return Answer::good(Json::object());
+}
+
+void Subscriptions::end(std::uint64_t session) {
+  std::erase_if(all_, [&](const auto& one) {
+    if (one.second.session != session) return false;
+    subject_.close(one.first);
+    return true;
+  });
+}
+
+std::size_t Subscriptions::count_of(std::uint64_t session) const noexcept {
+  const auto is_of = [session](const auto& one) { return one.second.session == session; };
+  return static_cast<std::size_t>(std::count_if(all_.begin(), all_.end(), is_of));
+}
+
+void Subscriptions::notify(const std::function<Session&(std::uint64_t)>& session_of, Nanoseconds now) {
+  for (auto& [number, one] : all_) {
+    if (now < one.due) continue;
+    one.due = std::max(one.due + one.period, now);
+    Session& session = session_of(one.session);
+    if (session.is_closing()) continue;
+    const auto may = [&] { return one.skips ? !session.has_output() : session.has_room(); };
+    for (int n = 0; n < (one.skips ? 1 : kNewsAtOnce) && may(); ++n) {
+      const auto news = subject_.pull(number);
+      if (news == nullptr) break;
+      session.say(note_line(one.to, number, *news), now);
+    }
+  }
+}
+
+Nanoseconds Subscriptions::next_due() const noexcept {
+  Nanoseconds next = kNever;
+  for (const auto& [number, one] : all_) next = std::min(next, one.due);
+  return next;
+}
+
+}  // namespace chimera::control

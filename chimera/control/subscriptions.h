@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who wants to be told what, and when it is due.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "chimera/control/session.h"
+#include "chimera/control/subject.h"
+
+namespace chimera::control {
+
+/// Context: setup.
+class Subscriptions {
+ public:
+  explicit Subscriptions(Subject& subject) : subject_(subject) {}
+
+  /// Answers `subscribe` and `unsubscribe` of a session; `parameters` have been checked.
+  Answer open(std::uint64_t session, const Json& parameters, Nanoseconds now);
+  Answer close(std::uint64_t session, const Json& parameters);
+  /// The session is over.
+  void end(std::uint64_t session);
+  std::size_t count_of(std::uint64_t session) const noexcept;
+
+  /// Tells every session what is due and it has room for. What has a period is made when the peer has taken all that
+  /// came before: who is slow skips to the latest. `session_of` finds a session by number.
+  void notify(const std::function<Session&(std::uint64_t)>& session_of, Nanoseconds now);
+  /// When notify() is due; kNever: nobody wants anything.
+  Nanoseconds next_due() const noexcept;
+
+ private:
+  struct Subscription {
+    std::uint64_t session = 0;
+    std::string to;
+    Nanoseconds period;
+    bool skips = false;  ///< to the latest
+    Nanoseconds due;
+  };
+
+  Subject& subject_;
+  std::map<std::uint64_t, Subscription> all_;
+  std::uint64_t last_ = 0;
+};
+
+}  // namespace chimera::control
