@@ -27,7 +27,8 @@ void Process::stall() {
   if (!is_alive_ || is_hung_) return;
   world_.note("process stalls", id_.index);
   world_.tally.count("stall");
-  stalled_until_ = std::max(stalled_until_, world_.now() + world_.chance.between(milliseconds(500), milliseconds(4500)));
+  const Nanoseconds until = world_.now() + world_.chance.between(milliseconds(500), milliseconds(4500));
+  stalled_until_ = std::max(stalled_until_, until);
 }
 
 // ---- life and death ----
