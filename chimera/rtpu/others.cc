@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "chimera/platform/linux/linux_clock.h"
+
 namespace chimera {
 namespace {
 
@@ -96,7 +98,7 @@ void Others::changed() noexcept {
   const std::uint32_t flag = flag_word();
   if (block_.head().flag.load(std::memory_order_relaxed) != flag) {
     block_.head().flag.store(flag, std::memory_order_release);
-    tell(Happening::kFlag, TaskId(), flag, {});
+    tell(Happening::kFlag, TaskId(), flag, LinuxClock().now());
     any = true;
   }
   watch_flags();
