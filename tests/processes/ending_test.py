@@ -72,7 +72,7 @@ class Ending(unittest.TestCase):
                 self.judge(system.lines())
 
     def test_a_unit_whose_off_hangs_is_ended_all_the_same(self):
-        with System(CHAIN.replace("{label: b}", "{label: b, slow: 60 s}")) as system:
+        with System(CHAIN.replace("{label: b}", "{label: b, slow: 60000000000 ns}")) as system:
             began = time.monotonic()
             system.process.send_signal(signal.SIGTERM)
             system.process.wait(20)

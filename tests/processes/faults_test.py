@@ -181,7 +181,7 @@ class Faults(unittest.TestCase):
                 before = {t["task"]: t for t in system.call("status")["tasks"]}
                 began = time.monotonic()
                 os.kill(system.pids()["manager"], signal.SIGKILL)
-                system.client = None
+                system.disconnect()
                 status = system.call("status")
                 self.assertLess(time.monotonic() - began, 1.0, "picked up again within a second")
                 self.count("row 11 manager killed")

@@ -133,9 +133,14 @@ class System:
                     self.client = Client(self.socket)
                 return self.client.call("status")["started_ns"] is not None
             except (OSError, ConnectionError):
-                self.client = None
+                self.disconnect()
                 return False
         await_that(ready, 20, f"the start ({self.said()})")
+
+    def disconnect(self):
+        if self.client is not None:
+            self.client.close()
+            self.client = None
 
     def call(self, method, **parameters):
         """Over a connection that survives a restart of the manager."""
@@ -145,7 +150,7 @@ class System:
                     self.client = Client(self.socket)
                 return self.client.call(method, **parameters)
             except (OSError, ConnectionError):
-                self.client = None
+                self.disconnect()
                 if attempt == 199:
                     raise
                 time.sleep(0.01)
@@ -195,8 +200,7 @@ class System:
     def end(self, how=15):  # SIGTERM; `signal` is a method here
         """Ends it in order; whatever is left is killed by its pid and is a failure."""
         try:
-            if self.client is not None:
-                self.client.close()
+            self.disconnect()
             if self.process.poll() is None:
                 self.process.send_signal(how)
                 self.process.wait(15)
