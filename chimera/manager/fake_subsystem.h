@@ -13,6 +13,7 @@
 #include "chimera/manager/driver.h"
 #include "chimera/manager/fake_rtpu.h"
 #include "chimera/manager/test_bundle.h"
+#include "chimera/platform/process.h"
 
 namespace chimera::manager {
 
@@ -102,22 +103,27 @@ class FakeSubsystem {
     return TaskId(std::size_t{0});
   }
 
-  /// A manager begins; `listening` is taken over.
-  void start_manager(int listening = -1) {
-    auto ends = Channel::pair();
-    ASSERT_TRUE(ends);
-    channel_ = std::move(ends->first);
-    ++manager_incarnation_;
-    for (std::uint32_t r = 0; r < n_rtpus(); ++r) introduce(r);
-    if (manager_segment_ >= 0) send(KeeperMessage::Kind::kPeer, n_rtpus(), manager_incarnation_ - 1, manager_segment_);
-    send(KeeperMessage::Kind::kComplete, 0, 0);
-    const Inherited inherited{again(ends->second.descriptor()), again(image_.descriptor()),
-                              again(decision_.descriptor()),    again(keeper_.descriptor()),
-                              listening,                        again(frozen_bundle_.descriptor())};
+  /// A manager begins in this process; it is step()ped by the test.
+  void start_manager() {
+    const Channel end = introduce_all();
+    const Inherited inherited{again(end.descriptor()),       again(image_.descriptor()), again(decision_.descriptor()),
+                              again(keeper_.descriptor()), -1, again(frozen_bundle_.descriptor())};
     auto made = Driver::start(inherited, manager_incarnation_, ::getpid());
     ASSERT_TRUE(made) << made.error().message.c_str();
     driver_ = *std::move(made);
     ASSERT_NE(driver_, nullptr);
+  }
+  /// A manager begins as a process of its own; the test has to keep().
+  Process start_program(const char* program, int listening) {
+    const Channel end = introduce_all();
+    const std::string incarnation = std::to_string(manager_incarnation_), parent = std::to_string(::getpid());
+    const char* const words[] = {program, "--peer", "2", "--incarnation", incarnation.c_str(), "--parent",
+                                 parent.c_str()};
+    const int passed[] = {end.descriptor(),     image_.descriptor(), decision_.descriptor(),
+                          keeper_.descriptor(), listening,           frozen_bundle_.descriptor()};
+    auto started = Process::start(program, words, passed);
+    EXPECT_TRUE(started) << started.error().message.c_str();
+    return started ? *std::move(started) : Process();
   }
   /// As by SIGKILL: it says nothing to anybody.
   void kill_manager() {
@@ -166,9 +172,39 @@ class FakeSubsystem {
     }
     return text;
   }
+  /// What the keeper does when messages come.
+  void keep() {
+    KeeperMessage message;
+    int passed = -1;
+    while (channel_.receive(bytes_of(message), passed) == Channel::Got::kMessage) {
+      if (message.kind == KeeperMessage::Kind::kSegment) {
+        if (manager_segment_ >= 0) ::close(manager_segment_);
+        manager_segment_ = passed;
+        segment_incarnation_ = manager_incarnation_;
+        for (auto& [r, rtpu] : rtpus_)
+          if (!ended_[r]) rtpu->meet(again(passed), manager_incarnation_);
+      } else if (message.kind == KeeperMessage::Kind::kStart && ended_[message.index]) {
+        revive(message.index);
+        introduce(message.index);
+      } else if (message.kind == KeeperMessage::Kind::kEnd) {
+        end_asked = message.code;
+      }
+    }
+  }
   std::optional<std::int32_t> end_asked;
 
  private:
+  /// The channel of a new manager, with the inventory in it.
+  Channel introduce_all() {
+    auto ends = Channel::pair();
+    EXPECT_TRUE(ends);
+    channel_ = std::move(ends->first);
+    ++manager_incarnation_;
+    for (std::uint32_t r = 0; r < n_rtpus(); ++r) introduce(r);
+    if (manager_segment_ >= 0) send(KeeperMessage::Kind::kPeer, n_rtpus(), segment_incarnation_, manager_segment_);
+    send(KeeperMessage::Kind::kComplete, 0, 0);
+    return std::move(ends->second);
+  }
   static int again(int descriptor) { return ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0); }
   void send(KeeperMessage::Kind kind, std::uint32_t index, std::uint32_t incarnation, int passed = -1) {
     const KeeperMessage message{.kind = kind, .index = index, .incarnation = incarnation, .pid = 1000, .at = now()};
@@ -184,26 +220,8 @@ class FakeSubsystem {
     auto& page = *reinterpret_cast<DecisionPage*>(decision_.bytes().data());
     const std::uint32_t incarnation = rtpus_[r] == nullptr ? 1 : rtpus_[r]->incarnation() + 1;
     rtpus_[r] = std::make_unique<FakeRtpu>(spec_, r, incarnation, page);
-    if (manager_segment_ >= 0) rtpus_[r]->meet(again(manager_segment_), manager_incarnation_);
+    if (manager_segment_ >= 0) rtpus_[r]->meet(again(manager_segment_), segment_incarnation_);
   }
-  void keep() {
-    KeeperMessage message;
-    int passed = -1;
-    while (channel_.receive(bytes_of(message), passed) == Channel::Got::kMessage) {
-      if (message.kind == KeeperMessage::Kind::kSegment) {
-        if (manager_segment_ >= 0) ::close(manager_segment_);
-        manager_segment_ = passed;
-        for (auto& [r, rtpu] : rtpus_)
-          if (!ended_[r]) rtpu->meet(again(passed), manager_incarnation_);
-      } else if (message.kind == KeeperMessage::Kind::kStart && ended_[message.index]) {
-        revive(message.index);
-        introduce(message.index);
-      } else if (message.kind == KeeperMessage::Kind::kEnd) {
-        end_asked = message.code;
-      }
-    }
-  }
-
   Bundle bundle_;
   std::optional<Configuration> configuration_;
   ApplicationSpec spec_;
@@ -212,7 +230,7 @@ class FakeSubsystem {
   MemoryRegion keeper_;
   Channel channel_;
   int manager_segment_ = -1;
-  std::uint32_t manager_incarnation_ = 0;
+  std::uint32_t manager_incarnation_ = 0, segment_incarnation_ = 0;
   std::map<std::uint32_t, std::unique_ptr<FakeRtpu>> rtpus_;
   std::map<std::uint32_t, std::optional<KeeperMessage>> ended_;
   std::unique_ptr<Driver> driver_;
