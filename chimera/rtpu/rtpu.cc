@@ -2,6 +2,7 @@
 #include "chimera/rtpu/rtpu.h"
 
 #include <poll.h>
+#include <sys/eventfd.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/shared_pages.h"
@@ -66,6 +68,7 @@ class Rtpu {
   const RtpuStart start_;
   Channel channel_;
   int signals_ = -1;
+  OwnedDescriptor over_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};  // readable when the cycling has ended
   FrozenBytes image_bytes_;
   SharedPages decision_pages_;
   MemoryRegion keeper_pages_;
@@ -206,6 +209,8 @@ void Rtpu::cycle() {
     executive_->releases().forget_stop();
   }
   has_ended_ = true;
+  const std::uint64_t one = 1;
+  if (::write(over_.fd, &one, sizeof one) < 0) return;  // then the next look of listen() finds it
 }
 
 int Rtpu::run() {
@@ -222,10 +227,10 @@ int Rtpu::run() {
 }
 
 void Rtpu::listen(int timeout_ms) {
-  pollfd fds[] = {{channel_.descriptor(), POLLIN, 0}, {signals_, POLLIN, 0}};
-  if (::poll(fds, signals_ < 0 ? 1 : 2, timeout_ms) <= 0) return peers_->clear();
+  pollfd fds[] = {{channel_.descriptor(), POLLIN, 0}, {over_.fd, POLLIN, 0}, {signals_, POLLIN, 0}};
+  if (::poll(fds, 3, timeout_ms) <= 0) return peers_->clear();
   if (fds[0].revents != 0) take_messages();
-  if (signals_ >= 0 && fds[1].revents != 0) {
+  if (fds[2].revents != 0) {
     signalfd_siginfo info;
     while (::read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) end();
   }
