@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/draw/plot.h"
+#include "chimera/draw/svg_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,20 +47,6 @@ std::string label(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
 }
 
 Span with_margin(Span span, double share) {

@@ -3,23 +3,10 @@
 
 #include "chimera/draw/graph.h"
 #include "chimera/draw/layout.h"
+#include "chimera/draw/svg_text.h"
 
 namespace chimera::draw {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 std::string n(int value) { return std::to_string(value); }
 
