@@ -119,7 +119,7 @@ void add_run(CLI::App& app, RunWords& words) {
   r->add_option("--quantum", words.quantum, "virtual time, laxity policies: compare again this often (1 ms)");
   r->add_option("--priority", words.run.priority, "real time: SCHED_FIFO priority; 0 runs as an ordinary process (80)")
       ->check(CLI::Range(0, 99));
-  r->add_option("--isolation", words.isolation, "real time: 'process', or 'none' to debug one rtpu in this process")
+  r->add_option("--isolation", words.isolation, "real time: 'process', or 'none': all in this process, to debug")
       ->check(CLI::IsMember({"process", "none"}));
   r->add_option("--observe-group", words.observe_group, "real time: members of this group may look on");
   r->add_option("--operate-group", words.operate_group, "real time: they may also send signals and set values");

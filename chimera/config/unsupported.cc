@@ -39,12 +39,22 @@ class Refusals {
     if (executor_ != Executor::kVirtual && configuration_.utilisation()[index] > kMaxUtilisation)
       refuse(configuration_.tasks()[0].at, "budgets above 0.93 of a CPU in real time", "run --virtual");
     if (executor_ == Executor::kProcesses) return;
+    if (executor_ == Executor::kOneProcess) return one_loop(index);
     const auto tasks = configuration_.tasks();
     const auto first =
         std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
     if (first == tasks.end() || index == tasks[0].rtpu) return;
     refuse(first->at, "task '" + first->name + "' on a second rtpu, '" + std::string(spec.name) + "'",
            "place every task on one rtpu to run");
+  }
+
+  // All tasks in one loop on the CPU of the first rtpu.
+  void one_loop(std::size_t index) {
+    double sum = 0;
+    for (const double utilisation : configuration_.utilisation()) sum += utilisation;
+    if (index == 0 && configuration_.rtpus().size() > 1 && sum > kMaxUtilisation)
+      refuse(configuration_.tasks()[0].at, "budgets of all rtpus together above 0.93 of one CPU in one process",
+             "run without --isolation none");
   }
 
   void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task) {

@@ -48,6 +48,10 @@ class RealTimeLoop final : public RunLoop {
       : request_(request), cpu_(static_cast<int>(application.configuration().rtpus()[0].cpu)), job_clock_(clock_),
         executive_(application.tasks(), clock_, job_clock_, options) {
     application.use_background_threads();
+    const auto rtpus = application.configuration().rtpus();
+    if (rtpus.size() > 1)
+      grant_ =
+          "one process: all tasks in one loop, on the CPU and by the policy of '" + std::string(rtpus[0].name) + "'; ";
   }
   ~RealTimeLoop() override {
     if (thread_.joinable()) thread_.join();
@@ -58,7 +62,7 @@ class RealTimeLoop final : public RunLoop {
     auto answer = started.get_future();
     thread_ = std::thread([this, &started] {
       const RealtimeRequest wanted{request_.priority, cpu_, true};
-      grant_ = enter_realtime(wanted).report.c_str();
+      grant_ += enter_realtime(wanted).report.c_str();
       const Result<void> result = executive_.start();
       started.set_value(result);
       ended_.set_value(result ? executive_.run(request_.duration) : RunEnd::kStopped);

@@ -75,9 +75,12 @@ class Run(unittest.TestCase):
         code, said = run(TWO, "--watch", "one_cont")
         self.assertEqual(code, 1, said)
         self.assertIn(": error: no state variable 'one_cont'; did you mean 'one_count'?\n", said)
-        code, said = run(TWO, "--isolation", "none")
-        self.assertEqual(code, 1, said)
-        self.assertIn("task 'two' on a second rtpu, 'second': run cannot do this yet", said)
+
+    def test_one_process_takes_the_tasks_of_all_rtpus_in_one_loop(self):
+        code, said = run(TWO, "--isolation", "none", "--for", "0.2 s")
+        self.assertEqual(code, 0, said)
+        self.assertRegex(said, r"\ntwo   ON ")
+        self.assertIn("one process: all tasks in one loop, on the CPU and by the policy of 'first'", said)
 
     def test_a_start_that_fails_is_refused_in_the_words_of_its_task(self):
         text = ("subsystem: subject\ntasks:\n"
