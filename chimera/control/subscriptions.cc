@@ -56,7 +56,7 @@ void Subscriptions::notify(const std::function<Session&(std::uint64_t)>& session
     one.due = std::max(one.due + one.period, now);
     Session& session = session_of(one.session);
     if (session.is_closing()) continue;
-    const auto may = [&] { return one.skips ? !session.has_output() : session.has_room(); };
+    const auto may = [&session, skips = one.skips] { return skips ? !session.has_output() : session.has_room(); };
     for (int n = 0; n < (one.skips ? 1 : kNewsAtOnce) && may(); ++n) {
       const auto news = subject_.pull(number);
       if (news == nullptr) break;
