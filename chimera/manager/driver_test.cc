@@ -83,6 +83,18 @@ TEST(Driver, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   EXPECT_TRUE(got->accepted) << got->text;
 }
 
+TEST(Driver, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.kill_manager();
+  fake.rtpu(0).fail(fake.task("filter"), "joint 3 at its limit");
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([&] { return fake.driver().is_ready(); }));
+  EXPECT_EQ(fake.told("fault"), "filter: cycle: joint 3 at its limit\n");
+  EXPECT_EQ(fake.told("state"), "filter: ON -> ERROR\n");
+}
+
 TEST(Driver, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
   FakeSubsystem fake;
   fake.start_manager();

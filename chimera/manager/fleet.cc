@@ -40,9 +40,10 @@ void Fleet::mapped(const KeeperMessage& message, int descriptor) {
   }
   const BlockView& block = world_.peers[rtpu].block();
   const BlockOwner& own = world_.own.block();
-  link.inbox = Inbox(block.outbox(world_.own.peer()), own.progress(rtpu.index), message.incarnation);
+  link.inbox = Inbox::resume(block.outbox(world_.own.peer()), own.progress(rtpu.index), message.incarnation);
   link.outbox = Outbox(own.outbox(rtpu.index), &block.progress(world_.own.peer()), world_.own.incarnation());
-  link.lost = block.head().lost_posts;
+  // A predecessor may have died before it told: better twice than never.
+  link.lost = own.head().incarnation > 1 ? 0 : block.head().lost_posts.load();
   for (const TaskId task : link.tasks) {
     const Profile p = block.profile(task);
     counted_[task.index] = {p.missed, p.overrun, p.stale};

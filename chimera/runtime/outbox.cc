@@ -77,6 +77,16 @@ Inbox::Inbox(const PostRing& ring, PostProgress& progress, std::uint32_t sender_
   progress_->word.store(progress_word(incarnation_, taken_), std::memory_order_release);
 }
 
+Inbox Inbox::resume(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept {
+  const std::uint64_t left = progress.word.load(std::memory_order_relaxed);
+  Inbox made(ring, progress, sender_incarnation);
+  const std::uint64_t unread = (made.taken_ - left) & kCountMask;
+  if (!is_of(left, sender_incarnation) || unread > kPosts) return made;
+  made.taken_ -= unread;
+  progress.word.store(left, std::memory_order_release);
+  return made;
+}
+
 bool Inbox::take(Post& post) noexcept {
   if (ring_ == nullptr) return false;
   // SYNC: pairs with the release in try_post().

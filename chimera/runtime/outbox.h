@@ -93,6 +93,9 @@ class Inbox {
   Inbox() noexcept = default;
   /// Begins behind everything posted so far. Context: edge.
   Inbox(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept;
+  /// Goes on where `progress` stands, copied from a predecessor's; begins behind everything when that was of another
+  /// incarnation of the sender. Context: edge.
+  static Inbox resume(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept;
 
   /// The next post; false when there is none. Nothing read from the ring is used as index or length by this class, and
   /// what no sender would write (a word that is no value of its enumeration) is passed over.

@@ -82,6 +82,27 @@ TEST_F(Outboxes, SaysHowMuchRoomThereIsAndWhetherItsReaderFollows) {
   EXPECT_FALSE(Outbox(*ring, &progress, 4).is_followed());
 }
 
+TEST_F(Outboxes, ASuccessorGoesOnWhereTheReaderStopped) {
+  Inbox first(*ring, progress, 3);
+  Outbox outbox(*ring, &progress, 3);
+  for (std::uint64_t i = 0; i < 3; ++i) ASSERT_TRUE(outbox.try_post(numbered(i)));
+  ASSERT_TRUE(first.take(post));
+  PostProgress copied;
+  copied.word = progress.word.load();
+  Inbox second = Inbox::resume(*ring, copied, 3);
+  for (std::uint64_t i = 1; i < 3; ++i) {
+    ASSERT_TRUE(second.take(post));
+    EXPECT_EQ(post.command, i);
+  }
+  EXPECT_FALSE(second.take(post));
+  PostProgress older;
+  older.word = progress.word.load();
+  EXPECT_FALSE(Inbox::resume(*ring, older, 4).take(post));
+  PostProgress wrong;
+  wrong.word = (progress.word.load() & ~((std::uint64_t{1} << 40) - 1)) + 1000;
+  EXPECT_FALSE(Inbox::resume(*ring, wrong, 3).take(post));
+}
+
 TEST_F(Outboxes, ANewReaderBeginsBehindWhatWasPosted) {
   Outbox outbox(*ring, &progress, 7);
   ASSERT_TRUE(outbox.try_post(numbered(0)));
