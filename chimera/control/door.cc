@@ -94,8 +94,9 @@ void Door::serve(Nanoseconds now) {
   epoll_event events[kMaxConnections + 1];
   const int n = ::epoll_wait(epoll_.fd, events, static_cast<int>(std::size(events)), 0);
   for (int i = 0; i < n; ++i) {
-    const auto found = sessions_.find(events[i].data.u64);
-    if (events[i].data.u64 == kListening) accept(now);
+    const std::uint64_t number = events[i].data.u64;  // a copy: the event itself is packed
+    const auto found = sessions_.find(number);
+    if (number == kListening) accept(now);
     if (found == sessions_.end() || (events[i].events & (EPOLLIN | EPOLLHUP | EPOLLERR)) == 0) continue;
     found->second->receive();
     if ((events[i].events & (EPOLLHUP | EPOLLERR)) != 0) found->second->is_gone = true;
