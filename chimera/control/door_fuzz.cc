@@ -71,8 +71,8 @@ class Model final : public Subject {
         while (at.kind == Next::Kind::kStep) at = rule(at.step).next[static_cast<int>(chimera::Answer::kOk)];
         state = at.state;
 #ifdef CHIMERA_PLANTED_DEFECT
-        // A defect to prove that the fuzzer finds one: two steps into the life of a task.
-        require(state != State::kOn, "planted");
+        // A defect to prove that the fuzzer finds one: any task that comes to life.
+        require(state != State::kOff, "planted");
 #endif
       }
       return Answer::good(Json::object());
