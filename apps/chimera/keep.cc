@@ -100,7 +100,36 @@ Result<int> keep(const KeepRequest& request, const desk::RunPlan& plan) {
   return keeper.run();
 }
 
+Result<int> keep_nothing(const std::string& subsystem, const Library& library) {
+  if (!is_identifier(subsystem))
+    return Error{ErrorCode::kBadInput, {"a name has small letters, digits and '_' only"}, {subsystem}};
+  ApplicationSpec spec;
+  spec.name = subsystem;
+  const auto image = FrozenBytes::create("chimera-image", encode(spec, {}, {}));
+  if (!image) return image.error();
+  const manager::Bundle nothing{CHIMERA_VERSION, "", "", {}, {}, {}, library};
+  const std::string text = encode(nothing);
+  const auto bundle = FrozenBytes::create("chimera-bundle", std::as_bytes(std::span(text)));
+  if (!bundle) return bundle.error();
+  const auto place = SocketPlace::open(socket_folder().c_str(), subsystem, false);
+  if (!place) return place.error();
+  Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"), .manager_program = sibling("chimera-manager"),
+                           .n_rtpus = 0, .image = image->descriptor(), .bundle = bundle->descriptor(),
+                           .listening = place->descriptor()},
+                 .face = {}, .ending_limit = seconds(1)});
+  std::printf("%s: nothing is loaded; serves `check` and `library` at %s\n", subsystem.c_str(), place->path().c_str());
+  std::fflush(stdout);
+  if (auto started = keeper.start(); !started) return started.error();
+  return keeper.run();
+}
+
 }  // namespace
+
+int keep_idle(const std::string& subsystem, const desk::Workplace& workplace) {
+  const auto library = workplace.library();
+  const auto code = library ? keep_nothing(subsystem, *library) : Result<int>(library.error());
+  return code ? *code : desk::refuse_run({}, code.error(), stdout, stderr);
+}
 
 int keep(const KeepRequest& request, const desk::Workplace& workplace) {
   const auto plan = desk::plan_run(request.run, workplace, stdout, stderr);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/chimera/keep.h"
 #include "apps/chimera/run_command.h"
 #include "apps/chimera/shell_words.h"
 #include "chimera/desk/check.h"
@@ -78,6 +79,7 @@ int carry_out(CLI::App& app, Words& words) {
   const int code = carry_out_shell_command(app, *words.shell, workplace.unit_files);
   if (code >= 0) return code;
   if (app.got_subcommand("attend")) return carry_out_attend(words.run);
+  if (app.got_subcommand("idle")) return keep_idle(words.run.idle_name, workplace);
   return carry_out_run(words.run, workplace);
 }
 

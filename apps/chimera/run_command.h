@@ -19,13 +19,14 @@ struct RunWords {
   std::string trace, timeline;
   std::string isolation = "process";
   std::string observe_group, operate_group, configure_group;
+  std::string idle_name = "idle";
   // of `attend` only
   std::string socket;
   int parent = 0;
   std::vector<double> bounds;
 };
 
-/// The subcommands `run` and `attend`.
+/// The subcommands `run`, `idle` and `attend`.
 void add_run(CLI::App& app, RunWords& words);
 /// Carries out `run`: in this process, or as the keeper of others. Answers the exit code.
 int carry_out_run(RunWords& words, const chimera::desk::Workplace& workplace);

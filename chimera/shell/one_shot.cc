@@ -92,8 +92,11 @@ Said one_shot(Session& session, const Call& call, const Look& look) {
   if (name == "why")
     return tell(session.ask("why", {{"variable", call.operands[0]}}), call.json,
                 [&](const Json& answer) { return why_text(answer, look.height); });
-  if (name == "end")
-    return tell(session.ask("end", {{"code", 0}}), call.json, [](const Json&) { return std::string("ending\n"); });
+  if (name == "end") {
+    control::Answer answer = session.ask("end", {{"code", 0}});
+    if (answer.code == control::kNoConnection) answer = control::Answer::good(Json::object());  // it has ended already
+    return tell(answer, call.json, [](const Json&) { return std::string("ending\n"); });
+  }
   return signal(session, call);
 }
 

@@ -5,11 +5,12 @@
 # The options of each command, and at the top level the commands too.
 _chimera_words() {
   case $1 in
-    '') echo '--help --version check run list describe new clear end events flag get kill off on profile' \
+    '') echo '--help --version check run idle list describe new clear end events flag get kill off on profile' \
       'reinit save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --graph' ;;
     run) echo '--help --for --at --watch --every --expect --trace --timeline --virtual --preemptive --seed --quantum' \
       '--priority --isolation --observe-group --operate-group --configure-group --json' ;;
+    idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
     clear | end | flag | kill | off | on | profile | reinit | set | spawn | status | why)
