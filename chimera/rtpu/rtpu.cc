@@ -2,6 +2,7 @@
 #include "chimera/rtpu/rtpu.h"
 
 #include <poll.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
@@ -31,6 +32,16 @@ namespace {
 
 constexpr int kCouldNotStart = 1, kMethodHangs = 3;
 constexpr int kSuperviseEveryMs = 50;
+constexpr std::size_t kStackBytes = 256 * 1024;  // design section 6: locked whole, and given back whole when it dies
+
+// Of all threads that are started from here on.
+void limit_stacks() noexcept {
+  pthread_attr_t attributes;
+  ::pthread_attr_init(&attributes);
+  ::pthread_attr_setstacksize(&attributes, kStackBytes);
+  ::pthread_setattr_default_np(&attributes);
+  ::pthread_attr_destroy(&attributes);
+}
 
 std::int32_t priority_of(const ApplicationSpec& spec, std::uint32_t me, std::int32_t top) {
   std::vector<BandMember> members;
@@ -101,6 +112,7 @@ Result<void> Rtpu::prepare() {
   ::sigemptyset(&set);
   ::sigaddset(&set, SIGTERM);  // a SIGINT or SIGHUP of the terminal is the keeper's to answer
   if (start_.parent != 0) {
+    limit_stacks();
     ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
     signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
     if (!follow_parent(start_.parent, SIGTERM)) return Error{ErrorCode::kRefused, {"the keeper is gone"}, {}};

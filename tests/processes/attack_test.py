@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A second user without rights tries everything it can reach: nothing succeeds and no task loses anything. And the roles
-of those who were given one. Needs root, to become somebody else."""
+"""A second user without rights tries everything it can reach: nothing succeeds and no task loses anything. And the
+roles of those who were given one. Needs root, to become somebody else."""
 import grp
 import json
 import os
@@ -107,7 +107,8 @@ import json, socket, sys
 s = socket.socket(socket.AF_UNIX)
 s.settimeout(5)
 s.connect(sys.argv[1])
-s.sendall(json.dumps({"jsonrpc": "2.0", "id": 1, "method": sys.argv[2], "params": json.loads(sys.argv[3])}).encode() + b"\n")
+request = {"jsonrpc": "2.0", "id": 1, "method": sys.argv[2], "params": json.loads(sys.argv[3])}
+s.sendall(json.dumps(request).encode() + b"\n")
 said = b""
 while not said.endswith(b"\n"):
     said += s.recv(65536) or b"\n"
