@@ -164,6 +164,15 @@ TEST_F(DoorTest, SubscriptionsComeWithTheirPeriodAndEndWithTheConnection) {
   EXPECT_EQ(door->next_due(), kNever);
 }
 
+TEST_F(DoorTest, WhatALateTurnMissedIsNotMadeUpFor) {
+  const int fd = plain();
+  ask(fd, request("subscribe", R"({"to":"status","period_ms":50})"));
+  const int before = subject.pulls;
+  serve(seconds(1));
+  EXPECT_EQ(subject.pulls, before + 1);
+  ::close(fd);
+}
+
 TEST_F(DoorTest, ASubscriptionIsEndedByItsOwnConnectionOnly) {
   const int a = plain(), b = plain();
   ask(a, request("subscribe", R"({"to":"status"})"));

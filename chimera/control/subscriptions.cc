@@ -53,7 +53,7 @@ std::size_t Subscriptions::count_of(std::uint64_t session) const noexcept {
 void Subscriptions::notify(const std::function<Session&(std::uint64_t)>& session_of, Nanoseconds now) {
   for (auto& [number, one] : all_) {
     if (now < one.due) continue;
-    one.due = std::max(one.due + one.period, now);
+    one.due = one.due + one.period > now ? one.due + one.period : now + one.period;  // what was missed stays so
     Session& session = session_of(one.session);
     if (session.is_closing()) continue;
     const auto may = [&session, skips = one.skips] { return skips ? !session.has_output() : session.has_room(); };
