@@ -26,6 +26,7 @@ struct BackgroundWriter::Worker {
   std::condition_variable changed;
   bool ending = false;  // under the mutex, as all below
   bool ended = false;
+  bool abandoned = false;  // by end(): whatever it was doing was its last
   bool failed = false;
   chimera_fault fault{};
 
@@ -39,6 +40,7 @@ struct BackgroundWriter::Worker {
       lock.unlock();
       const bool good = background(instance, &said) == CHIMERA_OK;
       lock.lock();
+      if (abandoned) return;
       if (good) continue;
       failed = true;
       fault = said;
@@ -113,6 +115,7 @@ BackgroundWriter::End BackgroundWriter::end(Worker& worker, chimera_fault& fault
   worker.ending = true;
   worker.changed.notify_all();
   if (!worker.changed.wait_for(lock, std::chrono::nanoseconds(limit_.count), [&] { return worker.ended; })) {
+    worker.abandoned = true;
     fault.code = 0;
     std::snprintf(fault.text, sizeof fault.text, "its background did not return within %.3g s: what it holds is lost",
                   to_seconds(limit_));

@@ -114,7 +114,10 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   EXPECT_EQ(report.after, State::kNotCreated);
   EXPECT_EQ(for_ever.letters, "i");  // neither killed nor destroyed
   EXPECT_STREQ(task().faults.last.text, "its background did not return within 0.1 s: what it holds is lost");
+  const int begun = for_ever.backgrounds;
   for_ever.is_stalled = false;
+  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(for_ever.backgrounds, begun) << "what was left alone is not asked again";
   for_ever.letters.clear();
   EXPECT_TRUE(set->signal(TaskId{0u}, Signal::kSpawn, {}).is_accepted);
   EXPECT_TRUE(set->signal(TaskId{0u}, Signal::kKill, {}).is_accepted);

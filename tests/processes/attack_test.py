@@ -60,24 +60,23 @@ attempt("talk", talk)
 attempt("unlink the socket", lambda: os.unlink(path))
 attempt("a file in the folder", lambda: open(os.path.dirname(path) + "/x", "w"))
 for pid in pids:
-    for number in (0, signal.SIGUSR1, signal.SIGKILL, signal.SIGSTOP):
-        attempt(f"kill {pid} {number}", lambda: os.kill(pid, number))
-    attempt(f"memory of {pid}", lambda: open(f"/proc/{pid}/mem", "r+b"))
-    attempt(f"descriptors of {pid}", lambda: bool(os.listdir(f"/proc/{pid}/fd")))
-    for fd in range(3, 40):
-        for mode in (os.O_RDONLY, os.O_RDWR):
-            attempt(f"descriptor {fd} of {pid}", lambda: os.open(f"/proc/{pid}/fd/{fd}", mode))
-    attempt(f"trace {pid}", lambda: libc.ptrace(16, pid, 0, 0) == 0)
+    attempt("memory", lambda: open(f"/proc/{pid}/mem", "r+b"))
+    attempt("list of descriptors", lambda: bool(os.listdir(f"/proc/{pid}/fd")))
     pidfd = system_call(434, pid, 0)
     for fd in range(3, 40):
-        attempt(f"get descriptor {fd} of {pid}", lambda: system_call(438, pidfd, fd, 0))
-    attempt(f"signal {pid} by pidfd", lambda: system_call(424, pidfd, 9, 0, 0))
-    attempt(f"priority of {pid}", lambda: os.setpriority(os.PRIO_PROCESS, pid, 10))
-    attempt(f"affinity of {pid}", lambda: os.sched_setaffinity(pid, {0}))
-print(json.dumps(won))
+        for mode in (os.O_RDONLY, os.O_RDWR):
+            attempt("descriptor", lambda: os.open(f"/proc/{pid}/fd/{fd}", mode))
+        attempt("copy of a descriptor", lambda: system_call(438, pidfd, fd, 0))
+    attempt("priority", lambda: os.setpriority(os.PRIO_PROCESS, pid, 10))
+    attempt("affinity", lambda: os.sched_setaffinity(pid, {0}))
+    attempt("trace", lambda: libc.ptrace(16, pid, 0, 0) == 0)
+    attempt("signal by number", lambda: os.kill(pid, 0))
+    attempt("signal by pidfd", lambda: system_call(424, pidfd, 9, 0, 0))
+print(json.dumps(sorted(set(won))))
 '''
 
-# Run as the user of the system itself: seals do not ask who knocks.
+# Run as the user of the system itself: seals do not ask who knocks. The decision page is writable for all processes of the
+# system by design: a wrong value there costs a look (docs/formats/processes.md).
 OWN_USER = r'''
 import json, mmap, os, sys
 won, seen = [], 0
@@ -140,9 +139,14 @@ class Attack(unittest.TestCase):
                 for task in system.call("status")["tasks"]:
                     self.assertEqual((task["state"], task["incarnation"], task["faults"]),
                                      ("ON", before[task["task"]]["incarnation"], 0))
-                # Somebody who may do it all succeeds: the attempts are real ones.
-                done = subprocess.run(["/usr/bin/python3", "-c", ATTACK, str(system.socket)], capture_output=True)
-                self.assertEqual(json.loads(done.stdout), ["talk", "unlink the socket", "a file in the folder"])
+                # Somebody who may do it all succeeds with each: the attempts are real ones.
+                with open(system.file) as held, subprocess.Popen(["sleep", "60"], pass_fds=[held.fileno()]) as victim:
+                    done = subprocess.run(["/usr/bin/python3", "-c", ATTACK, str(system.socket), str(victim.pid)],
+                                          capture_output=True)
+                self.assertEqual(json.loads(done.stdout),
+                                 ["a file in the folder", "affinity", "copy of a descriptor", "descriptor",
+                                  "list of descriptors", "memory", "priority", "signal by number", "signal by pidfd",
+                                  "talk", "trace", "unlink the socket"])
 
     def test_seals_hold_against_the_systems_own_user(self):
         with System(APPLICATION) as system:
@@ -150,8 +154,7 @@ class Attack(unittest.TestCase):
                                   capture_output=True, text=True, timeout=60)
             won, seen = json.loads(done.stdout)
             self.assertGreater(seen, 5)
-            own_page = [w for w in won if "keeper" in w]
-            self.assertEqual(won, own_page[:0], won)
+            self.assertEqual(won, [])
 
     def test_a_group_gets_its_role_and_no_more(self):
         with System(APPLICATION, ("--observe-group", OPERATORS.gr_name)) as system:

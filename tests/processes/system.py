@@ -95,6 +95,8 @@ class System:
     """`chimera run` of a description, in a place of its own."""
 
     def __init__(self, text, arguments=(), environment=None, name="subject", wait=True):
+        if "--priority" not in arguments:  # several systems at once: none claims a CPU
+            arguments = ("--priority", "0", *arguments)
         self.place = pathlib.Path(tempfile.mkdtemp(prefix="chimera-processes-"))
         self.runtime = self.place / "runtime"
         self.runtime.mkdir(mode=0o700)
