@@ -75,8 +75,8 @@ for pid in pids:
 print(json.dumps(sorted(set(won))))
 '''
 
-# Run as the user of the system itself: seals do not ask who knocks. The decision page is writable for all processes of the
-# system by design: a wrong value there costs a look (docs/formats/processes.md).
+# Run as the user of the system itself: seals do not ask who knocks. The decision page is writable for all processes of
+# the system by design: a wrong value there costs a look (docs/formats/processes.md).
 OWN_USER = r'''
 import json, mmap, os, sys
 won, seen = [], 0
