@@ -114,7 +114,9 @@ def main():
     output = sys.stdout
     if arguments.json:
         sys.stdout = sys.stderr  # steps are for people, standard output is the object
-    built = common.configure_with_tests("release") and common.compile_tree("release", "bench_rows")
+    built = (common.configure_with_tests("release") and
+             (not arguments.peers or common.configure("release", "-DCHIMERA_PEERS=ON")) and
+             common.compile_tree("release", "bench_rows"))
     if not built:
         return 1
     figures, failed = measure(programs, arguments)
