@@ -164,6 +164,16 @@ TEST_F(DoorTest, SubscriptionsComeWithTheirPeriodAndEndWithTheConnection) {
   EXPECT_EQ(door->next_due(), kNever);
 }
 
+TEST_F(DoorTest, TheFirstNotificationComesWithTheAnswerNotAfterAPeriod) {
+  const int fd = plain();
+  const std::string got = ask(fd, request("subscribe", R"({"to":"status","period_ms":60000})"));
+  const std::size_t answer = got.find(R"("result":{"subscription":1})"), note = got.find(R"("method":"status")");
+  EXPECT_NE(note, std::string::npos);
+  EXPECT_LT(answer, note) << "the answer first, so that the number is known";
+  EXPECT_EQ(subject.pulls, 1);
+  ::close(fd);
+}
+
 TEST_F(DoorTest, WhatALateTurnMissedIsNotMadeUpFor) {
   const int fd = plain();
   ask(fd, request("subscribe", R"({"to":"status","period_ms":50})"));

@@ -56,6 +56,7 @@ void Subscriptions::notify(const std::function<Session&(std::uint64_t)>& session
     one.due = one.due + one.period > now ? one.due + one.period : now + one.period;  // what was missed stays so
     Session& session = session_of(one.session);
     if (session.is_closing()) continue;
+    if (one.skips) (void)session.flush(now);  // an answer that can go at once is no reason to skip
     const auto may = [&session, skips = one.skips] { return skips ? !session.has_output() : session.has_room(); };
     for (int n = 0; n < (one.skips ? 1 : kNewsAtOnce) && may(); ++n) {
       const auto news = subject_.pull(number);

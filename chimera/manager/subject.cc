@@ -173,7 +173,9 @@ std::shared_ptr<const Json> Subject::pull_events(Subscription& subscription) con
 }
 
 std::shared_ptr<const Json> Subject::pull_tap(Subscription& subscription) const {
-  subscription.tap->pump([&](Json message) { subscription.waiting.push_back(shared(std::move(message))); });
+  // The tap is read again when all of this is taken: what a slow reader leaves there is overwritten and counted.
+  if (subscription.waiting.empty())
+    subscription.tap->pump([&](Json message) { subscription.waiting.push_back(shared(std::move(message))); });
   if (subscription.waiting.empty()) return nullptr;
   auto message = std::move(subscription.waiting.front());
   subscription.waiting.pop_front();

@@ -254,6 +254,20 @@ TEST_F(SubjectTest, SubscriptionsOfTheTapGiveRows) {
   EXPECT_FALSE(world().own.block().view().is_tapped(fake_.task("sensor")));
 }
 
+TEST_F(SubjectTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {
+  ASSERT_TRUE(subject_->open(1, {{"to", "tap"}}).is_good());  // both rtpus: two messages of each reading
+  std::vector<Nanoseconds> pulled;
+  for (std::int64_t last = 0; pulled.size() < 8;) {
+    ASSERT_TRUE(fake_.until([&, from = now()] { return now() - from > milliseconds(250); }));  // both cycled
+    pulled.push_back(now());
+    const auto news = subject_->pull(1);
+    ASSERT_NE(news, nullptr);
+    last = news->at("records").back()[0];
+    if (pulled.size() < 3) continue;
+    EXPECT_GT(last, pulled[pulled.size() - 3].count) << "what is told is not older and older";
+  }
+}
+
 TEST_F(SubjectTest, ChecksATextWithTheLibraryOfTheStart) {
   EXPECT_EQ(good("check", {{"text", kFakeText}, {"file", "mine.yaml"}})["legal"], true);
   const Json report = good("check", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}, {"file", "mine.yaml"}});
