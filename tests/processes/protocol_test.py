@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a running subsystem says and takes is what docs/formats/control.schema.json says, in real exchanges of every kind:
-all methods, all notifications, refusals, and requests that are almost right."""
+"""What a running subsystem says and takes is what docs/formats/control.schema.json says, in real exchanges of every
+kind: all methods, all notifications, refusals, and requests that are almost right."""
 import copy
 import json
 import os
