@@ -63,6 +63,7 @@ TEST(Driver, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
+  ASSERT_TRUE(fake.until([&] { return !fake.told("started").empty(); }));  // else its successor has that to tell
   const double tuned[] = {7, 8};
   fake.driver().world().own.publish_operator(0, std::as_bytes(std::span(tuned)), now());
   const std::uint64_t last = fake.driver().world().log.last();
