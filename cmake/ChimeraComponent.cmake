@@ -2,7 +2,9 @@
 # chimera_component(NAME source... [LIBRARIES lib...] [RESOURCES file...])
 #   One component: NAME.so and, derived from it by chimera-describe, NAME.component.json, both in
 #   ${CMAKE_BINARY_DIR}/components. The build prints the methods it found and fails when the object cannot be described.
-#   RESOURCES are copied beside them. LIBRARIES are linked into the component.
+#   RESOURCES are copied beside them, and what the folder has of NAME.test.yaml, NAME.test.csv, NAME.test.partner
+#   (docs/formats/component-test.md) and, when the folder is called NAME, of the data sheet README.md as NAME.md.
+#   LIBRARIES are linked into the component.
 #   NAME_test.cc beside the sources is linked with them (chimera/task/rig.h finds the component by its name):
 #   as the test NAME_test, or, where CHIMERA_COMPONENT_GROUP is set, into the group's one test binary.
 # chimera_application(NAME description)
@@ -53,6 +55,14 @@ function(_chimera_component_test name objects libraries)
   add_test(NAME ${name}_test COMMAND ${name}_test WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 endfunction()
 
+# Copies a file of the folder to `to`; appends it to `made`.
+macro(_chimera_copy from to)
+  add_custom_command(OUTPUT ${to}
+    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${CMAKE_CURRENT_SOURCE_DIR}/${from} ${to}
+    DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${from} VERBATIM)
+  list(APPEND made ${to})
+endmacro()
+
 function(chimera_component name)
   cmake_parse_arguments(arg "" "" "LIBRARIES;RESOURCES" ${ARGN})
   set(folder ${CMAKE_BINARY_DIR}/components)
@@ -79,11 +89,17 @@ function(chimera_component name)
   endif()
   foreach(resource IN LISTS arg_RESOURCES)
     get_filename_component(file ${resource} NAME)
-    add_custom_command(OUTPUT ${folder}/${file}
-      COMMAND ${CMAKE_COMMAND} -E copy_if_different ${CMAKE_CURRENT_SOURCE_DIR}/${resource} ${folder}/${file}
-      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${resource} VERBATIM)
-    list(APPEND made ${folder}/${file})
+    _chimera_copy(${resource} ${folder}/${file})
   endforeach()
+  file(GLOB setups CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}
+    ${name}.test.yaml ${name}.test.csv ${name}.test.partner)
+  foreach(setup IN LISTS setups)
+    _chimera_copy(${setup} ${folder}/${setup})
+  endforeach()
+  get_filename_component(here ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  if(here STREQUAL name AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/README.md)
+    _chimera_copy(README.md ${folder}/${name}.md)
+  endif()
   if(made)
     add_custom_target(${module}_files ALL DEPENDS ${made})
   endif()

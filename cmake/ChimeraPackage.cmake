@@ -34,4 +34,4 @@ endforeach()
 install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk PATTERN completion EXCLUDE)
 # Without the test components, which are no library.
 install(DIRECTORY ${CMAKE_BINARY_DIR}/components/ DESTINATION lib/chimera/components COMPONENT sdk
-  PATTERN "t_*" EXCLUDE)
+  USE_SOURCE_PERMISSIONS PATTERN "t_*" EXCLUDE)

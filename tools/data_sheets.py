@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Data sheets: library/NAME/README.md has its sections, and its table of ports is what the descriptor says.
+
+usage: data_sheets.py COMPONENTS [--library FOLDER] [--write] [NAME...]
+
+COMPONENTS is the folder of a build tree with NAME.component.json. --write puts the tables right instead of complaining.
+docs/howto/write-a-component.md shows the form."""
+import argparse
+import json
+import pathlib
+import re
+import sys
+
+REQUIRED = ("Equation", "Ports", "Refused", "Execution time", "Source")
+HEAD = ("port", "kind", "type", "unit", "frame", "range", "initial", "what it is")
+TIME = re.compile(r"\d[\d.]* (ns|us|ms)\b")
+
+
+def number(value):
+    return value if isinstance(value, str) else f"{value:g}" if abs(value) < 1e6 else f"{value:.17g}"
+
+
+def values(port):
+    """The initial value of an out-var, the default of an in-const: one for all elements, or the list."""
+    texts = [("true" if v else "false") if isinstance(v, bool) else f'"{v}"' if isinstance(v, str) else
+             "given" if isinstance(v, dict) else number(v) for v in port.get("initial", [])]
+    return texts[0] if len(set(texts)) == 1 else ", ".join(texts)
+
+
+def row(port):
+    repeated = "max_instances" in port
+    name = f"`{port['name']}{'*' if repeated else ''}`"
+    kind = port["kind"] + (", safety" if port.get("safety") else "")
+    if repeated:
+        kind += f", up to {port['max_instances']}"
+    if port["kind"] == "resource":
+        return (name, kind, "", "", "", "", "", port.get("doc", ""))
+    type_name = port.get("type_name") or port["type"]
+    spread = " to ".join(number(end) for end in port["range"]) if "range" in port else ""
+    return (name, kind, type_name + port["shape"], port["unit"], port.get("frame", ""), spread, values(port),
+            port.get("doc", ""))
+
+
+def table(descriptor):
+    """The table of ports as Markdown lines."""
+    rows = [row(port) for port in descriptor["ports"]]
+    if not rows:
+        return ["It has no ports."]
+    used = [any(r[i] for r in rows) for i in range(len(HEAD))]
+    lines = []
+    for cells in [HEAD, ["---"] * len(HEAD), *rows]:
+        kept = [cell.replace("|", "\\|") for cell, shown in zip(cells, used) if shown]
+        lines.append(("|" if cells[0] == "---" else "| ") + ("|" if cells[0] == "---" else " | ").join(kept) +
+                     ("|" if cells[0] == "---" else " |"))
+    return [re.sub(r"  +", " ", line) for line in lines]
+
+
+def sections(lines):
+    """[(heading, first line, behind the last line)]; code blocks are not looked into."""
+    found, fenced = [], False
+    for i, line in enumerate(lines):
+        fenced ^= line.startswith("```")
+        if line.startswith("## ") and not fenced:
+            if found:
+                found[-1][2] = i
+            found.append([line[3:].strip(), i + 1, len(lines)])
+    return found
+
+
+def body(lines, section):
+    return [line for line in lines[section[1]:section[2]] if line.strip()]
+
+
+def check(name, text, descriptor):
+    """What is wrong with a sheet, as sentences."""
+    lines = text.split("\n")
+    if lines[0] != f"# {name}":
+        yield f"the first line is not '# {name}'"
+    found = sections(lines)
+    headings = [s[0] for s in found]
+    present = [h for h in headings if h in REQUIRED]
+    for heading in REQUIRED:
+        if headings.count(heading) != 1:
+            yield f"there is {'no' if heading not in headings else 'more than one'} section '## {heading}'"
+    if len(present) == len(REQUIRED) and tuple(present) != REQUIRED:
+        yield "the sections stand in another order than " + ", ".join(REQUIRED)
+    first = found[0][1] - 1 if found else len(lines)
+    if not any(line.strip() for line in lines[1:first]):
+        yield "it does not say what the component is for"
+    for section in found:
+        if section[0] in REQUIRED and not body(lines, section):
+            yield f"section '## {section[0]}' is empty"
+        if section[0] == "Execution time" and not (TIME.search(" ".join(body(lines, section)))
+                                                    and "chimera test" in " ".join(body(lines, section))):
+            yield "section '## Execution time' states no time with its unit, or not the command `chimera test NAME`"
+        if section[0] == "Ports" and body(lines, section) != table(descriptor):
+            yield "the table of ports is not what the descriptor says: tools/data_sheets.py --write"
+    for port in descriptor["ports"]:
+        if not port.get("doc"):
+            yield f"port {port['name']}: the code has no doc = \"...\""
+
+
+def with_table(text, descriptor):
+    lines = text.split("\n")
+    for heading, start, end in sections(lines):
+        if heading == "Ports":
+            return "\n".join(lines[:start] + ["", *table(descriptor), ""] + lines[end:])
+    return text
+
+
+SHEET = """# t
+
+For tests.
+
+## Equation
+
+    y = x
+
+## Ports
+
+| port | kind | type | unit | range | what it is |
+|---|---|---|---|---|---|
+| `y` | out-var, safety | float64[2] | m | -1 to 1 | where |
+
+## Refused
+
+Nothing.
+
+## Execution time
+
+0.1 us: `chimera test t`.
+
+## Source
+
+Ours.
+"""
+DESCRIPTOR = {"ports": [{"name": "y", "kind": "out-var", "type": "float64", "unit": "m", "shape": "[2]", "safety": True,
+                         "range": [-1.0, 1.0], "doc": "where"}]}
+PLANTED = (
+    (SHEET, DESCRIPTOR, []),
+    (SHEET.replace("# t\n", "# u\n", 1), DESCRIPTOR, ["the first line is not '# t'"]),
+    (SHEET.replace("For tests.", ""), DESCRIPTOR, ["it does not say what the component is for"]),
+    (SHEET.replace("## Source", "## Sources"), DESCRIPTOR, ["there is no section '## Source'"]),
+    (SHEET.replace("Nothing.", ""), DESCRIPTOR, ["section '## Refused' is empty"]),
+    (SHEET.replace("| m |", "| mm |"), DESCRIPTOR,
+     ["the table of ports is not what the descriptor says: tools/data_sheets.py --write"]),
+    (SHEET.replace("0.1 us", "fast"), DESCRIPTOR,
+     ["section '## Execution time' states no time with its unit, or not the command `chimera test NAME`"]),
+    (SHEET.replace("## Equation", "## Refused", 1).replace("Refused\n\nNothing", "Equation\n\nNothing"), DESCRIPTOR,
+     ["the sections stand in another order than Equation, Ports, Refused, Execution time, Source"]),
+)
+
+
+def planted():
+    for sheet, descriptor, expected in PLANTED:
+        if list(check("t", sheet, descriptor)) != expected:
+            yield f"a planted fault is not found: {expected}, but {list(check('t', sheet, descriptor))}"
+    wrong = SHEET.replace("| m |", "| mm |")
+    if with_table(wrong, DESCRIPTOR) != SHEET:
+        yield "a table that is not right is not put right"
+
+
+def main():
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("components", type=pathlib.Path)
+    words.add_argument("names", nargs="*")
+    words.add_argument("--library", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "library")
+    words.add_argument("--write", action="store_true")
+    said = words.parse_args()
+    faults = [f"tools/data_sheets.py: {fault}" for fault in planted()]
+    judged = 0
+    for file in sorted(said.components.glob("*.component.json")):
+        name = file.name.removesuffix(".component.json")
+        sheet = said.library / name / "README.md"
+        if not (said.library / name).is_dir() or (said.names and name not in said.names):
+            continue
+        judged += 1
+        descriptor = json.loads(file.read_text())
+        text = sheet.read_text() if sheet.exists() else ""
+        if said.write and text:
+            text = with_table(text, descriptor)
+            sheet.write_text(text)
+        faults += [f"library/{name}/README.md: {fault}" for fault in check(name, text, descriptor)]
+    for fault in faults:
+        print(fault)
+    print(f"{judged} data sheets, {len(faults)} faults")
+    return 1 if faults or not judged else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
