@@ -56,6 +56,7 @@ Result<void> KeptPeers::start(std::uint32_t index) {
   const std::array passed = {ends->second.descriptor(), plan_.image,     decision_.descriptor(),
                              keeper_.descriptor(),      plan_.listening, plan_.bundle};
   publish_life(index, incarnation);  // before it can look
+  ring_all();
   auto process = Process::start(program.c_str(), words, std::span(passed).first(is_manager ? 6 : 4));
   if (!process) return process.error();
   peer.process = *std::move(process);
@@ -108,6 +109,10 @@ void KeptPeers::publish_life(std::uint32_t index, std::uint32_t incarnation) {
   page().alive[index].store(incarnation, std::memory_order_release);
   auto* decision = reinterpret_cast<DecisionPage*>(decision_.bytes().data());
   decision->changes.fetch_add(1, std::memory_order_release);  // pairs with the look at an edge: who lives
+}
+
+void KeptPeers::ring_all() {
+  auto* decision = reinterpret_cast<DecisionPage*>(decision_.bytes().data());
   for (std::uint32_t i = 0; i < size(); ++i) Doorbell(decision->bells[i].word).ring();
 }
 
@@ -148,7 +153,8 @@ void KeptPeers::end(std::uint32_t index, const ProcessEnd& how) {
   peer.last = {.kind = Kind::kEnded, .index = index, .incarnation = peer.last.incarnation, .code = how.code,
                .by_signal = how.by_signal, .core_dumped = how.core_dumped, .at = clock_.now()};
   publish_life(index, 0);
-  if (index != manager()) tell_life(index);
+  if (index != manager()) tell_life(index);  // before the bells: each of them is a system call
+  ring_all();
 }
 
 void KeptPeers::finish_rtpus() {

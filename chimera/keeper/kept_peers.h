@@ -74,6 +74,7 @@ class KeptPeers {
   void tell_life(std::uint32_t of);
   void end(std::uint32_t index, const ProcessEnd& how);
   void publish_life(std::uint32_t index, std::uint32_t incarnation);
+  void ring_all();
 
   const PeerPlan plan_;
   LinuxClock clock_;

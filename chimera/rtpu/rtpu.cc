@@ -20,6 +20,7 @@
 #include "chimera/platform/process.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/shared_pages.h"
+#include "chimera/platform/undertaker.h"
 #include "chimera/rtpu/bell_clock.h"
 #include "chimera/rtpu/components.h"
 #include "chimera/rtpu/keeper_message.h"
@@ -116,6 +117,7 @@ Result<void> Rtpu::prepare() {
     ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
     signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
     if (!follow_parent(start_.parent, SIGTERM)) return Error{ErrorCode::kRefused, {"the keeper is gone"}, {}};
+    start_undertaker();  // refused: its death is seen later, and nothing else is different
   }
   if (auto mapped = map(); !mapped) return mapped;
   if (auto made = make_segment(); !made) return made;
