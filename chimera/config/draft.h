@@ -14,6 +14,7 @@
 #include "chimera/config/quantity.h"
 #include "chimera/config/report.h"
 #include "chimera/schedule/policy.h"
+#include "chimera/schedule/server.h"
 #include "chimera/task/task_spec.h"
 
 namespace chimera {
@@ -45,7 +46,6 @@ struct DraftReaction {
 };
 
 enum class OnFault : std::uint8_t { kError, kFlag, kStop, kSwitch };
-enum class ServerKind : std::uint8_t { kDeferrable, kSporadic };
 
 struct DraftServer {
   Place at;

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Does a set of tasks keep every deadline, whatever happens within its stated times? Pure functions over plain specs.
+//
+// The tasks of a CPU fall into *levels*: all jobs of a level go before all of later ones. A task under `rm` is a level
+// of its own; all tasks of an rtpu under `edf` or `llf` are one; under `muf` each criticality is one. Higher bands
+// come first. What is asked of each level:
+//   fixed priority, preemptive   exact response times (Joseph & Pandya, Computer J. 29(5), 1986; Audsley et al.,
+//                                Software Eng. J. 8(5), 1993)
+//   fixed priority, executive    response over all jobs of the busy period behind the longest later job (George,
+//                                Rivierre, Spuri, INRIA RR-2966, 1996; Davis et al., Real-Time Systems 35(3), 2007)
+//   earliest deadline            processor demand (Baruah, Rosier, Howell, Real-Time Systems 2(4), 1990) by QPA
+//                                (Zhang & Burns, IEEE Trans. Computers 58(9), 2009), here against what higher levels
+//                                leave; executive: plus the longest job with a later deadline (Jeffay, Stanat,
+//                                Martel, RTSS 1991)
+//   least laxity                 the same demand, plus (n - 1) quanta in a level of n tasks: level.h
+//   any of them                  a level's busy period bounds the response of all its jobs
+// Deferrable servers count as tasks with release jitter period - capacity (Bernat & Burns, RTSS 1999), sporadic ones
+// as tasks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/schedule/work.h"
+
+namespace chimera {
+
+enum class Guarantee : std::uint8_t {
+  kYes,
+  kNo,
+  kNotStated,  ///< the task has no time: it was counted as nothing
+  kTooLong,    ///< the search was given up: the load is too close to the whole processor to tell
+};
+
+struct WorkVerdict {
+  Guarantee guarantee = Guarantee::kNotStated;
+  Nanoseconds response = kNever;  ///< at most; kNever: no bound was found
+  bool is_exact = false;          ///< a synchronous release reaches `response`
+  Nanoseconds blocking;           ///< part of it: a job of a later level that cannot be taken off the processor
+  std::uint32_t level = 0;        ///< 0 goes first
+};
+
+/// The demand of a level at the instant that decides.
+struct Demand {
+  Nanoseconds within;  ///< a busy interval of this length; 0: no demand was asked for, or it never exceeds
+  Nanoseconds ends;    ///< when its work would be done: later than `within` is a miss
+};
+
+struct CpuVerdict {
+  std::uint32_t cpu = 0;
+  std::uint32_t tasks = 0;
+  std::uint32_t unstated = 0;      ///< tasks without a time
+  double utilisation = 0;          ///< of those with one
+  double rate_monotonic_bound = 0;  ///< n(2^(1/n) - 1): Liu & Layland, J. ACM 20(1), 1973
+  double hyperbolic = 0;  ///< product of (1 + u), at most 2 is enough: Bini & Buttazzo, IEEE Trans. Computers 52(7), 2003
+  std::uint32_t guaranteed = 0;
+  std::uint32_t not_guaranteed = 0;  ///< kNo and kTooLong
+  Demand demand;                   ///< the first level found wanting
+
+  /// Every task with a stated time keeps its deadline.
+  bool fits() const noexcept { return not_guaranteed == 0; }
+};
+
+/// A task in the order of levels; memory of the analysis.
+struct RankedWork {
+  Work work;
+  std::uint32_t task = 0;   ///< index in the set
+  std::uint32_t level = 0;
+  std::uint32_t band = 0;
+};
+
+/// Judges the tasks of `works` that run on `cpu`. `verdicts` is as long as `works`; only those of this CPU are written.
+/// `room` needs as many elements as there are such tasks. Requires: what Work and ProcessorUse say.
+/// Context: setup; pure; a thousand tasks take well below a second.
+CpuVerdict analyse(std::span<const Work> works, std::span<const ProcessorUse> uses, std::uint32_t cpu,
+                   std::span<WorkVerdict> verdicts, std::span<RankedWork> room) noexcept;
+
+}  // namespace chimera
