@@ -157,6 +157,15 @@ TEST(Kinds, TheSenderSendsOnceInItsCycle) {
   EXPECT_EQ(rig.get<std::int32_t>("sent"), 1);
 }
 
+TEST(Kinds, DelaysAreShownWhenItGoesOff) {
+  Rig delays("t_delays");
+  ASSERT_TRUE(delays.on());
+  for (int n = 0; n < 3; ++n) ASSERT_TRUE(delays.cycle());
+  EXPECT_EQ(delays.get<std::int64_t>("counts", 255), 0);
+  ASSERT_TRUE(delays.off());
+  EXPECT_EQ(delays.get<std::int64_t>("counts", 255), 3) << "the time of this rig began long after the clock's";
+}
+
 TEST(Kinds, SourceCounterAgesAndUnits) {
   Rig source("t_source");
   ASSERT_TRUE(source.on());
