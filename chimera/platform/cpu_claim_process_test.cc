@@ -51,7 +51,7 @@ TEST(CpuClaim, IsFreeAgainWhenItsProcessWasKilled) {
   char byte = 0;
   ASSERT_EQ(::read(ends[0], &byte, 1), 1);
   EXPECT_FALSE(CpuClaim::take(number).has_value());
-  ::kill(child, SIGKILL);
+  ::kill(child, SIGKILL);  // still ours
   ::waitpid(child, nullptr, 0);
   EXPECT_TRUE(CpuClaim::take(number).has_value());
   ::close(ends[0]);

@@ -300,7 +300,7 @@ class OnTerminal {
     ::_exit(run());
   }
   ~OnTerminal() {
-    if (child_ > 0) ::kill(child_, SIGKILL), ::waitpid(child_, nullptr, 0);
+    if (child_ > 0) ::kill(child_, SIGKILL), ::waitpid(child_, nullptr, 0);  // still ours
     ::close(terminal_);
   }
   OnTerminal(const OnTerminal&) = delete;

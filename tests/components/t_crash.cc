@@ -36,7 +36,7 @@ struct Crash {
     if (!(*where == method) || ::access(armed.c_str(), F_OK) != 0) return;
     for (const auto& [way, number] : {std::pair{"segv", SIGSEGV}, std::pair{"abort", SIGABRT}, std::pair{"bus", SIGBUS},
                                       std::pair{"fpe", SIGFPE}, std::pair{"ill", SIGILL}, std::pair{"kill", SIGKILL}})
-      if (is(way)) ::kill(::getpid(), number), ::pause();
+      if (is(way)) ::raise(number), ::pause();
     if (is("stack")) *y = overflow(1);
     if (is("exit")) ::_exit(42);
     if (is("nan")) *y = std::nan("");

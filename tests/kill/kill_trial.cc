@@ -157,7 +157,7 @@ class Trial {
     }
     const bool wrote = wait_for([&] { return score_->begun != begun; });
     nap(static_cast<long>(next_random() % 300));
-    ::kill(writer, SIGKILL);
+    ::kill(writer, SIGKILL);  // still ours
     ::waitpid(writer, nullptr, 0);
     ++report.kills;
     if (score_->begun != score_->finished) ++report.mid_write;

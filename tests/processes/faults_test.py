@@ -2,7 +2,6 @@
 """What a fault of one real-time unit does to the others: nothing but what is declared. Bounded counts here; the same
 with more of them is the campaign `process_faults`. CHIMERA_ROUNDS says how often each is repeated."""
 import os
-import signal
 import sys
 import time
 import unittest
@@ -180,7 +179,7 @@ class Faults(unittest.TestCase):
             for n in range(3 * ROUNDS):
                 before = {t["task"]: t for t in system.call("status")["tasks"]}
                 began = time.monotonic()
-                os.kill(system.pids()["manager"], signal.SIGKILL)
+                system.kill(system.pids()["manager"])
                 system.disconnect()
                 status = system.call("status")
                 self.assertLess(time.monotonic() - began, 1.0, "picked up again within a second")
@@ -196,7 +195,7 @@ class Faults(unittest.TestCase):
     def test_a_command_waits_for_a_manager_that_is_being_restarted(self):
         with System(filled(APPLICATION, where="cycle", how="segv")) as system:
             manager = system.pids()["manager"]
-            os.kill(manager, signal.SIGKILL)
+            system.kill(manager)
             client = Client(system.socket)
             client.call("signal", signal="off", tasks=["victim"])
             client.close()

@@ -3,10 +3,8 @@
 kind: all methods, all notifications, refusals, and requests that are almost right."""
 import copy
 import json
-import os
 import pathlib
 import re
-import signal
 import sys
 import time
 import unittest
@@ -174,7 +172,7 @@ class Protocol(unittest.TestCase):
         self.system.disarm()
         self.assertEqual(self.client.exchange("why", variable="y_victim")["chain"][0]["verdict"], "producer-error")
         self.read_all()
-        os.kill(self.system.pids()["first"], signal.SIGKILL)
+        self.system.kill(self.system.pids()["first"])
         await_that(lambda: self.client.exchange("status")["rtpus"][0]["restarts"] == 1, 10, "a restart")
         self.system.await_state("steady", "ON")
         self.read_all()

@@ -17,6 +17,9 @@ CHIMERA = BUILD / "bin" / "chimera"
 QUIET = "handle_segv=0:handle_abort=0:handle_sigbus=0:handle_sigfpe=0:handle_sigill=0:detect_leaks=0:use_sigaltstack=0"
 
 
+TOO_FAST = -32003
+
+
 class Refused(Exception):
     """An error of the protocol."""
 
@@ -31,7 +34,11 @@ class Client:
     def __init__(self, path, limit=10):
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.socket.settimeout(limit)
-        self.socket.connect(str(path))
+        try:
+            self.socket.connect(str(path))
+        except OSError:
+            self.socket.close()
+            raise
         self.bytes, self.number, self.notes = b"", 0, []
 
     def close(self):
@@ -91,6 +98,24 @@ def processes_of(marker):
     return found
 
 
+def kill(pid, marker, how=signal.SIGKILL):
+    """Signals a process that carries the marker. The number may be another's by now, the descriptor is not: whether it
+    is ours is asked while it is held. True when it was sent."""
+    try:
+        held = os.pidfd_open(pid)
+    except OSError:
+        return False
+    try:
+        if marker.encode() not in pathlib.Path(f"/proc/{pid}/environ").read_bytes():
+            return False
+        signal.pidfd_send_signal(held, how)
+        return True
+    except OSError:
+        return False  # it has ended
+    finally:
+        os.close(held)
+
+
 class System:
     """`chimera run` of a description, in a place of its own."""
 
@@ -145,12 +170,16 @@ class System:
             self.client = None
 
     def call(self, method, **parameters):
-        """Over a connection that survives a restart of the manager."""
+        """Over a connection that survives a restart of the manager, at the rate that is allowed."""
         for attempt in range(200):
             try:
                 if self.client is None:
                     self.client = Client(self.socket)
                 return self.client.call(method, **parameters)
+            except Refused as refusal:
+                if refusal.code != TOO_FAST or attempt == 199:
+                    raise
+                time.sleep(refusal.data["retry_ms"] / 1e3)
             except (OSError, ConnectionError):
                 self.disconnect()
                 if attempt == 199:
@@ -173,7 +202,12 @@ class System:
         return self.call("signal", signal=word, tasks=list(tasks))
 
     def events(self, since=0):
-        return self.call("events", since=since)["events"]
+        """All that are kept: they come a thousand at a time."""
+        found = []
+        while more := self.call("events", since=since)["events"]:
+            found += more
+            since = more[-1]["number"] + 1
+        return found
 
     def pids(self):
         status = self.call("status")
@@ -193,6 +227,9 @@ class System:
             return []
         return [(w[0], w[1], int(w[2])) for w in (line.split() for line in self.record.read_text().splitlines())]
 
+    def kill(self, pid, how=9):  # SIGKILL
+        return kill(pid, self.marker, how)
+
     def left_over(self):
         return processes_of(self.marker)
 
@@ -209,7 +246,7 @@ class System:
             self.await_nothing_left(10)
         finally:
             for pid in self.left_over():
-                os.kill(pid, signal.SIGKILL)
+                self.kill(pid)
             if self.process.poll() is None:
                 self.process.kill()
                 self.process.wait()

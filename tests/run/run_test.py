@@ -110,13 +110,13 @@ class Run(unittest.TestCase):
 
     def test_the_death_of_the_manager_or_the_face_ends_nothing(self):
         with System(TWO, ("--priority", "0", "--for", "1.5 s", "--watch", "one_count", "--every", "0.5 s")) as system:
-            os.kill(system.pids()["manager"], signal.SIGKILL)
+            system.kill(system.pids()["manager"])
             self.assertEqual(system.process.wait(30), 0, system.said())
             self.assertEqual(len(re.findall(r"\nt \d\.\d00 s  one_count \d+", system.said())), 3, system.said())
         with System(TWO, ("--priority", "0")) as system:
             face = next(pid for pid in system.left_over()
                         if b"attend" in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes())
-            os.kill(face, signal.SIGKILL)
+            system.kill(face)
             await_that(lambda: face not in system.left_over())
             time.sleep(0.1)
             self.assertEqual(system.state("one"), "ON")

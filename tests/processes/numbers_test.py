@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Row 28: the number of a process may be another's tomorrow; a pidfd never is. Where the kernel lets it (Linux 6.14)
+all of this runs where there are only 400 numbers, so that each is soon used again. CHIMERA_ROUNDS: restarts are twenty
+times as many."""
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from system import BUILD, System, await_that
+
+ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
+SOURCE = pathlib.Path(os.environ.get("CHIMERA_SOURCE", BUILD.parents[1]))
+
+BY_NUMBER = r"(?<![\w.>:])(?:::|std::)?(?:kill|killpg|tgkill|sigqueue|waitpid)\s*\((?=\s*[^)\s])"
+BY_NUMBER_IN_TESTS = BY_NUMBER.replace("|waitpid", "")  # waits for children of its own only
+BY_NUMBER_IN_PYTHON = r"\bos\.(?:kill|killpg)\s*\("
+# A declaration `kill(Cycle)` is no call; signal 0 is sent to nobody; a child that was not reaped keeps its number.
+NOT_MEANT = re.compile(r"kill\(Cycle\b|kill\([^,()]*(?:\([^()]*\))?, 0\)|(?://|#) still ours")
+
+APPLICATION = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  victim: {component: t_source, rtpu: second, rate: 200 Hz}
+configurations: {all: [steady, victim]}
+start: all
+"""
+
+
+def found_in(path):
+    is_test = "_test" in path.name or "tests" in path.relative_to(SOURCE).parts
+    pattern = BY_NUMBER_IN_PYTHON if path.suffix == ".py" else BY_NUMBER_IN_TESTS if is_test else BY_NUMBER
+    return [f"{path}:{n}" for n, line in enumerate(path.read_text().splitlines(), 1)
+            if re.search(pattern, re.split("//(?! still ours)", line)[0]) and not NOT_MEANT.search(line)]
+
+
+class Storm:
+    """Short-lived processes, some hundred a second, so that numbers come round sooner; two at a time."""
+
+    def __init__(self):
+        self.process = subprocess.Popen(["/bin/sh", "-c", "while :; do /bin/true & /bin/true; wait; done"],
+                                        stdin=subprocess.DEVNULL, start_new_session=True)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+
+
+def numbers_given():
+    """Since the machine was started: one for each process and thread."""
+    return int(re.search(r"^processes (\d+)", pathlib.Path("/proc/stat").read_text(), re.M)[1])
+
+
+def number_limit():
+    return int(pathlib.Path("/proc/sys/kernel/pid_max").read_text())
+
+
+def go_where_numbers_are_few():
+    """Becomes the same program in a world of processes of its own; goes on here where that is not allowed."""
+    limit = "echo 400 > /proc/sys/kernel/pid_max && exec"
+    apart = ["unshare", "--pid", "--fork", "--mount-proc", "--kill-child"]
+    apart += [] if os.getuid() == 0 else ["--user", "--map-root-user"]
+    tried = subprocess.run([*apart, "/bin/sh", "-c", f"{limit} grep -qx 400 /proc/sys/kernel/pid_max"],
+                           capture_output=True)
+    outside = subprocess.run(["grep", "-qx", "400", "/proc/sys/kernel/pid_max"])
+    if tried.returncode == 0 and outside.returncode != 0 and "CHIMERA_FEW_NUMBERS" not in os.environ:
+        os.environ["CHIMERA_FEW_NUMBERS"] = "1"
+        os.execvp(apart[0], [*apart, "/bin/sh", "-c", f'{limit} "$@"', "sh", sys.executable, *sys.argv])
+
+
+class Numbers(unittest.TestCase):
+    def test_row_28_nobody_is_signalled_by_number(self):
+        self.assertTrue(re.search(BY_NUMBER, "  ::kill(pid, SIGKILL);"))
+        self.assertFalse(re.search(BY_NUMBER, "  Outcome kill() {"))
+        self.assertTrue(re.search(BY_NUMBER_IN_PYTHON, "os.kill(pid, 9)"))
+        files = [p for folder in ("chimera", "apps", "tests", "library") for p in (SOURCE / folder).rglob("*")
+                 if p.suffix in (".cc", ".h", ".c", ".py") and p.name != pathlib.Path(__file__).name]
+        self.assertGreater(len(files), 500)
+        self.assertEqual([place for path in files for place in found_in(path)], [])
+
+    def test_row_28_restarts_in_a_storm_of_other_processes_hit_nobody_else(self):
+        restarts, began, numbers = 20 * ROUNDS, time.monotonic(), numbers_given()
+        self.since, self.ends = 0, []
+        bystanders = [subprocess.Popen(["/bin/sleep", "600"]) for _ in range(20)]
+        self.addCleanup(lambda: [(b.kill(), b.wait()) for b in bystanders])
+        with System(APPLICATION) as system, Storm():
+            before = system.task("steady")
+            for _ in range(restarts):
+                unit = system.rtpu("second")
+                self.assertTrue(system.kill(unit["pid"]))
+                self.restarted(system, unit)
+            after = system.task("steady")
+            self.assertEqual((after["state"], after["incarnation"], after["faults"]), ("ON", before["incarnation"], 0))
+            self.assertEqual({p.poll() for p in bystanders}, {None}, "somebody else was hit")
+            self.ends += [e["text"] for e in system.events(self.since) if e["kind"] == "rtpu-ended"]
+            self.assertEqual(len(self.ends), restarts)
+            self.assertTrue(all("signal 9" in text for text in self.ends), self.ends)
+        numbers = numbers_given() - numbers
+        print(f"restarts: {restarts} in {time.monotonic() - began:.1f} s, {numbers} numbers given of {number_limit()}",
+              file=sys.stderr)
+        self.assertGreater(numbers, 5 * restarts, "no storm")
+
+    def restarted(self, system, unit):
+        """The unit lives again with its task ON; a person clears it where it was given up."""
+        def lives():
+            new = system.rtpu("second")
+            if new["incarnation"] > unit["incarnation"] and new["alive"] and system.state("victim") == "ON":
+                return True
+            news = system.events(self.since)
+            self.since = news[-1]["number"] + 1 if news else self.since
+            self.ends += [e["text"] for e in news if e["kind"] == "rtpu-ended"]
+            if any(e["kind"] == "rtpu-given-up" for e in news):
+                system.signal("clear", "victim")
+                system.await_state("victim", "OFF")
+                system.signal("on", "victim")
+            return False
+        await_that(lives, 15, "the restart")
+
+
+if __name__ == "__main__":
+    go_where_numbers_are_few()
+    unittest.main(verbosity=1)
