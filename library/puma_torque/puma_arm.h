@@ -4,14 +4,10 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <span>
 
-#include "chimera/base/fixed.h"
 #include "chimera/base/result.h"
-
-struct mjModel_;
-struct mjData_;
+#include "library/mujoco/simulated_arm.h"
 
 namespace chimera::library {
 
@@ -26,14 +22,9 @@ struct PumaSettings {
   double coulomb_share = 0;  ///< of the published Coulomb friction, 0 to 1
 };
 
-/// One simulated arm. Not copyable: owns the MuJoCo model and its state.
+/// One simulated Puma. Not copyable: owns the MuJoCo model and its state.
 class PumaArm {
  public:
-  PumaArm() noexcept;
-  ~PumaArm();
-  PumaArm(const PumaArm&) = delete;
-  PumaArm& operator=(const PumaArm&) = delete;
-
   /// Reads the model and stands at q = 0. "puma560.xml" without a directory is the model built into this object,
   /// whatever lies in the working directory. Refuses a missing or ill-formed file, a model that is not a
   /// six-joint arm with its names, a payload outside 0..10 kg, a share outside 0..1. Context: setup; may block.
@@ -68,21 +59,14 @@ class PumaArm {
   std::array<double, 9> wrist_rotation() const;
 
   /// Why the last call that answered false did; empty before. Context: any.
-  const char* fault() const noexcept { return fault_.c_str(); }
+  const char* fault() const noexcept { return arm_.fault(); }
 
  private:
-  struct ModelRelease { void operator()(mjModel_* model) const; };
-  struct DataRelease { void operator()(mjData_* data) const; };
-
   Result<void> read_model(const char* mjcf_path);
   void apply(const PumaSettings& settings);
-  bool advance(double dt, const double* torque);
-  bool refuse(const char* why) noexcept;
 
-  std::unique_ptr<mjModel_, ModelRelease> model_;
-  std::unique_ptr<mjData_, DataRelease> state_;
+  SimulatedArm arm_;
   PumaVector torque_limit_{};
-  FixedString<120> fault_;
 };
 
 }  // namespace chimera::library

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <string>
 
-#include "library/puma_torque/mujoco_guard.h"
+#include "library/mujoco/mujoco_guard.h"
 
 namespace chimera::library {
 namespace {

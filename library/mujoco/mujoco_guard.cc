@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "library/puma_torque/mujoco_guard.h"
+#include "library/mujoco/mujoco_guard.h"
 
 #include <csetjmp>
 #include <cstdio>

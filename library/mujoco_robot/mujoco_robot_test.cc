@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "chimera/task/rig.h"
+
+namespace chimera {
+namespace {
+
+// A robot of two joints that a user names; the same for the three interfaces.
+struct RobotTest : testing::Test {
+  std::string path = testing::TempDir() + "robot_" + std::to_string(::getpid()) + ".xml";
+  RobotTest() {
+    std::ofstream(path) << R"(<mujoco><compiler angle="radian"/><worldbody>
+      <body><joint axis="0 1 0" limited="true" range="-2 2"/><geom size=".1" pos=".5 0 0" contype="0"/>
+      <body pos=".5 0 0"><joint axis="0 1 0"/><geom size=".05" pos=".5 0 0" contype="0"/></body></body>
+      </worldbody></mujoco>)";
+  }
+  ~RobotTest() override { ::unlink(path.c_str()); }
+  void give(Rig& rig, const char* command) {
+    rig.resource("model", path.c_str());
+    for (std::size_t i = 0; i < 10; ++i) rig.set(command, 0.0, i);
+  }
+  void start(Rig& rig, const char* command) {
+    give(rig, command);
+    const RigAnswer made = rig.init();
+    ASSERT_TRUE(made) << made.text;
+    ASSERT_TRUE(rig.on());
+  }
+};
+
+TEST_F(RobotTest, TellsHowItIsBuiltAtInit) {
+  Rig rig("mujoco_robot");
+  start(rig, "q_ref");
+  EXPECT_EQ(rig.get<std::int32_t>("ndof"), 2);
+  EXPECT_EQ(rig.get<double>("q_max", 0), 2);
+  EXPECT_EQ(rig.get<double>("q_max", 1), 1e6);
+  EXPECT_EQ(rig.get<double>("tau_max", 0), 1e6);
+}
+
+TEST_F(RobotTest, GoesToAPosition) {
+  Rig rig("mujoco_robot");
+  start(rig, "q_ref");
+  rig.set("q_ref", 0.7, 0);
+  rig.set("q_ref", -0.4, 1);
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("q", 0), 0.7, 1e-4);
+  EXPECT_NEAR(rig.get<double>("q", 1), -0.4, 1e-4);
+}
+
+TEST_F(RobotTest, HoldsAVelocity) {
+  Rig rig("mujoco_robot_velocity");
+  start(rig, "qd_ref");
+  rig.set("qd_ref", 0.5, 1);
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("qd", 1), 0.5, 1e-3);
+  EXPECT_NEAR(rig.get<double>("q", 1), 0.25, 0.03);
+}
+
+TEST_F(RobotTest, FallsWithoutTorque) {
+  Rig rig("mujoco_robot_torque");
+  start(rig, "tau");
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_GT(rig.get<double>("q", 0), 0.02);
+}
+
+TEST_F(RobotTest, IgnoresItsCommandWhileTheConfigurationIsIllegal) {
+  Rig rig("mujoco_robot");
+  start(rig, "q_ref");
+  rig.illegal(true);
+  rig.set("q_ref", std::nan(""), 0);
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("q", 0), 0, 2e-2);
+}
+
+TEST_F(RobotTest, ACommandThatIsNotANumberIsAFaultAndBrakes) {
+  Rig rig("mujoco_robot_torque");
+  start(rig, "tau");
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle());
+  rig.set("tau", std::nan(""), 1);
+  const RigAnswer answer = rig.cycle();
+  EXPECT_FALSE(answer);
+  EXPECT_EQ(answer.text, "tau[1] is not finite");
+  EXPECT_FALSE(rig.error());
+  EXPECT_EQ(rig.get<double>("qd", 0), 0);
+  EXPECT_TRUE(rig.clear());
+}
+
+TEST_F(RobotTest, ReinitTakesOtherLimitsWhereItStands) {
+  Rig rig("mujoco_robot");
+  start(rig, "q_ref");
+  rig.set("q_ref", 0.3, 0);
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(rig.cycle());
+  rig.set("torque_limit", 5.0, 0);
+  ASSERT_TRUE(rig.reinit());
+  ASSERT_TRUE(rig.on());
+  EXPECT_NEAR(rig.get<double>("q", 0), 0.3, 1e-3);
+  EXPECT_EQ(rig.get<double>("tau_max", 0), 5);
+}
+
+TEST_F(RobotTest, RefusesAPoseOutsideTheLimitsAndAFileThatIsNotThere) {
+  Rig rig("mujoco_robot");
+  give(rig, "q_ref");
+  rig.set("start_pose", 2.5, 0);
+  EXPECT_EQ(rig.init().text, "joint 1 at 2.5 rad is outside its limits -2 to 2 rad");
+  rig.resource("model", "no_such_robot.urdf");
+  const std::string said = rig.init().text;
+  EXPECT_TRUE(said.starts_with("no_such_robot.urdf: ")) << said;
+}
+
+}  // namespace
+}  // namespace chimera
