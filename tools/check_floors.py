@@ -8,8 +8,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
 FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "config": 6,
-         "rtpu": 6, "keeper": 7, "control": 7, "subsystem": 7, "draw": 7, "desk": 8, "manager": 8, "record": 8,
-         "shell": 8, "web": 8, "link": 8}
+         "rtpu": 6, "keeper": 7, "trial": 7, "control": 7, "subsystem": 7, "draw": 7, "desk": 8, "manager": 8,
+         "record": 8, "shell": 8, "web": 8, "link": 8}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
                        "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")

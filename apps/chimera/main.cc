@@ -10,6 +10,7 @@
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
 #include "chimera/desk/new.h"
+#include "chimera/desk/test_component.h"
 
 namespace {
 
@@ -20,6 +21,7 @@ struct Words {
   bool json = false;
   desk::CheckOptions check;
   std::string component;
+  desk::TestOptions test;
   desk::NewRequest made;
   bool in_c = false;
   RunWords run;
@@ -51,6 +53,28 @@ void add_list(CLI::App& app, Words& words) {
   d->footer("Example: chimera describe pid_joint");
 }
 
+void add_test(CLI::App& app, Words& words) {
+  CLI::App* t = app.add_subcommand("test", "Run components alone in virtual time and judge what they do");
+  auto* names = t->add_option("COMPONENT", words.test.components, "a component, or the path of a shared object");
+  t->add_flag("--all", words.test.all, "every installed component")->excludes(names);
+  t->add_option("--setup", words.test.setup, "description of the task; left out: NAME.test.yaml beside the component");
+  t->add_option("--inputs", words.test.inputs,
+                "recording (CSV); left out: NAME.test.csv beside the component, else generated");
+  t->add_option("--names", words.test.names, "what in[0], in[1], ... of the recording are")->delimiter(',');
+  t->add_option("--seed", words.test.seed, "of generated inputs; 1 when left out");
+  t->add_option("--cycles", words.test.cycles, "of generated inputs; 1000 when left out")
+      ->check(CLI::Range(20, 100000));
+  t->add_flag("--json", words.json, "the reports as one JSON object");
+  t->footer("Each runs three times in a process of its own; docs/formats/component-test.md has the setup.\n"
+            "Exit code 0: all pass, 1: one fails, 2: wrong usage.\nExample: chimera test pid_joint --inputs run.csv");
+}
+
+desk::Output run_tests(Words& words, const desk::Workplace& workplace) {
+  words.test.json = words.json;
+  if (words.test.all || !words.test.components.empty()) return desk::test_components(words.test, workplace);
+  return {"", "chimera test: name a component, or --all\n", desk::kUsage};
+}
+
 void add_new(CLI::App& app, Words& words) {
   CLI::App* n = app.add_subcommand("new", "Make a project that builds and passes its tests at once");
   n->require_subcommand(1);
@@ -76,6 +100,7 @@ int carry_out(CLI::App& app, Words& words) {
   if (app.got_subcommand("new")) return print(make_new(app, words));
   if (app.got_subcommand("list")) return print(desk::list(workplace, words.json));
   if (app.got_subcommand("describe")) return print(desk::describe_component(words.component, workplace, words.json));
+  if (app.got_subcommand("test")) return print(run_tests(words, workplace));
   const int code = carry_out_shell_command(app, *words.shell, workplace.unit_files);
   if (code >= 0) return code;
   if (app.got_subcommand("attend")) return carry_out_attend(words.run);
@@ -99,6 +124,7 @@ int main(int argc, char** argv) {
   add_check(app, words);
   add_run(app, words.run);
   add_list(app, words);
+  add_test(app, words);
   add_new(app, words);
   words.shell = add_shell_commands(app);
   if (argc > 1 && argv[1][0] != '-' && !is_command(app, argv[1])) {

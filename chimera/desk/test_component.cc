@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/test_component.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "chimera/base/message.h"
+#include "chimera/config/descriptor_json.h"
+#include "chimera/trial/judge.h"
+#include "chimera/trial/partner.h"
+#include "chimera/trial/setup.h"
+
+namespace chimera::desk {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Nanoseconds kPartnerPatience = seconds(5);
+constexpr std::size_t kMostMemory = 64u * 1024 * 1024;  // of rows and their outputs
+constexpr std::size_t kFewest = 20;                     // cycles of a short recording
+
+std::string beside(const LibraryEntry& entry, const char* ending) {
+  const fs::path folder = fs::path(entry.object_file).parent_path();
+  const fs::path file = folder / (entry.descriptor.name + ending);
+  return fs::exists(file) ? fs::absolute(file).string() : "";
+}
+
+bool is_path(const std::string& word) { return word.find('/') != std::string::npos || word.ends_with(".so"); }
+
+// A shared object that nobody installed: its descriptor beside it, else what it says of itself.
+Result<LibraryEntry> entry_of_object(const std::string& path, Nanoseconds patience) {
+  if (!fs::exists(path)) return (Message() << "no such file").error(ErrorCode::kNotFound, path);
+  LibraryEntry entry;
+  entry.object_file = fs::absolute(path).string();
+  entry.descriptor_file = fs::path(entry.object_file).replace_extension(".component.json").string();
+  if (fs::exists(entry.descriptor_file)) {
+    auto descriptor = read_descriptor_file(entry.descriptor_file);
+    if (!descriptor) return descriptor.error();
+    entry.descriptor = *std::move(descriptor);
+    return entry;
+  }
+  trial::TrialOptions options;
+  options.patience = patience;
+  const auto text = trial::descriptor_text(entry.object_file, options);
+  if (!text) return text.error();
+  auto descriptor = parse_descriptor(*text);
+  if (!descriptor) return descriptor.error();
+  entry.descriptor = *std::move(descriptor);
+  entry.descriptor_file = entry.object_file;
+  return entry;
+}
+
+/// One component on its way through the test.
+class OneTest {
+ public:
+  OneTest(const TestOptions& options, const LibraryEntry& entry, const UnitSystem& units)
+      : options_(options), entry_(entry), units_(units) {}
+
+  Result<trial::TrialReport> run() {
+    trial::Setup setup;
+    setup.file = options_.setup.empty() ? beside(entry_, ".test.yaml") : options_.setup;
+    setup.folder = fs::absolute(setup.file.empty() ? entry_.object_file : setup.file).parent_path().string();
+    if (auto partner = start_partner(setup); !partner) return partner.error();
+    const Verdict verdict = trial::arrange(setup, entry_, units_);
+    if (!verdict.configuration) return refuse(verdict.report);
+    const Configuration& configuration = *verdict.configuration;
+    const auto form = trial::InputForm::of(configuration, entry_.descriptor);
+    std::string source;
+    const auto inputs = read_inputs(configuration, form, source);
+    if (!inputs) return inputs.error();
+    trial::TrialOptions how;
+    how.patience = options_.patience;
+    how.folder = setup.folder;
+    const auto trial = trial::run_trial(entry_, configuration, form, *inputs, how);
+    if (!trial) return trial.error();
+    trial::TrialReport report =
+        trial::judge(*trial, {entry_.descriptor, configuration, *inputs, partner_.has_value()});
+    report.inputs = source;
+    return report;
+  }
+
+ private:
+  Result<void> start_partner(trial::Setup& setup) {
+    const std::string program = beside(entry_, ".test.partner");
+    if (program.empty()) return {};
+    auto partner = trial::Partner::start(program, kPartnerPatience);
+    if (!partner) return partner.error();
+    partner_.emplace(*std::move(partner));
+    setup.partner_text = partner_->line();
+    return {};
+  }
+  trial::TrialReport refuse(const Report& report) const {
+    trial::TrialReport said;
+    said.component = entry_.descriptor.name;
+    std::string text = report.text();
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    said.judgements.push_back({"setup", trial::Finding::kFails, text});
+    return said;
+  }
+  Result<trial::Inputs> read_inputs(const Configuration& configuration, const trial::InputForm& form,
+                                    std::string& source) const {
+    const std::string file = options_.inputs.empty() ? beside(entry_, ".test.csv") : options_.inputs;
+    if (file.empty()) {
+      std::size_t payload = 0;
+      (void)trial::output_places(configuration.spec(), payload);
+      const std::size_t most = kMostMemory / (form.bytes() + payload + sizeof(trial::RowRecord));
+      source = "generated, seed " + std::to_string(options_.seed);
+      return trial::Inputs::generated(form, options_.seed, std::clamp(most, kFewest, options_.cycles));
+    }
+    source = file;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return (Message() << "cannot be read").error(ErrorCode::kNotFound, file);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const Nanoseconds period = configuration.spec().tasks[0].period;
+    return trial::Inputs::recorded(form, text, file, options_.names, period, kFewest);
+  }
+
+  const TestOptions& options_;
+  const LibraryEntry& entry_;
+  const UnitSystem& units_;
+  std::optional<trial::Partner> partner_;
+};
+
+const char* word(trial::Finding finding) {
+  return finding == trial::Finding::kOk ? "ok" : finding == trial::Finding::kFails ? "fails" : "not judged";
+}
+
+std::string time_text(std::int64_t ns) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f us", static_cast<double>(ns) * 1e-3);
+  return text;
+}
+
+std::string text_of(const trial::TrialReport& report) {
+  std::string text = report.component + ": " + (report.passes() ? "passes" : "FAILS");
+  if (!report.inputs.empty()) text += " (inputs: " + report.inputs + ")";
+  text += "\n";
+  for (const trial::Judgement& one : report.judgements) {
+    char head[64];
+    std::snprintf(head, sizeof head, "  %-10s  %-12s  ", word(one.verdict), one.name.c_str());
+    std::string body = one.text;
+    for (std::size_t at = 0; (at = body.find('\n', at)) != std::string::npos; at += 5) body.replace(at, 1, "\n    ");
+    text += head + body + "\n";
+  }
+  if (report.measured.cycles > 0)
+    text += "  measured    time          " + time_text(report.measured.median_ns) + " median, " +
+            time_text(report.measured.worst_ns) + " worst of " + std::to_string(report.measured.cycles) +
+            " cycles, one after the other\n";
+  return text;
+}
+
+std::string json_of(const trial::TrialReport& report) {
+  std::string rows;
+  for (const trial::Judgement& one : report.judgements)
+    rows += std::string(rows.empty() ? "" : ", ") + "{\"name\": " + json_string(one.name) + ", \"finding\": \"" +
+            word(one.verdict) + "\", \"text\": " + json_string(one.text) + "}";
+  return "{\"component\": " + json_string(report.component) + ", \"passes\": " + (report.passes() ? "true" : "false") +
+         ", \"inputs\": " + json_string(report.inputs) + ", \"judgements\": [" + rows +
+         "], \"measured_cycles\": " + std::to_string(report.measured.cycles) +
+         ", \"median_ns\": " + std::to_string(report.measured.median_ns) +
+         ", \"worst_ns\": " + std::to_string(report.measured.worst_ns) + "}";
+}
+
+Error unknown(const std::string& name, const Library& library) {
+  const std::string nearest = library.nearest_name(name);
+  const std::string help = nearest.empty() ? "; `chimera list` names those that are" : "; did you mean '" + nearest + "'?";
+  return {ErrorCode::kNotFound, {"no component '" + name + "' is installed" + help}, {}};
+}
+
+Result<std::vector<LibraryEntry>> wanted(const TestOptions& options, const Library& library) {
+  std::vector<LibraryEntry> entries;
+  if (options.all) entries.assign(library.entries().begin(), library.entries().end());
+  for (const std::string& name : options.components) {
+    if (is_path(name)) {
+      auto entry = entry_of_object(name, options.patience);
+      if (!entry) return entry.error();
+      entries.push_back(*std::move(entry));
+      continue;
+    }
+    const LibraryEntry* entry = library.find(name);
+    if (entry == nullptr) return unknown(name, library);
+    entries.push_back(*entry);
+  }
+  return entries;
+}
+
+}  // namespace
+
+Output test_components(const TestOptions& options, const Workplace& workplace) {
+  const auto library = workplace.library();
+  if (!library) return refused(library.error(), options.json);
+  const auto entries = wanted(options, *library);
+  if (!entries) return refused(entries.error(), options.json);
+  Output output;
+  std::string rows;
+  for (const LibraryEntry& entry : *entries) {
+    const auto report = OneTest(options, entry, library->units()).run();
+    if (!report) return refused(report.error(), options.json);
+    if (!report->passes()) output.code = kRefused;
+    if (options.json) rows += (rows.empty() ? "" : ", ") + json_of(*report);
+    else output.out += text_of(*report);
+  }
+  if (options.json) output.out = "{\"components\": [" + rows + "]}\n";
+  return output;
+}
+
+}  // namespace chimera::desk

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a component under trial reads: a row of values for each cycle, recorded or generated.
+// The rules are in docs/formats/component-test.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/base/result.h"
+#include "chimera/config/configuration.h"
+#include "chimera/load/descriptor.h"
+
+namespace chimera::trial {
+
+inline constexpr std::size_t kMaxRecordingBytes = 16u * 1024 * 1024;
+inline constexpr std::size_t kMaxRows = 100'000;
+inline constexpr std::size_t kMaxColumns = 256;
+
+/// One number of an in-var.
+struct Channel {
+  std::string name;              ///< as a recording calls it: "q_ref[2]"
+  std::string port_name;         ///< the same by the port, for a repeated one: "in[0][2]"
+  std::size_t offset = 0;        ///< in the row
+  std::uint32_t type = CHIMERA_FLOAT64;
+  double base = 0;               ///< value in the setup
+  double low = 0, high = 0;      ///< generated values lie between
+  double declared_high = 0;      ///< end of the declared range; infinity: none
+};
+
+/// Where the values of a row stand: those of operator variable o at offsets[o]. Context: setup.
+struct InputForm {
+  static InputForm of(const Configuration& configuration, const Descriptor& component);
+
+  std::vector<std::size_t> offsets;     ///< by operator variable
+  std::vector<Channel> channels;
+  std::vector<std::size_t> quaternions; ///< offsets of four numbers that stay a unit quaternion
+  std::vector<std::byte> base;          ///< the row of the setup
+
+  std::size_t bytes() const noexcept { return base.size(); }
+  double get(const Channel& channel, std::span<const std::byte> row) const noexcept;
+  /// Rounded for whole numbers; a truth value is true above 0.5.
+  void put(const Channel& channel, double value, std::span<std::byte> row) const noexcept;
+};
+
+/// Context: setup.
+class Inputs {
+ public:
+  /// `rows` rows that look random and depend on `seed` and the form alone, to the bit.
+  static Inputs generated(const InputForm& form, std::uint64_t seed, std::size_t rows);
+  /// The rows of a recording, taken at each `period`; at least `least` (the last one stands). `file` names it in
+  /// messages, `names` stand for in[0], in[1], ... of its first line.
+  static Result<Inputs> recorded(const InputForm& form, std::string_view text, const std::string& file,
+                                 std::span<const std::string> names, Nanoseconds period, std::size_t least);
+
+  std::size_t rows() const noexcept { return row_bytes_ == 0 ? rows_ : bytes_.size() / row_bytes_; }
+  std::span<const std::byte> row(std::size_t i) const noexcept {
+    return {bytes_.data() + i * row_bytes_, row_bytes_};
+  }
+  bool are_recorded() const noexcept { return are_recorded_; }
+
+ private:
+  Inputs(std::size_t rows, std::size_t row_bytes) : rows_(rows), row_bytes_(row_bytes), bytes_(rows * row_bytes) {}
+  std::span<std::byte> writable(std::size_t i) noexcept { return {bytes_.data() + i * row_bytes_, row_bytes_}; }
+
+  std::size_t rows_, row_bytes_;
+  std::vector<std::byte> bytes_;
+  bool are_recorded_ = false;
+};
+
+/// Puts bad values of kind `kind` < kBadInputs into every number of `row`: NaN, infinity, -infinity, beyond the
+/// declared range, the least whole numbers. False when no number takes such values. Context: setup.
+bool spoil(const InputForm& form, std::size_t kind, std::span<std::byte> row) noexcept;
+/// What spoil() puts there, for people: "NaN".
+const char* spoilt_name(std::size_t kind) noexcept;
+
+}  // namespace chimera::trial

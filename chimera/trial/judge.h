@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was found out about a component, judged: one line for each judgement.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/trial/trial.h"
+
+namespace chimera::trial {
+
+enum class Finding : std::uint8_t { kOk, kFails, kNotJudged };
+
+struct Judgement {
+  std::string name;   ///< "outputs"
+  Finding verdict = Finding::kOk;
+  std::string text;   ///< one sentence without a full stop
+};
+
+/// Measured, not judged.
+struct Measured {
+  std::size_t cycles = 0;
+  std::int64_t median_ns = 0, worst_ns = 0;
+};
+
+struct TrialReport {
+  std::string component;
+  std::string inputs;               ///< where they came from
+  std::vector<Judgement> judgements;
+  Measured measured;
+
+  bool passes() const noexcept;
+};
+
+/// What the judgements need to know beside the trial.
+struct Circumstances {
+  const Descriptor& component;
+  const Configuration& configuration;
+  const Inputs& inputs;
+  bool has_partner = false;
+};
+
+/// Judges everything; each judgement appears once, in a fixed order. Context: setup.
+TrialReport judge(const Trial& trial, const Circumstances& about);
+
+/// "signal 11 (Segmentation fault) in cycle 17"; "" when the play came to its end. Context: setup.
+std::string how_it_ended(const PlayEnd& end, const Record& record);
+
+}  // namespace chimera::trial

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/trial/judge_values.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "chimera/trial/record.h"
+
+namespace chimera::trial {
+namespace {
+
+double number_at(const std::byte* at, std::uint32_t type) {
+  const auto read = [at]<class T>(T value) {
+    std::memcpy(&value, at, sizeof value);
+    return static_cast<double>(value);
+  };
+  switch (type) {
+    case CHIMERA_BOOL: return read(std::uint8_t{});
+    case CHIMERA_INT32: return read(std::int32_t{});
+    case CHIMERA_INT64: return read(std::int64_t{});
+    case CHIMERA_FLOAT32: return read(float{});
+    case CHIMERA_FLOAT64: return read(double{});
+    default: return 0;
+  }
+}
+
+std::optional<std::string> why_unsound(double value, const PortSpec& spec, bool with_ranges) {
+  if (std::isnan(value)) return "is NaN";
+  if (std::isinf(value)) return "is infinite";
+  if (!with_ranges || !spec.has_range || (value >= spec.min && value <= spec.max)) return std::nullopt;
+  char text[100];
+  std::snprintf(text, sizeof text, "is %g, outside %g to %g", value, spec.min, spec.max);
+  return text;
+}
+
+std::optional<std::string> unsound_element(const std::byte* at, const PortSpec& spec, const PortDescriptor& port,
+                                           bool with_ranges) {
+  if (spec.type != CHIMERA_STRUCT) return why_unsound(number_at(at, spec.type), spec, with_ranges);
+  for (const FieldDescriptor& field : port.fields)
+    for (std::uint32_t i = 0; i < field.count; ++i)
+      if (const auto why = why_unsound(number_at(at + field.offset + i * field.size, field.type), spec, false))
+        return "." + field.name + " " + *why;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> first_unsound(const Configuration& configuration, const Descriptor& component,
+                                         std::span<const std::uint32_t> counts, std::span<const std::byte> outputs,
+                                         std::uint64_t valid, bool with_ranges) {
+  std::size_t payload = 0;
+  const auto places = output_places(configuration.spec(), payload);
+  for (std::size_t o = 0; o < places.size(); ++o) {
+    const PortSpec& spec = *places[o].spec;
+    const PortDescriptor& port = component.ports[spec.declared];
+    const std::string name = port.name + (port.repeated ? "[" + std::to_string(spec.instance) + "]" : "");
+    if (((valid >> o) & 1u) == 0) return name + " is never written";
+    for (std::uint32_t i = 0; i < counts[o]; ++i) {
+      const std::byte* at = outputs.data() + places[o].offset + i * spec.element_bytes;
+      if (const auto why = unsound_element(at, spec, port, with_ranges))
+        return name + (counts[o] == 1 ? "" : "[" + std::to_string(i) + "]") + (why->starts_with(".") ? "" : " ") +
+               *why;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace chimera::trial

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Are published values sound: written, finite, within what the port declares?
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "chimera/config/configuration.h"
+#include "chimera/load/descriptor.h"
+
+namespace chimera::trial {
+
+/// The first unsound value of a row in words ("y[1] is NaN", "tau is 210, outside -200 to 200"); nothing when all are
+/// sound. `counts` are the elements of each out-var in use, `outputs` their values as output_places() packs them,
+/// `valid` their bits. Context: setup.
+std::optional<std::string> first_unsound(const Configuration& configuration, const Descriptor& component,
+                                         std::span<const std::uint32_t> counts, std::span<const std::byte> outputs,
+                                         std::uint64_t valid, bool with_ranges);
+
+}  // namespace chimera::trial

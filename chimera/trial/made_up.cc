@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// A description for a component of which nothing is known but its descriptor.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "chimera/trial/setup.h"
+
+namespace chimera::trial {
+namespace {
+
+constexpr double kPlain = 0.5;
+constexpr std::uint32_t kInstances = 2;
+
+std::string number_text(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+// A unit of its own, without unit variables (single capitals U X Y Z).
+bool is_generic(const std::string& unit) {
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const auto is_letter = [&](std::size_t at) {
+      return at < unit.size() && std::isalpha(static_cast<unsigned char>(unit[at])) != 0;
+    };
+    if (std::string_view("UXYZ").find(unit[i]) != std::string_view::npos && (i == 0 || !is_letter(i - 1)) &&
+        !is_letter(i + 1))
+      return true;
+  }
+  return false;
+}
+
+bool fixes_extent(const Descriptor& component, const PortDescriptor& port) {
+  return std::ranges::any_of(component.ports, [&](const PortDescriptor& other) {
+    return std::ranges::any_of(other.extents, [&](const Extent& extent) { return extent.symbol == port.name; });
+  });
+}
+
+std::uint32_t largest_extent(const Descriptor& component, const std::string& symbol) {
+  std::uint32_t most = kMaxExtent;
+  for (const PortDescriptor& port : component.ports)
+    for (const Extent& extent : port.extents)
+      if (extent.symbol == symbol) most = std::min(most, extent.max);
+  return most;
+}
+
+double middle(const Descriptor& component, const PortDescriptor& port) {
+  if (port.is_constant() && fixes_extent(component, port)) return std::min(2u, largest_extent(component, port.name));
+  if (!port.has_range) return port.is_constant() ? 1 : kPlain;
+  if (std::isfinite(port.min) && std::isfinite(port.max)) return port.min + (port.max - port.min) / 2;
+  return std::isfinite(port.min) ? port.min + kPlain : std::isfinite(port.max) ? port.max - kPlain : kPlain;
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  const bool has_unit = !unit.empty() && unit != "1" && !is_generic(unit);
+  return number_text(value) + (has_unit ? " " + unit : "");
+}
+
+std::string struct_text(const PortDescriptor& port) {
+  std::string text;
+  for (const FieldDescriptor& field : port.fields) {
+    const bool is_turn = port.type_name == "Pose" && field.name == "orientation";
+    std::string items;
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      const std::string one = field.type == CHIMERA_STRING ? "\"\""
+                              : field.type == CHIMERA_BOOL ? "false"
+                                                           : with_unit(is_turn && i == 0 ? 1 : 0, field.unit);
+      items += (i == 0 ? "" : ", ") + one;
+    }
+    text += (text.empty() ? "" : ", ") + field.name + ": " + (field.count == 1 ? items : "[" + items + "]");
+  }
+  return "{" + text + "}";
+}
+
+std::string element_text(const Descriptor& component, const PortDescriptor& port) {
+  switch (port.type) {
+    case CHIMERA_STRING: return "\"\"";
+    case CHIMERA_BOOL: return "false";
+    case CHIMERA_STRUCT: return struct_text(port);
+    case CHIMERA_INT32:
+    case CHIMERA_INT64: return with_unit(std::round(middle(component, port)), port.unit);
+    default: return with_unit(middle(component, port), port.unit);
+  }
+}
+
+std::string repeated(const std::string& text, std::uint32_t n) {
+  std::string list;
+  for (std::uint32_t i = 0; i < n; ++i) list += (i == 0 ? "" : ", ") + text;
+  return "[" + list + "]";
+}
+
+// One value fills what constants fix; an extent that is a variable is taken from a list.
+std::string value_text_of(const Descriptor& component, const PortDescriptor& port) {
+  std::string text = element_text(component, port);
+  const bool is_open = std::ranges::any_of(port.extents, [&](const Extent& extent) {
+    return !extent.is_literal() && component.port(extent.symbol) == nullptr;
+  });
+  if (!is_open) return text;
+  for (std::size_t d = port.extents.size(); d-- > 0;)
+    text = repeated(text, port.extents[d].is_literal() ? port.extents[d].max : std::min(2u, port.extents[d].max));
+  return text;
+}
+
+std::string instance_name(const PortDescriptor& port, std::uint32_t i) {
+  return port.name + "_" + std::to_string(i);
+}
+
+std::uint32_t instances_of(const PortDescriptor& port) { return std::min(kInstances, port.max_instances); }
+
+}  // namespace
+
+std::string made_up(const Descriptor& component) {
+  std::string alias, constants, operators;
+  for (const PortDescriptor& port : component.ports) {
+    const std::string value = value_text_of(component, port);
+    if (port.kind == CHIMERA_IN_CONST && port.initial.empty() && !port.repeated)
+      constants += "\n      " + port.name + ": " + value;
+    if (port.kind == CHIMERA_IN_CONST && port.initial.empty() && port.repeated)
+      constants += "\n      " + port.name + ": " + repeated(value, instances_of(port));
+    if (port.repeated && (port.kind == CHIMERA_IN_VAR || port.kind == CHIMERA_OUT_VAR)) {
+      std::string names;
+      for (std::uint32_t i = 0; i < instances_of(port); ++i) names += (i == 0 ? "" : ", ") + instance_name(port, i);
+      alias += "\n      " + port.name + ": [" + names + "]";
+    }
+    if (port.kind != CHIMERA_IN_VAR) continue;
+    if (!port.repeated) operators += "\n  " + port.name + ": " + value;
+    else
+      for (std::uint32_t i = 0; i < instances_of(port); ++i)
+        operators += "\n  " + instance_name(port, i) + ": " + value;
+  }
+  std::string text = "subsystem: trial\ntasks:\n  " + component.name + ":\n    component: " + component.name + "\n";
+  if (!(component.default_rate_hz > 0)) text += "    rate: 100 Hz\n";
+  if (!alias.empty()) text += "    alias:" + alias + "\n";
+  if (!constants.empty()) text += "    constants:" + constants + "\n";
+  if (!operators.empty()) text += "operator:" + operators + "\n";
+  return text;
+}
+
+}  // namespace chimera::trial

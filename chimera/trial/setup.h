@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a component under trial is given: the description with this one task, from NAME.test.yaml and, where that says
+// nothing, made up (docs/formats/component-test.md).
+#pragma once
+
+#include <string>
+
+#include "chimera/config/configuration.h"
+#include "chimera/config/library.h"
+#include "chimera/config/verify.h"
+
+namespace chimera::trial {
+
+struct Setup {
+  std::string file;           ///< of the description; empty: none, everything is made up
+  std::string folder;         ///< that relative paths of resources start from; empty: the present one
+  std::string partner_text;   ///< stands for {partner} in resources
+};
+
+/// The description of a task of `component` alone, judged by every rule of legality with `units`. Refuses in the
+/// report: what the rules refuse, and a description with other tasks. Context: setup; may block.
+Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSystem& units);
+
+/// The description that is made up for a component of which nothing is known but its descriptor. Context: setup.
+std::string made_up(const Descriptor& component);
+
+}  // namespace chimera::trial

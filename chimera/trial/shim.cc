@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/trial/shim.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "chimera/platform/allocation_count.h"
+
+namespace chimera::trial {
+namespace {
+
+Shim* present = nullptr;  // a method of the C interface knows nothing but its component's state
+
+template <std::uint32_t kMethod>
+std::int32_t through_shim(void* state, const chimera_call* call) {
+  return present->call(kMethod, state, call);
+}
+
+template <std::size_t... kMethods>
+constexpr std::array<chimera_method, CHIMERA_METHODS> all(std::index_sequence<kMethods...>) {
+  return {&through_shim<kMethods>...};
+}
+constexpr auto kThrough = all(std::make_index_sequence<CHIMERA_METHODS>{});
+
+}  // namespace
+
+Shim::Shim(const chimera_component& real, Record& record) : real_(real), record_(record) {
+  std::memcpy(&wrapped_, &real, std::min<std::size_t>(real.struct_size, sizeof wrapped_));
+  wrapped_.struct_size = sizeof wrapped_;
+  for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m) wrapped_.methods[m] = has(m) ? kThrough[m] : nullptr;
+  present = this;
+}
+
+Shim::~Shim() { present = nullptr; }
+
+std::int32_t Shim::call(std::uint32_t method, void* state, const chimera_call* call) noexcept {
+  MethodRecord& counts = record_.methods[method];
+  record_.method = method;
+  record_.progress.fetch_add(1, std::memory_order_relaxed);
+  const std::uint64_t allocations = allocations_of_this_thread(), system_calls = counts.system_calls;
+  record_.watched.store(method + 1, std::memory_order_seq_cst);
+  const Nanoseconds began = clock_.now();
+  std::int32_t answer = real_.methods[method](state, call);
+  const Nanoseconds ended = clock_.now();
+  record_.watched.store(0, std::memory_order_seq_cst);
+  ++counts.calls;
+  const std::uint64_t asked = allocations_of_this_thread() - allocations;
+  counts.allocations += asked;
+  counts.most_allocations = std::max(counts.most_allocations, asked);
+  counts.most_system_calls = std::max(counts.most_system_calls, counts.system_calls - system_calls);
+  if (method == CHIMERA_CYCLE) cycle_time_ = ended - began;
+  if (fails_[method]) {
+    fails_[method] = false;
+    std::strcpy(call->fault->text, "a fault on purpose");
+    answer = CHIMERA_FAULT;
+  }
+  return answer;
+}
+
+}  // namespace chimera::trial

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/trial/solo.h"
+
+#include <cstring>
+
+namespace chimera::trial {
+
+Result<std::unique_ptr<Solo>> Solo::create(const LibraryEntry& entry, const Configuration& configuration,
+                                           const InputForm& form, Record& record) {
+  auto object = SharedObject::open(entry.object_file);
+  if (!object) return object.error();
+  std::unique_ptr<Solo> made(new Solo(*std::move(object), configuration, form, record));
+  if (auto built = made->build(entry); !built) return built.error();
+  return made;
+}
+
+Result<void> Solo::build(const LibraryEntry& entry) {
+  const auto component = object_.matching(entry.descriptor);
+  if (!component) return component.error();
+  shim_ = std::make_unique<Shim>(**component, record_);
+  const ApplicationSpec& spec = configuration_.spec();
+  const auto layout = PeerLayout::of_everything(spec);
+  if (!layout) return layout.error();
+  table_ = AlignedBytes(layout->table().region_bytes(), kCacheLine);
+  ContextPlace place;
+  place.table = table_.span();
+  const chimera_component* components[] = {&shim_->component()};
+  auto set = TaskSet::create(spec, components, place);
+  if (!set) return set.error();
+  set_ = *std::move(set);
+  set_->attach(clock_);
+  for (std::size_t o = 0; o < spec.operators.size(); ++o) {
+    const GroupPlace& group = layout->place(layout->operator_group(o));
+    writers_.emplace_back(table_.span().subspan(group.offset, group_bytes(group.payload_bytes)), group.payload_bytes);
+  }
+  std::size_t payload = 0;
+  places_ = output_places(spec, payload);
+  return {};
+}
+
+void Solo::feed(std::span<const std::byte> row) noexcept {
+  for (std::size_t o = 0; o < writers_.size(); ++o) {
+    const std::size_t bytes = configuration_.spec().operators[o].value.size();
+    std::memcpy(writers_[o].staging(), row.data() + form_.offsets[o], bytes);
+    writers_[o].publish(now_, 1);
+  }
+}
+
+State Solo::signal(Signal signal) {
+  clock_.set(now_);
+  const State before = state();
+  set_->signal(task().id, signal, now_);
+  now_ = clock_.now();
+  Task& task = set_->tasks()[0];
+  if (before != State::kOn && task.state == State::kOn) task.last_release = now_;
+  return task.state;
+}
+
+RowRecord Solo::cycle() noexcept {
+  Task& task = set_->tasks()[0];
+  const Nanoseconds period = task.spec->period;
+  now_ += period;
+  clock_.set(now_);
+  const CycleTime time{now_, now_ + task.spec->deadline, 0, set_->is_illegal()};
+  const std::uint64_t faults = task.faults.count, rejected = task.profile.rejected;
+  const BodyEnd body = begin_cycle(task, time);
+  RowRecord row;
+  row.is_run = true;
+  row.state = static_cast<std::uint8_t>(end_cycle(task, body, time, now_, true));
+  row.answer = static_cast<std::uint8_t>(task.faults.count != faults ? Answer::kFault : body.answer);
+  row.valid = task.valid;
+  row.time_ns = shim_->cycle_time().count;
+  if (task.profile.rejected != rejected && record_.unsafe++ == 0)
+    std::memcpy(record_.unsafe_text, fault_text(), sizeof record_.unsafe_text);
+  task.outbox.clear();  // there is nobody else
+  if (task.background != nullptr && body.answer != Answer::kNoEvent) run_background(task, Method::kCycle, now_);
+  set_->on_set_changed();
+  return row;
+}
+
+void Solo::copy_outputs(std::span<std::byte> to) const noexcept {
+  const Task& mine = task();
+  const auto* values = reinterpret_cast<const std::byte*>(mine.group.published() + 1);
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    std::memcpy(to.data() + places_[i].offset, values + mine.outputs[i].offset, places_[i].bytes);
+}
+
+void Solo::copy_counts(std::span<std::uint32_t> to) const noexcept {
+  const Task& mine = task();
+  for (std::size_t i = 0; i < places_.size(); ++i) to[i] = mine.outputs[i].port->count;
+}
+
+}  // namespace chimera::trial

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// One task alone under the framework, in virtual time, with everything in our hands: its inputs, its releases, its
+// signals. In the child only.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "chimera/base/result.h"
+#include "chimera/config/library.h"
+#include "chimera/load/shared_object.h"
+#include "chimera/runtime/aligned_bytes.h"
+#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/virtual/modelled_clock.h"
+#include "chimera/trial/inputs.h"
+#include "chimera/trial/record.h"
+#include "chimera/trial/shim.h"
+
+namespace chimera::trial {
+
+/// Context: setup.
+class Solo {
+ public:
+  /// Opens the object and makes the task, in NOT-CREATED. Everything given outlives it. Refuses as SharedObject and
+  /// TaskSet do.
+  static Result<std::unique_ptr<Solo>> create(const LibraryEntry& entry, const Configuration& configuration,
+                                              const InputForm& form, Record& record);
+
+  State state() const noexcept { return task().state; }
+  const Task& task() const noexcept { return set_->tasks()[0]; }
+  Shim& shim() noexcept { return *shim_; }
+  /// The last fault in words.
+  const char* fault_text() const noexcept { return task().faults.last.text; }
+
+  /// Publishes a row of inputs.
+  void feed(std::span<const std::byte> row) noexcept;
+  /// Carries out a signal; the state afterwards.
+  State signal(Signal signal);
+  /// Releases the task once, a period after the last time: its cycle and what it does beside. Requires: ON.
+  RowRecord cycle() noexcept;
+  /// The outputs as they are published, packed as output_places() says.
+  void copy_outputs(std::span<std::byte> to) const noexcept;
+  /// Elements of each output in use.
+  void copy_counts(std::span<std::uint32_t> to) const noexcept;
+
+ private:
+  Solo(SharedObject object, const Configuration& configuration, const InputForm& form, Record& record)
+      : object_(std::move(object)), configuration_(configuration), form_(form), record_(record) {}
+  Result<void> build(const LibraryEntry& entry);
+
+  SharedObject object_;
+  Configuration configuration_;
+  const InputForm& form_;
+  Record& record_;
+  ModelledClock clock_;
+  Nanoseconds now_;
+  std::unique_ptr<Shim> shim_;
+  AlignedBytes table_;
+  std::unique_ptr<TaskSet> set_;
+  std::vector<GroupWriter> writers_;
+  std::vector<OutputPlace> places_;
+};
+
+}  // namespace chimera::trial

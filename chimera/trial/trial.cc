@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/trial/trial.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <functional>
+
+#include "chimera/base/message.h"
+#include "chimera/config/descriptor_json.h"
+#include "chimera/platform/watched_child.h"
+#include "chimera/trial/plays.h"
+
+namespace chimera::trial {
+namespace {
+
+std::int64_t monotonic() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * 1'000'000'000 + now.tv_nsec;
+}
+
+/// Counts the system calls of watched methods, and sees when nothing goes on any more.
+class Watcher final : public ChildWatcher {
+ public:
+  Watcher(Record& record, Nanoseconds patience) : record_(record), patience_(patience) {}
+
+  void calls(std::uint64_t number) noexcept override {
+    const std::uint32_t watched = record_.watched.load(std::memory_order_seq_cst);
+    if (watched == 0) return;
+    MethodRecord& method = record_.methods[watched - 1];
+    if (method.system_calls++ == 0) method.first_system_call = number;
+  }
+  bool has_waited_enough() noexcept override {
+    const std::uint64_t progress = record_.progress.load(std::memory_order_relaxed);
+    const std::int64_t now = monotonic();
+    if (progress != seen_ || since_ == 0) seen_ = progress, since_ = now;
+    return now - since_ > patience_.count;
+  }
+
+ private:
+  Record& record_;
+  Nanoseconds patience_;
+  std::uint64_t seen_ = 0;
+  std::int64_t since_ = 0;
+};
+
+// What a component prints is not ours to print.
+void be_quiet() {
+  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (nowhere < 0) return;
+  for (const int stream : {0, 1, 2}) ::dup2(nowhere, stream);
+  ::close(nowhere);
+}
+
+[[noreturn]] void live(const std::function<void()>& play, Record& record, const TrialOptions& options, bool traced) {
+  be_quiet();
+  if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(1);
+  record.is_traced = traced && let_parent_trace();
+  try {
+    play();
+  } catch (const std::exception& fault) {  // of our own: those of a component end in its face
+    std::snprintf(record.refusal, sizeof record.refusal, "%s", fault.what());
+    ::_exit(1);
+  }
+  ::_exit(0);  // nothing of the parent's is ours to end
+}
+
+Result<PlayEnd> run(const std::function<void()>& play, Record& record, const TrialOptions& options, bool traced) {
+  BlockedChildSignal blocked;
+  const pid_t child = ::fork();
+  if (child < 0) return (Message() << "no process: " << std::strerror(errno)).error(ErrorCode::kSystem);
+  if (child == 0) {
+    blocked.undo();
+    live(play, record, options, traced);
+  }
+  PlayEnd end;
+  Watcher watcher(record, options.patience);
+  end.has_hung = watch_child(child, watcher, end.process);
+  return end;
+}
+
+}  // namespace
+
+Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configuration, const InputForm& form,
+                        const Inputs& inputs, const TrialOptions& options) {
+  std::size_t payload = 0;
+  (void)output_places(configuration.spec(), payload);
+  Trial trial(inputs.rows(), payload);
+  const auto play_of = [&](const SharedRecord& record) { return Play{entry, configuration, form, inputs, record}; };
+  auto end = run([&] { play_inputs(play_of(trial.counted)); }, trial.counted.record(), options, true);
+  if (!end) return end.error();
+  trial.counted_end = *end;
+  end = run([&] { play_inputs(play_of(trial.timed)); }, trial.timed.record(), options, false);
+  if (!end) return end.error();
+  trial.timed_end = *end;
+  const auto good = trial.counted.rows();
+  end = run([&] { play_troubles(play_of(trial.troubled), good); }, trial.troubled.record(), options, false);
+  if (!end) return end.error();
+  trial.troubled_end = *end;
+  return trial;
+}
+
+Result<std::string> descriptor_text(const std::string& object_file, const TrialOptions& options) {
+  SharedRecord record(0, 0);
+  constexpr std::size_t kBytes = kMaxDescriptorBytes + 1;
+  void* shared = ::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) return (Message() << std::strerror(errno)).error(ErrorCode::kSystem);
+  auto* text = static_cast<char*>(shared);
+  const auto ask = [&] {
+    const auto said = [&]() -> Result<std::string> {
+      const auto object = SharedObject::open(object_file);
+      if (!object) return object.error();
+      if (object->components().size() != 1)
+        return (Message() << "offers " << object->components().size() << " components; one is tested at a time")
+            .error(ErrorCode::kBadInput, object_file);
+      const auto descriptor = describe(*object->components()[0]);
+      if (!descriptor) return descriptor.error();
+      return to_json(*descriptor);
+    }();
+    if (said && said->size() < kBytes) std::memcpy(text, said->data(), said->size());
+    if (said) return;
+    char (&refusal)[sizeof(Record::refusal)] = record.record().refusal;
+    std::snprintf(refusal, sizeof refusal, "%s", std::string(said.error().message.view()).c_str());
+  };
+  const auto end = run(ask, record.record(), options, false);
+  const std::string found(text);
+  ::munmap(shared, kBytes);
+  if (!end) return end.error();
+  if (!found.empty() && end->is_clean()) return found;
+  const char* refusal = record.record().refusal;
+  return (Message() << (refusal[0] != '\0' ? refusal : "dies or hangs when it is opened"))
+      .error(ErrorCode::kBadInput, object_file);
+}
+
+}  // namespace chimera::trial
