@@ -97,7 +97,7 @@ class OneTest {
     trial::TrialReport said;
     said.component = entry_.descriptor.name;
     std::string text = report.text();
-    while (!text.empty() && text.back() == '\n') text.pop_back();
+    text += "docs/formats/component-test.md: what " + said.component + ".test.yaml beside the component may say";
     said.judgements.push_back({"setup", trial::Finding::kFails, text});
     return said;
   }
@@ -167,7 +167,8 @@ std::string json_of(const trial::TrialReport& report) {
 
 Error unknown(const std::string& name, const Library& library) {
   const std::string nearest = library.nearest_name(name);
-  const std::string help = nearest.empty() ? "; `chimera list` names those that are" : "; did you mean '" + nearest + "'?";
+  const std::string help =
+      nearest.empty() ? "; `chimera list` names those that are" : "; did you mean '" + nearest + "'?";
   return {ErrorCode::kNotFound, {"no component '" + name + "' is installed" + help}, {}};
 }
 
@@ -204,7 +205,7 @@ Output test_components(const TestOptions& options, const Workplace& workplace) {
     if (options.json) rows += (rows.empty() ? "" : ", ") + json_of(*report);
     else output.out += text_of(*report);
   }
-  if (options.json) output.out = "{\"components\": [" + rows + "]}\n";
+  if (options.json) output.out = "{\"reports\": [" + rows + "]}\n";
   return output;
 }
 

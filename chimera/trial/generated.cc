@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generated and spoilt rows. All arithmetic by base/math.h, so that a seed means the same bytes on every machine.
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -51,7 +52,7 @@ Inputs Inputs::generated(const InputForm& form, std::uint64_t seed, std::size_t 
   Inputs made(rows, form.bytes());
   for (std::size_t i = 0; i < rows; ++i) {
     const std::span<std::byte> row = made.writable(i);
-    std::memcpy(row.data(), form.base.data(), row.size());
+    std::ranges::copy(form.base, row.begin());
     for (std::size_t c = 0; c < form.channels.size(); ++c) {
       const Channel& channel = form.channels[c];
       form.put(channel, channel.low + (channel.high - channel.low) * place(seed, c, i, rows), row);

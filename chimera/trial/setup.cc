@@ -78,7 +78,7 @@ Verdict refuse(const std::string& file, Place at, const std::string& message, co
 Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSystem& units) {
   const Descriptor& descriptor = component.descriptor;
   const std::string plain_text = made_up(descriptor);
-  const Reading plain = read_description(plain_text, component.descriptor_file);
+  const Reading plain = read_description(plain_text, descriptor.name + ".test.yaml (made up)");
   CHIMERA_ASSERT(plain.draft && plain.report.is_legal());
   const Library library = Library::of_entries({component}, units);
   if (setup.file.empty()) return verify(plain, library);

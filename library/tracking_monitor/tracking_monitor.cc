@@ -34,7 +34,7 @@ struct TrackingMonitor {
     elapsed_ += c.dt();
     double error = 0;
     for (std::size_t i = 0; i < q.size(); ++i) {
-      if (std::isnan(q[i]) || std::isnan(q_ref[i])) return fault("a position is not a number");
+      if (!std::isfinite(q[i]) || !std::isfinite(q_ref[i])) return fault("a position is not finite");
       error = std::max(error, std::abs(q_ref[i] - q[i]));
       if (elapsed_ <= *window + 1e-9) farthest_[i] = std::max(farthest_[i], std::abs(q[i] - from_[i]));
     }

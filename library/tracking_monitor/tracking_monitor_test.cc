@@ -71,7 +71,7 @@ TEST_F(TrackingMonitorTest, OnBeginsAnew) {
 TEST_F(TrackingMonitorTest, PositionThatIsNotANumberIsAFault) {
   start();
   rig.set("q_ref", std::nan(""), 1);
-  EXPECT_EQ(rig.cycle().text, "a position is not a number");
+  EXPECT_EQ(rig.cycle().text, "a position is not finite");
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ def outputs(source):
     yield "list", 0, ["list"]
     yield "descriptor", 0, ["describe", "gain"]
     yield "error", 1, ["describe", "gian"]
+    yield "test", 1, ["test", "accel", "--setup", source / "library/brake/brake.test.yaml"]
+    yield "test", 0, ["test", "gain", "--cycles", "50"]
     yield "error", 1, ["run", examples[0], "--virtual", "--for", "1 s", "--expect", "nothing at all"]
     for path in examples:
         yield "check", 0, ["check", path]
@@ -54,7 +56,7 @@ def main():
     program, source = sys.argv[1], pathlib.Path(sys.argv[2])
     schema = json.loads((source / "docs/formats/run.schema.json").read_text())
     jsonschema.Draft7Validator.check_schema(schema)
-    judges = {kind: definition(schema, kind) for kind in ("run", "check", "list", "error")}
+    judges = {kind: definition(schema, kind) for kind in ("run", "check", "list", "test", "error")}
     judges["descriptor"] = jsonschema.Draft7Validator(
         json.loads((source / "docs/formats/descriptor.schema.json").read_text()))
     any_output = jsonschema.Draft7Validator(schema)
@@ -72,7 +74,7 @@ def main():
             faults.append(f"{called}: is not exactly one kind of output")
         texts[called], last[kind] = run.stdout, printed
     # The schema itself: whatever is missing is noticed. Methods and variables are keys of the application's own.
-    for kind in ("run", "check", "list", "error"):
+    for kind in ("run", "check", "list", "test", "error"):
         for at, smaller in cut(last[kind]):
             free = at[-1] == "last_fault" or (len(at) > 1 and at[-2] in ("execution_ns", "variables"))
             if not free and judges[kind].is_valid(smaller):

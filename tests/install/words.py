@@ -78,7 +78,9 @@ def main():
         faults.append(f"the help was not understood: {wanted}")
     for words, offered in ((["de"], {"describe"}), (["check", "--gr"], {"--graph"}),
                            (["check", "--graph", "d"], {"dot"}), (["new", "c"], {"component"}),
-                           (["run", "--seed", ""], set()), (["describe", "gai"], {"gain"})):
+                           (["run", "--seed", ""], set()), (["describe", "gai"], {"gain"}),
+                           (["test", "--se"], {"--seed", "--setup"}),
+                           (["test", "gai"], {"gain"})):
         if (got := complete(completion, program, words)) != offered:
             faults.append(f"completion of {words}: {sorted(got)}, expected {sorted(offered)}")
     for fault in faults:

@@ -5,7 +5,7 @@
 # The options of each command, and at the top level the commands too.
 _chimera_words() {
   case $1 in
-    '') echo '--help --version check run idle list describe new clear end events flag get kill off on profile' \
+    '') echo '--help --version check run idle list describe test new clear end events flag get kill off on profile' \
       'reinit save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --graph' ;;
     run) echo '--help --for --at --watch --every --expect --trace --timeline --virtual --preemptive --seed --quantum' \
@@ -13,6 +13,7 @@ _chimera_words() {
     idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
+    test) echo '--help --all --setup --inputs --names --seed --cycles --json' ;;
     clear | end | flag | kill | off | on | profile | reinit | set | spawn | status | why)
       echo '--help --json --subsystem' ;;
     events) echo '--help --json --subsystem --since --follow' ;;
@@ -50,8 +51,8 @@ _chimera() {
     --observe-group | --operate-group | --configure-group)
       mapfile -t COMPREPLY < <(compgen -g -- "$word"); return ;;
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
-    --trace | --csv | --svg) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
-    --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | --since | --trigger | \
+    --trace | --csv | --svg | --setup | --inputs) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    --names | --cycles | --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | --since | --trigger | \
       --pre | --wait | --subsystem) return ;;
   esac
   if [[ $word == -* || -z $command || $command == new ]]; then
@@ -68,6 +69,8 @@ _chimera() {
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   elif [[ $command == describe ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_components)" -- "$word")
+  elif [[ $command == test ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$(_chimera_components)" -- "$word"; compgen -f -X '!*.so' -- "$word")
   fi
 }
 complete -o filenames -F _chimera chimera
