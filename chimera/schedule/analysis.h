@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/schedule/level.h"
 #include "chimera/schedule/work.h"
 
 namespace chimera {
@@ -40,33 +41,19 @@ struct WorkVerdict {
   std::uint32_t level = 0;        ///< 0 goes first
 };
 
-/// The demand of a level at the instant that decides.
-struct Demand {
-  Nanoseconds within;  ///< a busy interval of this length; 0: no demand was asked for, or it never exceeds
-  Nanoseconds ends;    ///< when its work would be done: later than `within` is a miss
-};
-
 struct CpuVerdict {
   std::uint32_t cpu = 0;
   std::uint32_t tasks = 0;
   std::uint32_t unstated = 0;      ///< tasks without a time
   double utilisation = 0;          ///< of those with one
   double rate_monotonic_bound = 0;  ///< n(2^(1/n) - 1): Liu & Layland, J. ACM 20(1), 1973
-  double hyperbolic = 0;  ///< product of (1 + u), at most 2 is enough: Bini & Buttazzo, IEEE Trans. Computers 52(7), 2003
+  double hyperbolic = 0;  ///< product of (1 + u); at most 2 is enough: Bini & Buttazzo, IEEE Trans. Comp. 52(7), 2003
   std::uint32_t guaranteed = 0;
   std::uint32_t not_guaranteed = 0;  ///< kNo and kTooLong
   Demand demand;                   ///< the first level found wanting
 
   /// Every task with a stated time keeps its deadline.
   bool fits() const noexcept { return not_guaranteed == 0; }
-};
-
-/// A task in the order of levels; memory of the analysis.
-struct RankedWork {
-  Work work;
-  std::uint32_t task = 0;   ///< index in the set
-  std::uint32_t level = 0;
-  std::uint32_t band = 0;
 };
 
 /// Judges the tasks of `works` that run on `cpu`. `verdicts` is as long as `works`; only those of this CPU are written.

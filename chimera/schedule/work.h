@@ -37,6 +37,7 @@ enum class Dispatch : std::uint8_t { kPreemptive, kExecutive };
 /// everything of a lower one.
 struct ProcessorUse {
   std::uint32_t cpu = 0;
+  std::uint32_t criticality = 0;  ///< of its most critical task, ON or not: settles the band, ties by index
   Policy policy = Policy::kEdf;
   Dispatch dispatch = Dispatch::kPreemptive;
   Nanoseconds quantum = milliseconds(1);  ///< laxity policies: a running job is compared again this often
