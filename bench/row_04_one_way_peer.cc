@@ -150,8 +150,8 @@ struct Peer {
 };
 
 std::vector<Peer> peers() {
-  std::vector<Peer> all{{{"iceoryx", nullptr}, 5, "libiceoryx-posh-dev"},
-                        {{"Cyclone DDS", nullptr, true}, 30, "cyclonedds-dev"}};
+  std::vector<Peer> all{{{"iceoryx", nullptr}, 5, "iceoryx and libiceoryx-posh-dev"},
+                        {{"Cyclone DDS", nullptr, true}, 30, "cyclonedds-dev and cyclonedds-tools"}};
 #ifdef CHIMERA_ICEORYX
   all[0].named.make = iceoryx_side;
 #endif
@@ -183,7 +183,7 @@ int measure(const std::vector<Peer>& all) {
   std::size_t next = 1;
   for (const Peer& peer : all) {
     if (peer.named.make != nullptr) report(sides, next++, peer);
-    else print({.row = 4, .what = "80 B one way beside " + peer.named.name + ": not measured, no " + peer.package});
+    else print({.row = 4, .what = "80 B one way beside " + peer.named.name + ": skipped, needs " + peer.package});
   }
   return 0;
 }
