@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/config/recorded_profile.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "chimera/config/json_cursor.h"
+#include "chimera/config/json_text.h"
+
+namespace chimera {
+namespace {
+
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kMostBytes = 256 * 1024;
+constexpr std::size_t kNesting = 4;
+constexpr std::size_t kMostTasks = 256;
+constexpr std::size_t kMostName = 100;
+constexpr std::int64_t kLongest = 3'600'000'000'000;  // the longest period there is
+constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 53;
+
+std::uint64_t count_at(const JsonCursor& at, std::uint64_t most) {
+  const auto& json = at.value();
+  if (!json.is_number_unsigned() || json.get<std::uint64_t>() > most)
+    at.refuse("expected a whole number from 0 to " + std::to_string(most));
+  return json.get<std::uint64_t>();
+}
+
+Nanoseconds time_at(const JsonCursor& at, std::string_view key) {
+  return {static_cast<std::int64_t>(count_at(at.at(key), kLongest))};
+}
+
+std::string name_at(const JsonCursor& at) {
+  std::string name = at.text();
+  if (name.empty() || name.size() > kMostName) at.refuse("expected a name of 1 to 100 bytes");
+  return name;
+}
+
+RecordedTask task_at(const JsonCursor& at) {
+  at.expect_keys({"task", "samples", "worst_ns", "mean_ns", "response_ns", "jitter_ns"}, {});
+  RecordedTask task;
+  task.task = name_at(at.at("task"));
+  task.samples = count_at(at.at("samples"), kMostSamples);
+  task.worst = time_at(at, "worst_ns");
+  task.mean = time_at(at, "mean_ns");
+  task.response = time_at(at, "response_ns");
+  task.jitter = time_at(at, "jitter_ns");
+  if (task.mean > task.worst) at.at("mean_ns").refuse("is above worst_ns");
+  if (task.samples > 0 && task.worst.count == 0) at.at("worst_ns").refuse("is 0 with samples");
+  return task;
+}
+
+RecordedProfile profile_at(const JsonCursor& at) {
+  at.expect_keys({"version", "subsystem", "tasks"}, {});
+  if (at.at("version").whole() != kVersion) at.at("version").refuse("expected 1");
+  RecordedProfile profile;
+  profile.subsystem = name_at(at.at("subsystem"));
+  const JsonCursor tasks = at.at("tasks");
+  const std::size_t n = tasks.size(kMostTasks);
+  for (std::size_t i = 0; i < n; ++i) {
+    RecordedTask task = task_at(tasks.at(i));
+    for (const RecordedTask& other : profile.tasks)
+      if (other.task == task.task) tasks.at(i).at("task").refuse("task '" + task.task + "' comes twice");
+    profile.tasks.push_back(std::move(task));
+  }
+  return profile;
+}
+
+Error bad(const std::string& message, std::string_view where) {
+  return {ErrorCode::kBadInput, {std::string_view(message)}, {where}};
+}
+
+}  // namespace
+
+const RecordedTask* RecordedProfile::find(std::string_view task) const {
+  for (const RecordedTask& recorded : tasks)
+    if (recorded.task == task && recorded.samples > 0) return &recorded;
+  return nullptr;
+}
+
+std::string to_json(const RecordedProfile& profile) {
+  std::string rows;
+  for (const RecordedTask& task : profile.tasks)
+    rows += (rows.empty() ? "\n    " : ",\n    ") + std::string("{\"task\": ") + json_string(task.task) +
+            ", \"samples\": " + std::to_string(task.samples) + ", \"worst_ns\": " + std::to_string(task.worst.count) +
+            ", \"mean_ns\": " + std::to_string(task.mean.count) +
+            ", \"response_ns\": " + std::to_string(task.response.count) +
+            ", \"jitter_ns\": " + std::to_string(task.jitter.count) + "}";
+  return "{\n  \"version\": 1,\n  \"subsystem\": " + json_string(profile.subsystem) + ",\n  \"tasks\": [" + rows +
+         (rows.empty() ? "" : "\n  ") + "]\n}\n";
+}
+
+Result<RecordedProfile> parse_recorded_profile(std::string_view json) {
+  try {
+    const nlohmann::json tree = read_json(json, kMostBytes, kNesting);
+    return profile_at(JsonCursor(tree, "$"));
+  } catch (const JsonRefusal& refusal) {
+    return bad(refusal.message, "profile");
+  }
+}
+
+Result<RecordedProfile> read_recorded_profile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Error{ErrorCode::kNotFound, {std::string_view(std::strerror(errno))}, {path}};
+  std::string text(kMostBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) return Error{ErrorCode::kSystem, {"cannot be read"}, {path}};
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kMostBytes) return bad("is larger than 256 KiB", path);
+  auto profile = parse_recorded_profile(text);
+  if (!profile) return bad(std::string(profile.error().message.view()), path);
+  return profile;
+}
+
+}  // namespace chimera
