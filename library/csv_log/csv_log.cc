@@ -19,26 +19,13 @@
 #include <vector>
 
 #include "chimera/task/component.h"
+#include "library/signals/number_at.h"
 
 using namespace chimera;
 
 namespace {
 
 constexpr std::size_t kTextBytes = 1 << 16;  // gathered for one write
-
-double number_at(const std::byte* at, std::uint32_t type) noexcept {
-  const auto as = [at]<class T>(T value) {
-    std::memcpy(&value, at, sizeof value);
-    return static_cast<double>(value);
-  };
-  switch (type) {
-    case CHIMERA_BOOL: return as(std::uint8_t{});
-    case CHIMERA_INT32: return as(std::int32_t{});
-    case CHIMERA_INT64: return as(std::int64_t{});
-    case CHIMERA_FLOAT32: return as(float{});
-    default: return as(double{});
-  }
-}
 
 struct CsvLog {
   Many<In<Any[]>>       in{"in*", "U", "[n<=16]", type = "T", doc = "What is kept: numbers or truth values."};
@@ -77,8 +64,10 @@ struct CsvLog {
     *row++ = static_cast<double>((c.now() - origin_).count) * 1e-9;
     for (const auto& port : in) {
       const std::span<const std::byte> bytes = port.bytes();
-      for (std::size_t i = 0; i < port.size(); ++i)
-        *row++ = port.valid() ? number_at(bytes.data() + i * port.element_size(), port.element_type()) : std::nan("");
+      for (std::size_t i = 0; i < port.size(); ++i) {
+        const double value = library::number_at(bytes.data() + i * port.element_size(), port.element_type());
+        *row++ = port.valid() ? value : std::nan("");
+      }
     }
     // SYNC: pairs with the acquire in background(): the row is whole before it is counted.
     put_.store(put + 1, std::memory_order_release);

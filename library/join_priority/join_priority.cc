@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Joins several producers of one quantity: the first that is alive counts. README.md is the data sheet.
+#include <algorithm>
+
+#include "chimera/task/component.h"
+#include "library/signals/input.h"
+
+using namespace chimera;
+
+struct JoinPriority {
+  Many<In<double[]>> in{"in*", "U", "[n<=64]", doc = "The producers, the most important first."};
+  InConst<double>    max_age{"max_age", "s", initial = 0.1, range(0, 86400),
+                             doc = "A value older than this does not count; 0: no age is too old."};
+  Out<double[]>      out{"out", "U", "[n<=64]",
+                         doc = "The values of the first that counts; the last ones stand while none does."};
+  Out<std::int32_t>  chosen{"chosen", "1", initial = -1, range(-1, 15),
+                            doc = "Its number, from 0; -1 while none counts."};
+
+  Outcome init() const {
+    if (in.size() == 0) return fault("there is nothing to join: name at least one input");
+    if (!(*max_age >= 0)) return fault("max_age must be 0 s or more");
+    return ok();
+  }
+  Outcome reinit() const { return init(); }
+  void on() { cycle(); }
+  void cycle() {
+    const auto oldest = static_cast<std::int64_t>(std::min(*max_age, 86400.0) * 1e9);
+    *chosen = -1;
+    for (std::size_t i = 0; i < in.size() && *chosen < 0; ++i) {
+      const auto& port = in[i];
+      if (!port.valid() || (oldest > 0 && port.age().count > oldest) || !library::all_finite(port)) continue;
+      std::copy(port.begin(), port.end(), out.begin());
+      *chosen = static_cast<std::int32_t>(i);
+    }
+  }
+};
+CHIMERA_COMPONENT(JoinPriority, "join_priority",
+                  "Joins several producers of one quantity: the first that is alive counts.",
+                  source = "Stewart and Khosla 1994, figure 3");
