@@ -29,6 +29,7 @@ Releases::Releases(TaskSet& set, const RunOptions& options)
     of_[i].start_margin = start_margin(spec);
     of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
+  if (options_.threads != nullptr) kept_.resize(tasks_.size());
 }
 
 void Releases::begin(Nanoseconds origin) noexcept {
@@ -46,7 +47,15 @@ void Releases::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a
   r.task = task;
   r.kind = kind;
   r.rtpu = options_.rtpu;
-  options_.tap->append(r);
+  if (kept_.empty() || !task.is_valid() || !tasks_[task.index].is_busy) return options_.tap->append(r);
+  (void)kept_[task.index].try_push(r);  // one job has fewer
+}
+
+void Releases::flush_records(TaskId id) noexcept {
+  if (options_.tap == nullptr) return;
+  for (const TapRecord& record : kept_[id.index]) options_.tap->append(record);
+  kept_[id.index].clear();
+  if (tasks_[id.index].is_tapped) tap_row(tasks_[id.index]);
 }
 
 // Appends the latest publication of a tapped task, unless that was done before.
@@ -76,7 +85,7 @@ void Releases::take_edge(Nanoseconds now) noexcept {
   if (options_.guest != nullptr) options_.guest->take(*this, now);
   for (Task& task : tasks_) {
     Signal signal;
-    while (!of_[task.id.index].is_busy && !task.in_service && set_.take_pending(task, signal))
+    while (!task.pending.empty() && !task.in_service && may_touch(task.id) && set_.take_pending(task, signal))
       carry_out(task, signal, now);
   }
   refresh_members(now);
@@ -91,7 +100,7 @@ void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
   }
   Task& task = tasks_[act.task.index];
   // A busy task takes it like a signal it sent itself: after its job and the error handling of that.
-  if (!of_[act.task.index].is_busy) carry_out(task, act.signal, now);
+  if (may_touch(act.task)) carry_out(task, act.signal, now);
   else if (!task.outbox.try_push({act.signal, act.task})) record(TapKind::kSignal, now, task.id, 0, 0);
 }
 
@@ -126,6 +135,7 @@ SignalReport Releases::served(TaskId task, Nanoseconds now) noexcept {
 
 void Releases::refresh_members(Nanoseconds now) noexcept {
   for (Task& task : tasks_) {
+    if (!kept_.empty() && task.is_busy) continue;  // its thread has it
     refresh(task, now);
     if (task.is_tapped) tap_row(task);
   }
@@ -171,10 +181,18 @@ void Releases::give_up_starved(Nanoseconds now) noexcept {
   patience_lost_ = false;
   for (Task& task : tasks_) {
     const OfTask& t = of_[task.id.index];
-    if (!t.is_on || t.is_busy || !is_out_of_patience(task)) continue;
+    if (!t.is_on || task.is_busy || !is_out_of_patience(task)) continue;
     give_up(task, now);
     settle(task, now);
   }
+}
+
+void Releases::settle_job(TaskId id, Nanoseconds now) noexcept {
+  const std::uint8_t wants = of_[id.index].wants;
+  of_[id.index].wants = 0;
+  if (wants & kRaiseFlag) raise_flag(now);
+  if (wants & kStop) task_stopped_ = true;
+  settle(tasks_[id.index], now);
 }
 
 // After methods of the task ran outside an edge: what they left behind.
@@ -210,25 +228,24 @@ bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
   }
   const OnMiss reaction = task.spec->on_miss;
   if (task.spec->min_time > Nanoseconds{}) ++task.profile.min_refused;
-  if (reaction == OnMiss::kFlag) raise_flag(now);
+  if (reaction == OnMiss::kFlag) want(task, kRaiseFlag);
   if (reaction == OnMiss::kContinue || reaction == OnMiss::kFlag) return true;
   record(TapKind::kMiss, now, job.task, task.call.cycle);
   drop(dropped);
-  if (reaction == OnMiss::kStop) task_stopped_ = true;
+  if (reaction == OnMiss::kStop) want(task, kStop);
   if (reaction == OnMiss::kError) {
     record_fault(task, Method::kCycle, "its minimum time can no longer be granted", now);
     follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], now);
   }
   if (is_out_of_patience(task) && task.state == State::kOn) give_up(task, now);
-  settle(task, now);
+  want(task, kSettle);
   return false;
 }
 
-void Releases::end_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
-                       Nanoseconds used) noexcept {
+void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
+                            Nanoseconds used) noexcept {
   Task& task = tasks_[job.task.index];
   OfTask& t = of_[job.task.index];
-  t.is_busy = false;
   bool may_publish = true;
   bool failed = false;
   if (body.answer != Answer::kNoEvent) {
@@ -246,8 +263,8 @@ void Releases::end_job(const Job& job, const CycleTime& time, BodyEnd body, Nano
   if (failed && is_out_of_patience(task) && state == State::kOn) give_up(task, end);
   const bool listens = options_.tap != nullptr || options_.guest != nullptr;
   const bool tells = listens && task.faults.count != t.faults_seen;
-  if (task.state != State::kOn || !task.outbox.empty() || tells) settle(task, end);
-  else if (task.is_tapped) tap_row(task);
+  if (task.state != State::kOn || !task.outbox.empty() || tells) want(task, kSettle);
+  else if (task.is_tapped && kept_.empty()) tap_row(task);
 }
 
 // A failure of time was seen: counts it and says whether the result may still be published.
@@ -284,10 +301,10 @@ bool Releases::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why
       body.answer = Answer::kFault;
       return false;
     case OnMiss::kFlag:
-      raise_flag(at);
+      want(task, kRaiseFlag);
       return true;
     case OnMiss::kStop:
-      task_stopped_ = true;
+      want(task, kStop);
       return true;
   }
   return true;

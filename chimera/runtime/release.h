@@ -34,6 +34,17 @@
 
 namespace chimera {
 
+/// Who runs the jobs, where that is not the executor's own thread: every task has one.
+class JobThreads {
+ public:
+  /// Keeps the task's thread from beginning a job until the edge is over; a job that waits is put back. False while a
+  /// job of it is under way: then an edge follows its end. Context: edge; wait-free.
+  virtual bool claim(TaskId task) noexcept = 0;
+
+ protected:
+  ~JobThreads() = default;
+};
+
 /// How a context is to be run. What it points at outlives the executor.
 struct RunOptions {
   Policy policy = Policy::kEdf;
@@ -42,6 +53,7 @@ struct RunOptions {
   std::uint8_t rtpu = 0;                     ///< for the records
   EdgeGuest* guest = nullptr;                ///< null: nobody else takes part in the edges
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
+  JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
 };
 
 /// A signal that was refused, from the script or from a task.
@@ -104,28 +116,47 @@ class Releases {
   ReadyQueue& queue() noexcept { return queue_; }
   Task& task(TaskId id) noexcept { return tasks_[id.index]; }
   bool is_on(TaskId id) const noexcept { return of_[id.index].is_on; }
+  /// May an edge touch the task now? Not while a job of it is under way. Context: edge.
+  bool may_touch(TaskId id) noexcept {
+    return options_.threads != nullptr ? options_.threads->claim(id) : !tasks_[id.index].is_busy;
+  }
 
   /// False when the job must not start: its release is then counted as dropped, with all that follows.
   bool may_start(const Job& job, Nanoseconds now) noexcept {
     const OfTask& t = of_[job.task.index];
     record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle);
     if (!t.skip_next && now + t.start_margin <= job.deadline) return true;
-    return decide_start(job, now);
+    const bool starts = decide_start(job, now);
+    if (t.wants != 0 && options_.threads == nullptr) settle_job(job.task, now);
+    return starts;
   }
   /// Runs the body: inputs are read at this moment, nothing is published. `time` is for end().
   BodyEnd begin_job(const Job& job, CycleTime& time) noexcept {
-    OfTask& t = of_[job.task.index];
-    t.is_busy = true;
+    Task& task = tasks_[job.task.index];
+    task.is_busy = true;
     // Field by field: a copy of a fresh aggregate loads wider than it was stored, and waits for the store buffer.
     time.release = job.release;
     time.deadline = job.deadline;
-    time.dropped = t.dropped;
+    time.dropped = of_[job.task.index].dropped;
     time.illegal = set_.is_illegal();
-    return begin_cycle(tasks_[job.task.index], time);
+    return begin_cycle(task, time);
   }
   /// The job ended at `end`, begun at `start`, having used `used` of execution time.
   void end_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
-               Nanoseconds used) noexcept;
+               Nanoseconds used) noexcept {
+    tasks_[job.task.index].is_busy = false;
+    conclude_job(job, time, body, start, end, used);
+    if (of_[job.task.index].wants != 0) settle_job(job.task, end);
+  }
+  /// The first half of end_job, which touches nothing but the task: failures of time, publication, error handling.
+  /// Context: cycle, on the task's own thread.
+  void conclude_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
+                    Nanoseconds used) noexcept;
+  /// What jobs of the task left for the others: the flag, signals sent, its state. Context: edge.
+  void settle_job(TaskId id, Nanoseconds now) noexcept;
+  bool is_unsettled(TaskId id) const noexcept { return of_[id.index].wants != 0; }
+  /// With threads: hands over the records that the task's thread kept. Context: whoever may append to the tap.
+  void flush_records(TaskId id) noexcept;
   /// The job began and is abandoned at its deadline (reaction abort): counts the miss; end_job follows.
   void abandon(const Job& job) noexcept { count_miss(tasks_[job.task.index], job.deadline, {}); }
   /// The job never started and its deadline has come (reaction abort).
@@ -138,6 +169,8 @@ class Releases {
   void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept {
     if (options_.tap != nullptr) append(kind, at, task, a, b);
   }
+  /// A release that will not run for lack of time. Context: cycle, as may_start.
+  void drop(const DroppedRelease& dropped) noexcept;
 
  private:
   // Everything a job needs beside the Task, in one cache line.
@@ -148,14 +181,16 @@ class Releases {
     std::uint32_t dropped = 0;  // since the last completed cycle
     bool skip_next = false;
     bool is_on = false;
-    bool is_busy = false;
+    std::uint8_t wants = 0;     // of the others, once its job is over
     std::uint32_t rows = 0;     // appended to the tap
     std::uint64_t tapped = 0;   // sequence of the last of them
   };
+  enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4 };
+  /// What one job records at most is kept until it may go to the tap.
+  using Kept = FixedVector<TapRecord, 16>;
 
   void append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept;
   void tap_row(const Task& task) noexcept;
-  void drop(const DroppedRelease& dropped) noexcept;
   void drop_on_purpose(const DroppedRelease& dropped) noexcept;
   void give_up_starved(Nanoseconds now) noexcept;
   static bool is_out_of_patience(const Task& task) noexcept {
@@ -179,6 +214,9 @@ class Releases {
   void record_faults(Task& task) noexcept;
   void settle(Task& task, Nanoseconds now) noexcept;
   void raise_flag(Nanoseconds at) noexcept;
+  void want(const Task& task, Wants what) noexcept {
+    of_[task.id.index].wants = static_cast<std::uint8_t>(of_[task.id.index].wants | what);
+  }
 
   TaskSet& set_;
   std::span<Task> tasks_;
@@ -186,6 +224,7 @@ class Releases {
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever;  ///< of the script, on the clock
   std::vector<OfTask> of_;
+  std::vector<Kept> kept_;  // with threads: by task
   std::vector<QueueMember> members_;
   std::vector<QueueClass> classes_;
   std::vector<QueueTask> queue_tasks_;

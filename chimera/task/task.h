@@ -74,6 +74,8 @@ struct Task {
   Profile profile;
   FixedVector<SentSignal, kOutboxSize> outbox;
 
+  bool is_busy = false;  ///< a job of it is under way; by the executor
+
   // Written by the executor and the task set at edges.
   chimera_background background = nullptr;  ///< from the end of init to kill; null: the component has none
   bool in_service = false;  ///< init or kill is run by the service thread: nobody else touches the task

@@ -73,9 +73,7 @@ void LabelList::label(std::size_t at) noexcept {
   }
   if (make_room(at, kFewMoves)) return;
   if (at - n_parked_ <= kFewMoves) return park_up_to(at + 1);
-  if (make_room(at, jobs_.size())) return;
-  // No level is free at all: the least urgent labelled job gives up its own.
-  park_up_to(n_parked_ + 1);
+  park_up_to(n_parked_ + (at - n_parked_) / 2);  // more than one at a time, or the next insertion is here again
   const bool made = make_room(at, jobs_.size());
   CHIMERA_ASSERT(made);
 }

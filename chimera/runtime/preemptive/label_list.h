@@ -37,7 +37,7 @@ struct LevelChange {
 class LabelList {
  public:
   /// Moves of other jobs that one insertion makes to find a free level, before it parks instead.
-  static constexpr std::size_t kFewMoves = 3;
+  static constexpr std::size_t kFewMoves = 4;
 
   /// Jobs of at most `capacity` tasks, at levels base (parked) and base+1 .. ceiling-1. Requires: ceiling - base >= 2.
   LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling);
