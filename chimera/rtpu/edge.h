@@ -24,6 +24,7 @@ class Edge final : public EdgeGuest {
 
   void take(Releases& releases, Nanoseconds now) noexcept override;
   void told(const SignalReport& report, Nanoseconds now) noexcept override;
+  void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
   /// The reaction `stop` of a task: turns all tasks of the unit OFF.
   void stop_all(Releases& releases, Nanoseconds now) noexcept;
   /// Before a wait: shows what the tasks cost, a few of them at a time.

@@ -15,7 +15,7 @@ constexpr std::uint32_t kFlagIllegalSet = 1, kFlagRaised = 2;
 Others::Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
                DecisionPage& decision, const KeeperPage& keeper, Peers& peers)
     : spec_(&spec), me_(me), segment_(segment), block_(block), decision_(&decision), keeper_(&keeper), peers_(&peers),
-      inboxes_(peers.count()) {
+      inboxes_(peers.count()), is_read_(peers.count()) {
   for (std::uint32_t peer = 0; peer < peers.count(); ++peer)
     outboxes_.emplace_back(block_.outbox(peer), nullptr, block_.head().incarnation);
   flags_.reserve(peers.count());
@@ -130,8 +130,9 @@ void Others::faulted(const Task& task) noexcept {
 
 bool Others::adopt() noexcept {
   bool any = false;
+  let_go_unread();
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
-    if (peer == me_ || !peers_->adopt(peer)) continue;
+    if (peer == me_ || is_read_[peer] || !peers_->adopt(peer)) continue;
     any = true;
     const MappedPeer& mapped = *peers_->at(peer);
     outboxes_[peer].set_reader(&mapped.block.progress(me_));
@@ -140,9 +141,18 @@ bool Others::adopt() noexcept {
     for (const TaskSpec& task : spec_->tasks)
       if (task.rtpu.index == peer) tasks_->let_go(TaskId(static_cast<std::size_t>(&task - spec_->tasks.data())));
     watch_flags();
-    peers_->let_go(peer);
+    is_read_[peer] = true;
   }
+  let_go_unread();
   return any;
+}
+
+void Others::let_go_unread() noexcept {
+  if (tasks_->is_any_behind()) return;
+  for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
+    if (is_read_[peer]) peers_->let_go(peer);
+    is_read_[peer] = false;
+  }
 }
 
 bool Others::take(Post& post) noexcept {

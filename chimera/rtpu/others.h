@@ -30,7 +30,8 @@ class Others final : public Neighbours {
   void changed() noexcept override;
   void faulted(const Task& task) noexcept override;
 
-  /// Takes over segments that the main thread offered; true when there was one. Context: edge.
+  /// Takes over segments that the main thread offered; true when there was one. One that follows another waits until
+  /// no task reads that any more. Context: edge.
   bool adopt() noexcept;
   /// The next post of any peer. Context: edge; wait-free.
   bool take(Post& post) noexcept;
@@ -52,6 +53,7 @@ class Others final : public Neighbours {
   bool lives(std::uint32_t peer) const noexcept;
   GroupReader group(std::uint32_t peer, GroupId id) const noexcept;
   void watch_flags() noexcept;
+  void let_go_unread() noexcept;
   void ring(std::uint32_t peer) noexcept { Doorbell(decision_->bells[peer].word).ring(); }
   std::uint32_t flag_word() const noexcept;
 
@@ -65,6 +67,7 @@ class Others final : public Neighbours {
   TaskSet* tasks_ = nullptr;
   std::vector<Outbox> outboxes_;  // by peer
   std::vector<Inbox> inboxes_;    // by peer
+  std::vector<bool> is_read_;     // by peer: a task may still read the segment before the present one
   std::vector<const std::atomic<std::uint32_t>*> flags_;
 };
 

@@ -36,7 +36,7 @@ RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
     const Job job = queue.pop();
     if (!releases.may_start(job, now)) continue;
     CycleTime cycle;
-    const BodyEnd body = releases.begin_job(job, cycle);
+    const BodyEnd body = releases.begin_job(job, cycle, releases.is_illegal());
     const Nanoseconds end = time.end_of(job, body, now);
     releases.record(TapKind::kRun, now, job.task, CHIMERA_CYCLE, (end - now).count);
     releases.end_job(job, cycle, body, now, end, end - now);

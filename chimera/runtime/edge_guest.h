@@ -26,6 +26,8 @@ class EdgeGuest {
   virtual void take(Releases& releases, Nanoseconds now) noexcept = 0;
   /// A signal that a task of this context sent to one of this context was carried out or refused. Context: edge.
   virtual void told(const SignalReport& report, Nanoseconds now) noexcept = 0;
+  /// A job of the task is over and its numbers may be shown. Context: edge.
+  virtual void show(const Task& task) noexcept = 0;
 
  protected:
   explicit EdgeGuest(const std::atomic<std::uint32_t>& bell) noexcept : bell_(&bell) {}

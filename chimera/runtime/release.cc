@@ -14,7 +14,10 @@ Nanoseconds start_margin(const TaskSpec& spec) noexcept {
   return spec.on_miss == OnMiss::kAbort ? Nanoseconds{1} : Nanoseconds{INT64_MIN / 2};
 }
 
-bool is_built(OnMiss reaction) noexcept { return reaction != OnMiss::kDemote && reaction != OnMiss::kSwitch; }
+// Only a job with a thread of its own can go on below the others.
+bool is_built(OnMiss reaction, bool has_threads) noexcept {
+  return reaction != OnMiss::kSwitch && (has_threads || reaction != OnMiss::kDemote);
+}
 
 }  // namespace
 
@@ -25,7 +28,8 @@ Releases::Releases(TaskSet& set, const RunOptions& options)
       queue_(options.policy, set.spec().tasks, {members_, classes_, queue_tasks_, loose_, pauses_, runs_}) {
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     const TaskSpec& spec = *tasks_[i].spec;
-    CHIMERA_ASSERT(is_built(spec.on_miss) && is_built(spec.on_overrun));
+    CHIMERA_ASSERT(is_built(spec.on_miss, options_.threads != nullptr) &&
+                   is_built(spec.on_overrun, options_.threads != nullptr));
     of_[i].start_margin = start_margin(spec);
     of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
@@ -40,6 +44,17 @@ void Releases::begin(Nanoseconds origin) noexcept {
 }
 
 void Releases::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
+  const TapRecord r = record_of(kind, at, task, a, b);
+  if (kept_.empty() || !task.is_valid() || !tasks_[task.index].is_busy) return options_.tap->append(r);
+  (void)kept_[task.index].try_push(r);  // one job has fewer
+}
+
+void Releases::record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
+  if (options_.tap != nullptr) options_.tap->append(record_of(kind, at, task, a, b));
+}
+
+TapRecord Releases::record_of(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a,
+                              std::int64_t b) const noexcept {
   TapRecord r;
   r.at = at;
   r.b = b;
@@ -47,8 +62,7 @@ void Releases::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a
   r.task = task;
   r.kind = kind;
   r.rtpu = options_.rtpu;
-  if (kept_.empty() || !task.is_valid() || !tasks_[task.index].is_busy) return options_.tap->append(r);
-  (void)kept_[task.index].try_push(r);  // one job has fewer
+  return r;
 }
 
 void Releases::flush_records(TaskId id) noexcept {

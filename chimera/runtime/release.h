@@ -20,6 +20,7 @@
 // max_consecutive; one that a reaction drops on purpose is not.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <vector>
@@ -93,6 +94,10 @@ class Releases {
   void take_edge(Nanoseconds now) noexcept;
   /// The next instant at which an edge or a release may be due.
   Nanoseconds next_event() const noexcept;
+  /// The same for edges alone, where releases have threads of their own.
+  Nanoseconds next_edge() const noexcept {
+    return options_.guest == nullptr ? next_act_ : std::min(next_act_, options_.guest->next_due());
+  }
   /// True while a task is ON or may yet be turned ON.
   bool anything_left() const noexcept {
     return n_on_ > 0 || set_.has_pending() || next_act_ != kNever || options_.guest != nullptr;
@@ -130,15 +135,17 @@ class Releases {
     if (t.wants != 0 && options_.threads == nullptr) settle_job(job.task, now);
     return starts;
   }
+  /// The illegal-configuration flag, to be read once for each job. Context: edge.
+  bool is_illegal() const noexcept { return set_.is_illegal(); }
   /// Runs the body: inputs are read at this moment, nothing is published. `time` is for end().
-  BodyEnd begin_job(const Job& job, CycleTime& time) noexcept {
+  BodyEnd begin_job(const Job& job, CycleTime& time, bool illegal) noexcept {
     Task& task = tasks_[job.task.index];
     task.is_busy = true;
     // Field by field: a copy of a fresh aggregate loads wider than it was stored, and waits for the store buffer.
     time.release = job.release;
     time.deadline = job.deadline;
     time.dropped = of_[job.task.index].dropped;
-    time.illegal = set_.is_illegal();
+    time.illegal = illegal;
     return begin_cycle(task, time);
   }
   /// The job ended at `end`, begun at `start`, having used `used` of execution time.
@@ -169,6 +176,16 @@ class Releases {
   void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept {
     if (options_.tap != nullptr) append(kind, at, task, a, b);
   }
+  /// The same past those, from the section of a preemptive processor.
+  void record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
+  /// flag or stop, at the moment at which a job is seen to have used more than its budget. Context: edge.
+  void act_on_overrun(TaskId task, OnMiss reaction) noexcept {
+    want(tasks_[task.index], reaction == OnMiss::kStop ? kStop : kRaiseFlag);
+  }
+  /// A dropped release made some task's misses too many. Context: edge.
+  bool has_lost_patience() const noexcept { return patience_lost_; }
+  /// Ends those tasks: nobody else would, when others never let them start. Context: edge.
+  void give_up_starved(Nanoseconds now) noexcept;
   /// A release that will not run for lack of time. Context: cycle, as may_start.
   void drop(const DroppedRelease& dropped) noexcept;
 
@@ -190,9 +207,9 @@ class Releases {
   using Kept = FixedVector<TapRecord, 16>;
 
   void append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept;
+  TapRecord record_of(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) const noexcept;
   void tap_row(const Task& task) noexcept;
   void drop_on_purpose(const DroppedRelease& dropped) noexcept;
-  void give_up_starved(Nanoseconds now) noexcept;
   static bool is_out_of_patience(const Task& task) noexcept {
     const std::uint32_t limit = task.spec->max_consecutive;
     return limit > 0 && task.profile.missed_in_a_row >= limit;

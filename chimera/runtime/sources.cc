@@ -30,7 +30,8 @@ void fill_output(const PortSpec& port, std::span<std::byte> to) noexcept {
 
 void Sources::prepare(const Variables& variables, const PeerLayout& everything, std::span<Task> tasks,
                       std::span<TaskMemory> memories, std::span<const GroupReader> operators,
-                      const Neighbours* others) {
+                      const Neighbours* others, bool preemptive) {
+  preemptive_ = preemptive;
   variables_ = &variables;
   everything_ = &everything;
   tasks_ = tasks;
@@ -39,6 +40,7 @@ void Sources::prepare(const Variables& variables, const PeerLayout& everything, 
   others_ = others;
   sources_.resize(variables.all().size());
   used_.resize(tasks.size());
+  is_behind_.resize(tasks.size());
   for (const Variable& variable : variables.all()) plan_copies(variable);
   std::vector<std::size_t> n(tasks.size());
   std::uint32_t largest = 0;
@@ -51,7 +53,7 @@ void Sources::prepare(const Variables& variables, const PeerLayout& everything, 
     if (variable.operator_index != UINT32_MAX) bind(VariableId(v), operator_source(variable));
     else if (!variable.producers.empty()) bind(VariableId(v), source_from(variable.producers[0]));
   }
-  refresh_readers();
+  everybody_follows();
 }
 
 std::uint32_t Sources::payload_of(const Source& source) const noexcept {
@@ -79,7 +81,7 @@ void Sources::plan_copies(const Variable& variable) {
     if (!is_mine(consumer.task)) continue;
     if (variable.operator_index != UINT32_MAX) plan_copy(consumer.task, operator_source(variable));
     for (const PortOf& producer : variable.producers)
-      if (!is_mine(producer.task)) plan_copy(consumer.task, source_from(producer));
+      if (preemptive_ || !is_mine(producer.task)) plan_copy(consumer.task, source_from(producer));
   }
 }
 
@@ -112,13 +114,17 @@ Sources::Copy* Sources::copy_for(TaskId consumer, const Source& source) noexcept
 
 void Sources::bind(VariableId variable, const Source& source) noexcept {
   sources_[variable.index] = source;
-  for (const PortOf& consumer : variables_->all()[variable.index].consumers)
-    if (is_mine(consumer.task)) bind_input(tasks_[consumer.task.index].inputs[consumer.index], consumer.task, source);
+  for (const PortOf& consumer : variables_->all()[variable.index].consumers) {
+    if (!is_mine(consumer.task)) continue;
+    if (preemptive_ && tasks_[consumer.task.index].is_busy) is_behind_[consumer.task.index] = true;
+    else bind_input(tasks_[consumer.task.index].inputs[consumer.index], consumer.task, source);
+  }
 }
 
 void Sources::bind_input(Input& input, TaskId consumer, const Source& source) noexcept {
-  input.group = source.here.is_bound() ? GroupInput::direct(source.here)
-                                       : GroupInput::following(copy_for(consumer, source)->group);
+  const bool is_direct = source.here.is_bound() && !preemptive_;
+  input.group =
+      is_direct ? GroupInput::direct(source.here) : GroupInput::following(copy_for(consumer, source)->group);
   input.offset = source.offset;
   input.bit = source.bit;
   input.sequence = 0;
@@ -127,7 +133,14 @@ void Sources::bind_input(Input& input, TaskId consumer, const Source& source) no
 void Sources::take_outputs_of(const Task& task) noexcept {
   for (std::uint32_t i = 0; i < task.outputs.size(); ++i)
     bind(variables_->output(task.id, i), source_from({task.id, i}));
-  collect_copies();
+  if (!preemptive_) return everybody_follows();
+  for (Copy& copy : copies_) {
+    if (copy.of.task != task.id) continue;
+    copy.is_bound = copy.was_bound = false;  // that was its last incarnation
+    follow(copy.consumer);
+    if (!is_behind_[copy.consumer.index]) refresh_reader(copy, true);
+    if (!is_behind_[copy.consumer.index]) collect_copies(copy.consumer);
+  }
 }
 
 void Sources::follow_others() noexcept {
@@ -139,37 +152,69 @@ void Sources::follow_others() noexcept {
       if (others_->state(producer.task) == State::kOn) bind(VariableId(v), source_from(producer));
     }
   }
-  refresh_readers();
+  everybody_follows();
 }
 
-// Copies of producers that are ON, and of the operator, read from their present groups. Those of others keep what
+bool Sources::is_on(TaskId task) const noexcept {
+  return (is_mine(task) ? tasks_[task.index].state : others_->state(task)) == State::kOn;
+}
+
+// Copies of producers that are ON, and of the operator, are read from their present groups. Those of others keep what
 // they have: a restarted process shows a group without values before its tasks are ON again.
-void Sources::refresh_readers() noexcept {
-  for (Copy& copy : copies_) {
-    if (copy.of.task.is_valid() && copy.was_bound && others_->state(copy.of.task) != State::kOn) continue;
-    const GroupReader reader = reader_of(copy.of);
-    if (!reader.is_bound()) continue;
-    copy.group.rebind(reader);
-    copy.is_bound = copy.was_bound = true;
+void Sources::refresh_reader(Copy& copy, bool is_new) noexcept {
+  if (copy.of.task.is_valid() && copy.was_bound && !is_new && !is_on(copy.of.task)) return;
+  const bool is_here = copy.of.task.is_valid() && is_mine(copy.of.task);
+  const GroupReader reader = is_here ? memories_[copy.of.task.index].reader() : reader_of(copy.of);
+  if (!reader.is_bound()) return;
+  copy.group.rebind(reader);
+  copy.is_bound = copy.was_bound = true;
+}
+
+void Sources::adopt(TaskId consumer) noexcept {
+  is_behind_[consumer.index] = false;
+  Task& task = tasks_[consumer.index];
+  for (Copy& copy : copies_)
+    if (copy.consumer == consumer) refresh_reader(copy, false);
+  for (std::uint32_t i = 0; preemptive_ && i < task.inputs.size(); ++i) {
+    const Source& source = sources_[variables_->input(consumer, i).index];
+    if (!task.inputs[i].group.follows(copy_for(consumer, source)->group)) bind_input(task.inputs[i], consumer, source);
   }
-  collect_copies();
+  collect_copies(consumer);
+}
+
+void Sources::follow(TaskId consumer) noexcept {
+  if (preemptive_ && tasks_[consumer.index].is_busy) is_behind_[consumer.index] = true;
+  else adopt(consumer);
+}
+
+void Sources::everybody_follows() noexcept {
+  for (const Task& task : tasks_)
+    if (is_mine(task.id)) follow(task.id);
 }
 
 void Sources::let_go(TaskId producer) noexcept {
-  for (Copy& copy : copies_)
-    if (copy.of.task == producer) copy.is_bound = false;
-  collect_copies();
+  for (Copy& copy : copies_) {
+    if (copy.of.task != producer) continue;
+    copy.is_bound = false;
+    if (preemptive_ && tasks_[copy.consumer.index].is_busy) is_behind_[copy.consumer.index] = true;
+    else collect_copies(copy.consumer);
+  }
 }
 
-void Sources::collect_copies() noexcept {
-  for (std::vector<LocalGroup*>& used : used_) used.clear();
+bool Sources::is_any_behind() const noexcept {
+  return std::find(is_behind_.begin(), is_behind_.end(), true) != is_behind_.end();
+}
+
+void Sources::collect_copies(TaskId consumer) noexcept {
+  std::vector<LocalGroup*>& used = used_[consumer.index];
+  Task& task = tasks_[consumer.index];
+  used.clear();
   for (Copy& copy : copies_) {
-    if (!copy.is_bound) continue;
-    Task& task = tasks_[copy.consumer.index];
+    if (copy.consumer != consumer || !copy.is_bound) continue;
     const auto reads = [&copy](const Input& input) { return input.group.follows(copy.group); };
-    if (std::any_of(task.inputs.begin(), task.inputs.end(), reads)) used_[copy.consumer.index].push_back(&copy.group);
+    if (std::any_of(task.inputs.begin(), task.inputs.end(), reads)) used.push_back(&copy.group);
   }
-  for (std::size_t t = 0; t < used_.size(); ++t) tasks_[t].copies = used_[t];
+  task.copies = used;
 }
 
 const chimera_slot* Sources::latest(VariableId variable) noexcept {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the value of every state variable comes from at present, and the inputs that follow it. Producers of the same
 // context are read in place; all others (another context, the operator) through the register into local copies, one for
-// each pair of a task and a group, so that variables of one group are always of one publication.
+// each pair of a task and a group, so that variables of one group are always of one publication. Where tasks preempt
+// each other each of them is a context of its own.
+//
+// A task whose job is under way keeps what it reads from; it follows with adopt() before its next one.
 //
 // Until a producer goes ON its consumers look at the initial values, or the never-written fill, of the first one.
 #pragma once
@@ -33,9 +36,10 @@ class Sources {
  public:
   /// `everything` lays out all groups of the application; `memories[t]` is planned for the tasks of this context and
   /// empty for those of others; `operators[o]` is the group of operator variable o where this context holds it itself.
-  /// Context: setup.
+  /// `preemptive`: tasks of this context read each other through copies too. Context: setup.
   void prepare(const Variables& variables, const PeerLayout& everything, std::span<Task> tasks,
-               std::span<TaskMemory> memories, std::span<const GroupReader> operators, const Neighbours* others);
+               std::span<TaskMemory> memories, std::span<const GroupReader> operators, const Neighbours* others,
+               bool preemptive = false);
 
   /// The task, of this context, went ON: whoever reads its variables reads them from its group now.
   void take_outputs_of(const Task& task) noexcept;
@@ -44,6 +48,12 @@ class Sources {
   /// From now on nothing is read from the groups of that task (invalid: the operator): their memory may go. What was
   /// read last stays, until follow_others() finds it produced again.
   void let_go(TaskId producer) noexcept;
+  /// The task reads from where its variables come from now. Requires: no job of it is under way. Wait-free.
+  void adopt(TaskId consumer) noexcept;
+  /// It does not yet.
+  bool is_behind(TaskId consumer) const noexcept { return is_behind_[consumer.index]; }
+  /// Some task may still read what was let go.
+  bool is_any_behind() const noexcept;
 
   const Source& source(VariableId variable) const noexcept { return sources_[variable.index]; }
   /// The latest slot of the group that the variable comes from: in place, or copied into memory of this object that is
@@ -70,8 +80,11 @@ class Sources {
   Copy* copy_for(TaskId consumer, const Source& source) noexcept;
   void bind(VariableId variable, const Source& source) noexcept;
   void bind_input(Input& input, TaskId consumer, const Source& source) noexcept;
-  void refresh_readers() noexcept;
-  void collect_copies() noexcept;
+  void refresh_reader(Copy& copy, bool is_new) noexcept;
+  void collect_copies(TaskId consumer) noexcept;
+  void follow(TaskId consumer) noexcept;
+  void everybody_follows() noexcept;
+  bool is_on(TaskId task) const noexcept;
 
   const Variables* variables_ = nullptr;
   const PeerLayout* everything_ = nullptr;
@@ -83,6 +96,8 @@ class Sources {
   std::deque<Copy> copies_;
   std::vector<AlignedBytes> copy_memory_;
   std::vector<std::vector<LocalGroup*>> used_;  // by task: bound copies that an input follows
+  std::vector<bool> is_behind_;                 // by task
+  bool preemptive_ = false;
   AlignedBytes scratch_;                        // a slot of the largest group
 };
 

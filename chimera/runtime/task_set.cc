@@ -53,7 +53,8 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
   set_constants();
   plan_foreign_constants();
   place_operators();
-  bindings_.prepare(*variables_, *everything_, tasks_, memories_, operators_, place_.others);
+  bindings_.prepare(*variables_, *everything_, tasks_, memories_, operators_, place_.others,
+                    place_.preemptive);
   return {};
 }
 
@@ -226,6 +227,7 @@ void TaskSet::on_set_changed() noexcept {
 std::int32_t TaskSet::host_expired(void* context) {
   const auto* host = static_cast<HostContext*>(context);
   JobClock& clock = host->clock != nullptr ? *host->clock : *host->set->clock_;
+  if (host->task->give_up.load(std::memory_order_relaxed)) return 1;
   return clock.now().count > host->task->call.deadline_ns ? 1 : 0;
 }
 

@@ -53,6 +53,17 @@ struct VariableReader {
   std::uint32_t bit = 0;     ///< of the value in the valid bits
 };
 
+/// Told around every method that runs at an edge, where other tasks may preempt it.
+class MethodGate {
+ public:
+  /// From here to close() the task's method runs, and what the edge may touch may change. Context: edge.
+  virtual void open(TaskId task) noexcept = 0;
+  virtual void close(TaskId task) noexcept = 0;
+
+ protected:
+  ~MethodGate() = default;
+};
+
 /// Where a context stands in the application. By default it is alone: all tasks and operator variables are its own.
 struct ContextPlace {
   RtpuId rtpu;                     ///< whose tasks are its own; invalid: all
@@ -62,6 +73,7 @@ struct ContextPlace {
   /// Told which task and method runs, as BlockHead::running says, by the context and by the service thread.
   std::atomic<std::uint32_t>* running = &running_untold;
   std::atomic<std::uint32_t>* serving = &running_untold;
+  bool preemptive = false;         ///< tasks preempt each other: each reads through copies of its own
 };
 
 class TaskSet {
@@ -82,6 +94,8 @@ class TaskSet {
   /// signalled. Without one that is done before kill alone (and by executors of virtual time). It outlives the set.
   /// Context: setup.
   void attach(BackgroundWriter& writer) noexcept { writer_ = &writer; }
+  /// By executors of preemptive contexts, before anything is signalled. It outlives the set. Context: setup.
+  void attach(MethodGate& gate) noexcept { gate_ = &gate; }
 
   /// Spawns all tasks in the order of their constants and turns the start set ON as one transaction.
   /// Refuses with the first task that said no; whatever was spawned stays as it is. Context: edge.
@@ -104,6 +118,14 @@ class TaskSet {
   void follow_others() noexcept;
   /// Its memory may go: see Sources::let_go. Context: edge.
   void let_go(TaskId producer) noexcept { bindings_.let_go(producer); }
+  /// A task with a job under way may still read what was let go. Context: edge.
+  bool is_any_behind() const noexcept { return bindings_.is_any_behind(); }
+  /// Between two jobs of the task; true when it had something to follow. Context: edge; wait-free.
+  bool adopt(TaskId task) noexcept {
+    if (!bindings_.is_behind(task)) return false;
+    bindings_.adopt(task);
+    return true;
+  }
   /// The flag words of the other contexts, to be read with every job. Context: edge.
   void watch_flags(std::span<const std::atomic<std::uint32_t>* const> flags) noexcept { foreign_flags_ = flags; }
   std::uint32_t incarnation(TaskId task) const noexcept { return memories_[task.index].incarnation(); }
@@ -225,6 +247,7 @@ class TaskSet {
   AlignedBytes constant_scratch_;
   JobClock* clock_ = nullptr;
   BackgroundWriter* writer_ = nullptr;
+  MethodGate* gate_ = nullptr;
   std::span<const std::atomic<std::uint32_t>* const> foreign_flags_;
   std::vector<bool> on_;
   std::vector<bool> wanted_;  // the ON set that was asked for last

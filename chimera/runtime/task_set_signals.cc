@@ -154,7 +154,10 @@ Next TaskSet::conclude(Task& task, const StepRule& step, Answer answer, Nanoseco
 Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock* clock) {
   const Nanoseconds began = clock == nullptr ? now : clock->now();
   if (method == Method::kKill && !end_background(task, now)) return Answer::kFault;
+  MethodGate* gate = clock == clock_ ? gate_ : nullptr;  // not on the service thread
+  if (gate != nullptr) gate->open(task.id);
   Answer answer = call_method(task, method, now);
+  if (gate != nullptr) gate->close(task.id);
   if (method == Method::kInit && answer == Answer::kOk && !begin_background(task, now)) answer = Answer::kFault;
   const Nanoseconds ended = clock == nullptr ? now : clock->now();
   task.profile.execution[static_cast<int>(method)].add(ended - began);
@@ -316,8 +319,9 @@ void TaskSet::reinit_users(TaskId of, Nanoseconds now) {
       continue;
     }
     Task& user = tasks_[id.index];
-    if (user.in_service && uses_constant_of(id, of) && user.pending.try_push(Signal::kReinit)) ++n_pending_;
-    if (user.in_service || (user.state != State::kOff && user.state != State::kOn)) continue;
+    const bool waits = user.in_service || user.is_busy;
+    if (waits && uses_constant_of(id, of) && user.pending.try_push(Signal::kReinit)) ++n_pending_;
+    if (waits || (user.state != State::kOff && user.state != State::kOn)) continue;
     if (memories_[id.index].uses_changed(constants_)) carry_out(id, Signal::kReinit, now);
   }
 }

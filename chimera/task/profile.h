@@ -40,6 +40,8 @@ struct Profile {
   std::uint64_t dropped = 0;          ///< releases dropped
   std::uint64_t stale = 0;            ///< inputs kept because a read was overtaken
   std::uint64_t rejected = 0;         ///< outputs of safety ports refused: NaN, infinite or out of range
+  std::uint64_t preempted = 0;        ///< times a more urgent job took the processor
+  std::uint64_t demoted = 0;          ///< jobs that went on below all others
   std::uint32_t missed_in_a_row = 0;
 };
 

@@ -47,6 +47,19 @@ inline constexpr std::size_t kOutboxSize = 16;
 /// Where a task tells that nobody wants to know.
 inline std::atomic<std::uint32_t> running_untold{0};
 
+/// A flag that one thread raises and another one sees. Copied by nobody but the memory of tasks, at set-up.
+class GiveUp {
+ public:
+  GiveUp() noexcept = default;
+  GiveUp(const GiveUp&) noexcept {}
+  GiveUp& operator=(const GiveUp&) = delete;
+  void store(bool up, std::memory_order order) noexcept { up_.store(up, order); }
+  bool load(std::memory_order order) const noexcept { return up_.load(order); }
+
+ private:
+  std::atomic<bool> up_{false};
+};
+
 struct Task {
   // Fixed at set-up.
   const TaskSpec* spec = nullptr;
@@ -74,6 +87,7 @@ struct Task {
   Profile profile;
   FixedVector<SentSignal, kOutboxSize> outbox;
 
+  GiveUp give_up;        ///< the present job was told to: it used up its budget
   bool is_busy = false;  ///< a job of it is under way; by the executor
 
   // Written by the executor and the task set at edges.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstring>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct Toy {
   Nanoseconds spend;                              // by cycle
   std::array<std::deque<int>, CHIMERA_METHODS> answers;  // of the next calls; CHIMERA_OK when none is left
   std::deque<std::pair<Signal, std::string>> sends;      // one a cycle; an empty name: none
+  std::function<void(const chimera_call&)> during;       // by cycle
   double value = 0;
 };
 
@@ -56,9 +58,10 @@ std::int32_t method(void* memory, const chimera_call* call) {
   Call seen{toy.name,      static_cast<Method>(kMethod), {call->now_ns}, {call->dt_ns},
             call->dropped, call->illegal != 0,           0};
   if (state.in.value != nullptr) std::memcpy(&seen.in, state.in.value, sizeof seen.in);
-  toy.calls->push_back(seen);
+  if (toy.calls != nullptr) toy.calls->push_back(seen);
   if (kMethod == CHIMERA_CYCLE) {
     if (toy.spend > Nanoseconds{}) call->host->spend(call->context, toy.spend.count);
+    if (toy.during) toy.during(*call);
     toy.value += 1;
     if (state.out.value != nullptr) std::memcpy(state.out.value, &toy.value, sizeof toy.value);
     if (!toy.sends.empty()) {
@@ -156,7 +159,7 @@ class Application {
     return TaskId(0u);
   }
   /// The tasks of `off` are spawned but not turned ON.
-  TaskSet& build(const std::vector<std::string>& off = {}) {
+  TaskSet& build(const std::vector<std::string>& off = {}, const ContextPlace& place = {}) {
     for (std::size_t i = 0; i < ones_.size(); ++i) {
       specs_.push_back(ones_[i]->spec);
       components_.push_back(&component(ones_[i]->spec.aperiodic));
@@ -168,7 +171,7 @@ class Application {
     spec_.tasks = specs_;
     spec_.init_order = order_;
     spec_.start = start_;
-    auto made = TaskSet::create(spec_, components_);
+    auto made = TaskSet::create(spec_, components_, place);
     if (!made) {
       ADD_FAILURE() << made.error().message.c_str();
       std::abort();
@@ -183,6 +186,17 @@ class Application {
     std::memcpy(&value, view.value, sizeof value);
     return value;
   }
+  /// For tasks that preempt each other: every toy writes down its own calls.
+  TaskSet& build_preemptive(const std::vector<std::string>& off = {}) {
+    for (auto& one : ones_) {
+      one->toy.calls = &one->calls;
+      one->calls.reserve(20'000);
+    }
+    ContextPlace place;
+    place.preemptive = true;
+    return build(off, place);
+  }
+  const std::vector<Call>& own_calls(const std::string& name) const { return ones_[id(name).index]->calls; }
   /// The calls of one method of one task.
   std::vector<Call> calls_of(const std::string& name, Method method) const {
     std::vector<Call> found;
@@ -197,6 +211,7 @@ class Application {
  private:
   struct One {
     Toy toy;
+    std::vector<Call> calls;
     std::array<std::byte, 8> address{}, zero{};
     std::string out_name, in_name;
     std::vector<PortSpec> ports;

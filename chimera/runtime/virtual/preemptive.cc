@@ -160,7 +160,7 @@ bool Preemptive::take_processor(const Job& job, Nanoseconds now) noexcept {
     if (!releases_.may_start(job, now)) return false;
     clock_.set(now);
     a.job = job;
-    a.body = releases_.begin_job(job, a.time);
+    a.body = releases_.begin_job(job, a.time, releases_.is_illegal());
     a.first_start = now;
     a.used = Nanoseconds{};
     const bool had_event = a.body.answer != Answer::kNoEvent;

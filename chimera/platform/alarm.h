@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// One instant for which one thread waits and that others may move meanwhile.
+#pragma once
+
+#include "chimera/base/time.h"
+#include "chimera/platform/linux/owned_descriptor.h"
+
+namespace chimera {
+
+/// On CLOCK_MONOTONIC.
+class Alarm {
+ public:
+  /// Context: setup.
+  Alarm() noexcept;
+  bool is_there() const noexcept { return timer_.fd >= 0; }
+
+  /// Rings at `instant` (at once when it has passed; kNever: not at all), instead of when it was set before.
+  /// Context: cycle; wait-free (one system call); any thread.
+  void set(Nanoseconds instant) noexcept;
+  /// Waits until it rings. Context: cycle; blocks.
+  void wait() noexcept;
+
+ private:
+  OwnedDescriptor timer_;
+};
+
+}  // namespace chimera

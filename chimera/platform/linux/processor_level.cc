@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/platform/processor_level.h"
+
+#include <sched.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <ctime>
+
+namespace chimera {
+namespace {
+
+// The clock of another thread of this process, as pthread_getcpuclockid makes it of the thread's number.
+clockid_t cpu_clock_of(pid_t thread) noexcept {
+  constexpr unsigned kPerThread = 4, kSchedulerTime = 2;
+  return static_cast<clockid_t>((~static_cast<unsigned>(thread) << 3) | kPerThread | kSchedulerTime);
+}
+
+Nanoseconds read(clockid_t clock) noexcept {
+  timespec t{};
+  if (::clock_gettime(clock, &t) != 0) return kNever;
+  return {static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec};
+}
+
+}  // namespace
+
+pid_t this_thread() noexcept { return static_cast<pid_t>(::syscall(SYS_gettid)); }
+
+bool set_level(pid_t thread, int level) noexcept {
+  sched_param p{};
+  p.sched_priority = level;
+  return ::sched_setscheduler(thread, SCHED_FIFO, &p) == 0;
+}
+
+bool set_below_all(pid_t thread) noexcept {
+  const sched_param p{};
+  return ::sched_setscheduler(thread, SCHED_OTHER, &p) == 0;
+}
+
+Nanoseconds used_by(pid_t thread) noexcept { return read(cpu_clock_of(thread)); }
+
+Nanoseconds used_by_this_thread() noexcept { return read(CLOCK_THREAD_CPUTIME_ID); }
+
+}  // namespace chimera

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SCHED_FIFO levels of threads of this process, changed while they run, and what a thread has used of its processor.
+#pragma once
+
+#include <sys/types.h>
+
+#include "chimera/base/time.h"
+
+namespace chimera {
+
+/// The calling thread, for the functions below. Context: setup.
+pid_t this_thread() noexcept;
+
+/// Runs `thread` (0: the calling one) at that SCHED_FIFO level. A thread that is lowered goes to the head of its new
+/// level, one that is raised to the tail (sched(7)). False when the thread is gone or the right is missing.
+/// Context: cycle; wait-free (one system call).
+bool set_level(pid_t thread, int level) noexcept;
+
+/// Runs `thread` below every real-time thread (SCHED_OTHER). Context: cycle; wait-free (one system call).
+bool set_below_all(pid_t thread) noexcept;
+
+/// Execution time that `thread` has used; kNever when it is gone. Context: cycle; wait-free (one system call).
+Nanoseconds used_by(pid_t thread) noexcept;
+
+/// Execution time of the calling thread. Context: cycle; wait-free (one system call).
+Nanoseconds used_by_this_thread() noexcept;
+
+}  // namespace chimera

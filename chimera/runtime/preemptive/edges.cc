@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// The edges of a preemptive context: signals, posts of others, what jobs left behind. Everything in the section but
+// the methods, which run at the label of their task.
+#include <algorithm>
+
+#include "chimera/platform/realtime.h"
+#include "chimera/runtime/preemptive/preemptive_executor.h"
+
+namespace chimera {
+namespace {
+
+RunOptions with_threads(RunOptions options, JobThreads* threads) noexcept {
+  options.threads = threads;
+  return options;
+}
+
+}  // namespace
+
+PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, const ProcessorPlace& place)
+    : set_(set), tasks_(set.tasks()), place_(place), guest_(options.guest),
+      releases_(set, with_threads(options, this)),
+      labels_(options.policy, set.tasks().size(), place.ceiling > 0 ? place.base : 0,
+              place.ceiling > 0 ? place.ceiling : 20),
+      of_task_(set.tasks().size()), bell_(place.bell != nullptr ? place.bell : &own_bell_) {
+  set.attach(clock_);
+  set.attach(static_cast<MethodGate&>(*this));
+  has_levels_ = place.ceiling > 0 && may_be_realtime(place.ceiling);
+  for (const Task& task : tasks_) {
+    if (!set.is_mine(task.id)) continue;
+    JobThread& thread = threads_.emplace_back();
+    thread.task = task.id;
+    of_task_[task.id.index] = &thread;
+  }
+  for (JobThread& thread : threads_) thread.thread = std::thread([this, &thread] { follow_releases(thread); });
+  supervisor_ = std::thread([this] { supervise(); });
+}
+
+PreemptiveExecutor::~PreemptiveExecutor() {
+  quits_ = true;
+  for (JobThread& thread : threads_) Doorbell(thread.bell).ring();
+  alarm_.set({});
+  for (JobThread& thread : threads_) thread.thread.join();
+  supervisor_.join();
+}
+
+Result<void> PreemptiveExecutor::start() {
+  Result<void> started = set_.start(clock_.now());
+  if (started) start(clock_.now());
+  return started;
+}
+
+void PreemptiveExecutor::start(Nanoseconds origin) {
+  section_.enter();
+  releases_.begin(origin);
+  section_.leave();
+}
+
+void PreemptiveExecutor::shut_down() noexcept {
+  section_.enter();
+  set_.shut_down(clock_.now());
+  section_.leave();
+}
+
+RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
+  const Nanoseconds until = duration == kNever ? kNever : origin() + duration;
+  edge_thread_ = this_thread();
+  section_.enter();
+  is_paused_ = false;
+  until_ = until;
+  tell_threads();
+  section_.leave();
+  for (;;) {
+    const std::uint32_t heard = Doorbell(*bell_).read();
+    RunEnd end = RunEnd::kTime;
+    section_.enter();
+    const bool is_over = take_edge(end, until);
+    const Nanoseconds next = std::min(releases_.next_edge(), until);
+    section_.leave();
+    if (is_over) {
+      stop_jobs();
+      return end;
+    }
+    (void)Doorbell(*bell_).wait_until(heard, next);
+  }
+}
+
+// True when the run is over.
+bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
+  const Nanoseconds now = clock_.now();
+  for (JobThread& job : threads_)
+    if (releases_.is_unsettled(job.task) && claim(job.task)) releases_.settle_job(job.task, now);
+  if (releases_.has_lost_patience()) releases_.give_up_starved(now);
+  if (releases_.edge_is_due(now)) releases_.take_edge(now);
+  for (JobThread& job : threads_) job.is_held = false;
+  tell_threads();
+  end = releases_.stop_requested() ? RunEnd::kStopped
+        : releases_.task_stopped() ? RunEnd::kTaskStopped
+        : now >= until             ? RunEnd::kTime
+                                   : RunEnd::kNothingLeft;
+  return end != RunEnd::kNothingLeft || (!releases_.anything_left() && is_idle());
+}
+
+// Threads follow the states of their tasks.
+void PreemptiveExecutor::tell_threads() noexcept {
+  for (JobThread& job : threads_) {
+    const bool is_on = releases_.is_on(job.task);
+    if (is_on && !job.is_joined) job.next = releases_.queue().first_release(job.task);
+    if (!is_on) job.next = kNever;
+    job.is_joined = is_on;
+    Doorbell(job.bell).ring();
+  }
+}
+
+bool PreemptiveExecutor::is_idle() const noexcept {
+  return std::all_of(threads_.begin(), threads_.end(),
+                     [](const JobThread& job) { return job.phase == JobPhase::kNone; });
+}
+
+// No job is released from here on; those under way end.
+void PreemptiveExecutor::stop_jobs() noexcept {
+  section_.enter();
+  is_paused_ = true;
+  for (JobThread& job : threads_) (void)claim(job.task);
+  for (;;) {
+    for (JobThread& job : threads_)
+      if (job.phase == JobPhase::kNone && releases_.is_unsettled(job.task))
+        releases_.settle_job(job.task, clock_.now());
+    const bool is_over = is_idle();
+    const std::uint32_t heard = Doorbell(*bell_).read();
+    section_.leave();
+    if (is_over) return;
+    (void)Doorbell(*bell_).wait_until(heard, clock_.now() + milliseconds(1));
+    section_.enter();
+  }
+}
+
+bool PreemptiveExecutor::claim(TaskId id) noexcept {
+  JobThread* job = of_task_[id.index];
+  JobPhase phase = JobPhase::kWaiting;
+  if (job->phase.compare_exchange_strong(phase, JobPhase::kChanged)) {
+    job->next = job->job.release;  // it comes again
+    cancel(*job);
+    return true;
+  }
+  return phase == JobPhase::kNone || phase == JobPhase::kCancelled;
+}
+
+void PreemptiveExecutor::open(TaskId id) noexcept {
+  JobThread* job = of_task_[id.index];
+  if (job == nullptr || edge_thread_ == 0) return;  // nobody runs yet
+  const Nanoseconds now = clock_.now();
+  const TaskSpec& s = spec(*job);
+  job->is_held = true;
+  job->carrier = edge_thread_;
+  job->job = {id, now, now + s.deadline};
+  job->phase = JobPhase::kMethod;
+  LabelledJob method;
+  method.task = id;
+  method.urgency = urgency_of(*job, s.budget);
+  method.has_begun = true;
+  const int level = apply(labels_.insert(method), job);
+  section_.leave();
+  lower(level);
+}
+
+void PreemptiveExecutor::close(TaskId id) noexcept {
+  JobThread* job = of_task_[id.index];
+  if (job == nullptr || edge_thread_ == 0) return;
+  job->phase = JobPhase::kDone;
+  raise();
+  section_.enter();
+  (void)apply(labels_.remove(id), nullptr);
+  job->carrier = job->id;
+  job->phase = JobPhase::kNone;
+}
+
+ProcessorCounts PreemptiveExecutor::counts() const noexcept {
+  ProcessorCounts counts = counts_;
+  counts.section_taken = section_.times_taken();
+  return counts;
+}
+
+}  // namespace chimera

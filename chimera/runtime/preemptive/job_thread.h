@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a preemptive context keeps of one task and its thread.
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include "chimera/schedule/ready_queue.h"
+
+namespace chimera {
+
+/// Where the present job of a task is.
+enum class JobPhase : std::uint8_t {
+  kNone,       ///< its thread sleeps, or is on its way to
+  kWaiting,    ///< its thread is lowered and was not dispatched yet
+  kChanged,    ///< waiting, and the supervisor is changing it
+  kCancelled,  ///< it was waiting and is no more: its thread goes to sleep again
+  kBegun,      ///< the body runs
+  kDone,       ///< it has ended; its thread raises itself, or has: nobody else changes its level any more
+  kMethod,     ///< no job: the edge runs another method of the task
+};
+
+/// Written in the section by whoever is in it, unless said otherwise.
+struct JobThread {
+  TaskId task;
+  std::thread thread;
+  std::atomic<std::uint32_t> bell{0};  ///< rung when the thread has something to look at
+  pid_t id = 0;                        ///< of the thread
+  pid_t carrier = 0;                   ///< who runs at the label of the task: the thread, or that of the edges
+  std::atomic<JobPhase> phase{JobPhase::kNone};
+
+  Nanoseconds next = kNever;   ///< release to come; kNever: the task is not ON
+  bool is_joined = false;      ///< is ON as far as the thread was told
+  bool is_held = false;        ///< no job begins
+  bool illegal = false;        ///< the flag, for the present job
+
+  Job job;                     ///< the present one; by its own thread read when it begins
+  Nanoseconds check = kNever;  ///< the supervisor looks at the job then
+  bool is_demoted = false;
+  bool is_hanging = false;     ///< it does not end by itself
+  bool is_overrun = false;     ///< was seen to have used more than its budget
+  std::atomic<std::int64_t> used_before{0};  ///< of the thread's execution time, by earlier jobs; by the thread itself
+  Nanoseconds slice;           ///< since when it has the processor, as far as can be told
+  Nanoseconds shown;           ///< when its profile was last handed out
+};
+
+}  // namespace chimera

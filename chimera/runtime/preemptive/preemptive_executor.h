@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Preemptive scheduling of one processor in real time: a thread per task under SCHED_FIFO, no dispatcher.
+//
+//   thread of a task:  sleep at the ceiling | [release, label] | body at the label | raise | [end, next release]
+//   edges:             the caller of run(), at the ceiling; other methods run at the label of their task
+//   supervisor:        at the ceiling, woken by one alarm: budgets, deadlines, hanging jobs
+//
+// [...] is the section: what all share is touched there and nowhere else. Every thread that enters it runs at the
+// ceiling, on one CPU, and neither blocks nor faults in it, so the kernel's own order excludes; the lock behind it is
+// for those who run without real-time rights. A job lowers itself to its label as the last thing of the section: the
+// order of labels is the order of urgency and the kernel dispatches. A job that blocks, loops or dies holds nothing.
+// docs/decisions/0009-preemptive-executor.md; the figures behind it: labels cost 0.4 of a dispatcher thread.
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <vector>
+
+#include "chimera/platform/alarm.h"
+#include "chimera/platform/doorbell.h"
+#include "chimera/platform/section.h"
+#include "chimera/runtime/preemptive/job_thread.h"
+#include "chimera/runtime/preemptive/label_list.h"
+#include "chimera/runtime/preemptive/thread_clock.h"
+#include "chimera/runtime/release.h"
+
+namespace chimera {
+
+/// Where a preemptive context runs.
+struct ProcessorPlace {
+  int cpu = -1;       ///< -1: any (without real-time levels)
+  int ceiling = 0;    ///< SCHED_FIFO level of the section; 0: no real-time levels at all
+  int base = 0;       ///< of jobs that found no level of their own; labels lie between; ceiling - base >= 2
+  Nanoseconds quantum = microseconds(500);  ///< of the laxity policy
+  /// Rung when an edge is due; run() sleeps on it. Null: one of its own.
+  std::atomic<std::uint32_t>* bell = nullptr;
+};
+
+/// What was seen of the section and the levels, for tests and figures.
+struct ProcessorCounts {
+  std::uint64_t jobs = 0;
+  std::uint64_t level_changes = 0;
+  std::uint64_t preemptions = 0;
+  std::uint64_t ended_unseen = 0;   ///< a job was over, and others were released before its thread could say so
+  std::uint64_t supervised = 0;     ///< times the alarm rang
+  std::uint64_t section_taken = 0;  ///< times the section was found taken: 0 with real-time levels
+};
+
+/// Runs the tasks of `set`, which was made with ContextPlace::preemptive. The set and what the options point at
+/// outlive it.
+class PreemptiveExecutor final : private JobThreads, private MethodGate {
+ public:
+  /// Starts the threads, asleep. Context: setup; may block.
+  PreemptiveExecutor(TaskSet& set, const RunOptions& options, const ProcessorPlace& place);
+  PreemptiveExecutor(const PreemptiveExecutor&) = delete;
+  PreemptiveExecutor& operator=(const PreemptiveExecutor&) = delete;
+  /// Ends the threads; a job that hangs is waited for. Context: setup; may block.
+  ~PreemptiveExecutor();
+
+  /// Spawns all tasks and turns the start set ON; the grid of releases begins when that is done. Refuses as
+  /// TaskSet::start. Context: setup.
+  Result<void> start();
+  /// Begins with nothing spawned, on a grid of releases that others share. Context: setup.
+  void start(Nanoseconds origin);
+  Releases& releases() noexcept { return releases_; }
+  /// Runs until `duration` from the origin of the grid (kNever: without limit): no job is released from there on, those
+  /// under way are waited for. May be called again to go on. Context: the thread that takes the edges.
+  RunEnd run(Nanoseconds duration) noexcept;
+  /// off and kill for every task. Context: setup, between runs.
+  void shut_down() noexcept;
+
+  Nanoseconds origin() const noexcept { return releases_.origin(); }
+  std::span<const RefusedSignal> refused() const noexcept { return releases_.refused(); }
+  /// Context: between runs.
+  ProcessorCounts counts() const noexcept;
+  /// False: the system refused the levels, and threads run as it likes. Context: any.
+  bool has_levels() const noexcept { return has_levels_; }
+
+ private:
+  // Edges (edges.cc).
+  bool claim(TaskId task) noexcept override;
+  void open(TaskId task) noexcept override;
+  void close(TaskId task) noexcept override;
+  bool take_edge(RunEnd& end, Nanoseconds until) noexcept;
+  void tell_threads() noexcept;
+  void stop_jobs() noexcept;
+  bool is_idle() const noexcept;
+  void ring_edge() noexcept { Doorbell(*bell_).ring(); }
+
+  // Jobs (job.cc).
+  void follow_releases(JobThread& me);
+  void run_job(JobThread& me, Nanoseconds now) noexcept;
+  bool release(JobThread& me, Nanoseconds now) noexcept;
+  int enter_label(JobThread& me, Nanoseconds now) noexcept;
+  bool begin(JobThread& me) noexcept;
+  Nanoseconds run_body(JobThread& me, Nanoseconds start) noexcept;
+  void end(JobThread& me, Nanoseconds now) noexcept;
+  void slice_of_running_ends(Nanoseconds now, const JobThread& by) noexcept;
+  void running_goes_on(Nanoseconds now) noexcept;
+
+  // Levels and supervision (supervisor.cc).
+  void supervise();
+  void look_at_jobs(Nanoseconds now) noexcept;
+  void look_at(JobThread& job, Nanoseconds now) noexcept;
+  void look_at_waiting(JobThread& job, Nanoseconds now) noexcept;
+  void look_at_begun(JobThread& job, Nanoseconds now) noexcept;
+  void charge_running(Nanoseconds now) noexcept;
+  void charge(JobThread& job, Nanoseconds now) noexcept;
+  void overrun(JobThread& job, Nanoseconds now) noexcept;
+  void hang(JobThread& job, Nanoseconds now) noexcept;
+  void demote(JobThread& job) noexcept;
+  void cancel(JobThread& job) noexcept;
+  JobThread* running() noexcept;
+  int apply(std::span<const LevelChange> changes, const JobThread* own) noexcept;
+  void watch(JobThread& job, Nanoseconds check) noexcept;
+  void arm(const JobThread* job, Nanoseconds check) noexcept;
+  Urgency urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept;
+  Nanoseconds used(const JobThread& job) const noexcept;
+  static bool acts_at_once(OnMiss reaction) noexcept;
+  void raise() noexcept;
+  void lower(int level) noexcept;
+  const TaskSpec& spec(const JobThread& job) const noexcept { return *tasks_[job.task.index].spec; }
+  Task& task(const JobThread& job) noexcept { return tasks_[job.task.index]; }
+
+  TaskSet& set_;
+  std::span<Task> tasks_;
+  ThreadClock clock_;
+  ProcessorPlace place_;
+  EdgeGuest* guest_;
+  Releases releases_;
+  Section section_;
+  LabelList labels_;
+  std::deque<JobThread> threads_;        // of the tasks of this context
+  std::vector<JobThread*> of_task_;      // by task; null: of another context
+  std::atomic<std::uint32_t> own_bell_{0};
+  std::atomic<std::uint32_t>* bell_;
+  Alarm alarm_;
+  Nanoseconds armed_ = kNever;
+  const JobThread* armed_for_ = nullptr;
+  std::thread supervisor_;
+  pid_t edge_thread_ = 0;
+  bool has_levels_ = false;
+  bool is_paused_ = true;                // no job is released
+  Nanoseconds until_ = kNever;           // nor from here on
+  std::atomic<bool> quits_{false};
+  ProcessorCounts counts_;
+};
+
+}  // namespace chimera

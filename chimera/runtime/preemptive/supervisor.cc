@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// Levels, and who looks after jobs that use too much, come too late or never end.
+#include <algorithm>
+
+#include "chimera/platform/realtime.h"
+#include "chimera/runtime/preemptive/preemptive_executor.h"
+
+namespace chimera {
+namespace {
+
+// A job that has used so many times its budget (without one: its period) does not end by itself.
+constexpr std::int64_t kHangsAfter = 10;
+
+Nanoseconds rounded(Nanoseconds t, Nanoseconds quantum) noexcept {
+  return quantum * ((t.count + quantum.count / 2) / quantum.count);
+}
+
+}  // namespace
+
+bool PreemptiveExecutor::acts_at_once(OnMiss reaction) noexcept {
+  return reaction == OnMiss::kDemote || reaction == OnMiss::kAbort || reaction == OnMiss::kStop ||
+         reaction == OnMiss::kFlag;
+}
+
+void PreemptiveExecutor::raise() noexcept {
+  if (has_levels_) set_level(0, place_.ceiling);
+}
+
+void PreemptiveExecutor::lower(int level) noexcept {
+  if (has_levels_) set_level(0, level);
+}
+
+// Tells the kernel what changed; the level of `own` is returned instead, for its thread to take as the last thing.
+int PreemptiveExecutor::apply(std::span<const LevelChange> changes, const JobThread* own) noexcept {
+  int level = place_.ceiling;
+  for (const LevelChange& change : changes) {
+    const JobThread& job = *of_task_[change.task.index];
+    if (&job == own) {
+      level = change.level;
+      continue;
+    }
+    // One that is done is on its way into the section, at the ceiling.
+    if (!has_levels_ || job.phase == JobPhase::kDone) continue;
+    ++counts_.level_changes;
+    set_level(job.carrier, change.level);
+  }
+  return level;
+}
+
+Urgency PreemptiveExecutor::urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept {
+  const TaskSpec& s = spec(job);
+  Urgency urgency{s.criticality, s.user_priority, s.period, job.job.deadline, remaining};
+  if (labels_.policy() == Policy::kMufLaxity)  // else noise would decide who is more urgent
+    urgency.remaining = job.job.deadline - rounded(job.job.deadline - remaining, place_.quantum);
+  return urgency;
+}
+
+Nanoseconds PreemptiveExecutor::used(const JobThread& job) const noexcept {
+  const Nanoseconds all = used_by(job.id);
+  if (all == kNever) return {};
+  return all - Nanoseconds{job.used_before.load(std::memory_order_relaxed)};
+}
+
+// The most urgent job that has begun: it has the processor, unless it sleeps in a system call.
+JobThread* PreemptiveExecutor::running() noexcept {
+  for (std::size_t i = labels_.size(); i-- > 0;) {
+    JobThread& job = *of_task_[labels_.jobs()[i].task.index];
+    if (job.phase == JobPhase::kBegun) return &job;
+  }
+  return nullptr;
+}
+
+void PreemptiveExecutor::charge_running(Nanoseconds now) noexcept {
+  JobThread* job = running();
+  if (job != nullptr) charge(*job, now);
+}
+
+// Looks at what a job that has begun has used by now, and acts on it.
+void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
+  const TaskSpec& s = spec(job);
+  const bool by_laxity = labels_.policy() == Policy::kMufLaxity;
+  if (s.budget == Nanoseconds{} && now < job.job.deadline) return;
+  const Nanoseconds spent = used(job);
+  const Nanoseconds allowed = s.budget > Nanoseconds{} ? s.budget : s.period;
+  if (spent > allowed * kHangsAfter) return hang(job, now);
+  if (s.budget > Nanoseconds{} && spent > s.budget && !job.is_overrun) return overrun(job, now);
+  if (by_laxity && !job.is_demoted)
+    (void)apply(labels_.rekey(job.task, urgency_of(job, std::max(s.budget - spent, Nanoseconds{}))), nullptr);
+}
+
+// Seen while the job still runs: what can be done at once is done at once; the rest at its end.
+void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
+  job.is_overrun = true;
+  const OnMiss reaction = spec(job).on_overrun;
+  releases_.record_now(TapKind::kOverrun, now, job.task, task(job).call.cycle, used(job).count);
+  if (reaction == OnMiss::kDemote) demote(job);
+  if (reaction == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
+  if (reaction == OnMiss::kFlag || reaction == OnMiss::kStop) {
+    releases_.act_on_overrun(job.task, reaction);
+    ring_edge();
+  }
+}
+
+// Others keep their deadlines; whoever runs the context ends it, for nothing else ends the job.
+void PreemptiveExecutor::hang(JobThread& job, Nanoseconds now) noexcept {
+  if (!job.is_demoted) demote(job);
+  if (job.is_hanging) return;
+  job.is_hanging = true;
+  releases_.record_now(TapKind::kHang, now, job.task, task(job).call.cycle, used(job).count);
+  ring_edge();
+}
+
+void PreemptiveExecutor::demote(JobThread& job) noexcept {
+  if (job.is_demoted) return;
+  job.is_demoted = true;
+  ++task(job).profile.demoted;
+  (void)apply(labels_.remove(job.task), nullptr);
+  if (has_levels_) set_below_all(job.carrier);
+}
+
+// A job that waits is taken back; its thread goes to sleep again.
+void PreemptiveExecutor::cancel(JobThread& job) noexcept {
+  job.phase = JobPhase::kCancelled;
+  job.check = kNever;
+  task(job).is_busy = false;
+  (void)apply(labels_.remove(job.task), nullptr);
+  if (has_levels_) set_level(job.carrier, place_.ceiling);
+}
+
+void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check) noexcept {
+  job.check = check;
+  const bool is_stale = armed_for_ == nullptr || armed_for_->check != armed_;
+  if (check < armed_ || is_stale) arm(&job, check);
+}
+
+void PreemptiveExecutor::arm(const JobThread* job, Nanoseconds check) noexcept {
+  armed_ = check;
+  armed_for_ = job;
+  alarm_.set(check);
+}
+
+void PreemptiveExecutor::supervise() {
+  if (has_levels_) (void)enter_realtime({place_.ceiling, place_.cpu, false});
+  while (!quits_) {
+    alarm_.wait();
+    section_.enter();
+    ++counts_.supervised;
+    look_at_jobs(clock_.now());
+    section_.leave();
+  }
+}
+
+void PreemptiveExecutor::look_at_jobs(Nanoseconds now) noexcept {
+  charge_running(now);
+  const JobThread* next = nullptr;
+  for (JobThread& job : threads_) {
+    if (job.check <= now) look_at(job, now);
+    if (job.check != kNever && (next == nullptr || job.check < next->check)) next = &job;
+  }
+  Nanoseconds check = next == nullptr ? kNever : next->check;
+  if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1)
+    check = std::min(check, now + place_.quantum);
+  arm(next, check);
+}
+
+void PreemptiveExecutor::look_at(JobThread& job, Nanoseconds now) noexcept {
+  JobPhase phase = JobPhase::kWaiting;
+  if (job.phase.compare_exchange_strong(phase, JobPhase::kChanged)) return look_at_waiting(job, now);
+  if (phase == JobPhase::kBegun) return look_at_begun(job, now);
+  job.check = kNever;
+}
+
+// Its deadline, or its next release, came before it was dispatched.
+void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexcept {
+  const TaskSpec& s = spec(job);
+  if (s.on_miss == OnMiss::kAbort && now >= job.job.deadline) {
+    releases_.expire_waiting(job.job);
+    cancel(job);
+  } else if (now >= job.next) {
+    releases_.drop({job.task, job.job.release, 1});
+    job.job = {job.task, job.next, job.next + s.deadline};
+    job.next += s.period;
+    (void)apply(labels_.rekey(job.task, urgency_of(job, s.budget)), nullptr);
+  }
+  if (releases_.has_lost_patience() && job.phase != JobPhase::kCancelled) cancel(job);
+  if (releases_.has_lost_patience()) {
+    job.is_held = true;
+    ring_edge();
+  }
+  if (job.phase == JobPhase::kCancelled) return;
+  job.phase = JobPhase::kWaiting;
+  job.check = now < job.job.deadline ? std::min(job.next, job.job.deadline) : job.next;
+}
+
+void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept {
+  const TaskSpec& s = spec(job);
+  charge(job, now);
+  if (now >= job.job.deadline && s.on_miss == OnMiss::kDemote) demote(job);
+  if (now >= job.job.deadline && s.on_miss == OnMiss::kAbort)
+    task(job).give_up.store(true, std::memory_order_relaxed);
+  job.check = now + s.period;
+  if (now < job.job.deadline) job.check = job.job.deadline;
+  const bool is_exact = acts_at_once(s.on_overrun) && s.budget > Nanoseconds{} && !job.is_overrun;
+  if (is_exact) job.check = std::min(job.check, now + std::max(s.budget - used(job), microseconds(1)));
+}
+
+}  // namespace chimera

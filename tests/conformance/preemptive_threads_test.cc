@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// The preemptive executor without real-time levels, where the section alone excludes: what it promises about data,
+// states and counts, also under the thread sanitizer.
+#include <gtest/gtest.h>
+
+#include "chimera/runtime/preemptive/preemptive_executor.h"
+#include "tests/conformance/toy.h"
+
+namespace chimera::toy {
+namespace {
+
+std::size_t count(const std::vector<Call>& calls, Method method) {
+  return static_cast<std::size_t>(
+      std::count_if(calls.begin(), calls.end(), [&](const Call& call) { return call.method == method; }));
+}
+
+TEST(PreemptiveThreads, RunEveryReleaseOrCountItAndReadOneAnother) {
+  Application app;
+  app.add("fast", milliseconds(2));
+  app.add("slow", milliseconds(10), {}, "fast");
+  PreemptiveExecutor executor(app.build_preemptive(), {}, {});
+  ASSERT_TRUE(executor.start());
+  EXPECT_EQ(executor.run(milliseconds(200)), RunEnd::kTime);
+  for (const auto& [name, releases] : {std::pair{"fast", 100u}, std::pair{"slow", 20u}}) {
+    const Profile& p = app.task(name).profile;
+    EXPECT_EQ(p.cycles + p.dropped, releases) << name;
+    EXPECT_GT(p.cycles, releases / 2) << name;
+  }
+  double last = 0;
+  for (const Call& call : app.own_calls("slow")) {
+    if (call.method != Method::kCycle) continue;
+    EXPECT_GE(call.in, last) << "values of a producer never go back";
+    last = call.in;
+  }
+  EXPECT_GT(last, 0);
+}
+
+TEST(PreemptiveThreads, GoOnWhereARunEnded) {
+  Application app;
+  app.add("a", milliseconds(2));
+  PreemptiveExecutor executor(app.build_preemptive(), {}, {});
+  ASSERT_TRUE(executor.start());
+  for (int until = 20; until <= 100; until += 20) EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  const Profile& p = app.task("a").profile;
+  EXPECT_EQ(p.cycles + p.dropped, 50u);
+  executor.shut_down();
+  EXPECT_EQ(app.task("a").state, chimera::State::kNotCreated);
+}
+
+TEST(PreemptiveThreads, SignalsOfTasksActAfterTheJobAndAllMethodsAreCalled) {
+  Application app;
+  app.add("one", milliseconds(2));
+  app.add("two", milliseconds(3));
+  TaskSet& set = app.build_preemptive();
+  for (int i = 0; i < 5; ++i) app.toy("one").sends.push_back({Signal::kOff, ""});
+  for (int i = 0; i < 5; ++i) app.toy("one").sends.push_back({Signal::kOff, "two"});
+  app.toy("one").sends.push_back({Signal::kOn, "two"});
+  app.toy("one").sends.push_back({Signal::kReinit, "two"});
+  PreemptiveExecutor executor(set, {}, {});
+  ASSERT_TRUE(executor.start());
+  EXPECT_EQ(executor.run(milliseconds(150)), RunEnd::kTime);
+  EXPECT_EQ(app.task("two").state, chimera::State::kOn);
+  EXPECT_EQ(count(app.own_calls("two"), Method::kOff), 1u);
+  EXPECT_EQ(count(app.own_calls("two"), Method::kOn), 2u);
+  EXPECT_EQ(count(app.own_calls("two"), Method::kReinit), 1u);
+  EXPECT_EQ(executor.refused().size(), 4u) << "off in state OFF";
+}
+
+TEST(PreemptiveThreads, AFaultLeadsToErrorAndTheOthersGoOn) {
+  Application app;
+  app.add("bad", milliseconds(2));
+  app.add("good", milliseconds(2));
+  TaskSet& set = app.build_preemptive();
+  app.toy("bad").answers[CHIMERA_CYCLE] = {CHIMERA_OK, CHIMERA_FAULT};
+  app.toy("bad").answers[CHIMERA_ERROR] = {CHIMERA_FAULT};
+  PreemptiveExecutor executor(set, {}, {});
+  ASSERT_TRUE(executor.start());
+  EXPECT_EQ(executor.run(milliseconds(100)), RunEnd::kTime);
+  EXPECT_EQ(app.task("bad").state, chimera::State::kError);
+  EXPECT_EQ(app.task("bad").profile.cycles, 1u);
+  EXPECT_GT(app.task("good").profile.cycles, 25u);
+}
+
+TEST(PreemptiveThreads, EndWhenNothingIsLeft) {
+  Application app;
+  app.add("a", milliseconds(2));
+  TaskSet& set = app.build_preemptive();
+  app.toy("a").sends = {{Signal::kOff, ""}, {Signal::kOff, "a"}};
+  PreemptiveExecutor executor(set, {}, {});
+  ASSERT_TRUE(executor.start());
+  EXPECT_EQ(executor.run(kNever), RunEnd::kNothingLeft);
+  EXPECT_EQ(app.task("a").profile.cycles, 2u);
+}
+
+}  // namespace
+}  // namespace chimera::toy
