@@ -19,6 +19,10 @@ bool set_level(pid_t thread, int level) noexcept;
 /// Runs `thread` below every real-time thread (SCHED_OTHER). Context: cycle; wait-free (one system call).
 bool set_below_all(pid_t thread) noexcept;
 
+/// The level at which `thread` runs; 0 when it is not a real-time thread, or gone. Context: cycle; wait-free (one
+/// system call).
+int level_of(pid_t thread) noexcept;
+
 /// Execution time that `thread` has used; kNever when it is gone. Context: cycle; wait-free (one system call).
 Nanoseconds used_by(pid_t thread) noexcept;
 

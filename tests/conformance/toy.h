@@ -34,7 +34,7 @@ struct Toy {
   Nanoseconds spend;                              // by cycle
   std::array<std::deque<int>, CHIMERA_METHODS> answers;  // of the next calls; CHIMERA_OK when none is left
   std::deque<std::pair<Signal, std::string>> sends;      // one a cycle; an empty name: none
-  std::function<void(const chimera_call&)> during;       // by cycle
+  std::function<int(const chimera_call&)> during;        // by cycle; its answer when it is not CHIMERA_OK
   double value = 0;
 };
 
@@ -61,7 +61,10 @@ std::int32_t method(void* memory, const chimera_call* call) {
   if (toy.calls != nullptr) toy.calls->push_back(seen);
   if (kMethod == CHIMERA_CYCLE) {
     if (toy.spend > Nanoseconds{}) call->host->spend(call->context, toy.spend.count);
-    if (toy.during) toy.during(*call);
+    if (toy.during) {
+      const int answer = toy.during(*call);
+      if (answer != CHIMERA_OK) return answer;
+    }
     toy.value += 1;
     if (state.out.value != nullptr) std::memcpy(state.out.value, &toy.value, sizeof toy.value);
     if (!toy.sends.empty()) {

@@ -37,6 +37,11 @@ bool set_below_all(pid_t thread) noexcept {
   return ::sched_setscheduler(thread, SCHED_OTHER, &p) == 0;
 }
 
+int level_of(pid_t thread) noexcept {
+  sched_param p{};
+  return ::sched_getparam(thread, &p) == 0 ? p.sched_priority : 0;
+}
+
 Nanoseconds used_by(pid_t thread) noexcept { return read(cpu_clock_of(thread)); }
 
 Nanoseconds used_by_this_thread() noexcept { return read(CLOCK_THREAD_CPUTIME_ID); }

@@ -33,6 +33,7 @@ PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, 
   }
   for (JobThread& thread : threads_) thread.thread = std::thread([this, &thread] { follow_releases(thread); });
   supervisor_ = std::thread([this] { supervise(); });
+  while (n_ready_ < threads_.size() + 1) clock_.sleep(microseconds(100));
 }
 
 PreemptiveExecutor::~PreemptiveExecutor() {
@@ -50,13 +51,13 @@ Result<void> PreemptiveExecutor::start() {
 }
 
 void PreemptiveExecutor::start(Nanoseconds origin) {
-  section_.enter();
+  enter();
   releases_.begin(origin);
   section_.leave();
 }
 
 void PreemptiveExecutor::shut_down() noexcept {
-  section_.enter();
+  enter();
   set_.shut_down(clock_.now());
   section_.leave();
 }
@@ -64,7 +65,7 @@ void PreemptiveExecutor::shut_down() noexcept {
 RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
   const Nanoseconds until = duration == kNever ? kNever : origin() + duration;
   edge_thread_ = this_thread();
-  section_.enter();
+  enter();
   is_paused_ = false;
   until_ = until;
   tell_threads();
@@ -72,7 +73,7 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
   for (;;) {
     const std::uint32_t heard = Doorbell(*bell_).read();
     RunEnd end = RunEnd::kTime;
-    section_.enter();
+    enter();
     const bool is_over = take_edge(end, until);
     const Nanoseconds next = std::min(releases_.next_edge(), until);
     section_.leave();
@@ -118,7 +119,7 @@ bool PreemptiveExecutor::is_idle() const noexcept {
 
 // No job is released from here on; those under way end.
 void PreemptiveExecutor::stop_jobs() noexcept {
-  section_.enter();
+  enter();
   is_paused_ = true;
   for (JobThread& job : threads_) (void)claim(job.task);
   for (;;) {
@@ -130,7 +131,7 @@ void PreemptiveExecutor::stop_jobs() noexcept {
     section_.leave();
     if (is_over) return;
     (void)Doorbell(*bell_).wait_until(heard, clock_.now() + milliseconds(1));
-    section_.enter();
+    enter();
   }
 }
 
@@ -139,7 +140,7 @@ bool PreemptiveExecutor::claim(TaskId id) noexcept {
   JobPhase phase = JobPhase::kWaiting;
   if (job->phase.compare_exchange_strong(phase, JobPhase::kChanged)) {
     job->next = job->job.release;  // it comes again
-    cancel(*job);
+    cancel(*job, clock_.now());
     return true;
   }
   return phase == JobPhase::kNone || phase == JobPhase::kCancelled;
@@ -157,7 +158,6 @@ void PreemptiveExecutor::open(TaskId id) noexcept {
   LabelledJob method;
   method.task = id;
   method.urgency = urgency_of(*job, s.budget);
-  method.has_begun = true;
   const int level = apply(labels_.insert(method), job);
   section_.leave();
   lower(level);
@@ -168,7 +168,7 @@ void PreemptiveExecutor::close(TaskId id) noexcept {
   if (job == nullptr || edge_thread_ == 0) return;
   job->phase = JobPhase::kDone;
   raise();
-  section_.enter();
+  enter();
   (void)apply(labels_.remove(id), nullptr);
   job->carrier = job->id;
   job->phase = JobPhase::kNone;

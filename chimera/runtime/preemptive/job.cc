@@ -12,8 +12,9 @@ constexpr Nanoseconds kShowEvery = milliseconds(10);
 
 void PreemptiveExecutor::follow_releases(JobThread& me) {
   if (has_levels_) (void)enter_realtime({place_.ceiling, place_.cpu, false});
-  section_.enter();
   me.id = me.carrier = this_thread();
+  ++n_ready_;
+  enter();
   while (!quits_) {
     const Nanoseconds now = clock_.now();
     const bool may_run = me.is_joined && !me.is_held && !is_paused_ && me.next < until_;
@@ -25,7 +26,7 @@ void PreemptiveExecutor::follow_releases(JobThread& me) {
     const Nanoseconds until = may_run ? me.next : kNever;
     section_.leave();
     (void)Doorbell(me.bell).wait_until(heard, until);
-    section_.enter();
+    enter();
   }
   section_.leave();
 }
@@ -35,17 +36,16 @@ void PreemptiveExecutor::run_job(JobThread& me, Nanoseconds now) noexcept {
   charge_running(now);
   if (!release(me, now)) return;
   const int level = enter_label(me, now);
-  const bool is_first = &of_task_[labels_.jobs().back().task.index][0] == &me;
   section_.leave();
   lower(level);
   if (begin(me)) {
-    now = run_body(me, is_first ? now : clock_.now());
+    now = run_body(me, clock_.now());
     raise();
-    section_.enter();
+    enter();
     end(me, now);
     return;
   }
-  section_.enter();  // cancelled: whoever did that has raised this thread
+  enter();  // cancelled: whoever did that has raised this thread
   me.phase = JobPhase::kNone;
 }
 
@@ -78,10 +78,11 @@ int PreemptiveExecutor::enter_label(JobThread& me, Nanoseconds now) noexcept {
   job.task = me.task;
   job.urgency = urgency_of(me, s.budget);
   const auto changes = labels_.insert(job);
-  if (labels_.jobs().back().task == me.task) slice_of_running_ends(now, me);
   const int level = apply(changes, &me);
+  processor_goes_on(now);
   Nanoseconds check = std::min(me.next, me.job.deadline);
   if (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) check = std::min(check, now + s.budget);
+  if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) check = std::min(check, next_quantum(now));
   watch(me, check);
   return level;
 }
@@ -89,7 +90,7 @@ int PreemptiveExecutor::enter_label(JobThread& me, Nanoseconds now) noexcept {
 bool PreemptiveExecutor::begin(JobThread& me) noexcept {
   JobPhase phase = JobPhase::kWaiting;
   if (me.phase.compare_exchange_strong(phase, JobPhase::kBegun)) return true;
-  section_.enter();  // the supervisor was changing the job; or it is cancelled
+  enter();  // the supervisor was changing the job; or it is cancelled
   const bool begins = me.phase == JobPhase::kWaiting;
   if (begins) me.phase = JobPhase::kBegun;
   section_.leave();
@@ -99,7 +100,7 @@ bool PreemptiveExecutor::begin(JobThread& me) noexcept {
 // Returns when it ended.
 Nanoseconds PreemptiveExecutor::run_body(JobThread& me, Nanoseconds start) noexcept {
   const Job job = me.job;
-  me.slice = start;
+  me.slice.store(start.count, std::memory_order_relaxed);
   const Nanoseconds before = used_by_this_thread();
   me.used_before.store(before.count, std::memory_order_relaxed);
   Nanoseconds end = start;
@@ -117,8 +118,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   ++counts_.jobs;
   const bool was_running = labels_.size() > 0 && labels_.jobs().back().task == me.task;
   if (!was_running && !me.is_demoted) ++counts_.ended_unseen;
-  if (now > me.slice && !me.is_demoted)
-    releases_.record_now(TapKind::kRun, me.slice, me.task, CHIMERA_CYCLE, (now - me.slice).count);
+  if (!me.is_demoted) record_slice(me, now);
   (void)apply(labels_.remove(me.task), nullptr);
   me.phase = JobPhase::kNone;
   me.is_demoted = false;
@@ -126,7 +126,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   Task& t = task(me);
   t.is_busy = false;
   releases_.flush_records(me.task);
-  if (was_running) running_goes_on(now);
+  processor_goes_on(now);
   if (guest_ != nullptr && now - me.shown >= kShowEvery) {
     me.shown = now;
     guest_->show(t);
@@ -135,26 +135,25 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   if (releases_.is_unsettled(me.task) || !t.pending.empty() || is_paused_) ring_edge();
 }
 
-// `by` is about to take the processor.
-void PreemptiveExecutor::slice_of_running_ends(Nanoseconds now, const JobThread& by) noexcept {
-  for (std::size_t i = labels_.size(); i-- > 0;) {
-    JobThread& job = *of_task_[labels_.jobs()[i].task.index];
-    if (&job == &by || job.phase != JobPhase::kBegun) continue;
-    if (now > job.slice)
-      releases_.record_now(TapKind::kRun, job.slice, job.task, CHIMERA_CYCLE, (now - job.slice).count);
-    releases_.record_now(TapKind::kPreempt, now, job.task, 0);
-    job.slice = now;
-    ++task(job).profile.preempted;
-    ++counts_.preemptions;
-    return;
-  }
+void PreemptiveExecutor::record_slice(const JobThread& job, Nanoseconds now) noexcept {
+  const Nanoseconds since{job.slice.load(std::memory_order_relaxed)};
+  if (now > since) releases_.record_now(TapKind::kRun, since, job.task, CHIMERA_CYCLE, (now - since).count);
 }
 
-// Who was preempted has the processor again; whoever has not begun says so himself.
-void PreemptiveExecutor::running_goes_on(Nanoseconds now) noexcept {
-  JobThread* next = running();
-  if (next != nullptr) next->slice = now;
-  const std::uint32_t word = next == nullptr ? 0 : (next->task.index + 1) << 8 | CHIMERA_CYCLE;
+// After every change of the list: whoever is the most urgent now has the processor. One that begins says so himself.
+void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
+  JobThread* top = labels_.size() == 0 ? nullptr : of_task_[labels_.jobs().back().task.index];
+  if (top == on_processor_) return;
+  if (on_processor_ != nullptr && on_processor_->phase == JobPhase::kBegun && !on_processor_->is_demoted) {
+    record_slice(*on_processor_, now);
+    releases_.record_now(TapKind::kPreempt, now, on_processor_->task, 0);
+    ++task(*on_processor_).profile.preempted;
+    ++counts_.preemptions;
+  }
+  on_processor_ = top;
+  const bool goes_on = top != nullptr && top->phase == JobPhase::kBegun;
+  if (goes_on) top->slice.store(now.count, std::memory_order_relaxed);
+  const std::uint32_t word = goes_on ? (top->task.index + 1) << 8 | CHIMERA_CYCLE : 0;
   tasks_[0].running->store(word, std::memory_order_relaxed);
 }
 

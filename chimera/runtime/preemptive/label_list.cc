@@ -19,11 +19,11 @@ LabelList::LabelList(Policy policy, std::size_t capacity, std::int32_t base, std
   changes_.reserve(3 * capacity + 4);  // every job may move twice in one rekey
 }
 
-// A full tie keeps the job that was dispatched; among those that were not, the order of the tasks decides.
+// A full tie keeps the job that runs; among the others the order of the tasks decides.
 bool LabelList::goes_before(const LabelledJob& a, const LabelledJob& b) const noexcept {
   if (is_more_urgent(policy_, a.urgency, b.urgency)) return true;
   if (is_more_urgent(policy_, b.urgency, a.urgency)) return false;
-  if (a.has_begun != b.has_begun) return a.has_begun;
+  if (a.task == running_ || b.task == running_) return a.task == running_;
   return a.task.index < b.task.index;
 }
 
@@ -147,11 +147,6 @@ std::span<const LevelChange> LabelList::rekey(TaskId task, const Urgency& urgenc
   label(to);
   promote();
   return changes_;
-}
-
-void LabelList::begin(TaskId task) noexcept {
-  const std::size_t at = find(task);
-  if (at < jobs_.size()) jobs_[at].has_begun = true;
 }
 
 }  // namespace chimera

@@ -24,7 +24,6 @@ struct LabelledJob {
   TaskId task;
   Urgency urgency;
   std::int32_t level = 0;
-  bool has_begun = false;  ///< it was dispatched before: at equal urgency it stays before those that were not
 };
 
 /// To be told to the kernel, in this order.
@@ -48,8 +47,8 @@ class LabelList {
   std::span<const LevelChange> remove(TaskId task) noexcept;
   /// The urgency of a job changed: it goes where it belongs now. No effect for a task without a job.
   std::span<const LevelChange> rekey(TaskId task, const Urgency& urgency) noexcept;
-  /// The job was dispatched.
-  void begin(TaskId task) noexcept;
+  /// This task's job has the processor (invalid: nobody's): at equal urgency it goes on.
+  void dispatch(TaskId task) noexcept { running_ = task; }
 
   std::size_t size() const noexcept { return jobs_.size(); }
   /// Ascending urgency: the last one is the most urgent.
@@ -75,6 +74,7 @@ class LabelList {
   std::vector<LabelledJob> jobs_;      // capacity reserved once
   std::vector<LevelChange> changes_;   // capacity reserved once
   std::size_t n_parked_ = 0;
+  TaskId running_;
 };
 
 }  // namespace chimera

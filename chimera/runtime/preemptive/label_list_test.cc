@@ -96,12 +96,12 @@ TEST(LabelList, TheMostUrgentJobHasTheHighestLevel) {
   EXPECT_EQ(k.runs(), "2");
 }
 
-TEST(LabelList, AFullTieKeepsTheJobThatWasDispatchedElseTheOrderOfTheTasksDecides) {
+TEST(LabelList, AFullTieKeepsTheJobThatRunsElseTheOrderOfTheTasksDecides) {
   Kernel k(Policy::kEdf, 4);
   k.insert(job(2, 10));
   k.insert(job(1, 10));
   EXPECT_EQ(k.runs(), "1");
-  k.list.begin(TaskId(1u));
+  k.list.dispatch(TaskId(1u));
   k.insert(job(0, 10));
   EXPECT_EQ(k.runs(), "1");
   k.remove(1);
@@ -156,7 +156,7 @@ TEST(LabelList, KeepsItsInvariantsOverRandomEntries) {
       if (!ready[task]) k.insert(fresh());
       else if (random() % 4 == 0) k.rekey(task, fresh().urgency);
       else k.remove(task);
-      if (ready[task] && k.list.jobs().size() > 0) k.list.begin(k.list.jobs().back().task);
+      if (ready[task] && k.list.jobs().size() > 0) k.list.dispatch(k.list.jobs().back().task);
       const auto jobs = k.list.jobs();
       ready[task] = std::any_of(jobs.begin(), jobs.end(), [&](const auto& j) { return j.task.index == task; });
     }

@@ -32,6 +32,7 @@ struct ProcessorPlace {
   int ceiling = 0;    ///< SCHED_FIFO level of the section; 0: no real-time levels at all
   int base = 0;       ///< of jobs that found no level of their own; labels lie between; ceiling - base >= 2
   Nanoseconds quantum = microseconds(500);  ///< of the laxity policy
+  bool checks = false;  ///< looks up every level in the kernel at every entry to the section: for tests, costs
   /// Rung when an edge is due; run() sleeps on it. Null: one of its own.
   std::atomic<std::uint32_t>* bell = nullptr;
 };
@@ -43,6 +44,8 @@ struct ProcessorCounts {
   std::uint64_t preemptions = 0;
   std::uint64_t ended_unseen = 0;   ///< a job was over, and others were released before its thread could say so
   std::uint64_t supervised = 0;     ///< times the alarm rang
+  std::uint64_t wrong_levels = 0;   ///< with checks: a job did not run at its label, or labels were out of order
+  std::uint64_t checked = 0;        ///< with checks: entries to the section
   std::uint64_t section_taken = 0;  ///< times the section was found taken: 0 with real-time levels
 };
 
@@ -95,8 +98,8 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   bool begin(JobThread& me) noexcept;
   Nanoseconds run_body(JobThread& me, Nanoseconds start) noexcept;
   void end(JobThread& me, Nanoseconds now) noexcept;
-  void slice_of_running_ends(Nanoseconds now, const JobThread& by) noexcept;
-  void running_goes_on(Nanoseconds now) noexcept;
+  void record_slice(const JobThread& job, Nanoseconds now) noexcept;
+  void processor_goes_on(Nanoseconds now) noexcept;
 
   // Levels and supervision (supervisor.cc).
   void supervise();
@@ -108,15 +111,22 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void charge(JobThread& job, Nanoseconds now) noexcept;
   void overrun(JobThread& job, Nanoseconds now) noexcept;
   void hang(JobThread& job, Nanoseconds now) noexcept;
-  void demote(JobThread& job) noexcept;
-  void cancel(JobThread& job) noexcept;
+  void demote(JobThread& job, Nanoseconds now) noexcept;
+  void cancel(JobThread& job, Nanoseconds now) noexcept;
   JobThread* running() noexcept;
   int apply(std::span<const LevelChange> changes, const JobThread* own) noexcept;
   void watch(JobThread& job, Nanoseconds check) noexcept;
   void arm(const JobThread* job, Nanoseconds check) noexcept;
   Urgency urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept;
   Nanoseconds used(const JobThread& job) const noexcept;
+  Nanoseconds next_quantum(Nanoseconds now) const noexcept;
   static bool acts_at_once(OnMiss reaction) noexcept;
+  void enter() noexcept {
+    section_.enter();
+    labels_.dispatch(on_processor_ == nullptr ? TaskId() : on_processor_->task);
+    if (place_.checks) check();
+  }
+  void check() noexcept;
   void raise() noexcept;
   void lower(int level) noexcept;
   const TaskSpec& spec(const JobThread& job) const noexcept { return *tasks_[job.task.index].spec; }
@@ -139,10 +149,12 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   const JobThread* armed_for_ = nullptr;
   std::thread supervisor_;
   pid_t edge_thread_ = 0;
+  JobThread* on_processor_ = nullptr;    // the most urgent job at the last change of the list
   bool has_levels_ = false;
   bool is_paused_ = true;                // no job is released
   Nanoseconds until_ = kNever;           // nor from here on
   std::atomic<bool> quits_{false};
+  std::atomic<std::size_t> n_ready_{0};  // threads that are where they belong
   ProcessorCounts counts_;
 };
 

@@ -17,6 +17,11 @@ Nanoseconds rounded(Nanoseconds t, Nanoseconds quantum) noexcept {
 
 }  // namespace
 
+Nanoseconds PreemptiveExecutor::next_quantum(Nanoseconds now) const noexcept {
+  const Nanoseconds first = origin() + Nanoseconds{place_.quantum.count / 8};  // after what is released there
+  return first + place_.quantum * ((now - first) / place_.quantum + 1);
+}
+
 bool PreemptiveExecutor::acts_at_once(OnMiss reaction) noexcept {
   return reaction == OnMiss::kDemote || reaction == OnMiss::kAbort || reaction == OnMiss::kStop ||
          reaction == OnMiss::kFlag;
@@ -61,6 +66,19 @@ Nanoseconds PreemptiveExecutor::used(const JobThread& job) const noexcept {
   return all - Nanoseconds{job.used_before.load(std::memory_order_relaxed)};
 }
 
+// What the list says and what the kernel does are the same, but for those on their way to the ceiling.
+void PreemptiveExecutor::check() noexcept {
+  ++counts_.checked;
+  const auto jobs = labels_.jobs();
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const JobThread& job = *of_task_[jobs[i].task.index];
+    const bool ascends = i == 0 || i < labels_.parked() || jobs[i].level > jobs[i - 1].level;
+    const bool is_ordered = i == 0 || !is_more_urgent(labels_.policy(), jobs[i - 1].urgency, jobs[i].urgency);
+    const bool is_at_label = !has_levels_ || job.phase == JobPhase::kDone || level_of(job.carrier) == jobs[i].level;
+    if (!ascends || !is_ordered || !is_at_label) ++counts_.wrong_levels;
+  }
+}
+
 // The most urgent job that has begun: it has the processor, unless it sleeps in a system call.
 JobThread* PreemptiveExecutor::running() noexcept {
   for (std::size_t i = labels_.size(); i-- > 0;) {
@@ -84,8 +102,9 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
   const Nanoseconds allowed = s.budget > Nanoseconds{} ? s.budget : s.period;
   if (spent > allowed * kHangsAfter) return hang(job, now);
   if (s.budget > Nanoseconds{} && spent > s.budget && !job.is_overrun) return overrun(job, now);
-  if (by_laxity && !job.is_demoted)
-    (void)apply(labels_.rekey(job.task, urgency_of(job, std::max(s.budget - spent, Nanoseconds{}))), nullptr);
+  if (!by_laxity || job.is_demoted) return;
+  (void)apply(labels_.rekey(job.task, urgency_of(job, std::max(s.budget - spent, Nanoseconds{}))), nullptr);
+  processor_goes_on(now);
 }
 
 // Seen while the job still runs: what can be done at once is done at once; the rest at its end.
@@ -93,7 +112,7 @@ void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
   job.is_overrun = true;
   const OnMiss reaction = spec(job).on_overrun;
   releases_.record_now(TapKind::kOverrun, now, job.task, task(job).call.cycle, used(job).count);
-  if (reaction == OnMiss::kDemote) demote(job);
+  if (reaction == OnMiss::kDemote) demote(job, now);
   if (reaction == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
   if (reaction == OnMiss::kFlag || reaction == OnMiss::kStop) {
     releases_.act_on_overrun(job.task, reaction);
@@ -103,27 +122,30 @@ void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
 
 // Others keep their deadlines; whoever runs the context ends it, for nothing else ends the job.
 void PreemptiveExecutor::hang(JobThread& job, Nanoseconds now) noexcept {
-  if (!job.is_demoted) demote(job);
+  if (!job.is_demoted) demote(job, now);
   if (job.is_hanging) return;
   job.is_hanging = true;
   releases_.record_now(TapKind::kHang, now, job.task, task(job).call.cycle, used(job).count);
   ring_edge();
 }
 
-void PreemptiveExecutor::demote(JobThread& job) noexcept {
+void PreemptiveExecutor::demote(JobThread& job, Nanoseconds now) noexcept {
   if (job.is_demoted) return;
+  record_slice(job, now);
   job.is_demoted = true;
   ++task(job).profile.demoted;
   (void)apply(labels_.remove(job.task), nullptr);
+  processor_goes_on(now);
   if (has_levels_) set_below_all(job.carrier);
 }
 
 // A job that waits is taken back; its thread goes to sleep again.
-void PreemptiveExecutor::cancel(JobThread& job) noexcept {
+void PreemptiveExecutor::cancel(JobThread& job, Nanoseconds now) noexcept {
   job.phase = JobPhase::kCancelled;
   job.check = kNever;
   task(job).is_busy = false;
   (void)apply(labels_.remove(job.task), nullptr);
+  processor_goes_on(now);
   if (has_levels_) set_level(job.carrier, place_.ceiling);
 }
 
@@ -141,9 +163,10 @@ void PreemptiveExecutor::arm(const JobThread* job, Nanoseconds check) noexcept {
 
 void PreemptiveExecutor::supervise() {
   if (has_levels_) (void)enter_realtime({place_.ceiling, place_.cpu, false});
+  ++n_ready_;
   while (!quits_) {
     alarm_.wait();
-    section_.enter();
+    enter();
     ++counts_.supervised;
     look_at_jobs(clock_.now());
     section_.leave();
@@ -159,7 +182,7 @@ void PreemptiveExecutor::look_at_jobs(Nanoseconds now) noexcept {
   }
   Nanoseconds check = next == nullptr ? kNever : next->check;
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1)
-    check = std::min(check, now + place_.quantum);
+    check = std::min(check, next_quantum(now));
   arm(next, check);
 }
 
@@ -175,14 +198,15 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
   const TaskSpec& s = spec(job);
   if (s.on_miss == OnMiss::kAbort && now >= job.job.deadline) {
     releases_.expire_waiting(job.job);
-    cancel(job);
+    cancel(job, now);
   } else if (now >= job.next) {
     releases_.drop({job.task, job.job.release, 1});
     job.job = {job.task, job.next, job.next + s.deadline};
     job.next += s.period;
     (void)apply(labels_.rekey(job.task, urgency_of(job, s.budget)), nullptr);
+    processor_goes_on(now);
   }
-  if (releases_.has_lost_patience() && job.phase != JobPhase::kCancelled) cancel(job);
+  if (releases_.has_lost_patience() && job.phase != JobPhase::kCancelled) cancel(job, now);
   if (releases_.has_lost_patience()) {
     job.is_held = true;
     ring_edge();
@@ -195,7 +219,7 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
 void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(job);
   charge(job, now);
-  if (now >= job.job.deadline && s.on_miss == OnMiss::kDemote) demote(job);
+  if (now >= job.job.deadline && s.on_miss == OnMiss::kDemote) demote(job, now);
   if (now >= job.job.deadline && s.on_miss == OnMiss::kAbort)
     task(job).give_up.store(true, std::memory_order_relaxed);
   job.check = now + s.period;

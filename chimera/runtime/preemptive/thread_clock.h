@@ -12,6 +12,8 @@ namespace chimera {
 class ThreadClock final : public JobClock {
  public:
   Nanoseconds now() noexcept override { return LinuxClock().now(); }
+  /// Context: setup; blocks.
+  void sleep(Nanoseconds time) noexcept { (void)LinuxClock().wait_until(now() + time); }
   void spend(Nanoseconds time) noexcept override {
     const Nanoseconds end = used_by_this_thread() + time;
     while (used_by_this_thread() < end) {
