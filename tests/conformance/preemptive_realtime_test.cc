@@ -168,8 +168,10 @@ TEST_P(PreemptiveSchedule, IsThatOfVirtualTimeUnitByUnit) {
   const auto got = judged(GetParam());
   if (!got) GTEST_SKIP() << "not judged: host stalled";
   EXPECT_EQ(got->timeline, wanted.timeline);
-  for (std::size_t i = 0; i < 3; ++i)  // the critical ones
-    if (wanted.missed[i] == 0) EXPECT_EQ(got->missed[i], 0u) << "task " << static_cast<char>('A' + i);
+  for (std::size_t i = 0; i < 3; ++i) {  // the critical ones
+    if (wanted.missed[i] > 0) continue;
+    EXPECT_EQ(got->missed[i], 0u) << "task " << static_cast<char>('A' + i);
+  }
   EXPECT_EQ(got->counts.section_taken, 0u) << "the kernel's order excludes";
   EXPECT_EQ(got->counts.wrong_levels, 0u);
   EXPECT_GT(got->counts.checked, 60u);
