@@ -8,63 +8,15 @@
 #include <span>
 
 #include "library/kinematics/dh.h"
+#include "library/kinematics/frame.h"
 
 namespace chimera::library {
-
-using Triple = std::array<double, 3>;
-
-inline Triple operator+(const Triple& a, const Triple& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Triple operator-(const Triple& a, const Triple& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Triple operator*(double s, const Triple& a) noexcept { return {s * a[0], s * a[1], s * a[2]}; }
-inline double dot(const Triple& a, const Triple& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Triple cross(const Triple& a, const Triple& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double length(const Triple& a) noexcept { return std::sqrt(dot(a, a)); }
-
-/// A place with axes: x, y and z are unit vectors, right-handed, in the frame that `origin` (m) is given in.
-struct Frame {
-  Triple origin{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-
-  /// `inner`, which is given in this frame, in the frame that this one is given in.
-  Frame operator*(const Frame& inner) const noexcept {
-    return {origin + turned(inner.origin), turned(inner.x), turned(inner.y), turned(inner.z)};
-  }
-  Triple turned(const Triple& v) const noexcept { return v[0] * x + v[1] * y + v[2] * z; }
-  Triple seen(const Triple& v) const noexcept { return {dot(x, v), dot(y, v), dot(z, v)}; }
-  /// `other`, which is given beside this one, as seen from this one.
-  Frame seen(const Frame& other) const noexcept {
-    return {seen(other.origin - origin), seen(other.x), seen(other.y), seen(other.z)};
-  }
-};
 
 /// Rz(angle + theta) Tz(d) Tx(a) Rx(alpha).
 inline Frame frame_of(const DhLink& link, double angle) noexcept {
   const double c = std::cos(angle + link.theta), s = std::sin(angle + link.theta);
   const double ca = std::cos(link.alpha), sa = std::sin(link.alpha);
   return {{link.a * c, link.a * s, link.d}, {c, s, 0}, {-s * ca, c * ca, sa}, {s * sa, -c * sa, ca}};
-}
-
-/// Orientation as a unit quaternion w x y z with w >= 0.
-inline Pose pose_of(const Frame& f) noexcept {
-  const double w = 1 + f.x[0] + f.y[1] + f.z[2], x = 1 + f.x[0] - f.y[1] - f.z[2];
-  const double y = 1 - f.x[0] + f.y[1] - f.z[2], z = 1 - f.x[0] - f.y[1] + f.z[2];
-  std::array<double, 4> q;  // the largest of four times the squares first: no cancellation
-  if (w >= x && w >= y && w >= z) q = {w, f.y[2] - f.z[1], f.z[0] - f.x[2], f.x[1] - f.y[0]};
-  else if (x >= y && x >= z) q = {f.y[2] - f.z[1], x, f.y[0] + f.x[1], f.z[0] + f.x[2]};
-  else if (y >= z) q = {f.z[0] - f.x[2], f.y[0] + f.x[1], y, f.z[1] + f.y[2]};
-  else q = {f.x[1] - f.y[0], f.z[0] + f.x[2], f.z[1] + f.y[2], z};
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) * (q[0] < 0 ? -1 : 1);
-  return {{f.origin[0], f.origin[1], f.origin[2]}, {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm}};
-}
-
-/// The frame of a pose; its quaternion is taken as a unit one.
-inline Frame frame_of(const Pose& pose) noexcept {
-  const auto [w, x, y, z] = pose.orientation;
-  return {{pose.position[0], pose.position[1], pose.position[2]},
-          {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-          {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-          {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
 }
 
 /// The axis of a joint: a point on it (m) and its direction, with the robot at zero, in the base frame.

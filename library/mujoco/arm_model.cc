@@ -121,8 +121,8 @@ Result<ArmModel> find_arm(const mjModel_* m, mjData_* d, const char* tip_name) {
     const int j = joints[i];
     if (m->jnt_type[j] != mjJNT_HINGE) return bad("joint '%s' is no hinge: an arm has hinges only", joint_name(m, j));
     describe_joint(m, j, i, arm);
-    std::copy_n(d->xanchor + 3 * j, 3, axes[i].point.begin());
-    std::copy_n(d->xaxis + 3 * j, 3, axes[i].direction.begin());
+    std::copy_n(d->xanchor + 3 * j, 3, axes[i].point.at);
+    std::copy_n(d->xaxis + 3 * j, 3, axes[i].direction.at);
   }
   arm.chain = dh_of_axes(std::span(axes.data(), arm.ndof), tip->frame);
   return arm;

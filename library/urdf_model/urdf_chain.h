@@ -20,8 +20,8 @@ struct UrdfChain {
 };
 
 /// Reads `path` from the root to the link `tip`; an empty text stands for the link behind the most turning joints, the
-/// first of that many by name. Refuses a file that is missing or no URDF, an unknown tip, a joint on the way that slides,
-/// floats or mimics another, no turning joint, more than kMostJoints. Context: setup; may block.
+/// first of that many by name. Refuses a file that is missing or no URDF, an unknown tip, a joint on the way that
+/// slides, floats or mimics another, no turning joint, more than kMostJoints. Context: setup; may block.
 Result<UrdfChain> read_urdf(const std::string& path, const std::string& tip);
 
 }  // namespace chimera::library

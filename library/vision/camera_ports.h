@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The constants of a calibrated camera, the same for who simulates it and who reads it.
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+
+#include "chimera/task/component.h"
+#include "library/vision/pinhole.h"
+
+namespace chimera::library {
+
+/// In-consts that a component derives from.
+struct CameraPorts {
+  InConst<Pose> camera{"camera", frame = "base", doc = "The camera: x to the right, y down, z forward."};
+  InConst<double> focal_length{"focal_length", "1", initial = 800.0, range(1, 1e5), doc = "In pixels."};
+  InConst<double[2]> image_size{"image_size", "1", initial = {1280.0, 960.0}, range(1, 1e5),
+                                doc = "Width and height in pixels; the optical axis meets the middle."};
+  InConst<double> ball_diameter{"ball_diameter", "m", initial = 0.05, range(1e-3, 10), doc = "Of the target."};
+
+ protected:
+  Pinhole pinhole() const {
+    const Pose& pose = *camera;
+    double square = 0;
+    for (double q : pose.orientation) square += q * q;
+    if (!(std::abs(square - 1) < 1e-6)) throw std::runtime_error("camera: the orientation is no unit quaternion");
+    return {*focal_length, image_size[0], image_size[1], frame_of(pose), *ball_diameter};
+  }
+};
+
+}  // namespace chimera::library
