@@ -87,6 +87,8 @@ void ChromeTrace::add_one(const TapRecord& record) {
     case TapKind::kFault: return event(record, "i", std::string("fault in ") + method_of(record), "");
     case TapKind::kState: return event(record, "i", state_of(record), "");
     case TapKind::kFlag: return event(record, "i", record.a != 0 ? "flag up" : "flag down", "");
+    case TapKind::kOverrun: return event(record, "i", "overrun", argument("used_ns", record.b));
+    case TapKind::kHang: return event(record, "i", "hang", argument("used_ns", record.b));
     case TapKind::kGroup:
     case TapKind::kValue: return;  // what was published is no event of time
   }
