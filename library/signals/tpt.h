@@ -22,42 +22,42 @@ inline double prewarped(double frequency, double dt) noexcept {
 class FirstOrder {
  public:
   /// As if the input had been `x` for ever.
-  void settle(double x) noexcept { state_ = x; }
+  void settle(double x) noexcept { low_ = x, slope_ = 0; }
   double lowpass(double x, double g) noexcept {
-    const double v = (x - state_) * g / (1 + g);
-    const double y = v + state_;
-    state_ = y + v;
-    return y;
+    low_ = (g * (x + slope_) + low_) / (1 + g);
+    slope_ = x - low_;
+    return low_;
   }
 
  private:
-  double state_ = 0;
+  double low_ = 0;    // the integrator
+  double slope_ = 0;  // what goes into it
 };
 
 /// s^2 + k s + 1 below, and 1 (low) or s^2 + 1 (notch) above; k = 1/Q. Context: cycle; wait-free.
 class SecondOrder {
  public:
-  void settle(double x) noexcept { band_ = 0, low_ = x; }
+  void settle(double x) noexcept { high_ = band_ = 0, low_ = x; }
   double lowpass(double x, double g, double k) noexcept {
     step(x, g, k);
-    return low_out_;
+    return low_;
   }
   double notch(double x, double g, double k) noexcept {
     step(x, g, k);
-    return x - k * band_out_;
+    return x - k * band_;
   }
 
  private:
+  // Each integrator gains half a step of what went in last and half a step of what goes in now, both of this step's
+  // length: what is kept is not bound to a length.
   void step(double x, double g, double k) noexcept {
-    const double high = (x - (k + g) * band_ - low_) / (1 + g * (k + g));
-    band_out_ = g * high + band_;
-    low_out_ = g * band_out_ + low_;
-    band_ = g * high + band_out_;
-    low_ = g * band_out_ + low_out_;
+    const double band = band_ + g * high_, low = low_ + g * band_;
+    high_ = (x - (k + g) * band - low) / (1 + g * (k + g));
+    band_ = band + g * high_;
+    low_ = low + g * band_;
   }
 
-  double band_ = 0, low_ = 0;          // integrators
-  double band_out_ = 0, low_out_ = 0;  // of the last step
+  double high_ = 0, band_ = 0, low_ = 0;
 };
 
 }  // namespace chimera::library

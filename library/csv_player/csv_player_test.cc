@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+
+#include "library/signals/signal_rig.h"
+
+namespace chimera {
+namespace {
+
+struct CsvPlayerTest : testing::Test {
+  SignalRig rig{"csv_player", 2};
+  std::string path = testing::TempDir() + "csv_player_" + std::to_string(::getpid()) + ".csv";
+
+  ~CsvPlayerTest() override { ::unlink(path.c_str()); }
+
+  RigAnswer read(const std::string& text, bool is_repeated = false, bool is_interpolated = false) {
+    std::ofstream(path) << text;
+    rig.instances("out", 1);
+    rig.resource("file", path.c_str());
+    rig.set("is_repeated", is_repeated);
+    rig.set("is_interpolated", is_interpolated);
+    return rig.init();
+  }
+  double value(std::size_t i = 0) { return rig.get<double>("out", i); }
+};
+
+constexpr const char* kThreeRows = "t,q[0],q[1]\n5.000,1,10\n5.002,2,\n5.004,4,30\n";
+
+TEST_F(CsvPlayerTest, HoldsEachRowUntilTheNextFromItsFirstTimeOn) {
+  ASSERT_TRUE(read(kThreeRows));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(value(0), 1);
+  EXPECT_EQ(value(1), 10);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(value(0), 1);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(value(0), 2);
+  EXPECT_EQ(value(1), 10);  // an empty field keeps the value
+  EXPECT_FALSE(rig.get<bool>("done"));
+  ASSERT_TRUE(rig.cycle(milliseconds(2)));
+  EXPECT_EQ(value(0), 4);
+  EXPECT_TRUE(rig.get<bool>("done"));
+  ASSERT_TRUE(rig.cycle(seconds(100)));
+  EXPECT_EQ(value(1), 30);
+}
+
+TEST_F(CsvPlayerTest, DrawsStraightLinesWhenAsked) {
+  ASSERT_TRUE(read(kThreeRows, false, true));
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(value(0), 1.5, 1e-9);
+  ASSERT_TRUE(rig.cycle(milliseconds(2)));
+  EXPECT_NEAR(value(0), 3, 1e-9);
+  EXPECT_NEAR(value(1), 20, 1e-9);
+}
+
+TEST_F(CsvPlayerTest, BeginsAgainWhenAsked) {
+  ASSERT_TRUE(read(kThreeRows, true));
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle(milliseconds(3)));
+  EXPECT_EQ(value(0), 2);
+  ASSERT_TRUE(rig.cycle(milliseconds(2)));
+  EXPECT_EQ(value(0), 1);
+  EXPECT_FALSE(rig.get<bool>("done"));
+}
+
+TEST_F(CsvPlayerTest, PlaysWhatCsvLogWrote) {
+  {
+    Rig log("csv_log");
+    log.instances("in", 1);
+    log.extent("n", 2);
+    log.set("capacity", std::int32_t{1000});
+    log.resource("file", path.c_str());
+    ASSERT_TRUE(log.init());
+    ASSERT_TRUE(log.on());
+    for (int k = 0; k < 500; ++k) {
+      log.set("in", std::sin(0.01 * k), 0, 0);
+      log.set("in", 1.0 * k, 1, 0);
+      ASSERT_TRUE(log.cycle());
+    }
+    ASSERT_TRUE(log.background());
+    ASSERT_TRUE(log.kill());
+  }
+  rig.instances("out", 1);
+  rig.resource("file", path.c_str());
+  rig.set("is_repeated", false);
+  rig.set("is_interpolated", false);
+  const RigAnswer made = rig.init();
+  ASSERT_TRUE(made) << made.text;
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle(microseconds(500)));  // in the middle between rows
+  for (int k = 0; k < 500; ++k) {
+    EXPECT_NEAR(value(0), std::sin(0.01 * k), 1e-14);
+    EXPECT_EQ(value(1), k);
+    ASSERT_TRUE(rig.cycle());
+  }
+}
+
+TEST_F(CsvPlayerTest, RefusesWithFileAndLine) {
+  const auto refusal = [&](const std::string& text) { return read(text).text; };
+  EXPECT_EQ(refusal("t,a\n0,1\n"), path + ":1: has 1 columns after the time, and there are 2 outputs");
+  EXPECT_EQ(refusal("t,a,b\n"), path + ": there is no row in it");
+  EXPECT_EQ(refusal(""), path + ": there is no row in it");
+  EXPECT_EQ(refusal("t,a,b\n0,1,2\n0,1,2\n"), path + ":3: the time does not grow");
+  EXPECT_EQ(refusal("t,a,b\n0,1,x\n"), path + ":2: a field is not a finite number");
+  EXPECT_EQ(refusal("t,a,b\n0,1,nan\n"), path + ":2: a field is not a finite number");
+  EXPECT_EQ(refusal("t,a,b\n0,1,\n"), path + ":2: a field of the first row is empty");
+  EXPECT_EQ(refusal("t,a,b\n0,1\n"), path + ":2: has fewer fields than the first line");
+  EXPECT_EQ(refusal("t,a,b\n0,1,2,3\n"), path + ":2: has more fields than the first line");
+  EXPECT_EQ(refusal("t,a,b\nx,1,2\n"), path + ":2: the time is not a finite number");
+  rig.resource("file", "no_such.csv");
+  EXPECT_EQ(rig.init().text, "no_such.csv: cannot be read");
+}
+
+}  // namespace
+}  // namespace chimera

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <complex>
+#include <numbers>
+
+#include "library/signals/signal_rig.h"
+
+namespace chimera {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+struct NotchTest : testing::Test {
+  SignalRig rig{"notch"};
+  void start(double center, double width, double x = 0) {
+    rig.set("center", center);
+    rig.set("width", width);
+    rig.set("x", x);
+    ASSERT_TRUE(rig.init());
+    ASSERT_TRUE(rig.on());
+  }
+  double gain(double frequency) {
+    constexpr int kSettle = 4000, kSamples = 4000;
+    std::complex<double> sum = 0;
+    for (int k = 0; k < kSettle + kSamples; ++k) {
+      const double turn = 2 * kPi * frequency * k * 1e-3, y = rig.step(std::sin(turn));
+      if (k >= kSettle) sum += y * std::polar(1.0, turn);
+    }
+    return std::abs(sum) * 2 / kSamples;
+  }
+};
+
+TEST_F(NotchTest, HasTheGainOfTheClosedFormAtEveryFrequency) {
+  start(50, 10);
+  const double g = std::tan(kPi * 0.05), k = std::tan(kPi * 0.01) * (1 + g * g) / g;
+  for (double f : {1.0, 20.0, 40.0, 45.0, 49.0, 50.0, 51.0, 60.0, 100.0, 250.0, 450.0}) {
+    const std::complex<double> s(0, std::tan(kPi * f * 1e-3) / g);
+    EXPECT_NEAR(gain(f), std::abs((s * s + 1.0) / (s * s + k * s + 1.0)), 1e-9) << f << " Hz";
+  }
+}
+
+TEST_F(NotchTest, IsExactlyAsWideAsItSays) {
+  start(200, 60);  // far up, where the transform bends most
+  // cos(2 pi f1) and cos(2 pi f2) of the edges: their frequencies differ by the width, and tan tan = g^2.
+  const double g = std::tan(kPi * 0.2), t = std::tan(kPi * 0.06);
+  const double low = (-t * (1 + g * g) + std::sqrt(t * t * (1 + g * g) * (1 + g * g) + 4 * g * g)) / 2;
+  const double f1 = std::atan(low) / kPi * 1000;
+  EXPECT_NEAR(gain(200), 0, 1e-9);
+  EXPECT_NEAR(gain(std::round(f1 * 4) / 4), std::numbers::sqrt2 / 2, 5e-3);
+  EXPECT_NEAR(gain(std::round((f1 + 60) * 4) / 4), std::numbers::sqrt2 / 2, 5e-3);
+}
+
+TEST_F(NotchTest, LetsAConstantThroughFromTheFirstCycle) {
+  start(50, 5, 3.25);
+  EXPECT_EQ(rig.get<double>("y"), 3.25);
+  for (int i = 0; i < 20; ++i) EXPECT_NEAR(rig.step(3.25), 3.25, 1e-12);
+}
+
+TEST_F(NotchTest, RefusesWrongConstantsAndNaNDoesNotStay) {
+  rig.set("center", 0.0);
+  rig.set("width", 5.0);
+  EXPECT_EQ(rig.init().text, "center and width must be above 0 Hz");
+  rig.set("center", std::nan(""));
+  EXPECT_EQ(rig.init().text, "center and width must be above 0 Hz");
+  start(500, 5);
+  rig.step(0);
+  EXPECT_EQ(rig.on().text, "center and width must be below half the rate of the task");
+  start(50, 5, 1);
+  rig.step(1);
+  rig.set("x", std::nan(""));
+  EXPECT_EQ(rig.cycle().text, "x is not a finite number");
+  EXPECT_TRUE(rig.error());
+  EXPECT_NEAR(rig.step(1), 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace chimera
