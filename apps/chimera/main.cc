@@ -10,6 +10,7 @@
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
 #include "chimera/desk/new.h"
+#include "chimera/desk/schedule.h"
 #include "chimera/desk/test_component.h"
 
 namespace {
@@ -20,6 +21,7 @@ using namespace chimera;  // NOLINT: a main() of this project
 struct Words {
   bool json = false;
   desk::CheckOptions check;
+  desk::ScheduleRequest schedule;
   std::string component;
   desk::TestOptions test;
   desk::NewRequest made;
@@ -41,6 +43,18 @@ void add_check(CLI::App& app, Words& words) {
   c->add_option("--graph", words.check.graph, "draw it instead: dot, svg or text")
       ->check(CLI::IsMember({"dot", "svg", "text"}));
   c->footer("Example: chimera check examples/01_puma_pid/puma_pid.yaml --graph svg > puma.svg");
+}
+
+void add_schedule(CLI::App& app, Words& words) {
+  CLI::App* s = app.add_subcommand("schedule", "Prove that every task keeps its deadlines, or tell what would help");
+  s->add_option("FILE", words.schedule.file, "the description")->required();
+  s->add_option("--profile", words.schedule.profile, "execution times from this recorded profile, else from budgets");
+  s->add_option("--svg", words.schedule.svg, "draw the worst window of each CPU into this file");
+  s->add_option("--dispatch", words.schedule.dispatch, "judge 'preemptive' or 'executive' units (as `run` has them)")
+      ->check(CLI::IsMember({"preemptive", "executive"}));
+  s->add_flag("--json", words.json, "the analysis as one JSON object");
+  s->footer("Exit code 0: everything keeps its deadlines; 1: it does not.\n"
+            "Example: chimera schedule examples/01_puma_pid/puma_pid.yaml --svg window.svg");
 }
 
 void add_list(CLI::App& app, Words& words) {
@@ -95,8 +109,9 @@ desk::Output make_new(const CLI::App& app, Words& words) {
 
 int carry_out(CLI::App& app, Words& words) {
   const desk::Workplace workplace = desk::Workplace::around(desk::program_path());
-  words.check.json = words.json;
+  words.check.json = words.schedule.json = words.json;
   if (app.got_subcommand("check")) return print(desk::check(words.check, workplace));
+  if (app.got_subcommand("schedule")) return print(desk::schedule(words.schedule, workplace));
   if (app.got_subcommand("new")) return print(make_new(app, words));
   if (app.got_subcommand("list")) return print(desk::list(workplace, words.json));
   if (app.got_subcommand("describe")) return print(desk::describe_component(words.component, workplace, words.json));
@@ -122,6 +137,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", CHIMERA_VERSION);
   Words words;
   add_check(app, words);
+  add_schedule(app, words);
   add_run(app, words.run);
   add_list(app, words);
   add_test(app, words);

@@ -28,6 +28,11 @@ def outputs(source):
     yield "error", 1, ["describe", "gian"]
     yield "test", 1, ["test", "accel", "--setup", source / "library/brake/brake.test.yaml"]
     yield "test", 0, ["test", "gain", "--cycles", "50"]
+    yield "schedule", 0, ["schedule", examples[0]]
+    yield "schedule", 1, ["schedule", source / "examples/06_schedules/edf.yaml"]
+    yield "schedule", 1, ["schedule", source / "examples/06_schedules/muf.yaml"]
+    yield "check", 1, ["schedule", faulty[0]]
+    yield "error", 1, ["schedule", examples[0], "--profile", source / "README.md"]
     yield "error", 1, ["run", examples[0], "--virtual", "--for", "1 s", "--expect", "nothing at all"]
     for path in examples:
         yield "check", 0, ["check", path]
@@ -56,7 +61,7 @@ def main():
     program, source = sys.argv[1], pathlib.Path(sys.argv[2])
     schema = json.loads((source / "docs/formats/run.schema.json").read_text())
     jsonschema.Draft7Validator.check_schema(schema)
-    judges = {kind: definition(schema, kind) for kind in ("run", "check", "list", "test", "error")}
+    judges = {kind: definition(schema, kind) for kind in ("run", "check", "list", "test", "schedule", "error")}
     judges["descriptor"] = jsonschema.Draft7Validator(
         json.loads((source / "docs/formats/descriptor.schema.json").read_text()))
     any_output = jsonschema.Draft7Validator(schema)
@@ -74,7 +79,7 @@ def main():
             faults.append(f"{called}: is not exactly one kind of output")
         texts[called], last[kind] = run.stdout, printed
     # The schema itself: whatever is missing is noticed. Methods and variables are keys of the application's own.
-    for kind in ("run", "check", "list", "test", "error"):
+    for kind in ("run", "check", "list", "test", "schedule", "error"):
         for at, smaller in cut(last[kind]):
             free = at[-1] == "last_fault" or (len(at) > 1 and at[-2] in ("execution_ns", "variables"))
             if not free and judges[kind].is_valid(smaller):

@@ -137,7 +137,7 @@ class Trial {
   }
 
   std::string failing_demand(const std::vector<Seen>& seen, Tick horizon) {
-    if (kind_of(set_) != Kind::kDeadline || cpu_.demand.within.count == 0 || cpu_.demand.within.count > horizon)
+    if (kind_of(set_) != Kind::kDeadline || cpu_.demand.within.count == 0 || cpu_.demand.within.count >= horizon)
       return {};
     std::uint32_t level = UINT32_MAX;
     for (std::size_t i = 0; i < seen.size(); ++i)

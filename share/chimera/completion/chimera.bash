@@ -5,9 +5,10 @@
 # The options of each command, and at the top level the commands too.
 _chimera_words() {
   case $1 in
-    '') echo '--help --version check run idle list describe test new clear end events flag get kill off on profile' \
+    '') echo '--help --version check schedule run idle list describe test new clear end events flag get kill off on profile' \
       'reinit save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --graph' ;;
+    schedule) echo '--help --profile --svg --dispatch --json' ;;
     run) echo '--help --for --at --watch --every --expect --trace --timeline --virtual --preemptive --seed --quantum' \
       '--priority --isolation --observe-group --operate-group --configure-group --json' ;;
     idle) echo '--help --subsystem' ;;
@@ -50,14 +51,15 @@ _chimera() {
     --isolation) mapfile -t COMPREPLY < <(compgen -W 'process none' -- "$word"); return ;;
     --observe-group | --operate-group | --configure-group)
       mapfile -t COMPREPLY < <(compgen -g -- "$word"); return ;;
+    --dispatch) mapfile -t COMPREPLY < <(compgen -W 'preemptive executive' -- "$word"); return ;;
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
-    --trace | --csv | --svg | --setup | --inputs) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    --trace | --csv | --svg | --profile | --setup | --inputs) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --names | --cycles | --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | --since | --trigger | \
       --pre | --wait | --subsystem) return ;;
   esac
   if [[ $word == -* || -z $command || $command == new ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_words "$command")" -- "$word")
-  elif [[ $command == check || $command == run ]]; then
+  elif [[ $command == check || $command == schedule || $command == run ]]; then
     mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -- "$word")
   elif [[ " get set watch why scope " == *" $command "* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_names)" -- "$word")

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/config/schedule_report.h"
+
+#include <algorithm>
+
+#include "chimera/base/assert.h"
+#include "chimera/config/nearest.h"
+#include "chimera/config/schedule_parts.h"
+#include "chimera/schedule/utilisation.h"
+
+namespace chimera {
+namespace {
+
+constexpr std::size_t kMostRuns = 400;
+constexpr std::int64_t kMostPeriods = 4;  // of the longest, in the picture
+
+std::vector<std::string> names_of(const Configuration& configuration) {
+  std::vector<std::string> names;
+  for (const ConfiguredTask& task : configuration.tasks()) names.push_back(task.name);
+  return names;
+}
+
+/// Groups and bytes that come from, or go to, the table of others.
+TransferCost transfer_of(const Configuration& configuration, std::size_t task) {
+  TransferCost cost;
+  std::vector<std::size_t> producers;
+  const ConfiguredTask& me = configuration.tasks()[task];
+  const auto ports = configuration.spec().tasks[task].ports;
+  for (const ConfiguredVariable& variable : configuration.variables()) {
+    if (variable.is_constant) continue;
+    const auto mine = std::find_if(variable.consumers.begin(), variable.consumers.end(),
+                                   [task](const PortRef& ref) { return ref.task == task; });
+    if (mine == variable.consumers.end()) continue;
+    std::size_t from = variable.producers.empty() ? SIZE_MAX : variable.producers[0].task;  // the operator
+    if (from != SIZE_MAX && configuration.tasks()[from].rtpu == me.rtpu) continue;
+    cost.bytes += ports[mine->port].max_bytes();
+    if (std::find(producers.begin(), producers.end(), from) == producers.end()) producers.push_back(from);
+  }
+  cost.groups = static_cast<std::uint32_t>(producers.size());
+  return cost;
+}
+
+class Writer {
+ public:
+  Writer(const Configuration& configuration, const ScheduleOptions& options)
+      : configuration_(configuration), options_(options) {}
+
+  ScheduleReport write() {
+    report_.dispatch = options_.dispatch;
+    note_unknown();
+    for (std::size_t s = 0; s < configuration_.sets().size(); ++s) report_.sets.push_back(set(s));
+    return std::move(report_);
+  }
+
+ private:
+  void note_unknown() {
+    const std::vector<std::string> names = names_of(configuration_);
+    const auto unknown = [&names](const std::string& name) {
+      return std::find(names.begin(), names.end(), name) == names.end();
+    };
+    if (options_.profile == nullptr) return;
+    if (options_.profile->subsystem != configuration_.subsystem())
+      report_.notes.push_back("the profile was recorded of subsystem '" + options_.profile->subsystem + "'");
+    for (const RecordedTask& task : options_.profile->tasks)
+      if (unknown(task.task)) report_.notes.push_back("the profile has a task '" + task.task + "' that is not there");
+  }
+
+  std::vector<ProcessorUse> uses() const {
+    std::vector<ProcessorUse> made;
+    for (const RtpuSpec& rtpu : configuration_.rtpus())
+      made.push_back({.cpu = rtpu.cpu, .criticality = 0, .policy = rtpu.policy, .dispatch = options_.dispatch,
+                      .quantum = options_.quantum});
+    for (const TaskSpec& task : configuration_.spec().tasks) {
+      std::uint32_t& most = made[task.rtpu.index].criticality;
+      most = std::max(most, task.criticality);
+    }
+    return made;
+  }
+
+  ScheduleRow row(std::size_t task) const {
+    const TaskSpec& spec = configuration_.spec().tasks[task];
+    const DraftTask& draft = configuration_.draft().tasks[task];
+    ScheduleRow made;
+    made.task = task;
+    made.work = {.period = spec.period, .deadline = spec.deadline, .offset = spec.offset, .time = spec.budget,
+                 .criticality = spec.criticality, .user_priority = spec.user_priority, .rtpu = spec.rtpu.index,
+                 .server = {}};
+    made.source = spec.budget.count > 0 ? TimeSource::kBudget : TimeSource::kNone;
+    const RecordedTask* seen = options_.profile == nullptr ? nullptr : options_.profile->find(spec.name);
+    if (seen != nullptr) {
+      made.work.time = seen->worst;
+      made.source = TimeSource::kProfile;
+    }
+    if (draft.server) {
+      made.work.server = draft.server->kind;
+      made.work.time = draft.server->capacity.value;
+      made.work.period = made.work.deadline = draft.server->period.value;
+      made.source = TimeSource::kServer;
+    }
+    const bool may_miss = std::find(options_.may_miss.begin(), options_.may_miss.end(), spec.name) !=
+                          options_.may_miss.end();
+    made.is_hard = !may_miss && !draft.server && !draft.tolerate && spec.on_miss != OnMiss::kAbort;
+    made.transfer = transfer_of(configuration_, task);
+    return made;
+  }
+
+  SetSchedule set(std::size_t index) {
+    const ConfiguredSet& configured = configuration_.sets()[index];
+    SetSchedule made{.name = configured.name, .is_start = index == configuration_.start(), .cpus = {}, .paths = {}};
+    SetWorks works{.tasks = {}, .works = {}, .uses = uses()};
+    for (const TaskId id : configured.order) works.tasks.push_back(id.index);
+    std::sort(works.tasks.begin(), works.tasks.end());  // ties go by the order of the description
+    std::vector<ScheduleRow> rows;
+    for (const std::size_t task : works.tasks) {
+      rows.push_back(row(task));
+      works.works.push_back(rows.back().work);
+    }
+    std::vector<std::uint32_t> cpus;
+    for (const ScheduleRow& r : rows) cpus.push_back(works.uses[r.work.rtpu].cpu);
+    std::sort(cpus.begin(), cpus.end());
+    cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());
+    std::vector<WorkVerdict> verdicts(rows.size());
+    for (const std::uint32_t cpu : cpus) made.cpus.push_back(judge(works, rows, cpu, verdicts));
+    find_paths(configuration_, works, verdicts, made);
+    return made;
+  }
+
+  CpuSchedule judge(const SetWorks& set, const std::vector<ScheduleRow>& rows, std::uint32_t cpu,
+                    std::vector<WorkVerdict>& verdicts) const {
+    CpuSchedule made;
+    made.verdict = analyse(set, cpu, verdicts);
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (set.uses[rows[i].work.rtpu].cpu == cpu) places.push_back(i);
+    std::stable_sort(places.begin(), places.end(),
+                     [&](std::size_t a, std::size_t b) { return verdicts[a].level < verdicts[b].level; });
+    for (const std::size_t place : places) {
+      made.rows.push_back(rows[place]);
+      made.rows.back().verdict = verdicts[place];
+    }
+    if (!made.fits()) {
+      for (const std::size_t i : give_way(set, cpu, verdicts))
+        made.give_way.push_back(
+            static_cast<std::size_t>(std::find(places.begin(), places.end(), i) - places.begin()));
+      made.remedies = remedies(set, cpu, verdicts);
+      for (Remedy& remedy : made.remedies) remedy.task = set.tasks[remedy.task];
+    }
+    draw(set, cpu, made);
+    return made;
+  }
+
+  void draw(const SetWorks& set, std::uint32_t cpu, CpuSchedule& made) const {
+    // Up to the last first response, or the first miss.
+    Nanoseconds length, longest;
+    for (const ScheduleRow& r : made.rows) {
+      if (r.source == TimeSource::kNone) continue;
+      longest = std::max(longest, r.work.period);
+      length = std::max(length, r.verdict.response < r.work.period ? r.verdict.response : r.work.period);
+    }
+    length = std::min(std::max(length, made.verdict.demand.within), longest * kMostPeriods);
+    if (length.count == 0) return;
+    made.runs.resize(kMostRuns);
+    std::vector<WindowTask> room(set.works.size());
+    made.window = worst_window(set.works, set.uses, cpu, length, room, made.runs);
+    made.runs.resize(made.window.runs);
+    for (WindowRun& run : made.runs) run.task = static_cast<std::uint32_t>(set.tasks[run.task]);
+  }
+
+  const Configuration& configuration_;
+  const ScheduleOptions& options_;
+  ScheduleReport report_;
+};
+
+template <class Parts>
+bool all_fit(const Parts& parts) {
+  return std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part.fits(); });
+}
+
+}  // namespace
+
+bool CpuSchedule::fits() const noexcept { return verdict.fits() && verdict.utilisation <= kMaxUtilisation + 1e-9; }
+bool SetSchedule::fits() const noexcept { return all_fit(cpus); }
+bool ScheduleReport::fits() const noexcept { return all_fit(sets); }
+
+ScheduleReport schedule_report(const Configuration& configuration, const ScheduleOptions& options) {
+  return Writer(configuration, options).write();
+}
+
+}  // namespace chimera

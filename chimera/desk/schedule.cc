@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/schedule.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "chimera/config/verify.h"
+#include "chimera/desk/schedule_text.h"
+
+namespace chimera::desk {
+namespace {
+
+Result<void> write_file(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (file) return {};
+  return Error{ErrorCode::kSystem, {std::string("cannot be written: ") + std::strerror(errno)}, {path}};
+}
+
+ScheduleOptions options_of(const ScheduleRequest& request, const std::optional<RecordedProfile>& profile) {
+  ScheduleOptions options;
+  if (profile) options.profile = &*profile;
+  if (request.dispatch == "preemptive") options.dispatch = Dispatch::kPreemptive;
+  if (request.dispatch == "executive") options.dispatch = Dispatch::kExecutive;
+  return options;
+}
+
+}  // namespace
+
+Output schedule(const ScheduleRequest& request, const Workplace& workplace) {
+  const auto library = workplace.library();
+  if (!library) return refused(library.error(), request.json);
+  const Verdict verdict = verify(read_description_file(request.file), *library);
+  Output output;
+  if (!request.json) output.err = verdict.report.text();
+  if (!verdict.configuration) {
+    output.code = kRefused;
+    if (request.json) output.out = verdict.report.json() + "\n";
+    return output;
+  }
+  std::optional<RecordedProfile> profile;
+  if (!request.profile.empty()) {
+    auto read = read_recorded_profile(request.profile);
+    if (!read) return refused(read.error(), request.json);
+    profile = *std::move(read);
+  }
+  const ScheduleReport report = schedule_report(*verdict.configuration, options_of(request, profile));
+  if (!request.svg.empty())
+    if (auto written = write_file(request.svg, draw::svg(schedule_pictures(*verdict.configuration, report))); !written)
+      return refused(written.error(), request.json);
+  output.code = report.fits() ? kOk : kRefused;
+  if (request.json) {
+    output.out = schedule_json(*verdict.configuration, report) + "\n";
+    return output;
+  }
+  for (const std::string& note : report.notes) output.err += "note: " + note + "\n";
+  output.out = schedule_text(*verdict.configuration, report);
+  return output;
+}
+
+}  // namespace chimera::desk

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// `chimera schedule`: does everybody keep the deadlines, who does not, and what would help?
+#pragma once
+
+#include <string>
+
+#include "chimera/config/schedule_report.h"
+#include "chimera/desk/output.h"
+#include "chimera/desk/workplace.h"
+
+namespace chimera::desk {
+
+struct ScheduleRequest {
+  std::string file;
+  std::string profile;   ///< a recorded profile; "": budgets of the description alone
+  std::string svg;       ///< draw the worst windows into this file; "": not
+  std::string dispatch;  ///< "executive" or "preemptive"; "": as `run` does
+  bool json = false;
+};
+
+/// Reads, verifies and analyses; kOk when all fits, kRefused when not, or when the description is not legal. Context:
+/// setup; may block.
+Output schedule(const ScheduleRequest& request, const Workplace& workplace);
+
+}  // namespace chimera::desk

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/schedule_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "chimera/draw/timeline.h"
+#include "chimera/schedule/utilisation.h"
+
+namespace chimera::desk {
+namespace {
+
+constexpr double kWindowLetters = 60;  // about so many in a picture
+
+std::string number(const char* pattern, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+const char* word(std::uint32_t criticality) {
+  constexpr const char* kWords[] = {"low", "medium", "high"};
+  return kWords[std::min(criticality, 2u)];
+}
+
+/// 1, 2 or 5 times a power of ten, so that `length` takes about kWindowLetters of it.
+Nanoseconds unit_for(Nanoseconds length) {
+  const double wanted = std::max(static_cast<double>(length.count) / kWindowLetters, 1.0);
+  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
+  const double digit = wanted / power;
+  return {std::llround(power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10))};
+}
+
+class Words {
+ public:
+  explicit Words(const Configuration& configuration) : configuration_(configuration) {}
+
+  const std::string& name(std::size_t task) const { return configuration_.tasks()[task].name; }
+  std::string rtpu(std::size_t index) const { return std::string(configuration_.rtpus()[index].name); }
+
+  std::string cpu(const CpuSchedule& cpu) const {
+    std::string text = "CPU " + std::to_string(cpu.verdict.cpu) + ": " + policies(cpu) + "; load " +
+                       number("%.3f", cpu.verdict.utilisation) + " of at most " + number("%.2f", kMaxUtilisation) +
+                       "; rate monotonic bound " + number("%.3f", cpu.verdict.rate_monotonic_bound) +
+                       ", hyperbolic " + number("%.3f", cpu.verdict.hyperbolic) + " of 2\n";
+    return text + table(cpu) + verdict(cpu) + unstated(cpu) + remedies(cpu) + window(cpu);
+  }
+
+  std::string verdict(const CpuSchedule& cpu) const {
+    const char* who = cpu.verdict.unstated > 0 ? "every task with a time" : "every task";
+    if (cpu.fits()) return std::string("  fits: ") + who + " keeps its deadline\n";
+    std::vector<std::string> kept, lost, giving;
+    for (const ScheduleRow& row : cpu.rows) {
+      if (row.verdict.guarantee == Guarantee::kYes) kept.push_back(name(row.task));
+      else if (row.verdict.guarantee != Guarantee::kNotStated) lost.push_back(name(row.task));
+    }
+    for (const std::size_t i : cpu.give_way) giving.push_back(name(cpu.rows[i].task));
+    std::string text = "  does not fit" + std::string(lost.empty() ? ": the load is too high" : "") + "\n";
+    if (!kept.empty()) text += "  guaranteed: " + list(kept) + "\n";
+    if (!lost.empty()) text += "  not guaranteed: " + list(lost) + "\n";
+    const Demand& demand = cpu.verdict.demand;
+    if (demand.within.count > 0)
+      text += "  processor demand: what is due within " + time_text(demand.within) + " is not done by then" +
+              (demand.ends == kNever ? "" : ", but after " + time_text(demand.ends)) + "\n";
+    if (!giving.empty()) text += "  first to give way: " + list(giving) + "\n";
+    return text;
+  }
+
+  std::string remedy(const Remedy& r) const {
+    const std::string task = "task '" + name(r.task) + "'";
+    switch (r.kind) {
+      case Remedy::Kind::kRate: return task + " at rate: " + number("%g", r.hz) + " Hz";
+      case Remedy::Kind::kProcessor: return task + " on rtpu: " + rtpu(r.rtpu);
+      case Remedy::Kind::kNewProcessor: return task + " on an rtpu of another CPU";
+      case Remedy::Kind::kCriticality: break;
+    }
+    return task + " with criticality: " + word(r.criticality) + " (then all others are guaranteed)";
+  }
+
+  std::string remedies(const CpuSchedule& cpu) const {
+    std::string text;
+    for (const Remedy& r : cpu.remedies) text += (text.empty() ? "  would fit: " : "         or: ") + remedy(r) + "\n";
+    return text;
+  }
+
+  std::string path(const PathAge& path) const {
+    std::string text;
+    for (const std::size_t task : path.tasks) text += (text.empty() ? "" : " -> ") + name(task);
+    return text + ": " + (path.age == kNever ? "no bound, a task on it is not guaranteed" : time_text(path.age));
+  }
+
+ private:
+  std::string policies(const CpuSchedule& cpu) const {
+    constexpr const char* kNames[] = {"rm", "edf", "llf", "muf", "muf-laxity"};
+    std::vector<std::string> said;
+    for (const ScheduleRow& row : cpu.rows) {
+      const RtpuSpec& spec = configuration_.rtpus()[row.work.rtpu];
+      const std::string one = "rtpu " + std::string(spec.name) + ", " + kNames[static_cast<std::size_t>(spec.policy)];
+      if (std::find(said.begin(), said.end(), one) == said.end()) said.push_back(one);
+    }
+    return list(said);
+  }
+
+  std::vector<std::string> cells(const ScheduleRow& row) const {
+    constexpr const char* kSources[] = {"not stated", " budget", " profile", " server"};
+    const WorkVerdict& v = row.verdict;
+    const std::string source = kSources[static_cast<std::size_t>(row.source)];
+    std::string response = v.response == kNever ? "no bound" : (v.is_exact ? "" : "at most ") + time_text(v.response);
+    std::string promise = v.guarantee == Guarantee::kYes   ? "kept"
+                          : v.guarantee == Guarantee::kNo  ? "NOT KEPT"
+                          : v.guarantee == Guarantee::kTooLong ? "NOT DECIDED"
+                                                               : "not judged";
+    if (v.guarantee == Guarantee::kNotStated) response = "-";
+    if (!row.is_hard) promise += ", may miss";
+    const std::string transfer = row.transfer.groups == 0 ? "-"
+                                 : std::to_string(row.transfer.bytes) + " B of " +
+                                       std::to_string(row.transfer.groups);
+    return {name(row.task), rtpu(row.work.rtpu), word(row.work.criticality),
+            (row.source == TimeSource::kNone ? "" : time_text(row.work.time)) + source, time_text(row.work.period),
+            time_text(row.work.deadline), response, v.blocking.count == 0 ? "-" : time_text(v.blocking), transfer,
+            promise};
+  }
+
+  std::string table(const CpuSchedule& cpu) const {
+    std::vector<std::vector<std::string>> rows = {{"task", "rtpu", "crit.", "time", "period", "deadline", "response",
+                                                   "blocked", "copies", "deadline is"}};
+    for (const ScheduleRow& row : cpu.rows) rows.push_back(cells(row));
+    std::vector<std::size_t> widths(rows[0].size());
+    for (const auto& row : rows)
+      for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    std::string text;
+    for (const auto& row : rows) {
+      std::string line = "  ";
+      for (std::size_t c = 0; c < row.size(); ++c) line += row[c] + std::string(widths[c] + 2 - row[c].size(), ' ');
+      line.erase(line.find_last_not_of(' ') + 1);
+      text += line + "\n";
+    }
+    return text;
+  }
+
+  std::string unstated(const CpuSchedule& cpu) const {
+    std::vector<std::string> names;
+    for (const ScheduleRow& row : cpu.rows)
+      if (row.source == TimeSource::kNone) names.push_back(name(row.task));
+    if (names.empty()) return "";
+    return "  without a time, counted as nothing: " + list(names) +
+           "; write 'budget:', or record one: chimera profile --save FILE, then --profile FILE\n";
+  }
+
+  std::string window(const CpuSchedule& cpu) const {
+    if (cpu.runs.empty()) return "";
+    std::vector<std::string> names;
+    std::vector<TapRecord> records;
+    for (const ScheduleRow& row : cpu.rows) names.push_back(name(row.task));
+    for (const WindowRun& run : cpu.runs) {
+      const auto row = std::find_if(cpu.rows.begin(), cpu.rows.end(),
+                                    [&run](const ScheduleRow& r) { return r.task == run.task; });
+      TapRecord record;
+      record.at = run.from;
+      record.b = (run.to - run.from).count;
+      record.task = TaskId(static_cast<std::size_t>(row - cpu.rows.begin()));
+      record.kind = TapKind::kRun;
+      records.push_back(record);
+    }
+    const Nanoseconds unit = unit_for(cpu.window.length);
+    return "  worst window, a letter for " + time_text(unit) + ":\n" +
+           draw::text(draw::timeline(records, names, {}, unit, cpu.window.length));
+  }
+
+  const Configuration& configuration_;
+};
+
+std::string paths_text(const Words& words, const SetSchedule& set) {
+  if (set.paths.empty()) return "";
+  std::string text = "data age, from the release of the sensor's job until what it caused is replaced:\n";
+  for (const PathAge& path : set.paths) text += "  " + words.path(path) + "\n";
+  return text + (set.has_more_paths ? "  and more ways than were followed\n" : "");
+}
+
+}  // namespace
+
+std::string time_text(Nanoseconds time) {
+  constexpr struct { double ns; const char* name; } kUnits[] = {{1e9, "s"}, {1e6, "ms"}, {1e3, "us"}};
+  for (const auto& unit : kUnits)
+    if (static_cast<double>(time.count) >= unit.ns)
+      return number("%.4g ", static_cast<double>(time.count) / unit.ns) + unit.name;
+  return std::to_string(time.count) + " ns";
+}
+
+std::string schedule_text(const Configuration& configuration, const ScheduleReport& report) {
+  const Words words(configuration);
+  std::string text;
+  for (const SetSchedule& set : report.sets) {
+    text += configuration.subsystem() + ": configuration '" + set.name + "'" + (set.is_start ? " (start)" : "") +
+            (report.dispatch == Dispatch::kExecutive ? ", executives: a job that runs is not taken off\n"
+                                                     : ", preemptive\n");
+    for (const CpuSchedule& cpu : set.cpus) text += words.cpu(cpu);
+    text += paths_text(words, set);
+  }
+  return text;
+}
+
+std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, const ScheduleReport& report) {
+  const Words words(configuration);
+  std::vector<draw::Gantt> pictures;
+  for (const SetSchedule& set : report.sets) {
+    if (!set.is_start) continue;
+    for (const CpuSchedule& cpu : set.cpus) {
+      draw::Gantt picture;
+      picture.title = configuration.subsystem() + ", CPU " + std::to_string(cpu.verdict.cpu) + ": worst window";
+      picture.note =
+          "load " + number("%.3f", cpu.verdict.utilisation) + "; all released at once, each as long as stated";
+      picture.length = cpu.window.length;
+      for (const ScheduleRow& row : cpu.rows) {
+        draw::GanttRow drawn;
+        drawn.name = words.name(row.task);
+        drawn.note = time_text(row.work.time) + " every " + time_text(row.work.period);
+        drawn.period = row.work.period;
+        drawn.deadline = row.work.deadline;
+        drawn.is_late = row.verdict.guarantee == Guarantee::kNo || row.verdict.guarantee == Guarantee::kTooLong;
+        for (const WindowRun& run : cpu.runs)
+          if (run.task == row.task) drawn.runs.emplace_back(run.from, run.to);
+        picture.rows.push_back(std::move(drawn));
+      }
+      pictures.push_back(std::move(picture));
+    }
+  }
+  return pictures;
+}
+
+std::string broken_promises(const Configuration& configuration, const ScheduleReport& report) {
+  const Words words(configuration);
+  std::string text;
+  for (const SetSchedule& set : report.sets) {
+    if (!set.is_start) continue;
+    for (const CpuSchedule& cpu : set.cpus) {
+      std::vector<std::string> lost;
+      for (const ScheduleRow& row : cpu.rows)
+        if (row.is_hard && (row.verdict.guarantee == Guarantee::kNo || row.verdict.guarantee == Guarantee::kTooLong))
+          lost.push_back(words.name(row.task));
+      if (lost.empty()) continue;
+      text += "CPU " + std::to_string(cpu.verdict.cpu) + ": " + (lost.size() == 1 ? "task " : "tasks ") + list(lost) +
+              (lost.size() == 1 ? " is" : " are") + " not guaranteed to keep the deadline\n" + words.remedies(cpu);
+    }
+  }
+  return text;
+}
+
+}  // namespace chimera::desk
