@@ -20,8 +20,8 @@ bool read_event(const char* line, RecordedEvent& to) {
   if (std::sscanf(line, "E: %lld.%n%lld%n %4x %4x %d %n", &seconds, &point, &micros, &end, &type, &code, &value,
                   &used) != 5)
     return false;
-  if (end - point != 6 || seconds < 0 || seconds > kLatestSecond || micros < 0 || (line[used] != '\0' && line[used] != '#'))
-    return false;
+  if (end - point != 6 || seconds < 0 || seconds > kLatestSecond || micros < 0) return false;
+  if (line[used] != '\0' && line[used] != '#') return false;
   to.at = Nanoseconds{seconds * 1'000'000'000 + micros * 1'000};
   to.event = {static_cast<std::uint16_t>(type), static_cast<std::uint16_t>(code), value};
   return true;

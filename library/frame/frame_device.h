@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the components that exchange frames with a device have in common: ports, what is sent and what is not, and when
+// a device counts as lost. Who moves the bytes is theirs.
+#pragma once
+
+#include <array>
+#include <span>
+#include <stdexcept>
+
+#include "chimera/base/math.h"
+#include "chimera/task/component.h"
+#include "library/device/sentence.h"
+#include "library/frame/frame.h"
+#include "library/frame/values.h"
+
+namespace chimera::library {
+
+struct FrameDevice {
+  In<double[]> command{"command", "U", "[m<=16]", doc = "What is sent to the device in every cycle."};
+  Out<double[]> state{"state", "X", "[fields<=16]", initial = 0.0, doc = "What the device sent last."};
+  Out<double> age{"age", "s", initial = 0.0, doc = "Since the last good frame came; since on before the first."};
+  Out<bool> connected{"connected", initial = false, doc = "A good frame came within the timeout."};
+  Out<std::int64_t> received{"received", "1", initial = 0, doc = "Good frames."};
+  Out<std::int64_t> wrong{"wrong", "1", initial = 0, doc = "Frames with a wrong CRC or a value that is not finite."};
+  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Commands that were not finite, or found the line full."};
+  InConst<std::int32_t> fields{"fields", "1", initial = 1, range(1, 16), doc = "Values in a frame of the device."};
+  InConst<Text<8>> form{"form", initial = "float32",
+                        doc = "How a value stands in a frame: float32 or int16."};
+  InConst<double> command_resolution{"command_resolution", "U", initial = 1.0,
+                                     doc = "Command that is a 1 in the frame."};
+  InConst<double> state_resolution{"state_resolution", "X", initial = 1.0, doc = "State that is a 1 in the frame."};
+  InConst<double> limit{"limit", "U", initial = 1e6, range(0, 1e9), doc = "Commands are held within +- limit."};
+  InConst<double> idle{"idle", "U", initial = 0.0,
+                       doc = "What is sent at off and in place of commands that mean nothing."};
+  InConst<double> timeout{"timeout", "s", initial = 0.1, range(0.001, 3600),
+                          doc = "Silence after which the device is lost."};
+
+ protected:
+  /// Checks the constants. Context: setup; wait-free.
+  void prepare(std::string_view device, std::size_t number_bytes) {
+    if (*form == "float32") form_ = Form::kFloat32;
+    else if (*form == "int16") form_ = Form::kInt16;
+    else throw std::runtime_error("`form` is float32 or int16");
+    for (const double r : {*command_resolution, *state_resolution})
+      if (!math::is_finite(r) || r == 0) throw std::runtime_error("a resolution is finite and not 0");
+    if (*limit / math::fabs(*command_resolution) > 1e37)
+      throw std::runtime_error("`limit` over `command_resolution` is above 1e37: no float32 holds it");
+    if (!(math::fabs(*idle) <= *limit)) throw std::runtime_error("`idle` is within +- `limit`");
+    number_bytes_ = number_bytes;
+    gone_.set(device, "is gone");
+    silent_.set(device, "is silent");
+  }
+  std::size_t payload() const { return number_bytes_ + state.size() * width(form_); }
+
+  void begin(Cycle c) {
+    heard_ = c.now();
+    lost_ = nullptr;
+    *connected = false;
+    *age = 0;
+  }
+  /// The frame for this cycle behind to[2 + number_bytes]; its payload, 0: there is nothing to send.
+  std::size_t put_command(std::uint8_t* to, bool is_idle) {
+    std::uint8_t* at = to + 2 + number_bytes_;
+    for (const double value : command) {
+      if (!is_idle && !math::is_finite(value)) {
+        *unsent += 1;
+        return 0;
+      }
+      const double held = is_idle ? *idle : value > *limit ? *limit : value < -*limit ? -*limit : value;
+      put_value(at, form_, held, *command_resolution);
+      at += width(form_);
+    }
+    return static_cast<std::size_t>(at - to) - 2;
+  }
+  /// Takes the values of a good frame.
+  void take_state(std::span<const std::uint8_t> frame, Nanoseconds now) {
+    std::array<double, 16> values{};
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      values[i] = get_value(frame.data() + number_bytes_ + i * width(form_), form_, *state_resolution);
+      if (math::is_finite(values[i])) continue;
+      *wrong += 1;
+      return;
+    }
+    for (std::size_t i = 0; i < state.size(); ++i) state[i] = values[i];
+    *received += 1;
+    *connected = true;
+    heard_ = now;
+  }
+  /// Whether the device is lost from now on: the cycle that finds it still publishes, the next one is the fault.
+  bool is_lost(Cycle c, bool is_open) {
+    *age = to_seconds(c.now() - heard_);
+    if (!is_open) lost_ = &gone_;
+    else if (*age > *timeout) lost_ = &silent_;
+    if (lost_ != nullptr) *connected = false;
+    return lost_ != nullptr;
+  }
+  /// The sentence of a device that was found lost; null while it is not.
+  const char* lost() const { return lost_ == nullptr ? nullptr : lost_->text(); }
+
+ private:
+  Form form_ = Form::kFloat32;
+  std::size_t number_bytes_ = 0;
+  Nanoseconds heard_;
+  LostSentence gone_, silent_;
+  const LostSentence* lost_ = nullptr;
+};
+
+}  // namespace chimera::library

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device on a serial line that takes a command and answers with its state, frame by frame. README.md is the data
+// sheet.
+#include "library/frame/frame_device.h"
+#include "library/serial_frame/serial_port.h"
+
+using namespace chimera;
+using namespace chimera::library;
+
+namespace {
+
+struct SerialFrame : FrameDevice {
+  InConst<std::int32_t> baud{"baud", "1", initial = 115200, range(9600, 2000000), doc = "Bits a second, 8N1."};
+  Out<std::int64_t> noise{"noise", "1", initial = 0, doc = "Bytes that belonged to no frame."};
+  Resource device{"device", doc = "Serial device, such as /dev/ttyUSB0."};
+
+  void init() {
+    prepare(device.text(), 0);
+    port_.open(device.c_str(), *baud);
+  }
+  void on(Cycle c) {
+    begin(c);
+    port_.flush();
+    reader_.reset(payload());
+    sent_ = filled_ = 0;
+  }
+  Outcome cycle(Cycle c) {
+    if (lost() != nullptr) return fault(lost(), port_.error());
+    const bool is_open = receive(c.now());
+    const bool is_idle = is_lost(c, is_open) || c.illegal();
+    if (is_open && !send(is_idle)) is_lost(c, false);
+    return ok();
+  }
+  // What is left of a cut frame goes first: the device must understand the idle one.
+  void off() {
+    std::memmove(out_.data(), out_.data() + sent_, filled_ - sent_);
+    filled_ -= std::exchange(sent_, 0);
+    filled_ += close_frame(out_.data() + filled_, put_command(out_.data() + filled_, true));
+    if (lost() == nullptr) port_.write(std::span(out_).first(filled_));
+    *connected = false;
+  }
+  bool clear() {
+    port_.open(device.c_str(), *baud);
+    return true;
+  }
+  void kill() { port_.close(); }
+
+ private:
+  bool receive(Nanoseconds now) {
+    const int got = port_.read(reader_.room());
+    if (got < 0) return false;
+    reader_.taken(static_cast<std::size_t>(got));
+    const std::int64_t wrong_before = reader_.wrong();
+    reader_.frames([this, now](std::span<const std::uint8_t> frame) { take_state(frame, now); });
+    *wrong += reader_.wrong() - wrong_before;
+    *noise = reader_.noise();
+    return true;
+  }
+  bool send(bool is_idle) {
+    if (sent_ < filled_) *unsent += 1;
+    // A frame that was begun is ended; one that found no room at all gives way to a newer one.
+    if (sent_ == 0 || sent_ == filled_) {
+      const std::size_t payload = put_command(out_.data(), is_idle);
+      if (payload == 0) return true;
+      sent_ = 0;
+      filled_ = close_frame(out_.data(), payload);
+    }
+    const int put = port_.write(std::span(out_).subspan(sent_, filled_ - sent_));
+    if (put > 0) sent_ += static_cast<std::size_t>(put);
+    return put >= 0;
+  }
+
+  SerialPort port_;
+  FrameReader reader_;
+  std::array<std::uint8_t, 2 * kLongestFrame> out_{};
+  std::size_t sent_ = 0, filled_ = 0;
+};
+
+CHIMERA_COMPONENT(SerialFrame, "serial_frame", "Exchanges framed values with a device on a serial line.", rate = 100.0);
+
+}  // namespace

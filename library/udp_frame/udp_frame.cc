@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device on the network that takes a command and answers with its state, in numbered datagrams. README.md is the data
+// sheet.
+#include "library/frame/frame_device.h"
+#include "library/udp_frame/udp_socket.h"
+
+using namespace chimera;
+using namespace chimera::library;
+
+namespace {
+
+constexpr int kMostDatagrams = 8;  // a cycle
+
+struct UdpFrame : FrameDevice {
+  InConst<std::int32_t> local_port{"local_port", "1", initial = 0, range(0, 65535),
+                                   doc = "Our UDP port; 0: any."};
+  Out<std::int64_t> missing{"missing", "1", initial = 0,
+                            doc = "Numbers that were passed over: datagrams lost or late."};
+  Out<std::int64_t> old{"old", "1", initial = 0,
+                        doc = "Datagrams with a number that was there or passed over already."};
+  Resource device{"device", doc = "Address and port of the device in numbers, such as 192.168.0.7:5000."};
+
+  void init() {
+    prepare(device.text(), 4);
+    socket_.open(std::string(device.text()), *local_port);
+  }
+  void on(Cycle c) {
+    begin(c);
+    std::uint8_t forgotten[1];
+    for (int i = 0; i < 1000 && socket_.receive(forgotten) > 0;) ++i;
+    has_number_ = false;
+  }
+  Outcome cycle(Cycle c) {
+    if (lost() != nullptr) return fault(lost(), socket_.error());
+    std::uint8_t bytes[kLongestFrame];
+    for (int i = 0; i < kMostDatagrams; ++i) {
+      const std::size_t size = socket_.receive(bytes);
+      if (size == 0) break;
+      take(bytes, size, c.now());
+    }
+    send(is_lost(c, true) || c.illegal());
+    return ok();
+  }
+  void off() {
+    send(true);
+    *connected = false;
+  }
+  bool clear() {
+    socket_.open(std::string(device.text()), *local_port);
+    return true;
+  }
+  void kill() { socket_.close(); }
+
+ private:
+  void take(const std::uint8_t* bytes, std::size_t size, Nanoseconds now) {
+    if (size != payload() + kFrameOverhead || !is_frame({bytes, size}, payload())) {
+      *wrong += 1;
+      return;
+    }
+    const std::uint32_t number = get_bytes(bytes + 2, 4);
+    const auto step = static_cast<std::int32_t>(number - number_);
+    if (has_number_ && step <= 0) {
+      *old += 1;
+      return;
+    }
+    if (has_number_) *missing += step - 1;
+    has_number_ = true;
+    number_ = number;
+    take_state({bytes + 2, payload()}, now);
+  }
+  void send(bool is_idle) {
+    std::uint8_t bytes[kLongestFrame];
+    const std::size_t size = put_command(bytes, is_idle);
+    if (size == 0) return;
+    put_bytes(bytes + 2, ++sent_, 4);
+    if (!socket_.send({bytes, close_frame(bytes, size)})) *unsent += 1;
+  }
+
+  UdpSocket socket_;
+  bool has_number_ = false;
+  std::uint32_t number_ = 0;  // of the last good datagram
+  std::uint32_t sent_ = 0;
+};
+
+CHIMERA_COMPONENT(UdpFrame, "udp_frame", "Exchanges framed values with a device in numbered datagrams.", rate = 100.0);
+
+}  // namespace

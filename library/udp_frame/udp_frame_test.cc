@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "chimera/task/rig.h"
+#include "library/frame/frame.h"
+#include "library/frame/values.h"
+
+namespace chimera {
+namespace {
+
+using namespace library;
+using Bytes = std::vector<std::uint8_t>;
+
+struct UdpFrameTest : testing::Test {
+  Rig rig{"udp_frame"};
+  int device = -1;  // the other end
+  std::string address;
+  sockaddr_in task{};  // where the component's datagrams come from
+
+  UdpFrameTest() { plug(0); }
+  ~UdpFrameTest() override { ::close(device); }
+
+  void plug(std::uint16_t port) {
+    device = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+    sockaddr_in here{};
+    here.sin_family = AF_INET;
+    here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    here.sin_port = htons(port);
+    ASSERT_EQ(::bind(device, reinterpret_cast<sockaddr*>(&here), sizeof here), 0);
+    socklen_t size = sizeof here;
+    ASSERT_EQ(::getsockname(device, reinterpret_cast<sockaddr*>(&here), &size), 0);
+    address = "127.0.0.1:" + std::to_string(ntohs(here.sin_port));
+  }
+  void start() {
+    rig.extent("m", 1);
+    rig.set("command", 0.0);
+    rig.resource("device", address.c_str());
+    const RigAnswer made = rig.init();
+    ASSERT_TRUE(made) << made.text;
+    ASSERT_TRUE(rig.on());
+    ASSERT_TRUE(rig.cycle());
+    EXPECT_EQ(heard(), datagram(1, 0));  // and says where to answer
+  }
+  static Bytes datagram(std::uint32_t number, double value) {
+    Bytes made(8 + kFrameOverhead);
+    put_bytes(made.data() + 2, number, 4);
+    put_value(made.data() + 6, Form::kFloat32, value, 1);
+    close_frame(made.data(), 8);
+    return made;
+  }
+  void say(const Bytes& bytes) {
+    ASSERT_EQ(::sendto(device, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&task), sizeof task),
+              static_cast<ssize_t>(bytes.size()));
+  }
+  Bytes heard() {
+    Bytes bytes(512);
+    socklen_t size = sizeof task;
+    const ssize_t got = ::recvfrom(device, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&task), &size);
+    bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+    return bytes;
+  }
+  std::int64_t count(const char* name) { return rig.get<std::int64_t>(name); }
+  double state() { return rig.get<double>("state"); }
+};
+
+TEST_F(UdpFrameTest, ACommandGoesOutAndAStateComesIn) {
+  start();
+  rig.set("command", 2.5);
+  say(datagram(10, -1.5));
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(heard(), datagram(2, 2.5));
+  EXPECT_EQ(state(), -1.5);
+  EXPECT_TRUE(rig.get<bool>("connected"));
+}
+
+TEST_F(UdpFrameTest, LostOldAndWrongDatagramsAreCounted) {
+  start();
+  for (const std::uint32_t number : {0xFFFFFFFEu, 0xFFFFFFFFu, 2u, 1u, 2u, 3u})
+    say(datagram(number, number == 1 ? 99 : 1));
+  Bytes wrong = datagram(4, 99);
+  wrong[7] ^= 1;
+  say(wrong);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(count("received"), 4);
+  EXPECT_EQ(count("missing"), 2);  // 0 and 1
+  EXPECT_EQ(count("old"), 2);  // 1 and the second 2
+  EXPECT_EQ(count("wrong"), 1);
+  EXPECT_EQ(state(), 1);
+  say({1, 2, 3});
+  say(Bytes(400, 0xA5));
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(count("wrong"), 3);
+}
+
+TEST_F(UdpFrameTest, ACycleTakesEightDatagramsAtMost) {
+  start();
+  for (std::uint32_t i = 1; i <= 12; ++i) say(datagram(i, i));
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(state(), 8);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(state(), 12);
+}
+
+TEST_F(UdpFrameTest, StrangersAreNotHeard) {
+  start();
+  const int stranger = ::socket(AF_INET, SOCK_DGRAM, 0);
+  const Bytes bytes = datagram(7, 99);
+  ::sendto(stranger, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&task), sizeof task);
+  ::close(stranger);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(count("received"), 0);
+}
+
+TEST_F(UdpFrameTest, WhatIsNotFiniteIsNeverSent) {
+  start();
+  rig.set("command", std::nan(""));
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(heard(), Bytes());
+  EXPECT_EQ(count("unsent"), 1);
+}
+
+TEST_F(UdpFrameTest, ADeviceThatGoesIsAFaultAndComesBackByClear) {
+  start();
+  rig.set("command", 5.0);
+  say(datagram(1, 1));
+  ASSERT_TRUE(rig.cycle());
+  heard();
+  ::close(device);
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
+  EXPECT_TRUE(rig.get<bool>("connected"));
+  ASSERT_TRUE(rig.cycle(milliseconds(10)));
+  EXPECT_FALSE(rig.get<bool>("connected"));
+  EXPECT_EQ(state(), 1);
+  const RigAnswer fault = rig.cycle();
+  EXPECT_EQ(fault.text, address + " is silent: bring it back, then `clear` and `on`");
+  EXPECT_EQ(fault.code, ECONNREFUSED);
+  plug(static_cast<std::uint16_t>(std::stoi(address.substr(address.find(':') + 1))));
+  ASSERT_TRUE(rig.clear());
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(get_value(heard().data() + 6, Form::kFloat32, 1), 5.0);
+  say(datagram(1, 2));  // it has begun again
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(state(), 2);
+}
+
+TEST_F(UdpFrameTest, SendsIdleAtOff) {
+  start();
+  rig.set("command", 5.0);
+  ASSERT_TRUE(rig.off());
+  EXPECT_EQ(heard(), datagram(2, 0));
+}
+
+TEST_F(UdpFrameTest, RefusesWhatIsNoAddressAndAPortThatIsTaken) {
+  rig.extent("m", 1);
+  for (const std::string text : {"", "localhost:5000", "1.2.3.4", "1.2.3.4:", "1.2.3.4:0", "1.2.3.4:65536",
+                                 "1.2.3.4:5x"}) {
+    rig.resource("device", text.c_str());
+    EXPECT_EQ(rig.init().text, "\"" + text + "\" is no address: \"192.168.0.7:5000\" is one");
+  }
+  const std::string port = address.substr(address.find(':') + 1);
+  rig.resource("device", address.c_str());
+  rig.set("local_port", std::int32_t{std::stoi(port)});
+  EXPECT_EQ(rig.init().text,
+            "UDP port " + port + ": Address already in use: name another `local_port`, or end who has it");
+}
+
+}  // namespace
+}  // namespace chimera

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Datagrams to and from one peer; nobody ever waits for them.
+#pragma once
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace chimera::library {
+
+class UdpSocket {
+ public:
+  UdpSocket() = default;
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+  ~UdpSocket() { close(); }
+
+  /// To and from `peer`, "ADDRESS:PORT" in numbers; `local_port` 0: any. Datagrams of others are not received.
+  /// Throws std::runtime_error with a remedy. Context: setup; no look-up of names, nothing is waited for.
+  void open(const std::string& peer, int local_port) {
+    close();
+    const sockaddr_in there = address_of(peer);
+    file_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (file_ < 0) refuse(peer, "");
+    sockaddr_in here{};
+    here.sin_family = AF_INET;
+    here.sin_port = htons(static_cast<std::uint16_t>(local_port));
+    if (::bind(file_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0)
+      refuse("UDP port " + std::to_string(local_port), ": name another `local_port`, or end who has it");
+    if (::connect(file_, reinterpret_cast<const sockaddr*>(&there), sizeof there) != 0)
+      refuse(peer, ": there is no way to that address; see `ip route get`");
+  }
+  void close() noexcept {
+    if (file_ >= 0) ::close(std::exchange(file_, -1));
+  }
+  /// Bytes of one datagram, 0: there is none. What is wrong with the network shows as silence.
+  /// Context: cycle; one system call that does not wait.
+  std::size_t receive(std::span<std::uint8_t> to) noexcept {
+    const ssize_t got = ::recv(file_, to.data(), to.size(), MSG_DONTWAIT | MSG_TRUNC);
+    error_ = got < 0 && errno != EAGAIN ? errno : error_;
+    return got > 0 ? static_cast<std::size_t>(got) : 0;
+  }
+  /// False when it was not taken. Context: cycle; one system call that does not wait.
+  bool send(std::span<const std::uint8_t> from) noexcept {
+    const ssize_t put = ::send(file_, from.data(), from.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    error_ = put < 0 ? errno : error_;
+    return put == static_cast<ssize_t>(from.size());
+  }
+  /// Error number of what failed last (111: nobody has that port there); 0: nothing did.
+  int error() const noexcept { return error_; }
+
+ private:
+  static sockaddr_in address_of(const std::string& peer) {
+    sockaddr_in made{};
+    made.sin_family = AF_INET;
+    const std::size_t colon = peer.rfind(':');
+    std::size_t used = 0;
+    int port = 0;
+    if (colon != std::string::npos && colon + 1 < peer.size() && peer.size() - colon <= 6 &&
+        peer.find_first_not_of("0123456789", colon + 1) == std::string::npos)
+      port = std::stoi(peer.substr(colon + 1), &used);
+    if (port < 1 || port > 65535 || ::inet_pton(AF_INET, peer.substr(0, colon).c_str(), &made.sin_addr) != 1)
+      throw std::runtime_error("\"" + peer + "\" is no address: \"192.168.0.7:5000\" is one");
+    made.sin_port = htons(static_cast<std::uint16_t>(port));
+    return made;
+  }
+  [[noreturn]] void refuse(const std::string& what, const char* remedy) {
+    const int error = errno;
+    close();
+    throw std::runtime_error(what + ": " + std::strerror(error) + remedy);
+  }
+
+  int file_ = -1;
+  int error_ = 0;
+};
+
+}  // namespace chimera::library
