@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <modbus/modbus.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <string>
+
+#include "chimera/task/rig.h"
+
+namespace chimera {
+namespace {
+
+/// The memory of a device: 16 of each, shared with its process.
+struct Points {
+  std::uint8_t coils[16], contacts[16];
+  std::uint16_t holdings[16], inputs[16];
+};
+
+/// A device in a process of its own, which libmodbus serves.
+class Device {
+ public:
+  Device() {
+    points = static_cast<Points*>(
+        ::mmap(nullptr, sizeof(Points), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  ~Device() {
+    end();
+    if (listening_ >= 0) ::close(listening_);
+    if (master_ >= 0) ::close(master_);
+    ::munmap(points, sizeof(Points));
+  }
+  std::string tcp() {
+    modbus_t* context = modbus_new_tcp("127.0.0.1", 0);
+    listening_ = modbus_tcp_listen(context, 1);
+    sockaddr_in here{};
+    socklen_t size = sizeof here;
+    EXPECT_EQ(::getsockname(listening_, reinterpret_cast<sockaddr*>(&here), &size), 0);
+    modbus_free(context);
+    serve();
+    return "tcp:127.0.0.1:" + std::to_string(ntohs(here.sin_port));
+  }
+  std::string rtu() {
+    master_ = ::posix_openpt(O_RDWR | O_NOCTTY);
+    EXPECT_EQ(::grantpt(master_) | ::unlockpt(master_), 0);
+    termios mode{};
+    ::tcgetattr(master_, &mode);
+    ::cfmakeraw(&mode);
+    ::tcsetattr(master_, TCSANOW, &mode);
+    const std::string path = ::ptsname(master_);
+    serve();
+    return "rtu:" + path;
+  }
+  void serve() {
+    process_ = ::fork();
+    if (process_ != 0) return;
+    modbus_mapping_t map{};
+    map.nb_bits = map.nb_input_bits = map.nb_input_registers = map.nb_registers = 16;
+    map.tab_bits = points->coils;
+    map.tab_input_bits = points->contacts;
+    map.tab_registers = points->holdings;
+    map.tab_input_registers = points->inputs;
+    for (;;) answer(map);
+  }
+  void end() {
+    if (process_ <= 0) return;
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+    process_ = -1;
+  }
+  // A device that is there and says nothing.
+  void stop() { ::kill(process_, SIGSTOP); }
+
+  Points* points;
+
+ private:
+  void answer(modbus_mapping_t& map) {
+    modbus_t* context = master_ >= 0 ? modbus_new_rtu("/dev/none", 19200, 'E', 8, 1) : modbus_new_tcp("127.0.0.1", 0);
+    modbus_set_slave(context, 1);
+    if (master_ >= 0) modbus_set_socket(context, master_);
+    else modbus_tcp_accept(context, &listening_);
+    std::uint8_t query[MODBUS_TCP_MAX_ADU_LENGTH];
+    for (;;) {
+      const int size = modbus_receive(context, query);
+      if (size < 0) break;
+      if (size > 0) modbus_reply(context, query, size, &map);
+    }
+    if (master_ < 0) modbus_close(context);
+    modbus_free(context);
+  }
+
+  int listening_ = -1, master_ = -1;
+  pid_t process_ = -1;
+};
+
+struct ModbusIoTest : testing::Test {
+  Rig rig{"modbus_io"};
+  Device device;
+
+  ModbusIoTest() { points(2, 2, 2, 2); }
+  void points(std::uint32_t inputs, std::uint32_t contacts, std::uint32_t holdings, std::uint32_t coils) {
+    rig.instances("input", inputs);
+    rig.instances("contact", contacts);
+    rig.instances("holding", holdings);
+    rig.instances("coil", coils);
+  }
+  void start(const std::string& where) {
+    rig.resource("device", where.c_str());
+    for (std::size_t i = 0; i < 2; ++i) {
+      rig.set("holding", 0.0, 0, i);
+      rig.set("coil", false, 0, i);
+    }
+    const RigAnswer made = rig.init();
+    ASSERT_TRUE(made) << made.text;
+    ASSERT_TRUE(rig.on());
+  }
+  void exchange() { ASSERT_TRUE(rig.background()); }
+  double input(std::size_t i) { return rig.get<double>("input", 0, i); }
+  bool connected() { return rig.get<bool>("connected"); }
+
+  void exchanges_all_four(const std::string& where) {
+    device.points->inputs[3] = 250;
+    device.points->inputs[4] = 0xFFFE;
+    device.points->contacts[1] = 1;
+    rig.set("first_input", std::int32_t{3});
+    rig.set("input_resolution", 0.5);
+    rig.set("holding_resolution", 0.1);
+    start(where);
+    rig.set("holding", 12.34, 0, 0);
+    rig.set("holding", -0.1, 0, 1);
+    rig.set("coil", true, 0, 1);
+    ASSERT_TRUE(rig.cycle());
+    EXPECT_EQ(device.points->holdings[0], 0);  // no cycle speaks to a device
+    exchange();
+    ASSERT_TRUE(rig.cycle());
+    EXPECT_EQ(input(0), 125);
+    EXPECT_EQ(input(1), -1);
+    EXPECT_FALSE(rig.get<bool>("contact", 0, 0));
+    EXPECT_TRUE(rig.get<bool>("contact", 0, 1));
+    EXPECT_EQ(device.points->holdings[0], 123);
+    EXPECT_EQ(device.points->holdings[1], 0xFFFF);
+    EXPECT_EQ(device.points->coils[0], 0);
+    EXPECT_EQ(device.points->coils[1], 1);
+    EXPECT_TRUE(connected());
+  }
+};
+
+TEST_F(ModbusIoTest, RegistersAndCoilsOverTcp) { exchanges_all_four(device.tcp()); }
+TEST_F(ModbusIoTest, RegistersAndCoilsOverASerialLine) { exchanges_all_four(device.rtu()); }
+
+TEST_F(ModbusIoTest, NothingIsWrittenBeforeOnAndIdleAtOff) {
+  device.points->holdings[0] = 77;
+  device.points->coils[0] = 1;
+  rig.set("idle", 5.0);
+  start(device.tcp());
+  exchange();
+  EXPECT_EQ(device.points->holdings[0], 77);
+  EXPECT_EQ(device.points->coils[0], 1);
+  rig.set("holding", 9.0, 0, 0);
+  rig.set("coil", true, 0, 0);
+  ASSERT_TRUE(rig.cycle());
+  exchange();
+  EXPECT_EQ(device.points->holdings[0], 9);
+  ASSERT_TRUE(rig.off());
+  exchange();
+  EXPECT_EQ(device.points->holdings[0], 5);
+  EXPECT_EQ(device.points->coils[0], 0);
+  ASSERT_TRUE(rig.kill());
+}
+
+TEST_F(ModbusIoTest, WhatIsNotFiniteIsNeverWrittenAndTheRestIsHeldWithinTheRegister) {
+  start(device.tcp());
+  rig.set("holding", 7.0, 0, 0);
+  rig.set("holding", 1e300, 0, 1);
+  ASSERT_TRUE(rig.cycle());
+  exchange();
+  EXPECT_EQ(device.points->holdings[1], 32767);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    rig.set("holding", bad, 0, 0);
+    ASSERT_TRUE(rig.cycle());
+    exchange();
+    EXPECT_EQ(device.points->holdings[0], 7);
+  }
+  EXPECT_EQ(rig.get<std::int64_t>("unsent"), 2);
+  rig.set("is_signed", false);
+  rig.set("holding", -1.0, 0, 0);
+  rig.set("holding", 1e300, 0, 1);
+  ASSERT_TRUE(rig.cycle());
+  exchange();
+  EXPECT_EQ(device.points->holdings[0], 0);
+  EXPECT_EQ(device.points->holdings[1], 65535);
+}
+
+TEST_F(ModbusIoTest, ADeviceThatEndsIsAFaultAndComesBackByClear) {
+  device.points->inputs[0] = 4;
+  const std::string where = device.tcp();
+  start(where);
+  ASSERT_TRUE(rig.cycle());
+  device.end();
+  exchange();
+  ASSERT_TRUE(rig.cycle(milliseconds(1000)));
+  EXPECT_TRUE(connected());
+  ASSERT_TRUE(rig.cycle(milliseconds(10)));
+  EXPECT_FALSE(connected());
+  EXPECT_EQ(input(0), 4);
+  EXPECT_DOUBLE_EQ(rig.get<double>("age"), 1.01);
+  EXPECT_EQ(rig.cycle().text, where + " does not answer: bring it back, then `clear` and `on`");
+  EXPECT_EQ(rig.clear().text, where + " does not answer: bring it back, then `clear` and `on`");
+  device.serve();
+  device.points->inputs[0] = 5;
+  for (int i = 0; i < 20; ++i) exchange();
+  ASSERT_TRUE(rig.clear());
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(connected());
+  EXPECT_EQ(input(0), 5);
+}
+
+TEST_F(ModbusIoTest, ADeviceThatSaysNothingDelaysNoCycle) {
+  start(device.tcp());
+  ASSERT_TRUE(rig.cycle());
+  device.stop();
+  const std::clock_t before = std::clock();
+  exchange();  // waits 0.2 s, beside the cycles
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
+  ASSERT_TRUE(rig.cycle(milliseconds(10)));
+  EXPECT_FALSE(connected());
+  EXPECT_LT(std::clock() - before, CLOCKS_PER_SEC);
+}
+
+TEST_F(ModbusIoTest, RefusesWhatIsNoDeviceOrHasOtherRegisters) {
+  const auto answer = [this](const std::string& where) {
+    rig.resource("device", where.c_str());
+    return rig.init().text;
+  };
+  for (const std::string where : {"", "tcp:", "tcp:1.2.3.4", "tcp:host:502", "tcp:1.2.3.4:0", "rtu:ttyS0",
+                                 "udp:1.2.3.4:5"})
+    EXPECT_EQ(answer(where),
+              "\"" + where + "\" is no Modbus device: \"tcp:192.168.0.7:502\" and \"rtu:/dev/ttyS0\" are");
+  EXPECT_EQ(answer("rtu:/dev/ttyUSB99"),
+            "rtu:/dev/ttyUSB99: No such file or directory: plug the device in, or name another under `resources`");
+  const std::string where = device.tcp();
+  rig.set("first_input", std::int32_t{15});
+  EXPECT_EQ(answer(where), where + ": Illegal data address: see that the device is on, and that its address, unit and "
+                                   "registers are these");
+  device.end();
+  points(0, 0, 0, 0);
+  EXPECT_EQ(answer(where), "nothing is exchanged: name at least one input, contact, holding or coil");
+}
+
+}  // namespace
+}  // namespace chimera
