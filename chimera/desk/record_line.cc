@@ -2,7 +2,6 @@
 #include "chimera/desk/record_line.h"
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "chimera/platform/linux/linux_clock.h"
@@ -12,7 +11,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array kKinds = {"release", "run", "preempt", "miss", "drop", "signal", "fault", "state", "flag"};
 constexpr Nanoseconds kLastRecords = milliseconds(50);  // those of the end are on their way
 
 std::size_t index_of(const std::deque<std::string>& names, const std::string& name) {
@@ -56,10 +54,10 @@ void RecordLine::take(Nanoseconds instant, RecordSink& sink) {
   std::vector<TapRecord> records;
   for (const Json& row : (*heard)["records"]) {
     TapRecord record;
-    const auto kind = std::find(kKinds.begin(), kKinds.end(), row[1].get<std::string>());
-    if (kind == kKinds.end()) continue;
+    const auto kind = std::find(kTapKinds.begin(), kTapKinds.end(), row[1].get<std::string>());
+    if (kind == kTapKinds.end()) continue;
     record.at = {row[0].get<std::int64_t>()};
-    record.kind = static_cast<TapKind>(kind - kKinds.begin());
+    record.kind = static_cast<TapKind>(kind - kTapKinds.begin());
     const std::string task = row[2].is_string() ? row[2].get<std::string>() : "";
     const std::size_t index = index_of(names_.tasks, task);
     if (index < names_.tasks.size()) record.task = TaskId(index);

@@ -183,6 +183,7 @@ class FakeRtpu {
       std::memcpy(payload.data() + at, &count, sizeof count);
     out.write(payload.data(), clock_.now(), ~std::uint64_t{0});
     tap_->append({.at = clock_.now(), .a = CHIMERA_CYCLE, .task = task, .kind = TapKind::kRun});
+    if (profile.cycles % 8 == 0) tap_->append({.at = clock_.now(), .b = 5000, .task = task, .kind = TapKind::kOverrun});
     if (!manager_.is_there() || !manager_.block().is_tapped(task)) return;
     std::vector<std::byte> slot(sizeof(chimera_slot) + payload.size());
     const chimera_slot header{clock_.now().count, profile.cycles, ~std::uint64_t{0}, 0};

@@ -14,11 +14,6 @@ using Json = nlohmann::json;
 constexpr std::size_t kAtOnce = 4096;            // records of one read
 constexpr std::size_t kValuesOfMessage = 10'000;  // about 200 kB
 
-const char* kind_text(TapKind kind) {
-  constexpr const char* kNames[] = {"release", "run", "preempt", "miss", "drop", "signal", "fault", "state", "flag"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
 std::vector<std::uint32_t> payload_sizes(const Peers& peers) {
   std::vector<std::uint32_t> bytes;
   for (std::size_t t = 0; t < peers.spec().tasks.size(); ++t) {
@@ -98,12 +93,12 @@ void TapFeed::drain(Ring& ring, const TapSink& sink) {
 }
 
 void TapFeed::take(Ring& ring, const TapRecord& record, const TapSink& sink) {
-  if (record.kind > TapKind::kFlag) {
+  if (record.kind == TapKind::kGroup || record.kind == TapKind::kValue) {
     if (rows_.empty()) return;
     if (const TapRow* row = ring.assembler->take(record); row != nullptr) take_row(*row, sink);
-  } else if (rows_.empty()) {
+  } else if (const auto kind = static_cast<std::size_t>(record.kind); rows_.empty() && kind < kTapKinds.size()) {
     const bool has_task = record.task.index < world_.peers.n_tasks();
-    ring.waiting.push_back(Json::array({record.at.count, kind_text(record.kind),
+    ring.waiting.push_back(Json::array({record.at.count, kTapKinds[kind],
                                         has_task ? Json(world_.name(record.task)) : Json(), record.a, record.b}));
     if (ring.waiting.size() > kValuesOfMessage / 5) flush(ring, 0, sink);
   }

@@ -3,6 +3,8 @@
 // Traces, timelines, logs and the scope read these and nothing else.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "chimera/base/ids.h"
@@ -25,6 +27,10 @@ enum class TapKind : std::uint8_t {
   kOverrun,  ///< a job was seen to have used more than its budget, while it ran; b = ns used
   kHang,     ///< a job does not end by itself; b = ns used
 };
+/// Their words in traces and in the control protocol. Rows are told in a form of their own there.
+inline constexpr std::array kTapKinds = {"release", "run",   "preempt", "miss",  "drop",    "signal", "fault",
+                                         "state",   "flag",  "group",   "value", "overrun", "hang"};
+static_assert(kTapKinds.size() == static_cast<std::size_t>(TapKind::kHang) + 1);
 
 /// 32 bytes, none of them padding. Context: cycle; wait-free.
 struct TapRecord {
