@@ -232,10 +232,13 @@ void Driver::command(Signal signal, std::vector<TaskId> tasks, Answered answered
   feed(subsystem::Commanded{id, signal, std::move(tasks)});
 }
 
-void Driver::end(std::int32_t code) {
+void Driver::end(std::int32_t code) { end_wish_ = code; }
+
+void Driver::pass_end_on() {
+  if (!end_wish_) return;
   KeeperMessage message;
   message.kind = KeeperMessage::Kind::kEnd;
-  message.code = code;
+  message.code = *std::exchange(end_wish_, std::nullopt);
   [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: it ends already
 }
 
@@ -263,6 +266,7 @@ void Driver::wait(Nanoseconds until, int also) {
 }
 
 bool Driver::step(Nanoseconds at_most, int also) {
+  pass_end_on();  // what asked for it is answered by now
   wait(std::min(next_due(), at_most), also);
   bell_->reset();
   if (!take_messages()) return false;

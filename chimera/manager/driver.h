@@ -46,7 +46,7 @@ class Driver {
   bool step(Nanoseconds at_most = kNever, int also = -1);
   /// Asks for a signal; `answered` is called when it is over, maybe at once.
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered);
-  /// Tells the keeper to end everything.
+  /// Has the keeper end everything; it is told in the next step(), when whoever asked has been answered.
   void end(std::int32_t code);
   /// Hands over the listening socket, once.
   int take_listening() noexcept;
@@ -68,6 +68,7 @@ class Driver {
   void feed(const subsystem::Event& event);
   void feed(Events& events);
   void carry_out(const subsystem::Action& action);
+  void pass_end_on();
   void look_at_keeper();
   Nanoseconds next_due() const noexcept;
   void wait(Nanoseconds until, int also);
@@ -81,6 +82,7 @@ class Driver {
   Nanoseconds begun_;
   Nanoseconds counters_due_;
   bool is_ready_ = false;
+  std::optional<std::int32_t> end_wish_;
   bool is_ending_ = false;
 };
 

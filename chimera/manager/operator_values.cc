@@ -131,7 +131,8 @@ std::string plain(std::uint32_t type, std::span<const std::byte> at, const std::
   if (const auto* text = std::get_if<std::string>(&value)) return json_string(*text);
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return with_unit(std::to_string(*whole), unit);
   const double number = std::get<double>(value);
-  const std::string finite = json_number(number);
+  std::string finite = json_number(number);
+  if (finite.ends_with(".0")) finite.resize(finite.size() - 2);  // as a person writes it
   return with_unit(finite == "null" ? (number > 0 ? "inf" : "-inf") : finite, unit);
 }
 

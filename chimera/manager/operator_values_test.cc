@@ -86,12 +86,12 @@ class OperatorValues : public testing::Test {
 
 TEST_F(OperatorValues, NumbersCountInTheVariablesUnitAndTextsCarryTheirs) {
   EXPECT_EQ(after("speed", 12.5), "12.5 m/s");
-  EXPECT_EQ(after("speed", "36 km/h"), "10.0 m/s");
-  EXPECT_EQ(after("kp", Json::array({100, 90.5})), "[100.0 N.m/rad, 90.5 N.m/rad]");
-  EXPECT_EQ(after("kp", "100 N.m/rad"), "[100.0 N.m/rad, 100.0 N.m/rad]");
-  EXPECT_EQ(after("kp", "[1 2] N.m/rad"), "[1.0 N.m/rad, 2.0 N.m/rad]");
-  EXPECT_EQ(after("kp", "[1 N.m/rad, 2 N.m/rad]"), "[1.0 N.m/rad, 2.0 N.m/rad]");
-  EXPECT_EQ(after("kp", Json::array({"1 N.m/rad", 2})), "[1.0 N.m/rad, 2.0 N.m/rad]");
+  EXPECT_EQ(after("speed", "36 km/h"), "10 m/s");
+  EXPECT_EQ(after("kp", Json::array({100, 90.5})), "[100 N.m/rad, 90.5 N.m/rad]");
+  EXPECT_EQ(after("kp", "100 N.m/rad"), "[100 N.m/rad, 100 N.m/rad]");
+  EXPECT_EQ(after("kp", "[1 2] N.m/rad"), "[1 N.m/rad, 2 N.m/rad]");
+  EXPECT_EQ(after("kp", "[1 N.m/rad, 2 N.m/rad]"), "[1 N.m/rad, 2 N.m/rad]");
+  EXPECT_EQ(after("kp", Json::array({"1 N.m/rad", 2})), "[1 N.m/rad, 2 N.m/rad]");
   EXPECT_EQ(after("n", 7), "7");
   EXPECT_EQ(after("speed", 1e-7), "1e-07 m/s");
 }
@@ -100,10 +100,10 @@ TEST_F(OperatorValues, EveryTypeHasItsWords) {
   EXPECT_EQ(after("go", true), "true");
   EXPECT_EQ(after("go", "true"), "true");
   EXPECT_EQ(after("word", "run: \"now\""), "\"run: \\\"now\\\"\"");
-  EXPECT_EQ(after("pose", {{"x", 3}, {"a", "90 deg"}}), "{x: 3.0 m, a: 1.5707963267948966 rad}");
-  EXPECT_EQ(after("pose", "{x: 1 km, a: 1 rad}"), "{x: 1000.0 m, a: 1.0 rad}");
-  EXPECT_EQ(after("m", {{1, 2, 3}, {4, 5, 7}}), "[[1.0, 2.0, 3.0], [4.0, 5.0, 7.0]]");
-  EXPECT_EQ(after("m", Json::array({1, 2, 3, 4, 5, 8})), "[[1.0, 2.0, 3.0], [4.0, 5.0, 8.0]]");
+  EXPECT_EQ(after("pose", {{"x", 3}, {"a", "90 deg"}}), "{x: 3 m, a: 1.5707963267948966 rad}");
+  EXPECT_EQ(after("pose", "{x: 1 km, a: 1 rad}"), "{x: 1000 m, a: 1 rad}");
+  EXPECT_EQ(after("m", {{1, 2, 3}, {4, 5, 7}}), "[[1, 2, 3], [4, 5, 7]]");
+  EXPECT_EQ(after("m", Json::array({1, 2, 3, 4, 5, 8})), "[[1, 2, 3], [4, 5, 8]]");
 }
 
 TEST_F(OperatorValues, WordsOfADescriptionReadBackTheSame) {

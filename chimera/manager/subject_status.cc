@@ -82,10 +82,11 @@ Json inputs_json(const World& world, TaskId task, Nanoseconds at) {
     const auto variable = world.readings->find(port.variable);
     if (!variable) continue;
     const Reading reading = world.readings->read(*variable);
+    const bool is_operators = world.readings->is_operators(*variable);  // holds until it is set: never old
     const bool is_there = reading.is_valid && reading.slot.sequence > 0;
     inputs.push_back({{"port", port.name},
                       {"variable", port.variable},
-                      {"age_ns", is_there ? Json(reading.age(at).count) : Json()}});
+                      {"age_ns", is_operators ? Json(0) : is_there ? Json(reading.age(at).count) : Json()}});
   }
   return inputs;
 }

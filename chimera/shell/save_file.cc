@@ -77,7 +77,7 @@ std::size_t plain_end(std::string_view text, std::size_t at, bool is_in_brackets
   return end;
 }
 
-/// A value written as lines of its own ("- 1"): these cannot be replaced without touching what stands between them.
+/// A value written as lines of its own ("- 1"): these are replaced one by one, so that what stands between them stays.
 bool is_block(const Node& value, std::string_view text, std::size_t at) {
   return (value.is_list() && text[at] != '[') || (value.is_map() && text[at] != '{');
 }
@@ -123,6 +123,43 @@ bool is_in_brackets(std::string_view text, const Draft& draft) {
   const std::size_t at = offset_of(text, draft.operators[0].name.at);
   const std::size_t before = text.find_last_not_of(" \t\r\n", at == 0 ? 0 : at - 1);
   return before != std::string_view::npos && text[before] == '{';
+}
+
+std::string written(const Node& value) {
+  if (value.is_scalar()) return value.quoted ? Json(value.text).dump() : value.text;
+  std::string words;
+  for (std::size_t i = 0; i < value.items.size(); ++i)
+    words += (i == 0 ? "" : ", ") + (value.is_map() ? value.keys[i].text + ": " : "") + written(value.items[i]);
+  return value.is_map() ? "{" + words + "}" : "[" + words + "]";
+}
+
+struct Editing {
+  std::string_view text;
+  const UnitSystem& units;
+  bool is_in_brackets;
+};
+
+/// What makes `words`, which say `now`, of `given`: in its place, or line by line where it has lines of its own. False
+/// when these are not as many as `now` has.
+bool add_edits(const Node& given, const Node& now, const std::string& words, const Editing& in,
+               std::vector<Edit>& edits) {
+  if (same_value(given, now, in.units)) return true;
+  const std::string_view text = in.text;
+  const std::size_t at = offset_of(text, given.at);
+  if (given.is_none() || at >= text.size()) return false;
+  if (is_block(given, text, at)) {
+    if (given.kind != now.kind || given.items.size() != now.items.size()) return false;
+    for (std::size_t i = 0; i < given.items.size(); ++i) {
+      const Node* item = given.is_map() ? now.find(given.keys[i].text) : &now.items[i];
+      if (item == nullptr || !add_edits(given.items[i], *item, written(*item), in, edits)) return false;
+    }
+    return true;
+  }
+  const bool is_bracket = text[at] == '[' || text[at] == '{';
+  const bool is_quoted = text[at] == '"' || text[at] == '\'';
+  edits.push_back({at, is_bracket ? bracket_end(text, at) : is_quoted ? quoted_end(text, at)
+                                  : plain_end(text, at, in.is_in_brackets), words});
+  return true;
 }
 
 // ---- the file ----
@@ -232,14 +269,8 @@ Result<std::string> with_operator_values(std::string_view text, const std::map<s
     const auto now = node_of(name, words);
     if (!now) return now.error();
     if (same_value(given->value, now.value(), units)) continue;
-    const std::size_t at = offset_of(text, given->value.at);
-    if (given->value.is_none() || at >= text.size() || is_block(given->value, text, at))
-      return refusal("is written over several lines; write it as [...] or {...} first", name);
-    const bool is_bracket = text[at] == '[' || text[at] == '{';
-    const bool is_quoted = text[at] == '"' || text[at] == '\'';
-    edits.push_back({at, is_bracket  ? bracket_end(text, at)
-                         : is_quoted ? quoted_end(text, at)
-                                     : plain_end(text, at, is_in_brackets(text, draft)), words});
+    if (!add_edits(given->value, now.value(), words, {text, units, is_in_brackets(text, draft)}, edits))
+      return refusal("is written over several lines and has another number of them now", name);
   }
   std::sort(edits.begin(), edits.end(), [](const Edit& a, const Edit& b) { return a.from > b.from; });
   std::string result(text);

@@ -51,10 +51,21 @@ TEST(SaveFile, AValueThatSaysTheSameStaysAsItIsWritten) {
             "subsystem: s\ntasks: {a: }\noperator: {kp: [2 m, 3 m], ki: 4}\n");
 }
 
+TEST(SaveFile, ReplacesValuesThatHaveLinesOfTheirOwnOneByOne) {
+  const std::string head = "subsystem: s\ntasks: {a: }\noperator:\n";
+  EXPECT_EQ(edited(head + "  kp:\n    - 1 m  # near\n    # far\n    - 2 m\n  ki: 3\n",
+                   {{"kp", "[1 m, 7 m]"}, {"ki", "4"}}),
+            head + "  kp:\n    - 1 m  # near\n    # far\n    - 7 m\n  ki: 4\n");
+  EXPECT_EQ(edited(head + "  m:\n    - [1, 2]\n    - [3, 4]\n", {{"m", "[[1, 2], [5, 6]]"}}),
+            head + "  m:\n    - [1, 2]\n    - [5, 6]\n");
+  EXPECT_EQ(edited(head + "  pose:\n    x: 1 m\n    y: 2 m\n", {{"pose", "{y: 3 m, x: 1 m}"}}),
+            head + "  pose:\n    x: 1 m\n    y: 3 m\n");
+}
+
 TEST(SaveFile, RefusesWhatItCannotPlace) {
   EXPECT_EQ(edited(kText, {{"kd", "1"}}), "kd: is not under `operator:`");
-  EXPECT_EQ(edited("subsystem: s\ntasks: {a: }\noperator:\n  kp:\n    - 1\n    - 2\n", {{"kp", "[1, 3]"}}),
-            "kp: is written over several lines; write it as [...] or {...} first");
+  EXPECT_EQ(edited("subsystem: s\ntasks: {a: }\noperator:\n  kp:\n    - 1\n    - 2\n", {{"kp", "[1, 3, 4]"}}),
+            "kp: is written over several lines and has another number of them now");
   EXPECT_EQ(edited("[", {{"kp", "1"}}), ": the description cannot be read");
   EXPECT_EQ(edited(kText, {{"kp", "[1"}}), "kp: '[1' is no value");
 }

@@ -92,7 +92,7 @@ OldestInput oldest_input(const Json& task) {
   for (const Json& input : field(task, "inputs")) {
     const auto age = whole_or_none(input, "age_ns");
     if (!age) return {-1, text_of(input, "variable")};  // never written is older than any age
-    if (*age > oldest.age_ns) oldest = {*age, text_of(input, "variable")};
+    if (*age > std::max<std::int64_t>(oldest.age_ns, 0)) oldest = {*age, text_of(input, "variable")};
   }
   return oldest;
 }

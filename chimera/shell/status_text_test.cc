@@ -12,6 +12,13 @@ namespace {
 
 nlohmann::json status() { return nlohmann::json::parse(test::kStatus); }
 
+TEST(OldestInput, IsNeverOneOfTheOperatorWhichHoldsUntilItIsSet) {
+  const auto oldest = [](const char* inputs) { return oldest_input(nlohmann::json::parse(inputs)); };
+  EXPECT_EQ(oldest(R"({"inputs": [{"variable": "kp", "age_ns": 0}, {"variable": "q", "age_ns": 7}]})").variable, "q");
+  EXPECT_EQ(oldest(R"({"inputs": [{"variable": "kp", "age_ns": 0}]})").variable, "");
+  EXPECT_EQ(oldest(R"({"inputs": [{"variable": "q", "age_ns": 7}, {"variable": "r", "age_ns": null}]})").age_ns, -1);
+}
+
 TEST(StatusText, TellsTheWholeTheUnitsAndTheTasks) {
   EXPECT_EQ(status_text(status()),
             "puma_pid: run, up 12.5 min, flag UP by spare, operator\n"

@@ -4,11 +4,13 @@ roles of those who were given one. Needs root, to become somebody else."""
 import grp
 import json
 import os
+import re
 import subprocess
 import sys
 import unittest
 
-from system import BUILD, Refused, System, await_that
+from protocol_test import FORMATS, GOOD, METHODS
+from system import System
 
 NOBODY, STRANGERS = 65534, 65534
 OPERATORS = next(g for g in grp.getgrall() if g.gr_gid not in (0, STRANGERS))
@@ -27,7 +29,7 @@ start: all
 
 # Run as the stranger, with the pids and the socket as arguments; prints what succeeded.
 ATTACK = r'''
-import ctypes, json, os, signal, socket, sys
+import ctypes, json, os, resource, signal, socket, sys
 path, pids = sys.argv[1], [int(p) for p in sys.argv[2:]]
 libc = ctypes.CDLL(None, use_errno=True)
 won = []
@@ -42,6 +44,13 @@ def system_call(number, *arguments):
     if got < 0:
         raise OSError(ctypes.get_errno(), "refused")
     return got
+def read_memory(pid):
+    at = int(open(f"/proc/{pid}/maps").read().split("-")[0], 16)
+    mine = ctypes.create_string_buffer(16)
+    class Piece(ctypes.Structure):
+        _fields_ = [("base", ctypes.c_void_p), ("bytes", ctypes.c_size_t)]
+    here, there = Piece(ctypes.addressof(mine), 16), Piece(at, 16)
+    return libc.process_vm_readv(pid, ctypes.byref(here), 1, ctypes.byref(there), 1, 0) == 16
 def talk():
     s = socket.socket(socket.AF_UNIX)
     s.settimeout(2)
@@ -57,6 +66,14 @@ def talk():
 attempt("talk", talk)
 attempt("unlink the socket", lambda: os.unlink(path))
 attempt("a file in the folder", lambda: open(os.path.dirname(path) + "/x", "w"))
+for name in os.listdir("/dev/shm"):
+    if "chimera" in name:
+        attempt("shared memory", lambda: open("/dev/shm/" + name))
+for line in open("/proc/net/unix").read().splitlines()[1:]:
+    name = line.split()[-1]
+    # The claim of a CPU answers nobody: who connects learns who holds it.
+    if name.startswith("@") and "chimera" in name and "chimera-cpu-" not in name:
+        attempt("abstract socket", lambda: socket.socket(socket.AF_UNIX).connect("\0" + name[1:]))
 for pid in pids:
     attempt("memory", lambda: open(f"/proc/{pid}/mem", "r+b"))
     attempt("list of descriptors", lambda: bool(os.listdir(f"/proc/{pid}/fd")))
@@ -68,6 +85,14 @@ for pid in pids:
     attempt("priority", lambda: os.setpriority(os.PRIO_PROCESS, pid, 10))
     attempt("affinity", lambda: os.sched_setaffinity(pid, {0}))
     attempt("trace", lambda: libc.ptrace(16, pid, 0, 0) == 0)
+    for what in ("environ", "maps", "stack", "root", "cwd"):
+        attempt(f"/proc: {what}", lambda: os.path.exists(os.readlink(f"/proc/{pid}/{what}"))
+                if what in ("root", "cwd") else bool(open(f"/proc/{pid}/{what}").read()))
+    attempt("memfd by its mapping", lambda: bool(os.listdir(f"/proc/{pid}/map_files")))
+    attempt("memory of another", lambda: read_memory(pid))
+    attempt("limits", lambda: resource.prlimit(pid, resource.RLIMIT_NOFILE) and False or
+            resource.prlimit(pid, resource.RLIMIT_NOFILE, resource.prlimit(pid, resource.RLIMIT_NOFILE)))
+    attempt("policy", lambda: os.sched_setscheduler(pid, os.SCHED_OTHER, os.sched_param(0)))
     attempt("signal by number", lambda: os.kill(pid, 0))
     attempt("signal by pidfd", lambda: system_call(424, pidfd, 9, 0, 0))
 print(json.dumps(sorted(set(won))))
@@ -98,19 +123,41 @@ for pid in sys.argv[1:]:
 print(json.dumps([won, seen]))
 '''
 
-# Calls one method and prints the code of its error, or "good".
+RANKS = ("observe", "operate", "configure")
+PARAMETERS = {**GOOD, "set": {"values": {}}, "unsubscribe": {"subscription": 1}}
+
+
+def roles():
+    """Of each method: under which heading docs/formats/control.md has it."""
+    found, role = {}, None
+    for line in (FORMATS / "control.md").read_text().splitlines():
+        if heading := re.match(r"### (\w+)", line):
+            role = heading[1] if heading[1] in RANKS else None
+        elif role and (row := re.match(r"\| `([a-z]+)` \|", line)):
+            found[row[1]] = role
+    return found
+
+
+ROLES = roles()
+
+# Calls one method and prints its error, or "good": also when only what it means for this application was refused.
 CALL = r'''
 import json, socket, sys
 s = socket.socket(socket.AF_UNIX)
 s.settimeout(5)
 s.connect(sys.argv[1])
 request = {"jsonrpc": "2.0", "id": 1, "method": sys.argv[2], "params": json.loads(sys.argv[3])}
-s.sendall(json.dumps(request).encode() + b"\n")
+try:
+    s.sendall(json.dumps(request).encode() + b"\n")
+except BrokenPipeError:
+    pass  # a stranger is told before it asks
 said = b""
 while not said.endswith(b"\n"):
     said += s.recv(65536) or b"\n"
-answer = json.loads(said)
-print(answer["error"]["code"] if "error" in answer else "good")
+answer = json.loads(said.split(b"\n")[0])
+error = answer.get("error", {"code": -32602})
+print(json.dumps("good" if error["code"] in (-32000, -32005, -32602)
+                 else [error["code"], error["message"], error["data"]]))
 '''
 
 
@@ -142,9 +189,11 @@ class Attack(unittest.TestCase):
                     done = subprocess.run(["/usr/bin/python3", "-c", ATTACK, str(system.socket), str(victim.pid)],
                                           capture_output=True)
                 self.assertEqual(json.loads(done.stdout),
-                                 ["a file in the folder", "affinity", "copy of a descriptor", "descriptor",
-                                  "list of descriptors", "memory", "priority", "signal by number", "signal by pidfd",
-                                  "talk", "trace", "unlink the socket"])
+                                 ["/proc: cwd", "/proc: environ", "/proc: maps", "/proc: root", "/proc: stack",
+                                  "a file in the folder", "affinity", "copy of a descriptor", "descriptor", "limits",
+                                  "list of descriptors", "memfd by its mapping", "memory", "memory of another",
+                                  "policy", "priority", "signal by number", "signal by pidfd", "talk", "trace",
+                                  "unlink the socket"])
 
     def test_seals_hold_against_the_systems_own_user(self):
         with System(APPLICATION) as system:
@@ -154,22 +203,31 @@ class Attack(unittest.TestCase):
             self.assertGreater(seen, 5)
             self.assertEqual(won, [])
 
-    def test_a_group_gets_its_role_and_no_more(self):
-        with System(APPLICATION, ("--observe-group", OPERATORS.gr_name)) as system:
-            self.open_folders(system)
-            def call(method, **parameters):
-                return self.as_stranger(CALL, system.socket, method, json.dumps(parameters), groups=[OPERATORS.gr_gid])
-            self.assertEqual(call("status"), "good")
-            self.assertEqual(call("signal", signal="off", tasks=["steady"]), "-32004")
-            self.assertEqual(call("set", values={}), "-32004")
-            self.assertEqual(call("end"), "-32004")
-            self.assertEqual(system.state("steady"), "ON")
-        with System(APPLICATION, ("--operate-group", OPERATORS.gr_name)) as system:
-            self.open_folders(system)
-            self.assertEqual(self.as_stranger(CALL, system.socket, "signal", '{"signal": "off", "tasks": ["beside"]}',
-                                              groups=[OPERATORS.gr_gid]), "good")
-            self.assertEqual(system.state("beside"), "OFF")
-            self.assertEqual(self.as_stranger(CALL, system.socket, "end", "{}", groups=[OPERATORS.gr_gid]), "-32004")
+    def test_a_group_gets_its_role_and_no_more_with_every_method_of_the_protocol(self):
+        """Methods are those of the schema, so a new one is tried too; who may call it is what the document says."""
+        self.assertEqual(sorted(ROLES), sorted(METHODS))
+        for has in (None, "observe", "operate", "configure"):
+            arguments = (f"--{has}-group", OPERATORS.gr_name) if has else ()
+            with self.subTest(has), System(APPLICATION, arguments) as system:
+                self.open_folders(system)
+                if has is None:  # the administrator opened the way, the system did not
+                    system.socket.parent.chmod(0o711)
+                    system.socket.chmod(0o666)
+                for method in sorted(METHODS, key=lambda m: m == "end"):
+                    said = json.loads(self.as_stranger(CALL, system.socket, method, json.dumps(PARAMETERS[method]),
+                                                       groups=[OPERATORS.gr_gid] if has else []))
+                    self.assertEqual(said, self.expected(method, has), f"{method} with {has}")
+                if has != "configure":
+                    self.assertEqual([t["state"] for t in system.call("status")["tasks"]], ["ON", "ON"])
+
+    def expected(self, method, has):
+        if has is None:
+            return [-32004, "you have no right here: you are neither the user of the subsystem nor in a group with a "
+                    "role", {"needs": "observe", "has": "nothing"}]
+        if RANKS.index(has) >= RANKS.index(ROLES[method]):
+            return "good"
+        return [-32004, f"'{method}' needs the role {ROLES[method]}, you have {has}",
+                {"needs": ROLES[method], "has": has}]
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ CAMPAIGNS = {
 
 
 def counted(word, output):
-    return sum(int(n) for n in re.findall(rf"^{word}: (\d+)\b", output, re.M)) if word else 1
+    return sum(int(n) for n in re.findall(rf"\b{word}: (\d+)\b", output)) if word else 1
 
 
 def main():

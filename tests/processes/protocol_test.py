@@ -47,6 +47,27 @@ start: all
 """
 
 
+# One unit that can be held up in its cycle, one whose end takes a second.
+SLOW = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  steady: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: level}, constants: {slow: 1000000000 ns}}
+  stuck:
+    component: t_crash
+    rtpu: second
+    rate: 100 Hz
+    alias: {y: y_stuck}
+    constants: {where: cycle, how: hang}
+    resources: {armed: ARMED}
+operator: {level: 1}
+configurations: {all: [steady, stuck]}
+start: all
+"""
+
+
 def judge(name):
     resolver = jsonschema.RefResolver(BASE, SCHEMA, store=STORE)
     return jsonschema.Draft7Validator({"$ref": f"#/definitions/{name}"}, resolver=resolver)
@@ -239,6 +260,32 @@ class Protocol(unittest.TestCase):
             judged, refused = judged + 1, refused + is_form
         self.assertGreater(refused, 200)
         self.assertGreater(judged - refused, 30)
+
+    def test_a_unit_that_does_not_answer_is_named_with_what_it_does(self):
+        with System(SLOW) as system:
+            client = Judged(system.socket)
+            self.addCleanup(client.close)
+            system.arm()
+            system.await_running("second", "stuck.cycle")
+            self.assertIsNone(client.exchange("signal", signal="off", tasks=["stuck"]))
+            system.disarm()
+            self.assertEqual(client.faults, [])
+            self.assertEqual(client.last["error"], {
+                "code": -32006, "message": "no answer from rtpu second",
+                "data": {"rtpu": "second", "running": "stuck.cycle"}})
+
+    def test_while_everything_ends_no_signal_is_taken(self):
+        with System(SLOW) as system:
+            client, other = Judged(system.socket), Judged(system.socket)
+            self.addCleanup(client.close)
+            self.addCleanup(other.close)
+            await_that(lambda: "second: real time" in system.said(), 5, "the face of the run")
+            self.assertEqual(client.exchange("end"), {})
+            await_that(lambda: other.exchange("status")["ending"], 5, "the end")
+            self.assertIsNone(other.exchange("signal", signal="on", tasks=["steady"]))
+            self.assertEqual(other.last["error"], {"code": -32007, "message": "everything ends"})
+            self.assertEqual(client.faults + other.faults, [])
+            self.assertEqual(system.process.wait(15), 0, system.said())
 
     def test_end_is_the_last_answer(self):
         self.assertEqual(self.client.exchange("end", code=3), {})

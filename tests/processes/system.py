@@ -198,6 +198,15 @@ class System:
     def await_state(self, name, state, limit=10):
         await_that(lambda: self.state(name) == state, limit, f"{name} {state}")
 
+    def await_running(self, unit, what, limit=10):
+        """Until a unit is seen in the same method twice, with a hundredth of a second between."""
+        def stays():
+            if self.rtpu(unit)["running"] != what:
+                return False
+            time.sleep(0.01)
+            return self.rtpu(unit)["running"] == what
+        await_that(stays, limit, f"{unit} in {what}")
+
     def signal(self, word, *tasks):
         return self.call("signal", signal=word, tasks=list(tasks))
 
