@@ -119,6 +119,8 @@ void add_run(CLI::App& app, RunWords& words) {
   r->add_option("--quantum", words.quantum, "virtual time, laxity policies: compare again this often (1 ms)");
   r->add_option("--priority", words.run.priority, "real time: SCHED_FIFO priority; 0 runs as an ordinary process (80)")
       ->check(CLI::Range(0, 99));
+  r->add_option("--may-miss", words.run.may_miss,
+                "real time: run although this task is not guaranteed to keep its deadlines; may be repeated");
   r->add_option("--isolation", words.isolation, "real time: 'process', or 'none': all in this process, to debug")
       ->check(CLI::IsMember({"process", "none"}));
   r->add_option("--observe-group", words.observe_group, "real time: members of this group may look on");

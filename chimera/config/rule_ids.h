@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 72> kRules = {
+inline constexpr std::array<std::string_view, 73> kRules = {
     // the text
     "file-unreadable", "text-size", "text-encoding", "text-tab", "text-entries", "text-nesting", "value-size",
     "yaml-syntax", "yaml-anchor", "yaml-alias", "yaml-tag", "yaml-documents", "yaml-block-scalar", "yaml-key",
@@ -39,6 +39,8 @@ inline constexpr std::array<std::string_view, 72> kRules = {
     "unused", "standby-same-rtpu",
     // what run does not have yet
     "not-built",
+    // what run does not begin
+    "unschedulable",
 };
 
 constexpr bool is_rule(std::string_view name) noexcept {

@@ -71,7 +71,7 @@ class Writer {
       made.push_back({.cpu = rtpu.cpu, .criticality = 0, .policy = rtpu.policy, .dispatch = options_.dispatch,
                       .quantum = options_.quantum});
     for (const TaskSpec& task : configuration_.spec().tasks) {
-      std::uint32_t& most = made[task.rtpu.index].criticality;
+      std::uint32_t& most = made[options_.one_rtpu ? 0 : task.rtpu.index].criticality;
       most = std::max(most, task.criticality);
     }
     return made;
@@ -83,8 +83,8 @@ class Writer {
     ScheduleRow made;
     made.task = task;
     made.work = {.period = spec.period, .deadline = spec.deadline, .offset = spec.offset, .time = spec.budget,
-                 .criticality = spec.criticality, .user_priority = spec.user_priority, .rtpu = spec.rtpu.index,
-                 .server = {}};
+                 .criticality = spec.criticality, .user_priority = spec.user_priority,
+                 .rtpu = options_.one_rtpu ? 0 : spec.rtpu.index, .server = {}};
     made.source = spec.budget.count > 0 ? TimeSource::kBudget : TimeSource::kNone;
     const RecordedTask* seen = options_.profile == nullptr ? nullptr : options_.profile->find(spec.name);
     if (seen != nullptr) {

@@ -11,6 +11,7 @@
 
 #include "chimera/config/configuration.h"
 #include "chimera/config/recorded_profile.h"
+#include "chimera/config/report.h"
 #include "chimera/schedule/analysis.h"
 #include "chimera/schedule/worst_window.h"
 
@@ -24,6 +25,7 @@ struct ScheduleOptions {
   Dispatch dispatch = kRealTimeDispatch;
   Nanoseconds quantum = microseconds(500);   ///< of laxity policies
   std::vector<std::string> may_miss;         ///< tasks that need no promise
+  bool one_rtpu = false;                     ///< all tasks in one loop, on the CPU and by the policy of the first rtpu
 };
 
 enum class TimeSource : std::uint8_t { kNone, kBudget, kProfile, kServer };
@@ -93,5 +95,9 @@ struct ScheduleReport {
 ScheduleReport schedule_report(const Configuration& configuration, const ScheduleOptions& options);
 /// One JSON object, docs/formats/run.md; without a line end.
 std::string schedule_json(const Configuration& configuration, const ScheduleReport& report);
+
+/// The hard tasks of the start set that are not guaranteed to keep their deadlines, one fault each, with what would
+/// help. Legal: run may begin.
+Report unschedulable(const Configuration& configuration, const ScheduleReport& report);
 
 }  // namespace chimera

@@ -24,6 +24,7 @@ struct RunRequest {
   std::optional<std::uint64_t> seed;    ///< virtual time only
   Nanoseconds quantum = milliseconds(1);
   int priority = 80;                    ///< SCHED_FIFO, real time only; 0: as an ordinary process
+  std::vector<std::string> may_miss;    ///< real time: tasks that need not be guaranteed to keep their deadlines
   std::vector<std::string> at;          ///< timed acts, script_text.h
   std::vector<std::string> expect;      ///< expectation.h
   std::vector<std::string> watch;       ///< state variables to print while it runs

@@ -1,17 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/run_plan.h"
 
+#include <algorithm>
+
+#include "chimera/config/nearest.h"
+#include "chimera/config/schedule_report.h"
 #include "chimera/config/verify.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/run.h"
 #include "chimera/desk/script_text.h"
+#include "chimera/platform/realtime.h"
+#include "chimera/schedule/utilisation.h"
 
 namespace chimera::desk {
 namespace {
 
+constexpr double kUsualRealtimeShare = 0.95;
+
 Executor executor_of(const RunRequest& request) {
   if (request.virtual_time) return Executor::kVirtual;
   return request.one_process ? Executor::kOneProcess : Executor::kProcesses;
+}
+
+Result<void> judge_task_names(const RunRequest& request, const Configuration& configuration) {
+  std::vector<std::string> names;
+  for (const ConfiguredTask& task : configuration.tasks()) names.push_back(task.name);
+  for (const std::string& name : request.may_miss) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    const std::string near = nearest(name, names);
+    return Error{ErrorCode::kNotFound,
+                 {"--may-miss: no task '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")}, {}};
+  }
+  return {};
+}
+
+/// Real time only: nobody who must keep a deadline may be expected to miss it.
+Report promises(const RunRequest& request, const Configuration& configuration) {
+  if (request.virtual_time) return Report(configuration.file());
+  ScheduleOptions options;
+  options.may_miss = request.may_miss;
+  options.one_rtpu = request.one_process;
+  return unschedulable(configuration, schedule_report(configuration, options));
+}
+
+/// What the kernel leaves to real-time threads, less the margin that kMaxUtilisation has below the usual 0.95.
+Result<void> judge_throttling(const RunRequest& request, const Configuration& configuration) {
+  if (request.virtual_time || request.priority == 0 || !may_be_realtime(request.priority)) return {};
+  return admit_below(configuration, realtime_share());
 }
 
 Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
@@ -22,6 +57,7 @@ Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
     if (!expectation) return expectation.error();
     plan.expectations.push_back(*std::move(expectation));
   }
+  if (auto known = judge_task_names(request, plan.configuration); !known) return known.error();
   auto acts = parse_script(request.at, plan.configuration.spec());
   if (!acts) return acts.error();
   plan.acts = *std::move(acts);
@@ -29,6 +65,24 @@ Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
 }
 
 }  // namespace
+
+Result<void> admit_below(const Configuration& configuration, double share) {
+  const double limit = share - (kUsualRealtimeShare - kMaxUtilisation);
+  const auto rtpus = configuration.rtpus();
+  for (const RtpuSpec& rtpu : rtpus) {
+    double load = 0;
+    for (std::size_t r = 0; r < rtpus.size(); ++r)
+      if (rtpus[r].cpu == rtpu.cpu) load += configuration.utilisation()[r];
+    if (load <= limit + 1e-9) continue;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "the budgets take %.3f of the processor; of the %.2f that the kernel leaves to real-time threads at "
+                  "most %.2f can be promised: set kernel.sched_rt_runtime_us to 950000, sched_rt_period_us to 1000000",
+                  load, share, limit < 0 ? 0.0 : limit);
+    return Error{ErrorCode::kRefused, {text}, {"cpu " + std::to_string(rtpu.cpu)}};
+  }
+  return {};
+}
 
 int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err) {
   const Output output = refused(error, request.json);
@@ -46,7 +100,10 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& work
   }
   Reading reading = read_description_file(request.file);
   Verdict verdict = verify(reading, *library);
-  if (verdict.configuration) verdict.report.add_all(unsupported(*verdict.configuration, executor_of(request)));
+  if (verdict.configuration) {
+    verdict.report.add_all(unsupported(*verdict.configuration, executor_of(request)));
+    if (verdict.report.is_legal()) verdict.report.add_all(promises(request, *verdict.configuration));
+  }
   if (!request.json) std::fputs(verdict.report.text().c_str(), err);
   if (!verdict.report.is_legal()) {
     if (request.json) std::fprintf(out, "%s\n", verdict.report.json().c_str());
@@ -54,7 +111,9 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& work
   }
   if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
   RunPlan plan{*std::move(library), std::move(reading.text), *std::move(verdict.configuration), {}, {}};
-  if (auto judged = judge_words(request, plan); !judged) {
+  auto judged = judge_words(request, plan);
+  if (judged) judged = judge_throttling(request, plan.configuration);
+  if (!judged) {
     refuse_run(request, judged.error(), out, err);
     return std::nullopt;
   }

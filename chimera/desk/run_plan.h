@@ -31,6 +31,10 @@ struct RunPlan {
 /// block.
 std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err);
 
+/// Refuses a start set whose budgets take more of a CPU than may be promised when the kernel leaves `share` of it to
+/// real-time threads: 0.02 less. Context: setup.
+Result<void> admit_below(const Configuration& configuration, double share);
+
 /// Prints a refusal as the request wants it, and answers kRefused.
 int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err);
 

@@ -2,7 +2,7 @@
 #include "chimera/desk/schedule.h"
 
 #include "chimera/config/recorded_profile.h"
-#include "chimera/desk/schedule_text.h"
+#include "chimera/config/time_text.h"
 #include "chimera/desk/test_place.h"
 
 namespace chimera::desk {
@@ -85,7 +85,7 @@ TEST(Schedule, RefusesAProfileThatIsNone) {
   EXPECT_EQ(output.err, file.path() + ": error: $: the key \"version\" is missing\n");
 }
 
-TEST(ScheduleText, WritesTimesAsPeopleDo) {
+TEST(TimeText, WritesTimesAsPeopleDo) {
   EXPECT_EQ(time_text(Nanoseconds{999}), "999 ns");
   EXPECT_EQ(time_text(microseconds(1500)), "1.5 ms");
   EXPECT_EQ(time_text(seconds(2)), "2 s");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "chimera/config/time_text.h"
 #include "chimera/draw/timeline.h"
 #include "chimera/schedule/utilisation.h"
 
@@ -73,20 +74,10 @@ class Words {
     return text;
   }
 
-  std::string remedy(const Remedy& r) const {
-    const std::string task = "task '" + name(r.task) + "'";
-    switch (r.kind) {
-      case Remedy::Kind::kRate: return task + " at rate: " + number("%g", r.hz) + " Hz";
-      case Remedy::Kind::kProcessor: return task + " on rtpu: " + rtpu(r.rtpu);
-      case Remedy::Kind::kNewProcessor: return task + " on an rtpu of another CPU";
-      case Remedy::Kind::kCriticality: break;
-    }
-    return task + " with criticality: " + word(r.criticality) + " (then all others are guaranteed)";
-  }
-
   std::string remedies(const CpuSchedule& cpu) const {
     std::string text;
-    for (const Remedy& r : cpu.remedies) text += (text.empty() ? "  would fit: " : "         or: ") + remedy(r) + "\n";
+    for (const Remedy& r : cpu.remedies)
+      text += (text.empty() ? "  would fit: " : "         or: ") + remedy_text(configuration_, r) + "\n";
     return text;
   }
 
@@ -186,14 +177,6 @@ std::string paths_text(const Words& words, const SetSchedule& set) {
 
 }  // namespace
 
-std::string time_text(Nanoseconds time) {
-  constexpr struct { double ns; const char* name; } kUnits[] = {{1e9, "s"}, {1e6, "ms"}, {1e3, "us"}};
-  for (const auto& unit : kUnits)
-    if (static_cast<double>(time.count) >= unit.ns)
-      return number("%.4g ", static_cast<double>(time.count) / unit.ns) + unit.name;
-  return std::to_string(time.count) + " ns";
-}
-
 std::string schedule_text(const Configuration& configuration, const ScheduleReport& report) {
   const Words words(configuration);
   std::string text;
@@ -233,24 +216,6 @@ std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, c
     }
   }
   return pictures;
-}
-
-std::string broken_promises(const Configuration& configuration, const ScheduleReport& report) {
-  const Words words(configuration);
-  std::string text;
-  for (const SetSchedule& set : report.sets) {
-    if (!set.is_start) continue;
-    for (const CpuSchedule& cpu : set.cpus) {
-      std::vector<std::string> lost;
-      for (const ScheduleRow& row : cpu.rows)
-        if (row.is_hard && (row.verdict.guarantee == Guarantee::kNo || row.verdict.guarantee == Guarantee::kTooLong))
-          lost.push_back(words.name(row.task));
-      if (lost.empty()) continue;
-      text += "CPU " + std::to_string(cpu.verdict.cpu) + ": " + (lost.size() == 1 ? "task " : "tasks ") + list(lost) +
-              (lost.size() == 1 ? " is" : " are") + " not guaranteed to keep the deadline\n" + words.remedies(cpu);
-    }
-  }
-  return text;
 }
 
 }  // namespace chimera::desk

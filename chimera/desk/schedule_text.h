@@ -10,17 +10,10 @@
 
 namespace chimera::desk {
 
-/// "1.5 ms", in the largest unit that gives at least 1; at most four digits. Context: any.
-std::string time_text(Nanoseconds time);
-
 /// Everything the report says. Context: setup.
 std::string schedule_text(const Configuration& configuration, const ScheduleReport& report);
 
 /// The worst window of each CPU of the start set, to draw. Context: setup.
 std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, const ScheduleReport& report);
-
-/// The hard tasks of the start set that are not promised their deadlines, a sentence for each CPU, with what would
-/// help; "": there is none. Context: setup.
-std::string broken_promises(const Configuration& configuration, const ScheduleReport& report);
 
 }  // namespace chimera::desk

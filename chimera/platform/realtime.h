@@ -32,6 +32,10 @@ struct RealtimeGrant {
 /// without rights the same program runs, late. Context: setup; may block.
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept;
 
+/// The share of a CPU that the kernel lets real-time threads have (sched_rt_runtime_us of sched_rt_period_us); 1: all.
+/// Context: setup.
+double realtime_share() noexcept;
+
 /// True when the system grants SCHED_FIFO at `priority` to this user. The calling thread is left as it was.
 /// Context: setup.
 bool may_be_realtime(int priority) noexcept;

@@ -10,6 +10,7 @@
 
 #include "chimera/config/library.h"
 #include "chimera/config/unit_samples.h"
+#include "chimera/config/schedule_report.h"
 #include "chimera/config/verify.h"
 
 namespace chimera {
@@ -56,7 +57,8 @@ std::string judged(const fs::path& path) {
   EXPECT_EQ(verdict.configuration.has_value(), verdict.report.is_legal());
   std::string out = verdict.report.text();
   if (!verdict.configuration) return out;
-  const Report run = unsupported(*verdict.configuration, Executor::kProcesses);
+  Report run = unsupported(*verdict.configuration, Executor::kProcesses);
+  if (run.is_legal()) run.add_all(unschedulable(*verdict.configuration, schedule_report(*verdict.configuration, {})));
   return run.is_legal() ? out + "legal\n" : out + "run:\n" + run.text();
 }
 

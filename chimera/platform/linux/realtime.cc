@@ -109,14 +109,14 @@ void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Message& 
          << "): set RLIMIT_MEMLOCK to unlimited ('ulimit -l', LimitMEMLOCK=) or give CAP_IPC_LOCK";
 }
 
-double read_throttle_share() noexcept {
+}  // namespace
+
+double realtime_share() noexcept {
   const long runtime = std::strtol(FileStart("/proc/sys/kernel/sched_rt_runtime_us").bytes, nullptr, 10);
   const long period = std::strtol(FileStart("/proc/sys/kernel/sched_rt_period_us").bytes, nullptr, 10);
   if (runtime < 0 || period <= 0 || runtime >= period) return 1;
   return static_cast<double>(runtime) / static_cast<double>(period);
 }
-
-}  // namespace
 
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
   RealtimeGrant grant;
@@ -126,7 +126,7 @@ RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
   set_cpu(request, grant, parts);
   set_priority(request, grant, parts);
   if (request.priority > 0) {
-    grant.throttle_share = read_throttle_share();
+    grant.throttle_share = realtime_share();
     if (grant.throttle_share < 1)
       parts << "; throttled to " << static_cast<int>(grant.throttle_share * 100 + 0.5) << " % of a CPU";
   }

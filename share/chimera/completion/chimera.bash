@@ -10,7 +10,7 @@ _chimera_words() {
     check) echo '--help --json --graph' ;;
     schedule) echo '--help --profile --svg --dispatch --json' ;;
     run) echo '--help --for --at --watch --every --expect --trace --timeline --virtual --preemptive --seed --quantum' \
-      '--priority --isolation --observe-group --operate-group --configure-group --json' ;;
+      '--priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
     idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
@@ -54,7 +54,7 @@ _chimera() {
     --dispatch) mapfile -t COMPREPLY < <(compgen -W 'preemptive executive' -- "$word"); return ;;
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
     --trace | --csv | --svg | --profile | --setup | --inputs) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
-    --names | --cycles | --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | --since | --trigger | \
+    --names | --cycles | --for | --seed | --quantum | --priority | --at | --may-miss | --watch | --every | --expect | --timeline | --since | --trigger | \
       --pre | --wait | --subsystem) return ;;
   esac
   if [[ $word == -* || -z $command || $command == new ]]; then

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/config/time_text.h"
+
+#include <cstdio>
+
+namespace chimera {
+namespace {
+
+std::string number(const char* pattern, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
+
+}  // namespace
+
+std::string time_text(Nanoseconds time) {
+  constexpr struct { double ns; const char* name; } kUnits[] = {{1e9, "s"}, {1e6, "ms"}, {1e3, "us"}};
+  for (const auto& unit : kUnits)
+    if (static_cast<double>(time.count) >= unit.ns)
+      return number("%.4g ", static_cast<double>(time.count) / unit.ns) + unit.name;
+  return std::to_string(time.count) + " ns";
+}
+
+std::string remedy_text(const Configuration& configuration, const Remedy& remedy) {
+  const std::string task = "task '" + configuration.tasks()[remedy.task].name + "'";
+  constexpr const char* kCriticalities[] = {"low", "medium", "high"};
+  switch (remedy.kind) {
+    case Remedy::Kind::kRate: return task + " at rate: " + number("%g", remedy.hz) + " Hz";
+    case Remedy::Kind::kProcessor: return task + " on rtpu: " + std::string(configuration.rtpus()[remedy.rtpu].name);
+    case Remedy::Kind::kNewProcessor: return task + " on an rtpu of another CPU";
+    case Remedy::Kind::kCriticality: break;
+  }
+  return task + " with criticality: " + kCriticalities[remedy.criticality < 3 ? remedy.criticality : 2] +
+         " (then all others are guaranteed)";
+}
+
+}  // namespace chimera
