@@ -159,13 +159,17 @@ void take_from_values(Model& model, ExtentBindings& bindings) {
     variable.has_extents = true;
     spread(model, bindings);
   }
-  for_each_port(model, [&](PortRef ref, LinkedPort& port) {
-    if (port.has_extents || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
-    VariableModel written;
-    written.extents = shape_of(*port.own);
-    written.shape_from = ref;
-    bind(model, ref, port, written, bindings);
-  });
+  // A single value fills any extent: it settles one only where no list does, here or at a neighbour.
+  for (const bool is_list : {true, false})
+    for_each_port(model, [&](PortRef ref, LinkedPort& port) {
+      if (port.has_extents || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
+      VariableModel written;
+      written.extents = shape_of(*port.own);
+      if (written.extents.empty() == is_list) return;
+      written.shape_from = ref;
+      bind(model, ref, port, written, bindings);
+      spread(model, bindings);
+    });
 }
 
 /// Two extents that can be proved to differ.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 
 #include "chimera/config/quantity.h"
@@ -130,11 +131,17 @@ void take_from_values(Model& model, UnitTable& table) {
       spread(model, table);  // before the next value: it is converted rather than asked
     }
   }
-  for_each_port(model, [&](PortRef ref, LinkedPort& port) {
-    if (port.unit || !has_unit(port) || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
-    if (const auto unit = unit_of(model, *port.own))
-      bind(model, table, ref, port, substituted(model, table, port), *unit);
-  });
+  // A value settles one unknown: "X/U" waits until another value has settled one of its two.
+  for (bool moved = true; moved;) {
+    moved = false;
+    for_each_port(model, [&](PortRef ref, LinkedPort& port) {
+      if (port.unit || !has_unit(port) || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
+      if (const auto unit = unit_of(model, *port.own))
+        bind(model, table, ref, port, substituted(model, table, port), *unit);
+      spread(model, table);
+      moved = moved || port.unit.has_value();
+    });
+  }
 }
 
 /// A default is a plain number: where nothing else settles its unit, it has none.
@@ -145,6 +152,9 @@ void take_from_defaults(Model& model, UnitTable& table) {
     spread(model, table);
   });
 }
+
+/// Of our library: y = factor x, for any two units that measure the same.
+constexpr const char* kAnyConverter = "unit_convert";
 
 /// The component of the library that turns `from` into `to`, or "".
 std::string converter(const Model& model, UnitTable& table, const Unit& from, const Unit& to) {
@@ -174,7 +184,17 @@ std::string remedy(const Model& model, UnitTable& table, const LinkedPort& port,
   std::snprintf(law, sizeof law, factor->offset == 0 ? "times %.10g" : "times %.10g plus %.10g", factor->factor,
                 factor->offset);
   const std::string what = from.text + " to " + to.text + " (" + law + ")";
-  return name.empty() ? "insert a component that converts " + what : "insert the component '" + name + "': " + what;
+  if (!name.empty()) return "insert the component '" + name + "': " + what;
+  const auto is_general = [](const LibraryEntry& entry) { return entry.descriptor.name == kAnyConverter; };
+  const auto& entries = model.library.entries();
+  if (factor->offset != 0 || std::none_of(entries.begin(), entries.end(), is_general))
+    return "insert a component that converts " + what;
+  const auto part = [](const std::string& unit) {
+    return unit.find_first_of(" .*/^()0123456789") == std::string::npos ? unit : "(" + unit + ")";
+  };
+  std::snprintf(law, sizeof law, "%.10g ", factor->factor);
+  return std::string("insert the component '") + kAnyConverter + "' with constants: {factor: " + law + part(to.text) +
+         "/" + part(from.text) + "}: " + what;
 }
 
 void report_contradiction(Model& model, UnitTable& table, const LinkedPort& port, const VariableModel& variable) {

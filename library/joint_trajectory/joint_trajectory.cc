@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The joint position trajectory generator of figure 4 (1994 paper): from rest to rest on a quintic, then hold.
+// The joint position trajectory generator of figure 4 (1994 paper): from rest to rest, then hold. README.md is the data
+// sheet.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "chimera/task/component.h"
 #include "library/joint_trajectory/quintic.h"
+#include "library/joint_trajectory/seven_segments.h"
 
 using namespace chimera;
 
@@ -19,13 +23,33 @@ struct JointTrajectory {
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", frame = "joint",
                                doc = "Where the first motion starts."};
   InConst<double[]> goal{"goal", "rad", "[ndof<=10]", frame = "joint", doc = "Where it ends."};
-  InConst<double> duration{"duration", "s", range(1e-3, 3600), doc = "From rest to rest."};
+  InConst<double> duration{"duration", "s", initial = 0.0, range(0, 3600),
+                           doc = "From rest to rest; with limits the least time it takes."};
+  InConst<Text<16>> profile{"profile", "1", initial = "quintic", doc = "quintic, trapezoid or jerk."};
+  InConst<double[]> velocity_max{"velocity_max", "rad/s", "[ndof<=10]", frame = "joint", initial = 1.0,
+                                 doc = "Limit of trapezoid and jerk."};
+  InConst<double[]> acceleration_max{"acceleration_max", "rad/s2", "[ndof<=10]", frame = "joint", initial = 2.0,
+                                     doc = "Limit of trapezoid and jerk."};
+  InConst<double[]> jerk_max{"jerk_max", "rad/s3", "[ndof<=10]", frame = "joint", initial = 20.0,
+                             doc = "Limit of jerk."};
+  InConst<bool> is_synchronised{"is_synchronised", "1", initial = true,
+                                doc = "With limits: all joints arrive with the slowest."};
 
   Outcome init() {
-    if (!(*duration > 0)) return fault("duration must be above 0 s");
+    is_quintic_ = *profile == "quintic";
+    has_jerk_ = *profile == "jerk";
+    if (!is_quintic_ && !has_jerk_ && *profile != "trapezoid")
+      return fault("profile must be quintic, trapezoid or jerk");
+    if (is_quintic_ && !(*duration > 0)) return fault("duration must be above 0 s");
+    if (!(*duration >= 0 && *duration <= 3600)) return fault("duration must be 0 to 3600 s");
     for (const auto* pose : {&start_pose, &goal})
       for (double angle : *pose)
         if (!std::isfinite(angle)) return fault("start_pose and goal must be finite");
+    if (is_quintic_) return ok();
+    for (const auto* limit : {&velocity_max, &acceleration_max, &jerk_max})
+      for (double most : *limit)
+        if (!(most > 0) || !std::isfinite(most))
+          return fault("velocity_max, acceleration_max and jerk_max must be above 0");
     return ok();
   }
   Outcome reinit() { return init(); }
@@ -33,8 +57,16 @@ struct JointTrajectory {
   // A reference that stands already, of an earlier run or of a predecessor, is where the motion begins: no jump.
   void on() {
     elapsed_ = 0;
-    for (std::size_t i = 0; i < q_ref.size(); ++i)
-      path_[i] = {std::isnan(q_ref[i]) ? start_pose[i] : q_ref[i], goal[i], *duration};
+    for (std::size_t i = 0; i < q_ref.size(); ++i) {
+      const double from = std::isnan(q_ref[i]) ? start_pose[i] : q_ref[i];
+      if (is_quintic_) {
+        path_[i] = {from, goal[i], *duration};
+      } else {
+        const double jerk = has_jerk_ ? jerk_max[i] : std::numeric_limits<double>::infinity();
+        limited_[i] = library::SevenSegments(from, goal[i], {velocity_max[i], acceleration_max[i], jerk});
+      }
+    }
+    if (!is_quintic_) stretch();
     publish();
   }
   void cycle(Cycle c) {
@@ -47,9 +79,15 @@ struct JointTrajectory {
   }
 
  private:
+  void stretch() {
+    double longest = *duration;
+    for (std::size_t i = 0; *is_synchronised && i < q_ref.size(); ++i)
+      longest = std::max(longest, limited_[i].least_duration());
+    for (std::size_t i = 0; i < q_ref.size(); ++i) limited_[i].stretch(longest);
+  }
   void publish() {
     for (std::size_t i = 0; i < q_ref.size(); ++i) {
-      const library::Motion motion = path_[i].at(elapsed_);
+      const library::Motion motion = is_quintic_ ? path_[i].at(elapsed_) : limited_[i].at(elapsed_);
       q_ref[i] = motion.position;
       qd_ref[i] = motion.velocity;
       qdd_ref[i] = motion.acceleration;
@@ -57,10 +95,12 @@ struct JointTrajectory {
   }
 
   library::Quintic path_[kMostJoints];
+  library::SevenSegments limited_[kMostJoints];
+  bool is_quintic_ = true, has_jerk_ = false;
   double elapsed_ = 0;
 };
 
-CHIMERA_COMPONENT(JointTrajectory, "joint_trajectory", "Quintic joint motion from rest to rest, then hold.",
-                  rate = 1000.0, source = "1994 paper, figure 4; Craig 2005, section 7.3");
+CHIMERA_COMPONENT(JointTrajectory, "joint_trajectory", "Joint motion from rest to rest, then hold.", rate = 1000.0,
+                  source = "1994 paper, figure 4; Craig 2005, section 7.3; Biagiotti and Melchiorri 2008");
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "chimera/task/rig.h"
 
@@ -17,6 +18,13 @@ struct JointTrajectoryTest : testing::Test {
     rig.set("goal", 1.5, 0);
     rig.set("goal", -1.0, 1);
     rig.set("duration", duration);
+    rig.set("profile", Text<16>("quintic"));
+    rig.set("is_synchronised", true);
+    for (std::size_t i = 0; i < 2; ++i) {
+      rig.set("velocity_max", 1.0, i);
+      rig.set("acceleration_max", 2.0, i);
+      rig.set("jerk_max", 20.0, i);
+    }
   }
   void start() {
     give(2.0);
@@ -60,6 +68,87 @@ TEST_F(JointTrajectoryTest, RefusesADurationOfNothingAndAGoalThatIsNotFinite) {
   give(1);
   rig.set("goal", std::nan(""), 1);
   EXPECT_EQ(rig.init().text, "start_pose and goal must be finite");
+}
+
+// Ten joints, random targets and limits: within every limit at every sample, all at the goal in the same cycle, and
+// exactly there.
+TEST(JointTrajectory, KeepsItsLimitsAndArrivesTogether) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> place(-3, 3), limit(0.5, 5);
+  for (int n = 0; n < 40; ++n) {
+    Rig rig("joint_trajectory");
+    rig.set("ndof", 10);
+    rig.set("duration", 0.0);
+    rig.set("profile", Text<16>(n % 2 == 0 ? "jerk" : "trapezoid"));
+    rig.set("is_synchronised", true);
+    double goal[10], most[10][3];
+    for (std::size_t i = 0; i < 10; ++i) {
+      rig.set("start_pose", place(random), i);
+      rig.set("goal", goal[i] = place(random), i);
+      rig.set("velocity_max", most[i][0] = limit(random), i);
+      rig.set("acceleration_max", most[i][1] = limit(random), i);
+      rig.set("jerk_max", most[i][2] = 4 * limit(random), i);
+    }
+    ASSERT_TRUE(rig.init());
+    ASSERT_TRUE(rig.on());
+    double last[10] = {};
+    bool is_there = false;
+    int cycles = 0;
+    for (; !is_there && cycles < 3000; ++cycles) {
+      ASSERT_TRUE(rig.cycle(milliseconds(10)));
+      int there = 0;
+      for (std::size_t i = 0; i < 10; ++i) {
+        const double a = rig.get<double>("qdd_ref", i);
+        ASSERT_LE(std::abs(rig.get<double>("qd_ref", i)), most[i][0] * (1 + 1e-9)) << "seed 11, motion " << n;
+        ASSERT_LE(std::abs(a), most[i][1] * (1 + 1e-9)) << "seed 11, motion " << n;
+        if (n % 2 == 0) {
+          ASSERT_LE(std::abs(a - last[i]), most[i][2] * 0.01 * (1 + 1e-6));
+        }
+        last[i] = a;
+        there += rig.get<double>("q_ref", i) == goal[i] && rig.get<double>("qd_ref", i) == 0 ? 1 : 0;
+      }
+      ASSERT_TRUE(there == 0 || there == 10) << "seed 11, motion " << n;
+      is_there = there == 10;
+    }
+    ASSERT_TRUE(is_there);
+  }
+}
+
+TEST_F(JointTrajectoryTest, UnsynchronisedEachJointIsAsFastAsItsLimitsAllow) {
+  give(0);
+  rig.set("profile", Text<16>("trapezoid"));
+  rig.set("is_synchronised", false);
+  rig.set("goal", 3.0, 1);  // 1 rad and 4 rad: 1.5 s and 4.5 s
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle(milliseconds(1501)));
+  EXPECT_EQ(rig.get<double>("q_ref", 0), 1.5);
+  EXPECT_NE(rig.get<double>("q_ref", 1), 3.0);
+  ASSERT_TRUE(rig.cycle(milliseconds(3000)));
+  EXPECT_EQ(rig.get<double>("q_ref", 1), 3.0);
+}
+
+TEST_F(JointTrajectoryTest, WithLimitsADurationIsTheLeastTime) {
+  give(7);
+  rig.set("profile", Text<16>("jerk"));
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle(milliseconds(6999)));
+  EXPECT_NE(rig.get<double>("q_ref", 0), 1.5);
+  ASSERT_TRUE(rig.cycle(milliseconds(2)));
+  EXPECT_EQ(rig.get<double>("q_ref", 0), 1.5);
+}
+
+TEST_F(JointTrajectoryTest, RefusesLimitsOfNothingAndAnUnknownProfile) {
+  give(1);
+  rig.set("profile", Text<16>("cubic"));
+  EXPECT_EQ(rig.init().text, "profile must be quintic, trapezoid or jerk");
+  for (double bad : {0.0, -1.0, std::nan("")}) {
+    give(1);
+    rig.set("profile", Text<16>("jerk"));
+    rig.set("jerk_max", bad, 1);
+    EXPECT_EQ(rig.init().text, "velocity_max, acceleration_max and jerk_max must be above 0");
+  }
 }
 
 }  // namespace

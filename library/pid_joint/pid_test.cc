@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace chimera::library {
 namespace {
 
@@ -58,6 +60,26 @@ TEST(PidAxis, RemovesASteadyErrorUnderAConstantLoad) {
   }
   EXPECT_NEAR(position, 1, 1e-4);
   EXPECT_NEAR(axis.integral(), 30, 1e-2);
+}
+
+// 1/s2 under PID with all three poles in -a (kp = 3 a2, ki = a3, kd = 3 a on the velocity): the step of the reference
+// gives q(t) = 1 - exp(-a t) (1 + a t - a2 t2), a load of 1 N.m gives t2/2 exp(-a t). The plant is exact between steps.
+TEST(PidAxis, HasTheStepResponsesOfTheClosedForm) {
+  constexpr double a = 20, dt = 1e-5;
+  constexpr PidGains gains{.kp = 3 * a * a, .ki = a * a * a, .kd = 3 * a};
+  for (const bool is_load : {false, true}) {
+    PidAxis axis;
+    axis.start(gains, 0, 0, 0);
+    double q = 0, qd = 0;
+    for (int k = 0; k < 60'000; ++k) {
+      const double t = k * dt, at = a * t;
+      const double closed = is_load ? t * t / 2 * std::exp(-at) : 1 - std::exp(-at) * (1 + at - at * at);
+      ASSERT_NEAR(q, closed, is_load ? 5e-7 : 5e-4) << t;  // peaks: 6.8e-4 and 1.3
+      const double torque = axis.step(gains, (is_load ? 0 : 1) - q, -qd, dt, 0, 1e9) + (is_load ? 1 : 0);
+      q += qd * dt + torque * dt * dt / 2;
+      qd += torque * dt;
+    }
+  }
 }
 
 }  // namespace

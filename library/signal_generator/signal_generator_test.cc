@@ -38,7 +38,8 @@ TEST_F(SignalGeneratorTest, MakesASineOfItsAmplitudeFrequencyAndPhase) {
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
   EXPECT_NEAR(rig.get<double>("y"), 0.5 + 2 * std::sin(1.0), 1e-12);
-  for (int k = 1; k < 1000; ++k) ASSERT_NEAR(next(), 0.5 + 2 * std::sin(2 * std::numbers::pi * 5 * k * 1e-3 + 1), 1e-11);
+  for (int k = 1; k < 1000; ++k)
+    ASSERT_NEAR(next(), 0.5 + 2 * std::sin(2 * std::numbers::pi * 5 * k * 1e-3 + 1), 1e-11);
 }
 
 TEST_F(SignalGeneratorTest, LosesNoPhaseInADay) {

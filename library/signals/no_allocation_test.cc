@@ -41,6 +41,10 @@ void give_motion(Rig& rig) {
     rig.set("goal", 1.0, i);
   }
   rig.set("duration", 0.5);
+  rig.set("profile", Text<16>("jerk"));
+  rig.set("is_synchronised", true);
+  for (const char* limit : {"velocity_max", "acceleration_max", "jerk_max"})
+    for (std::size_t i = 0; i < 2; ++i) rig.set(limit, 1.0, i);
 }
 void give_inputs(Rig& rig) {
   rig.instances("in", 2);
