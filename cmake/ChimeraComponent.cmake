@@ -6,7 +6,8 @@
 #   (docs/formats/component-test.md) and, when the folder is called NAME, of the data sheet README.md as NAME.md.
 #   LIBRARIES are linked into the component.
 #   NAME_test.cc beside the sources is linked with them (chimera/task/rig.h finds the component by its name):
-#   as the test NAME_test, or, where CHIMERA_COMPONENT_GROUP is set, into the group's one test binary.
+#   as the test NAME_test (and, outside our own build, with NAME.test.yaml as the test trial_NAME), or, where
+#   CHIMERA_COMPONENT_GROUP is set, into the group's one test binary.
 # chimera_application(NAME description)
 #   The tests check_NAME and run_NAME: the description is legal with the components built here and those installed,
 #   and runs for a second of virtual time.
@@ -28,6 +29,15 @@ function(_chimera_component_tests_wanted out)
     endif()
   elseif(CHIMERA_TESTS AND CHIMERA_SANITIZE AND NOT CHIMERA_SANITIZE STREQUAL "thread")
     set(${out} TRUE PARENT_SCOPE)
+  endif()
+endfunction()
+
+# Outside our own build: `chimera test NAME`, for a component that says what it needs for that.
+function(_chimera_component_trial name)
+  _chimera_component_tests_wanted(wanted)
+  if(CHIMERA_PACKAGE AND wanted AND TARGET chimera::program AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}.test.yaml)
+    add_test(NAME trial_${name} COMMAND chimera::program test ${name})
+    set_tests_properties(trial_${name} PROPERTIES ENVIRONMENT "CHIMERA_PATH=${CMAKE_BINARY_DIR}/components")
   endif()
 endfunction()
 
@@ -105,6 +115,7 @@ function(chimera_component name)
   endif()
   set_property(GLOBAL APPEND PROPERTY chimera_component_names ${name})
   _chimera_component_test(${name} ${objects} "${arg_LIBRARIES}")
+  _chimera_component_trial(${name})
 endfunction()
 
 function(chimera_application name description)

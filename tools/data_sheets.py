@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Data sheets: library/NAME/README.md has its sections, and its table of ports is what the descriptor says.
 
-usage: data_sheets.py COMPONENTS [--library FOLDER] [--write] [NAME...]
+usage: data_sheets.py COMPONENTS [--library FOLDER] [--write] [--measure PROGRAM] [NAME...]
 
 COMPONENTS is the folder of a build tree with NAME.component.json. --write puts the tables right instead of complaining.
+--measure runs `PROGRAM test NAME` and writes the first paragraph under Execution time.
 docs/howto/write-a-component.md shows the form."""
 import argparse
 import json
+import os
 import pathlib
 import re
+import subprocess
 import sys
 
 REQUIRED = ("Equation", "Ports", "Refused", "Execution time", "Source")
@@ -36,6 +39,8 @@ def row(port):
     if port["kind"] == "resource":
         return (name, kind, "", "", "", "", "", port.get("doc", ""))
     type_name = port.get("type_name") or port["type"]
+    if port["type"] == "any":
+        type_name = f"any {type_name}"
     spread = " to ".join(number(end) for end in port["range"]) if "range" in port else ""
     return (name, kind, type_name + port["shape"], port["unit"], port.get("frame", ""), spread, values(port),
             port.get("doc", ""))
@@ -108,6 +113,31 @@ def with_table(text, descriptor):
     return text
 
 
+def measured(program, name, components):
+    """What `chimera test NAME` measures on this machine, as a sentence."""
+    run = subprocess.run([program, "test", name, "--json"], capture_output=True, text=True, check=False,
+                         env={**os.environ, "CHIMERA_PATH": str(components)})
+    report = json.loads(run.stdout)["reports"][0]
+    if not report["passes"]:
+        sys.exit(f"{name} does not pass: chimera test {name}")
+    cpu = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+    def text(ns):
+        return "less than 10 ns" if ns < 10 else f"{ns:.0f} ns" if ns < 1000 else f"{ns / 1000:.1f} us"
+
+    return (f"{text(report['typical_ns'])} (mean of the middle half), {text(report['worst_ns'])} worst of "
+            f"{report['measured_cycles']} cycles, each the least of three:\n"
+            f"`chimera test {name}`, release build, {cpu[1] if cpu else 'unknown processor'}.")
+
+
+def with_time(text, sentence):
+    lines = text.split("\n")
+    for heading, start, end in sections(lines):
+        if heading == "Execution time":
+            paragraphs = "\n".join(lines[start:end]).strip().split("\n\n")
+            return "\n".join([*lines[:start], "", "\n\n".join([sentence, *paragraphs[1:]]), "", *lines[end:]])
+    return text
+
+
 SHEET = """# t
 
 For tests.
@@ -166,7 +196,8 @@ def main():
     words.add_argument("names", nargs="*")
     words.add_argument("--library", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent / "library")
     words.add_argument("--write", action="store_true")
-    said = words.parse_args()
+    words.add_argument("--measure", metavar="PROGRAM")
+    said = words.parse_intermixed_args()
     faults = [f"tools/data_sheets.py: {fault}" for fault in planted()]
     judged = 0
     for file in sorted(said.components.glob("*.component.json")):
@@ -177,7 +208,9 @@ def main():
         judged += 1
         descriptor = json.loads(file.read_text())
         text = sheet.read_text() if sheet.exists() else ""
-        if said.write and text:
+        if said.measure and text:
+            text = with_time(text, measured(said.measure, name, said.components))
+        if (said.write or said.measure) and text:
             text = with_table(text, descriptor)
             sheet.write_text(text)
         faults += [f"library/{name}/README.md: {fault}" for fault in check(name, text, descriptor)]

@@ -68,6 +68,8 @@ bool read_run(RunWords& words, Nanoseconds& unit) {
   if (!read_times(words, unit)) return false;
   r.one_process = words.isolation == "none";
   const char* wrong = nullptr;
+  if (!r.svg.empty() && (!r.virtual_time || r.watch.empty()))
+    wrong = "--svg needs --virtual and --watch; `chimera scope` draws what runs in real time";
   if (!r.virtual_time && (r.preemptive || r.seed || !words.quantum.empty()))
     wrong = "--preemptive, --seed and --quantum belong to --virtual";
   if (r.virtual_time && r.duration == kNever) wrong = "--virtual needs --for: virtual time has no end of its own";
@@ -114,6 +116,7 @@ void add_run(CLI::App& app, RunWords& words) {
   r->add_option("FILE", words.run.file, "the description")->required();
   add_face_options(r, words);
   r->add_flag("--virtual", words.run.virtual_time, "in virtual time: as fast as it goes, the same result every time");
+  r->add_option("--svg", words.run.svg, "virtual time: draw what --watch names to this file instead of printing it");
   r->add_flag("--preemptive", words.run.preemptive, "virtual time: schedule preemptively");
   r->add_option("--seed", words.seed, "virtual time: draw execution times from [min, budget]");
   r->add_option("--quantum", words.quantum, "virtual time, laxity policies: compare again this often (1 ms)");

@@ -28,7 +28,7 @@ TEST(Describe, ShowsPurposeRateMethodsAndPorts) {
   EXPECT_EQ(output.out.rfind("t_counter: Shows what a cycle is told.\n", 0), 0u) << output.out;
   EXPECT_NE(output.out.find("rate     1000 Hz by default\nreleased by the timer\nmethods  cycle\nports\n"),
             std::string::npos) << output.out;
-  EXPECT_NE(output.out.find("one more in every cycle, going on from where it stood; has an initial value\n"),
+  EXPECT_NE(output.out.find("one more in every cycle, going on from where it stood; initially 0\n"),
             std::string::npos) << output.out;
 }
 

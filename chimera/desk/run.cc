@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <fstream>
 
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/progress.h"
 #include "chimera/desk/run_loop.h"
 #include "chimera/desk/run_plan.h"
 #include "chimera/desk/run_report.h"
+#include "chimera/desk/watch_plot.h"
 #include "chimera/runtime/tap_ring.h"
 
 namespace chimera::desk {
@@ -78,6 +80,7 @@ class Session {
  private:
   void drain();
   void watch_line(Nanoseconds at);
+  bool write_plot() const;
 
   const RunRequest& request_;
   const RunPlan& plan_;
@@ -90,6 +93,7 @@ class Session {
   TapReader reader_;
   std::unique_ptr<RunLoop> loop_;
   std::vector<Probe> watched_;
+  WatchPlot plot_;
   Nanoseconds ran_;
 };
 
@@ -120,6 +124,7 @@ void Session::drain() {
 }
 
 void Session::watch_line(Nanoseconds at) {
+  if (!request_.svg.empty()) return plot_.take(at, watched_);
   if (watched_.empty() || request_.json) return;
   std::string line = "t " + [at] {
     char text[32];
@@ -131,6 +136,15 @@ void Session::watch_line(Nanoseconds at) {
     line += "  " + probe.name + " " + (probe.read(value) ? value_text(probe.form, value) : "not written yet");
   std::fprintf(out_, "%s\n", line.c_str());
   std::fflush(out_);
+}
+
+bool Session::write_plot() const {
+  if (request_.svg.empty()) return true;
+  std::ofstream file(request_.svg, std::ios::binary);
+  file << draw::svg(plot_.plot(plan_.configuration.subsystem()));
+  if (file.flush()) return true;
+  std::fprintf(err_, "%s: cannot be written\n", request_.svg.c_str());
+  return false;
 }
 
 RunEnd Session::run() {
@@ -175,7 +189,7 @@ int Session::report(RunEnd end) {
     sink_->end(reader_.lost());
   }
   print(report, request_.json, out_);
-  return report.code();
+  return write_plot() ? report.code() : kRefused;
 }
 
 }  // namespace

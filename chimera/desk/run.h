@@ -29,6 +29,7 @@ struct RunRequest {
   std::vector<std::string> expect;      ///< expectation.h
   std::vector<std::string> watch;       ///< state variables to print while it runs
   Nanoseconds every = seconds(1);       ///< how often
+  std::string svg;                      ///< draw them to this file instead; virtual time or one process only
   bool json = false;
 };
 

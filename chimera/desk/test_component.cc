@@ -58,7 +58,9 @@ Result<LibraryEntry> entry_of_object(const std::string& path, Nanoseconds patien
 class OneTest {
  public:
   OneTest(const TestOptions& options, const LibraryEntry& entry, const UnitSystem& units)
-      : options_(options), entry_(entry), units_(units) {}
+      : options_(options), entry_(entry), units_(units) {
+    entry_.object_file = fs::absolute(entry.object_file).string();  // the child lives in another folder
+  }
 
   Result<trial::TrialReport> run() {
     trial::Setup setup;
@@ -120,7 +122,7 @@ class OneTest {
   }
 
   const TestOptions& options_;
-  const LibraryEntry& entry_;
+  LibraryEntry entry_;
   const UnitSystem& units_;
   std::optional<trial::Partner> partner_;
 };
@@ -129,9 +131,11 @@ const char* word(trial::Finding finding) {
   return finding == trial::Finding::kOk ? "ok" : finding == trial::Finding::kFails ? "fails" : "not judged";
 }
 
-std::string time_text(std::int64_t ns) {
+std::string time_text(double ns) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.2f us", static_cast<double>(ns) * 1e-3);
+  if (ns < 10) return "less than 10 ns";  // the steps of a processor's counter
+  if (ns < 1000) std::snprintf(text, sizeof text, "%.0f ns", ns);
+  else std::snprintf(text, sizeof text, "%.1f us", ns * 1e-3);
   return text;
 }
 
@@ -147,9 +151,9 @@ std::string text_of(const trial::TrialReport& report) {
     text += head + body + "\n";
   }
   if (report.measured.cycles > 0)
-    text += "  measured    time          " + time_text(report.measured.median_ns) + " median, " +
-            time_text(report.measured.worst_ns) + " worst of " + std::to_string(report.measured.cycles) +
-            " cycles, one after the other\n";
+    text += "  measured    time          " + time_text(report.measured.typical_ns) + " (mean of the middle half), " +
+            time_text(static_cast<double>(report.measured.worst_ns)) + " worst of " +
+            std::to_string(report.measured.cycles) + " cycles, each the least of three\n";
   return text;
 }
 
@@ -161,7 +165,7 @@ std::string json_of(const trial::TrialReport& report) {
   return "{\"component\": " + json_string(report.component) + ", \"passes\": " + (report.passes() ? "true" : "false") +
          ", \"inputs\": " + json_string(report.inputs) + ", \"judgements\": [" + rows +
          "], \"measured_cycles\": " + std::to_string(report.measured.cycles) +
-         ", \"median_ns\": " + std::to_string(report.measured.median_ns) +
+         ", \"typical_ns\": " + std::to_string(report.measured.typical_ns) +
          ", \"worst_ns\": " + std::to_string(report.measured.worst_ns) + "}";
 }
 

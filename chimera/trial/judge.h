@@ -20,7 +20,8 @@ struct Judgement {
 /// Measured, not judged.
 struct Measured {
   std::size_t cycles = 0;
-  std::int64_t median_ns = 0, worst_ns = 0;
+  double typical_ns = 0;      ///< mean of the middle half: finer than the clock
+  std::int64_t worst_ns = 0;  ///< of the least of three of each cycle
 };
 
 struct TrialReport {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A description for a component of which nothing is known but its descriptor.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -18,17 +19,16 @@ std::string number_text(double value) {
   return text;
 }
 
-// A unit of its own, without unit variables (single capitals U X Y Z).
-bool is_generic(const std::string& unit) {
+// The unit with 1 for its unit variables (single capitals U X Y Z); "1" when no unit is left.
+std::string plain_unit(std::string unit) {
+  const auto is_letter = [&unit](std::size_t at) {
+    return at < unit.size() && std::isalpha(static_cast<unsigned char>(unit[at])) != 0;
+  };
   for (std::size_t i = 0; i < unit.size(); ++i) {
-    const auto is_letter = [&](std::size_t at) {
-      return at < unit.size() && std::isalpha(static_cast<unsigned char>(unit[at])) != 0;
-    };
-    if (std::string_view("UXYZ").find(unit[i]) != std::string_view::npos && (i == 0 || !is_letter(i - 1)) &&
-        !is_letter(i + 1))
-      return true;
+    const bool is_alone = (i == 0 || !is_letter(i - 1)) && !is_letter(i + 1);
+    if (is_alone && std::string_view("UXYZ").find(unit[i]) != std::string_view::npos) unit[i] = '1';
   }
-  return false;
+  return std::ranges::any_of(unit, [](unsigned char c) { return std::isalpha(c) != 0; }) ? unit : "1";
 }
 
 bool fixes_extent(const Descriptor& component, const PortDescriptor& port) {
@@ -53,8 +53,8 @@ double middle(const Descriptor& component, const PortDescriptor& port) {
 }
 
 std::string with_unit(double value, const std::string& unit) {
-  const bool has_unit = !unit.empty() && unit != "1" && !is_generic(unit);
-  return number_text(value) + (has_unit ? " " + unit : "");
+  const std::string plain = plain_unit(unit);
+  return number_text(value) + (plain == "1" ? "" : " " + plain);
 }
 
 std::string struct_text(const PortDescriptor& port) {

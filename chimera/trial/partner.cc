@@ -40,8 +40,10 @@ Result<Partner> Partner::start(const std::string& program, Nanoseconds patience)
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return (Message() << std::strerror(errno)).error(ErrorCode::kSystem, program);
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  const char* words[] = {"sh", "-c", "cd \"$(dirname \"$1\")\" && exec \"$1\" >&3 3>&- </dev/null", "sh",
-                         program.c_str()};
+  // In its folder lie components, and one in Python must not take select.so for its module.
+  constexpr const char* kScript =
+      "cd \"$(dirname \"$1\")\" && PYTHONSAFEPATH=1 && export PYTHONSAFEPATH && exec \"$1\" >&3 3>&- </dev/null";
+  const char* words[] = {"sh", "-c", kScript, "sh", program.c_str()};
   const int handed[] = {ends[1]};
   auto process = Process::start("/bin/sh", words, handed);
   ::close(ends[1]);

@@ -74,6 +74,7 @@ struct Record {
   bool is_traced = false;
 
   char refusal[CHIMERA_FAULT_TEXT + 120] = {};  ///< why the component could not be loaded or started
+  std::int64_t measuring_ns[1000] = {};         ///< what it takes to measure nothing
   std::uint32_t counts[CHIMERA_MAX_PORTS] = {}; ///< elements in use of each out-var
   std::uint32_t rejected = 0;                   ///< cycles that answered with a fault
   std::uint32_t lost = 0;                       ///< times that clear did not help and it was spawned anew

@@ -30,10 +30,18 @@ Shim::Shim(const chimera_component& real, Record& record) : real_(real), record_
   std::memcpy(&wrapped_, &real, std::min<std::size_t>(real.struct_size, sizeof wrapped_));
   wrapped_.struct_size = sizeof wrapped_;
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m) wrapped_.methods[m] = has(m) ? kThrough[m] : nullptr;
+  measure_measuring();
   present = this;
 }
 
 Shim::~Shim() { present = nullptr; }
+
+void Shim::measure_measuring() noexcept {
+  for (std::int64_t& time : record_.measuring_ns) {
+    const Nanoseconds began = clock_.now();
+    time = (clock_.now() - began).count;
+  }
+}
 
 std::int32_t Shim::call(std::uint32_t method, void* state, const chimera_call* call) noexcept {
   MethodRecord& counts = record_.methods[method];

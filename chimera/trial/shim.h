@@ -24,12 +24,14 @@ class Shim {
   void fail_next(std::uint32_t method) noexcept { fails_[method] = true; }
   /// True when that call was made since.
   bool has_failed(std::uint32_t method) const noexcept { return !fails_[method]; }
-  /// Time that the method cycle took when it was called last.
+  /// Time that the method cycle took when it was called last, with that of measuring.
   Nanoseconds cycle_time() const noexcept { return cycle_time_; }
 
   std::int32_t call(std::uint32_t method, void* state, const chimera_call* call) noexcept;
 
  private:
+  void measure_measuring() noexcept;
+
   const chimera_component& real_;
   Record& record_;
   chimera_component wrapped_{};

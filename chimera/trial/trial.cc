@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -85,6 +86,17 @@ Result<PlayEnd> run(const std::function<void()>& play, Record& record, const Tri
   return end;
 }
 
+void take_least_times(std::span<const RowRecord> from, std::span<RowRecord> to) {
+  for (std::size_t i = 0; i < to.size(); ++i)
+    if (from[i].is_run) to[i].time_ns = std::min(to[i].time_ns, from[i].time_ns);
+}
+
+// The first cycles warm the caches.
+void keep_times(std::span<const RowRecord> rows, std::vector<std::int64_t>& times) {
+  for (const RowRecord& row : rows.subspan(rows.size() / 10))
+    if (row.is_run && static_cast<Answer>(row.answer) == Answer::kOk) times.push_back(row.time_ns);
+}
+
 }  // namespace
 
 Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configuration, const InputForm& form,
@@ -99,6 +111,15 @@ Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configur
   end = run([&] { play_inputs(play_of(trial.timed)); }, trial.timed.record(), options, false);
   if (!end) return end.error();
   trial.timed_end = *end;
+  keep_times(trial.timed.rows(), trial.times_ns);
+  for (int again = 0; again < 2 && trial.timed_end.is_clean(); ++again) {
+    const SharedRecord record(inputs.rows(), payload);
+    end = run([&] { play_inputs(play_of(record)); }, record.record(), options, false);
+    if (!end) return end.error();
+    if (!end->is_clean()) break;
+    keep_times(record.rows(), trial.times_ns);
+    take_least_times(record.rows(), trial.timed.rows());
+  }
   const auto good = trial.counted.rows();
   end = run([&] { play_troubles(play_of(trial.troubled), good); }, trial.troubled.record(), options, false);
   if (!end) return end.error();

@@ -6,8 +6,8 @@
 using namespace chimera;
 
 struct TimeDerivative {
-  In<double>  x {"x",  "U"};          // any unit U
-  Out<double> dx{"dx", "U/s", initial = 0.0};
+  In<double>  x {"x",  "U", doc = "Any signal."};  // any unit U
+  Out<double> dx{"dx", "U/s", initial = 0.0, doc = "Its derivative."};
   void on(Cycle)      { last_ = *x; *dx = 0; }
   void cycle(Cycle c) { *dx = (*x - last_) / c.dt(); last_ = *x; }
   double last_ = 0;

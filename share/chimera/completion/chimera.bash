@@ -5,12 +5,12 @@
 # The options of each command, and at the top level the commands too.
 _chimera_words() {
   case $1 in
-    '') echo '--help --version check schedule run idle list describe test new clear end events flag get kill off on profile' \
-      'reinit save scope set spawn status top watch why shell' ;;
+    '') echo '--help --version check schedule run idle list describe test new clear end events flag get kill off on' \
+      'profile reinit save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --graph' ;;
     schedule) echo '--help --profile --svg --dispatch --json' ;;
-    run) echo '--help --for --at --watch --every --expect --trace --timeline --virtual --preemptive --seed --quantum' \
-      '--priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
+    run) echo '--help --for --at --watch --every --svg --expect --trace --timeline --virtual --preemptive --seed' \
+      '--quantum --priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
     idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
@@ -54,8 +54,8 @@ _chimera() {
     --dispatch) mapfile -t COMPREPLY < <(compgen -W 'preemptive executive' -- "$word"); return ;;
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
     --trace | --csv | --svg | --profile | --setup | --inputs) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
-    --names | --cycles | --for | --seed | --quantum | --priority | --at | --may-miss | --watch | --every | --expect | --timeline | --since | --trigger | \
-      --pre | --wait | --subsystem) return ;;
+    --names | --cycles | --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | \
+      --since | --trigger | --pre | --wait | --subsystem) return ;;
   esac
   if [[ $word == -* || -z $command || $command == new ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_words "$command")" -- "$word")

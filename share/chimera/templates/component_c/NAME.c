@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* @NAME@: smooths one signal with a time constant. Change it into what you need. */
+#include <math.h>
+
 #include "chimera/task/pbo.h"
 
 typedef struct {
@@ -23,6 +25,7 @@ int @NAME@Cycle(@NAME@Local_t *local) {
   SVAR_IN(x);
   SVAR_IN(time);
   SVAR_OUT(y);
+  if (!isfinite(*x)) return PBO_FAULT("x is not finite"); /* else it would stay in y for ever */
   *y += (*x - *y) * PBO_DT / (*time + PBO_DT);
   ++local->cycles;
   return PBO_OK;
