@@ -11,16 +11,15 @@
 
 namespace chimera::library {
 
-/// The ports and methods of an arm that a component derives from; it adds the in-var of the command and cycle().
-struct RobotFace {
+/// The ports and methods of an arm that a component derives from. It adds the in-var of the command and cycle(), and
+/// init() and reinit() with where the arm comes from.
+struct RobotBody {
   Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
   Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
   InConst<double[]> torque_limit{"torque_limit", "N.m", "[ndof<=10]", initial = 0.0, range(0, 1e6), frame = "joint",
                                  doc = "Cuts the torque of the drives; 0 for what the model says."};
-  InConst<Text<64>> tip{"tip", "1", initial = "",
-                        doc = "Body or site that is the tool; empty: the link behind the most joints."};
   OutConst<std::int32_t> ndof{"ndof", "1", doc = "Joints from the base to the tip."};
   OutConst<DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to tip."};
   OutConst<Pose> base{"base", "1", frame = "base", doc = "Frame 0."};
@@ -29,20 +28,7 @@ struct RobotFace {
   OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits; 1e6 for none."};
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
                              doc = "What the drives can give, either way; 1e6 where nobody states a limit."};
-  Resource model{"model", doc = "MJCF or URDF file."};
 
-  void init() {
-    load();
-    check(arm_.place({start_pose.begin(), arm_.joints()}));
-  }
-  // Other limits or drives, at rest in the same place.
-  void reinit() {
-    ArmVector here;
-    const std::size_t joints = arm_.joints();
-    std::ranges::copy(arm_.position(), here.begin());
-    load();
-    check(arm_.place({here.data(), joints}));
-  }
   void on() { publish(); }
   void off() {
     arm_.brake();
@@ -56,6 +42,23 @@ struct RobotFace {
   bool clear() { return true; }
 
  protected:
+  /// For init: `load` reads the arm and answers a Result<void>. Throws what it, or place(), refuses.
+  template <class Load>
+  void start(Load load) {
+    check(load());
+    tell();
+    check(arm_.place({start_pose.begin(), arm_.joints()}));
+  }
+  /// For reinit: other limits or drives, at rest in the same place.
+  template <class Load>
+  void restart(Load load) {
+    ArmVector here;
+    const std::size_t joints = arm_.joints();
+    std::ranges::copy(arm_.position(), here.begin());
+    check(load());
+    tell();
+    check(arm_.place({here.data(), joints}));
+  }
   Outcome move(ArmInterface interface, const In<double[]>& command, Cycle c) {
     const bool moved = c.illegal() ? arm_.step_locally_stable(c.dt())
                                    : arm_.step(interface, {command.begin(), command.size()}, c.dt());
@@ -70,8 +73,7 @@ struct RobotFace {
   static void check(const Result<void>& result) {
     if (!result) throw std::runtime_error(std::string(result.error().message.view()));
   }
-  void load() {
-    check(arm_.load(model.c_str(), tip->c_str()));
+  void tell() {
     const ArmModel& arm = arm_.arm();
     *ndof = static_cast<std::int32_t>(arm.ndof);
     arm_.limit_torque({torque_limit.begin(), arm.ndof});
@@ -85,6 +87,20 @@ struct RobotFace {
   void publish() {
     std::ranges::copy(arm_.position(), q.begin());
     std::ranges::copy(arm_.velocity(), qd.begin());
+  }
+};
+
+/// An arm from a file that the user names.
+struct RobotFace : RobotBody {
+  InConst<Text<64>> tip{"tip", "1", initial = "",
+                        doc = "Body or site that is the tool; empty: the link behind the most joints."};
+  Resource model{"model", doc = "MJCF or URDF file."};
+
+  void init() {
+    start([this] { return arm_.load(model.c_str(), tip->c_str()); });
+  }
+  void reinit() {
+    restart([this] { return arm_.load(model.c_str(), tip->c_str()); });
   }
 };
 

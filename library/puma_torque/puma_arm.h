@@ -38,6 +38,11 @@ class PumaArm {
   /// a state that blew up. Context: cycle; wait-free; O(dt).
   bool step(PumaInput torque, double dt);
 
+  /// The same with any kind of command: rad, rad/s or N.m. Context: cycle; wait-free; O(dt).
+  bool step(ArmInterface interface, PumaInput command, double dt) { return arm_.step(interface, command, dt); }
+  /// The drives of the position and the velocity interface from now on. Context: setup.
+  void set_drives(const ArmDrives& drives) noexcept { arm_.set_drives(drives); }
+
   /// Like step() without any command: the drives carry the weight and damp what moves, so the arm comes to
   /// rest near where it is. For the time of an illegal configuration. Context: cycle; wait-free; O(dt).
   bool step_locally_stable(double dt);
@@ -49,6 +54,8 @@ class PumaArm {
   PumaInput position() const noexcept;
   PumaInput velocity() const noexcept;
   const PumaVector& torque_limit() const noexcept { return torque_limit_; }
+  const ArmVector& lower_limit() const noexcept { return arm_.arm().low; }
+  const ArmVector& upper_limit() const noexcept { return arm_.arm().high; }
 
   /// Gravity, centrifugal and Coriolis torque in the present state (N.m): what holds the arm at rest.
   PumaVector bias_torque();

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The in-consts by which generic kinematics learns how the robot is built.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "chimera/task/component.h"
+#include "library/kinematics/serial_arm.h"
+
+namespace chimera::library {
+
+/// Ports that a component derives from; it calls read_chain() in init and reinit.
+struct DhPorts {
+  InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
+  InConst<DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to tip."};
+  InConst<Pose> base{"base", initial = kSamePlace, frame = "base", doc = "Frame 0."};
+  InConst<Pose> tool{"tool", initial = kSamePlace, frame = "last", doc = "Tool frame in frame ndof."};
+
+ protected:
+  DhChain chain_;
+
+  void read_chain() {
+    chain_.ndof = dh.size();
+    for (std::size_t i = 0; i < dh.size(); ++i) {
+      const DhLink& link = dh[i];
+      const double sum = link.a + link.alpha + link.d + link.theta;
+      if (!std::isfinite(sum)) throw std::runtime_error("dh: a number is not finite");
+      chain_.dh[i] = link;
+    }
+    chain_.base = sound(*base, "base");
+    chain_.tool = sound(*tool, "tool");
+  }
+
+ public:
+  /// True when all numbers are finite and the orientation is a unit quaternion within 1e-3: what rounding and slow
+  /// integration leave. Context: cycle; wait-free.
+  static bool is_pose(const Pose& pose) noexcept {
+    double sum = 0, square = 0;
+    for (double x : pose.position) sum += x;
+    for (double x : pose.orientation) square += x * x;
+    return std::isfinite(sum) && std::abs(square - 1) < 1e-3;
+  }
+
+ private:
+  static Pose sound(const Pose& pose, const char* name) {
+    if (is_pose(pose)) return pose;
+    throw std::runtime_error(std::string(name) + ": not finite, or the orientation is no unit quaternion");
+  }
+};
+
+}  // namespace chimera::library

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Forward kinematics, Jacobian and damped inverse of any serial arm, from the constants of library/kinematics/dh.h.
+// Plain sums over at most ten joints: no allocation, no loop without a bound.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "library/kinematics/dh_of_axes.h"
+
+namespace chimera::library {
+
+/// How the tool moves with each joint, along the axes of the base: linear in m/rad, angular in rad/rad.
+struct Jacobian {
+  std::array<Triple, kMostJoints> linear{}, angular{};
+};
+
+/// Six numbers of a motion: linear, then angular.
+using Six = std::array<double, 6>;
+
+/// Base to tool, and the Jacobian there. Context: cycle; wait-free.
+inline Frame tool_frame(const DhChain& chain, std::span<const double> q, Jacobian& jacobian) noexcept {
+  Frame frame = frame_of(chain.base);
+  std::array<Triple, kMostJoints> at;
+  for (std::size_t i = 0; i < chain.ndof; ++i) {
+    at[i] = frame.origin;
+    jacobian.angular[i] = frame.z;
+    frame = frame * frame_of(chain.dh[i], q[i]);
+  }
+  const Frame tool = frame * frame_of(chain.tool);
+  for (std::size_t i = 0; i < chain.ndof; ++i) {
+    jacobian.linear[i] = cross(jacobian.angular[i], tool.origin - at[i]);
+  }
+  return tool;
+}
+
+/// The turn from `from` to `to` as a vector: its direction the axis, its length the angle (rad, at most pi).
+inline Triple turn_between(const Frame& from, const Frame& to) noexcept {
+  const Triple twice_sine = cross(from.x, to.x) + cross(from.y, to.y) + cross(from.z, to.z);
+  const double cosine = (dot(from.x, to.x) + dot(from.y, to.y) + dot(from.z, to.z) - 1) / 2;
+  const double sine = length(twice_sine) / 2;
+  const double angle = std::atan2(sine, cosine);
+  if (sine > 1e-9) return (angle / (2 * sine)) * twice_sine;
+  if (cosine > 0) return {0, 0, 0};
+  const Pose half = pose_of(Frame{{0, 0, 0}, from.seen(to.x), from.seen(to.y), from.seen(to.z)});  // turned by pi
+  return angle * from.turned({half.orientation[1], half.orientation[2], half.orientation[3]});
+}
+
+/// What is missing from `is` to `wanted`: m and rad.
+inline Six motion_between(const Frame& is, const Frame& wanted) noexcept {
+  const Triple way = wanted.origin - is.origin, turn = turn_between(is, wanted);
+  return {way[0], way[1], way[2], turn[0], turn[1], turn[2]};
+}
+
+/// The least-squares inverse of a Jacobian that stays bounded near singular poses (Nakamura and Hanafusa 1986; Wampler
+/// 1986): dq = J^T (J J^T + k I)^-1 e, with k = damping^2 (1 - w/threshold)^2 where the manipulability
+/// w = sqrt(det J J^T) falls below the threshold, and otherwise only what rounding needs. Angles count as
+/// metres do.
+class DampedInverse {
+ public:
+  double damping = 0.05;    ///< how large the singular values are that are cut
+  double threshold = 0.02;  ///< of the manipulability
+
+  /// Joint motion for the tool motion `e`; ndof numbers in `dq`. Context: cycle; wait-free.
+  void solve(const Jacobian& jacobian, std::size_t ndof, const Six& e, std::span<double> dq) noexcept {
+    Matrix m = square(jacobian, ndof, 0);
+    manipulability_ = factor(m) ? product_of_diagonal(m) : 0;
+    const double short_of = std::max(0.0, 1 - manipulability_ / threshold);
+    const double k = std::max(damping * damping * short_of * short_of, kLeast);
+    m = square(jacobian, ndof, k);
+    factor(m);
+    const Six y = substitute(m, e);
+    for (std::size_t i = 0; i < ndof; ++i) {
+      dq[i] = 0;
+      for (std::size_t r = 0; r < 6; ++r) dq[i] += element(jacobian, r, i) * y[r];
+    }
+  }
+  /// w of the last solve().
+  double manipulability() const noexcept { return manipulability_; }
+
+  static double element(const Jacobian& jacobian, std::size_t row, std::size_t joint) noexcept {
+    return row < 3 ? jacobian.linear[joint][row] : jacobian.angular[joint][row - 3];
+  }
+
+ private:
+  using Matrix = std::array<Six, 6>;
+  static constexpr double kLeast = 1e-10;
+
+  static Matrix square(const Jacobian& jacobian, std::size_t ndof, double k) noexcept {
+    Matrix m{};
+    for (std::size_t r = 0; r < 6; ++r) {
+      for (std::size_t c = 0; c <= r; ++c) {
+        double sum = r == c ? k : 0;
+        for (std::size_t i = 0; i < ndof; ++i) sum += element(jacobian, r, i) * element(jacobian, c, i);
+        m[r][c] = sum;
+      }
+    }
+    return m;
+  }
+  /// Cholesky in place, lower half. False when the matrix is not positive; it is then of no use.
+  static bool factor(Matrix& m) noexcept {
+    for (std::size_t r = 0; r < 6; ++r) {
+      for (std::size_t c = 0; c <= r; ++c) {
+        double sum = m[r][c];
+        for (std::size_t k = 0; k < c; ++k) sum -= m[r][k] * m[c][k];
+        if (r != c) m[r][c] = sum / m[c][c];
+        else if (sum > 1e-14) m[r][r] = std::sqrt(sum);
+        else return false;
+      }
+    }
+    return true;
+  }
+  static double product_of_diagonal(const Matrix& m) noexcept {
+    double product = 1;
+    for (std::size_t r = 0; r < 6; ++r) product *= m[r][r];
+    return product;
+  }
+  static Six substitute(const Matrix& m, Six e) noexcept {
+    for (std::size_t r = 0; r < 6; ++r) {
+      for (std::size_t c = 0; c < r; ++c) e[r] -= m[r][c] * e[c];
+      e[r] /= m[r][r];
+    }
+    for (std::size_t r = 6; r-- > 0;) {
+      for (std::size_t c = r + 1; c < 6; ++c) e[r] -= m[c][r] * e[c];
+      e[r] /= m[r][r];
+    }
+    return e;
+  }
+
+  double manipulability_ = 0;
+};
+
+/// Joint positions for a tool pose, from those nearby: Newton's method with a DampedInverse.
+class PoseSearch {
+ public:
+  static constexpr int kMostSteps = 20;        ///< the bound of solve()
+  static constexpr double kLongestStep = 0.2;  ///< rad, of any joint in a step
+  static constexpr double kNearEnough = 1e-9;  ///< m and rad
+
+  /// Moves `q` so that the tool comes to `wanted`. True when it is within `tolerance` (m and rad); else `q` is as near
+  /// as it came. Context: cycle; wait-free.
+  bool solve(const DhChain& chain, const Frame& wanted, std::span<double> q, double tolerance) noexcept {
+    std::array<double, kMostJoints> dq;
+    Jacobian jacobian;
+    for (int step = 0; step < kMostSteps; ++step) {
+      const Six e = motion_between(tool_frame(chain, q, jacobian), wanted);
+      residual_ = size_of(e);
+      if (residual_ < kNearEnough) break;
+      inverse_.solve(jacobian, chain.ndof, e, dq);
+      double largest = 0;
+      for (std::size_t i = 0; i < chain.ndof; ++i) largest = std::max(largest, std::abs(dq[i]));
+      const double share = largest > kLongestStep ? kLongestStep / largest : 1;
+      for (std::size_t i = 0; i < chain.ndof; ++i) q[i] += share * dq[i];
+    }
+    residual_ = size_of(motion_between(tool_frame(chain, q), wanted));
+    return residual_ <= tolerance;
+  }
+  /// What was missing at the end of the last solve(): the larger of metres and radians.
+  double residual() const noexcept { return residual_; }
+
+ private:
+  static double size_of(const Six& e) noexcept {
+    return std::max(length({e[0], e[1], e[2]}), length({e[3], e[4], e[5]}));
+  }
+
+  DampedInverse inverse_;
+  double residual_ = 0;
+};
+
+}  // namespace chimera::library

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Inverse kinematics of the Puma 560 in closed form: of eight solutions the nearest.
+#include "library/kinematics/dh_ports.h"
+#include "library/kinematics/puma560.h"
+
+using namespace chimera;
+
+namespace {
+
+struct Pinvkin {
+  In<Pose> xr{"xr", frame = "base", doc = "Reference tool pose: the flange."};
+  In<double[6]> q{"q", "rad", frame = "joint", doc = "Measured joint positions: which solution is near at on."};
+  Out<double[6]> q_ref{"q_ref", "rad", initial = 0.0, frame = "joint", doc = "Joint positions for xr."};
+  Out<bool> is_reachable{"is_reachable", "1", initial = true, doc = "False: xr is out of reach, q_ref stands."};
+
+  Outcome on() {
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (!std::isfinite(q[i])) return fault("q is not finite: no solution is near");
+      q_ref[i] = q[i];
+    }
+    return ok();
+  }
+  Outcome cycle(Cycle c) {
+    if (c.illegal()) return ok();
+    if (!library::DhPorts::is_pose(*xr)) return fault("xr is not finite or no orientation");
+    library::Puma560::Vector near;
+    std::copy_n(q_ref.begin(), 6, near.begin());
+    *is_reachable = library::Puma560::nearest(library::frame_of(*xr), near, std::span<double, 6>(q_ref.begin(), 6));
+    return ok();
+  }
+};
+
+CHIMERA_COMPONENT(Pinvkin, "pinvkin", "Puma inverse kinematics.", rate = 1000.0,
+                  source = "2000 paper, table 1 and figure 3; Paul, Shimano and Mayer 1981");
+
+}  // namespace

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/rmms/module_store.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+namespace chimera::library {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Error bad(const std::string& text) {
+  Error error;
+  error.message = FixedString<400>(text);
+  return error;
+}
+
+const char* judge(const RmmsModule& m) {
+  if (!(m.mass > 0)) return "the mass is not positive";
+  if (!(m.torque > 0)) return "the torque is not positive";
+  if (!(m.low < m.high)) return "the lower limit is not below the upper one";
+  if (std::hypot(m.link.a, m.link.d) < 1e-3) return "the link has no extent: at least 1 mm of a or d";
+  return nullptr;
+}
+
+/// Nullptr, or what is wrong with the line.
+const char* read_module(const std::string& line, RmmsModule& m) {
+  std::istringstream words(line);
+  double alpha = 0, theta = 0, low = 0, high = 0;
+  std::string more;
+  if (!(words >> m.name >> m.link.a >> alpha >> m.link.d >> theta >> m.mass >> low >> high >> m.torque) ||
+      words >> more) {
+    return "expected a name and eight numbers: a alpha d theta mass low high torque";
+  }
+  m.link.alpha = alpha * kDegree;
+  m.link.theta = theta * kDegree;
+  m.low = low * kDegree;
+  m.high = high * kDegree;
+  return judge(m);
+}
+
+/// As many digits as a double has.
+std::string digits(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+std::string three(double x, double y, double z) { return digits(x) + ' ' + digits(y) + ' ' + digits(z); }
+
+/// Where the next body stands in the one that turns with `before`: after Tz(d) Tx(a) Rx(alpha), turned by theta.
+std::string place(const DhLink& before, double theta) {
+  const double ca = std::cos(before.alpha / 2), sa = std::sin(before.alpha / 2);
+  const double ct = std::cos(theta / 2), st = std::sin(theta / 2);
+  const std::string turned = digits(ca * ct) + ' ' + three(sa * ct, -sa * st, ca * st);
+  return "pos='" + three(before.a, 0, before.d) + "' quat='" + turned + "'";
+}
+
+}  // namespace
+
+Result<ModuleStore> ModuleStore::read(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) return bad(path + ": cannot be read");
+  ModuleStore store;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    line = line.substr(0, line.find('#'));
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::string at = path + ":" + std::to_string(number) + ": ";
+    if (store.count == kMostJoints) return bad(at + "there are more than " + std::to_string(kMostJoints) + " modules");
+    const char* wrong = read_module(line, store.modules[store.count]);
+    if (wrong != nullptr) return bad(at + wrong);
+    ++store.count;
+  }
+  if (store.count == 0) return bad(path + ": there is no module in it");
+  return store;
+}
+
+std::string ModuleStore::mjcf() const {
+  std::string text =
+      "<mujoco model='rmms'><compiler angle='radian'/><option timestep='0.0005'/>"
+      "<default><geom contype='0' conaffinity='0'/></default><worldbody>";
+  std::string motors, ends;
+  DhLink before{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const RmmsModule& m = modules[i];
+    const std::string joint = "j" + std::to_string(i + 1);
+    text += "<body " + place(before, m.link.theta) + "><joint name='" + joint + "' axis='0 0 1' limited='true'";
+    text += " range='" + digits(m.low) + ' ' + digits(m.high) + "' armature='0.1' damping='1'/>";
+    text += "<geom type='capsule' size='0.06' mass='" + digits(m.mass) + "' fromto='0 0 0 ";
+    text += three(m.link.a, 0, m.link.d) + "'/>";
+    motors += "<motor joint='" + joint + "' ctrllimited='true' ctrlrange='";
+    motors += digits(-m.torque) + ' ' + digits(m.torque) + "'/>";
+    ends += "</body>";
+    before = m.link;
+  }
+  return text + "<site name='tip' " + place(before, 0) + "/>" + ends + "</worldbody><actuator>" + motors +
+         "</actuator></mujoco>";
+}
+
+}  // namespace chimera::library

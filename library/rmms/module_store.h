@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the modules of a reconfigurable arm say of themselves when it is switched on: a text file stands for their
+// EPROMs. One line a joint module with the link after it, base to tip; `#` begins a remark:
+//
+//   # module     a m   alpha deg   d m   theta deg   mass kg   low deg   high deg   torque N.m
+//   rotate-1     0     90          0.35  0           9.0       -170      170        270
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "chimera/base/result.h"
+#include "library/kinematics/dh.h"
+
+namespace chimera::library {
+
+/// One joint module with the link after it.
+struct RmmsModule {
+  std::string name;
+  DhLink link{};
+  double mass = 0;           ///< kg, spread along the link
+  double low = 0, high = 0;  ///< rad
+  double torque = 0;         ///< N.m, either way
+};
+
+/// The modules of an arm, base to tip.
+struct ModuleStore {
+  std::array<RmmsModule, kMostJoints> modules;
+  std::size_t count = 0;
+
+  /// Reads a store. Refuses, with the number of the line: a file that cannot be read, a line that is not a name and
+  /// eight finite numbers, a mass or torque that is not positive, limits that are not in order, a module without
+  /// extent, no module, more than kMostJoints. Context: setup; may block.
+  static Result<ModuleStore> read(const std::string& path);
+  /// The same arm as MJCF, its tip a site `tip`.
+  std::string mjcf() const;
+};
+
+}  // namespace chimera::library

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "chimera/task/rig.h"
+#include "library/kinematics/dh_of_axes.h"
+#include "library/rmms/module_store.h"
+
+namespace chimera::library {
+namespace {
+
+std::string shipped(const char* file) {
+  const char* source = std::getenv("CHIMERA_SOURCE");
+  return std::string(source != nullptr ? source : ".") + "/library/rmms/" + file;
+}
+
+struct StoreTest : testing::Test {
+  std::string path = testing::TempDir() + "modules_" + std::to_string(::getpid()) + ".store";
+  ~StoreTest() override { ::unlink(path.c_str()); }
+  std::string refusal(const std::string& text) {
+    std::ofstream(path) << text;
+    const Result<ModuleStore> store = ModuleStore::read(path);
+    return store ? "read" : std::string(store.error().message.view()).substr(path.size());
+  }
+};
+
+TEST_F(StoreTest, ReadsItsModulesBaseToTip) {
+  const Result<ModuleStore> store = ModuleStore::read(shipped("rmms_a.store"));
+  ASSERT_TRUE(store) << store.error().message.view();
+  ASSERT_EQ(store->count, 6u);
+  EXPECT_EQ(store->modules[1].name, "pivot-1");
+  EXPECT_EQ(store->modules[1].link.a, 0.45);
+  EXPECT_NEAR(store->modules[0].link.alpha, std::acos(0.0), 1e-15);
+  EXPECT_EQ(store->modules[5].torque, 50);
+}
+
+TEST_F(StoreTest, RefusesABadStoreWithTheLine) {
+  EXPECT_EQ(refusal("# nothing\n\n"), ": there is no module in it");
+  EXPECT_EQ(refusal("a 0 90 0.3 0 9 -170 170 270\nb 0 90 0.3\n"),
+            ":2: expected a name and eight numbers: a alpha d theta mass low high torque");
+  EXPECT_EQ(refusal("a 0 90 0.3 0 9 -170 170 270 5\n"),
+            ":1: expected a name and eight numbers: a alpha d theta mass low high torque");
+  EXPECT_EQ(refusal("a 0 90 0.3 0 0 -170 170 270\n"), ":1: the mass is not positive");
+  EXPECT_EQ(refusal("a 0 90 0.3 0 9 170 -170 270\n"), ":1: the lower limit is not below the upper one");
+  EXPECT_EQ(refusal("a 0 90 0.3 0 9 -170 170 -1\n"), ":1: the torque is not positive");
+  EXPECT_EQ(refusal("a 0 90 0 0 9 -170 170 270\n"), ":1: the link has no extent: at least 1 mm of a or d");
+  std::string eleven;
+  for (int i = 0; i < 11; ++i) eleven += "m 0.1 0 0 0 1 -90 90 10\n";
+  EXPECT_EQ(refusal(eleven), ":11: there are more than 10 modules");
+  EXPECT_EQ(ModuleStore::read("no_such.store").error().message.view(), "no_such.store: cannot be read");
+}
+
+TEST_F(StoreTest, BothBuildsTellTheChainOfTheirStore) {
+  for (const char* file : {"rmms_a.store", "rmms_b.store"}) {
+    const Result<ModuleStore> store = ModuleStore::read(shipped(file));
+    Rig rig("rmms");
+    rig.resource("store", shipped(file).c_str());
+    for (std::size_t i = 0; i < 10; ++i) rig.set("q_ref", 0.1, i);
+    const RigAnswer made = rig.init();
+    ASSERT_TRUE(made) << made.text;
+    DhChain told, written;
+    told.ndof = written.ndof = store->count;
+    ASSERT_EQ(rig.get<std::int32_t>("ndof"), static_cast<std::int32_t>(store->count));
+    for (std::size_t i = 0; i < store->count; ++i) {
+      told.dh[i] = rig.get<DhLink>("dh", i);
+      written.dh[i] = store->modules[i].link;
+    }
+    told.base = rig.get<Pose>("base");
+    told.tool = rig.get<Pose>("tool");
+    const std::array<double, kMostJoints> q{0.3, -0.5, 0.8, 0.2, -0.9, 0.4, 1.1};
+    const Frame a = tool_frame(told, q), b = tool_frame(written, q);
+    EXPECT_LT(length(a.origin - b.origin), 1e-9);
+    EXPECT_LT(length(a.x - b.x), 1e-9);
+    EXPECT_LT(length(a.z - b.z), 1e-9);
+    ASSERT_TRUE(rig.on());
+    for (int i = 0; i < 600; ++i) ASSERT_TRUE(rig.cycle());
+    for (std::size_t i = 0; i < store->count; ++i) EXPECT_NEAR(rig.get<double>("q", i), 0.1, 1e-3) << file;
+  }
+}
+
+}  // namespace
+}  // namespace chimera::library

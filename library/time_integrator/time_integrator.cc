@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The integral over time of each element of a vector (1994 paper, figure 9: joint speeds to joint positions).
+#include <cmath>
+
+#include "chimera/task/component.h"
+
+using namespace chimera;
+
+namespace {
+
+struct TimeIntegrator {
+  In<double[]> rate_of_change{"rate_of_change", "U/s", "[n<=16]", doc = "What is integrated."};
+  In<double[]> start{"start", "U", "[n<=16]", doc = "Where the integral begins when the task goes on."};
+  Out<double[]> integral{"integral", "U", "[n<=16]", initial = 0.0,
+                         doc = "start at on, plus what was integrated since."};
+
+  Outcome on() {
+    for (std::size_t i = 0; i < integral.size(); ++i) {
+      if (!std::isfinite(start[i])) return fault("start is not finite");
+      integral[i] = start[i];
+    }
+    return ok();
+  }
+  Outcome cycle(Cycle c) {
+    if (c.illegal()) return ok();
+    for (std::size_t i = 0; i < integral.size(); ++i) {
+      if (!std::isfinite(rate_of_change[i])) return fault("what is integrated is not finite");
+    }
+    for (std::size_t i = 0; i < integral.size(); ++i) integral[i] += rate_of_change[i] * c.dt();
+    return ok();
+  }
+};
+
+CHIMERA_COMPONENT(TimeIntegrator, "time_integrator", "The integral of a vector over time.", rate = 1000.0,
+                  source = "1994 paper, figure 9");
+
+}  // namespace
