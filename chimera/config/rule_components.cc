@@ -15,6 +15,14 @@ void refuse_streams(Model& model, const TaskModel& task) {
 
 }  // namespace
 
+/// Why the file that should describe the component is not in the library; empty: there is none.
+std::string fault_of(const Model& model, const std::string& component) {
+  for (const Error& fault : model.library.faults())
+    if (fault.where.view().ends_with("/" + component + ".component.json"))
+      return "; " + std::string(fault.where.view()) + ": " + std::string(fault.message.view());
+  return "";
+}
+
 void find_components(Model& model) {
   for (const DraftTask& draft : model.draft.tasks) {
     TaskModel task;
@@ -26,7 +34,8 @@ void find_components(Model& model) {
     } else if (!draft.component.empty()) {
       const std::string near = model.library.nearest_name(draft.component.text);
       model.error("component-unknown", draft.component.at,
-                  "task '" + task.name() + "': the component '" + draft.component.text + "' is not in the library",
+                  "task '" + task.name() + "': the component '" + draft.component.text + "' is not in the library" +
+                      fault_of(model, draft.component.text),
                   draft.component.text, "a component of the library", near,
                   near.empty() ? "'chimera list' shows the library; CHIMERA_PATH adds folders to it" : "");
     }

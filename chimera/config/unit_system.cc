@@ -5,7 +5,9 @@
 #include <udunits2.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -98,10 +100,17 @@ void collect(const std::string& xml, const std::string& tag, std::vector<std::st
 }
 
 std::string contents(const std::string& file) {
+  errno = 0;
   std::ifstream in(file);
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+/// ": REASON" when the last call failed because there was no memory or descriptor left.
+std::string want() {
+  const bool is_want = errno == EMFILE || errno == ENFILE || errno == ENOMEM;
+  return is_want ? std::string(": ") + std::strerror(errno) : "";
 }
 
 /// The units of `xml`. UDUNITS reads nothing but files, so the text is given the form of one.
@@ -163,6 +172,7 @@ Result<UnitSystem> UnitSystem::load(std::span<const std::string> files) {
     if (std::ifstream(place).good()) return of(contents(place), place);
   std::string all = "no unit file; looked for";
   for (const std::string& place : places) all += " " + place;
+  all += want();
   return Error{ErrorCode::kNotFound, std::string_view(all), {}};
 }
 
@@ -172,8 +182,8 @@ Result<UnitSystem> UnitSystem::of(std::string text, std::string file) {
   content->file = std::move(file);
   content->system = read_units(content->xml);
   if (content->system == nullptr || !content->meaning("rad")) {
-    return Error{ErrorCode::kBadInput, std::string_view("no unit file of UDUNITS-2 with the base unit rad"),
-                 std::string_view(content->file)};
+    const std::string why = "no unit file of UDUNITS-2 with the base unit rad" + want();
+    return Error{ErrorCode::kBadInput, std::string_view(why), std::string_view(content->file)};
   }
   collect(content->xml, "symbol", content->names);
   collect(content->xml, "singular", content->names);

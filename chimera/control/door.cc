@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chimera/config/nearest.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera::control {
 namespace {
@@ -78,7 +79,7 @@ Result<std::unique_ptr<Door>> Door::open(int listening, Subject& subject, uid_t 
   door->epoll_ = OwnedDescriptor(::epoll_create1(EPOLL_CLOEXEC));
   const bool is_watched = listening < 0 || watch(door->epoll_.fd, EPOLL_CTL_ADD, listening, EPOLLIN, kListening);
   if (door->epoll_.fd < 0 || !is_watched)
-    return Error{ErrorCode::kSystem, {"the control socket cannot be watched"}, {}};
+    return system_error(Message("the control socket cannot be watched"), "epoll");
   return door;
 }
 

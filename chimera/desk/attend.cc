@@ -85,10 +85,11 @@ Result<void> Attendance::begin() {
   while (!stop_is_requested()) {
     const auto status = line_.ask("status", Json::object(), seconds(20));
     if (!status) return status.error();
+    // What went wrong before the start comes first, also when the start was told meanwhile.
     started_ = instant((*status)["started_ns"]);
+    look_at_events();
+    if (failure_) return *failure_;
     if (started_ == kNever) {
-      look_at_events();
-      if (failure_) return *failure_;
       clock_.wait_until(clock_.now() + kStartLook);
       continue;
     }
@@ -130,9 +131,9 @@ void Attendance::look_at_events() {
     const Json about = event.value("task", Json());
     const std::string task = about.is_string() ? about.get<std::string>() : "";
     const bool is_refusal = kind == "refused" || kind == "fault" || kind == "rtpu-given-up";
-    if (started_ == kNever && is_refusal && !failure_)
+    if (is_refusal && instant(event["at_ns"]) < started_ && !failure_)
       failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
-    else if (started_ != kNever && kind == "refused")
+    else if (kind == "refused")
       refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
     task_stopped_ = task_stopped_ || kind == "stop";
   }

@@ -5,11 +5,13 @@
 #include <sys/signalfd.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace chimera {
 namespace {
 
 constexpr Nanoseconds kQuickDeath = seconds(1), kLongestPause = milliseconds(500);
+constexpr int kMostRefusals = 10;  // of the manager, before anybody was served: within about two seconds
 constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to be carried out
 
 }  // namespace
@@ -70,6 +72,7 @@ void Keeper::look() {
     peers_.take_messages(index, wishes);
     const Nanoseconds started = peers_.since(index);
     if (!peers_.has_ended(index, wishes) || index != peers_.manager()) continue;
+    count_refusal(peers_.since(index) - started);
     if (peers_.since(index) - started >= kQuickDeath) manager_pause_ = {0};
     manager_due_ = peers_.since(index) + manager_pause_;
     manager_pause_ = std::clamp(manager_pause_ * 2, milliseconds(10), kLongestPause);
@@ -80,6 +83,16 @@ void Keeper::look() {
     face_code_ = end.code;
     end_asked_ = true;
   }
+}
+
+/// A manager that never came to serve is not tried for ever: there is nothing running yet that would go on without it.
+void Keeper::count_refusal(Nanoseconds lived) {
+  const bool refused = lived < kQuickDeath && !peers_.by_signal(peers_.manager());
+  if (!refused) manager_refusals_ = -1;
+  if (manager_refusals_ < 0 || ++manager_refusals_ < kMostRefusals) return;
+  std::fprintf(stderr, "the manager could not start, %d times: nothing is run\n", kMostRefusals);
+  end_asked_ = true;
+  end_code_ = 1;
 }
 
 void Keeper::obey(const KeeperMessage& wish) {

@@ -39,6 +39,7 @@ class Keeper {
 
   void wait();
   void look();
+  void count_refusal(Nanoseconds lived);
   void obey(const KeeperMessage& wish);
   bool advance();
   void enter(Phase phase, Nanoseconds limit);
@@ -53,6 +54,7 @@ class Keeper {
   Nanoseconds phase_due_ = kNever;
   Nanoseconds manager_due_ = kNever;  // when it is started again
   Nanoseconds manager_pause_;
+  int manager_refusals_ = 0;  // in a row from the start on; negative once one has lived
   bool end_asked_ = false;
   int end_code_ = 0, face_code_ = 0;
 };

@@ -54,6 +54,8 @@ class KeptPeers {
   void signal(std::uint32_t index, int number) const noexcept { peers_[index].process.signal(number); }
   int channel(std::uint32_t index) const noexcept { return peers_[index].channel.descriptor(); }
   int pidfd(std::uint32_t index) const noexcept { return peers_[index].process.pidfd(); }
+  /// Whether its last end was by a signal.
+  bool by_signal(std::uint32_t index) const noexcept { return peers_[index].last.by_signal != 0; }
   /// When it was started last, or ended.
   Nanoseconds since(std::uint32_t index) const noexcept { return peers_[index].last.at; }
 

@@ -22,6 +22,7 @@ Error refusal(const std::string& text, const std::string& where) {
 Result<OwnedDescriptor> open_folder(const std::string& path, bool for_others) {
   if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) return failed(path, "mkdir");
   OwnedDescriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  if (folder.fd < 0 && errno != ENOTDIR && errno != ELOOP) return failed(path, "open");
   if (folder.fd < 0)
     return refusal("the folder of the sockets is no folder, or a symbolic link: remove it", path);
   struct stat status {};

@@ -5,20 +5,29 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <system_error>
 
-#include "chimera/base/assert.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera::manager {
 
-BellWatch::BellWatch(Doorbell bell) : bell_(bell), descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  CHIMERA_ASSERT(descriptor_ >= 0);
-  thread_ = std::thread([this] { watch(); });
+Result<std::unique_ptr<BellWatch>> BellWatch::start(Doorbell bell) {
+  OwnedDescriptor descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (descriptor.fd < 0) return system_error(Message("watch of the bell"), "eventfd");
+  std::unique_ptr<BellWatch> made(new BellWatch(bell, descriptor.release()));
+  try {
+    made->thread_ = std::thread([watch = made.get()] { watch->watch(); });
+  } catch (const std::system_error& error) {
+    errno = error.code().value();
+    return system_error(Message("watch of the bell"), "thread");
+  }
+  return made;
 }
 
 BellWatch::~BellWatch() {
   stop_ = true;
   bell_.ring();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
   ::close(descriptor_);
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <thread>
 
+#include "chimera/base/result.h"
 #include "chimera/platform/doorbell.h"
 
 namespace chimera::manager {
@@ -12,8 +14,8 @@ namespace chimera::manager {
 /// Context: setup. One reader.
 class BellWatch {
  public:
-  /// `bell` outlives it.
-  explicit BellWatch(Doorbell bell);
+  /// `bell` outlives it. Refuses when there is no descriptor or thread for it.
+  static Result<std::unique_ptr<BellWatch>> start(Doorbell bell);
   BellWatch(const BellWatch&) = delete;
   BellWatch& operator=(const BellWatch&) = delete;
   ~BellWatch();
@@ -24,6 +26,7 @@ class BellWatch {
   void reset() const noexcept;
 
  private:
+  BellWatch(Doorbell bell, int descriptor) : bell_(bell), descriptor_(descriptor) {}
   void watch() noexcept;
 
   Doorbell bell_;

@@ -111,7 +111,9 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
                                    mapped_->decision_page(), mapped_->keeper_page());
   world_->keeper_pid = keeper_pid;
   fleet_ = std::make_unique<Fleet>(*world_);
-  bell_ = std::make_unique<BellWatch>(Doorbell(mapped_->decision_page().bells[world_->own.peer()].word));
+  auto bell = BellWatch::start(Doorbell(mapped_->decision_page().bells[world_->own.peer()].word));
+  if (!bell) return bell.error();
+  bell_ = *std::move(bell);
   begin();
   for (const auto& [message, passed] : inventory) take(message, passed);
   return true;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <thread>
@@ -116,9 +117,11 @@ Result<void> Rtpu::prepare() {
     limit_stacks();
     ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
     signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+    if (signals_ < 0) return system_error(Message("rtpu"), "signalfd");
     if (!follow_parent(start_.parent, SIGTERM)) return Error{ErrorCode::kRefused, {"the keeper is gone"}, {}};
     start_undertaker();  // refused: its death is seen later, and nothing else is different
   }
+  if (over_.fd < 0) return Error{ErrorCode::kSystem, {"rtpu: eventfd failed"}, {}};
   if (auto mapped = map(); !mapped) return mapped;
   if (auto made = make_segment(); !made) return made;
   if (auto made = make_tasks(); !made) {
@@ -265,10 +268,15 @@ void Rtpu::take_messages() {
   }
 }
 
-// A segment that is not what the application says is passed over: its owner is not who the keeper takes it for.
+// A segment that is not what the application says is passed over: its owner is not who the keeper takes it for. One
+// that there is no memory for is missed, and nothing that runs here ends for it.
 void Rtpu::take_peer(const KeeperMessage& message, int descriptor) {
-  if (message.index == start_.peer || !peers_->offer(message.index, message.incarnation, descriptor)) return;
-  Doorbell(decision_->bells[start_.peer].word).ring();
+  if (message.index == start_.peer) return;
+  if (const auto offered = peers_->offer(message.index, message.incarnation, descriptor); offered)
+    return Doorbell(decision_->bells[start_.peer].word).ring();
+  else if (start_.parent != 0)
+    std::fprintf(stderr, "chimera-rtpu %s: goes on without the memory of peer %u: %s\n",
+                 std::string(self().name).c_str(), message.index, offered.error().message.c_str());
 }
 
 void Rtpu::end() {
@@ -293,7 +301,10 @@ bool Rtpu::hangs() {
 
 int run_rtpu(const RtpuStart& start) {
   Rtpu rtpu(start);
-  if (auto ready = rtpu.prepare(); !ready) return kCouldNotStart;
+  if (auto ready = rtpu.prepare(); !ready) {
+    if (start.parent != 0) std::fprintf(stderr, "chimera-rtpu: %s\n", ready.error().message.c_str());
+    return kCouldNotStart;
+  }
   const int code = rtpu.run();
   if (code == kMethodHangs) ::_exit(kMethodHangs);  // threads are still in components: nothing can be taken down
   return code;

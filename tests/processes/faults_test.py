@@ -2,6 +2,7 @@
 """What a fault of one real-time unit does to the others: nothing but what is declared. Bounded counts here; the same
 with more of them is the campaign `process_faults`. CHIMERA_ROUNDS says how often each is repeated."""
 import os
+import random
 import sys
 import time
 import unittest
@@ -54,6 +55,20 @@ def filled(text, **words):
     for word, value in words.items():
         text = text.replace(word.upper(), str(value))
     return text
+
+
+# The producer is in the middle of what it writes for half of the time.
+WHOLE = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  whole: {component: t_whole, rtpu: second, rate: 1 kHz, constants: {spend: 500000 ns}}
+  judge: {component: t_judge, rtpu: first, rate: 1 kHz}
+configurations: {all: [whole, judge]}
+start: all
+"""
 
 
 class Faults(unittest.TestCase):
@@ -154,6 +169,25 @@ class Faults(unittest.TestCase):
             self.assertIsNotNone(reading["value"])
             self.assertGreaterEqual(system.task("victim")["rejected"], 1)
             self.count("row 7")
+
+    def test_row_8_a_reader_of_a_producer_that_is_killed_sees_only_what_is_whole_and_never_older(self):
+        for _ in range(7 * ROUNDS):
+            with System(WHOLE) as system:
+                before = system.task("judge")
+                for _ in range(3):  # as often as a unit is restarted
+                    time.sleep(random.random() * 0.02)
+                    unit = system.rtpu("second")
+                    self.assertTrue(system.kill(unit["pid"]))
+                    self.await_successor(system, unit)
+                    seen = system.call("get", variables=["seen"])["values"]["seen"]["value"]
+                    await_that(lambda: system.call("get", variables=["seen"])["values"]["seen"]["value"] > seen + 5, 10,
+                               "news of the next incarnation")
+                    self.count("row 8 producer killed")
+                judged = {name: reading["value"] for name, reading in
+                          system.call("get", variables=["torn", "backward", "invalid"])["values"].items()}
+                self.assertEqual(judged, {"torn": 0, "backward": 0, "invalid": 0})
+                after = system.task("judge")
+                self.assertEqual((after["state"], after["incarnation"]), ("ON", before["incarnation"]))
 
     def test_row_10_a_unit_killed_at_any_step_from_spawn_to_off_comes_back_or_is_told(self):
         for where in ("init", "on", "off", "kill"):

@@ -131,7 +131,7 @@ class System:
         self.file.write_text(text.replace("ARMED", str(self.armed)))
         self.marker = f"CHIMERA_TEST_MARK={self.place}"
         self.environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), CHIMERA_TEST_MARK=str(self.place),
-                                CHIMERA_TEST_RECORD=str(self.record), ASAN_OPTIONS=QUIET, **(environment or {}))
+                                CHIMERA_TEST_RECORD=str(self.record), **{"ASAN_OPTIONS": QUIET, **(environment or {})})
         self.output = open(self.place / "output", "w+b")
         self.process = subprocess.Popen([str(CHIMERA), "run", str(self.file), *arguments], stdout=self.output,
                                         stderr=self.output, stdin=subprocess.DEVNULL, env=self.environment,

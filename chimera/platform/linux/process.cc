@@ -34,20 +34,24 @@ constexpr int kFirst = 3;  // of the descriptors that are passed on
   const int above = kFirst + static_cast<int>(passed.size());
   // Out of the way first: a descriptor to pass on may itself be 3 or 4 here. The copies do not survive exec.
   int copies[kMaxPassed + 1];
-  for (std::size_t i = 0; i < passed.size(); ++i) copies[i] = ::fcntl(passed[i], F_DUPFD_CLOEXEC, above);
   const int report = ::fcntl(failed, F_DUPFD_CLOEXEC, above);
   bool good = report >= 0;
-  for (std::size_t i = 0; i < passed.size(); ++i)
-    good = good && copies[i] >= 0 && ::dup2(copies[i], kFirst + static_cast<int>(i)) >= 0;
+  for (std::size_t i = 0; good && i < passed.size(); ++i) {
+    copies[i] = ::fcntl(passed[i], F_DUPFD_CLOEXEC, above);
+    good = copies[i] >= 0;
+  }
+  for (std::size_t i = 0; good && i < passed.size(); ++i)
+    good = ::dup2(copies[i], kFirst + static_cast<int>(i)) >= 0;
   // Whatever the parent was careless with ends at exec too.
   good = good && ::close_range(static_cast<unsigned>(above), UINT_MAX, CLOSE_RANGE_CLOEXEC) == 0;
+  const int passing_error = good ? 0 : errno;
   for (int number = 1; number < NSIG; ++number) ::signal(number, SIG_DFL);
   for (const int number : {SIGINT, SIGHUP}) ::signal(number, SIG_IGN);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   if (good) ::execv(program, words);
-  const int error = errno;
+  const int error = passing_error != 0 ? passing_error : errno;
   if (::write(report >= 0 ? report : failed, &error, sizeof error) < 0) ::_exit(126);
   ::_exit(127);
 }

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Row 19: there is no more memory, no descriptor, no thread, no process, at the n-th time somebody asks for one. The
+start then says what failed and ends with nothing left behind, or copes. CHIMERA_ROUNDS=0: every n until nobody asks
+any more, of every program, once and in each process of it; else as many, spread evenly."""
+import collections
+import itertools
+import os
+import re
+import sys
+import unittest
+
+from system import BUILD, QUIET, System, await_that
+
+ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "3"))
+REASON = re.compile("Cannot allocate memory|Too many open files|Resource temporarily unavailable|"
+                    "Device or resource busy|cannot be opened|cannot be read")
+ABOUT = {"run": 48, "chimera-manager": 20, "chimera-rtpu": 24, "attend": 1}  # calls; spreads the bounded count only
+MOST = 400  # calls of one program; more would be a leak of its own
+
+APPLICATION = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  beside: {component: t_source, rtpu: second, rate: 100 Hz}
+configurations: {all: [steady, beside]}
+start: all
+"""
+
+
+class Exhaustion(unittest.TestCase):
+    outcomes = collections.Counter()
+
+    @classmethod
+    def tearDownClass(cls):
+        print(f"failed calls: {sum(cls.outcomes.values())} ({dict(cls.outcomes)})", file=sys.stderr)
+
+    def attempt(self, program, n, once):
+        """One start in which the n-th call fails; what failed, None when there was none."""
+        shim = BUILD / "tests/processes/libfailing_calls.so"
+        with System(APPLICATION, ("--for", "0.1 s"), wait=False, environment={
+                "LD_PRELOAD": str(shim), "CHIMERA_FAIL": f"{program} {n}{' once' if once else ''}",
+                "CHIMERA_FAILED": "FAILED", "ASAN_OPTIONS": QUIET + ":verify_asan_link_order=0"}) as system:
+            await_that(lambda: system.process.poll() is not None, 40, f"an end of the run ({system.said()})")
+            code, said = system.process.returncode, system.said()
+            system.await_nothing_left(10)
+            record = system.place / "FAILED"
+            failed = sorted({line.split()[2] for line in record.read_text().splitlines()}) if record.exists() else None
+            if failed:
+                self.judge(failed, code, said, system)
+            return failed
+
+    def judge(self, failed, code, said, system):
+        where = f"{failed}: exit {code}:\n{said}"
+        self.assertFalse(system.socket.exists(), where)
+        if code == 0:  # it did not need that, or tried again
+            for task in ("steady", "beside"):
+                self.assertRegex(said, rf"(?m)^{task} +ON ", where)
+            Exhaustion.outcomes["coped with"] += 1
+            return
+        self.assertEqual(code, 1, where)
+        self.assertTrue(REASON.search(said) or any(f"{call} failed" in said for call in failed), "no reason: " + where)
+        Exhaustion.outcomes["refused"] += 1
+
+    def numbers(self, program, once):
+        if ROUNDS == 0:
+            return range(1, MOST)
+        return sorted({(1 if once else 2) + i * ABOUT[program] // ROUNDS for i in range(ROUNDS)})
+
+    def test_row_19_the_nth_call_fails_and_is_told(self):
+        for program, once in itertools.product(ABOUT, (False, True)):
+            for n in self.numbers(program, once):
+                with self.subTest(program=program, n=n, once=once):
+                    if self.attempt(program, n, once) is None:
+                        break
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
