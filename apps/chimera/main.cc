@@ -25,7 +25,7 @@ struct Words {
   std::string component;
   desk::TestOptions test;
   desk::NewRequest made;
-  bool in_c = false;
+  bool in_c = false, for_hardware = false;
   RunWords run;
   std::shared_ptr<ShellWords> shell;
 };
@@ -94,7 +94,9 @@ void add_new(CLI::App& app, Words& words) {
   n->require_subcommand(1);
   CLI::App* c = n->add_subcommand("component", "One component and its test");
   c->add_option("NAME", words.made.name, "[a-z][a-z0-9_]*; also the name of the folder")->required();
-  c->add_flag("--c", words.in_c, "in C instead of C++");
+  auto* in_c = c->add_flag("--c", words.in_c, "in C instead of C++");
+  c->add_flag("--hardware", words.for_hardware, "a driver of a serial device, tested on a pseudo terminal")
+      ->excludes(in_c);
   c->footer("Example: chimera new component low_pass");
   CLI::App* a = n->add_subcommand("app", "A description, a component of its own, and a script that runs it");
   a->add_option("NAME", words.made.name, "[a-z][a-z0-9_]*; also the name of the folder")->required();
@@ -104,6 +106,7 @@ void add_new(CLI::App& app, Words& words) {
 desk::Output make_new(const CLI::App& app, Words& words) {
   if (app.get_subcommand("new")->got_subcommand("app")) words.made.kind = desk::NewKind::kApplication;
   else if (words.in_c) words.made.kind = desk::NewKind::kComponentInC;
+  else if (words.for_hardware) words.made.kind = desk::NewKind::kHardwareComponent;
   return desk::new_project(words.made, desk::program_path());
 }
 

@@ -107,7 +107,10 @@ Instances count_instances(const TaskModel& task, const PortDescriptor& port, con
 std::optional<std::size_t> instances(Model& model, const TaskModel& task, const PortDescriptor& port,
                                      const DraftAlias* alias) {
   const Instances found = count_instances(task, port, alias);
-  const std::size_t least = port.kind == CHIMERA_IN_CONST && !port.initial.empty() ? 0 : 1;
+  // An empty list says that none is wanted; a port that is not mentioned may have been forgotten.
+  const bool may_have_none = port.kind == CHIMERA_IN_CONST && !port.initial.empty();
+  const bool is_said_none = alias != nullptr && alias->variables.empty();
+  const std::size_t least = may_have_none || is_said_none ? 0 : 1;
   if (found.count >= least && found.count <= port.max_instances) return found.count;
   const std::string range = std::to_string(least) + " to " + std::to_string(port.max_instances);
   model.error("repeated-port", found.at,

@@ -53,7 +53,13 @@ std::string without_licence(const std::string& text) {
 }
 
 std::string template_name(NewKind kind) {
-  return kind == NewKind::kApplication ? "app" : kind == NewKind::kComponentInC ? "component_c" : "component";
+  switch (kind) {
+    case NewKind::kComponent: return "component";
+    case NewKind::kComponentInC: return "component_c";
+    case NewKind::kHardwareComponent: return "component_hardware";
+    case NewKind::kApplication: break;
+  }
+  return "app";
 }
 
 /// share/chimera/templates of the installation, or of the checkout around a build tree (build/PRESET).

@@ -9,7 +9,7 @@
 
 namespace chimera::desk {
 
-enum class NewKind { kComponent, kComponentInC, kApplication };
+enum class NewKind { kComponent, kComponentInC, kHardwareComponent, kApplication };
 
 struct NewRequest {
   NewKind kind = NewKind::kComponent;

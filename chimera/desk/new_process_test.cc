@@ -65,6 +65,11 @@ TEST_F(New, ComponentInCAndApplicationBuildAndPassAgainstAnInstallation) {
   EXPECT_TRUE(fs::exists(folder_ + "/demo/build/components/demo_wave.component.json"));
 }
 
+TEST_F(New, DriverOfADeviceBuildsAndPassesOnAPseudoTerminal) {
+  build_and_test(make(NewKind::kHardwareComponent, "lift"), "lift");
+  EXPECT_NE(log().find("lift: init on cycle off kill clear"), std::string::npos) << log();
+}
+
 TEST_F(New, WritesAProjectWithoutOurLicence) {
   ASSERT_EQ(make(NewKind::kComponent, "x9_y").code, kOk);
   EXPECT_EQ(text("x9_y/x9_y.cc").find("SPDX"), std::string::npos);

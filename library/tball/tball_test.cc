@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <linux/input.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -186,17 +187,29 @@ TEST_F(TballTest, ALostDeviceRestsThenIsAFaultAndComesBackByClear) {
 TEST_F(TballTest, KeysOfATerminalMoveItUntilItHangsUp) {
   const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_EQ(::grantpt(master) | ::unlockpt(master), 0);
-  start(::ptsname(master));
+  const std::string name = ::ptsname(master);
+  const int line = ::open(name.c_str(), O_RDWR | O_NOCTTY);
+  const auto press = [&](const char* keys) {
+    const int wanted = static_cast<int>(std::strlen(keys));
+    ASSERT_EQ(::write(master, keys, std::strlen(keys)), wanted);
+    int there = 0;
+    for (int i = 0; i < 2000 && there < wanted; ++i) {  // the kernel takes its time
+      if (i > 0) ::usleep(1000);
+      ASSERT_EQ(::ioctl(line, FIONREAD, &there), 0);
+    }
+  };
+  start(name);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(motion(0), 0.0);
-  ASSERT_EQ(::write(master, "dQf", 3), 3);
+  press("dQf");
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(motion(0), 1.0);
   EXPECT_EQ(motion(2), -1.0);
-  ASSERT_EQ(::write(master, " ", 1), 1);
+  press(" ");
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(motion(0), 0.0);
   ::close(master);
+  ::close(line);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rig.cycle().status, CHIMERA_FAULT);
   EXPECT_EQ(rig.clear().status, CHIMERA_FAULT);

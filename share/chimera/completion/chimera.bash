@@ -25,7 +25,7 @@ _chimera_words() {
     watch) echo '--help --json --subsystem --every' ;;
     shell) echo '--help --keep-going --subsystem' ;;
     new) echo '--help component app' ;;
-    'new component') echo '--help --c' ;;
+    'new component') echo '--help --c --hardware' ;;
     'new app') echo '--help' ;;
   esac
 }

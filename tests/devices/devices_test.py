@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A device that goes away while its task is ON, and comes back: the task is in ERROR with a sentence that says what to
+do, its outputs are what its data sheet says, nobody else notices, and `clear` and `on` bring it back."""
+import os
+import pathlib
+import select
+import subprocess
+import sys
+import threading
+import tty
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "processes"))
+from system import BUILD, Refused, System, await_that  # noqa: E402
+
+APPLICATION = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  driver: {component: COMPONENT, rtpu: second, rate: 100 Hz, MORE}
+configurations:
+  all: [steady, driver]
+start: all
+"""
+
+
+class Line:
+    """A pseudo terminal with a name that stays when it is unplugged and plugged in again."""
+
+    def __init__(self, name, echo):
+        self.name, self.echo, self.heard, self.is_plugged = pathlib.Path(name), echo, b"", False
+
+    def plug(self):
+        self.master, self.slave = os.openpty()  # the slave stays open: without one a master is always readable
+        os.set_blocking(self.master, False)
+        tty.setraw(self.slave)
+        self.name.unlink(missing_ok=True)
+        self.name.symlink_to(os.ttyname(self.slave))
+        self.is_plugged = True
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+
+    def unplug(self):
+        self.is_plugged = False
+        self.thread.join()
+        os.close(self.master)
+        os.close(self.slave)
+        self.name.unlink()
+
+    def end(self):
+        if self.is_plugged:
+            self.unplug()
+
+    def run(self):
+        while self.is_plugged:
+            if not select.select([self.master], [], [], 0.01)[0]:
+                continue
+            try:
+                got = os.read(self.master, 4096)
+            except BlockingIOError:
+                continue
+            self.heard = (self.heard + got)[-4096:]
+            if self.echo:
+                os.write(self.master, got)
+
+    def say(self, text):
+        os.write(self.master, text)
+
+
+class Devices(unittest.TestCase):
+    def setUp(self):
+        self.name = f"/tmp/chimera-line-{os.getpid()}"
+        self.line = Line(self.name, True)
+        self.addCleanup(self.line.end)
+
+    def value(self, system, name):
+        return system.call("get", variables=[name])["values"][name]["value"]
+
+    def await_value(self, system, name, wanted):
+        await_that(lambda: self.value(system, name) == wanted, 5, f"{name} = {wanted}")
+
+    def goes_and_comes_back(self, system, go, fault, come, while_gone=lambda: None):
+        before, driver = system.task("steady"), system.task("driver")
+        go()
+        system.await_state("driver", "ERROR")
+        self.assertIn(fault, system.task("driver")["fault"])
+        self.assertIn("bring it back, then `clear` and `on`", system.task("driver")["fault"])
+        while_gone()
+        try:
+            system.signal("clear", "driver")
+        except Refused:
+            pass
+        self.assertEqual(system.state("driver"), "ERROR")
+        come()
+
+        def is_cleared():
+            try:
+                system.signal("clear", "driver")
+            except Refused:
+                return False
+            return system.state("driver") == "OFF"
+        await_that(is_cleared, 5, "clear")
+        system.signal("on", "driver")
+        system.await_state("driver", "ON")
+        self.assertEqual(system.task("driver")["incarnation"], driver["incarnation"])
+        after = system.task("steady")
+        self.assertEqual((after["state"], after["faults"], after["incarnation"]), ("ON", 0, before["incarnation"]))
+        self.assertGreater(after["cycles"], before["cycles"])
+
+    def test_a_serial_device_that_is_unplugged(self):
+        self.line.plug()
+        text = APPLICATION.replace("COMPONENT", "serial_frame").replace(
+            "MORE", f"constants: {{timeout: 1 s}}, resources: {{device: {self.name}}}")
+        with System(text + "operator: {command: [0.5]}\n") as system:
+            self.await_value(system, "state", [0.5])
+            self.goes_and_comes_back(
+                system, self.line.unplug, "is gone", self.line.plug,
+                lambda: (self.assertEqual(self.value(system, "state"), [0.5]),
+                         self.assertFalse(self.value(system, "connected"))))
+            system.call("set", values={"command": [0.25]})
+            self.await_value(system, "state", [0.25])
+
+    def test_a_serial_device_that_falls_silent_is_told_to_idle(self):
+        self.line.plug()
+        text = APPLICATION.replace("COMPONENT", "serial_frame").replace(
+            "MORE", f"constants: {{timeout: 0.3 s}}, resources: {{device: {self.name}}}")
+        with System(text + "operator: {command: [0.5]}\n") as system:
+            self.await_value(system, "state", [0.5])
+            self.line.echo = False
+            system.await_state("driver", "ERROR")
+            self.assertIn("is silent", system.task("driver")["fault"])
+            idle = bytes([0xA5, 4, 0, 0, 0, 0])
+            await_that(lambda: self.line.heard[-8:].startswith(idle), 5, "idle")
+            self.line.echo = True
+            system.signal("clear", "driver")
+            system.signal("on", "driver")
+            self.await_value(system, "connected", True)
+
+    def test_a_terminal_that_hangs_up(self):
+        self.line.echo = False
+        self.line.plug()
+        text = APPLICATION.replace("COMPONENT", "tball").replace(
+            "MORE", f"alias: {{xm: []}}, constants: {{hold: 10 s}}, resources: {{device: {self.name}}}")
+        with System(text) as system:
+            self.line.say(b"d")
+            self.await_value(system, "motion", [1, 0, 0, 0, 0, 0])
+            self.goes_and_comes_back(system, self.line.unplug, "is gone", self.line.plug,
+                                     lambda: self.assertEqual(self.value(system, "motion"), [0] * 6))
+            self.line.say(b"s")
+            self.await_value(system, "motion", [0, -1, 0, 0, 0, 0])
+
+    @unittest.skipUnless((BUILD / "components/modbus_io.so").exists(), "modbus_io is not built")
+    def test_a_modbus_device_that_is_switched_off(self):
+        partner = str(BUILD / "components/modbus_io.test.partner")
+        device = subprocess.Popen([partner], stdout=subprocess.PIPE, text=True)
+        port = device.stdout.readline().strip()
+        text = APPLICATION.replace("COMPONENT", "modbus_io").replace(
+            "MORE", "alias: {input: [level], contact: [], holding: [speed], coil: []}, "
+                    f"resources: {{device: 'tcp:127.0.0.1:{port}'}}")
+
+        def go():
+            device.kill()
+            device.wait()
+            device.stdout.close()
+
+        def come():
+            nonlocal device
+            device = subprocess.Popen([partner, port], stdout=subprocess.PIPE, text=True)
+        try:
+            with System(text + "operator: {speed: 7}\n") as system:
+                self.await_value(system, "level", 7)
+                self.goes_and_comes_back(system, go, "does not answer", come,
+                                         lambda: self.assertFalse(self.value(system, "connected")))
+                system.call("set", values={"speed": 9})
+                self.await_value(system, "level", 9)
+        finally:
+            go()
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
