@@ -44,8 +44,8 @@ class Refusals {
     const auto first =
         std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
     if (first == tasks.end() || index == tasks[0].rtpu) return;
-    refuse(first->at, "task '" + first->name + "' on a second rtpu, '" + std::string(spec.name) + "'",
-           "place every task on one rtpu to run");
+    refuse(first->at, "task '" + first->name + "' on a second rtpu, '" + std::string(spec.name) + "', in virtual time",
+           "run without --virtual, each rtpu a process, or place every task on one rtpu");
   }
 
   // All tasks in one loop on the CPU of the first rtpu.
