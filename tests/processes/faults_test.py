@@ -3,6 +3,7 @@
 with more of them is the campaign `process_faults`. CHIMERA_ROUNDS says how often each is repeated."""
 import os
 import random
+import signal
 import sys
 import time
 import unittest
@@ -225,6 +226,26 @@ class Faults(unittest.TestCase):
             numbers = [e["number"] for e in system.events()]
             self.assertEqual(numbers, sorted(set(numbers)))
             self.assertEqual(system.call("hello")["manager"]["starts"], 3 * ROUNDS + 1)
+
+    def test_a_command_whose_connection_was_reset_is_sent_again_and_done_once(self):
+        """docs/formats/control.md, "Limits": a request of which nothing was read can safely be sent again."""
+        recorder = "{component: t_recorder, constants: {label: b}, alias: {x: level, y: z},"
+        text = APPLICATION.replace("{component: t_source,", recorder)
+        with System(text.replace("configurations:", "operator: {level: 1}\nconfigurations:")) as system:
+            for n in range(1, 3 * ROUNDS + 1):
+                manager, client = system.pids()["manager"], Client(system.socket)
+                self.assertTrue(client.call("hello"))
+                self.assertTrue(system.kill(manager, signal.SIGSTOP))
+                client.socket.sendall(b'{"jsonrpc":"2.0","id":2,"method":"signal",'
+                                      b'"params":{"signal":"reinit","tasks":["beside"]}}\n')
+                self.assertTrue(system.kill(manager))
+                with self.assertRaises(ConnectionResetError):
+                    client.line()
+                client.close()
+                system.disconnect()
+                system.signal("reinit", "beside")
+                self.assertEqual([method for _, method, _ in system.lines()].count("reinit"), n)
+                self.count("command sent again")
 
     def test_a_command_waits_for_a_manager_that_is_being_restarted(self):
         with System(filled(APPLICATION, where="cycle", how="segv")) as system:
