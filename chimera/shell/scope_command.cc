@@ -164,14 +164,19 @@ Said scope(Session& session, const Call& call) {
   Scope scope(asked.value().request);
   const auto end = record(session, scope, asked.value());
   session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
-  if (end) return refused(*end, call.json);
+  if (end && !scope.is_triggered()) return refused(*end, call.json);
   if (!scope.is_triggered()) {
     const std::string within = " within " + duration_text(asked.value().wait.count);
     return refused(wrong(asked.value().request.trigger ? "no trigger '" + call.value("--trigger") + "'" + within
                                                        : "nothing was published" + within),
                    call.json);
   }
-  return tell(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "");
+  Said said = tell(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "");
+  if (end && said.code == kOk) {  // what was recorded is kept; what came after is not known to anybody
+    said.err += "ended before its time: " + std::string(end->message.view()) + "\n";
+    said.code = kRefused;
+  }
+  return said;
 }
 
 }  // namespace chimera::shell

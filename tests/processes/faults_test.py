@@ -4,11 +4,12 @@ with more of them is the campaign `process_faults`. CHIMERA_ROUNDS says how ofte
 import os
 import random
 import signal
+import subprocess
 import sys
 import time
 import unittest
 
-from system import Client, Refused, System, await_that
+from system import CHIMERA, Client, Refused, System, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
 
@@ -246,6 +247,18 @@ class Faults(unittest.TestCase):
                 system.signal("reinit", "beside")
                 self.assertEqual([method for _, method, _ in system.lines()].count("reinit"), n)
                 self.count("command sent again")
+
+    def test_a_scope_keeps_what_it_recorded_when_the_manager_dies_and_says_that_it_ended(self):
+        with System(filled(APPLICATION, where="cycle", how="segv")) as system:
+            words = [str(CHIMERA), "scope", "count", "--for", "20 s"]
+            with subprocess.Popen(words, env=system.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  text=True) as scope:
+                time.sleep(0.5)
+                self.assertTrue(system.kill(system.pids()["manager"]))
+                out, said = scope.communicate(timeout=20)
+            self.assertEqual(scope.returncode, 1, said)
+            self.assertIn("ended before its time: the connection to the subsystem was lost\n", said)
+            self.assertGreater(len(out.splitlines()), 10)
 
     def test_a_command_waits_for_a_manager_that_is_being_restarted(self):
         with System(filled(APPLICATION, where="cycle", how="segv")) as system:
