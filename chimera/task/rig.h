@@ -107,6 +107,20 @@ class Rig {
     for (auto& cell : cells_) cell->live->seen = cell->slot.sequence;
     return answer;
   }
+  /// cycle() `n` times in steps of `dt` and nothing beside it, for measuring; the status of the last.
+  std::int32_t repeat(std::uint64_t n, Nanoseconds dt) {
+    chimera_fault fault{};
+    call_.fault = &fault;
+    call_.dt_ns = dt.count;
+    std::int32_t status = CHIMERA_OK;
+    const chimera_method function = component_->methods[CHIMERA_CYCLE];
+    for (; n > 0; --n) {
+      call_.now_ns += dt.count;
+      status = function(state_.get(), &call_);
+    }
+    call_.fault = nullptr;
+    return status;
+  }
   RigAnswer off() { return run(Method::kOff); }
   RigAnswer kill() { return run(Method::kKill); }
   RigAnswer error() { return run(Method::kError); }
