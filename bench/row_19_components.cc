@@ -92,9 +92,11 @@ std::vector<Case> signal_cases() {
        loop([](std::size_t, double x, double y) { return std::clamp(x, y - 1e-3, y + 1e-3); })},
       {"unit_convert", "k x + c", [](Rig& r) { fill(r, "x", 0.1), r.set("factor", 57.3), r.set("offset", 0.0); },
        loop([](std::size_t, double x, double) { return 57.3 * x; })},
-      {"lowpass", "biquad, direct form II", [](Rig& r) { fill(r, "x", 0.1), r.set("cutoff", 50.0), r.set("order", 2); },
+      {"lowpass", "biquad, direct form II",
+       [](Rig& r) { fill(r, "x", 0.1), r.set("cutoff", 50.0), r.set("order", 2); },
        loop(Biquad{})},
-      {"notch", "biquad, direct form II", [](Rig& r) { fill(r, "x", 0.1), r.set("center", 50.0), r.set("width", 5.0); },
+      {"notch", "biquad, direct form II",
+       [](Rig& r) { fill(r, "x", 0.1), r.set("center", 50.0), r.set("width", 5.0); },
        loop(Biquad{})},
   };
 }
@@ -123,7 +125,8 @@ std::vector<Case> other_cases() {
          bool y = false;
          for (; n > 0; --n) bench::keep(x), y = now - x[0] < 9 && now - x[1] < 9 && now - x[2] < 9, bench::keep(y);
        }},
-      {"signal_generator", "6 std::sin", [](Rig& r) { fill(r, "amplitude", 1), fill(r, "offset", 0), fill(r, "phase", 0);
+      {"signal_generator", "6 std::sin", [](Rig& r) {
+         fill(r, "amplitude", 1), fill(r, "offset", 0), fill(r, "phase", 0);
          r.set("wave", Text<16>("sine")), r.set("frequency", 1.0), r.set("end_frequency", 1.0);
          r.set("duration", 1.0), r.set("delay", 0.0), r.set("seed", std::int64_t{1}); },
        [](std::uint64_t n) {
@@ -133,30 +136,29 @@ std::vector<Case> other_cases() {
            bench::keep(y);
          }
        }},
+  };
+}
+
+void six_quintics(std::uint64_t n) {
+  static library::Motion y[kJoints];
+  library::Quintic path{0, 1, 3600};
+  for (double t = 0; n > 0; --n, t += 1e-3) {
+    bench::keep(path);
+    for (auto& motion : y) motion = path.at(t);
+    bench::keep(y);
+  }
+}
+
+std::vector<Case> joint_cases() {
+  return {
       {"pid_joint", "6 PID, direct", [](Rig& r) { r.set("ndof", static_cast<std::int32_t>(kJoints));
          for (const char* p : {"q_ref", "qd_ref", "q", "qd", "kp", "ki", "kd", "tau_max"}) fill(r, p, 0.5);
          r.set("filter_time", 0.002); },
        loop(PidLaw{})},
       {"joint_trajectory", "6 quintics", [](Rig& r) { give_motion(r, "quintic"); },
-       [](std::uint64_t n) {
-         static library::Motion y[kJoints];
-         library::Quintic path{0, 1, 3600};
-         for (double t = 0; n > 0; --n, t += 1e-3) {
-           bench::keep(path);
-           for (auto& motion : y) motion = path.at(t);
-           bench::keep(y);
-         }
-       }},
+       six_quintics},
       {"joint_trajectory", "jerk; 6 quintics", [](Rig& r) { give_motion(r, "jerk"); },
-       [](std::uint64_t n) {
-         static library::Motion y[kJoints];
-         library::Quintic path{0, 1, 3600};
-         for (double t = 0; n > 0; --n, t += 1e-3) {
-           bench::keep(path);
-           for (auto& motion : y) motion = path.at(t);
-           bench::keep(y);
-         }
-       }},
+       six_quintics},
       {"csv_player", "row of 6 by index", [](Rig& r) { r.instances("out", 1), r.resource("file", "row_19.csv");
          r.set("is_repeated", true), r.set("is_interpolated", true); },
        [](std::uint64_t n) {
@@ -199,7 +201,7 @@ int main(int argc, char** argv) {
     for (int i = 0; i <= 1000; ++i) file << i * 1e-2 << ",1,2,3,4,5,6\n";
   }
   bool is_well = true;
-  for (const auto& cases : {signal_cases(), other_cases()})
+  for (const auto& cases : {signal_cases(), other_cases(), joint_cases()})
     for (const Case& of : cases) is_well = measure(of, bench::repetitions(argc, argv, 101)) && is_well;
   std::remove("row_19.csv");
   return is_well ? 0 : 1;
