@@ -58,7 +58,7 @@ class Deceased : public ::testing::Test {
     while (true) ::pause();
   }
   void kill_it() {
-    ::kill(pid_, SIGKILL);  // not reaped yet: the number is its own
+    ::kill(pid_, SIGKILL);  // still ours: not reaped yet
     EXPECT_EQ(::waitpid(pid_, nullptr, 0), pid_);
     pid_ = -1;
   }
@@ -94,10 +94,10 @@ TEST_F(Deceased, HasAnUndertakerThatKeepsNothingButThePidfd) {
 }
 
 TEST_F(Deceased, HasAnUndertakerThatOnlySigkillEnds) {
-  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) ::kill(undertaker_, number);
+  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) ::kill(undertaker_, number);  // still ours: not reaped yet
   EXPECT_FALSE(has_undertaker_ended(50));
   EXPECT_EQ(::kill(pid_, 0), 0) << "and it is nobody else who was hit";
-  ::kill(undertaker_, SIGKILL);
+  ::kill(undertaker_, SIGKILL);  // still ours: not reaped yet
   EXPECT_TRUE(has_undertaker_ended(kPatienceMs));
   EXPECT_EQ(::waitpid(pid_, nullptr, WNOHANG), 0) << "whose undertaker is gone lives on";
 }

@@ -75,12 +75,12 @@ class Device {
   }
   void end() {
     if (process_ <= 0) return;
-    ::kill(process_, SIGKILL);
+    ::kill(process_, SIGKILL);  // still ours: not reaped yet
     ::waitpid(process_, nullptr, 0);
     process_ = -1;
   }
   // A device that is there and says nothing.
-  void stop() { ::kill(process_, SIGSTOP); }
+  void stop() { ::kill(process_, SIGSTOP); }  // still ours: not reaped yet
 
   Points* points;
 

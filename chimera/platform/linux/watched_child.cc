@@ -64,10 +64,10 @@ bool watch_child(pid_t child, ChildWatcher& watcher, ProcessEnd& end) noexcept {
   bool is_traced = false, was_ended = false;
   for (;;) {
     int status = 0;
-    if (waitpid(child, &status, WNOHANG | __WALL) != child) {
+    if (waitpid(child, &status, WNOHANG | __WALL) != child) {  // still ours: not reaped yet
       if (!was_ended && watcher.has_waited_enough()) {
         was_ended = true;
-        ::kill(child, SIGKILL);
+        ::kill(child, SIGKILL);  // still ours: not reaped yet
       }
       sigtimedwait(&set, nullptr, &slice);
       continue;
@@ -76,7 +76,7 @@ bool watch_child(pid_t child, ChildWatcher& watcher, ProcessEnd& end) noexcept {
       const long signal = answer_stop(child, WSTOPSIG(status), is_traced, watcher);
       if (watcher.has_waited_enough()) {
         was_ended = true;
-        ::kill(child, SIGKILL);
+        ::kill(child, SIGKILL);  // still ours: not reaped yet
       }
       ptrace(PTRACE_SYSCALL, child, nullptr, signal);
       continue;
