@@ -94,10 +94,10 @@ TEST_F(Deceased, HasAnUndertakerThatKeepsNothingButThePidfd) {
 }
 
 TEST_F(Deceased, HasAnUndertakerThatOnlySigkillEnds) {
-  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) ::kill(undertaker_, number);  // still ours: not reaped yet
+  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) ::kill(undertaker_, number);  // still ours
   EXPECT_FALSE(has_undertaker_ended(50));
   EXPECT_EQ(::kill(pid_, 0), 0) << "and it is nobody else who was hit";
-  ::kill(undertaker_, SIGKILL);  // still ours: not reaped yet
+  ::kill(undertaker_, SIGKILL);  // still ours
   EXPECT_TRUE(has_undertaker_ended(kPatienceMs));
   EXPECT_EQ(::waitpid(pid_, nullptr, WNOHANG), 0) << "whose undertaker is gone lives on";
 }
