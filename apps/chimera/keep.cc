@@ -117,7 +117,8 @@ Result<int> keep_nothing(const std::string& subsystem, const Library& library) {
                            .n_rtpus = 0, .image = image->descriptor(), .bundle = bundle->descriptor(),
                            .listening = place->descriptor()},
                  .face = {}, .ending_limit = seconds(1)});
-  std::printf("%s: nothing is loaded; serves `check` and `library` at %s\n", subsystem.c_str(), place->path().c_str());
+  std::printf("%s: nothing is loaded; serves `check`, `schedule` and `library` at %s\n", subsystem.c_str(),
+              place->path().c_str());
   std::fflush(stdout);
   if (auto started = keeper.start(); !started) return started.error();
   return keeper.run();

@@ -19,5 +19,5 @@ struct KeepRequest {
 /// Answers the exit code of the run. Context: setup, the first thread; blocks for the duration.
 int keep(const KeepRequest& request, const chimera::desk::Workplace& workplace);
 
-/// A subsystem of that name with nothing loaded: serves `check` and `library` to editors until it is ended.
+/// A subsystem of that name with nothing loaded: serves `check`, `schedule` and `library` to editors until it is ended.
 int keep_idle(const std::string& subsystem, const chimera::desk::Workplace& workplace);

@@ -132,7 +132,7 @@ void add_run(CLI::App& app, RunWords& words) {
   r->add_flag("--json", words.run.json, "the result as one JSON object");
   r->footer("Exit code 0 only if the run came to its end and every --expect holds.\n"
             "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
-  CLI::App* i = app.add_subcommand("idle", "A subsystem with nothing loaded: serves `check` and `library` to editors");
+  CLI::App* i = app.add_subcommand("idle", "A subsystem with nothing loaded: serves check, schedule, library");
   i->add_option("--subsystem", words.idle_name, "its name (idle)");
   i->footer("Ends by Ctrl-C or `chimera end`.\nExample: chimera idle &");
   CLI::App* a = app.add_subcommand("attend", "The face of a run; started by it");

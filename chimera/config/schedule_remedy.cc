@@ -12,10 +12,15 @@ namespace {
 constexpr std::size_t kMostTried = 12;   // tasks of one kind of change
 constexpr double kMostStretched = 64;    // a rate is lowered to 1/64 at most
 constexpr int kBisections = 16;
+constexpr std::int64_t kMostTerms = 200'000'000;  // of the analyses of a search, about half a second
 
 double share(const Work& w) { return static_cast<double>(w.time.count) / static_cast<double>(w.period.count); }
 
 std::uint32_t cpu_of(const SetWorks& set, std::size_t i) { return set.uses[set.works[i].rtpu].cpu; }
+
+bool is_enough(const CpuVerdict& verdict) {
+  return verdict.fits() && verdict.utilisation <= kMaxUtilisation + 1e-9;
+}
 
 /// With a period longer by `factor`; a deadline that is the period stays it.
 Work stretched(Work w, double factor) {
@@ -62,9 +67,18 @@ class Search {
   bool would_fit(std::size_t task, Change change) {
     const Work before = changed_.works[task];
     change(changed_.works[task]);
-    const bool fit = fits(changed_, cpu_) && (cpu_of(changed_, task) == cpu_ || fits(changed_, cpu_of(changed_, task)));
+    const std::uint32_t cpu = cpu_of(changed_, task);
+    const bool fit = fits_now(cpu_) && (cpu == cpu_ || fits_now(cpu));
     changed_.works[task] = before;
     return fit;
+  }
+  /// Nothing fits any more when the search has cost enough.
+  bool fits_now(std::uint32_t cpu) {
+    if (terms_ > kMostTerms) return false;
+    std::vector<WorkVerdict> verdicts;
+    const CpuVerdict verdict = analyse(changed_, cpu, verdicts);
+    terms_ += verdict.terms;
+    return is_enough(verdict);
   }
 
   bool fits_stretched(std::size_t task, double factor) {
@@ -112,6 +126,7 @@ class Search {
   /// Under `muf`: one task made less critical than all others of its rtpu, so that those are promised.
   std::optional<Remedy> criticality() {
     for (const std::size_t task : candidates()) {
+      if (terms_ > kMostTerms) break;
       const Work& w = set_.works[task];
       const Policy policy = set_.uses[w.rtpu].policy;
       if ((policy != Policy::kMuf && policy != Policy::kMufLaxity) || w.criticality == 0) continue;
@@ -119,6 +134,7 @@ class Search {
       lowered.works[task].criticality = 0;
       std::vector<WorkVerdict> verdicts;
       const CpuVerdict verdict = analyse(lowered, cpu_, verdicts);
+      terms_ += verdict.terms;
       const bool only_it = verdict.not_guaranteed == 0 ||
                            (verdict.not_guaranteed == 1 && verdicts[task].guarantee != Guarantee::kYes);
       if (only_it) return Remedy{.kind = Remedy::Kind::kCriticality, .task = task};
@@ -130,6 +146,7 @@ class Search {
   std::uint32_t cpu_;
   const std::vector<WorkVerdict>& verdicts_;
   SetWorks changed_;
+  std::int64_t terms_ = 0;
 };
 
 }  // namespace
@@ -142,8 +159,7 @@ CpuVerdict analyse(const SetWorks& set, std::uint32_t cpu, std::vector<WorkVerdi
 
 bool fits(const SetWorks& set, std::uint32_t cpu) {
   std::vector<WorkVerdict> verdicts;
-  const CpuVerdict verdict = analyse(set, cpu, verdicts);
-  return verdict.fits() && verdict.utilisation <= kMaxUtilisation + 1e-9;
+  return is_enough(analyse(set, cpu, verdicts));
 }
 
 std::vector<std::size_t> give_way(const SetWorks& set, std::uint32_t cpu, const std::vector<WorkVerdict>& verdicts) {

@@ -30,6 +30,7 @@ constexpr MethodRule kMethods[] = {
       {"variables", Kind::kTexts, false}, count("since", 0, INT64_MAX)}},
     {"unsubscribe", Role::kObserve, false, {count("subscription", 1, INT64_MAX, true)}},
     {"check", Role::kObserve, true, {{"text", Kind::kText, true}, {"file", Kind::kText, false}}},
+    {"schedule", Role::kObserve, true, {{"text", Kind::kText, true}, {"file", Kind::kText, false}}},
     {"library", Role::kObserve, false, {}},
     {"signal", Role::kOperate, true,
      {{"signal", Kind::kText, true, "spawn on off kill clear reinit"}, {"tasks", Kind::kTexts, true}}},

@@ -52,6 +52,8 @@ Answer Subject::answer(std::string_view method, const Json& parameters, control:
   if (method == "why") return why(parameters);
   if (method == "check")
     return Answer::good(check_json(world(), parameters.at("text"), parameters.value("file", std::string("text"))));
+  if (method == "schedule")
+    return Answer::good(schedule_json(world(), parameters.at("text"), parameters.value("file", std::string("text"))));
   if (method == "library") return Answer::good(library_json(world()));
   if (method == "set") return set_values(world(), parameters.at("values"));
   if (method == "flag") return set_flag(world(), parameters.at("up"));

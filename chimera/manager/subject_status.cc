@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/config/task_profile.h"
+#include "chimera/config/schedule_report.h"
 #include "chimera/manager/cause.h"
 
 namespace chimera::manager {
@@ -260,6 +261,13 @@ Json library_json(const World& world) {
 
 Json check_json(const World& world, const std::string& text, const std::string& file) {
   return Json::parse(chimera::verify(read_description(text, file), world.bundle.library).report.json());
+}
+
+Json schedule_json(const World& world, const std::string& text, const std::string& file) {
+  const Verdict verdict = chimera::verify(read_description(text, file), world.bundle.library);
+  if (!verdict.configuration) return Json::parse(verdict.report.json());
+  const ScheduleReport report = schedule_report(*verdict.configuration, {});
+  return Json::parse(chimera::schedule_json(*verdict.configuration, report));
 }
 
 }  // namespace chimera::manager

@@ -277,6 +277,13 @@ TEST_F(SubjectTest, ChecksATextWithTheLibraryOfTheStart) {
   EXPECT_EQ(report["faults"][0]["nearest"], "sensor");
 }
 
+TEST_F(SubjectTest, AnalysesATextWithTheLibraryOfTheStart) {
+  const Json analysis = good("schedule", {{"text", kFakeText}, {"file", "mine.yaml"}});
+  EXPECT_EQ(analysis["fits"], true);
+  EXPECT_FALSE(analysis["sets"][0]["cpus"].empty());
+  EXPECT_EQ(good("schedule", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}})["legal"], false);
+}
+
 class IdleTest : public SubjectTest {
  protected:
   IdleTest() : SubjectTest("") {}
@@ -285,6 +292,7 @@ class IdleTest : public SubjectTest {
 TEST_F(IdleTest, ServesEditors) {
   EXPECT_EQ(good("hello")["file"], "");
   EXPECT_EQ(good("check", {{"text", kFakeText}})["legal"], true);
+  EXPECT_EQ(good("schedule", {{"text", kFakeText}})["fits"], true);
   EXPECT_EQ(good("library")["components"].size(), 3u);
   EXPECT_EQ(good("status")["tasks"], Json::array());
   EXPECT_EQ(good("describe")["tasks"], Json::array());

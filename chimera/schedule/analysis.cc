@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-constexpr std::int64_t kMostTerms = 400'000'000;
+constexpr std::int64_t kMostTerms = 100'000'000;
 
 bool has_criticalities(Policy policy) noexcept { return policy == Policy::kMuf || policy == Policy::kMufLaxity; }
 
@@ -67,6 +67,7 @@ class Analysis {
       at = end;
     }
     for (const RankedWork& r : ranked_) count(r);
+    verdict_.terms = kMostTerms - effort_.terms;
     return verdict_;
   }
 

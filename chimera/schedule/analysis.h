@@ -50,6 +50,7 @@ struct CpuVerdict {
   double hyperbolic = 0;  ///< product of (1 + u); at most 2 is enough: Bini & Buttazzo, IEEE Trans. Comp. 52(7), 2003
   std::uint32_t guaranteed = 0;
   std::uint32_t not_guaranteed = 0;  ///< kNo and kTooLong
+  std::int64_t terms = 0;          ///< what the searches cost, in terms added up
   Demand demand;                   ///< the first level found wanting
 
   /// Every task with a stated time keeps its deadline.

@@ -5,7 +5,7 @@
 //                   jitter J: Audsley et al. 1993)
 //   demand bound    jobs released and due in it: (floor((t - D) / T) + 1) C  (Baruah, Rosier, Howell 1990)
 // A deferrable server may run at the end of one period and at the start of the next: J = T - C, and in the demand its
-// capacity is due as fast as it can be used.
+// capacity is due as fast as it can be used, D = C. (What of it is due earlier leaves others as much time as at C.)
 #pragma once
 
 #include <cstdint>
@@ -43,19 +43,14 @@ constexpr Nanoseconds requested_until(const RankedWork& r, Nanoseconds t) noexce
   return r.work.time * ((t + r.jitter) / r.work.period + 1);
 }
 
-/// The first t > 0 at which work of the task can be due; more every period. Context: any; pure.
+/// The first t at which all of a job can be due; more every period. Context: any; pure.
 constexpr Nanoseconds first_due(const RankedWork& r) noexcept {
   return r.work.server == ServerKind::kDeferrable ? r.early : r.work.deadline;
 }
 
 /// Work released and due in [0, t]. Requires: t >= 0. Context: any; pure.
 constexpr Nanoseconds due(const RankedWork& r, Nanoseconds t) noexcept {
-  const Work& w = r.work;
-  if (w.server != ServerKind::kDeferrable)
-    return t < w.deadline ? Nanoseconds{} : w.time * ((t - w.deadline) / w.period + 1);
-  const std::int64_t whole = t / w.period;
-  const Nanoseconds rest = t - w.period * whole;
-  return w.time * whole + (rest < r.early ? rest : w.time);
+  return t < first_due(r) ? Nanoseconds{} : r.work.time * ((t - first_due(r)) / r.work.period + 1);
 }
 
 /// The sum of `requested` over `works`. Context: any; pure.

@@ -32,7 +32,7 @@ class DemandSearch {
         demand_ = {t, ends};
         return Judgement::kFails;
       }
-      const Nanoseconds leap = ends < t ? ends : point_before(t);
+      const Nanoseconds leap = point_before(ends);  // at `ends` itself no more than that is due
       // Shorter intervals may have longer blocking: not past the deadline where that begins.
       const Nanoseconds edge = blocked_from_;
       t = leap >= edge ? leap : point_before(edge);

@@ -135,7 +135,8 @@ class Judged(Client):
 GOOD = {"hello": {}, "status": {}, "describe": {}, "get": {"variables": ["count"]}, "profile": {},
         "events": {"since": 0, "limit": 10}, "why": {"variable": "count"},
         "subscribe": {"to": "values", "period_ms": 20, "variables": ["count"], "since": 0},
-        "unsubscribe": {"subscription": 1}, "check": {"text": "subsystem: a", "file": "a.yaml"}, "library": {},
+        "unsubscribe": {"subscription": 1}, "check": {"text": "subsystem: a", "file": "a.yaml"},
+        "schedule": {"text": "subsystem: a", "file": "a.yaml"}, "library": {},
         "signal": {"signal": "on", "tasks": ["steady"]}, "set": {"values": {"level": 2}}, "flag": {"up": False},
         "save": {}, "end": {"code": 0}}
 VALUES = [None, True, "", "nothing", [], ["count", 1], {}, -1, 0, 1, 1.5, 19, 20, 255, 256, 1000, 1001, 60000, 60001,
@@ -185,6 +186,7 @@ class Protocol(unittest.TestCase):
         self.assertTrue(self.client.exchange("get")["values"]["count"]["valid"])
         for text in (APPLICATION, "subsystem: [", ""):
             self.assertIsNotNone(self.client.exchange("check", text=text, file="a.yaml"))
+            self.assertIsNotNone(self.client.exchange("schedule", text=text, file="a.yaml"))
 
     def test_what_it_says_is_within_the_schema_before_and_after_faults(self):
         self.read_all()

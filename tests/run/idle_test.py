@@ -36,6 +36,8 @@ class Idle(unittest.TestCase):
         self.assertFalse(report["legal"])
         self.assertEqual(report["faults"][0]["nearest"], "t_counter")
         self.assertTrue(self.client.call("check", text="subsystem: x\ntasks: {a: {component: t_counter}}\n")["legal"])
+        analysis = self.client.call("schedule", text="subsystem: x\ntasks: {a: {component: t_counter, budget: 1 us}}\n")
+        self.assertTrue(analysis["fits"])
         self.assertEqual(self.client.call("status")["tasks"], [])
 
     def test_it_has_no_task_to_signal(self):

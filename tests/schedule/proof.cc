@@ -23,6 +23,7 @@ class Worlds {
     worlds[3].shorter = worlds[3].drops_late = true;
     worlds[4].shorter = worlds[4].scarce = true;
     worlds[4].gaps = !has_ties();
+    for (int i = 0; i < 3 && has_deferrable(); ++i) worlds.push_back(late_in_the_period());
     for (std::size_t i = 0; i < set_.works.size(); ++i)
       if (set_.uses[set_.works[i].rtpu].dispatch == Dispatch::kExecutive) worlds.push_back(behind(i));
     return worlds;
@@ -59,6 +60,18 @@ class Worlds {
       world.boundary[i] += world.first[i];
     }
     return world;
+  }
+  /// Deferrable servers have less time to the end of their period than capacity, and with earliest deadline that end
+  /// is near.
+  Scenario late_in_the_period() {
+    Scenario world = together();
+    for (std::size_t i = 0; i < set_.works.size(); ++i)
+      world.boundary[i] = 1 + static_cast<Tick>(random_() % static_cast<std::uint32_t>(set_.works[i].time.count));
+    return world;
+  }
+  bool has_deferrable() const {
+    return std::any_of(set_.works.begin(), set_.works.end(),
+                       [](const Work& w) { return w.server == ServerKind::kDeferrable; });
   }
   bool is_tie(std::size_t i, std::size_t j) const {
     const Work &a = set_.works[i], &b = set_.works[j];
