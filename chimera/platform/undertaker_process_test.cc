@@ -94,10 +94,11 @@ TEST_F(Deceased, HasAnUndertakerThatKeepsNothingButThePidfd) {
 }
 
 TEST_F(Deceased, HasAnUndertakerThatOnlySigkillEnds) {
-  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) ::kill(undertaker_, number);  // still ours
+  const auto send = [&](int number) { ::syscall(SYS_pidfd_send_signal, pidfd_.fd, number, nullptr, 0); };
+  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) send(number);
   EXPECT_FALSE(has_undertaker_ended(50));
   EXPECT_EQ(::kill(pid_, 0), 0) << "and it is nobody else who was hit";
-  ::kill(undertaker_, SIGKILL);  // still ours
+  send(SIGKILL);
   EXPECT_TRUE(has_undertaker_ended(kPatienceMs));
   EXPECT_EQ(::waitpid(pid_, nullptr, WNOHANG), 0) << "whose undertaker is gone lives on";
 }
