@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "chimera/base/assert.h"
 #include "chimera/trial/setup.h"
 
 namespace chimera::trial {
@@ -109,6 +110,24 @@ std::string instance_name(const PortDescriptor& port, std::uint32_t i) {
 std::uint32_t instances_of(const PortDescriptor& port) { return std::min(kInstances, port.max_instances); }
 
 }  // namespace
+
+Descriptor settled(const Descriptor& component) {
+  Descriptor plain = component;
+  for (PortDescriptor& port : plain.ports) {
+    if (port.kind != CHIMERA_OUT_VAR) continue;
+    port.unit = plain_unit(port.unit);
+    if (port.type == CHIMERA_ANY) port.type = CHIMERA_FLOAT64, port.type_name.clear();
+    std::string shape;
+    for (const Extent& extent : port.extents) {
+      const bool is_open = !extent.is_literal() && component.port(extent.symbol) == nullptr;
+      shape += "[" + (extent.is_literal() ? "" : is_open ? "" : extent.symbol + "<=") +
+               std::to_string(is_open ? 1 : extent.max) + "]";
+    }
+    port.shape = shape;
+  }
+  CHIMERA_ASSERT(complete(plain));
+  return plain;
+}
 
 std::string made_up(const Descriptor& component) {
   std::string alias, constants, operators;

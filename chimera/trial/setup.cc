@@ -73,6 +73,18 @@ Verdict refuse(const std::string& file, Place at, const std::string& message, co
   return verdict;
 }
 
+// Nobody reads the outputs, so what is open in them may be settled by nothing but us.
+Verdict judge_alone(const Draft& draft, const LibraryEntry& component, const UnitSystem& units) {
+  Verdict verdict = verify(draft, Library::of_entries({component}, units));
+  const bool is_open = verdict.report.has("unit-unsolved") || verdict.report.has("extent-unsolved") ||
+                       verdict.report.has("type-unsolved");
+  if (verdict.configuration || !is_open) return verdict;
+  LibraryEntry plain = component;
+  plain.descriptor = settled(component.descriptor);
+  Verdict again = verify(draft, Library::of_entries({plain}, units));
+  return again.configuration ? again : verdict;
+}
+
 }  // namespace
 
 Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSystem& units) {
@@ -80,10 +92,10 @@ Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSys
   const std::string plain_text = made_up(descriptor);
   const Reading plain = read_description(plain_text, descriptor.name + ".test.yaml (made up)");
   CHIMERA_ASSERT(plain.draft && plain.report.is_legal());
-  const Library library = Library::of_entries({component}, units);
-  if (setup.file.empty()) return verify(plain, library);
+  if (setup.file.empty()) return judge_alone(*plain.draft, component, units);
   Reading reading = read_description_file(setup.file);
-  if (!reading.draft || !reading.report.is_legal()) return verify(reading, library);
+  if (!reading.draft || !reading.report.is_legal())
+    return verify(reading, Library::of_entries({component}, units));
   Draft& draft = *reading.draft;
   if (draft.tasks.size() != 1 || draft.tasks[0].component.text != descriptor.name) {
     const Place at = draft.tasks.empty() ? Place{} : draft.tasks[0].name.at;
@@ -92,7 +104,7 @@ Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSys
   }
   Filler{draft, *plain.draft, descriptor}.fill();
   name_partner(draft, setup);
-  return verify(draft, library);
+  return judge_alone(draft, component, units);
 }
 
 }  // namespace chimera::trial

@@ -21,6 +21,10 @@ struct Setup {
 /// report: what the rules refuse, and a description with other tasks. Context: setup; may block.
 Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSystem& units);
 
+/// The component with everything settled that is open in its out-vars: unit 1, one element, float64. For one whose
+/// outputs nobody reads, so that nothing settles them. Context: setup.
+Descriptor settled(const Descriptor& component);
+
 /// The description that is made up for a component of which nothing is known but its descriptor. Context: setup.
 std::string made_up(const Descriptor& component);
 

@@ -46,6 +46,12 @@ TEST(MadeUp, GivesEveryInputAndConstant) {
   EXPECT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
 }
 
+TEST(Arrange, SettlesWhatIsOpenInOutputsThatNobodyReads) {
+  const Verdict verdict = arrange({}, component({port("y", CHIMERA_OUT_VAR, "U/s", "[n<=64]")}), units());
+  ASSERT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
+  EXPECT_EQ(verdict.configuration->spec().tasks[0].ports[0].max_count(), 1u);
+}
+
 class ArrangeFrom : public ::testing::Test {
  protected:
   ArrangeFrom() : file_((fs::temp_directory_path() / ("setup_" + std::to_string(::getpid()) + ".yaml")).string()) {}
