@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chimera/task/rig.h"
+#include "library/kinematics/puma560.h"
+
+namespace chimera {
+namespace {
+
+using library::Puma560;
+constexpr Puma560::Vector kStart{0, 1.5707963267948966, -1.5707963267948966, 0, 0, 0};
+
+struct PumaTest : testing::Test {
+  Rig rig{"puma"};
+  void start() {
+    for (std::size_t i = 0; i < 6; ++i) {
+      rig.set("start_pose", kStart[i], i);
+      rig.set("q_ref", kStart[i], i);
+    }
+    const RigAnswer made = rig.init();
+    ASSERT_TRUE(made) << made.text;
+    ASSERT_TRUE(rig.on());
+  }
+};
+
+TEST_F(PumaTest, TellsItsRows) {
+  start();
+  EXPECT_EQ(rig.get<std::int32_t>("ndof"), 6);
+  EXPECT_EQ(rig.get<library::DhLink>("dh", 1).a, .4318);
+  EXPECT_EQ(rig.get<library::DhLink>("dh", 5).d, .05625);
+}
+
+TEST_F(PumaTest, GoesToAPositionNoFasterThanAllowed) {
+  start();
+  rig.set("q_ref", 0.8, 0);
+  rig.set("q_ref", 1.0, 1);
+  for (int i = 0; i < 1500; ++i) {
+    ASSERT_TRUE(rig.cycle());
+    ASSERT_LT(std::abs(rig.get<double>("qd", 0)), 1.52);
+  }
+  EXPECT_NEAR(rig.get<double>("q", 0), 0.8, 1e-4);
+  EXPECT_NEAR(rig.get<double>("q", 1), 1.0, 1e-4);
+}
+
+TEST_F(PumaTest, HoldsUnderAnotherPayloadAndWhileTheConfigurationIsIllegal) {
+  start();
+  rig.set("payload_mass", 3.0);
+  ASSERT_TRUE(rig.reinit());
+  ASSERT_TRUE(rig.on());
+  rig.illegal(true);
+  rig.set("q_ref", std::nan(""), 2);
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(rig.cycle());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.get<double>("q", i), kStart[i], 1e-3);
+}
+
+TEST_F(PumaTest, RefusesAReferenceThatIsNoNumberAndAPoseOutsideItsLimits) {
+  start();
+  rig.set("q_ref", std::nan(""), 2);
+  EXPECT_EQ(rig.cycle().text, "q_ref[2] is not finite");
+  EXPECT_FALSE(rig.error());
+  EXPECT_TRUE(rig.clear());
+  rig.set("start_pose", 9.0, 3);
+  EXPECT_EQ(rig.init().text, "joint 4 at 9 rad is outside its limits -1.92 to 2.967 rad");
+}
+
+}  // namespace
+}  // namespace chimera
