@@ -10,7 +10,7 @@ constexpr Nanoseconds kTick{1};
 
 Nanoseconds later(Nanoseconds a, Nanoseconds b) noexcept { return a < b ? b : a; }
 
-/// QPA over intervals in which `blocking` is the same: from long to short, leaping over all that cannot fail.
+/// QPA: intervals from long to short, leaping over all that cannot fail.
 class DemandSearch {
  public:
   DemandSearch(const Level& level, Demand& demand, Effort& effort) noexcept
@@ -25,17 +25,13 @@ class DemandSearch {
 
   Judgement from(Nanoseconds longest) noexcept {
     for (Nanoseconds t = point_before(longest + kTick); t >= shortest_;) {
-      const Nanoseconds blocked = blocking(t);
-      const Nanoseconds ends = end_of(t, blocked);
+      const Nanoseconds ends = end_of(t);
       if (effort_.is_spent()) return Judgement::kGivenUp;
       if (ends > t) {
         demand_ = {t, ends};
         return Judgement::kFails;
       }
-      const Nanoseconds leap = point_before(ends);  // at `ends` itself no more than that is due
-      // Shorter intervals may have longer blocking: not past the deadline where that begins.
-      const Nanoseconds edge = blocked_from_;
-      t = leap >= edge ? leap : point_before(edge);
+      t = point_before(ends);  // in [ends, t) no more is due, nor blocks: a job that blocks there is due by t
     }
     return Judgement::kHolds;
   }
@@ -51,21 +47,17 @@ class DemandSearch {
     return point;
   }
 
-  /// Sets `blocked_from_` to the shortest interval with the same blocking.
-  Nanoseconds blocking(Nanoseconds t) noexcept {
+  Nanoseconds blocking(Nanoseconds t) const noexcept {
     Nanoseconds most = later_levels_;
-    blocked_from_ = {};
     if (level_.dispatch == Dispatch::kPreemptive) return most;
-    for (const RankedWork& r : level_.members()) {
+    for (const RankedWork& r : level_.members())
       if (r.work.deadline > t) most = later(most, r.work.time - kTick);
-      else blocked_from_ = later(blocked_from_, r.work.deadline);
-    }
     return most;
   }
 
-  Nanoseconds end_of(Nanoseconds t, Nanoseconds blocked) noexcept {
+  Nanoseconds end_of(Nanoseconds t) noexcept {
     effort_.terms -= level_.end - level_.begin;
-    Nanoseconds work = blocked + extra_;
+    Nanoseconds work = blocking(t) + extra_;
     for (const RankedWork& r : level_.members()) work += due(r, t);
     const auto before = level_.before();
     if (before.empty()) return work;
@@ -76,7 +68,7 @@ class DemandSearch {
   const Level& level_;
   Demand& demand_;
   Effort& effort_;
-  Nanoseconds extra_, later_levels_, blocked_from_;
+  Nanoseconds extra_, later_levels_;
   Nanoseconds shortest_ = kNever;
 };
 
