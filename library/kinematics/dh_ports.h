@@ -22,7 +22,8 @@ struct DhPorts {
  protected:
   DhChain chain_;
 
-  void read_chain() {
+  /// Refuses constants that are no arm. Context: setup.
+  const DhChain& read_chain() {
     chain_.ndof = dh.size();
     for (std::size_t i = 0; i < dh.size(); ++i) {
       const DhLink& link = dh[i];
@@ -32,6 +33,7 @@ struct DhPorts {
     }
     chain_.base = sound(*base, "base");
     chain_.tool = sound(*tool, "tool");
+    return chain_;
   }
 
  public:

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The controller that knows the arm: each joint follows its reference as if it were alone and without weight.
+#include "library/kinematics/dh_dynamics.h"
+#include "library/kinematics/dh_ports.h"
+
+using namespace chimera;
+
+namespace {
+
+struct ComputedTorque : library::DhPorts {
+  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Reference positions."};
+  In<double[]> qd_ref{"qd_ref", "rad/s", "[ndof<=10]", frame = "joint", doc = "Reference velocities."};
+  In<double[]> qdd_ref{"qdd_ref", "rad/s2", "[ndof<=10]", frame = "joint", doc = "Reference accelerations."};
+  In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured positions."};
+  In<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured velocities."};
+  Out<double[]> tau{"tau", "N.m", "[ndof<=10]", frame = "joint", initial = 0.0, safety,
+                    doc = "Torque for each joint, within tau_max."};
+  InConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive, a link a joint, base to tip."};
+  InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint", doc = "What the drives can give."};
+  InConst<double> bandwidth{"bandwidth", "rad/s", initial = 20.0, range(0, 500),
+                            doc = "Angular frequency at which an error decays; 0: no feedback."};
+  InConst<double> damping_ratio{"damping_ratio", "1", initial = 1.0, range(0, 10), doc = "1: without overshoot."};
+  InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 1000), doc = "A point at the tool."};
+  InConst<double[3]> gravity{"gravity", "m/s2", initial = {0.0, 0.0, -9.81}, frame = "base",
+                             doc = "Acceleration of what falls."};
+
+  Outcome init() {
+    const DhChain chain = read_chain();
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      if (const char* why = refusal(links[i])) return fault(why);
+    }
+    for (double limit : tau_max) {
+      if (!(limit >= 0)) return fault("tau_max must be 0 N.m or more");
+    }
+    const library::Triple falls{gravity[0], gravity[1], gravity[2]};
+    if (!std::isfinite(library::length(falls))) return fault("gravity is not finite");
+    dynamics_ = library::ArmDynamics(chain, links.span(), falls, *payload_mass);
+    return ok();
+  }
+  Outcome reinit() { return init(); }
+  // The law has no memory: what it says now is right whoever drove the arm before.
+  Outcome on() { return follow(); }
+  Outcome cycle(Cycle c) { return c.illegal() ? ok() : follow(); }
+  // No off(): the last torque stands, as that of pid_joint does.
+
+ private:
+  using DhChain = library::DhChain;
+
+  static const char* refusal(const library::LinkMass& link) {
+    double sum = link.mass + link.rotor + link.friction;
+    for (double part : link.centre) sum += part;
+    for (double part : link.inertia) sum += part;
+    if (!std::isfinite(sum)) return "links: a number is not finite";
+    if (link.mass < 0 || link.rotor < 0 || link.friction < 0) return "links: mass, rotor and friction are 0 or more";
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (link.inertia[i] < 0) return "links: the inertia about an axis is 0 or more";
+    }
+    return nullptr;
+  }
+  Outcome follow() {
+    std::array<double, library::kMostJoints> wanted{}, torque{};
+    const double w = *bandwidth;
+    for (std::size_t i = 0; i < tau.size(); ++i) {
+      wanted[i] = qdd_ref[i] + 2 * *damping_ratio * w * (qd_ref[i] - qd[i]) + w * w * (q_ref[i] - q[i]);
+    }
+    dynamics_.torque(q.span(), qd.span(), {wanted.data(), tau.size()}, torque);
+    for (std::size_t i = 0; i < tau.size(); ++i) {
+      if (std::isnan(torque[i])) return fault("an input is not finite");
+    }
+    for (std::size_t i = 0; i < tau.size(); ++i) tau[i] = std::clamp(torque[i], -tau_max[i], tau_max[i]);
+    return ok();
+  }
+
+  library::ArmDynamics dynamics_;
+};
+
+CHIMERA_COMPONENT(ComputedTorque, "computed_torque", "Computed-torque control of any serial arm.", rate = 1000.0,
+                  source = "Luh, Walker and Paul 1980; Markiewicz 1973");
+
+}  // namespace

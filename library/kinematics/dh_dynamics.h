@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which torques a motion of any serial arm takes: the recursive Newton-Euler equations (Luh, Walker and Paul 1980) in
+// the frames of library/kinematics/dh.h.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <tuple>
+
+#include "library/kinematics/dh_of_axes.h"
+
+namespace chimera::library {
+
+/// What the link after a joint weighs, in the link's Denavit-Hartenberg frame, and what the joint's drive adds.
+struct LinkMass {
+  double mass;        ///< kg
+  double centre[3];   ///< m, of the mass
+  double inertia[6];  ///< kg.m2 about the centre: xx yy zz xy xz yz
+  double rotor;       ///< kg.m2, of the drive, seen from the joint
+  double friction;    ///< N.m.s/rad, viscous, seen from the joint
+};
+
+/// The links of an arm in motion.
+class ArmDynamics {
+ public:
+  ArmDynamics() = default;
+  /// `links`: one a joint of `chain`. `gravity` (m/s2): along the axes of the base. A `payload` (kg) is a point at the
+  /// tool. Context: setup.
+  ArmDynamics(const DhChain& chain, std::span<const LinkMass> links, const Triple& gravity, double payload) noexcept
+      : joints_(chain.ndof) {
+    const Triple seen = frame_of(chain.base).seen(gravity);
+    upward_ = {-seen[0], -seen[1], -seen[2]};
+    for (std::size_t i = 0; i < joints_; ++i) links_[i] = {chain.dh[i], links[i]};
+    if (payload > 0) add(payload, frame_of(chain.tool).origin, links_[joints_ - 1].of);
+  }
+
+  /// The torques (N.m) that move the joints with the accelerations `qdd` (rad/s2) at `q` and `qd`: inertia, centrifugal
+  /// and Coriolis torques, weight, rotors and viscous friction. All of as many numbers as joints.
+  /// Context: cycle; wait-free.
+  void torque(std::span<const double> q, std::span<const double> qd, std::span<const double> qdd,
+              std::span<double> tau) const noexcept {
+    std::array<Frame, kMostJoints> frames;  // each in the one before
+    std::array<Load, kMostJoints> loads;
+    Motion motion{{}, {}, upward_};
+    for (std::size_t i = 0; i < joints_; ++i) {
+      frames[i] = frame_of(links_[i].dh, q[i]);
+      motion = behind(frames[i], motion, qd[i], qdd[i]);
+      loads[i] = load(links_[i].of, motion);
+    }
+    Load carried{};
+    for (std::size_t i = joints_; i-- > 0;) {  // moments about the joint, in the frame before it
+      carried.force = carried.force + loads[i].force;
+      carried.moment = carried.moment + loads[i].moment;
+      const Triple force = frames[i].turned(carried.force);
+      carried = {force, frames[i].turned(carried.moment) + cross(frames[i].origin, force)};
+      tau[i] = carried.moment[2] + links_[i].of.rotor * qdd[i] + links_[i].of.friction * qd[i];
+    }
+  }
+
+ private:
+  struct Link {
+    DhLink dh;
+    LinkMass of;
+  };
+  struct Motion {
+    Triple turn, turn_rate, acceleration;  // of a frame, along its own axes; acceleration of its origin
+  };
+  struct Load {
+    Triple force, moment;  // about the origin of the frame
+  };
+
+  /// The motion of the next frame: it turns about the z axis of this one, its origin turns with it.
+  static Motion behind(const Frame& next, const Motion& here, double speed, double speed_rate) noexcept {
+    const Triple axis{0, 0, 1};
+    const Triple turn = here.turn + speed * axis;
+    const Triple turn_rate = here.turn_rate + speed_rate * axis + speed * cross(here.turn, axis);
+    const Triple moved = here.acceleration + carried_round(turn, turn_rate, next.origin);
+    return {next.seen(turn), next.seen(turn_rate), next.seen(moved)};
+  }
+  /// The acceleration of a point that turns with a body.
+  static Triple carried_round(const Triple& turn, const Triple& turn_rate, const Triple& point) noexcept {
+    return cross(turn_rate, point) + cross(turn, cross(turn, point));
+  }
+  static Load load(const LinkMass& link, const Motion& motion) noexcept {
+    const Triple centre{link.centre[0], link.centre[1], link.centre[2]};
+    const Triple moved = motion.acceleration + carried_round(motion.turn, motion.turn_rate, centre);
+    const Triple force = link.mass * moved;
+    const Triple spin = times(link.inertia, motion.turn);
+    return {force, times(link.inertia, motion.turn_rate) + cross(motion.turn, spin) + cross(centre, force)};
+  }
+  static Triple times(const double (&inertia)[6], const Triple& v) noexcept {
+    const auto [xx, yy, zz, xy, xz, yz] = inertia;
+    return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2], xz * v[0] + yz * v[1] + zz * v[2]};
+  }
+  /// A point of `mass` at `place` becomes part of `link` (parallel axes).
+  static void add(double mass, const Triple& place, LinkMass& link) noexcept {
+    const double whole = link.mass + mass, reduced = link.mass * mass / whole;
+    const Triple apart = place - Triple{link.centre[0], link.centre[1], link.centre[2]};
+    const double square = dot(apart, apart);
+    for (std::size_t i = 0; i < 3; ++i) {
+      link.inertia[i] += reduced * (square - apart[i] * apart[i]);
+      link.centre[i] += mass / whole * apart[i];
+    }
+    link.inertia[3] -= reduced * apart[0] * apart[1];
+    link.inertia[4] -= reduced * apart[0] * apart[2];
+    link.inertia[5] -= reduced * apart[1] * apart[2];
+    link.mass = whole;
+  }
+
+  std::size_t joints_ = 0;
+  std::array<Link, kMostJoints> links_{};
+  Triple upward_{0, 0, 0};  // that the base moves upward has the effect of weight
+};
+
+}  // namespace chimera::library
+
+template <>
+struct chimera::Fields<chimera::library::LinkMass> {
+  static constexpr const char* name = "LinkMass";
+  static constexpr auto list = std::tuple{
+      field("mass", "kg", &library::LinkMass::mass),           field("centre", "m", &library::LinkMass::centre),
+      field("inertia", "kg.m2", &library::LinkMass::inertia), field("rotor", "kg.m2", &library::LinkMass::rotor),
+      field("friction", "N.m.s/rad", &library::LinkMass::friction)};
+};
