@@ -12,6 +12,7 @@
 namespace chimera {
 namespace {
 
+constexpr std::array<std::string_view, 2> kExecutors = {"executive", "preemptive"};
 constexpr std::array<std::string_view, 5> kPolicies = {"rm", "edf", "llf", "muf", "muf-laxity"};  // as Policy
 constexpr std::size_t kMaxTasks = 256;
 constexpr std::size_t kMaxRtpus = 16;
@@ -46,6 +47,9 @@ void read_rtpus(const Node& node, Draft& draft, Report& report) {
       if (const Node* policy = item.find("policy"))
         if (const auto index = read_choice(*policy, kPolicies, "'policy' of " + what, report))
           rtpu.policy = {static_cast<Policy>(index->value), index->at};
+      if (const Node* executor = item.find("executor"))
+        if (const auto index = read_choice(*executor, kExecutors, "'executor' of " + what, report))
+          rtpu.preemptive = {index->value == 1, index->at};
     }
     draft.rtpus.push_back(std::move(rtpu));
   }

@@ -89,6 +89,7 @@ struct DraftRtpu {
   Word name;
   Located<std::uint32_t> cpu;
   Located<Policy> policy{Policy::kEdf, {}};
+  Located<bool> preemptive{false, {}};
 };
 
 struct DraftSet {

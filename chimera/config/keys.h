@@ -11,7 +11,7 @@ namespace chimera {
 inline constexpr std::array<std::string_view, 8> kFileKeys = {
     "version", "subsystem", "constants", "rtpus", "tasks", "operator", "configurations", "start"};
 
-inline constexpr std::array<std::string_view, 2> kRtpuKeys = {"cpu", "policy"};
+inline constexpr std::array<std::string_view, 3> kRtpuKeys = {"cpu", "policy", "executor"};
 
 inline constexpr std::array<std::string_view, 24> kTaskKeys = {
     "component", "rtpu", "rate", "deadline", "offset", "budget", "min", "criticality", "user_priority", "alias",

@@ -113,7 +113,8 @@ void add_given(Model& model, Parts& parts, const VariableModel& variable, const 
 
 void fill_spec(Model& model, Parts& parts) {
   for (const DraftRtpu& rtpu : model.rtpus)
-    parts.rtpus.push_back({keep(parts, rtpu.name.text), rtpu.cpu.value, rtpu.policy.value});
+    parts.rtpus.push_back({keep(parts, rtpu.name.text), rtpu.cpu.value, rtpu.policy.value,
+                           rtpu.preemptive.value});
   parts.ports.resize(model.tasks.size());
   for (std::size_t t = 0; t < model.tasks.size(); ++t) {
     const TaskModel& task = model.tasks[t];

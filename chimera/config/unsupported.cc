@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `check` accepts and the executors cannot do yet: refused by name, never passed over.
 #include <algorithm>
-#include <array>
 
 #include "chimera/config/verify.h"
 #include "chimera/schedule/utilisation.h"
@@ -57,18 +56,26 @@ class Refusals {
              "run without --isolation none");
   }
 
-  void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task) {
-    constexpr std::array kBuilt = {OnMiss::kContinue, OnMiss::kHold, OnMiss::kSkip,
-                                   OnMiss::kAbort, OnMiss::kError, OnMiss::kFlag, OnMiss::kStop};
-    constexpr std::array kNames = {"continue", "hold", "skip", "abort", "demote", "error", "switch", "flag", "stop"};
-    if (!reaction || std::find(kBuilt.begin(), kBuilt.end(), reaction->kind) != kBuilt.end()) return;
-    refuse(reaction->at, "'" + std::string(key) + ": " + kNames[static_cast<std::size_t>(reaction->kind)] +
-           "' of task '" + task.name.text + "'", "use continue, hold, skip, abort, error, flag or stop to run");
+  void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task,
+                bool has_thread) {
+    if (!reaction || (reaction->kind != OnMiss::kDemote && reaction->kind != OnMiss::kSwitch)) return;
+    const bool is_switch = reaction->kind == OnMiss::kSwitch;
+    if (!is_switch && has_thread) return;
+    const std::string what =
+        "'" + std::string(key) + (is_switch ? ": switch' of task '" : ": demote' of task '") + task.name.text + "'";
+    if (is_switch) return refuse(reaction->at, what, "use continue, hold, skip, abort, demote, error, flag or stop to run");
+    refuse(reaction->at, what, executor_ == Executor::kProcesses
+                                   ? "give its rtpu 'executor: preemptive', or use another reaction"
+                                   : "run without --virtual and --isolation none, or use another reaction");
   }
 
   void judge(const DraftTask& task) {
-    reaction(task.on_miss, "on_miss", task);
-    reaction(task.on_overrun, "on_overrun", task);
+    const auto tasks = configuration_.tasks();
+    const auto here = std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.name == task.name.text; });
+    const bool has_thread = executor_ == Executor::kProcesses && here != tasks.end() &&
+                            configuration_.rtpus()[here->rtpu].preemptive;
+    reaction(task.on_miss, "on_miss", task, has_thread);
+    reaction(task.on_overrun, "on_overrun", task, has_thread);
     if (task.on_fault && task.on_fault->kind != OnFault::kError) refuse_key(task.on_fault->at, "on_fault", task);
     if (task.tolerate) refuse_key(task.tolerate->at, "tolerate", task);
     if (task.server) refuse_key(task.server->at, "server", task);

@@ -18,7 +18,8 @@ class VirtualLoop final : public RunLoop {
  public:
   VirtualLoop(Application& application, const RunRequest& request, const RunOptions& options)
       : request_(request),
-        executor_(application.tasks(), options, {request.preemptive, request.seed, request.quantum}) {}
+        is_preemptive_(request.preemptive || application.configuration().rtpus()[0].preemptive),
+        executor_(application.tasks(), options, {is_preemptive_, request.seed, request.quantum}) {}
 
   Result<void> start() override { return executor_.start(); }
   std::optional<RunEnd> advance(Nanoseconds until) override {
@@ -32,12 +33,13 @@ class VirtualLoop final : public RunLoop {
   void shut_down() override { executor_.shut_down(); }
   std::span<const RefusedSignal> refused() const override { return executor_.refused(); }
   std::string description() const override {
-    std::string text = request_.preemptive ? "virtual time, preemptive" : "virtual time, non-preemptive";
+    std::string text = is_preemptive_ ? "virtual time, preemptive" : "virtual time, non-preemptive";
     return request_.seed ? text + ", seed " + std::to_string(*request_.seed) : text;
   }
 
  private:
   const RunRequest& request_;
+  const bool is_preemptive_;
   VirtualExecutor executor_;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/post_text.h"
 
+#include <cstdio>
+
 #include "chimera/runtime/refusal.h"
 
 namespace chimera::manager {
@@ -28,6 +30,22 @@ std::string flag_text(std::uint64_t word) {
   return text;
 }
 
+std::string milliseconds_text(std::uint64_t ns) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g ms", static_cast<double>(ns) / 1e6);
+  return text;
+}
+
+std::string missed_text(const ApplicationSpec& spec, const Post& post) {
+  std::string text = "missed its deadline";
+  if (post.from.index >= spec.tasks.size()) return text;
+  const TaskSpec& culprit = spec.tasks[post.from.index];
+  text += post.from == post.task ? ": it used " : ": " + std::string(culprit.name) + " used ";
+  text += milliseconds_text(post.detail);
+  if (culprit.budget == Nanoseconds{}) return text + " (no budget stated)";
+  return text + " (budget " + milliseconds_text(static_cast<std::uint64_t>(culprit.budget.count)) + ")";
+}
+
 }  // namespace
 
 const char* event_kind(Happening happening) noexcept {
@@ -37,6 +55,8 @@ const char* event_kind(Happening happening) noexcept {
     case Happening::kRefused: return "refused";
     case Happening::kSignalled: return "signal";
     case Happening::kFlag: return "flag";
+    case Happening::kMissed: return "blame";
+    case Happening::kHang: return "hang";
     case Happening::kStop: break;
   }
   return "stop";
@@ -50,6 +70,9 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
       return std::string(signal_name(post.signal)) + sender(spec, post) + ": " + refusal(post, fault);
     case Happening::kSignalled: return signal_name(post.signal) + sender(spec, post);
     case Happening::kFlag: return flag_text(post.detail);
+    case Happening::kMissed: return missed_text(spec, post);
+    case Happening::kHang:
+      return "a cycle used " + milliseconds_text(post.detail) + " and does not end: this real-time unit ends";
     case Happening::kStop: break;
   }
   return "stopped by its reaction: all tasks of this real-time unit go OFF";

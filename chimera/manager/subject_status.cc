@@ -46,6 +46,7 @@ Json rtpu_json(const World& world, RtpuId rtpu) {
   Json json = {{"name", spec.name},
                {"cpu", spec.cpu},
                {"policy", policy_text(spec.policy)},
+               {"executor", spec.preemptive ? "preemptive" : "executive"},
                {"pid", record.pid},
                {"incarnation", record.incarnation},
                {"alive", record.is_alive},

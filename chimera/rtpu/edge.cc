@@ -84,11 +84,11 @@ std::size_t Edge::step_length(std::size_t first) const noexcept {
 }
 
 // A task keeps the order of its signals: one that is being served, or that has an earlier signal waiting, waits.
-bool Edge::may_act(std::span<const Post> step) noexcept {
+bool Edge::may_act(std::span<const Post> step, Releases& releases) noexcept {
   bool may = true;
   for (const Post& post : step) {
     const Task& task = tasks_.tasks()[post.task.index];
-    may = may && !task.in_service && !blocked_[post.task.index];
+    may = may && !task.in_service && !blocked_[post.task.index] && releases.may_touch(post.task);
   }
   if (!may)
     for (const Post& post : step) blocked_[post.task.index] = true;
@@ -102,7 +102,7 @@ void Edge::act_on_waiting(Releases& releases, Nanoseconds now) noexcept {
     const std::size_t n = step_length(at);
     const std::span<const Post> step(waiting_.begin() + at, n == 0 ? waiting_.size() - at : n);
     at += step.size();
-    if (n != 0 && may_act(step)) {
+    if (n != 0 && may_act(step, releases)) {
       act(step, releases, now);
       continue;
     }
@@ -184,6 +184,22 @@ void Edge::told(const SignalReport& done, Nanoseconds now) noexcept {
   others_.tell(post);
 }
 
+void Edge::missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now) noexcept {
+  Post post;
+  post.at = now;
+  post.task = task;
+  post.from = culprit;
+  post.kind = PostKind::kEvent;
+  post.happening = Happening::kMissed;
+  post.detail = static_cast<std::uint64_t>(used.count);
+  others_.tell(post);
+}
+
+void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
+  others_.tell(Happening::kHang, task, static_cast<std::uint64_t>(used.count), now);
+  hanging_ = true;
+}
+
 void Edge::stop_all(Releases& releases, Nanoseconds now) noexcept {
   others_.tell(Happening::kStop, TaskId(), 0, now);
   for (const TaskId id : ending_order_)
@@ -223,6 +239,10 @@ bool Edge::turn_off_next(Releases& releases, Nanoseconds now) noexcept {
       continue;
     }
     if (tasks_.tasks()[id.index].state != State::kOn) continue;
+    if (!releases.may_touch(id)) {  // its job ends, or hangs
+      if (now < patience_) return false;
+      continue;
+    }
     (void)releases.signal({&id, 1}, Signal::kOff, now);
     patience_ = now + method_limit_;
     ++progress_;
@@ -232,15 +252,20 @@ bool Edge::turn_off_next(Releases& releases, Nanoseconds now) noexcept {
 
 // True when all of ours are killed.
 bool Edge::kill_next(Releases& releases, Nanoseconds now) noexcept {
+  bool is_done = true;
   for (const TaskId id : ending_order_) {
     if (!tasks_.is_mine(id)) continue;
     const Task& task = tasks_.tasks()[id.index];
     if (task.in_service) return false;
     if (task.state == State::kNotCreated) continue;
+    if (!releases.may_touch(id)) {
+      is_done = false;
+      continue;
+    }
     ++progress_;
     if (releases.signal({&id, 1}, Signal::kKill, now).is_deferred) return false;
   }
-  return true;
+  return is_done;
 }
 
 }  // namespace chimera

@@ -25,6 +25,10 @@ class Edge final : public EdgeGuest {
   void take(Releases& releases, Nanoseconds now) noexcept override;
   void told(const SignalReport& report, Nanoseconds now) noexcept override;
   void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
+  void missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now) noexcept override;
+  void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
+  /// A job of some task does not end. Any thread.
+  bool has_hanging() const noexcept { return hanging_; }
   /// The reaction `stop` of a task: turns all tasks of the unit OFF.
   void stop_all(Releases& releases, Nanoseconds now) noexcept;
   /// Before a wait: shows what the tasks cost, a few of them at a time.
@@ -43,7 +47,7 @@ class Edge final : public EdgeGuest {
   void take_served(Releases& releases, Nanoseconds now) noexcept;
   void act_on_waiting(Releases& releases, Nanoseconds now) noexcept;
   std::size_t step_length(std::size_t first) const noexcept;
-  bool may_act(std::span<const Post> step) noexcept;
+  bool may_act(std::span<const Post> step, Releases& releases) noexcept;
   void act(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept;
   void turn_on(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept;
   bool refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept;
@@ -68,6 +72,7 @@ class Edge final : public EdgeGuest {
   std::size_t next_off_ = 0;       // in ending_order_
   Nanoseconds patience_;           // with the tasks of others, while ending
   std::atomic<bool> ending_{false};
+  std::atomic<bool> hanging_{false};
   std::atomic<bool> over_{false};
   std::atomic<std::uint32_t> progress_{0};
 };

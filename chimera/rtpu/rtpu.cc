@@ -27,6 +27,7 @@
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/service_thread.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/preemptive/preemptive_executor.h"
 #include "chimera/schedule/bands.h"
 
 namespace chimera {
@@ -70,12 +71,20 @@ class Rtpu {
   void say(std::string_view text, PeerPhase phase);
   void announce();
   void cycle();
+  RunOptions options();
+  void make_loop();
+  void run_loop();
+  void make_threads(int ceiling);
+  void run_threads();
   void listen(int timeout_ms);
   void take_messages();
   void take_peer(const KeeperMessage& message, int descriptor);
   void end();
   bool hangs();
+  bool loop_hangs();
+  std::uint64_t jobs_of(std::uint32_t task) const;
 
+  std::atomic<std::uint32_t>& bell() { return decision_->bells[start_.peer].word; }
   const RtpuSpec& self() const { return image_->spec().rtpus[start_.peer]; }
 
   const RtpuStart start_;
@@ -101,9 +110,14 @@ class Rtpu {
   std::unique_ptr<ComputingClock> job_clock_;
   std::unique_ptr<Tap> tap_;
   std::unique_ptr<Executive> executive_;
+  std::unique_ptr<PreemptiveExecutor> preemptive_;  // one of the two
   std::thread cycling_;
   std::atomic<bool> has_ended_{false};
   bool is_ending_ = false;
+  bool is_giving_up_ = false;  // because a job does not end
+  std::uint64_t beats_seen_ = 0;
+  std::uint32_t running_seen_ = 0;
+  Nanoseconds beaten_at_;
   std::uint32_t progress_ = 0;
   Nanoseconds progress_at_;
   LinuxClock wall_;
@@ -176,7 +190,7 @@ Result<void> Rtpu::make_tasks() {
   service_ = std::make_unique<ServiceThread>(spec.tasks.size(), bell);
   others_ = std::make_unique<Others>(spec, start_.peer, segment_.writable(), block_, *decision_, *keeper_, *peers_);
   const ContextPlace place{RtpuId(start_.peer), segment_.writable().subspan(sizeof(SegmentHeader)), others_.get(),
-                           service_.get(), &head.running, &head.serving};
+                           service_.get(), &head.running, &head.serving, self().preemptive};
   auto tasks = TaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);
@@ -184,18 +198,18 @@ Result<void> Rtpu::make_tasks() {
   others_->attach(*tasks_);
   edge_ = std::make_unique<Edge>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
                                  image_->settings().method_limit);
-  clock_ = std::make_unique<BellClock>(bell, head.running);
-  clock_->attach(*edge_);
-  job_clock_ = std::make_unique<ComputingClock>(*clock_);
   tap_ = std::make_unique<Tap>(block_.tap());
+  return {};
+}
+
+RunOptions Rtpu::options() {
   RunOptions options;
   options.policy = self().policy;
   options.tap = tap_.get();
   options.rtpu = static_cast<std::uint8_t>(start_.peer);
   options.guest = edge_.get();
   options.stop = &edge_->is_over();
-  executive_ = std::make_unique<Executive>(*tasks_, *clock_, *job_clock_, options);
-  return {};
+  return options;
 }
 
 void Rtpu::say(std::string_view text, PeerPhase phase) {
@@ -214,20 +228,53 @@ void Rtpu::announce() {
   (void)channel_.send(bytes_of(message), segment_.descriptor());
 }
 
-// The thread that cycles.
+// The thread that cycles, or that takes the edges of those that do.
 void Rtpu::cycle() {
-  const RealtimeRequest wanted{priority_of(image_->spec(), start_.peer, image_->settings().priority),
-                               static_cast<int>(self().cpu), true};
-  say(enter_realtime(wanted).report.view(), PeerPhase::kServing);
+  const int ceiling = priority_of(image_->spec(), start_.peer, image_->settings().priority);
+  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
+  if (self().preemptive) make_threads(grant.priority ? ceiling : 0);
+  else make_loop();
+  say(grant.report.view(), PeerPhase::kServing);
+  if (self().preemptive) run_threads();
+  else run_loop();
+  has_ended_ = true;
+  const std::uint64_t one = 1;
+  if (::write(over_.fd, &one, sizeof one) < 0) return;  // then the next look of listen() finds it
+}
+
+void Rtpu::make_loop() {
+  clock_ = std::make_unique<BellClock>(Doorbell(bell()), block_.head().running);
+  clock_->attach(*edge_);
+  job_clock_ = std::make_unique<ComputingClock>(*clock_);
+  executive_ = std::make_unique<Executive>(*tasks_, *clock_, *job_clock_, options());
+}
+
+void Rtpu::run_loop() {
   executive_->start(keeper_->origin);
   others_->changed();
   while (executive_->run(kNever) == RunEnd::kTaskStopped) {
     edge_->stop_all(executive_->releases(), clock_->now());
     executive_->releases().forget_stop();
   }
-  has_ended_ = true;
-  const std::uint64_t one = 1;
-  if (::write(over_.fd, &one, sizeof one) < 0) return;  // then the next look of listen() finds it
+}
+
+void Rtpu::make_threads(int ceiling) {
+  ProcessorPlace place;
+  place.cpu = static_cast<int>(self().cpu);
+  place.ceiling = ceiling;
+  place.base = ceiling - kBandWidth + 1;
+  place.bell = &bell();
+  preemptive_ = std::make_unique<PreemptiveExecutor>(*tasks_, options(), place);
+}
+
+void Rtpu::run_threads() {
+  preemptive_->start(keeper_->origin);
+  others_->changed();
+  while (preemptive_->run(kNever) == RunEnd::kTaskStopped)
+    preemptive_->at_edge([this] {
+      edge_->stop_all(preemptive_->releases(), wall_.now());
+      preemptive_->releases().forget_stop();
+    });
 }
 
 int Rtpu::run() {
@@ -236,11 +283,15 @@ int Rtpu::run() {
   cycling_ = std::thread([this] { cycle(); });
   while (!has_ended_) {
     listen(kSuperviseEveryMs);
+    if (!is_ending_ && (edge_->has_hanging() || loop_hangs())) {
+      is_giving_up_ = true;
+      end();
+    }
     if (is_ending_ && hangs()) return kMethodHangs;
   }
   cycling_.join();
   service_->stop();
-  return 0;
+  return is_giving_up_ ? kMethodHangs : 0;
 }
 
 void Rtpu::listen(int timeout_ms) {
@@ -285,6 +336,26 @@ void Rtpu::end() {
   progress_at_ = wall_.now();
   edge_->end();
   Doorbell(decision_->bells[start_.peer].word).ring();
+}
+
+// Jobs of that task that have ended, as far as the loop's own thread has counted.
+std::uint64_t Rtpu::jobs_of(std::uint32_t task) const {
+  if (task >= tasks_->tasks().size()) return 0;
+  return __atomic_load_n(&tasks_->tasks()[task].profile.execution[CHIMERA_CYCLE].count, __ATOMIC_RELAXED);
+}
+
+// The one loop has been in the same method for too long: nobody else sees it.
+bool Rtpu::loop_hangs() {
+  const std::uint32_t running = block_.head().running;
+  const std::uint64_t beats = block_.head().beats + jobs_of((running >> 8) - 1);
+  const Nanoseconds now = wall_.now();
+  if (self().preemptive || running == 0 || beats != beats_seen_ || running != running_seen_) {
+    beats_seen_ = beats;
+    running_seen_ = running;
+    beaten_at_ = now;
+  }
+  if (now - beaten_at_ <= image_->settings().method_limit) return false;
+  return true;
 }
 
 // No method of the end came to its own end within its limit. What waits for others waits one limit more.

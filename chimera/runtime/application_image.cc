@@ -214,6 +214,7 @@ void image_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationS
     archive.text(rtpu.name);
     archive.number(rtpu.cpu);
     archive.choice(rtpu.policy, Policy::kMufLaxity);
+    archive.choice(rtpu.preemptive, true);
   });
   archive.list(spec.tasks, parts.tasks, kMostTasks, "too many tasks", [&](auto& task) {
     task_fields(archive, task, parts.ports.emplace_back(), spec.rtpus.size());

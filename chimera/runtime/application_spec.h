@@ -26,6 +26,7 @@ struct RtpuSpec {
   std::string_view name;
   std::uint32_t cpu = 0;
   Policy policy = Policy::kEdf;
+  bool preemptive = false;  ///< a thread for each task; else one loop, the executive
 };
 
 /// Context: setup. Every span must outlive the runtime that is made from it.

@@ -30,6 +30,9 @@ enum class Happening : std::uint8_t {
   kSignalled, ///< signal from task `from` carried out
   kFlag,      ///< this rtpu's flag word went to `detail`
   kStop,      ///< reaction `stop` of the task: the rtpu turned all its tasks OFF
+  kMissed,    ///< the task missed its deadline; `from` used the processor most, for `detail` ns: more than its budget
+              ///< when somebody did
+  kHang,      ///< a job of the task does not end: it used `detail` ns by now. The rtpu ends
 };
 
 /// 64 bytes; what is not used is 0 (ids: invalid).

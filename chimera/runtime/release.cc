@@ -34,6 +34,7 @@ Releases::Releases(TaskSet& set, const RunOptions& options)
     of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
   if (options_.threads != nullptr) kept_.resize(tasks_.size());
+  if (options_.guest != nullptr) blamed_.assign(tasks_.size(), Nanoseconds{INT64_MIN / 2});
 }
 
 void Releases::begin(Nanoseconds origin) noexcept {
@@ -187,6 +188,7 @@ void Releases::drop(const DroppedRelease& dropped) noexcept {
   Task& task = tasks_[dropped.task.index];
   task.profile.missed += dropped.count;
   task.profile.missed_in_a_row += dropped.count;
+  if (options_.guest != nullptr) want(task, kBlame);
   if (is_out_of_patience(task)) patience_lost_ = true;
 }
 
@@ -206,6 +208,7 @@ void Releases::settle_job(TaskId id, Nanoseconds now) noexcept {
   of_[id.index].wants = 0;
   if (wants & kRaiseFlag) raise_flag(now);
   if (wants & kStop) task_stopped_ = true;
+  if (wants & kBlame) blame(tasks_[id.index], now);
   settle(tasks_[id.index], now);
 }
 
@@ -219,7 +222,30 @@ void Releases::settle(Task& task, Nanoseconds now) noexcept {
   refresh(task, now);
 }
 
+// Who used the processor most since the release that was missed: beyond the budget, if somebody did.
+void Releases::blame(const Task& missed, Nanoseconds now) noexcept {
+  constexpr Nanoseconds kSeldom = milliseconds(100);
+  if (now - blamed_[missed.id.index] < kSeldom) return;
+  blamed_[missed.id.index] = now;
+  const Nanoseconds since = now - missed.spec->deadline - missed.spec->period;
+  TaskId culprit = missed.id;
+  Nanoseconds worst_excess{INT64_MIN}, worst_used;
+  for (const Task& task : tasks_) {
+    const OfTask& t = of_[task.id.index];
+    const bool is_recent = t.last_end.load(std::memory_order_relaxed) >= since.count;
+    Nanoseconds used{is_recent ? t.last_used.load(std::memory_order_relaxed) : 0};
+    if (options_.threads != nullptr) used = std::max(used, options_.threads->used_by_job(task.id));
+    const Nanoseconds excess = t.budget == kNever ? used - task.spec->period : used - t.budget;
+    if (used == Nanoseconds{} || excess <= worst_excess) continue;
+    worst_excess = excess;
+    worst_used = used;
+    culprit = task.id;
+  }
+  options_.guest->missed(missed.id, culprit, worst_used, now);
+}
+
 void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept {
+  if (options_.guest != nullptr) want(task, kBlame);
   ++task.profile.missed;
   ++task.profile.missed_in_a_row;
   record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);
@@ -264,6 +290,8 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
   bool failed = false;
   if (body.answer != Answer::kNoEvent) {
     Profile& p = task.profile;
+    t.last_used.store(used.count, std::memory_order_relaxed);
+    t.last_end.store(end.count, std::memory_order_relaxed);
     p.execution[CHIMERA_CYCLE].add(used);
     p.response.add(end - job.release);
     p.start_delay.add(start - job.release);

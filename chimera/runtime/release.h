@@ -41,6 +41,8 @@ class JobThreads {
   /// Keeps the task's thread from beginning a job until the edge is over; a job that waits is put back. False while a
   /// job of it is under way: then an edge follows its end. Context: edge; wait-free.
   virtual bool claim(TaskId task) noexcept = 0;
+  /// Execution time of the job of the task that is under way; 0 without one. Context: edge; wait-free.
+  virtual Nanoseconds used_by_job(TaskId task) noexcept = 0;
 
  protected:
   ~JobThreads() = default;
@@ -201,8 +203,9 @@ class Releases {
     std::uint8_t wants = 0;     // of the others, once its job is over
     std::uint32_t rows = 0;     // appended to the tap
     std::uint64_t tapped = 0;   // sequence of the last of them
+    std::atomic<std::int64_t> last_used{0}, last_end{0};  // of its last job
   };
-  enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4 };
+  enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4, kBlame = 8 };
   /// What one job records at most is kept until it may go to the tap.
   using Kept = FixedVector<TapRecord, 16>;
 
@@ -216,6 +219,7 @@ class Releases {
   }
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
+  void blame(const Task& task, Nanoseconds now) noexcept;
   bool judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept;
   bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
   void give_up(Task& task, Nanoseconds at) noexcept;
@@ -242,6 +246,7 @@ class Releases {
   Nanoseconds next_act_ = kNever;  ///< of the script, on the clock
   std::vector<OfTask> of_;
   std::vector<Kept> kept_;  // with threads: by task
+  std::vector<Nanoseconds> blamed_;  // with a guest: by task, when it was last told who is to blame
   std::vector<QueueMember> members_;
   std::vector<QueueClass> classes_;
   std::vector<QueueTask> queue_tasks_;

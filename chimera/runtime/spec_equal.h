@@ -90,6 +90,7 @@ inline std::string first_difference(const ApplicationSpec& a, const ApplicationS
     d.compare(p.name, q.name, "name");
     d.compare(p.cpu, q.cpu, "cpu");
     d.compare(p.policy, q.policy, "policy");
+    d.compare(p.preemptive, q.preemptive, "preemptive");
   });
   d.list(a.tasks, b.tasks, "tasks", [&](const TaskSpec& p, const TaskSpec& q) { compare_tasks(d, p, q); });
   const auto given = [&](const GivenSpec& p, const GivenSpec& q) {

@@ -90,6 +90,11 @@ bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
   const Nanoseconds now = clock_.now();
   for (JobThread& job : threads_)
     if (releases_.is_unsettled(job.task) && claim(job.task)) releases_.settle_job(job.task, now);
+  for (JobThread& job : threads_) {
+    if (!job.is_hanging || guest_ == nullptr) continue;
+    job.is_hanging = false;
+    guest_->hangs(job.task, used(job), now);
+  }
   if (releases_.has_lost_patience()) releases_.give_up_starved(now);
   if (releases_.edge_is_due(now)) releases_.take_edge(now);
   for (JobThread& job : threads_) job.is_held = false;
@@ -144,6 +149,11 @@ bool PreemptiveExecutor::claim(TaskId id) noexcept {
     return true;
   }
   return phase == JobPhase::kNone || phase == JobPhase::kCancelled;
+}
+
+Nanoseconds PreemptiveExecutor::used_by_job(TaskId id) noexcept {
+  const JobThread* job = of_task_[id.index];
+  return job != nullptr && job->phase == JobPhase::kBegun ? used(*job) : Nanoseconds{};
 }
 
 void PreemptiveExecutor::open(TaskId id) noexcept {

@@ -121,7 +121,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   if (!me.is_demoted) record_slice(me, now);
   (void)apply(labels_.remove(me.task), nullptr);
   me.phase = JobPhase::kNone;
-  me.is_demoted = false;
+  me.is_demoted = me.is_given_up = false;
   me.check = kNever;
   Task& t = task(me);
   t.is_busy = false;

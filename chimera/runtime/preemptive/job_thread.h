@@ -40,7 +40,8 @@ struct JobThread {
   Job job;                     ///< the present one; by its own thread read when it begins
   Nanoseconds check = kNever;  ///< the supervisor looks at the job then
   bool is_demoted = false;
-  bool is_hanging = false;     ///< it does not end by itself
+  bool is_given_up = false;    ///< it does not end by itself
+  bool is_hanging = false;     ///< that is to be told
   bool is_overrun = false;     ///< was seen to have used more than its budget
   std::atomic<std::int64_t> used_before{0};  ///< of the thread's execution time, by earlier jobs; by the thread itself
   std::atomic<std::int64_t> slice{0};  ///< since when it has the processor, as far as can be told; also by the thread

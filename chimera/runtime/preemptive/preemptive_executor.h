@@ -69,6 +69,13 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   /// Runs until `duration` from the origin of the grid (kNever: without limit): no job is released from there on, those
   /// under way are waited for. May be called again to go on. Context: the thread that takes the edges.
   RunEnd run(Nanoseconds duration) noexcept;
+  /// Carries out `act` as an edge. Context: setup, between runs.
+  template <class Act>
+  void at_edge(Act&& act) {
+    enter();
+    act();
+    section_.leave();
+  }
   /// off and kill for every task. Context: setup, between runs.
   void shut_down() noexcept;
 
@@ -82,6 +89,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
  private:
   // Edges (edges.cc).
   bool claim(TaskId task) noexcept override;
+  Nanoseconds used_by_job(TaskId task) noexcept override;
   void open(TaskId task) noexcept override;
   void close(TaskId task) noexcept override;
   bool take_edge(RunEnd& end, Nanoseconds until) noexcept;

@@ -122,9 +122,9 @@ void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
 
 // Others keep their deadlines; whoever runs the context ends it, for nothing else ends the job.
 void PreemptiveExecutor::hang(JobThread& job, Nanoseconds now) noexcept {
-  if (!job.is_demoted) demote(job, now);
-  if (job.is_hanging) return;
-  job.is_hanging = true;
+  if (job.is_given_up) return;
+  job.is_given_up = job.is_hanging = true;
+  demote(job, now);
   releases_.record_now(TapKind::kHang, now, job.task, task(job).call.cycle, used(job).count);
   ring_edge();
 }
