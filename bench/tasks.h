@@ -68,10 +68,12 @@ inline const chimera_component& axis_component() {
 class Axes {
  public:
   template <class Period>
-  Axes(std::uint32_t n, Period period) {
+  Axes(std::uint32_t n, Period period, bool preemptive = false, Nanoseconds offset_step = {},
+       Nanoseconds budget = microseconds(1), const chimera_component& component = axis_component(),
+       OnMiss on_overrun = OnMiss::kContinue) {
     for (std::uint32_t i = 0; i < n; ++i) {
       names_.push_back(std::make_unique<std::string>("axis" + std::to_string(i)));
-      components_.push_back(&axis_component());
+      components_.push_back(&component);
       ids_.push_back(TaskId(i));
     }
     ports_.resize(n);
@@ -89,7 +91,9 @@ class Axes {
       task.name = *names_[i];
       task.component = "axis";
       task.period = task.deadline = period(i);
-      task.budget = microseconds(1);
+      task.budget = budget;
+      task.offset = offset_step * i;
+      task.on_overrun = on_overrun;
       task.rtpu = RtpuId(0u);
       task.ports = ports_[i];
       tasks_.push_back(task);
@@ -98,7 +102,9 @@ class Axes {
     spec_.rtpus = rtpus_;
     spec_.tasks = tasks_;
     spec_.init_order = spec_.start = ids_;
-    auto made = TaskSet::create(spec_, components_);
+    ContextPlace place;
+    place.preemptive = preemptive;
+    auto made = TaskSet::create(spec_, components_, place);
     if (!made) std::fprintf(stderr, "%s\n", made.error().message.c_str()), std::exit(1);
     set_ = *std::move(made);
   }

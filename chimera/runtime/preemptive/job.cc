@@ -152,7 +152,11 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
   }
   on_processor_ = top;
   const bool goes_on = top != nullptr && top->phase == JobPhase::kBegun;
-  if (goes_on) top->slice.store(now.count, std::memory_order_relaxed);
+  if (goes_on) {
+    top->slice.store(now.count, std::memory_order_relaxed);
+    const Nanoseconds check = end_of_budget(*top, now);
+    if (check < top->check) watch(*top, check);
+  }
   const std::uint32_t word = goes_on ? (top->task.index + 1) << 8 | CHIMERA_CYCLE : 0;
   tasks_[0].running->store(word, std::memory_order_relaxed);
 }

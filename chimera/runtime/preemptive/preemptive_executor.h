@@ -114,6 +114,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void look_at_jobs(Nanoseconds now) noexcept;
   void look_at(JobThread& job, Nanoseconds now) noexcept;
   void look_at_waiting(JobThread& job, Nanoseconds now) noexcept;
+  Nanoseconds end_of_budget(JobThread& job, Nanoseconds now) noexcept;
   void look_at_begun(JobThread& job, Nanoseconds now) noexcept;
   void charge_running(Nanoseconds now) noexcept;
   void charge(JobThread& job, Nanoseconds now) noexcept;

@@ -10,6 +10,8 @@ namespace {
 
 // A job that has used so many times its budget (without one: its period) does not end by itself.
 constexpr std::int64_t kHangsAfter = 10;
+// The supervisor never comes again at once: at the ceiling it would keep everybody else from running.
+constexpr Nanoseconds kSoonest = microseconds(5), kSeldom = microseconds(100);
 
 Nanoseconds rounded(Nanoseconds t, Nanoseconds quantum) noexcept {
   return quantum * ((t.count + quantum.count / 2) / quantum.count);
@@ -180,7 +182,7 @@ void PreemptiveExecutor::look_at_jobs(Nanoseconds now) noexcept {
     if (job.check <= now) look_at(job, now);
     if (job.check != kNever && (next == nullptr || job.check < next->check)) next = &job;
   }
-  Nanoseconds check = next == nullptr ? kNever : next->check;
+  Nanoseconds check = next == nullptr ? kNever : std::max(next->check, now + kSoonest);
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1)
     check = std::min(check, next_quantum(now));
   arm(next, check);
@@ -200,9 +202,11 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
     releases_.expire_waiting(job.job);
     cancel(job, now);
   } else if (now >= job.next) {
-    releases_.drop({job.task, job.job.release, 1});
-    job.job = {job.task, job.next, job.next + s.deadline};
-    job.next += s.period;
+    const std::int64_t passed = (now - job.next) / s.period;
+    const Nanoseconds release = job.next + s.period * passed;
+    releases_.drop({job.task, release - s.period, static_cast<std::uint32_t>(passed + 1)});
+    job.job = {job.task, release, release + s.deadline};
+    job.next = release + s.period;
     (void)apply(labels_.rekey(job.task, urgency_of(job, s.budget)), nullptr);
     processor_goes_on(now);
   }
@@ -222,10 +226,18 @@ void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept
   if (now >= job.job.deadline && s.on_miss == OnMiss::kDemote) demote(job, now);
   if (now >= job.job.deadline && s.on_miss == OnMiss::kAbort)
     task(job).give_up.store(true, std::memory_order_relaxed);
-  job.check = now + s.period;
-  if (now < job.job.deadline) job.check = job.job.deadline;
-  const bool is_exact = acts_at_once(s.on_overrun) && s.budget > Nanoseconds{} && !job.is_overrun;
-  if (is_exact) job.check = std::min(job.check, now + std::max(s.budget - used(job), microseconds(1)));
+  job.check = now < job.job.deadline ? job.job.deadline : now + s.period;
+  if (&job == on_processor_) job.check = std::min(job.check, end_of_budget(job, now));
+}
+
+// When a job that runs will have used up its budget, where that is to be seen at once; kNever otherwise. One that has
+// used nothing since the last look sleeps in a system call: nobody waits for that at every instant.
+Nanoseconds PreemptiveExecutor::end_of_budget(JobThread& job, Nanoseconds now) noexcept {
+  const TaskSpec& s = spec(job);
+  if (!acts_at_once(s.on_overrun) || s.budget == Nanoseconds{} || job.is_overrun) return kNever;
+  const Nanoseconds spent = used(job), last = job.charged;
+  job.charged = spent;
+  return now + std::max(s.budget - spent, spent == last ? kSeldom : kSoonest);
 }
 
 }  // namespace chimera

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Three ways to run n periodic tasks on one CPU by preemptive scheduling, for the rows that compare them:
+// ours (labels), a thread for each task at a fixed priority, and a dispatcher thread that wakes the threads of tasks.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <atomic>
+#include <deque>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "bench/bench.h"
+#include "bench/tasks.h"
+#include "chimera/platform/doorbell.h"
+#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/realtime.h"
+#include "chimera/runtime/preemptive/preemptive_executor.h"
+
+namespace chimera::bench {
+
+inline constexpr int kCeiling = 49;
+
+inline int bench_cpu() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) - 1; }
+
+/// n tasks of one period, released one after the other over the period or all at one instant.
+struct Load {
+  std::uint32_t n = 10;
+  Nanoseconds period = milliseconds(1);
+  bool staggered = true;
+
+  Nanoseconds step() const { return staggered ? Nanoseconds{period.count / n} : Nanoseconds{}; }
+};
+
+/// What a run cost and how late its jobs began.
+struct Cost {
+  std::uint64_t jobs = 0;
+  double cpu_ns = 0;       // of the process, a job
+  double switches = 0;     // a job
+  double level_changes = 0;
+  std::vector<double> late_ns;
+};
+
+/// Measures a window: processor time of the process and switches of its threads.
+class Window {
+ public:
+  Window() { read(cpu_, switches_); }
+  void end(Cost& cost) const {
+    double cpu = 0, switches = 0;
+    read(cpu, switches);
+    cost.cpu_ns = (cpu - cpu_) / static_cast<double>(cost.jobs);
+    cost.switches = (switches - switches_) / static_cast<double>(cost.jobs);
+  }
+
+ private:
+  static void read(double& cpu, double& switches) {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    cpu = static_cast<double>(t.tv_sec) * 1e9 + static_cast<double>(t.tv_nsec);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    switches = static_cast<double>(usage.ru_nvcsw + usage.ru_nivcsw);
+  }
+  double cpu_ = 0, switches_ = 0;
+};
+
+/// Ours: the preemptive executor under `policy`. `budget` zero: budgets are not stated.
+inline Cost run_ours(const Load& load, Policy policy, Nanoseconds time, Nanoseconds budget = {},
+                     const chimera_component& component = axis_component()) {
+  Axes axes(load.n, [&](std::uint32_t) { return load.period; }, true, load.step(), budget, component);
+  RunOptions options;
+  options.policy = policy;
+  ProcessorPlace place;
+  place.cpu = bench_cpu();
+  place.ceiling = kCeiling;
+  place.base = kCeiling - 19;
+  PreemptiveExecutor executor(axes.set(), options, place);
+  Cost cost;
+  std::thread edges([&] {
+    (void)enter_realtime({kCeiling, place.cpu, false});
+    if (!executor.start()) std::exit(1);
+    (void)executor.run(milliseconds(20));
+    const ProcessorCounts before = executor.counts();
+    const Window window;
+    (void)executor.run(milliseconds(20) + time);
+    const ProcessorCounts after = executor.counts();
+    cost.jobs = after.jobs - before.jobs;
+    cost.level_changes = static_cast<double>(after.level_changes - before.level_changes) / static_cast<double>(cost.jobs);
+    window.end(cost);
+  });
+  edges.join();
+  return cost;
+}
+
+/// The work of one job without any framework.
+class RawAxis {
+ public:
+  void operator()() {
+    std::array<double, kAxes> in = values_;
+    for (double& value : in) value = 0.5 * value + 1.0;
+    values_ = in;
+    keep(values_);
+  }
+
+ private:
+  std::array<double, kAxes> values_{};
+};
+
+/// A thread for each task at a fixed priority that sleeps to absolute instants.
+inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false) {
+  LinuxClock clock;
+  const Nanoseconds origin = clock.now() + milliseconds(20), end = origin + milliseconds(20) + time;
+  std::atomic<std::uint64_t> jobs{0};
+  std::vector<std::vector<double>> late(load.n);
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 0; i < load.n; ++i)
+    threads.emplace_back([&, i] {
+      late[i].reserve(keep_late ? static_cast<std::size_t>((end - origin) / load.period) + 1 : 0);
+      (void)enter_realtime({kCeiling - 1 - static_cast<int>(i % 18), bench_cpu(), false});
+      RawAxis axis;
+      for (Nanoseconds next = origin + load.step() * i; next < end; next += load.period) {
+        (void)clock.wait_until(next);
+        if (keep_late) late[i].push_back(static_cast<double>((clock.now() - next).count));
+        axis();
+        jobs.fetch_add(1, std::memory_order_relaxed);
+      }
+    });
+  (void)clock.wait_until(origin + milliseconds(20));
+  Cost cost;
+  const std::uint64_t before = jobs;
+  const Window window;
+  (void)clock.wait_until(end);
+  cost.jobs = jobs - before;
+  window.end(cost);
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& one : late) cost.late_ns.insert(cost.late_ns.end(), one.begin(), one.end());
+  return cost;
+}
+
+/// One thread above the others that sleeps to each release and wakes the thread of the task, which reports its end.
+inline Cost run_dispatched(const Load& load, Nanoseconds time) {
+  LinuxClock clock;
+  const Nanoseconds origin = clock.now() + milliseconds(20), end = origin + milliseconds(20) + time;
+  std::atomic<std::uint64_t> jobs{0};
+  std::atomic<bool> over{false};
+  std::deque<std::atomic<std::uint32_t>> bells(load.n);
+  std::atomic<std::uint32_t> done{0};
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 0; i < load.n; ++i)
+    threads.emplace_back([&, i] {
+      (void)enter_realtime({kCeiling - 1 - static_cast<int>(i % 18), bench_cpu(), false});
+      RawAxis axis;
+      for (std::uint32_t heard = 0;; ++heard) {
+        while (Doorbell(bells[i]).read() == heard) (void)Doorbell(bells[i]).wait_until(heard, kNever);
+        if (over) return;
+        axis();
+        jobs.fetch_add(1, std::memory_order_relaxed);
+        Doorbell(done).ring();
+      }
+    });
+  std::thread dispatcher([&] {
+    (void)enter_realtime({kCeiling, bench_cpu(), false});
+    std::vector<Nanoseconds> next(load.n);
+    for (std::uint32_t i = 0; i < load.n; ++i) next[i] = origin + load.step() * i;
+    for (;;) {
+      const std::uint32_t seen = Doorbell(done).read();
+      const Nanoseconds now = clock.now();
+      if (now >= end) break;
+      Nanoseconds soonest = kNever;
+      for (std::uint32_t i = 0; i < load.n; ++i) {
+        if (next[i] <= now) {
+          Doorbell(bells[i]).ring();
+          next[i] += load.period;
+        }
+        soonest = std::min(soonest, next[i]);
+      }
+      (void)Doorbell(done).wait_until(seen, std::min(soonest, end));
+    }
+    over = true;
+    for (auto& bell : bells) Doorbell(bell).ring();
+  });
+  (void)clock.wait_until(origin + milliseconds(20));
+  Cost cost;
+  const std::uint64_t before = jobs;
+  const Window window;
+  (void)clock.wait_until(end);
+  cost.jobs = jobs - before;
+  window.end(cost);
+  dispatcher.join();
+  for (std::thread& thread : threads) thread.join();
+  return cost;
+}
+
+}  // namespace chimera::bench
