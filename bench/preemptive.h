@@ -68,7 +68,7 @@ class Window {
 /// Ours: the preemptive executor under `policy`. `budget` zero: budgets are not stated.
 inline Cost run_ours(const Load& load, Policy policy, Nanoseconds time, Nanoseconds budget = {},
                      const chimera_component& component = axis_component()) {
-  Axes axes(load.n, [&](std::uint32_t) { return load.period; }, true, load.step(), budget, component);
+  Axes axes(load.n, [&](std::uint32_t) { return load.period; }, {true, load.step(), budget, &component});
   RunOptions options;
   options.policy = policy;
   ProcessorPlace place;
@@ -86,7 +86,8 @@ inline Cost run_ours(const Load& load, Policy policy, Nanoseconds time, Nanoseco
     (void)executor.run(milliseconds(20) + time);
     const ProcessorCounts after = executor.counts();
     cost.jobs = after.jobs - before.jobs;
-    cost.level_changes = static_cast<double>(after.level_changes - before.level_changes) / static_cast<double>(cost.jobs);
+    cost.level_changes =
+        static_cast<double>(after.level_changes - before.level_changes) / static_cast<double>(cost.jobs);
     window.end(cost);
   });
   edges.join();

@@ -31,7 +31,7 @@ void run(int repetitions) {
   late.reserve(100'000);
   seen_after = &late;
   for (int i = 0; i < repetitions; ++i) {
-    Axes axes(1, [](std::uint32_t) { return kPeriod; }, true, {}, kBudget, component, OnMiss::kAbort);
+    Axes axes(1, [](std::uint32_t) { return kPeriod; }, {true, {}, kBudget, &component, OnMiss::kAbort});
     RunOptions options;
     ProcessorPlace place;
     place.cpu = bench_cpu();
@@ -46,7 +46,8 @@ void run(int repetitions) {
     edges.join();
     (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(200));
   }
-  for (const auto& [part, name, goal] : {std::tuple{0.5, "p50", Goal{}}, std::tuple{0.99, "p99", figure_at_most(50'000)}}) {
+  for (const auto& [part, name, goal] :
+       {std::tuple{0.5, "p50", Goal{}}, std::tuple{0.99, "p99", figure_at_most(50'000)}}) {
     Figure f{.row = 11, .what = std::string("overrun seen after the end of the budget, exact timer, ") + name,
              .unit = "ns", .goal = goal};
     f.figure = quantile(late, part);

@@ -64,16 +64,23 @@ inline const chimera_component& axis_component() {
   return component;
 }
 
+/// What may be otherwise with the tasks.
+struct AxesForm {
+  bool preemptive = false;
+  Nanoseconds offset_step;
+  Nanoseconds budget = microseconds(1);
+  const chimera_component* component = nullptr;  ///< null: axis_component()
+  OnMiss on_overrun = OnMiss::kContinue;
+};
+
 /// n tasks in a ring. `period(i)` is that of task i.
 class Axes {
  public:
   template <class Period>
-  Axes(std::uint32_t n, Period period, bool preemptive = false, Nanoseconds offset_step = {},
-       Nanoseconds budget = microseconds(1), const chimera_component& component = axis_component(),
-       OnMiss on_overrun = OnMiss::kContinue) {
+  Axes(std::uint32_t n, Period period, const AxesForm& form = AxesForm()) {
     for (std::uint32_t i = 0; i < n; ++i) {
       names_.push_back(std::make_unique<std::string>("axis" + std::to_string(i)));
-      components_.push_back(&component);
+      components_.push_back(form.component != nullptr ? form.component : &axis_component());
       ids_.push_back(TaskId(i));
     }
     ports_.resize(n);
@@ -91,9 +98,9 @@ class Axes {
       task.name = *names_[i];
       task.component = "axis";
       task.period = task.deadline = period(i);
-      task.budget = budget;
-      task.offset = offset_step * i;
-      task.on_overrun = on_overrun;
+      task.budget = form.budget;
+      task.offset = form.offset_step * i;
+      task.on_overrun = form.on_overrun;
       task.rtpu = RtpuId(0u);
       task.ports = ports_[i];
       tasks_.push_back(task);
@@ -103,7 +110,7 @@ class Axes {
     spec_.tasks = tasks_;
     spec_.init_order = spec_.start = ids_;
     ContextPlace place;
-    place.preemptive = preemptive;
+    place.preemptive = form.preemptive;
     auto made = TaskSet::create(spec_, components_, place);
     if (!made) std::fprintf(stderr, "%s\n", made.error().message.c_str()), std::exit(1);
     set_ = *std::move(made);

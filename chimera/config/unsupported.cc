@@ -63,7 +63,8 @@ class Refusals {
     if (!is_switch && has_thread) return;
     const std::string what =
         "'" + std::string(key) + (is_switch ? ": switch' of task '" : ": demote' of task '") + task.name.text + "'";
-    if (is_switch) return refuse(reaction->at, what, "use continue, hold, skip, abort, demote, error, flag or stop to run");
+    if (is_switch)
+      return refuse(reaction->at, what, "use continue, hold, skip, abort, demote, error, flag or stop to run");
     refuse(reaction->at, what, executor_ == Executor::kProcesses
                                    ? "give its rtpu 'executor: preemptive', or use another reaction"
                                    : "run without --virtual and --isolation none, or use another reaction");
@@ -71,7 +72,8 @@ class Refusals {
 
   void judge(const DraftTask& task) {
     const auto tasks = configuration_.tasks();
-    const auto here = std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.name == task.name.text; });
+    const auto here = std::find_if(tasks.begin(), tasks.end(),
+                                   [&](const ConfiguredTask& t) { return t.name == task.name.text; });
     const bool has_thread = executor_ == Executor::kProcesses && here != tasks.end() &&
                             configuration_.rtpus()[here->rtpu].preemptive;
     reaction(task.on_miss, "on_miss", task, has_thread);

@@ -70,7 +70,8 @@ int run(Nanoseconds time, std::uint64_t entries, unsigned seed) {
     const ProcessorCounts one = one_round(seed);
     if (one.section_taken + one.wrong_levels > 0)
       std::printf("seed %u: section taken %llu times, %llu wrong labels\n", seed,
-                  static_cast<unsigned long long>(one.section_taken), static_cast<unsigned long long>(one.wrong_levels));
+                  static_cast<unsigned long long>(one.section_taken),
+                  static_cast<unsigned long long>(one.wrong_levels));
     faults += one.section_taken + one.wrong_levels;
     all.checked += one.checked;
     all.jobs += one.jobs;

@@ -142,7 +142,7 @@ TEST_P(PreemptiveFaults, RandomOverrunsNeverMakeABurst) {
   const auto overruns = [](Application& app) {
     app.toy("bad").during = [n = 0u](const chimera_call& call) mutable {
       n = n * 1664525u + 1013904223u;
-      call.host->spend(call.context, static_cast<std::int64_t>(n >> 16) % 1'500'000);  // 0 to 300 % of the budget
+      call.host->spend(call.context, static_cast<std::int64_t>(n >> 8) % 1'500'000);  // 0 to 300 % of the budget
       return CHIMERA_OK;
     };
   };
