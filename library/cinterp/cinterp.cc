@@ -22,7 +22,9 @@ struct Cinterp {
   }
   Outcome cycle(Cycle c) {
     if (c.illegal()) return ok();
-    if (!library::DhPorts::is_pose(*xd) || !library::DhPorts::is_pose(*xm)) return fault("a pose is not finite");
+    if (!library::DhPorts::is_pose(*xd) || !library::DhPorts::is_pose(*xm)) {
+      return fault("a pose is not finite, or has no orientation");
+    }
     const library::Triple way = place(*xd) - place(*xr);
     const double distance = library::length(way), step = std::min(*gain * distance, *speed_limit) * c.dt();
     library::Triple next = place(*xr) + (distance > 0 ? step / distance : 0) * way;

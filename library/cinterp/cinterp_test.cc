@@ -1,69 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include "library/kinematics/arm_rig.h"
 
-#include "chimera/task/geometry.h"
-#include "chimera/task/rig.h"
-
-namespace chimera {
+namespace chimera::library {
 namespace {
 
-constexpr Pose kHere{{0, 0, 0}, {1, 0, 0, 0}};
-constexpr Pose kThere{{0.3, 0.4, 0}, {0, 0, 0, 1}};
+constexpr Pose kHere{{0.5, 0.1, 0.3}, {1, 0, 0, 0}};
 
 struct CinterpTest : testing::Test {
-  Rig rig{"cinterp"};
-  void start(double leash) {
-    rig.set("leash", leash);
+  ArmRig rig{"cinterp"};
+  void SetUp() override {
     rig.set("xm", kHere);
-    rig.set("xd", kThere);
+    rig.set("xd", kHere);
     ASSERT_TRUE(rig.init());
     ASSERT_TRUE(rig.on());
   }
+  Pose xr() { return rig.get<Pose>("xr"); }
+  /// One cycle in which the arm follows at once.
+  Pose follow() {
+    EXPECT_TRUE(rig.cycle());
+    rig.set("xm", xr());
+    return xr();
+  }
 };
 
-TEST_F(CinterpTest, BeginsWhereTheToolIsAndGoesStraightNoFasterThanAllowed) {
-  start(10);
-  Pose before = rig.get<Pose>("xr");
-  EXPECT_EQ(before.position[0], 0);
-  for (int i = 0; i < 500; ++i) {
-    ASSERT_TRUE(rig.cycle());
-    const Pose now = rig.get<Pose>("xr");
-    const double step = std::hypot(now.position[0] - before.position[0], now.position[1] - before.position[1]);
-    EXPECT_LE(step, 0.5e-3 + 1e-12);
-    EXPECT_NEAR(now.position[0] * 4, now.position[1] * 3, 1e-12);
+TEST_F(CinterpTest, BeginsWhereTheToolIs) {
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(xr().position[i], kHere.position[i]);
+}
+
+TEST_F(CinterpTest, MakesASmoothWayOfATargetThatJumps) {
+  Pose goal{{0.9, -0.2, 0.3}, {std::cos(0.6), 0, std::sin(0.6), 0}};
+  rig.set("xd", goal);
+  Pose before = xr();
+  for (int step = 0; step < 3000; ++step) {
+    const Pose now = follow();
+    const Triple way{now.position[0] - before.position[0], now.position[1] - before.position[1],
+                     now.position[2] - before.position[2]};
+    ASSERT_LE(length(way), 0.5 * 1e-3 + 1e-12);
+    ASSERT_LE(angle_between(before.orientation, now.orientation), 1.0 * 1e-3 + 1e-9);
     before = now;
   }
+  EXPECT_LT(apart(frame_of(before), frame_of(goal)), 1e-6);
 }
 
-TEST_F(CinterpTest, ArrivesInPlaceAndOrientation) {
-  start(10);
-  for (int i = 0; i < 6000; ++i) ASSERT_TRUE(rig.cycle());
-  const Pose end = rig.get<Pose>("xr");
-  EXPECT_NEAR(end.position[0], 0.3, 1e-6);
-  EXPECT_NEAR(end.position[1], 0.4, 1e-6);
-  EXPECT_NEAR(std::abs(end.orientation[3]), 1, 1e-6);
+TEST_F(CinterpTest, IsNoFartherFromTheToolThanItsLeash) {
+  rig.set("xd", Pose{{2, 0.1, 0.3}, {1, 0, 0, 0}});
+  for (int step = 0; step < 1000; ++step) ASSERT_TRUE(rig.cycle());  // an arm that does not move
+  EXPECT_NEAR(xr().position[0], 0.6, 1e-12);
 }
 
-TEST_F(CinterpTest, StaysNearAToolThatDoesNotFollow) {
-  start(0.05);
-  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(rig.cycle());
-  const Pose end = rig.get<Pose>("xr");
-  EXPECT_NEAR(std::hypot(end.position[0], end.position[1]), 0.05, 1e-9);
+TEST_F(CinterpTest, AnOrientationAndItsNegativeAreTheSame) {
+  rig.set("xd", Pose{{0.5, 0.1, 0.3}, {-1, 0, 0, 0}});
+  follow();
+  EXPECT_NEAR(angle_between(xr().orientation, kHere.orientation), 0, 1e-12);
 }
 
-TEST_F(CinterpTest, StandsWhileTheConfigurationIsIllegalAndRefusesWhatIsNoPose) {
-  start(10);
+TEST_F(CinterpTest, TurnsByHalfARevolutionToo) {
+  const Pose goal{{0.5, 0.1, 0.3}, {0, 0, 0, 1}};
+  rig.set("xd", goal);
+  for (int step = 0; step < 5000; ++step) follow();
+  EXPECT_LT(apart(frame_of(xr()), frame_of(goal)), 1e-6);
+}
+
+TEST_F(CinterpTest, StandsWithoutGainAndWhileTheConfigurationIsIllegal) {
+  rig.set("xd", Pose{{0.9, 0.1, 0.3}, {1, 0, 0, 0}});
   rig.illegal(true);
-  ASSERT_TRUE(rig.cycle());
-  EXPECT_EQ(rig.get<Pose>("xr").position[0], 0);
+  follow();
+  EXPECT_EQ(xr().position[0], 0.5);
   rig.illegal(false);
-  rig.set("xd", Pose{{std::nan(""), 0, 0}, {1, 0, 0, 0}});
-  EXPECT_EQ(rig.cycle().text, "a pose is not finite");
-  rig.set("xm", Pose{{0, 0, 0}, {0, 0, 0, 0}});
+  rig.set("gain", 0.0);
+  follow();
+  EXPECT_EQ(xr().position[0], 0.5);
+}
+
+TEST_F(CinterpTest, RefusesAPoseThatIsNoneAndGoesOnAfterIt) {
+  rig.set("xd", Pose{{0, 0, 0}, {0, 0, 0, 0}});
+  EXPECT_EQ(rig.refusal(), "a pose is not finite, or has no orientation");
+  rig.set("xd", kHere);
+  EXPECT_EQ(rig.refusal(), "accepted");
+  rig.set("xm", Pose{{kNotANumber, 0, 0}, {1, 0, 0, 0}});
+  EXPECT_EQ(rig.refusal(), "a pose is not finite, or has no orientation");
   EXPECT_EQ(rig.on().text, "xm is not finite or no orientation: xr cannot begin there");
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::library

@@ -18,7 +18,12 @@ struct Ctraj {
 
   void init() { reinit(); }
   void reinit() {
-    if (!library::DhPorts::is_pose(*centre)) throw std::runtime_error("centre: the orientation is no unit quaternion");
+    if (!library::DhPorts::is_pose(*centre)) {
+      throw std::runtime_error("centre: not finite, or the orientation is no unit quaternion");
+    }
+    for (const double angle : phase) {
+      if (!std::isfinite(angle)) throw std::runtime_error("phase: a number is not finite");
+    }
   }
   void on(Cycle c) {
     begin_ = c.now();

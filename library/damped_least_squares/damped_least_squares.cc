@@ -31,25 +31,29 @@ struct DampedLeastSquares {
   Outcome cycle(Cycle c) {
     stop();
     if (c.illegal()) return ok();
-    if (!library::DhPorts::is_pose(*xd) || !library::DhPorts::is_pose(*xm)) return fault("a pose is not finite");
+    if (!library::DhPorts::is_pose(*xd) || !library::DhPorts::is_pose(*xm)) {
+      return fault("a pose is not finite, or has no orientation");
+    }
     library::Six e = library::motion_between(library::frame_of(*xm), library::frame_of(*xd));
     for (double& part : e) part *= *gain;
     library::Jacobian jacobian;
-    double sum = 0;
+    double sum = 0;  // of squares: what is solved with must be finite too
     for (std::size_t i = 0; i < qd_ref.size(); ++i) {
       for (std::size_t r = 0; r < 3; ++r) {
         jacobian.linear[i][r] = jv(r, i);
         jacobian.angular[i][r] = jw(r, i);
-        sum += jv(r, i) + jw(r, i);
+        sum += jv(r, i) * jv(r, i) + jw(r, i) * jw(r, i);
       }
     }
-    if (!std::isfinite(sum)) return fault("the Jacobian is not finite");
+    if (!(sum < kMost)) return fault("the Jacobian is not finite, or too large");
     move(jacobian, e);
     return ok();
   }
   void off() { stop(); }
 
  private:
+  static constexpr double kMost = 1e20;  // beyond it the solution would lose every digit
+
   void stop() {
     for (double& speed : qd_ref) speed = 0;
   }

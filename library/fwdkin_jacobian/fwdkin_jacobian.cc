@@ -17,10 +17,10 @@ struct FwdkinJacobian : library::DhPorts {
   Outcome on() { return cycle(); }
   Outcome cycle() {
     library::Jacobian jacobian;
-    const library::Frame found = library::tool_frame(chain_, q.span(), jacobian);
+    const library::Frame found = arm_.tool_frame(q.span(), jacobian);
     if (!std::isfinite(library::length(found.origin) + library::length(found.x))) return fault("q is not finite");
     *xm = library::pose_of(found);
-    for (std::size_t i = 0; i < chain_.ndof; ++i) {
+    for (std::size_t i = 0; i < arm_.joints(); ++i) {
       for (std::size_t r = 0; r < 3; ++r) {
         jv(r, i) = jacobian.linear[i][r];
         jw(r, i) = jacobian.angular[i][r];

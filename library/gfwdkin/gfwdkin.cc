@@ -14,7 +14,7 @@ struct Gfwdkin : library::DhPorts {
   void reinit() { read_chain(); }
   Outcome on() { return cycle(); }
   Outcome cycle() {
-    const library::Frame found = library::tool_frame(chain_, q.span());
+    const library::Frame found = arm_.tool_frame(q.span());
     if (!std::isfinite(library::length(found.origin) + library::length(found.x))) return fault("q is not finite");
     *xm = library::pose_of(found);
     return ok();

@@ -30,7 +30,7 @@ struct Ginvkin : library::DhPorts {
     if (!is_pose(*xr)) return fault("xr is not finite or no orientation");
     std::array<double, library::kMostJoints> q_found{};
     std::copy_n(q_ref.begin(), q_ref.size(), q_found.begin());
-    search_.solve(chain_, library::frame_of(*xr), {q_found.data(), q_ref.size()}, *tolerance);
+    search_.solve(arm_, library::frame_of(*xr), {q_found.data(), q_ref.size()}, *tolerance);
     *residual = search_.residual();
     std::copy_n(q_found.begin(), q_ref.size(), q_ref.begin());
     return ok();

@@ -1,108 +1,111 @@
 // SPDX-License-Identifier: Apache-2.0
-// The generic kinematics components and those of the Puma, side by side on the same arm.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <string>
+#include "library/kinematics/arm_rig.h"
 
-#include "chimera/task/rig.h"
-#include "library/kinematics/puma560.h"
-
-namespace chimera {
+namespace chimera::library {
 namespace {
 
-using library::Puma560;
-constexpr Puma560::Vector kPose{0.3, 0.6, -2.6, 0.4, 0.8, -0.2};
-
-struct KinematicsTest : testing::Test {
-  Rig forward{"gfwdkin"}, slopes{"fwdkin_jacobian"}, inverse{"ginvkin"};
-  Rig puma_forward{"pfwdkin"}, puma_inverse{"pinvkin"};
-
-  KinematicsTest() {
-    for (Rig* rig : {&forward, &slopes, &inverse}) {
-      rig->set("ndof", std::int32_t{6});
-      for (std::size_t i = 0; i < 6; ++i) rig->set("dh", Puma560::kRows[i], i);
-    }
+struct GinvkinTest : testing::Test {
+  ArmRig rig{"ginvkin"};
+  void SetUp() override {
+    rig.build_puma();
+    stand(kBent);
   }
+  /// ON with the arm at `q` and wanted where it is.
   void stand(const Puma560::Vector& q) {
-    for (Rig* rig : {&forward, &slopes, &inverse, &puma_forward, &puma_inverse}) {
-      for (std::size_t i = 0; i < 6; ++i) rig->set("q", q[i], i);
-    }
+    rig.give("q", q);
+    want(Puma560::forward(q));
+    ASSERT_TRUE(rig.init());
+    ASSERT_TRUE(rig.on());
   }
-  void start() {
-    stand(kPose);
-    const Pose here = library::pose_of(Puma560::forward(kPose));
-    inverse.set("xr", here);
-    puma_inverse.set("xr", here);
-    for (Rig* rig : {&forward, &slopes, &inverse, &puma_forward, &puma_inverse}) {
-      const RigAnswer made = rig->init();
-      ASSERT_TRUE(made) << made.text;
-      ASSERT_TRUE(rig->on());
-    }
-  }
+  void want(const Frame& frame) { rig.set("xr", pose_of(frame)); }
+  Frame reached() { return Puma560::forward(rig.six("q_ref")); }
 };
 
-TEST_F(KinematicsTest, AllForwardKinematicsAgree) {
-  start();
-  for (Rig* rig : {&forward, &slopes, &puma_forward}) {
-    ASSERT_TRUE(rig->cycle());
-    const Pose xm = rig->get<Pose>("xm"), expected = library::pose_of(Puma560::forward(kPose));
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(xm.position[i], expected.position[i], 1e-12);
-    EXPECT_LT(library::angle_between(xm.orientation, expected.orientation), 1e-12);
+TEST_F(GinvkinTest, FollowsAPathToWithinItsTolerance) {
+  Puma560::Vector goal = kBent;
+  for (int step = 0; step < 1000; ++step) {
+    for (std::size_t i = 0; i < 6; ++i) goal[i] = kBent[i] + 0.3 * std::sin(step * 0.005 * static_cast<double>(i + 1));
+    want(Puma560::forward(goal));
+    ASSERT_TRUE(rig.cycle());
+    ASSERT_LT(rig.get<double>("residual"), 1e-6) << "step " << step;
+    ASSERT_LT(apart(reached(), Puma560::forward(goal)), 1e-6);
   }
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], goal[i], 1e-5);
 }
 
-TEST_F(KinematicsTest, BothInversesFollowTheToolAlongAPath) {
-  start();
-  Puma560::Vector q = kPose;
+TEST_F(GinvkinTest, OutOfReachItStretchesTowardsTheTargetAndComesBack) {
+  Frame far = Puma560::forward(kBent);
+  const Triple home = far.origin;
+  far.origin = 3.0 * home;
+  want(far);
+  Puma560::Vector before = kBent;
   for (int step = 0; step < 500; ++step) {
-    for (std::size_t i = 0; i < 6; ++i) {
-      const auto phase = static_cast<double>(i);
-      q[i] = kPose[i] + 0.4 * (std::sin(0.01 * step + phase) - std::sin(phase));
-    }
-    const Pose xr = library::pose_of(Puma560::forward(q));
-    for (Rig* rig : {&inverse, &puma_inverse}) {
-      rig->set("xr", xr);
-      ASSERT_TRUE(rig->cycle());
-      for (std::size_t i = 0; i < 6; ++i) ASSERT_NEAR(rig->get<double>("q_ref", i), q[i], 1e-5) << step;
-    }
-    EXPECT_LT(inverse.get<double>("residual"), 1e-6);
+    ASSERT_TRUE(rig.cycle());
+    const Puma560::Vector now = rig.six("q_ref");
+    for (std::size_t i = 0; i < 6; ++i) ASSERT_LE(std::abs(now[i] - before[i]), 20 * 0.2 + 1e-9);
+    before = now;
   }
+  EXPECT_GT(rig.get<double>("residual"), 0.3);
+  EXPECT_GT(dot(reached().origin, home), dot(home, home));
+  far.origin = home;
+  want(far);
+  for (int step = 0; step < 100; ++step) ASSERT_TRUE(rig.cycle());
+  EXPECT_LT(rig.get<double>("residual"), 1e-6);
 }
 
-TEST_F(KinematicsTest, APoseOutOfReachIsSaidAndNoFault) {
-  start();
-  const Pose far{{3, 0, 0}, {1, 0, 0, 0}};
-  inverse.set("xr", far);
-  puma_inverse.set("xr", far);
-  ASSERT_TRUE(inverse.cycle());
-  EXPECT_GT(inverse.get<double>("residual"), 1.5);
-  ASSERT_TRUE(puma_inverse.cycle());
-  EXPECT_FALSE(puma_inverse.get<bool>("is_reachable"));
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(puma_inverse.get<double>("q_ref", i), kPose[i]);
-}
-
-TEST_F(KinematicsTest, WhatIsNotFiniteIsRefused) {
-  start();
-  Puma560::Vector q = kPose;
-  q[2] = std::nan("");
-  stand(q);
-  for (Rig* rig : {&forward, &slopes, &puma_forward}) EXPECT_EQ(rig->cycle().text, "q is not finite");
-  EXPECT_EQ(inverse.on().text, "q is not finite: the search cannot begin there");
-  EXPECT_EQ(puma_inverse.on().text, "q is not finite: no solution is near");
-  const Pose bad{{0, 0, std::nan("")}, {1, 0, 0, 0}};
-  for (Rig* rig : {&inverse, &puma_inverse}) {
-    rig->set("xr", bad);
-    EXPECT_EQ(rig->cycle().text, "xr is not finite or no orientation");
+TEST_F(GinvkinTest, AtASingularPoseItStaysBoundedAndGetsAway) {
+  const Puma560::Vector wrist{0.3, 0.8, -2.5, 0.4, 0, -0.2};
+  stand(wrist);
+  Puma560::Vector goal = wrist;
+  goal[3] += 0.3, goal[4] += 0.4;
+  want(Puma560::forward(goal));
+  for (int step = 0; step < 100; ++step) {
+    ASSERT_TRUE(rig.cycle());
+    for (double angle : rig.six("q_ref")) ASSERT_LT(std::abs(angle), 10);
   }
+  EXPECT_LT(rig.get<double>("residual"), 1e-6);
 }
 
-TEST_F(KinematicsTest, ConstantsThatAreNoArmAreRefused) {
-  forward.set("dh", library::DhLink{std::nan(""), 0, 0, 0}, 2);
-  EXPECT_EQ(forward.init().text, "dh: a number is not finite");
-  slopes.set("tool", Pose{{0, 0, 0}, {1, 1, 0, 0}});
-  EXPECT_EQ(slopes.init().text, "tool: not finite, or the orientation is no unit quaternion");
+TEST_F(GinvkinTest, MovesAnArmOfThreeJointsAsNearAsItCan) {
+  ArmRig three("ginvkin");
+  three.set("ndof", std::int32_t{3});
+  for (std::size_t i = 0; i < 3; ++i) three.set("dh", DhLink{0.3, 0, 0, 0}, i);
+  for (std::size_t i = 0; i < 3; ++i) three.set("q", 0.4, i);
+  ASSERT_TRUE(three.init());
+  ASSERT_TRUE(three.on());
+  DhChain chain;
+  chain.ndof = 3;
+  for (std::size_t i = 0; i < 3; ++i) chain.dh[i] = {0.3, 0, 0, 0};
+  const std::array<double, 3> goal{0.5, 0.3, 0.6};
+  three.set("xr", pose_of(tool_frame(chain, goal)));
+  for (int step = 0; step < 200; ++step) ASSERT_TRUE(three.cycle());
+  EXPECT_LT(three.get<double>("residual"), 1e-6);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(three.get<double>("q_ref", i), goal[i], 1e-5);
+}
+
+TEST_F(GinvkinTest, RefusesWhatIsNotFiniteAndGoesOnAfterIt) {
+  rig.set("xr", Pose{{0, kNotANumber, 0}, {1, 0, 0, 0}});
+  EXPECT_EQ(rig.refusal(), "xr is not finite or no orientation");
+  rig.set("xr", Pose{{0.5, 0, 0}, {0.5, 0, 0, 0}});
+  EXPECT_EQ(rig.refusal(), "xr is not finite or no orientation");
+  want(Puma560::forward(kBent));
+  EXPECT_EQ(rig.refusal(), "accepted");
+  rig.set("q", kNotANumber, 0);
+  EXPECT_EQ(rig.on().text, "q is not finite: the search cannot begin there");
+  rig.set("dh", DhLink{0, 0, kNotANumber, 0}, 0);
+  EXPECT_EQ(rig.refusal(), "dh: a number is not finite");
+}
+
+TEST_F(GinvkinTest, TheReferenceStandsWhileTheConfigurationIsIllegal) {
+  ASSERT_TRUE(rig.cycle());
+  const Puma560::Vector stands = rig.six("q_ref");
+  rig.set("xr", Pose{{kNotANumber, 0, 0}, {1, 0, 0, 0}});
+  rig.illegal(true);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(rig.six("q_ref"), stands);
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::library

@@ -20,20 +20,22 @@ struct DhPorts {
   InConst<Pose> tool{"tool", initial = kSamePlace, frame = "last", doc = "Tool frame in frame ndof."};
 
  protected:
-  DhChain chain_;
+  SerialArm arm_;
 
   /// Refuses constants that are no arm. Context: setup.
-  const DhChain& read_chain() {
-    chain_.ndof = dh.size();
+  DhChain read_chain() {
+    DhChain chain;
+    chain.ndof = dh.size();
     for (std::size_t i = 0; i < dh.size(); ++i) {
       const DhLink& link = dh[i];
       const double sum = link.a + link.alpha + link.d + link.theta;
       if (!std::isfinite(sum)) throw std::runtime_error("dh: a number is not finite");
-      chain_.dh[i] = link;
+      chain.dh[i] = link;
     }
-    chain_.base = sound(*base, "base");
-    chain_.tool = sound(*tool, "tool");
-    return chain_;
+    chain.base = sound(*base, "base");
+    chain.tool = sound(*tool, "tool");
+    arm_ = SerialArm(chain);
+    return chain;
   }
 
  public:

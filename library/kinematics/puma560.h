@@ -12,8 +12,7 @@
 #include <numbers>
 #include <span>
 
-#include "library/kinematics/dh.h"
-#include "library/kinematics/frame.h"
+#include "library/kinematics/serial_arm.h"
 
 namespace chimera::library {
 
@@ -35,6 +34,11 @@ struct Puma560 {
 
   /// Base to flange. Context: cycle; wait-free.
   static Frame forward(std::span<const double, kJoints> q) noexcept {
+    Jacobian unused;
+    return forward(q, unused);
+  }
+  /// The same, and the Jacobian there.
+  static Frame forward(std::span<const double, kJoints> q, Jacobian& jacobian) noexcept {
     const double c1 = std::cos(q[0]), s1 = std::sin(q[0]), c2 = std::cos(q[1]), s2 = std::sin(q[1]);
     const double c23 = std::cos(q[1] + q[2]), s23 = std::sin(q[1] + q[2]);
     const double c4 = std::cos(q[3]), s4 = std::sin(q[3]), c5 = std::cos(q[4]), s5 = std::sin(q[4]);
@@ -45,12 +49,18 @@ struct Puma560 {
     f.y = forearm.turned({-c4 * c5 * s6 - s4 * c6, -s4 * c5 * s6 + c4 * c6, -s5 * s6});
     f.z = forearm.turned({-c4 * s5, -s4 * s5, c5});
     const double out = a2 * c2 + a3 * c23 - d4 * s23, up = a2 * s2 + a3 * s23 + d4 * c23;
-    f.origin = Triple{c1 * out + s1 * d3, s1 * out - c1 * d3, up} + d6 * f.z;
+    const Triple aside{s1, -c1, 0}, wrist{c1 * out + s1 * d3, s1 * out - c1 * d3, up}, flange = d6 * f.z;
+    const Triple elbow{a2 * c2 * c1, a2 * c2 * s1, a2 * s2};
+    f.origin = wrist + flange;
+    jacobian.angular = {Triple{0, 0, 1}, aside, aside, forearm.z, forearm.turned({s4, -c4, 0}), f.z};
+    jacobian.linear = {Triple{-f.origin[1], f.origin[0], 0}, cross(aside, f.origin), cross(aside, f.origin - elbow)};
+    for (std::size_t i : {3, 4}) jacobian.linear[i] = cross(jacobian.angular[i], flange);
     return f;
   }
 
   /// All joint positions that bring the flange to `wanted`, up to eight: arm left or right, elbow up or down, wrist
-  /// turned over or not. Where the wrist is stretched (q5 = 0) only q4 + q6 is determined: q4 is that of `near`.
+  /// turned over or not. Where the arm is singular two and two are the same. Where the wrist is stretched (q5 = 0) only
+  /// q4 + q6 is determined: q4 is that of `near`.
   struct Solutions {
     std::array<Vector, 8> q{};
     std::size_t count = 0;
@@ -59,8 +69,8 @@ struct Puma560 {
     Solutions found;
     const Triple p = wanted.origin - d6 * wanted.z;
     const double r = std::hypot(p[0], p[1]);
-    if (!(r >= d3)) return found;
-    const double toward = std::atan2(p[1], p[0]), aside = std::asin(d3 / r);
+    if (!(r >= d3 - kRounding)) return found;
+    const double toward = std::atan2(p[1], p[0]), aside = std::asin(std::min(1.0, d3 / r));
     for (const double q1 : {toward + aside, toward + kPi - aside}) {
       const double out = std::cos(q1) * p[0] + std::sin(q1) * p[1];
       add_elbows(wanted, near, q1, out, p[2], found);
@@ -85,6 +95,9 @@ struct Puma560 {
   }
 
  private:
+  static constexpr double kRounding = 1e-12;   // so that a stretched arm is still within reach
+  static constexpr double kStretched = 1e-7;  // rad of q5: what rounding makes of 0 where the elbow is stretched too
+
   /// Frame 3: the axes that the wrist turns in.
   static Frame forearm_frame(double c1, double s1, double c23, double s23) noexcept {
     return {{0, 0, 0}, {c1 * c23, s1 * c23, s23}, {-s1, c1, 0}, {-c1 * s23, -s1 * s23, c23}};
@@ -93,9 +106,9 @@ struct Puma560 {
                          Solutions& found) noexcept {
     const double reach = std::hypot(a3, d4), bend = std::atan2(d4, a3);
     const double cosine = (out * out + up * up - a2 * a2 - reach * reach) / (2 * a2 * reach);
-    if (!(std::abs(cosine) <= 1)) return;
+    if (!(std::abs(cosine) <= 1 + kRounding)) return;
     for (const double sign : {1.0, -1.0}) {
-      const double q3 = sign * std::acos(cosine) - bend;
+      const double q3 = sign * std::acos(std::clamp(cosine, -1.0, 1.0)) - bend;
       const double along = a2 + a3 * std::cos(q3) - d4 * std::sin(q3), across = a3 * std::sin(q3) + d4 * std::cos(q3);
       const double q2 = std::atan2(up, out) - std::atan2(across, along);
       add_wrists(wanted, near, {q1, q2, q3}, found);
@@ -109,7 +122,7 @@ struct Puma560 {
     const double s5 = std::hypot(z[0], z[1]);
     for (const double sign : {1.0, -1.0}) {
       Vector q{arm[0], arm[1], arm[2], near[3], std::atan2(sign * s5, z[2]), 0};
-      if (s5 > 1e-9) {
+      if (s5 > kStretched) {
         q[3] = std::atan2(-sign * z[1], -sign * z[0]);
         q[5] = std::atan2(-sign * y[2], sign * x[2]);
       } else {

@@ -20,21 +20,59 @@ struct Jacobian {
 /// Six numbers of a motion: linear, then angular.
 using Six = std::array<double, 6>;
 
-/// Base to tool, and the Jacobian there. Context: cycle; wait-free.
-inline Frame tool_frame(const DhChain& chain, std::span<const double> q, Jacobian& jacobian) noexcept {
-  Frame frame = frame_of(chain.base);
-  std::array<Triple, kMostJoints> at;
-  for (std::size_t i = 0; i < chain.ndof; ++i) {
-    at[i] = frame.origin;
-    jacobian.angular[i] = frame.z;
-    frame = frame * frame_of(chain.dh[i], q[i]);
+/// A chain made ready to compute with: what does not depend on the joints is computed once.
+class SerialArm {
+ public:
+  SerialArm() = default;
+  /// Context: setup.
+  explicit SerialArm(const DhChain& chain) noexcept
+      : joints_(chain.ndof), base_(frame_of(chain.base)), tool_(frame_of(chain.tool)) {
+    for (std::size_t i = 0; i < joints_; ++i) {
+      const DhLink& link = chain.dh[i];
+      rows_[i] = {link.a, link.d, link.theta, std::cos(link.alpha), std::sin(link.alpha)};
+    }
   }
-  const Frame tool = frame * frame_of(chain.tool);
-  for (std::size_t i = 0; i < chain.ndof; ++i) {
-    jacobian.linear[i] = cross(jacobian.angular[i], tool.origin - at[i]);
+  std::size_t joints() const noexcept { return joints_; }
+
+  /// Base to tool with the joints at `q` (rad, as many as joints()). Context: cycle; wait-free.
+  Frame tool_frame(std::span<const double> q) const noexcept {
+    Frame frame = base_;
+    for (std::size_t i = 0; i < joints_; ++i) frame = rows_[i].next(frame, q[i]);
+    return frame * tool_;
   }
-  return tool;
-}
+  /// Base to tool, and the Jacobian there. Context: cycle; wait-free.
+  Frame tool_frame(std::span<const double> q, Jacobian& jacobian) const noexcept {
+    Frame frame = base_;
+    std::array<Triple, kMostJoints> at;
+    for (std::size_t i = 0; i < joints_; ++i) {
+      at[i] = frame.origin;
+      jacobian.angular[i] = frame.z;
+      frame = rows_[i].next(frame, q[i]);
+    }
+    const Frame tool = frame * tool_;
+    for (std::size_t i = 0; i < joints_; ++i) {
+      jacobian.linear[i] = cross(jacobian.angular[i], tool.origin - at[i]);
+    }
+    return tool;
+  }
+
+ private:
+  struct Row {
+    double a, d, theta, cos_alpha, sin_alpha;
+
+    /// The frame behind the joint of a frame before it: frame Rz(angle + theta) Tz(d) Tx(a) Rx(alpha).
+    Frame next(const Frame& f, double angle) const noexcept {
+      const double c = std::cos(angle + theta), s = std::sin(angle + theta);
+      const Triple x = c * f.x + s * f.y, across = c * f.y - s * f.x;
+      return {f.origin + a * x + d * f.z, x, cos_alpha * across + sin_alpha * f.z,
+              cos_alpha * f.z - sin_alpha * across};
+    }
+  };
+
+  std::size_t joints_ = 0;
+  std::array<Row, kMostJoints> rows_{};
+  Frame base_, tool_;
+};
 
 /// The turn from `from` to `to` as a vector: its direction the axis, its length the angle (rad, at most pi).
 inline Triple turn_between(const Frame& from, const Frame& to) noexcept {
@@ -141,24 +179,26 @@ class PoseSearch {
 
   /// Moves `q` so that the tool comes to `wanted`. True when it is within `tolerance` (m and rad); else `q` is as near
   /// as it came. Context: cycle; wait-free.
-  bool solve(const DhChain& chain, const Frame& wanted, std::span<double> q, double tolerance) noexcept {
+  bool solve(const SerialArm& arm, const Frame& wanted, std::span<double> q, double tolerance) noexcept {
     std::array<double, kMostJoints> dq;
     Jacobian jacobian;
-    for (int step = 0; step < kMostSteps; ++step) {
-      const Six e = motion_between(tool_frame(chain, q, jacobian), wanted);
+    for (steps_ = 0; steps_ < kMostSteps; ++steps_) {
+      const Six e = motion_between(arm.tool_frame(q, jacobian), wanted);
       residual_ = size_of(e);
       if (residual_ < kNearEnough) break;
-      inverse_.solve(jacobian, chain.ndof, e, dq);
+      inverse_.solve(jacobian, arm.joints(), e, dq);
       double largest = 0;
-      for (std::size_t i = 0; i < chain.ndof; ++i) largest = std::max(largest, std::abs(dq[i]));
+      for (std::size_t i = 0; i < arm.joints(); ++i) largest = std::max(largest, std::abs(dq[i]));
       const double share = largest > kLongestStep ? kLongestStep / largest : 1;
-      for (std::size_t i = 0; i < chain.ndof; ++i) q[i] += share * dq[i];
+      for (std::size_t i = 0; i < arm.joints(); ++i) q[i] += share * dq[i];
     }
-    residual_ = size_of(motion_between(tool_frame(chain, q), wanted));
+    residual_ = size_of(motion_between(arm.tool_frame(q), wanted));
     return residual_ <= tolerance;
   }
   /// What was missing at the end of the last solve(): the larger of metres and radians.
   double residual() const noexcept { return residual_; }
+  /// Steps that the last solve() took, 0 to kMostSteps.
+  int steps() const noexcept { return steps_; }
 
  private:
   static double size_of(const Six& e) noexcept {
@@ -167,6 +207,7 @@ class PoseSearch {
 
   DampedInverse inverse_;
   double residual_ = 0;
+  int steps_ = 0;
 };
 
 }  // namespace chimera::library

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-DhChain puma() {
+SerialArm puma() {
   DhChain chain;
   chain.ndof = 6;
   std::copy(Puma560::kRows.begin(), Puma560::kRows.end(), chain.dh.begin());
-  return chain;
+  return SerialArm(chain);
 }
 
 double apart(const Frame& a, const Frame& b) {
@@ -37,17 +37,17 @@ struct RandomJoints {
 };
 
 TEST(SerialArm, JacobianIsTheSlopeOfTheForwardKinematics) {
-  const DhChain chain = puma();
+  const SerialArm arm = puma();
   RandomJoints joints;
   constexpr double h = 1e-6;
   for (int trial = 0; trial < 200; ++trial) {
     Puma560::Vector q = joints.next();
     Jacobian jacobian;
-    const Frame here = tool_frame(chain, q, jacobian);
+    const Frame here = arm.tool_frame(q, jacobian);
     for (std::size_t i = 0; i < 6; ++i) {
       Puma560::Vector moved = q;
       moved[i] += h;
-      const Six slope = motion_between(here, tool_frame(chain, moved));
+      const Six slope = motion_between(here, arm.tool_frame(moved));
       for (std::size_t r = 0; r < 6; ++r) EXPECT_NEAR(DampedInverse::element(jacobian, r, i), slope[r] / h, 1e-5);
     }
   }
@@ -64,10 +64,10 @@ TEST(SerialArm, TurnsAreFoundUpToHalfARevolution) {
 }
 
 TEST(DampedInverse, IsTheInverseFarFromSingularPoses) {
-  const DhChain chain = puma();
+  const SerialArm arm = puma();
   const Puma560::Vector q{0.3, 0.8, -2.5, 0.4, 0.8, -0.2};
   Jacobian jacobian;
-  tool_frame(chain, q, jacobian);
+  arm.tool_frame(q, jacobian);
   DampedInverse inverse;
   const Six wanted{0.1, -0.2, 0.05, 0.3, 0.1, -0.4};
   Puma560::Vector dq;
@@ -81,12 +81,12 @@ TEST(DampedInverse, IsTheInverseFarFromSingularPoses) {
 }
 
 TEST(DampedInverse, StaysBoundedAtSingularPoses) {
-  const DhChain chain = puma();
+  const SerialArm arm = puma();
   const Puma560::Vector singular[] = {{0, 0, 0, 0, 0, 0}, {0, kPi / 2, -kPi / 2, 0, 0, 0}, {0, 0, -kPi / 2, 0, 1e-7, 0},
                                       {0, kPi / 4, -kPi, 0, 1e-3, 0}};
   for (const Puma560::Vector& q : singular) {
     Jacobian jacobian;
-    tool_frame(chain, q, jacobian);
+    arm.tool_frame(q, jacobian);
     DampedInverse inverse;
     Puma560::Vector dq;
     inverse.solve(jacobian, 6, {1, 1, 1, 1, 1, 1}, dq);
@@ -96,42 +96,61 @@ TEST(DampedInverse, StaysBoundedAtSingularPoses) {
 }
 
 TEST(PoseSearch, FollowsAPathAwayFromSingularPoses) {
-  const DhChain chain = puma();
+  const SerialArm arm = puma();
   RandomJoints joints;
   PoseSearch search;
   int tried = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     const Puma560::Vector goal = joints.next();
     Jacobian jacobian;
-    const Frame wanted = tool_frame(chain, goal, jacobian);
+    const Frame wanted = arm.tool_frame(goal, jacobian);
     DampedInverse inverse;
     Puma560::Vector q = goal, dq;
     inverse.solve(jacobian, 6, Six{}, dq);
     if (inverse.manipulability() < 0.03) continue;
     ++tried;
     for (double& angle : q) angle += 0.02;
-    EXPECT_TRUE(search.solve(chain, wanted, q, 1e-6)) << "trial " << trial << ", residual " << search.residual();
+    EXPECT_TRUE(search.solve(arm, wanted, q, 1e-6)) << "trial " << trial << ", residual " << search.residual();
   }
   EXPECT_GT(tried, 500);
 }
 
 TEST(PoseSearch, EndsNearAPoseThatIsOutOfReach) {
-  const DhChain chain = puma();
+  const SerialArm arm = puma();
   Puma560::Vector q{0.3, 0.8, -2.5, 0.4, 0.8, -0.2};
-  Frame far = tool_frame(chain, q);
+  Frame far = arm.tool_frame(q);
   far.origin = {3, 0, 0};
   PoseSearch search;
-  EXPECT_FALSE(search.solve(chain, far, q, 1e-6));
+  EXPECT_FALSE(search.solve(arm, far, q, 1e-6));
+  EXPECT_EQ(search.steps(), PoseSearch::kMostSteps);
   EXPECT_GT(search.residual(), 1.5);
   for (double angle : q) EXPECT_TRUE(std::isfinite(angle));
 }
 
+TEST(PoseSearch, TakesNoMoreStepsThanItsBoundWhateverIsAsked) {
+  const SerialArm arm = puma();
+  RandomJoints joints;
+  PoseSearch search;
+  Puma560::Vector q = joints.next();
+  int longest = 0, shortest = PoseSearch::kMostSteps;
+  for (int trial = 0; trial < 5000; ++trial) {
+    if (trial % 3 == 0) q = joints.next();
+    if (trial % 30 == 0) q = {0, 0, 0, 0, 0, 0};
+    search.solve(arm, arm.tool_frame(trial % 7 == 0 ? q : joints.next()), q, 1e-6);
+    longest = std::max(longest, search.steps());
+    shortest = std::min(shortest, search.steps());
+    for (double angle : q) ASSERT_TRUE(std::isfinite(angle));
+  }
+  EXPECT_EQ(longest, PoseSearch::kMostSteps);
+  EXPECT_EQ(shortest, 0);
+}
+
 TEST(Puma560, ForwardIsTheGeneralOne) {
-  const DhChain chain = puma();
+  const SerialArm arm = puma();
   RandomJoints joints;
   for (int trial = 0; trial < 20000; ++trial) {
     const Puma560::Vector q = joints.next();
-    ASSERT_LT(apart(Puma560::forward(q), tool_frame(chain, q)), 1e-12);
+    ASSERT_LT(apart(Puma560::forward(q), arm.tool_frame(q)), 1e-12);
   }
 }
 
@@ -150,6 +169,44 @@ TEST(Puma560, EveryInverseSolutionReachesThePoseAndOneIsWhereWeCameFrom) {
     for (std::size_t i = 0; i < 6; ++i) ASSERT_NEAR(found[i], q[i], 1e-6) << "trial " << trial << " joint " << i + 1;
   }
   EXPECT_GT(eight, 10000u);
+}
+
+TEST(Puma560, ThePosesOfAnArmThatIsNotSingularHaveEightDifferentSolutions) {
+  RandomJoints joints;
+  for (int trial = 0; trial < 2000; ++trial) {
+    Puma560::Vector q = joints.next();
+    q[1] = -0.2, q[2] = -2.4;  // the wrist beside and above the shoulder: both elbows and both arms reach it
+    if (std::abs(q[4]) < 0.1) continue;
+    const Puma560::Solutions all = Puma560::inverse(Puma560::forward(q), q);
+    ASSERT_EQ(all.count, 8u);
+    for (std::size_t s = 0; s < 8; ++s) {
+      for (std::size_t t = 0; t < s; ++t) {
+        double differs = 0;
+        for (std::size_t i = 0; i < 6; ++i) {
+          differs = std::max(differs, std::abs(std::remainder(all.q[s][i] - all.q[t][i], 2 * kPi)));
+        }
+        ASSERT_GT(differs, 0.05) << s << " and " << t;
+      }
+    }
+  }
+}
+
+TEST(Puma560, SingularPosesAreReachedToo) {
+  RandomJoints joints;
+  std::uniform_real_distribution<double> little(-1e-6, 1e-6);
+  for (int trial = 0; trial < 20000; ++trial) {
+    Puma560::Vector q = joints.next();
+    const double size = trial % 2 == 0 ? 0 : 1;
+    if ((trial / 2) % 3 != 1) q[4] = size * little(joints.random);                                          // wrist
+    if ((trial / 2) % 3 != 0) q[2] = -std::atan2(Puma560::d4, Puma560::a3) + size * little(joints.random);  // elbow
+    for (double& angle : q) angle *= 0.8;  // how q4 and q6 share a turn is lost: away from their limits
+    q[2] /= 0.8;
+    const Frame wanted = Puma560::forward(q);
+    Puma560::Vector found;
+    ASSERT_TRUE(Puma560::nearest(wanted, q, found));
+    ASSERT_LT(apart(Puma560::forward(found), wanted), 3e-7) << "trial " << trial;
+    for (std::size_t i = 0; i < 6; ++i) ASSERT_NEAR(found[i], q[i], i == 3 || i == 5 ? 1.0 : 1e-5) << "trial " << trial;
+  }
 }
 
 TEST(Puma560, AStretchedWristKeepsItsFourthJoint) {
