@@ -14,7 +14,7 @@
 #include "chimera/config/quantity.h"
 #include "chimera/config/report.h"
 #include "chimera/schedule/policy.h"
-#include "chimera/schedule/server.h"
+#include "chimera/task/server_spec.h"
 #include "chimera/task/task_spec.h"
 
 namespace chimera {

@@ -14,7 +14,7 @@
 
 #include "chimera/base/time.h"
 #include "chimera/schedule/policy.h"
-#include "chimera/schedule/server.h"
+#include "chimera/task/server_spec.h"
 
 namespace chimera {
 
