@@ -17,8 +17,11 @@ COLUMNS = (("row", "row"), ("what", "what"), ("figure", "figure"), ("baseline", 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(
-        prog="./dev bench", description="Runs the bench rows serially under the machine-wide real-time lock.",
-        epilog="example: ./dev bench 1 7 --json")
+        prog="./dev bench", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Runs the bench rows serially under the machine-wide real-time lock.",
+        epilog="rows:\n" + "".join(f"  {row:<4} {path.stem.split('_', 2)[2].replace('_', ' ')}\n"
+                                   for row, paths in sources().items() for path in paths)
+               + "\nexample: ./dev bench 1 7 --json")
     parser.add_argument("rows", nargs="*", type=int, metavar="ROW", help="numbers of rows; all without")
     parser.add_argument("--json", action="store_true", help="one JSON object instead of the table")
     parser.add_argument("--peers", action="store_true", help="install and measure the peers of rows 4 and 7 too")
