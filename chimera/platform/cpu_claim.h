@@ -13,7 +13,7 @@ namespace chimera {
 /// The claim is an abstract Unix socket "chimera-cpu-N": the machine is what shares a network namespace.
 class CpuClaim {
  public:
-  /// Refuses a CPU that is claimed already: by which process, and what to do. Context: setup.
+  /// Refuses a CPU that is claimed already: by which process of which user, and what to do. Context: setup.
   static Result<CpuClaim> take(int cpu) noexcept;
 
   CpuClaim() noexcept = default;

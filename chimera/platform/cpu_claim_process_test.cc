@@ -2,10 +2,13 @@
 #include "chimera/platform/cpu_claim.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <cstddef>
 #include <string>
 
 namespace chimera {
@@ -21,11 +24,28 @@ TEST(CpuClaim, RefusesASecondHolderAndNamesTheFirst) {
   ASSERT_FALSE(second.has_value());
   EXPECT_EQ(second.error().code, ErrorCode::kRefused);
   const std::string message(second.error().message.view());
-  EXPECT_EQ(message,
-            "CPU " + std::to_string(cpu()) + " is in use by another real-time subsystem (process " +
-                std::to_string(::getpid()) + "): end that one, place the rtpu on another CPU, or run "
-                "with --priority 0");
+  EXPECT_EQ(message, "CPU " + std::to_string(cpu()) + " is in use by another real-time subsystem (process " +
+                         std::to_string(::getpid()) + " of user " + std::to_string(::getuid()) +
+                         "): end that one, place the rtpu on another CPU, or run with --priority 0");
   EXPECT_TRUE(CpuClaim::take(cpu() + 1).has_value());
+}
+
+TEST(CpuClaim, SaysHowToFindAHolderThatDoesNotAnswer) {
+  const int silent = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);  // bound, and never listening
+  ASSERT_GE(silent, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = "chimera-cpu-" + std::to_string(cpu());
+  name.copy(address.sun_path + 1, name.size());
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  ASSERT_EQ(::bind(silent, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  const auto refused = CpuClaim::take(cpu());
+  ::close(silent);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(std::string(refused.error().message.view()),
+            "CPU " + std::to_string(cpu()) + " is in use by a process that does not answer: find it " +
+                "with `ss -xap | grep " + name + "` as root, end it, place the rtpu on another CPU, " +
+                "or run with --priority 0");
 }
 
 TEST(CpuClaim, EndsWithItsHolderAndMovesWithoutALoss) {

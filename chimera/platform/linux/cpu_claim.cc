@@ -27,13 +27,27 @@ OwnedDescriptor make_socket() noexcept {
   return OwnedDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
 }
 
-// Process that holds the claim; 0 when it cannot be told.
-pid_t holder(const Address& address) noexcept {
+// Who holds the claim, as the kernel knows it; pid 0 when it cannot be told.
+ucred holder(const Address& address) noexcept {
   const OwnedDescriptor asking = make_socket();
   ucred credentials{};
   socklen_t size = sizeof credentials;
-  if (asking.fd < 0 || ::connect(asking.fd, address.get(), address.size) != 0) return 0;
-  return ::getsockopt(asking.fd, SOL_SOCKET, SO_PEERCRED, &credentials, &size) == 0 ? credentials.pid : 0;
+  if (asking.fd < 0 || ::connect(asking.fd, address.get(), address.size) != 0 ||
+      ::getsockopt(asking.fd, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0)
+    return {};
+  return credentials;
+}
+
+// Any user may bind the name, also one who runs no subsystem: whose process it is decides what the reader does.
+Error in_use(int cpu, const ucred& who) noexcept {
+  Message text;
+  text << "CPU " << cpu << " is in use by ";
+  if (who.pid > 0)
+    text << "another real-time subsystem (process " << who.pid << " of user " << who.uid << "): end that one, ";
+  else
+    text << "a process that does not answer: find it with `ss -xap | grep chimera-cpu-" << cpu << "` as root, end it, ";
+  text << "place the rtpu on another CPU, or run with --priority 0";
+  return text.error(ErrorCode::kRefused);
 }
 
 }  // namespace
@@ -48,11 +62,7 @@ Result<CpuClaim> CpuClaim::take(int cpu) noexcept {
     return CpuClaim(claim.release());
   }
   if (errno != EADDRINUSE) return system_error(what, "bind");
-  Message text;
-  text << "CPU " << cpu << " is in use by another real-time subsystem";
-  if (const pid_t pid = holder(address); pid > 0) text << " (process " << pid << ")";
-  text << ": end that one, place the rtpu on another CPU, or run with --priority 0";
-  return text.error(ErrorCode::kRefused);
+  return in_use(cpu, holder(address));
 }
 
 CpuClaim& CpuClaim::operator=(CpuClaim&& other) noexcept {
