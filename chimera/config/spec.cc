@@ -89,6 +89,9 @@ TaskSpec task_spec(const TaskModel& task, const ConfiguredTask& configured, std:
   spec.max_consecutive = draft.max_consecutive ? draft.max_consecutive->value : 0;
   if (draft.on_miss) spec.on_miss = draft.on_miss->kind;
   if (draft.on_overrun) spec.on_overrun = draft.on_overrun->kind;
+  if (draft.tolerate) spec.tolerated_misses = draft.tolerate->misses;
+  if (draft.tolerate) spec.tolerated_of = draft.tolerate->of;
+  if (draft.stack_bytes) spec.stack_bytes = static_cast<std::uint32_t>(draft.stack_bytes->value);
   spec.aperiodic = configured.is_aperiodic;
   spec.is_hardware = configured.is_hardware;
   spec.rtpu = RtpuId(task.rtpu);

@@ -79,12 +79,13 @@ class Refusals {
     reaction(task.on_miss, "on_miss", task, has_thread);
     reaction(task.on_overrun, "on_overrun", task, has_thread);
     if (task.on_fault && task.on_fault->kind != OnFault::kError) refuse_key(task.on_fault->at, "on_fault", task);
-    if (task.tolerate) refuse_key(task.tolerate->at, "tolerate", task);
     if (task.server) refuse_key(task.server->at, "server", task);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
     for (const NamedNode& step : task.max_step) refuse_key(step.name.at, "max_step", task);
-    if (task.stack_bytes) refuse_key(task.stack_bytes->at, "stack", task);
+    if (task.stack_bytes && !has_thread && executor_ == Executor::kProcesses)
+      refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
+             "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");
     if (task.own_process && task.own_process->value) refuse_key(task.own_process->at, "isolation: process", task);
   }
 

@@ -180,6 +180,9 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   archive.choice(task.on_miss, OnMiss::kStop);
   archive.choice(task.on_overrun, OnMiss::kStop);
   archive.number(task.max_consecutive);
+  archive.number(task.tolerated_misses);
+  archive.number(task.tolerated_of);
+  archive.number(task.stack_bytes);
   archive.choice(task.aperiodic, true);
   archive.choice(task.is_hardware, true);
   archive.number(task.rtpu);
@@ -187,6 +190,7 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   const Nanoseconds zero;
   archive.require(task.period > zero && task.deadline > zero && task.deadline <= task.period && task.offset >= zero &&
                       task.budget >= zero && task.min_time >= zero, "times that are not in order");
+  archive.require(task.tolerated_of <= 64 && task.stack_bytes <= 64u << 20, "a task out of range");
   archive.require(task.rtpu.index < n_rtpus, "an rtpu that does not exist");
 }
 

@@ -126,17 +126,18 @@ State follow_error(Task& task, Next at, Nanoseconds now) noexcept {
 }
 
 // call_method for the one method that every component has and that runs all the time.
-[[gnu::always_inline]] static inline Answer call_cycle(Task& task, Nanoseconds at) noexcept {
+[[gnu::always_inline]] static inline BodyEnd call_cycle(Task& task, Nanoseconds at) noexcept {
   const chimera_method body = task.component->methods[CHIMERA_CYCLE];
-  if (body == nullptr) return Answer::kOk;
+  if (body == nullptr) return {};
   tell_running(task, CHIMERA_CYCLE);
   task.said.text[0] = '\0';
   task.said.code = 0;
   const std::int32_t value = body(task.instance, &task.call);
-  if (value == CHIMERA_OK) [[likely]] return Answer::kOk;
+  if (value == CHIMERA_OK) [[likely]] return {};
+  if (value == CHIMERA_PARTIAL) return {Answer::kOk, Method::kCycle, true};
   const Answer answer = answer_of(Method::kCycle, value);
   if (answer == Answer::kFault) take_fault(task, Method::kCycle, at);
-  return answer;
+  return {answer, Method::kCycle};
 }
 
 BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept {
@@ -156,7 +157,7 @@ BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept {
     input.port->seen = input.sequence;
     input.sequence = input.group.slot()->sequence;
   }
-  return {call_cycle(task, time.release), Method::kCycle};
+  return call_cycle(task, time.release);
 }
 
 State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end, bool may_publish) noexcept {
@@ -168,6 +169,7 @@ State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end
     if (answer == Answer::kAborted) ++task.profile.aborted;
     else if (!may_publish) ++task.profile.held;
     if (answer == Answer::kOk && may_publish) {
+      if (body.is_partial) ++task.profile.partial;
       ++task.profile.cycles;
       ++task.call.cycle;
       task.last_release = time.release;

@@ -23,6 +23,7 @@ struct CycleTime {
 struct BodyEnd {
   Answer answer = Answer::kOk;
   Method method = Method::kCycle;
+  bool is_partial = false;  ///< it gave up with a result of use
 };
 
 /// Runs sync (aperiodic tasks) and cycle. Publishes nothing. Requires: task.state == kOn.

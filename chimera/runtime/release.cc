@@ -2,6 +2,7 @@
 #include "chimera/runtime/release.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "chimera/base/assert.h"
 
@@ -298,6 +299,7 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
     failed = end > job.deadline || used > t.budget;
     if (failed) may_publish = judge(task, job, body, end, used);
     else p.missed_in_a_row = 0;
+    if (!failed && task.spec->tolerated_of > 0) (void)is_tolerated(task, false);
   }
   const std::uint64_t cycles = task.profile.cycles;
   const State state = end_cycle(task, body, time, end, may_publish);
@@ -309,6 +311,15 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
   else if (task.is_tapped && kept_.empty()) tap_row(task);
 }
 
+// m-in-n: were there at most so many misses in the last cycles, this one included?
+bool Releases::is_tolerated(Task& task, bool missed) noexcept {
+  OfTask& t = of_[task.id.index];
+  const TaskSpec& s = *task.spec;
+  const std::uint64_t window = s.tolerated_of >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << s.tolerated_of) - 1;
+  t.history = t.history << 1 | (missed ? 1u : 0u);
+  return static_cast<std::uint32_t>(std::popcount(t.history & window)) <= s.tolerated_misses;
+}
+
 // A failure of time was seen: counts it and says whether the result may still be published.
 bool Releases::judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept {
   bool may_publish = true;
@@ -316,11 +327,17 @@ bool Releases::judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end,
     ++task.profile.overrun;
     may_publish = react(task.spec->on_overrun, task, body, "used more execution time than its budget", end);
   }
-  if (end <= job.deadline) {
+  const bool is_late = end > job.deadline;
+  const bool tolerated = task.spec->tolerated_of > 0 && is_tolerated(task, is_late) && is_late;
+  if (!is_late) {
     task.profile.missed_in_a_row = 0;
     return may_publish;
   }
   count_miss(task, end, end - job.deadline);
+  if (tolerated) {
+    ++task.profile.tolerated;
+    return may_publish;
+  }
   return react(task.spec->on_miss, task, body, "missed its deadline", end) && may_publish;
 }
 
@@ -336,6 +353,7 @@ bool Releases::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why
       of_[task.id.index].skip_next = true;
       return true;
     case OnMiss::kAbort:
+      if (body.is_partial) return true;
       if (body.answer == Answer::kOk) body.answer = Answer::kAborted;
       return false;
     case OnMiss::kError:

@@ -202,6 +202,7 @@ class Releases {
     bool is_on = false;
     std::uint8_t wants = 0;     // of the others, once its job is over
     std::uint32_t rows = 0;     // appended to the tap
+    std::uint64_t history = 0;  // of the last cycles, one bit each: 1 missed
     std::uint64_t tapped = 0;   // sequence of the last of them
     std::atomic<std::int64_t> last_used{0}, last_end{0};  // of its last job
   };
@@ -220,6 +221,7 @@ class Releases {
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
   void blame(const Task& task, Nanoseconds now) noexcept;
+  bool is_tolerated(Task& task, bool missed) noexcept;
   bool judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept;
   bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
   void give_up(Task& task, Nanoseconds at) noexcept;

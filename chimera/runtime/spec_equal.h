@@ -76,6 +76,9 @@ inline void compare_tasks(SpecDifference& d, const TaskSpec& a, const TaskSpec& 
   d.compare(a.on_miss, b.on_miss, "on_miss");
   d.compare(a.on_overrun, b.on_overrun, "on_overrun");
   d.compare(a.max_consecutive, b.max_consecutive, "max_consecutive");
+  d.compare(a.tolerated_misses, b.tolerated_misses, "tolerated_misses");
+  d.compare(a.tolerated_of, b.tolerated_of, "tolerated_of");
+  d.compare(a.stack_bytes, b.stack_bytes, "stack_bytes");
   d.compare(a.aperiodic, b.aperiodic, "aperiodic");
   d.compare(a.is_hardware, b.is_hardware, "is_hardware");
   d.compare(a.rtpu, b.rtpu, "rtpu");

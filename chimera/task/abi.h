@@ -75,7 +75,8 @@ enum {
   CHIMERA_OK = 0,      /* done; error(): recovered; clear(): the cause is gone; sync(): one event taken */
   CHIMERA_FAULT = 1,   /* failed; text in call->fault; error(): not recovered; clear(): still there */
   CHIMERA_NO_EVENT = 2,/* sync() only: nothing pending, no cycle follows */
-  CHIMERA_ABORTED = 3  /* cycle() only: gave up in time, publishes nothing */
+  CHIMERA_ABORTED = 3, /* cycle() only: gave up in time, publishes nothing */
+  CHIMERA_PARTIAL = 4  /* cycle() only: gave up in time, what it has put out is of use and is published */
 };
 
 enum {

@@ -14,7 +14,7 @@
 //   CHIMERA_COMPONENT(TimeDerivative, "tderiv", "Time derivative of one signal.")
 //
 // Methods, all but cycle optional, each with (Cycle) or ():
-//   init reinit on cycle off kill   return nothing, or an Outcome: ok(), fault("text", code); cycle also aborted()
+//   init reinit on cycle off kill   return nothing, or an Outcome: ok(), fault("text", code); cycle also aborted(), partial()
 //   sync                            returns bool (an event was taken), or an Outcome with no_event()
 //   error clear                     return bool (recovered; the cause is gone), or an Outcome
 // Beside them void background(), for what may wait: called every 10 ms or so by a thread without real-time rights,
@@ -66,6 +66,8 @@ std::int32_t guard(chimera_fault* fault, Body body) noexcept {
 inline std::int32_t judge(Method method, const Outcome& outcome, chimera_fault* fault) noexcept {
   if (outcome.status() == CHIMERA_ABORTED && method != Method::kCycle)
     return note_fault(fault, 0, "only cycle may answer aborted()");
+  if (outcome.status() == CHIMERA_PARTIAL && method != Method::kCycle)
+    return note_fault(fault, 0, "only cycle may answer partial()");
   if (outcome.status() == CHIMERA_NO_EVENT && method != Method::kSync)
     return note_fault(fault, 0, "only sync may answer no_event()");
   if (outcome.status() == CHIMERA_FAULT) return note_fault(fault, outcome.code(), outcome.text().data());

@@ -29,7 +29,7 @@ class Cycle {
   std::uint64_t count() const noexcept { return call_->cycle; }
   /// Releases that were dropped since the last completed cycle. Context: cycle; wait-free.
   std::uint32_t dropped() const noexcept { return call_->dropped; }
-  /// True when the job is past its deadline or was told to give up: answer aborted(), or a partial result.
+  /// True when the job is past its deadline or was told to give up: answer aborted(), or partial().
   /// Context: cycle; wait-free.
   bool expired() const noexcept { return call_->host->expired(call_->context) != 0; }
   /// The illegal-configuration flag, read once for this job: inputs may mean nothing, so hold a stable state.
@@ -48,7 +48,7 @@ class Cycle {
   const chimera_call* call_;
 };
 
-/// How a method ended. Made by ok(), fault(), aborted(), no_event().
+/// How a method ended. Made by ok(), fault(), aborted(), partial(), no_event().
 class [[nodiscard]] Outcome {
  public:
   std::int32_t status() const noexcept { return status_; }
@@ -61,6 +61,7 @@ class [[nodiscard]] Outcome {
   friend Outcome ok() noexcept;
   friend Outcome fault(std::string_view text, std::int32_t code) noexcept;
   friend Outcome aborted() noexcept;
+  friend Outcome partial() noexcept;
   friend Outcome no_event() noexcept;
 
   std::int32_t status_;
@@ -84,6 +85,10 @@ inline Outcome fault(std::string_view text, std::int32_t code = 0) noexcept {
 
 /// cycle() only: gave up in time; nothing of this cycle is published. Context: cycle; wait-free.
 inline Outcome aborted() noexcept { return Outcome(CHIMERA_ABORTED); }
+
+/// cycle() only: gave up in time with a result of use: what it has put out is published, past the deadline too.
+/// Context: cycle; wait-free.
+inline Outcome partial() noexcept { return Outcome(CHIMERA_PARTIAL); }
 
 /// sync() only: nothing is pending, no cycle follows. Context: cycle; wait-free.
 inline Outcome no_event() noexcept { return Outcome(CHIMERA_NO_EVENT); }

@@ -42,7 +42,8 @@
 #include "chimera/task/pbo_each.h"
 #include "chimera/task/registry.h"
 
-enum { PBO_OK = CHIMERA_OK, PBO_ERROR = CHIMERA_FAULT, PBO_NO_EVENT = CHIMERA_NO_EVENT, PBO_ABORTED = CHIMERA_ABORTED };
+enum { PBO_OK = CHIMERA_OK, PBO_ERROR = CHIMERA_FAULT, PBO_NO_EVENT = CHIMERA_NO_EVENT, PBO_ABORTED = CHIMERA_ABORTED,
+       PBO_PARTIAL = CHIMERA_PARTIAL };
 
 /* For `return (int)local` of the papers. */
 #define PBO_LOCAL(local) ((local) != NULL ? PBO_OK : PBO_ERROR)

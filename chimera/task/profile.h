@@ -33,6 +33,8 @@ struct Profile {
   Spread start_delay;                 ///< release to start of a cycle: its max minus min is the start jitter
   std::uint64_t cycles = 0;           ///< completed (published) cycles since spawn
   std::uint64_t aborted = 0;          ///< cycles that gave up
+  std::uint64_t partial = 0;          ///< published cycles that gave up with a result of use
+  std::uint64_t tolerated = 0;        ///< missed deadlines that called no reaction, as `tolerate` allows
   std::uint64_t held = 0;             ///< late cycles not published (on_miss: hold)
   std::uint64_t missed = 0;           ///< deadlines: cycles that ended late, and releases dropped for lack of time
   std::uint64_t overrun = 0;          ///< cycles that used more than their budget

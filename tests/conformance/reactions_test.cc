@@ -94,6 +94,35 @@ TEST_P(Reactions, FlagRaisesTheFlagUntilItIsLowered) {
   EXPECT_EQ(seen, "..II");
 }
 
+TEST_P(Reactions, APartialResultIsPublishedPastTheDeadlineToo) {
+  add_late_task().on_miss = OnMiss::kAbort;
+  app.toy("a").answers[CHIMERA_CYCLE] = {CHIMERA_OK, CHIMERA_PARTIAL};
+  go(39);
+  EXPECT_EQ(app.published("a"), 2);
+  EXPECT_EQ(profile().partial, 1u);
+  EXPECT_EQ(profile().aborted, 0u);
+  EXPECT_EQ(profile().missed, 1u);
+}
+
+TEST_P(Reactions, OneMissInTwoIsToleratedTwoAreNot) {
+  TaskSpec& spec = add_late_task();
+  spec.on_miss = OnMiss::kHold;
+  spec.tolerated_misses = 1;
+  spec.tolerated_of = 2;
+  runner = std::make_unique<Runner>(app.build(), GetParam());
+  ASSERT_TRUE(runner->start());
+  std::string held;
+  for (const int late : {0, 1, 0, 1, 1, 1, 0, 0, 1}) {
+    app.toy("a").spend = milliseconds(late == 1 ? 12 : 1);
+    const auto at = static_cast<std::int64_t>(held.size());
+    runner->run(milliseconds(20 * at + 19));
+    held += profile().held > 0 ? static_cast<char>('0' + profile().held) : '.';
+  }
+  EXPECT_EQ(held, "....12222");
+  EXPECT_EQ(profile().tolerated, 3u);
+  EXPECT_EQ(profile().missed, 5u);
+}
+
 TEST_P(Reactions, StopEndsTheRun) {
   add_late_task().on_miss = OnMiss::kStop;
   EXPECT_EQ(go(), RunEnd::kTaskStopped);

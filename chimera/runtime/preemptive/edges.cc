@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/thread_stack.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 
 namespace chimera {
@@ -31,7 +32,10 @@ PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, 
     thread.task = task.id;
     of_task_[task.id.index] = &thread;
   }
-  for (JobThread& thread : threads_) thread.thread = std::thread([this, &thread] { follow_releases(thread); });
+  for (JobThread& thread : threads_) {
+    const ThreadStack stack(spec(thread).stack_bytes);
+    thread.thread = std::thread([this, &thread] { follow_releases(thread); });
+  }
   supervisor_ = std::thread([this] { supervise(); });
   while (n_ready_ < threads_.size() + 1) clock_.sleep(microseconds(100));
 }

@@ -115,7 +115,7 @@ void Preemptive::expire(TaskId task) noexcept {
     (void)releases_.queue().remove(task, waiting);
   }
   releases_.abandon(a.job);
-  a.body.answer = Answer::kAborted;
+  if (!a.body.is_partial) a.body.answer = Answer::kAborted;
   end(a, deadline);
 }
 
