@@ -41,9 +41,11 @@ PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, 
 }
 
 PreemptiveExecutor::~PreemptiveExecutor() {
+  section_.enter();
   quits_ = true;
+  alarm_.set({});  // nobody sets it anew after this
+  section_.leave();
   for (JobThread& thread : threads_) Doorbell(thread.bell).ring();
-  alarm_.set({});
   for (JobThread& thread : threads_) thread.thread.join();
   supervisor_.join();
 }

@@ -15,14 +15,15 @@ void PreemptiveExecutor::follow_releases(JobThread& me) {
   me.id = me.carrier = this_thread();
   ++n_ready_;
   enter();
-  while (!quits_) {
+  for (;;) {
+    const std::uint32_t heard = Doorbell(me.bell).read();  // before the look at everything: no ring is lost
+    if (quits_) break;
     const Nanoseconds now = clock_.now();
     const bool may_run = me.is_joined && !me.is_held && !is_paused_ && me.next < until_;
     if (may_run && me.next <= now) {
       run_job(me, now);
       continue;
     }
-    const std::uint32_t heard = Doorbell(me.bell).read();
     const Nanoseconds until = may_run ? me.next : kNever;
     section_.leave();
     (void)Doorbell(me.bell).wait_until(heard, until);

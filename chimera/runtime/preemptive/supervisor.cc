@@ -170,7 +170,7 @@ void PreemptiveExecutor::supervise() {
     alarm_.wait();
     enter();
     ++counts_.supervised;
-    look_at_jobs(clock_.now());
+    if (!quits_) look_at_jobs(clock_.now());
     section_.leave();
   }
 }
