@@ -14,7 +14,8 @@
 //   CHIMERA_COMPONENT(TimeDerivative, "tderiv", "Time derivative of one signal.")
 //
 // Methods, all but cycle optional, each with (Cycle) or ():
-//   init reinit on cycle off kill   return nothing, or an Outcome: ok(), fault("text", code); cycle also aborted(), partial()
+//   init reinit on cycle off kill   return nothing, or an Outcome: ok(), fault("text", code); cycle also aborted(),
+//                                   partial()
 //   sync                            returns bool (an event was taken), or an Outcome with no_event()
 //   error clear                     return bool (recovered; the cause is gone), or an Outcome
 // Beside them void background(), for what may wait: called every 10 ms or so by a thread without real-time rights,
