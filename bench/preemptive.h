@@ -68,7 +68,12 @@ class Window {
 /// Ours: the preemptive executor under `policy`. `budget` zero: budgets are not stated.
 inline Cost run_ours(const Load& load, Policy policy, Nanoseconds time, Nanoseconds budget = {},
                      const chimera_component& component = axis_component()) {
-  Axes axes(load.n, [&](std::uint32_t) { return load.period; }, {true, load.step(), budget, &component});
+  AxesForm form;
+  form.preemptive = true;
+  form.offset_step = load.step();
+  form.budget = budget;
+  form.component = &component;
+  Axes axes(load.n, [&](std::uint32_t) { return load.period; }, form);
   RunOptions options;
   options.policy = policy;
   ProcessorPlace place;

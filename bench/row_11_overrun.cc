@@ -31,7 +31,12 @@ void run(int repetitions) {
   late.reserve(100'000);
   seen_after = &late;
   for (int i = 0; i < repetitions; ++i) {
-    Axes axes(1, [](std::uint32_t) { return kPeriod; }, {true, {}, kBudget, &component, OnMiss::kAbort});
+    AxesForm form;
+    form.preemptive = true;
+    form.budget = kBudget;
+    form.component = &component;
+    form.on_overrun = OnMiss::kAbort;
+    Axes axes(1, [](std::uint32_t) { return kPeriod; }, form);
     RunOptions options;
     ProcessorPlace place;
     place.cpu = bench_cpu();

@@ -71,6 +71,8 @@ struct AxesForm {
   Nanoseconds budget = microseconds(1);
   const chimera_component* component = nullptr;  ///< null: axis_component()
   OnMiss on_overrun = OnMiss::kContinue;
+  std::vector<Nanoseconds> budgets;  ///< of each task, instead of `budget`
+  std::uint32_t critical = 0;        ///< so many of the first tasks are of high criticality
 };
 
 /// n tasks in a ring. `period(i)` is that of task i.
@@ -98,7 +100,8 @@ class Axes {
       task.name = *names_[i];
       task.component = "axis";
       task.period = task.deadline = period(i);
-      task.budget = form.budget;
+      task.budget = form.budgets.empty() ? form.budget : form.budgets[i];
+      task.criticality = i < form.critical ? 2 : 0;
       task.offset = form.offset_step * i;
       task.on_overrun = form.on_overrun;
       task.rtpu = RtpuId(0u);
