@@ -84,7 +84,7 @@ int PreemptiveExecutor::enter_label(JobThread& me, Nanoseconds now) noexcept {
   Nanoseconds check = std::min(me.next, me.job.deadline);
   if (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) check = std::min(check, now + s.budget);
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) check = std::min(check, next_quantum(now));
-  watch(me, check);
+  watch(me, check, now);
   return level;
 }
 
@@ -156,7 +156,7 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
   if (goes_on) {
     top->slice.store(now.count, std::memory_order_relaxed);
     const Nanoseconds check = end_of_budget(*top, now);
-    if (check < top->check) watch(*top, check);
+    if (check < top->check) watch(*top, check, now);
   }
   const std::uint32_t word = goes_on ? (top->task.index + 1) << 8 | CHIMERA_CYCLE : 0;
   tasks_[0].running->store(word, std::memory_order_relaxed);

@@ -124,8 +124,9 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void cancel(JobThread& job, Nanoseconds now) noexcept;
   JobThread* running() noexcept;
   int apply(std::span<const LevelChange> changes, const JobThread* own) noexcept;
-  void watch(JobThread& job, Nanoseconds check) noexcept;
-  void arm(const JobThread* job, Nanoseconds check) noexcept;
+  void watch(JobThread& job, Nanoseconds check, Nanoseconds now) noexcept;
+  Nanoseconds alarm_for(Nanoseconds check, bool is_exact, Nanoseconds now) const noexcept;
+  void arm(Nanoseconds instant) noexcept;
   Urgency urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept;
   Nanoseconds used(const JobThread& job) const noexcept;
   Nanoseconds next_quantum(Nanoseconds now) const noexcept;
@@ -155,7 +156,6 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   std::atomic<std::uint32_t>* bell_;
   Alarm alarm_;
   Nanoseconds armed_ = kNever;
-  const JobThread* armed_for_ = nullptr;
   std::thread supervisor_;
   pid_t edge_thread_ = 0;
   JobThread* on_processor_ = nullptr;    // the most urgent job at the last change of the list

@@ -11,7 +11,7 @@ namespace {
 // A job that has used so many times its budget (without one: its period) does not end by itself.
 constexpr std::int64_t kHangsAfter = 10;
 // The supervisor never comes again at once: at the ceiling it would keep everybody else from running.
-constexpr Nanoseconds kSoonest = microseconds(5), kSeldom = microseconds(100);
+constexpr Nanoseconds kSoonest = microseconds(5), kSeldom = microseconds(25), kNowAndThen = milliseconds(50);
 
 Nanoseconds rounded(Nanoseconds t, Nanoseconds quantum) noexcept {
   return quantum * ((t.count + quantum.count / 2) / quantum.count);
@@ -151,16 +151,25 @@ void PreemptiveExecutor::cancel(JobThread& job, Nanoseconds now) noexcept {
   if (has_levels_) set_level(job.carrier, place_.ceiling);
 }
 
-void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check) noexcept {
-  job.check = check;
-  const bool is_stale = armed_for_ == nullptr || armed_for_->check != armed_;
-  if (check < armed_ || is_stale) arm(&job, check);
+// A job that is alone is looked at now and then only: to set an alarm for each would cost more than the rest of its
+// release (it becomes the first timer of the CPU), and nobody waits for it.
+Nanoseconds PreemptiveExecutor::alarm_for(Nanoseconds check, bool is_exact, Nanoseconds now) const noexcept {
+  return is_exact || labels_.size() > 1 ? check : std::max(check, now + kNowAndThen);
 }
 
-void PreemptiveExecutor::arm(const JobThread* job, Nanoseconds check) noexcept {
-  armed_ = check;
-  armed_for_ = job;
-  alarm_.set(check);
+void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check, Nanoseconds now) noexcept {
+  job.check = check;
+  const TaskSpec& s = spec(job);
+  const bool is_exact = (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) || s.on_miss == OnMiss::kDemote;
+  // A second job in the list: the first one's check counts from here on.
+  for (const LabelledJob& other : labels_.jobs()) check = std::min(check, of_task_[other.task.index]->check);
+  const Nanoseconds wanted = alarm_for(check, is_exact, now);
+  if (wanted < armed_) arm(wanted);
+}
+
+void PreemptiveExecutor::arm(Nanoseconds instant) noexcept {
+  armed_ = instant;
+  alarm_.set(instant);
 }
 
 void PreemptiveExecutor::supervise() {
@@ -177,15 +186,15 @@ void PreemptiveExecutor::supervise() {
 
 void PreemptiveExecutor::look_at_jobs(Nanoseconds now) noexcept {
   charge_running(now);
-  const JobThread* next = nullptr;
+  Nanoseconds next = kNever;
   for (JobThread& job : threads_) {
     if (job.check <= now) look_at(job, now);
-    if (job.check != kNever && (next == nullptr || job.check < next->check)) next = &job;
+    next = std::min(next, job.check);
   }
-  Nanoseconds check = next == nullptr ? kNever : std::max(next->check, now + kSoonest);
-  if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1)
-    check = std::min(check, next_quantum(now));
-  arm(next, check);
+  if (next == kNever) return arm(kNever);
+  next = std::max(next, now + kSoonest);
+  if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) next = std::min(next, next_quantum(now));
+  arm(next);
 }
 
 void PreemptiveExecutor::look_at(JobThread& job, Nanoseconds now) noexcept {
