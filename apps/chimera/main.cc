@@ -50,7 +50,8 @@ void add_schedule(CLI::App& app, Words& words) {
   s->add_option("FILE", words.schedule.file, "the description")->required();
   s->add_option("--profile", words.schedule.profile, "execution times from this recorded profile, else from budgets");
   s->add_option("--svg", words.schedule.svg, "draw the worst window of each CPU into this file");
-  s->add_option("--dispatch", words.schedule.dispatch, "judge 'preemptive' or 'executive' units (as `run` has them)")
+  s->add_option("--dispatch", words.schedule.dispatch,
+                "judge all rtpus as 'preemptive' or 'executive'; else each as described")
       ->check(CLI::IsMember({"preemptive", "executive"}));
   s->add_flag("--json", words.json, "the analysis as one JSON object");
   s->footer("Exit code 0: everything keeps its deadlines; 1: it does not.\n"

@@ -12,6 +12,7 @@
 #include "apps/chimera/keep.h"
 #include "apps/chimera/record_files.h"
 #include "chimera/config/quantity.h"
+#include "chimera/config/recorded_profile.h"
 #include "chimera/desk/output.h"
 #include "chimera/platform/process.h"
 
@@ -27,6 +28,8 @@ void add_face_options(CLI::App* command, RunWords& words) {
   command->add_option("--every", words.every, "how often --watch prints (1 s)");
   command->add_option("--expect", words.run.expect, "at the end must hold: 'error <= 2 mrad'; may be repeated");
   command->add_option("--trace", words.trace, "write a Chrome trace to this file (ui.perfetto.dev opens it)");
+  command->add_option("--profile", words.run.profile,
+                      "at the end save the profile of every task into this file, for `chimera schedule --profile`");
   command->add_option("--timeline", words.timeline,
                       "at the end print one letter for each unit of time, such as '1 ms'");
 }
@@ -63,6 +66,14 @@ bool read_times(RunWords& words, Nanoseconds& unit) {
          read_seed(words.seed, r.seed);
 }
 
+/// Better now than after an hour.
+bool may_save(const std::string& path) {
+  if (path.empty()) return true;
+  const auto may = may_write_recorded_profile(path);
+  if (!may) std::fprintf(stderr, "%s: %s\n", path.c_str(), may.error().message.c_str());
+  return static_cast<bool>(may);
+}
+
 bool read_run(RunWords& words, Nanoseconds& unit) {
   desk::RunRequest& r = words.run;
   if (!read_times(words, unit)) return false;
@@ -88,6 +99,7 @@ std::vector<std::string> words_for_face(const RunWords& words) {
   add("--for", words.duration);
   add("--every", words.every);
   add("--trace", words.trace);
+  add("--profile", words.run.profile);
   add("--timeline", words.timeline);
   for (const std::string& text : words.run.at) add("--at", text);
   for (const std::string& name : words.run.watch) add("--watch", name);
@@ -151,6 +163,7 @@ int carry_out_run(RunWords& words, const desk::Workplace& workplace) {
       !read_group(words.operate_group, "--operate-group", kept.operate_group) ||
       !read_group(words.configure_group, "--configure-group", kept.configure_group))
     return desk::kUsage;
+  if (!may_save(words.run.profile)) return desk::kRefused;
   if (!words.run.virtual_time && !words.run.one_process) {
     kept.run = words.run;
     kept.face = words_for_face(words);

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/config/recorded_profile.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -67,6 +72,28 @@ RecordedProfile profile_at(const JsonCursor& at) {
   return profile;
 }
 
+Nanoseconds bounded(Nanoseconds time) { return {std::clamp<std::int64_t>(time.count, 0, kLongest)}; }
+
+/// A new file beside `path`, to be put into its place.
+struct PartFile {
+  std::string path;
+  int descriptor = -1;
+};
+
+Error not_written(const std::string& path, int error) {
+  return {ErrorCode::kSystem, {std::string("cannot be written: ") + std::strerror(error)}, {path}};
+}
+
+Result<PartFile> open_part(const std::string& path) {
+  struct stat there{};
+  if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
+    return Error{ErrorCode::kRefused, {"is no ordinary file"}, {path}};
+  PartFile part{path + "." + std::to_string(::getpid()) + ".part", -1};
+  part.descriptor = ::open(part.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (part.descriptor < 0) return not_written(path, errno);
+  return part;
+}
+
 Error bad(const std::string& message, std::string_view where) {
   return {ErrorCode::kBadInput, {std::string_view(message)}, {where}};
 }
@@ -77,6 +104,24 @@ const RecordedTask* RecordedProfile::find(std::string_view task) const {
   for (const RecordedTask& recorded : tasks)
     if (recorded.task == task && recorded.samples > 0) return &recorded;
   return nullptr;
+}
+
+RecordedProfile recorded(const std::string& subsystem, std::span<const TaskProfile> tasks) {
+  RecordedProfile made{subsystem, {}};
+  for (const TaskProfile& task : tasks) {
+    const Spread& cycle = task.profile.execution[CHIMERA_CYCLE];
+    const Spread& delay = task.profile.start_delay;
+    RecordedTask row{.task = task.task, .samples = 0, .worst = {}, .mean = {}, .response = {}, .jitter = {}};
+    if (cycle.count > 0 && cycle.max.count > 0) {
+      row.samples = std::min(cycle.count, kMostSamples);
+      row.worst = bounded(cycle.max);
+      row.mean = std::min(bounded(cycle.mean()), row.worst);
+      row.response = task.profile.response.count == 0 ? Nanoseconds{} : bounded(task.profile.response.max);
+      row.jitter = delay.count == 0 ? Nanoseconds{} : bounded(delay.max - delay.min);
+    }
+    made.tasks.push_back(std::move(row));
+  }
+  return made;
 }
 
 std::string to_json(const RecordedProfile& profile) {
@@ -98,6 +143,29 @@ Result<RecordedProfile> parse_recorded_profile(std::string_view json) {
   } catch (const JsonRefusal& refusal) {
     return bad(refusal.message, "profile");
   }
+}
+
+Result<void> write_recorded_profile(const std::string& path, const RecordedProfile& profile) {
+  const auto part = open_part(path);
+  if (!part) return part.error();
+  const std::string text = to_json(profile);
+  errno = ENOSPC;  // a write that is cut short says nothing itself
+  bool is_good = ::write(part->descriptor, text.data(), text.size()) == std::ssize(text) &&
+                 ::fsync(part->descriptor) == 0;
+  is_good = is_good && ::rename(part->path.c_str(), path.c_str()) == 0;
+  const int error = errno;
+  ::close(part->descriptor);
+  if (is_good) return {};
+  ::unlink(part->path.c_str());
+  return not_written(path, error);
+}
+
+Result<void> may_write_recorded_profile(const std::string& path) {
+  const auto part = open_part(path);
+  if (!part) return part.error();
+  ::close(part->descriptor);
+  ::unlink(part->path.c_str());
+  return {};
 }
 
 Result<RecordedProfile> read_recorded_profile(const std::string& path) {

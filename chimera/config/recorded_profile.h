@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "chimera/base/result.h"
 #include "chimera/base/time.h"
+#include "chimera/config/task_profile.h"
 
 namespace chimera {
 
@@ -30,12 +32,21 @@ struct RecordedProfile {
   const RecordedTask* find(std::string_view task) const;
 };
 
+/// What was measured; a task whose cycles took no time that can be told has no samples. Context: setup.
+RecordedProfile recorded(const std::string& subsystem, std::span<const TaskProfile> tasks);
+
 /// The file's text, with a line end. Context: setup.
 std::string to_json(const RecordedProfile& profile);
 
 /// Reads such a text. Refuses, naming the place in it ("$.tasks[2].worst_ns"): what is no JSON, an unknown, missing or
 /// repeated key or task, another version, a number out of range, a mean above the worst. Context: setup.
 Result<RecordedProfile> parse_recorded_profile(std::string_view json);
+
+/// Puts the profile into the place of what is at `path`, in one step: nobody finds half of it. Refuses, leaving there
+/// what was: a folder that cannot be written, what is no ordinary file. Context: setup; may block.
+Result<void> write_recorded_profile(const std::string& path, const RecordedProfile& profile);
+/// Whether that would be refused, as far as can be told before. Context: setup; may block.
+Result<void> may_write_recorded_profile(const std::string& path);
 
 /// Reads the file at `path`; refuses one above the size limit unread. Context: setup; may block.
 Result<RecordedProfile> read_recorded_profile(const std::string& path);

@@ -2,6 +2,11 @@
 #include "chimera/config/recorded_profile.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 namespace chimera {
 namespace {
@@ -55,6 +60,49 @@ TEST(RecordedProfile, SaysWhichFileIsNotThere) {
   ASSERT_FALSE(profile);
   EXPECT_EQ(profile.error().where.view(), "/nowhere/p.json");
   EXPECT_EQ(profile.error().message.view(), "No such file or directory");
+}
+
+TEST(RecordedProfile, TakesWhatWasMeasured) {
+  TaskProfile pid, idle;
+  pid.task = "pid";
+  pid.profile.execution[CHIMERA_CYCLE].add(microseconds(3));
+  pid.profile.execution[CHIMERA_CYCLE].add(microseconds(5));
+  pid.profile.execution[CHIMERA_INIT].add(seconds(1));
+  pid.profile.response.add(microseconds(9));
+  pid.profile.start_delay.add(microseconds(2));
+  pid.profile.start_delay.add(microseconds(6));
+  idle.task = "idle";
+  idle.profile.execution[CHIMERA_CYCLE].add(Nanoseconds{0});  // virtual time without a budget
+  const TaskProfile measured[] = {pid, idle};
+  const auto read = parse_recorded_profile(to_json(recorded("arm", measured)));
+  ASSERT_TRUE(read) << read.error().message.c_str();
+  EXPECT_EQ(read->subsystem, "arm");
+  ASSERT_NE(read->find("pid"), nullptr);
+  EXPECT_EQ(read->find("pid")->samples, 2u);
+  EXPECT_EQ(read->find("pid")->worst, microseconds(5));
+  EXPECT_EQ(read->find("pid")->mean, microseconds(4));
+  EXPECT_EQ(read->find("pid")->response, microseconds(9));
+  EXPECT_EQ(read->find("pid")->jitter, microseconds(4));
+  EXPECT_EQ(read->tasks.size(), 2u);
+  EXPECT_EQ(read->find("idle"), nullptr) << "nothing is known of it";
+}
+
+TEST(RecordedProfile, IsWrittenWholeOrNotAtAll) {
+  char made[] = "/tmp/chimera_profile_XXXXXX";
+  const std::string folder = ::mkdtemp(made), path = folder + "/p.json";
+  std::ofstream(path) << "old";
+  ASSERT_TRUE(may_write_recorded_profile(path));
+  const RecordedProfile profile{"arm", {}};
+  ASSERT_TRUE(write_recorded_profile(path, profile));
+  EXPECT_TRUE(read_recorded_profile(path));
+  const auto nowhere = write_recorded_profile(folder + "/none/p.json", profile);
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().message.view(), "cannot be written: No such file or directory");
+  EXPECT_EQ(may_write_recorded_profile(folder + "/none/p.json").error().message.view(),
+            nowhere.error().message.view());
+  EXPECT_EQ(write_recorded_profile(folder, profile).error().message.view(), "is no ordinary file");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "nothing is left over";
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ std::string schedule_json(const Configuration& configuration, const ScheduleRepo
   Json sets = Json::array();
   for (const SetSchedule& set : report.sets) sets.push_back(pages.set(set));
   const Json all = {{"subsystem", configuration.subsystem()},
-                    {"dispatch", report.dispatch == Dispatch::kExecutive ? "executive" : "preemptive"},
+                    {"dispatch", report.dispatch_name()},
                     {"fits", report.fits()},
                     {"notes", report.notes},
                     {"sets", std::move(sets)}};

@@ -20,39 +20,24 @@ std::vector<std::string> names_of(const Configuration& configuration) {
   return names;
 }
 
-/// Groups and bytes that come from, or go to, the table of others.
-TransferCost transfer_of(const Configuration& configuration, std::size_t task) {
-  TransferCost cost;
-  std::vector<std::size_t> producers;
-  const ConfiguredTask& me = configuration.tasks()[task];
-  const auto ports = configuration.spec().tasks[task].ports;
-  for (const ConfiguredVariable& variable : configuration.variables()) {
-    if (variable.is_constant) continue;
-    const auto mine = std::find_if(variable.consumers.begin(), variable.consumers.end(),
-                                   [task](const PortRef& ref) { return ref.task == task; });
-    if (mine == variable.consumers.end()) continue;
-    std::size_t from = variable.producers.empty() ? SIZE_MAX : variable.producers[0].task;  // the operator
-    if (from != SIZE_MAX && configuration.tasks()[from].rtpu == me.rtpu) continue;
-    cost.bytes += ports[mine->port].max_bytes();
-    if (std::find(producers.begin(), producers.end(), from) == producers.end()) producers.push_back(from);
-  }
-  cost.groups = static_cast<std::uint32_t>(producers.size());
-  return cost;
-}
-
 class Writer {
  public:
   Writer(const Configuration& configuration, const ScheduleOptions& options)
       : configuration_(configuration), options_(options) {}
 
   ScheduleReport write() {
-    report_.dispatch = options_.dispatch;
+    for (const RtpuSpec& rtpu : configuration_.rtpus()) report_.dispatch.push_back(dispatch(rtpu));
     note_unknown();
     for (std::size_t s = 0; s < configuration_.sets().size(); ++s) report_.sets.push_back(set(s));
     return std::move(report_);
   }
 
  private:
+  Dispatch dispatch(const RtpuSpec& rtpu) const {
+    const Dispatch own = rtpu.preemptive && !options_.one_rtpu ? Dispatch::kPreemptive : Dispatch::kExecutive;
+    return options_.dispatch.value_or(own);
+  }
+
   void note_unknown() {
     const std::vector<std::string> names = names_of(configuration_);
     const auto unknown = [&names](const std::string& name) {
@@ -68,7 +53,7 @@ class Writer {
   std::vector<ProcessorUse> uses() const {
     std::vector<ProcessorUse> made;
     for (const RtpuSpec& rtpu : configuration_.rtpus())
-      made.push_back({.cpu = rtpu.cpu, .criticality = 0, .policy = rtpu.policy, .dispatch = options_.dispatch,
+      made.push_back({.cpu = rtpu.cpu, .criticality = 0, .policy = rtpu.policy, .dispatch = dispatch(rtpu),
                       .quantum = options_.quantum});
     for (const TaskSpec& task : configuration_.spec().tasks) {
       std::uint32_t& most = made[options_.one_rtpu ? 0 : task.rtpu.index].criticality;
@@ -181,6 +166,12 @@ bool all_fit(const Parts& parts) {
 bool CpuSchedule::fits() const noexcept { return verdict.fits() && verdict.utilisation <= kMaxUtilisation + 1e-9; }
 bool SetSchedule::fits() const noexcept { return all_fit(cpus); }
 bool ScheduleReport::fits() const noexcept { return all_fit(sets); }
+
+const char* ScheduleReport::dispatch_name() const noexcept {
+  const auto preemptive = std::count(dispatch.begin(), dispatch.end(), Dispatch::kPreemptive);
+  if (preemptive == 0) return "executive";
+  return preemptive == std::ssize(dispatch) ? "preemptive" : "mixed";
+}
 
 ScheduleReport schedule_report(const Configuration& configuration, const ScheduleOptions& options) {
   return Writer(configuration, options).write();

@@ -12,29 +12,21 @@
 #include "chimera/config/configuration.h"
 #include "chimera/config/recorded_profile.h"
 #include "chimera/config/report.h"
+#include "chimera/config/transfer_cost.h"
 #include "chimera/schedule/analysis.h"
 #include "chimera/schedule/worst_window.h"
 
 namespace chimera {
 
-/// How the real-time units of today dispatch.
-inline constexpr Dispatch kRealTimeDispatch = Dispatch::kExecutive;
-
 struct ScheduleOptions {
   const RecordedProfile* profile = nullptr;  ///< where it has a task its worst time counts, else the budget
-  Dispatch dispatch = kRealTimeDispatch;
+  std::optional<Dispatch> dispatch;          ///< of all rtpus; else each as the description says
   Nanoseconds quantum = microseconds(500);   ///< of laxity policies
   std::vector<std::string> may_miss;         ///< tasks that need no promise
-  bool one_rtpu = false;                     ///< all tasks in one loop, on the CPU and by the policy of the first rtpu
+  bool one_rtpu = false;                     ///< all tasks in one executive, that of the first rtpu
 };
 
 enum class TimeSource : std::uint8_t { kNone, kBudget, kProfile, kServer };
-
-/// What a task copies between its own memory and the table of another rtpu at each cycle. Part of its time.
-struct TransferCost {
-  std::uint32_t groups = 0;
-  std::uint32_t bytes = 0;
-};
 
 struct ScheduleRow {
   std::size_t task = 0;        ///< in Configuration::tasks()
@@ -84,11 +76,13 @@ struct SetSchedule {
 };
 
 struct ScheduleReport {
-  Dispatch dispatch = kRealTimeDispatch;
+  std::vector<Dispatch> dispatch;  ///< of each rtpu
   std::vector<SetSchedule> sets;
   std::vector<std::string> notes;  ///< what stands in the profile or was asked for and could not be used
 
   bool fits() const noexcept;
+  /// "executive", "preemptive", or "mixed".
+  const char* dispatch_name() const noexcept;
 };
 
 /// Context of all: setup.

@@ -17,14 +17,16 @@ struct Counter {
   const char* key;
   std::uint64_t Profile::* count;
 };
-constexpr std::array<Counter, 8> kCounters = {{{"missed", &Profile::missed},
+constexpr std::array<Counter, 10> kCounters = {{{"missed", &Profile::missed},
                                                {"overrun", &Profile::overrun},
                                                {"min_refused", &Profile::min_refused},
                                                {"dropped", &Profile::dropped},
                                                {"held", &Profile::held},
                                                {"aborted", &Profile::aborted},
                                                {"stale", &Profile::stale},
-                                               {"rejected", &Profile::rejected}}};
+                                               {"rejected", &Profile::rejected},
+                                                {"preempted", &Profile::preempted},
+                                                {"demoted", &Profile::demoted}}};
 
 std::string number(std::uint64_t n) { return std::to_string(n); }
 
@@ -48,10 +50,13 @@ std::string task_json(const TaskProfile& task, Nanoseconds origin) {
       methods += (methods.empty() ? "" : ", ") + json_string(method_name(static_cast<Method>(m))) + ": " +
                  spread_json(p.execution[m]);
   std::string text = "{\"task\": " + json_string(task.task) + ", \"component\": " + json_string(task.component) +
+                     ", \"rtpu\": " + json_string(task.rtpu) +
                      ", \"state\": " + json_string(state_name(task.state)) +
                      ", \"period_ns\": " + std::to_string(task.period.count) + ", \"cycles\": " + number(p.cycles) +
                      ", \"execution_ns\": {" + methods + "}, \"response_ns\": " + spread_json(p.response) +
-                     ", \"start_delay_ns\": " + spread_json(p.start_delay);
+                     ", \"start_delay_ns\": " + spread_json(p.start_delay) +
+                     ", \"transfer\": {\"groups\": " + number(task.transfer.groups) +
+                     ", \"bytes\": " + number(task.transfer.bytes) + "}";
   for (const Counter& counter : kCounters)
     text += ", " + json_string(counter.key) + ": " + number(p.*counter.count);
   text += ", \"faults\": " + number(task.faults.count);
@@ -96,6 +101,7 @@ TaskProfile profile_of(const Json& json, Nanoseconds origin) {
   TaskProfile made;
   made.task = json.at("task").get<std::string>();
   made.component = json.at("component").get<std::string>();
+  made.rtpu = json.at("rtpu").get<std::string>();
   made.state = state_of(json.at("state").get<std::string>());
   made.period = {json.at("period_ns").get<std::int64_t>()};
   made.profile.cycles = json.at("cycles").get<std::uint64_t>();
@@ -103,6 +109,8 @@ TaskProfile profile_of(const Json& json, Nanoseconds origin) {
     made.profile.execution[static_cast<std::uint32_t>(method_of(method))] = spread_of(spread);
   made.profile.response = spread_of(json.at("response_ns"));
   made.profile.start_delay = spread_of(json.at("start_delay_ns"));
+  made.transfer.groups = json.at("transfer").at("groups").get<std::uint32_t>();
+  made.transfer.bytes = json.at("transfer").at("bytes").get<std::uint32_t>();
   for (const Counter& counter : kCounters) made.profile.*counter.count = json.at(counter.key).get<std::uint64_t>();
   const auto faults = json.at("faults").get<std::uint64_t>();
   if (faults > 0) made.faults = fault_of(json.at("last_fault"), faults, origin);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chimera/base/result.h"
+#include "chimera/config/transfer_cost.h"
 #include "chimera/task/fault_record.h"
 #include "chimera/task/profile.h"
 #include "chimera/task/state_machine.h"
@@ -23,6 +24,8 @@ struct TaskProfile {
   Nanoseconds period;
   Profile profile;
   FaultRecord faults;
+  std::string rtpu;
+  TransferCost transfer;  ///< of each cycle
 };
 
 /// A JSON array with everything counted, one object a task, times in nanoseconds, of faults from `origin`.

@@ -14,6 +14,8 @@ TaskProfile sample() {
   TaskProfile made;
   made.task = "pid";
   made.component = "pid_joint";
+  made.rtpu = "servo";
+  made.transfer = {2, 48};
   made.state = State::kOn;
   made.period = milliseconds(1);
   made.profile.cycles = 2;
@@ -22,6 +24,8 @@ TaskProfile sample() {
   made.profile.response.add(microseconds(7));
   made.profile.missed = 1;
   made.profile.rejected = 4;
+  made.profile.preempted = 5;
+  made.profile.demoted = 6;
   made.faults.count = 1;
   made.faults.at = seconds(6);
   made.faults.method = Method::kCycle;
@@ -33,12 +37,13 @@ TaskProfile sample() {
 TEST(TaskProfile, ReadsAsDocumented) {
   const TaskProfile task = sample();
   EXPECT_EQ(profile_json({&task, 1}, kOrigin),
-            "[{\"task\": \"pid\", \"component\": \"pid_joint\", \"state\": \"ON\", \"period_ns\": 1000000, "
-            "\"cycles\": 2, \"execution_ns\": {\"cycle\": {\"count\": 2, \"min\": 3000, \"mean\": 4000, \"max\": 5000}"
-            "}, \"response_ns\": {\"count\": 1, \"min\": 7000, \"mean\": 7000, \"max\": 7000}, "
-            "\"start_delay_ns\": {\"count\": 0}, \"missed\": 1, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, "
-            "\"held\": 0, \"aborted\": 0, \"stale\": 0, \"rejected\": 4, \"faults\": 1, \"last_fault\": {\"method\": "
-            "\"cycle\", \"at_ns\": 1000000000, \"code\": 12, \"text\": \"too \\\"hot\\\"\"}}]");
+            "[{\"task\": \"pid\", \"component\": \"pid_joint\", \"rtpu\": \"servo\", \"state\": \"ON\", "
+            "\"period_ns\": 1000000, \"cycles\": 2, \"execution_ns\": {\"cycle\": {\"count\": 2, \"min\": 3000, "
+            "\"mean\": 4000, \"max\": 5000}}, \"response_ns\": {\"count\": 1, \"min\": 7000, \"mean\": 7000, "
+            "\"max\": 7000}, \"start_delay_ns\": {\"count\": 0}, \"transfer\": {\"groups\": 2, \"bytes\": 48}, "
+            "\"missed\": 1, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, \"held\": 0, \"aborted\": 0, "
+            "\"stale\": 0, \"rejected\": 4, \"preempted\": 5, \"demoted\": 6, \"faults\": 1, \"last_fault\": "
+            "{\"method\": \"cycle\", \"at_ns\": 1000000000, \"code\": 12, \"text\": \"too \\\"hot\\\"\"}}]");
 }
 
 TEST(TaskProfile, ReadsBackTheSame) {

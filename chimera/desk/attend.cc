@@ -230,7 +230,7 @@ int Attendance::report(RunEnd end) {
   }
   if (records_) records_->finish(*sink_);
   print(report, run_.json, out_);
-  return report.code();
+  return save_profile(report, run_.profile, err_) ? report.code() : kRefused;
 }
 
 }  // namespace

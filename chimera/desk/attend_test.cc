@@ -68,10 +68,12 @@ class MadeUp final : public control::Subject {
     return {{"events", some}, {"first", 1}, {"last", events.size()}};
   }
   static Json profile() {
-    return {{"task", "pid"}, {"component", "pid_joint"}, {"state", "ON"}, {"period_ns", 1000000}, {"cycles", 100},
+    return {{"task", "pid"}, {"component", "pid_joint"}, {"rtpu", "servo"}, {"state", "ON"},
+            {"period_ns", 1000000}, {"cycles", 100},
             {"execution_ns", Json::object()}, {"response_ns", {{"count", 0}}}, {"start_delay_ns", {{"count", 0}}},
             {"missed", 0}, {"overrun", 0}, {"min_refused", 0}, {"dropped", 0}, {"held", 0}, {"aborted", 0},
-            {"stale", 0}, {"rejected", 0}, {"faults", 0}};
+            {"stale", 0}, {"rejected", 0}, {"preempted", 0}, {"demoted", 0},
+            {"transfer", {{"groups", 1}, {"bytes", 48}}}, {"faults", 0}};
   }
 };
 

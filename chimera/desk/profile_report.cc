@@ -20,6 +20,22 @@ std::string max_text(const Spread& spread) { return spread.count == 0 ? "-" : ti
 std::string mean_text(const Spread& spread) { return spread.count == 0 ? "-" : time_text(spread.mean()); }
 std::string jitter_text(const Spread& spread) { return spread.count == 0 ? "-" : time_text(spread.max - spread.min); }
 
+/// What is told only where it happened.
+struct Seldom {
+  const char* name;
+  std::uint64_t Profile::* count;
+};
+constexpr Seldom kSeldom[] = {{"preempted", &Profile::preempted}, {"demoted", &Profile::demoted}};
+
+/// "pid: 12 preempted, 1 demoted", or nothing.
+std::string seldom_line(const TaskProfile& task) {
+  std::string text;
+  for (const Seldom& kind : kSeldom)
+    if (const std::uint64_t n = task.profile.*kind.count; n > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + kind.name;
+  return text.empty() ? "" : task.task + ": " + text + "\n";
+}
+
 std::string row(const TaskProfile& task, Nanoseconds ran, int width) {
   const Profile& p = task.profile;
   const Spread& cycle = p.execution[CHIMERA_CYCLE];
@@ -42,11 +58,14 @@ std::vector<State> states_of(const TaskSet& tasks) {
   return states;
 }
 
-std::vector<TaskProfile> profiles_of(const TaskSet& tasks, std::span<const State> states) {
+std::vector<TaskProfile> profiles_of(const TaskSet& tasks, std::span<const State> states,
+                                     const Configuration& configuration) {
+  const auto rtpus = configuration.rtpus();
   std::vector<TaskProfile> profiles;
   for (const Task& task : tasks.tasks())
     profiles.push_back({std::string(task.spec->name), std::string(task.spec->component), states[task.id.index],
-                        task.spec->period, task.profile, task.faults});
+                        task.spec->period, task.profile, task.faults, std::string(rtpus[task.spec->rtpu.index].name),
+                        transfer_of(configuration, task.id.index)});
   return profiles;
 }
 
@@ -59,6 +78,7 @@ std::string profile_table(std::span<const TaskProfile> tasks, Nanoseconds ran, N
                 "cycles", "mean", "max", "load", "response", "jitter", "missed", "dropped", "faults");
   std::string text = head;
   for (const TaskProfile& task : tasks) text += row(task, ran, w);
+  for (const TaskProfile& task : tasks) text += seldom_line(task);
   for (const TaskProfile& task : tasks)
     if (task.faults.count > 0)
       text += task.task + ": last fault in " + method_name(task.faults.method) + " at " +

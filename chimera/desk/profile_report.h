@@ -14,12 +14,13 @@ namespace chimera::desk {
 /// The state of every task, in order: taken at the end of a run, before everything is shut down.
 std::vector<State> states_of(const TaskSet& tasks);
 
-/// What is to be told about every task, in order.
-std::vector<TaskProfile> profiles_of(const TaskSet& tasks, std::span<const State> states);
+/// What is to be told about every task of an application in one process, in order.
+std::vector<TaskProfile> profiles_of(const TaskSet& tasks, std::span<const State> states,
+                                     const Configuration& configuration);
 
 /// One line a task: state, cycles, execution time of cycle (mean, max), load, response, start jitter, failures; then a
-/// line for every task with a fault. `ran` is the time that the loads refer to; faults are timed from `origin`.
-/// Context: setup.
+/// line for every task that was preempted or demoted, and one for every task with a fault. `ran` is the time that the
+/// loads refer to; faults are timed from `origin`. Context: setup.
 std::string profile_table(std::span<const TaskProfile> tasks, Nanoseconds ran, Nanoseconds origin);
 
 }  // namespace chimera::desk

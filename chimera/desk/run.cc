@@ -183,13 +183,14 @@ int Session::report(RunEnd end) {
   for (const RefusedSignal& r : loop_->refused())
     report.refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
   loop_->shut_down();
-  report.profiles = profiles_of(application_.tasks(), states);  // what `off` and `kill` cost, and their faults, too
+  // What `off` and `kill` cost, and their faults, too.
+  report.profiles = profiles_of(application_.tasks(), states, application_.configuration());
   if (sink_ != nullptr) {
     drain();
     sink_->end(reader_.lost());
   }
   print(report, request_.json, out_);
-  return write_plot() ? report.code() : kRefused;
+  return write_plot() && save_profile(report, request_.profile, err_) ? report.code() : kRefused;
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ struct RunRequest {
   std::vector<std::string> watch;       ///< state variables to print while it runs
   Nanoseconds every = seconds(1);       ///< how often
   std::string svg;                      ///< draw them to this file instead; virtual time or one process only
+  std::string profile;                  ///< save the profile into this file at the end; "": not
   bool json = false;
 };
 

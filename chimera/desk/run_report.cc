@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chimera/config/json_text.h"
+#include "chimera/config/recorded_profile.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/profile_report.h"
 
@@ -58,6 +59,13 @@ int RunReport::code() const {
   const bool all_hold =
       std::all_of(expectations.begin(), expectations.end(), [](const Judged& judged) { return judged.holds; });
   return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
+}
+
+bool save_profile(const RunReport& report, const std::string& path, std::FILE* err) {
+  if (path.empty()) return true;
+  const auto written = write_recorded_profile(path, recorded(report.subsystem, report.profiles));
+  if (!written) std::fprintf(err, "%s: %s\n", path.c_str(), written.error().message.c_str());
+  return static_cast<bool>(written);
 }
 
 void print(const RunReport& report, bool json, std::FILE* out) {

@@ -38,6 +38,10 @@ struct RunReport {
   int code() const;
 };
 
+/// Writes what `chimera schedule --profile` reads; false, with the reason on `err`, when that cannot be. No path:
+/// nothing to do. Context: setup; may block.
+bool save_profile(const RunReport& report, const std::string& path, std::FILE* err);
+
 /// As text or as one JSON object. Context: setup.
 void print(const RunReport& report, bool json, std::FILE* out);
 

@@ -137,18 +137,19 @@ TEST(Run, AnIllegalDescriptionIsReportedAndNotRun) {
 
 TEST(ProfileReport, ATaskThatNeverRanHasNoFiguresButALine) {
   Application application = test_application(kCounterText, test_library());
-  const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()));
+  const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()),
+                                    application.configuration());
   EXPECT_EQ(profile_table(profiles, Nanoseconds{}, Nanoseconds{}),
             "task     state          cycles        mean        max      load    response      jitter  missed dropped "
             "faults\n"
             "counter  NOT-CREATED         0           -          -    0.00 %           -           -       0      0   "
             "   0\n");
   EXPECT_EQ(profile_json(profiles, Nanoseconds{}),
-            "[{\"task\": \"counter\", \"component\": \"t_counter\", \"state\": \"NOT-CREATED\", "
+            "[{\"task\": \"counter\", \"component\": \"t_counter\", \"rtpu\": \"main\", \"state\": \"NOT-CREATED\", "
             "\"period_ns\": 1000000, \"cycles\": 0, \"execution_ns\": {}, \"response_ns\": {\"count\": 0}, "
-            "\"start_delay_ns\": {\"count\": 0}, "
+            "\"start_delay_ns\": {\"count\": 0}, \"transfer\": {\"groups\": 0, \"bytes\": 0}, "
             "\"missed\": 0, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, \"held\": 0, \"aborted\": 0, "
-            "\"stale\": 0, \"rejected\": 0, \"faults\": 0}]");
+            "\"stale\": 0, \"rejected\": 0, \"preempted\": 0, \"demoted\": 0, \"faults\": 0}]");
 }
 
 TEST(ProfileReport, FaultsAreTimedFromTheOrigin) {
@@ -158,7 +159,8 @@ TEST(ProfileReport, FaultsAreTimedFromTheOrigin) {
   task.faults.at = seconds(5000);
   task.faults.method = Method::kCycle;
   std::snprintf(task.faults.last.text, sizeof task.faults.last.text, "worn");
-  const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()));
+  const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()),
+                                    application.configuration());
   EXPECT_NE(profile_table(profiles, seconds(2), seconds(4999))
                 .find("counter: last fault in cycle at 1.00 s: worn\n"), std::string::npos);
   EXPECT_NE(profile_json(profiles, seconds(4999)).find("\"at_ns\": 1000000000, "),

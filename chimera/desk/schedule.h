@@ -14,7 +14,7 @@ struct ScheduleRequest {
   std::string file;
   std::string profile;   ///< a recorded profile; "": budgets of the description alone
   std::string svg;       ///< draw the worst windows into this file; "": not
-  std::string dispatch;  ///< "executive" or "preemptive"; "": as `run` does
+  std::string dispatch;  ///< "executive" or "preemptive"; "": each rtpu as described
   bool json = false;
 };
 

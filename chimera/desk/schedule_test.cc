@@ -51,6 +51,17 @@ TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
       << output.out;
 }
 
+TEST(Schedule, JudgesEachUnitAsTheDescriptionHasIt) {
+  std::string text = kTwo;
+  text.replace(text.find("policy: rm"), 10, "policy: rm, executor: preemptive");
+  const Output mixed = scheduled(text, "");
+  EXPECT_EQ(mixed.code, kOk) << mixed.err;
+  EXPECT_TRUE(mixed.out.starts_with("two: configuration 'all' (start), preemptive in fast; in the other rtpus a job "
+                                    "that runs is not taken off\n"))
+      << mixed.out;
+  EXPECT_EQ(scheduled(kTwo, "").out, scheduled(kTwo, "executive").out);
+}
+
 TEST(Schedule, TakesTimesFromAProfileAndSaysWhich) {
   RecordedProfile profile{"two", {{"a", 10, milliseconds(1), milliseconds(1), milliseconds(1), {}},
                                   {"gone", 10, milliseconds(1), milliseconds(1), milliseconds(1), {}}}};

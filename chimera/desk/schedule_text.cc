@@ -46,6 +46,17 @@ class Words {
   const std::string& name(std::size_t task) const { return configuration_.tasks()[task].name; }
   std::string rtpu(std::size_t index) const { return std::string(configuration_.rtpus()[index].name); }
 
+  /// Who takes a job that runs off the processor.
+  std::string dispatch(const ScheduleReport& report) const {
+    const std::string kind = report.dispatch_name();
+    if (kind == "preemptive") return ", preemptive";
+    if (kind == "executive") return ", executives: a job that runs is not taken off";
+    std::vector<std::string> names;
+    for (std::size_t r = 0; r < report.dispatch.size(); ++r)
+      if (report.dispatch[r] == Dispatch::kPreemptive) names.push_back(rtpu(r));
+    return ", preemptive in " + list(names) + "; in the other rtpus a job that runs is not taken off";
+  }
+
   std::string cpu(const CpuSchedule& cpu) const {
     std::string text = "CPU " + std::to_string(cpu.verdict.cpu) + ": " + policies(cpu) + "; load " +
                        number("%.3f", cpu.verdict.utilisation) + " of at most " + number("%.2f", kMaxUtilisation) +
@@ -182,8 +193,7 @@ std::string schedule_text(const Configuration& configuration, const ScheduleRepo
   std::string text;
   for (const SetSchedule& set : report.sets) {
     text += configuration.subsystem() + ": configuration '" + set.name + "'" + (set.is_start ? " (start)" : "") +
-            (report.dispatch == Dispatch::kExecutive ? ", executives: a job that runs is not taken off\n"
-                                                     : ", preemptive\n");
+            words.dispatch(report) + "\n";
     for (const CpuSchedule& cpu : set.cpus) text += words.cpu(cpu);
     text += paths_text(words, set);
   }

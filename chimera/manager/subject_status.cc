@@ -126,6 +126,8 @@ Json task_json(const World& world, TaskId task, Nanoseconds at) {
           {"dropped", p.dropped},
           {"stale", p.stale},
           {"rejected", p.rejected},
+          {"preempted", p.preempted},
+          {"demoted", p.demoted},
           {"fault", or_null(fault_text(world, task))},
           {"faults", fault.count},
           {"inputs", world.configuration ? inputs_json(world, task, at) : Json::array()}};
@@ -228,7 +230,8 @@ Json profile_json(const World& world) {
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) {
     const TaskSpec& spec = world.spec().tasks[t];
     tasks.push_back({std::string(spec.name), std::string(spec.component), world.state(TaskId(t)), spec.period,
-                     profile_of(world, TaskId(t)), world.peers.fault(TaskId(t))});
+                     profile_of(world, TaskId(t)), world.peers.fault(TaskId(t)), std::string(world.name(spec.rtpu)),
+                     world.configuration ? transfer_of(*world.configuration, t) : TransferCost{}});
   }
   return {{"tasks", Json::parse(chimera::profile_json(tasks, world.keeper.origin))}};
 }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "chimera/config/recorded_profile.h"
 #include "chimera/shell/answer_text.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/status_text.h"
@@ -59,6 +60,20 @@ Said set(Session& session, const Call& call) {
   return tell(session.ask("set", {{"values", {{call.operands[0], value}}}}), call.json, readings_text);
 }
 
+Said profile(Session& session, const Call& call) {
+  const control::Answer answer = session.ask("profile");
+  if (!call.has("--save")) return tell(answer, call.json, profile_text);
+  const control::Answer hello = session.ask("hello");
+  for (const control::Answer* asked : {&answer, &hello})
+    if (!asked->is_good()) return refused(*asked, call.json);
+  const auto tasks = parse_profiles(field(*answer.result, "tasks").dump(), Nanoseconds{});
+  if (!tasks) return refused(tasks.error(), call.json);
+  const std::string file = call.value("--save");
+  const auto written = write_recorded_profile(file, recorded(text_of(*hello.result, "subsystem"), *tasks));
+  if (!written) return refused(written.error(), call.json);
+  return {call.json ? Json{{"file", file}}.dump() + "\n" : file + ": written\n", "", kOk};
+}
+
 Said events(Session& session, const Call& call) {
   std::int64_t since = 0;
   const std::string text = call.value("--since");
@@ -80,7 +95,7 @@ Said flag(Session& session, const Call& call) {
 Said one_shot(Session& session, const Call& call, const Look& look) {
   const std::string_view name = call.command->name;
   if (name == "status") return tell(session.ask("status"), call.json, status_text);
-  if (name == "profile") return tell(session.ask("profile"), call.json, profile_text);
+  if (name == "profile") return profile(session, call);
   if (name == "save") return tell(session.ask("save"), call.json, save_text);
   if (name == "set") return set(session, call);
   if (name == "events") return events(session, call);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/shell/status_text.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -29,10 +30,14 @@ std::string input_text(const Json& task) {
   return oldest.variable.empty() ? "-" : "never " + oldest.variable;
 }
 
+std::string policy_of(const Json& rtpu) {
+  return text_of(rtpu, "policy") + (text_of(rtpu, "executor") == "preemptive" ? " preemptive" : "");
+}
+
 Columns rtpu_table(const Json& status) {
   Columns table({"rtpu", ">cpu", "policy", "phase", ">pid", ">restarts", "running", "flag"});
   for (const Json& rtpu : field(status, "rtpus"))
-    table.add({text_of(rtpu, "name"), std::to_string(whole_of(rtpu, "cpu")), text_of(rtpu, "policy"),
+    table.add({text_of(rtpu, "name"), std::to_string(whole_of(rtpu, "cpu")), policy_of(rtpu),
                text_of(rtpu, "phase"), std::to_string(whole_of(rtpu, "pid")),
                std::to_string(whole_of(rtpu, "restarts")), or_dash(text_of(rtpu, "running")),
                truth_of(rtpu, "flag") ? "UP" : "-"});
@@ -51,14 +56,86 @@ Columns task_table(const Json& status) {
   return table;
 }
 
-std::string load_text(const Json& task) {
+/// Mean execution time of a cycle as a part of the period; 0 before the first.
+double load_of(const Json& task) {
   const auto period = static_cast<double>(whole_of(task, "period_ns"));
   const Json& cycle = field(field(task, "execution_ns"), "cycle");
-  if (period <= 0 || whole_of(cycle, "count") == 0) return "-";
+  return period <= 0 || whole_of(cycle, "count") == 0 ? 0 : number_of(cycle, "mean") / period;
+}
+
+std::string percent(double part) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.2f %%", 100 * number_of(cycle, "mean") / period);
+  std::snprintf(text, sizeof text, "%.2f %%", 100 * part);
   return text;
 }
+
+std::string load_text(const Json& task) {
+  return whole_of(field(field(task, "execution_ns"), "cycle"), "count") == 0 ? "-" : percent(load_of(task));
+}
+
+/// The counters of a table of tasks: some only where they say something.
+std::vector<std::string> counters_of(const Json& answer) {
+  std::vector<std::string> keys = {"missed", "overrun", "dropped", "stale", "rejected"};
+  for (const char* key : {"min_refused", "held", "aborted", "preempted", "demoted"})
+    for (const Json& task : field(answer, "tasks"))
+      if (whole_of(task, key) > 0) {
+        keys.emplace_back(key);
+        break;
+      }
+  keys.emplace_back("faults");
+  return keys;
+}
+
+/// Every method but cycle that was called.
+Columns method_table(const Json& answer) {
+  Columns table({"task", "method", ">calls", ">mean", ">max"});
+  for (const Json& task : field(answer, "tasks")) {
+    const Json& methods = field(task, "execution_ns");
+    if (!methods.is_object()) continue;
+    for (const auto& [method, spread] : methods.items())
+      if (method != "cycle" && whole_of(spread, "count") > 0)
+        table.add({text_of(task, "task"), method, count_of(spread, "count"), duration_text(whole_of(spread, "mean")),
+                   duration_text(whole_of(spread, "max"))});
+  }
+  return table;
+}
+
+Columns transfer_table(const Json& answer) {
+  Columns table({"task", ">groups a cycle", ">bytes a cycle"});
+  for (const Json& task : field(answer, "tasks"))
+    if (const Json& transfer = field(task, "transfer"); whole_of(transfer, "groups") > 0)
+      table.add({text_of(task, "task"), count_of(transfer, "groups"), count_of(transfer, "bytes")});
+  return table;
+}
+
+Columns unit_table(const Json& answer) {
+  std::vector<std::string> names;
+  for (const Json& task : field(answer, "tasks"))
+    if (const std::string name = text_of(task, "rtpu");
+        !name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  const std::vector<std::string> counters = counters_of(answer);
+  std::vector<std::string> heading = {"rtpu", ">tasks", ">load"};
+  for (const std::string& key : counters) heading.push_back(">" + key);
+  Columns table(std::move(heading));
+  for (const std::string& name : names) {
+    double load = 0;
+    std::int64_t tasks = 0;
+    std::vector<std::int64_t> sums(counters.size());
+    for (const Json& task : field(answer, "tasks")) {
+      if (text_of(task, "rtpu") != name) continue;
+      ++tasks;
+      load += load_of(task);
+      for (std::size_t i = 0; i < counters.size(); ++i) sums[i] += whole_of(task, counters[i]);
+    }
+    std::vector<std::string> row = {name, count_text(tasks), percent(load)};
+    for (const std::int64_t sum : sums) row.push_back(count_text(sum));
+    table.add(std::move(row));
+  }
+  return table;
+}
+
+std::string with_space(const Columns& table) { return table.empty() ? "" : "\n" + table.text(); }
 
 }  // namespace
 
@@ -111,24 +188,28 @@ std::string status_text(const Json& status) {
 }
 
 std::string profile_text(const Json& answer) {
-  Columns table({"task", "state", ">cycles", ">mean", ">max", ">load", ">response", ">jitter", ">missed", ">overrun",
-                 ">dropped", ">stale", ">rejected", ">faults"});
+  const std::vector<std::string> counters = counters_of(answer);
+  std::vector<std::string> heading = {"task", "state", ">cycles", ">mean", ">max", ">load", ">response", ">jitter"};
+  for (const std::string& key : counters) heading.push_back(">" + key);
+  Columns table(std::move(heading));
   std::string faults;
   for (const Json& task : field(answer, "tasks")) {
     const Json& cycle = field(field(task, "execution_ns"), "cycle");
     const Json& delay = field(task, "start_delay_ns");
     const bool has_delay = whole_of(delay, "count") > 0;
-    table.add({text_of(task, "task"), text_of(task, "state"), count_of(task, "cycles"), time_of(cycle, "mean"),
-               time_of(cycle, "max"), load_text(task), time_of(field(task, "response_ns"), "max"),
-               has_delay ? duration_text(whole_of(delay, "max") - whole_of(delay, "min")) : "-",
-               count_of(task, "missed"), count_of(task, "overrun"), count_of(task, "dropped"), count_of(task, "stale"),
-               count_of(task, "rejected"), count_of(task, "faults")});
+    std::vector<std::string> row = {
+        text_of(task, "task"), text_of(task, "state"), count_of(task, "cycles"), time_of(cycle, "mean"),
+        time_of(cycle, "max"), load_text(task), time_of(field(task, "response_ns"), "max"),
+        has_delay ? duration_text(whole_of(delay, "max") - whole_of(delay, "min")) : "-"};
+    for (const std::string& key : counters) row.push_back(count_of(task, key));
+    table.add(std::move(row));
     const Json& fault = field(task, "last_fault");
     if (fault.is_object())
       faults += text_of(task, "task") + ": last fault in " + text_of(fault, "method") + " at " +
                 duration_text(whole_of(fault, "at_ns")) + ": " + text_of(fault, "text") + "\n";
   }
-  return table.text() + faults;
+  return table.text() + faults + with_space(method_table(answer)) + with_space(transfer_table(answer)) +
+         with_space(unit_table(answer));
 }
 
 }  // namespace chimera::shell

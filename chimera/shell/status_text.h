@@ -21,7 +21,8 @@ OldestInput oldest_input(const nlohmann::json& task);
 /// The headline, a table of the rtpus, a table of the tasks, and a line for every task with a fault.
 std::string status_text(const nlohmann::json& status);
 
-/// One line a task: cycles, execution time of cycle, load, response, start jitter, failures; then the last faults.
+/// One line a task: cycles, execution time of cycle, load, response, start jitter, failures; then the last faults, the
+/// other methods, transfers, and the sums of each rtpu.
 std::string profile_text(const nlohmann::json& answer);
 
 }  // namespace chimera::shell

@@ -56,22 +56,33 @@ TEST(StatusText, TheRemarksOnAnRtpu) {
 
 TEST(StatusText, TheProfileHasALineForEachTaskAndItsFaults) {
   EXPECT_EQ(profile_text(nlohmann::json::parse(R"({"tasks": [
-              {"task": "pid", "component": "pid_joint", "state": "ON", "period_ns": 1000000, "cycles": 750000,
+              {"task": "pid", "component": "pid_joint", "rtpu": "servo", "state": "ON", "period_ns": 1000000,
+               "cycles": 750000,
                "execution_ns": {"init": {"count": 1, "min": 9, "mean": 9, "max": 9},
                                 "cycle": {"count": 750000, "min": 8000, "mean": 12100, "max": 30200}},
                "response_ns": {"count": 750000, "min": 9000, "mean": 20000, "max": 71000},
                "start_delay_ns": {"count": 750000, "min": 100, "mean": 300, "max": 3200}, "missed": 1, "overrun": 2,
-               "min_refused": 0, "dropped": 3, "held": 0, "aborted": 0, "stale": 4, "rejected": 5, "faults": 1,
+               "min_refused": 0, "dropped": 3, "held": 0, "aborted": 0, "stale": 4, "rejected": 5, "preempted": 6,
+               "demoted": 0, "faults": 1, "transfer": {"groups": 2, "bytes": 48},
                "last_fault": {"method": "cycle", "at_ns": 1500000000, "code": 3, "text": "too hot"}},
               {"task": "arm", "state": "OFF", "period_ns": 0, "cycles": 0, "execution_ns": {},
                "response_ns": {"count": 0}, "start_delay_ns": {"count": 0}}]})")),
             "task  state  cycles     mean      max    load  response   jitter  missed  overrun  dropped  stale"
-            "  rejected  faults\n"
+            "  rejected  preempted  faults\n"
             "pid   ON       750k  12.1 us  30.2 us  1.21 %   71.0 us  3.10 us       1        2        3      4"
-            "         5       1\n"
+            "         5          6       1\n"
             "arm   OFF         0        -        -       -         -        -       0        0        0      0"
-            "         0       0\n"
-            "pid: last fault in cycle at 1.50 s: too hot\n");
+            "         0          0       0\n"
+            "pid: last fault in cycle at 1.50 s: too hot\n"
+            "\n"
+            "task  method  calls  mean   max\n"
+            "pid   init        1  9 ns  9 ns\n"
+            "\n"
+            "task  groups a cycle  bytes a cycle\n"
+            "pid                2             48\n"
+            "\n"
+            "rtpu   tasks    load  missed  overrun  dropped  stale  rejected  preempted  faults\n"
+            "servo      1  1.21 %       1        2        3      4         5          6       1\n");
 }
 
 }  // namespace

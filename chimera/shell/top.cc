@@ -43,7 +43,8 @@ void add_recent(Row& row, const Json& task, const Json& before, double seconds) 
   if (!before.is_object() || seconds <= 0 || cycles < earlier ||
       whole_of(task, "incarnation") != whole_of(before, "incarnation"))
     return;
-  row.has_missed_since = row.missed > whole_of(before, "missed");
+  row.has_missed_since = row.missed > whole_of(before, "missed") ||
+                         whole_of(task, "demoted") > whole_of(before, "demoted");
   row.rate_hz = static_cast<double>(cycles - earlier) / seconds;
   if (cycles == earlier) return;
   const double sum = static_cast<double>(row.mean_ns) * static_cast<double>(cycles) -
@@ -117,7 +118,8 @@ TopLine task_line(const Row& row, std::size_t width) {
 
 TopLine rtpu_line(const Json& rtpu, std::size_t width) {
   const bool is_dead = !truth_of(rtpu, "alive") || truth_of(rtpu, "flag");
-  const std::string head = "cpu " + std::to_string(whole_of(rtpu, "cpu")) + " " + text_of(rtpu, "policy") + "  ";
+  const std::string head = "cpu " + std::to_string(whole_of(rtpu, "cpu")) + " " + text_of(rtpu, "policy") +
+                           (text_of(rtpu, "executor") == "preemptive" ? " preemptive" : "") + "  ";
   return {fitted(head + rtpu_remarks(rtpu), width), is_dead ? Look::kAlarm : Look::kPlain};
 }
 

@@ -7,11 +7,12 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "processes"))
-from system import System, await_that  # noqa: E402
+from system import CHIMERA, System, await_that  # noqa: E402
 
 OUTPUTS = "count dt now deadline cycles dropped illegal".split()
 
@@ -55,6 +56,40 @@ class Run(unittest.TestCase):
         self.assertEqual(told["ran_ns"], 100_000_000)
         self.assertEqual([task["task"] for task in told["tasks"]], ["one", "two"])
         self.assertFalse(told["expectations"][0]["holds"])
+
+    def test_a_profile_that_was_saved_is_what_schedule_reads(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file, saved, late = (pathlib.Path(folder) / name for name in ("two.yaml", "p.json", "late.json"))
+            file.write_text(TWO)
+
+            def chimera(*words):
+                return subprocess.run([CHIMERA, *words], capture_output=True, text=True, timeout=60)
+
+            with System(TWO, ("--profile", str(saved)), wait=False) as system:
+                system.await_started()
+                done = subprocess.run([CHIMERA, "profile", "--save", str(late)], env=system.environment,
+                                      capture_output=True, text=True, timeout=60)
+                self.assertEqual((done.returncode, done.stdout), (0, f"{late}: written\n"), done.stderr)
+                refused = subprocess.run([CHIMERA, "profile", "--save", "/nowhere/p.json"], env=system.environment,
+                                         capture_output=True, text=True, timeout=60)
+                self.assertEqual((refused.returncode, refused.stdout, refused.stderr),
+                                 (1, "", "/nowhere/p.json: cannot be written: No such file or directory\n"))
+                system.process.send_signal(signal.SIGINT)
+                self.assertEqual(system.process.wait(30), 0, system.said())
+            for name in (saved, late):
+                done = chimera("schedule", str(file), "--profile", str(name))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertRegex(done.stdout, r"\n  one +first +low +\S+ [mun]?s profile +10 ms")
+            self.assertEqual(sorted(path.name for path in pathlib.Path(folder).iterdir()),
+                             ["late.json", "p.json", "two.yaml"])
+            budgets = file.with_name("budgets.yaml")
+            budgets.write_text(TWO.replace("rtpu: second", "rtpu: first").replace("rate:", "budget: 1 ms, rate:"))
+            done = chimera("run", str(budgets), "--virtual", "--for", "1 s", "--profile", str(saved))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(" 1 ms profile ", chimera("schedule", str(budgets), "--profile", str(saved)).stdout)
+            done = chimera("run", str(budgets), "--virtual", "--for", "1 s", "--profile", "/nowhere/p.json")
+            self.assertEqual((done.returncode, done.stdout, done.stderr),
+                             (1, "", "/nowhere/p.json: cannot be written: No such file or directory\n"))
 
     def test_acts_at_stated_times(self):
         code, said = run(TWO, "--for", "0.3 s", "--at", "0.1 s: off one", "--at", "0.2 s: off one")

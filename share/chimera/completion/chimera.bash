@@ -9,16 +9,17 @@ _chimera_words() {
       'profile reinit save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --graph' ;;
     schedule) echo '--help --profile --svg --dispatch --json' ;;
-    run) echo '--help --for --at --watch --every --svg --expect --trace --timeline --virtual --preemptive --seed' \
-      '--quantum --priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
+    run) echo '--help --for --at --watch --every --svg --expect --trace --profile --timeline --virtual --preemptive' \
+      '--seed --quantum --priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
     idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
     test) echo '--help --all --setup --inputs --names --seed --cycles --json' ;;
-    clear | end | flag | kill | off | on | profile | reinit | set | spawn | status | why)
+    clear | end | flag | kill | off | on | reinit | set | spawn | status | why)
       echo '--help --json --subsystem' ;;
     events) echo '--help --json --subsystem --since --follow' ;;
     get) echo '--help --json --subsystem --every' ;;
+    profile) echo '--help --json --subsystem --save' ;;
     save) echo '--help --json --subsystem --write' ;;
     scope) echo '--help --json --subsystem --trigger --pre --for --wait --csv --svg' ;;
     top) echo '--help --json --subsystem --every' ;;
@@ -53,7 +54,8 @@ _chimera() {
       mapfile -t COMPREPLY < <(compgen -g -- "$word"); return ;;
     --dispatch) mapfile -t COMPREPLY < <(compgen -W 'preemptive executive' -- "$word"); return ;;
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
-    --trace | --csv | --svg | --profile | --setup | --inputs) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
+    --trace | --csv | --svg | --profile | --save | --setup | --inputs)
+      mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --names | --cycles | --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | \
       --since | --trigger | --pre | --wait | --subsystem) return ;;
   esac
