@@ -4,6 +4,8 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
+
 #include "chimera/base/time.h"
 
 namespace chimera {
@@ -28,5 +30,9 @@ Nanoseconds used_by(pid_t thread) noexcept;
 
 /// Execution time of the calling thread. Context: cycle; wait-free (one system call).
 Nanoseconds used_by_this_thread() noexcept;
+
+/// How often the calling thread gave its processor away to wait for something, a page of memory too. Context: any;
+/// wait-free (one system call).
+std::uint64_t sleeps_of_this_thread() noexcept;
 
 }  // namespace chimera

@@ -2,6 +2,7 @@
 #include "chimera/platform/processor_level.h"
 
 #include <sched.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -45,5 +46,11 @@ int level_of(pid_t thread) noexcept {
 Nanoseconds used_by(pid_t thread) noexcept { return read(cpu_clock_of(thread)); }
 
 Nanoseconds used_by_this_thread() noexcept { return read(CLOCK_THREAD_CPUTIME_ID); }
+
+std::uint64_t sleeps_of_this_thread() noexcept {
+  rusage usage{};
+  (void)::getrusage(RUSAGE_THREAD, &usage);
+  return static_cast<std::uint64_t>(usage.ru_nvcsw);
+}
 
 }  // namespace chimera

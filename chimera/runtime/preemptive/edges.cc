@@ -44,7 +44,7 @@ PreemptiveExecutor::~PreemptiveExecutor() {
   section_.enter();
   quits_ = true;
   alarm_.set({});  // nobody sets it anew after this
-  section_.leave();
+  leave();
   for (JobThread& thread : threads_) Doorbell(thread.bell).ring();
   for (JobThread& thread : threads_) thread.thread.join();
   supervisor_.join();
@@ -59,13 +59,13 @@ Result<void> PreemptiveExecutor::start() {
 void PreemptiveExecutor::start(Nanoseconds origin) {
   enter();
   releases_.begin(origin);
-  section_.leave();
+  leave();
 }
 
 void PreemptiveExecutor::shut_down() noexcept {
   enter();
   set_.shut_down(clock_.now());
-  section_.leave();
+  leave();
 }
 
 RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
@@ -75,14 +75,14 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
   is_paused_ = false;
   until_ = until;
   tell_threads();
-  section_.leave();
+  leave();
   for (;;) {
     const std::uint32_t heard = Doorbell(*bell_).read();
     RunEnd end = RunEnd::kTime;
     enter();
     const bool is_over = take_edge(end, until);
     const Nanoseconds next = std::min(releases_.next_edge(), until);
-    section_.leave();
+    leave();
     if (is_over) {
       stop_jobs();
       return end;
@@ -139,7 +139,7 @@ void PreemptiveExecutor::stop_jobs() noexcept {
         releases_.settle_job(job.task, clock_.now());
     const bool is_over = is_idle();
     const std::uint32_t heard = Doorbell(*bell_).read();
-    section_.leave();
+    leave();
     if (is_over) return;
     (void)Doorbell(*bell_).wait_until(heard, clock_.now() + milliseconds(1));
     enter();
@@ -175,7 +175,7 @@ void PreemptiveExecutor::open(TaskId id) noexcept {
   method.task = id;
   method.urgency = urgency_of(*job, s.budget);
   const int level = apply(labels_.insert(method), job);
-  section_.leave();
+  leave();
   lower(level);
 }
 
@@ -192,7 +192,7 @@ void PreemptiveExecutor::close(TaskId id) noexcept {
 
 ProcessorCounts PreemptiveExecutor::counts() const noexcept {
   ProcessorCounts counts = counts_;
-  counts.section_taken = section_.times_taken();
+  counts.section_taken = section_.times_taken() - counts_.taken_asleep;
   return counts;
 }
 

@@ -25,11 +25,11 @@ void PreemptiveExecutor::follow_releases(JobThread& me) {
       continue;
     }
     const Nanoseconds until = may_run ? me.next : kNever;
-    section_.leave();
+    leave();
     (void)Doorbell(me.bell).wait_until(heard, until);
     enter();
   }
-  section_.leave();
+  leave();
 }
 
 // In the section, and in it again afterwards.
@@ -37,7 +37,7 @@ void PreemptiveExecutor::run_job(JobThread& me, Nanoseconds now) noexcept {
   charge_running(now);
   if (!release(me, now)) return;
   const int level = enter_label(me, now);
-  section_.leave();
+  leave();
   lower(level);
   if (begin(me)) {
     now = run_body(me, clock_.now());
@@ -94,7 +94,7 @@ bool PreemptiveExecutor::begin(JobThread& me) noexcept {
   enter();  // the supervisor was changing the job; or it is cancelled
   const bool begins = me.phase == JobPhase::kWaiting;
   if (begins) me.phase = JobPhase::kBegun;
-  section_.leave();
+  leave();
   return begins;
 }
 

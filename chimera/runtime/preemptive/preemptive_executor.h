@@ -46,7 +46,11 @@ struct ProcessorCounts {
   std::uint64_t supervised = 0;     ///< times the alarm rang
   std::uint64_t wrong_levels = 0;   ///< with checks: a job did not run at its label, or labels were out of order
   std::uint64_t checked = 0;        ///< with checks: entries to the section
-  std::uint64_t section_taken = 0;  ///< times the section was found taken: 0 with real-time levels
+  /// Times the section was found taken: 0 with real-time levels. With checks: while its holder was awake.
+  std::uint64_t section_taken = 0;
+  /// With checks: times it was found taken while the kernel had its holder asleep (a page that had to be fetched; a
+  /// virtual machine fetches pages from its host).
+  std::uint64_t taken_asleep = 0;
 };
 
 /// Runs the tasks of `set`, which was made with ContextPlace::preemptive. The set and what the options point at
@@ -74,7 +78,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void at_edge(Act&& act) {
     enter();
     act();
-    section_.leave();
+    leave();
   }
   /// off and kill for every task. Context: setup, between runs.
   void shut_down() noexcept;
@@ -136,7 +140,12 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
     labels_.dispatch(on_processor_ == nullptr ? TaskId() : on_processor_->task);
     if (place_.checks) check();
   }
+  void leave() noexcept {
+    if (place_.checks) check_holder();
+    section_.leave();
+  }
   void check() noexcept;
+  void check_holder() noexcept;
   void raise() noexcept;
   void lower(int level) noexcept;
   const TaskSpec& spec(const JobThread& job) const noexcept { return *tasks_[job.task.index].spec; }
@@ -165,6 +174,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   std::atomic<bool> quits_{false};
   std::atomic<std::size_t> n_ready_{0};  // threads that are where they belong
   ProcessorCounts counts_;
+  std::uint64_t taken_before_ = 0, sleeps_before_ = 0;  // with checks: when the section was entered
 };
 
 }  // namespace chimera

@@ -71,6 +71,8 @@ Nanoseconds PreemptiveExecutor::used(const JobThread& job) const noexcept {
 // What the list says and what the kernel does are the same, but for those on their way to the ceiling.
 void PreemptiveExecutor::check() noexcept {
   ++counts_.checked;
+  taken_before_ = section_.times_taken();
+  sleeps_before_ = sleeps_of_this_thread();
   const auto jobs = labels_.jobs();
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const JobThread& job = *of_task_[jobs[i].task.index];
@@ -79,6 +81,12 @@ void PreemptiveExecutor::check() noexcept {
     const bool is_at_label = !has_levels_ || job.phase == JobPhase::kDone || level_of(job.carrier) == jobs[i].level;
     if (!ascends || !is_ordered || !is_at_label) ++counts_.wrong_levels;
   }
+}
+
+// Nothing in the section waits for anything; a holder that slept nevertheless waited for memory.
+void PreemptiveExecutor::check_holder() noexcept {
+  const std::uint64_t taken = section_.times_taken() - taken_before_;
+  if (taken > 0 && sleeps_of_this_thread() != sleeps_before_) counts_.taken_asleep += taken;
 }
 
 // The most urgent job that has begun: it has the processor, unless it sleeps in a system call.
@@ -180,7 +188,7 @@ void PreemptiveExecutor::supervise() {
     enter();
     ++counts_.supervised;
     if (!quits_) look_at_jobs(clock_.now());
-    section_.leave();
+    leave();
   }
 }
 
