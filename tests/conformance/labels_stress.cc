@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The invariants of the labels, looked up in the kernel at every entry to the section, over random sets.
 //   labels_stress [--seconds N] [--entries N] [--seed N]
-// Ends with one JSON line: n entries, faults = times the section was found taken, or a label was wrong or out of order;
-// taken_asleep = times it was found taken while the kernel had its holder wait for a page (of a virtual machine: from its host).
+// Ends with one JSON line: n entries; faults = times the section was found taken, or a label was wrong or out of order;
+// taken_asleep = times it was found taken while the kernel had its holder wait for a page (of a virtual machine: from
+// its host).
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
