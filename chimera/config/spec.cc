@@ -96,6 +96,11 @@ TaskSpec task_spec(const TaskModel& task, const ConfiguredTask& configured, std:
   spec.is_hardware = configured.is_hardware;
   spec.rtpu = RtpuId(task.rtpu);
   spec.ports = ports;
+  if (draft.server) {
+    spec.server = ServerSpec{draft.server->kind, draft.server->capacity.value, draft.server->period.value};
+    spec.period = spec.deadline = spec.server->period;
+    spec.offset = {};
+  }
   return spec;
 }
 

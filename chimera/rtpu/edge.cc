@@ -62,6 +62,8 @@ void Edge::look_around() noexcept {
 
 void Edge::take_posts() noexcept {
   for (Post post; !waiting_.is_full() && others_.take(post);) {
+    const bool is_ring = post.kind == PostKind::kSignal && post.signal == Signal::kWakeup;
+    if (is_ring && post.task.index < spec_.tasks.size() && tasks_.is_mine(post.task)) (void)tasks_.ring(post.task);
     const bool is_for_us = post.kind == PostKind::kSignal && post.task.index < spec_.tasks.size() &&
                            tasks_.is_mine(post.task) && post.signal != Signal::kWakeup;
     if (is_for_us) (void)waiting_.try_push(post);

@@ -171,6 +171,20 @@ void port_fields(Archive& archive, Port& port) {
 }
 
 template <class Archive, class Task>
+void server_fields(Archive& archive, Task& task) {
+  bool is_served = task.server.has_value();
+  archive.choice(is_served, true);
+  if (!is_served) return;
+  ServerSpec server = task.server.value_or(ServerSpec{});
+  archive.choice(server.kind, ServerKind::kSporadic);
+  archive.number(server.capacity);
+  archive.number(server.period);
+  archive.require(server.capacity > Nanoseconds{} && server.capacity <= server.period && task.aperiodic &&
+                      server.period == task.period, "a server that is not in order");
+  if constexpr (!std::is_const_v<Task>) task.server = server;
+}
+
+template <class Archive, class Task>
 void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std::size_t n_rtpus) {
   archive.text(task.name);
   archive.text(task.component);
@@ -185,6 +199,7 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   archive.number(task.stack_bytes);
   archive.choice(task.aperiodic, true);
   archive.choice(task.is_hardware, true);
+  server_fields(archive, task);
   archive.number(task.rtpu);
   archive.list(task.ports, ports, CHIMERA_MAX_PORTS, "too many ports", [&](auto& port) { port_fields(archive, port); });
   const Nanoseconds zero;

@@ -27,9 +27,11 @@ struct Sample {
     tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
                 .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
                 .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kStop, .max_consecutive = 5,
-                .aperiodic = true, .is_hardware = true, .rtpu = RtpuId{1u}, .ports = ports};
+                .aperiodic = true, .is_hardware = true, .rtpu = RtpuId{1u}, .ports = ports,
+                .server = ServerSpec{ServerKind::kSporadic, Nanoseconds{3}, Nanoseconds{10}}};
     tasks[1] = {.name = "plain", .component = "gain", .period = Nanoseconds{20}, .offset = {},
-                .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .rtpu = RtpuId{0u}, .ports = {}};
+                .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .rtpu = RtpuId{0u}, .ports = {},
+                .server = {}};
     constants[0] = {"n", CHIMERA_INT32, 4, {{2, ""}, {1, ""}}, bytes_of("abcdefgh"), {2, 0}};
     operators[0] = {"kp", CHIMERA_FLOAT32, 4, {}, bytes_of("abcd"), {}};
     operators[1] = {"ki", CHIMERA_FLOAT64, 8, {}, bytes_of("abcdefgh"), {}};
@@ -120,6 +122,10 @@ TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.init_order[0] = TaskId{}; }), "a task that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].period = {}; }), "times that are not in order"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].deadline = seconds(1); }), "times that are not in order"));
+  const char* disordered = "a server that is not in order";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].server->capacity = Nanoseconds{11}; }), disordered));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].server->period = Nanoseconds{11}; }), disordered));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].aperiodic = false; }), disordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].type = CHIMERA_ANY; }), "a type that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].kind = 99; }), "a port that cannot be declared"));
   const char* unfilled = "a value that does not fill its variable";

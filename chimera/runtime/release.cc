@@ -115,6 +115,7 @@ void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
     return;
   }
   Task& task = tasks_[act.task.index];
+  if (act.signal == Signal::kWakeup) return ring(task, now);
   // A busy task takes it like a signal it sent itself: after its job and the error handling of that.
   if (may_touch(act.task)) carry_out(task, act.signal, now);
   else if (!task.outbox.try_push({act.signal, act.task})) record(TapKind::kSignal, now, task.id, 0, 0);
@@ -126,6 +127,12 @@ void Releases::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
   if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before});
   record_signal(report, was_illegal, now);
   if (options_.guest != nullptr) options_.guest->told(report, now);
+}
+
+void Releases::ring(Task& task, Nanoseconds now) noexcept {
+  const bool counts = set_.ring(task.id);
+  if (!counts) (void)refused_.try_push({now, task.id, Signal::kWakeup, Refusal::kState, task.state});
+  record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(Signal::kWakeup), counts ? 1 : 0);
 }
 
 void Releases::record_signal(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept {
@@ -173,6 +180,9 @@ void Releases::refresh(Task& task, Nanoseconds now) noexcept {
   t.dropped = 0;
   t.skip_next = false;
   task.profile.missed_in_a_row = 0;
+  task.events = 0;
+  task.last_release = now - task.spec->period;
+  if (task.spec->server) return;  // released by events
   queue_.join(task.id, now);
   // dt of the first cycle is the period, whatever part of one passed since on.
   task.last_release = queue_.first_release(task.id) - task.spec->period;

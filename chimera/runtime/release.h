@@ -231,6 +231,7 @@ class Releases {
     next_act_ = at == kNever ? kNever : origin_ + at;
   }
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
+  void ring(Task& task, Nanoseconds now) noexcept;
   void record_signal(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;
   void refresh_members(Nanoseconds now) noexcept;
   void refresh(Task& task, Nanoseconds now) noexcept;

@@ -82,6 +82,11 @@ inline void compare_tasks(SpecDifference& d, const TaskSpec& a, const TaskSpec& 
   d.compare(a.aperiodic, b.aperiodic, "aperiodic");
   d.compare(a.is_hardware, b.is_hardware, "is_hardware");
   d.compare(a.rtpu, b.rtpu, "rtpu");
+  const ServerSpec one = a.server.value_or(ServerSpec{}), other = b.server.value_or(ServerSpec{});
+  d.compare(a.server.has_value(), b.server.has_value(), "server");
+  d.compare(one.kind, other.kind, "server.kind");
+  d.compare(one.capacity, other.capacity, "server.capacity");
+  d.compare(one.period, other.period, "server.period");
   d.list(a.ports, b.ports, "ports", [&](const PortSpec& p, const PortSpec& q) { compare_ports(d, p, q); });
 }
 

@@ -194,9 +194,20 @@ void TaskSet::follow_others() noexcept {
   on_set_changed();
 }
 
+bool TaskSet::ring(TaskId id) noexcept {
+  Task& task = tasks_[id.index];
+  const bool counts = task.spec->server && task.state == State::kOn && task.events < UINT32_MAX;
+  if (counts) ++task.events;
+  return counts;
+}
+
 void TaskSet::deliver(Task& task) noexcept {
   for (const SentSignal& sent : task.outbox) {
     Task& target = tasks_[sent.target.index];
+    if (sent.signal == Signal::kWakeup && is_mine(sent.target)) {
+      (void)ring(sent.target);
+      continue;
+    }
     const bool is_asked_of_manager = place_.others != nullptr && sent.signal == Signal::kOn;
     if (!is_mine(sent.target) || is_asked_of_manager) {
       (void)place_.others->post(sent.signal, sent.target, task.id, false);
@@ -234,8 +245,9 @@ std::int32_t TaskSet::host_expired(void* context) {
 std::int32_t TaskSet::host_signal(void* context, std::uint32_t signal, const char* name) {
   const auto* host = static_cast<HostContext*>(context);
   const TaskId target = name == nullptr ? host->task->id : host->set->find(name);
-  const bool is_sendable = signal < CHIMERA_SIGNAL_WAKEUP;
-  if (!target.is_valid() || !is_sendable) return CHIMERA_FAULT;
+  if (!target.is_valid() || signal > CHIMERA_SIGNAL_WAKEUP) return CHIMERA_FAULT;
+  // Only a task behind a server has a doorbell: others are woken by time.
+  if (signal == CHIMERA_SIGNAL_WAKEUP && !host->set->spec_.tasks[target.index].server) return CHIMERA_FAULT;
   return host->task->outbox.try_push({static_cast<Signal>(signal), target}) ? CHIMERA_OK : CHIMERA_FAULT;
 }
 

@@ -136,6 +136,9 @@ class TaskSet {
   /// the last call of signal(). Context: setup; may block.
   std::string explain(const SignalReport& report) const;
 
+  /// Rings the doorbell of a task behind a server: one job for each ring, none is lost. False, with nothing done, when
+  /// it is not ON or has no server. Context: edge; wait-free.
+  bool ring(TaskId task) noexcept;
   /// Hands the signals that `task` sent during its last method to their targets. Context: edge.
   void deliver(Task& task) noexcept;
   /// True when some task has signals waiting. Context: cycle; wait-free.

@@ -58,7 +58,8 @@ enum {
   CHIMERA_METHODS = 9
 };
 
-/* Signals (design section 7). WAKEUP comes from the timer or the event source, never from a sender. */
+/* Signals (design section 7). WAKEUP comes from the timer or the event source; sent to a task behind a server it is
+   one event for it, and no other task can be sent it. */
 enum {
   CHIMERA_SIGNAL_SPAWN = 0,
   CHIMERA_SIGNAL_ON = 1,

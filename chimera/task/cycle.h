@@ -36,7 +36,8 @@ class Cycle {
   /// Context: cycle; wait-free.
   bool illegal() const noexcept { return call_->illegal != 0; }
   /// Sends `signal` to the task of that name; without a name to the own task. It acts at a cycle edge, after
-  /// this method. False when there is no such task or the outbox is full. Context: cycle; wait-free.
+  /// this method. Signal::kWakeup is an event for a task behind a server: each is answered by one job.
+  /// False when there is no such task (kWakeup: none behind a server) or the outbox is full. Context: cycle; wait-free.
   bool signal(Signal signal, const char* task = nullptr) const noexcept {
     return call_->host->signal(call_->context, static_cast<std::uint32_t>(signal), task) == CHIMERA_OK;
   }

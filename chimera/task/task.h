@@ -88,6 +88,7 @@ struct Task {
   FixedVector<SentSignal, kOutboxSize> outbox;
 
   GiveUp give_up;        ///< the present job was told to: it used up its budget
+  std::uint32_t events = 0;  ///< behind a server: rings of its doorbell that no job has answered; by the executor
   bool is_busy = false;  ///< a job of it is under way; by the executor
 
   // Written by the executor and the task set at edges.

@@ -5,12 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
+#include "chimera/task/server_spec.h"
 
 namespace chimera {
 
@@ -67,6 +69,8 @@ struct TaskSpec {
   bool is_hardware = false;           ///< has a resource port: first to go ON, last to go OFF
   RtpuId rtpu;
   std::span<const PortSpec> ports;
+  /// Then it is aperiodic, `period` and `deadline` are the server's period, and each event is one release.
+  std::optional<ServerSpec> server;
 };
 
 }  // namespace chimera

@@ -11,11 +11,13 @@ Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, Mode
   const Policy policy = releases.queue().policy();
   by_laxity_ = policy == Policy::kLlf || policy == Policy::kMufLaxity;
   for (std::uint32_t i = 0; i < tasks.size(); ++i) {
-    if (tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back(i);
+    if (tasks[i].server) served_.push_back({.task = TaskId(i), .server = {}, .job = {}});
+    else if (tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back(i);
   }
 }
 
 RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
+  open_servers();
   for (;;) {
     use_processor(now);
     complete();
@@ -28,6 +30,7 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
     }
     if (releases_.edge_is_due(now)) take_edge(now);
     releases_.release_due(now);
+    follow_servers(now);
     if (dispatch(now)) continue;
     const bool idle = !running_.is_valid() && releases_.queue().is_empty();
     if (idle && !releases_.anything_left()) return RunEnd::kNothingLeft;
@@ -36,7 +39,7 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
 }
 
 Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
-  Nanoseconds next = std::min(releases_.next_event(), next_deadline());
+  Nanoseconds next = std::min({releases_.next_event(), next_deadline(), next_server(now)});
   if (!running_.is_valid()) return next;
   next = std::min(next, now + active_[running_.index].remaining);
   if (!by_laxity_ || releases_.queue().is_empty()) return next;
@@ -63,6 +66,7 @@ void Preemptive::use_processor(Nanoseconds until) noexcept {
   Active& a = active_[running_.index];
   a.used += until - mark_;
   a.remaining -= until - mark_;
+  if (Served* s = served(running_)) s->server.charge(until - mark_);
   mark_ = until;
 }
 
@@ -86,7 +90,8 @@ void Preemptive::complete() noexcept {
 void Preemptive::end(Active& a, Nanoseconds now) noexcept {
   a.has_begun = false;
   releases_.queue().finish(a.job.task);
-  releases_.end_job(a.job, a.time, a.body, a.first_start, now, a.used);
+  forget(a.job.task);
+  releases_.end_job(without_server(a.job), a.time, a.body, a.first_start, now, a.used);
 }
 
 void Preemptive::expire(Nanoseconds now) noexcept {
@@ -157,10 +162,14 @@ bool Preemptive::must_yield() noexcept {
 bool Preemptive::take_processor(const Job& job, Nanoseconds now) noexcept {
   Active& a = active_[job.task.index];
   if (!a.has_begun) {
-    if (!releases_.may_start(job, now)) return false;
+    const Job own = without_server(job);
+    if (!releases_.may_start(own, now)) {
+      forget(job.task);
+      return false;
+    }
     clock_.set(now);
     a.job = job;
-    a.body = releases_.begin_job(job, a.time, releases_.is_illegal());
+    a.body = releases_.begin_job(own, a.time, releases_.is_illegal());
     a.first_start = now;
     a.used = Nanoseconds{};
     const bool had_event = a.body.answer != Answer::kNoEvent;
@@ -171,6 +180,7 @@ bool Preemptive::take_processor(const Job& job, Nanoseconds now) noexcept {
     a.has_begun = true;
     releases_.queue().occupy(job.task);
   }
+  a.job.deadline = job.deadline;
   running_ = job.task;
   slice_start_ = mark_ = now;
   return true;

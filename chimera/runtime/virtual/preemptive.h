@@ -3,7 +3,10 @@
 //
 // A body runs at its first dispatch (inputs as they are then) and its job then holds the processor for the modelled
 // time, in slices; it publishes, and its signals leave, when that time is used up. Order of things at one instant:
-// completion (publication), deadlines of jobs with the reaction abort, signals, releases, dispatch (reads).
+// completion (publication), deadlines of jobs with the reaction abort, signals, releases, servers, dispatch (reads).
+//
+// Behind a server a job is released by an event, one after the other. It is as urgent as its server, leaves the
+// processor when the capacity is used up, and goes on when some is back. It has no deadline of its own.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +15,7 @@
 
 #include "chimera/runtime/release.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
+#include "chimera/schedule/server_state.h"
 
 namespace chimera {
 
@@ -42,6 +46,16 @@ class Preemptive {
     bool has_begun = false;
   };
 
+  /// A task behind a server.
+  struct Served {
+    TaskId task;
+    ServerState server;
+    Job job;                 // with the deadline of the server
+    bool is_active = false;  // an event waits or is served
+    bool has_job = false;
+    bool is_ready = false;   // its job is in the queue or has the processor
+  };
+
   Nanoseconds next_event(Nanoseconds now) noexcept;
   Nanoseconds next_deadline() noexcept;
   void use_processor(Nanoseconds until) noexcept;
@@ -54,6 +68,14 @@ class Preemptive {
   bool must_yield() noexcept;
   bool take_processor(const Job& job, Nanoseconds now) noexcept;
   void end(Active& active, Nanoseconds now) noexcept;
+  void open_servers() noexcept;
+  Nanoseconds next_server(Nanoseconds now) noexcept;
+  void follow_servers(Nanoseconds now) noexcept;
+  bool take_event(Served& served, Nanoseconds now) noexcept;
+  void stand(Served& served, Nanoseconds now) noexcept;
+  void forget(TaskId task) noexcept;
+  Served* served(TaskId task) noexcept;
+  Job without_server(Job job) noexcept;
 
   Releases& releases_;
   std::span<const TaskSpec> tasks_;
@@ -61,9 +83,11 @@ class Preemptive {
   PreemptiveOptions options_;
   std::vector<Active> active_;            // one per task
   std::vector<std::uint32_t> abandoners_;  // tasks with the reaction abort
+  std::vector<Served> served_;
   TaskId running_;
   Nanoseconds slice_start_, mark_;  // of the running job: start of its slice, up to where its time is counted
   bool by_laxity_;
+  bool has_begun_ = false;
 };
 
 }  // namespace chimera

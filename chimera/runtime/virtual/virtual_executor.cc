@@ -46,6 +46,7 @@ VirtualExecutor::VirtualExecutor(TaskSet& set, const RunOptions& options, const 
     : set_(set), how_(how), releases_(set, options),
       preemptive_(releases_, set.spec().tasks, clock_, {how.seed, how.quantum}) {
   CHIMERA_ASSERT(how.quantum > Nanoseconds{});
+  for (const TaskSpec& task : set.spec().tasks) CHIMERA_ASSERT(how.preemptive || !task.server);
   set.attach(clock_);
 }
 

@@ -19,7 +19,7 @@ struct VirtualOptions {
 /// Non-preemptive: the loop of the executive, job by job. Preemptive: virtual/preemptive.h.
 class VirtualExecutor {
  public:
-  /// The set and what the options point at outlive it. Context: setup.
+  /// The set and what the options point at outlive it. Requires: preemptive, where a task has a server. Context: setup.
   VirtualExecutor(TaskSet& set, const RunOptions& options, const VirtualOptions& how);
 
   /// Spawns all tasks and turns the start set ON; what their methods spend is the origin of the grid, else 0.
