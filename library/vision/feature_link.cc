@@ -68,10 +68,18 @@ Result<Address> local_address(const std::string& link) {
   return address;
 }
 
+/// An abstract address that no other process has.
+Result<Address> own_address(const std::string& link) {
+  const std::string name = link.substr(5);
+  if (name.empty() || name.size() > 64) return bad(link + ": expected here:NAME of 1 to 64 bytes");
+  return local_address("unix:@" + name + "." + std::to_string(::getpid()));
+}
+
 Result<Address> address_of(const std::string& link) {
   if (link.starts_with("udp:")) return internet_address(link);
   if (link.starts_with("unix:")) return local_address(link);
-  return bad(link + ": expected udp:ADDRESS:PORT, unix:PATH or file:PATH");
+  if (link.starts_with("here:")) return own_address(link);
+  return bad(link + ": expected udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH");
 }
 
 int datagram_socket(const Address& address) {

@@ -3,6 +3,7 @@
 //
 //   udp:ADDRESS:PORT   IPv4 in numbers; the reader binds it, the writer sends there
 //   unix:PATH          a datagram socket of that path; @NAME is an abstract one
+//   here:NAME          the same between tasks of one process: one description in two places does not meet itself
 //   file:PATH          a recording: the writer makes it, the reader plays it from its `on`
 //
 //   t,u,v,size                     first line of a recording

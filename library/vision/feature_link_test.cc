@@ -77,6 +77,23 @@ TEST(FeatureLink, CarriesFeaturesByDatagram) {
   EXPECT_EQ(reader.refused(), 0u);
 }
 
+TEST(FeatureLink, HereIsAnotherPlaceInEachProcess) {
+  FeatureReader reader;
+  ASSERT_TRUE(reader.open("here:eye"));
+  FeatureWriter here, elsewhere;
+  ASSERT_TRUE(here.open("here:eye"));
+  ASSERT_TRUE(elsewhere.open("unix:@eye"));
+  here.send({1, 2, 3, 4});
+  here.flush();
+  elsewhere.send({5, 6, 7, 8});
+  elsewhere.flush();
+  reader.drain();
+  Feature feature;
+  ASSERT_TRUE(reader.take(0, feature));
+  EXPECT_EQ(feature.time, 1);
+  EXPECT_FALSE(reader.take(0, feature));
+}
+
 TEST(FeatureLink, OneAddressHasOneReader) {
   const std::string path = testing::TempDir() + name_of("sock");
   FeatureReader first, second;
@@ -113,9 +130,10 @@ TEST(FeatureLink, PlaysWhatItRecorded) {
 TEST(FeatureLink, RefusesWhatIsNoLinkAndSaysWhichLineIsBad) {
   FeatureReader reader;
   const auto refusal = [&](const std::string& link) { return std::string(reader.open(link).error().message.view()); };
-  EXPECT_EQ(refusal("tcp:1"), "tcp:1: expected udp:ADDRESS:PORT, unix:PATH or file:PATH");
+  EXPECT_EQ(refusal("tcp:1"), "tcp:1: expected udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH");
   EXPECT_EQ(refusal("udp:127.0.0.1"), "udp:127.0.0.1: expected udp:ADDRESS:PORT, as udp:127.0.0.1:5600");
   EXPECT_EQ(refusal("udp:here:5600"), "udp:here:5600: expected udp:ADDRESS:PORT, as udp:127.0.0.1:5600");
+  EXPECT_EQ(refusal("here:"), "here:: expected here:NAME of 1 to 64 bytes");
   EXPECT_EQ(refusal("unix:"), "unix:: expected unix:PATH of 1 to 107 bytes");
   EXPECT_EQ(refusal("file:no_such.csv"), "no_such.csv: cannot be read");
   const std::string path = testing::TempDir() + name_of("bad");

@@ -103,7 +103,7 @@ TEST(VisualServoInterface, RefusesALinkThatIsNoneAndACameraThatStandsNowhere) {
   Rig rig("visual_servo_interface");
   rig.set("camera", kCamera);
   rig.resource("link", "camera");
-  EXPECT_EQ(rig.init().text, "camera: expected udp:ADDRESS:PORT, unix:PATH or file:PATH");
+  EXPECT_EQ(rig.init().text, "camera: expected udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH");
   rig.set("camera", Pose{{0, 0, 0}, {0, 0, 0, 0}});
   EXPECT_EQ(rig.init().text, "camera: the orientation is no unit quaternion");
 }
