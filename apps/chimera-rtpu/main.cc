@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <system_error>
 
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/rtpu.h"
@@ -35,6 +36,11 @@ int main(int argc, char** argv) {
   start.image = chimera::kImageDescriptor;
   start.decision_page = chimera::kDecisionPageDescriptor;
   start.keeper_page = chimera::kKeeperPageDescriptor;
-  const int code = chimera::run_rtpu(start);
+  int code = 1;
+  try {
+    code = chimera::run_rtpu(start);
+  } catch (const std::system_error& error) {
+    std::fprintf(stderr, "chimera-rtpu: no thread: %s\n", error.code().message().c_str());
+  }
   ::_exit(code);  // static destructors of components are not run: they may be in any state
 }

@@ -13,6 +13,7 @@ namespace {
 constexpr Nanoseconds kQuickDeath = seconds(1), kLongestPause = milliseconds(500);
 constexpr int kMostRefusals = 10;  // of the manager, before anybody was served: within about two seconds
 constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to be carried out
+constexpr Nanoseconds kUndertakersLimit = milliseconds(100);  // ten times what they wait
 
 }  // namespace
 
@@ -28,11 +29,12 @@ Keeper::~Keeper() {
 Result<void> Keeper::start() {
   sigset_t mask;
   ::sigemptyset(&mask);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) ::sigaddset(&mask, number);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGPIPE}) ::sigaddset(&mask, number);
   ::pthread_sigmask(SIG_BLOCK, &mask, &mask_before_);
   ::sigdelset(&mask, SIGPIPE);
   signals_ = OwnedDescriptor(::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK));
   if (signals_.fd < 0) return system_error(Message("keeper"), "signalfd");
+  adopt_orphans();  // undertakers: a process 1 that reaps nobody is met in containers
   if (auto started = peers_.start_all(); !started || plan_.face.empty()) return started;
   std::vector<const char*> words;
   for (const std::string& word : plan_.face) words.push_back(word.c_str());
@@ -48,6 +50,8 @@ int Keeper::run() {
     look();
     while (advance()) {}
   }
+  for (const Nanoseconds until = clock_.now() + kUndertakersLimit; bury_orphans() && clock_.now() < until;)
+    clock_.wait_until(clock_.now() + milliseconds(1));
   return end_code_ != 0 ? end_code_ : face_code_;
 }
 
@@ -66,7 +70,8 @@ void Keeper::wait() {
 /// Takes everything that has happened.
 void Keeper::look() {
   signalfd_siginfo taken;
-  while (::read(signals_.fd, &taken, sizeof taken) == sizeof taken) end_asked_ = true;
+  while (::read(signals_.fd, &taken, sizeof taken) == sizeof taken)
+    if (taken.ssi_signo != SIGCHLD) end_asked_ = true;
   std::vector<KeeperMessage> wishes;
   for (std::uint32_t index = 0; index < peers_.size(); ++index) {
     peers_.take_messages(index, wishes);
@@ -83,6 +88,14 @@ void Keeper::look() {
     face_code_ = end.code;
     end_asked_ = true;
   }
+  bury_orphans();
+}
+
+/// True while there are children, alive or dead.
+bool Keeper::bury_orphans() {
+  std::vector<pid_t> held = {face_.pid()};
+  for (std::uint32_t index = 0; index < peers_.size(); ++index) held.push_back(peers_.pid(index));
+  return reap_orphans(held);
 }
 
 /// A manager that never came to serve is not tried for ever: there is nothing running yet that would go on without it.

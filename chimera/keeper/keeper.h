@@ -38,6 +38,7 @@ class Keeper {
   enum class Phase : std::uint8_t { kRunning, kFaceFinishes, kRtpusFinish, kRtpusDie, kManagerFinishes, kDone };
 
   void wait();
+  bool bury_orphans();
   void look();
   void count_refusal(Nanoseconds lived);
   void obey(const KeeperMessage& wish);

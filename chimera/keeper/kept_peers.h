@@ -53,6 +53,7 @@ class KeptPeers {
   std::uint32_t incarnation(std::uint32_t index) const noexcept { return peers_[index].last.incarnation; }
   void signal(std::uint32_t index, int number) const noexcept { peers_[index].process.signal(number); }
   int channel(std::uint32_t index) const noexcept { return peers_[index].channel.descriptor(); }
+  pid_t pid(std::uint32_t index) const noexcept { return peers_[index].process.pid(); }
   int pidfd(std::uint32_t index) const noexcept { return peers_[index].process.pidfd(); }
   /// Whether its last end was by a signal.
   bool by_signal(std::uint32_t index) const noexcept { return peers_[index].last.by_signal != 0; }
