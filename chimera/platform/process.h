@@ -53,8 +53,8 @@ class Process {
 /// From now on, whoever loses its parent among this process's descendants becomes its child. Context: setup.
 bool adopt_orphans() noexcept;
 
-/// Reaps the ended children that are not among `held`: those of which somebody has a Process, and reaps it himself. Comes
-/// to a halt at one of them that has ended; call it again then. True: there are children left. Never blocks.
+/// Reaps the ended children that are not among `held`: those of which somebody has a Process, and reaps it himself.
+/// Comes to a halt at one of them that has ended; call it again then. True: there are children left. Never blocks.
 /// Context: setup.
 bool reap_orphans(std::span<const pid_t> held) noexcept;
 
