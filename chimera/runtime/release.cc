@@ -173,6 +173,8 @@ void Releases::refresh(Task& task, Nanoseconds now) noexcept {
   record(TapKind::kState, now, task.id, static_cast<std::uint64_t>(task.state));
   if (!on) {
     --n_on_;
+    task.profile.events_lost += task.events;
+    task.events = 0;
     queue_.leave(task.id);
     return;
   }
@@ -180,7 +182,6 @@ void Releases::refresh(Task& task, Nanoseconds now) noexcept {
   t.dropped = 0;
   t.skip_next = false;
   task.profile.missed_in_a_row = 0;
-  task.events = 0;
   task.last_release = now - task.spec->period;
   if (task.spec->server) return;  // released by events
   queue_.join(task.id, now);

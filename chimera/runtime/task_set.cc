@@ -198,6 +198,7 @@ bool TaskSet::ring(TaskId id) noexcept {
   Task& task = tasks_[id.index];
   const bool counts = task.spec->server && task.state == State::kOn && task.events < UINT32_MAX;
   if (counts) ++task.events;
+  if (task.spec->server) ++(counts ? task.profile.events : task.profile.events_lost);
   return counts;
 }
 

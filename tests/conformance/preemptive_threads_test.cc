@@ -92,5 +92,49 @@ TEST(PreemptiveThreads, EndWhenNothingIsLeft) {
   EXPECT_EQ(app.task("a").profile.cycles, 2u);
 }
 
+TEST(PreemptiveThreads, AServerAnswersEveryRingAndHaltsJobsThatAreLongerThanItsCapacity) {
+  Application app;
+  app.add("sender", milliseconds(4));
+  TaskSpec& spec = app.add("served", milliseconds(10));
+  spec.aperiodic = true;
+  spec.server = ServerSpec{ServerKind::kSporadic, milliseconds(2), milliseconds(10)};
+  for (int i = 0; i < 10; ++i) app.toy("sender").sends.push_back({Signal::kWakeup, "served"});
+  app.toy("served").during = [n = 0](const chimera_call& call) mutable {
+    if (++n == 2) call.host->spend(call.context, milliseconds(5).count);
+    return CHIMERA_OK;
+  };
+  PreemptiveExecutor executor(app.build_preemptive(), {}, {});
+  ASSERT_TRUE(executor.start());
+  const Profile& p = app.task("served").profile;
+  for (int until = 200; until <= 20'000 && p.cycles < 10; until += 200)
+    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  EXPECT_EQ(p.cycles, 10u);
+  EXPECT_EQ(p.events, 10u);
+  EXPECT_EQ(p.events_lost, 0u);
+  EXPECT_GE(p.exhausted, 1u);
+  executor.shut_down();
+}
+
+TEST(PreemptiveThreads, EventsOfATaskThatIsNotOnAreLostAndCounted) {
+  Application app;
+  app.add("sender", milliseconds(2));
+  TaskSpec& spec = app.add("served", milliseconds(50));
+  spec.aperiodic = true;
+  spec.server = ServerSpec{ServerKind::kDeferrable, milliseconds(1), milliseconds(50)};
+  TaskSet& set = app.build_preemptive({"served"});
+  auto& sends = app.toy("sender").sends;
+  for (int i = 0; i < 3; ++i) sends.push_back({Signal::kWakeup, "served"});
+  sends.push_back({Signal::kOn, "served"});
+  for (int i = 0; i < 3; ++i) sends.push_back({Signal::kWakeup, "served"});
+  PreemptiveExecutor executor(set, {}, {});
+  ASSERT_TRUE(executor.start());
+  const Profile& p = app.task("served").profile;
+  for (int until = 100; until <= 10'000 && p.cycles < 3; until += 100)
+    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  EXPECT_EQ(p.events_lost, 3u);
+  EXPECT_EQ(p.events, 3u);
+  EXPECT_EQ(p.cycles, 3u);
+}
+
 }  // namespace
 }  // namespace chimera::toy

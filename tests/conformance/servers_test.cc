@@ -1,111 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// The textbook examples of both servers, and what else events and servers promise, exact in virtual time.
-// Buttazzo, Hard Real-Time Computing Systems: the deferrable server of 5.3, both sporadic servers of 5.5, the dynamic
-// sporadic server of chapter 6 (Spuri & Buttazzo 1996). Where a book leaves periodic tasks or requests open they are
-// stated here, and the schedule is worked out by hand from the definition of the server.
+// What events and servers promise, exact in virtual time.
 #include <gtest/gtest.h>
 
-#include <deque>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "tests/conformance/runner.h"
+#include "tests/conformance/server_examples.h"
 
 namespace chimera::toy {
 namespace {
 
-struct Periodic {
-  char name;
-  int work, period;
-  std::uint32_t criticality = 0;
-};
-
-struct Request {
-  int at, work;
-};
-
-/// Two periodic tasks and the server S with its requests.
-struct Example {
-  Policy policy;
-  Periodic periodic[2];
-  ServerKind kind;
-  int capacity, period;
-  std::uint32_t criticality;
-  std::vector<Request> requests;
-  std::string timeline;
-};
-
-// The deferrable server's own period is its deadline, the sporadic one's is its replenishment.
-const ServerKind kDeferrable = ServerKind::kDeferrable, kSporadic = ServerKind::kSporadic;
-const std::vector<Request> kFour = {{2, 2}, {8, 1}, {12, 2}, {19, 1}};
-const Example kExamples[] = {
-    // 5.3: the request at 2 is served at once and at 4 only the task of period 4 goes before the server.
-    {Policy::kRm, {{'A', 1, 4}, {'B', 2, 6}}, kDeferrable, 2, 5, 0, kFour, "ABSSABBBAS..ASSBABBSAB.."},
-    {Policy::kEdf, {{'A', 1, 4}, {'B', 2, 6}}, kDeferrable, 2, 5, 0, kFour, "ABSSBABBSA..SSABBABSAB.."},
-    {Policy::kMuf, {{'A', 1, 4}, {'B', 2, 6}}, kDeferrable, 2, 5, 0, kFour, "ABSSBABBSA..SSABBABSAB.."},
-    // 5.5, medium priority.
-    {Policy::kRm, {{'A', 1, 5}, {'B', 4, 15}}, kSporadic, 5, 10, 0, {{4, 2}, {8, 2}}, "ABBBSASBSSA....ABBBBA..."},
-    // 5.5, highest priority: the request at 6 waits for what the one at 2 has used.
-    {Policy::kRm, {{'A', 3, 10}, {'B', 4, 15}}, kSporadic, 2, 8, 0, {{2, 2}, {6, 2}}, "AASSABBBB.SSAAABBBB.AAA."},
-    // Dynamic: due at 9 by the request at 3, at 12 by that at 6, and at 15 by what comes back at 9.
-    {Policy::kEdf, {{'A', 2, 8}, {'B', 3, 12}}, kSporadic, 3, 6, 0, {{3, 2}, {6, 2}}, "AABSSBBSASA.BBB.AA......"},
-    // The same under maximum urgency: A is more critical than the server, B less.
-    {Policy::kMuf, {{'A', 2, 8, 2}, {'B', 3, 12, 0}}, kSporadic, 3, 6, 1, {{3, 2}, {6, 2}},
-     "AABSSBSBAAS.BBB.AA......"},
-};
-
-ScriptAct ring(int at, TaskId task) { return {milliseconds(at), ScriptAct::Kind::kSignal, Signal::kWakeup, task}; }
+ScriptAct ring(int at, TaskId task) { return toy::ring(milliseconds(at), task); }
 
 std::string timeline(const std::vector<TapRecord>& records, const std::string& names, std::size_t length) {
-  std::string line(length, '.');
-  for (const TapRecord& r : records) {
-    if (r.kind != TapKind::kRun) continue;
-    for (std::int64_t t = r.at.count; t < r.at.count + r.b; t += 1'000'000) {
-      char& unit = line.at(static_cast<std::size_t>(t / 1'000'000));
-      EXPECT_EQ(unit, '.') << "two jobs at once";
-      unit = names.at(r.task.index);
-    }
-  }
-  return line;
+  return toy::timeline(records, {}, milliseconds(1), names, length);
 }
 
 TaskSpec& add_served(Application& app, const char* name, ServerKind kind, int capacity, int period) {
-  TaskSpec& spec = app.add(name, milliseconds(period));
-  spec.aperiodic = true;
-  spec.server = ServerSpec{kind, milliseconds(capacity), milliseconds(period)};
-  return spec;
-}
-
-/// Every cycle of the task takes the next of `works`.
-void take_in_turn(Toy& toy, std::deque<int> works) {
-  auto left = std::make_shared<std::deque<int>>(std::move(works));
-  toy.during = [left](const chimera_call& call) {
-    call.host->spend(call.context, milliseconds(left->front()).count);
-    left->pop_front();
-    return CHIMERA_OK;
-  };
+  return toy::add_served(app, name, kind, milliseconds(capacity), milliseconds(period));
 }
 
 TEST(Servers, TheTextbookExamplesComeOutToTheLetter) {
   for (const Example& example : kExamples) {
     Application app;
-    for (const Periodic& p : example.periodic)
-      app.add(std::string(1, p.name), milliseconds(p.period), milliseconds(p.work)).criticality = p.criticality;
-    add_served(app, "S", example.kind, example.capacity, example.period).criticality = example.criticality;
-    std::vector<ScriptAct> acts;
-    std::deque<int> works;
-    for (const Request& request : example.requests) {
-      acts.push_back(ring(request.at, app.id("S")));
-      works.push_back(request.work);
-    }
-    take_in_turn(app.toy("S"), works);
+    const std::vector<ScriptAct> acts = add_example(app, example, milliseconds(1), 1);
     Runner run(app.build(), Kind::kPreemptive, example.policy, acts);
     ASSERT_TRUE(run.start());
     EXPECT_EQ(run.run(milliseconds(24)), RunEnd::kTime);
-    EXPECT_EQ(timeline(run.records(), "ABS", 24), example.timeline);
+    const std::vector<TapRecord> records = run.records();
+    for (const TapRecord& r : records)
+      EXPECT_TRUE(r.kind != TapKind::kRun || (r.at.count % 1'000'000 == 0 && r.b % 1'000'000 == 0));
+    EXPECT_EQ(timeline(records, "ABS", kExampleUnits), example.timeline);
     EXPECT_EQ(app.task("S").profile.cycles, example.requests.size());
-    EXPECT_EQ(app.task("S").profile.missed + app.task("S").profile.dropped, 0u);
+    EXPECT_EQ(app.task("S").profile.events, example.requests.size());
+    EXPECT_EQ(app.task("S").profile.missed + app.task("S").profile.dropped + app.task("S").profile.events_lost, 0u);
   }
 }
 
@@ -113,13 +38,14 @@ TEST(Servers, AJobLongerThanTheCapacityGoesOnWheneverSomeIsBack) {
   for (const ServerKind kind : {kDeferrable, kSporadic}) {
     Application app;
     add_served(app, "S", kind, 2, 5);
-    take_in_turn(app.toy("S"), {5});
+    take_in_turn(app.toy("S"), {milliseconds(5)});
     const std::vector<ScriptAct> acts = {ring(3, app.id("S"))};
     Runner run(app.build(), Kind::kPreemptive, Policy::kEdf, acts);
     ASSERT_TRUE(run.start());
     run.run(milliseconds(16));
     EXPECT_EQ(timeline(run.records(), "S", 16), kind == kDeferrable ? "...SSSS...S....." : "...SS...SS...S..");
     EXPECT_EQ(app.task("S").profile.response.max, milliseconds(kind == kDeferrable ? 8 : 11));
+    EXPECT_EQ(app.task("S").profile.exhausted, kind == kDeferrable ? 1u : 2u);
   }
 }
 
@@ -188,6 +114,8 @@ TEST(Servers, WhatWaitsWhenTheTaskGoesOffIsForgotten) {
   ASSERT_TRUE(run.start());
   run.run(milliseconds(12));
   EXPECT_EQ(timeline(run.records(), "S", 12), "S........S..");
+  EXPECT_EQ(app.task("S").profile.events, 4u);
+  EXPECT_EQ(app.task("S").profile.events_lost, 2u);
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, 
     if (!set.is_mine(task.id)) continue;
     JobThread& thread = threads_.emplace_back();
     thread.task = task.id;
+    if (task.spec->server) thread.served.emplace(*task.spec->server);
     of_task_[task.id.index] = &thread;
   }
   for (JobThread& thread : threads_) {
@@ -59,6 +60,7 @@ Result<void> PreemptiveExecutor::start() {
 void PreemptiveExecutor::start(Nanoseconds origin) {
   enter();
   releases_.begin(origin);
+  open_servers(origin);
   leave();
 }
 
@@ -74,7 +76,7 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
   enter();
   is_paused_ = false;
   until_ = until;
-  tell_threads();
+  tell_threads(true);
   leave();
   for (;;) {
     const std::uint32_t heard = Doorbell(*bell_).read();
@@ -103,8 +105,7 @@ bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
   }
   if (releases_.has_lost_patience()) releases_.give_up_starved(now);
   if (releases_.edge_is_due(now)) releases_.take_edge(now);
-  for (JobThread& job : threads_) job.is_held = false;
-  tell_threads();
+  tell_threads(false);
   end = releases_.stop_requested() ? RunEnd::kStopped
         : releases_.task_stopped() ? RunEnd::kTaskStopped
         : now >= until             ? RunEnd::kTime
@@ -112,14 +113,17 @@ bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
   return end != RunEnd::kNothingLeft || (!releases_.anything_left() && is_idle());
 }
 
-// Threads follow the states of their tasks.
-void PreemptiveExecutor::tell_threads() noexcept {
+// Threads follow the states of their tasks. Those for which nothing is new sleep on.
+void PreemptiveExecutor::tell_threads(bool all) noexcept {
   for (JobThread& job : threads_) {
-    const bool is_on = releases_.is_on(job.task);
-    if (is_on && !job.is_joined) job.next = releases_.queue().first_release(job.task);
+    const bool is_on = releases_.is_on(job.task), has_event = job.served && task(job).events > 0;
+    const bool is_new = all || is_on != job.is_joined || job.is_held || has_event;
+    if (is_on && !job.is_joined && !job.served) job.next = releases_.queue().first_release(job.task);
     if (!is_on) job.next = kNever;
+    if (!is_on && job.served) forget_event(job);
     job.is_joined = is_on;
-    Doorbell(job.bell).ring();
+    job.is_held = false;
+    if (is_new) Doorbell(job.bell).ring();
   }
 }
 
@@ -170,6 +174,7 @@ void PreemptiveExecutor::open(TaskId id) noexcept {
   job->is_held = true;
   job->carrier = edge_thread_;
   job->job = {id, now, now + s.deadline};
+  if (job->served) job->served->due = now + s.deadline;
   job->phase = JobPhase::kMethod;
   LabelledJob method;
   method.task = id;

@@ -13,12 +13,14 @@ constexpr Nanoseconds kShowEvery = milliseconds(10);
 void PreemptiveExecutor::follow_releases(JobThread& me) {
   if (has_levels_) (void)enter_realtime({place_.ceiling, place_.cpu, false});
   me.id = me.carrier = this_thread();
+  if (me.served) me.served->halt.attach();
   ++n_ready_;
   enter();
   for (;;) {
     const std::uint32_t heard = Doorbell(me.bell).read();  // before the look at everything: no ring is lost
     if (quits_) break;
     const Nanoseconds now = clock_.now();
+    if (me.served) take_event(me, now);
     const bool may_run = me.is_joined && !me.is_held && !is_paused_ && me.next < until_;
     if (may_run && me.next <= now) {
       run_job(me, now);
@@ -39,6 +41,7 @@ void PreemptiveExecutor::run_job(JobThread& me, Nanoseconds now) noexcept {
   const int level = enter_label(me, now);
   leave();
   lower(level);
+  me.used_before.store(used_by_this_thread().count, std::memory_order_relaxed);
   if (begin(me)) {
     now = run_body(me, clock_.now());
     raise();
@@ -53,6 +56,10 @@ void PreemptiveExecutor::run_job(JobThread& me, Nanoseconds now) noexcept {
 // Takes the newest release that has come; what came before it is dropped. False: nothing may begin.
 bool PreemptiveExecutor::release(JobThread& me, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(me);
+  if (me.served) {  // nothing is due at an instant but the server
+    prepare(me, {me.task, me.served->taken, kNever});
+    return true;
+  }
   const std::int64_t passed = (now - me.next) / s.period;
   const Nanoseconds release = me.next + s.period * passed;
   if (passed > 0) releases_.drop({me.task, release - s.period, static_cast<std::uint32_t>(passed)});
@@ -62,12 +69,16 @@ bool PreemptiveExecutor::release(JobThread& me, Nanoseconds now) noexcept {
     return false;
   }
   me.next = release + s.period;
-  me.job = {me.task, release, release + s.deadline};
+  prepare(me, {me.task, release, release + s.deadline});
+  return true;
+}
+
+void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
+  me.job = job;
   me.illegal = releases_.is_illegal();
   me.is_overrun = false;
   task(me).give_up.store(false, std::memory_order_relaxed);
   if (set_.adopt(me.task)) ring_edge();
-  return true;
 }
 
 // The job joins those that are ready; at which level, is for its thread to do.
@@ -81,7 +92,7 @@ int PreemptiveExecutor::enter_label(JobThread& me, Nanoseconds now) noexcept {
   const auto changes = labels_.insert(job);
   const int level = apply(changes, &me);
   processor_goes_on(now);
-  Nanoseconds check = std::min(me.next, me.job.deadline);
+  Nanoseconds check = me.served ? next_look_at_server(me, now) : std::min(me.next, me.job.deadline);
   if (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) check = std::min(check, now + s.budget);
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) check = std::min(check, next_quantum(now));
   watch(me, check, now);
@@ -102,8 +113,8 @@ bool PreemptiveExecutor::begin(JobThread& me) noexcept {
 Nanoseconds PreemptiveExecutor::run_body(JobThread& me, Nanoseconds start) noexcept {
   const Job job = me.job;
   me.slice.store(start.count, std::memory_order_relaxed);
-  const Nanoseconds before = used_by_this_thread();
-  me.used_before.store(before.count, std::memory_order_relaxed);
+  const Nanoseconds before{me.used_before.load(std::memory_order_relaxed)};
+  if (me.served) me.served->halt.open();
   Nanoseconds end = start;
   if (releases_.may_start(job, start)) {
     CycleTime time;
@@ -111,6 +122,7 @@ Nanoseconds PreemptiveExecutor::run_body(JobThread& me, Nanoseconds start) noexc
     end = clock_.now();
     releases_.conclude_job(job, time, body, start, end, used_by_this_thread() - before);
   }
+  if (me.served) me.served->halt.close();
   me.phase = JobPhase::kDone;
   return end;
 }
@@ -121,6 +133,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   if (!was_running && !me.is_demoted) ++counts_.ended_unseen;
   if (!me.is_demoted) record_slice(me, now);
   (void)apply(labels_.remove(me.task), nullptr);
+  if (me.served) end_served(me);
   me.phase = JobPhase::kNone;
   me.is_demoted = me.is_given_up = false;
   me.check = kNever;
@@ -155,7 +168,10 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
   const bool goes_on = top != nullptr && top->phase == JobPhase::kBegun;
   if (goes_on) {
     top->slice.store(now.count, std::memory_order_relaxed);
-    const Nanoseconds check = end_of_budget(*top, now);
+  }
+  if (goes_on || (top != nullptr && top->served && top->phase == JobPhase::kWaiting)) {
+    const Nanoseconds budget = goes_on ? end_of_budget(*top, now) : kNever;
+    const Nanoseconds check = std::min(budget, end_of_capacity(*top, now));
     if (check < top->check) watch(*top, check, now);
   }
   const std::uint32_t word = goes_on ? (top->task.index + 1) << 8 | CHIMERA_CYCLE : 0;

@@ -6,9 +6,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <thread>
 
+#include "chimera/platform/halt.h"
 #include "chimera/schedule/ready_queue.h"
+#include "chimera/schedule/server_state.h"
 
 namespace chimera {
 
@@ -23,6 +26,20 @@ enum class JobPhase : std::uint8_t {
   kMethod,     ///< no job: the edge runs another method of the task
 };
 
+/// What a task behind a server has beside that. Written in the section.
+struct Served {
+  explicit Served(const ServerSpec& spec) noexcept : server(spec, {}) {}
+
+  ServerState server;
+  Nanoseconds due;           ///< of the server
+  Nanoseconds charged;       ///< execution time of the thread up to which the server has paid
+  Nanoseconds taken;         ///< when the present event was
+  bool is_active = false;    ///< an event waits or is served
+  bool has_event = false;    ///< one was taken; its job waits for capacity, or is under way
+  bool is_halted = false;    ///< in the middle of its job, for want of capacity
+  Halt halt;
+};
+
 /// Written in the section by whoever is in it, unless said otherwise.
 struct JobThread {
   TaskId task;
@@ -32,7 +49,7 @@ struct JobThread {
   pid_t carrier = 0;                   ///< who runs at the label of the task: the thread, or that of the edges
   std::atomic<JobPhase> phase{JobPhase::kNone};
 
-  Nanoseconds next = kNever;   ///< release to come; kNever: the task is not ON
+  Nanoseconds next = kNever;   ///< release to come; kNever: the task is not ON, or no event has come
   bool is_joined = false;      ///< is ON as far as the thread was told
   bool is_held = false;        ///< no job begins
   bool illegal = false;        ///< the flag, for the present job
@@ -47,6 +64,7 @@ struct JobThread {
   Nanoseconds charged;         ///< what it had used when it was last looked at
   std::atomic<std::int64_t> slice{0};  ///< since when it has the processor, as far as can be told; also by the thread
   Nanoseconds shown;           ///< when its profile was last handed out
+  std::optional<Served> served;  ///< behind a server
 };
 
 }  // namespace chimera

@@ -3,7 +3,7 @@
 //
 //   thread of a task:  sleep at the ceiling | [release, label] | body at the label | raise | [end, next release]
 //   edges:             the caller of run(), at the ceiling; other methods run at the label of their task
-//   supervisor:        at the ceiling, woken by one alarm: budgets, deadlines, hanging jobs
+//   supervisor:        at the ceiling, woken by one alarm: budgets, deadlines, hanging jobs, capacities of servers
 //
 // [...] is the section: what all share is touched there and nowhere else. Every thread that enters it runs at the
 // ceiling, on one CPU, and neither blocks nor faults in it, so the kernel's own order excludes; the lock behind it is
@@ -97,7 +97,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void open(TaskId task) noexcept override;
   void close(TaskId task) noexcept override;
   bool take_edge(RunEnd& end, Nanoseconds until) noexcept;
-  void tell_threads() noexcept;
+  void tell_threads(bool all) noexcept;
   void stop_jobs() noexcept;
   bool is_idle() const noexcept;
   void ring_edge() noexcept { Doorbell(*bell_).ring(); }
@@ -106,12 +106,25 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void follow_releases(JobThread& me);
   void run_job(JobThread& me, Nanoseconds now) noexcept;
   bool release(JobThread& me, Nanoseconds now) noexcept;
+  void prepare(JobThread& me, const Job& job) noexcept;
   int enter_label(JobThread& me, Nanoseconds now) noexcept;
   bool begin(JobThread& me) noexcept;
   Nanoseconds run_body(JobThread& me, Nanoseconds start) noexcept;
   void end(JobThread& me, Nanoseconds now) noexcept;
   void record_slice(const JobThread& job, Nanoseconds now) noexcept;
   void processor_goes_on(Nanoseconds now) noexcept;
+
+  // Tasks behind servers (servers.cc).
+  void open_servers(Nanoseconds origin) noexcept;
+  void take_event(JobThread& me, Nanoseconds now) noexcept;
+  void forget_event(JobThread& job) noexcept;
+  void pay(JobThread& job) noexcept;
+  void follow_server(JobThread& job, Nanoseconds now) noexcept;
+  void halt(JobThread& job, Nanoseconds now) noexcept;
+  void let_go_on(JobThread& job, Nanoseconds now) noexcept;
+  void end_served(JobThread& me) noexcept;
+  Nanoseconds end_of_capacity(JobThread& job, Nanoseconds now) noexcept;
+  Nanoseconds next_look_at_server(JobThread& job, Nanoseconds now) noexcept;
 
   // Levels and supervision (supervisor.cc).
   void supervise();

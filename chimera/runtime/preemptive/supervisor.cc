@@ -56,9 +56,10 @@ int PreemptiveExecutor::apply(std::span<const LevelChange> changes, const JobThr
 
 Urgency PreemptiveExecutor::urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept {
   const TaskSpec& s = spec(job);
-  Urgency urgency{s.criticality, s.user_priority, s.period, job.job.deadline, remaining};
+  const Nanoseconds due = job.served ? job.served->due : job.job.deadline;
+  Urgency urgency{s.criticality, s.user_priority, s.period, due, remaining};
   if (labels_.policy() == Policy::kMufLaxity)  // else noise would decide who is more urgent
-    urgency.remaining = job.job.deadline - rounded(job.job.deadline - remaining, place_.quantum);
+    urgency.remaining = due - rounded(due - remaining, place_.quantum);
   return urgency;
 }
 
@@ -107,7 +108,7 @@ void PreemptiveExecutor::charge_running(Nanoseconds now) noexcept {
 void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(job);
   const bool by_laxity = labels_.policy() == Policy::kMufLaxity;
-  if (s.budget == Nanoseconds{} && now < job.job.deadline) return;
+  if (s.budget == Nanoseconds{} && !job.served && now < job.job.deadline) return;
   const Nanoseconds spent = used(job);
   const Nanoseconds allowed = s.budget > Nanoseconds{} ? s.budget : s.period;
   if (spent > allowed * kHangsAfter) return hang(job, now);
@@ -143,6 +144,7 @@ void PreemptiveExecutor::demote(JobThread& job, Nanoseconds now) noexcept {
   if (job.is_demoted) return;
   record_slice(job, now);
   job.is_demoted = true;
+  if (job.served && job.served->is_halted) job.served->halt.lift();
   ++task(job).profile.demoted;
   (void)apply(labels_.remove(job.task), nullptr);
   processor_goes_on(now);
@@ -168,7 +170,8 @@ Nanoseconds PreemptiveExecutor::alarm_for(Nanoseconds check, bool is_exact, Nano
 void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check, Nanoseconds now) noexcept {
   job.check = check;
   const TaskSpec& s = spec(job);
-  const bool is_exact = (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) || s.on_miss == OnMiss::kDemote;
+  const bool is_exact = (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) || s.on_miss == OnMiss::kDemote ||
+                        job.served.has_value();
   // A second job in the list: the first one's check counts from here on.
   for (const LabelledJob& other : labels_.jobs()) check = std::min(check, of_task_[other.task.index]->check);
   const Nanoseconds wanted = alarm_for(check, is_exact, now);
@@ -215,6 +218,11 @@ void PreemptiveExecutor::look_at(JobThread& job, Nanoseconds now) noexcept {
 // Its deadline, or its next release, came before it was dispatched.
 void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(job);
+  if (job.served) {
+    follow_server(job, now);
+    job.phase = JobPhase::kWaiting;
+    return;
+  }
   if (s.on_miss == OnMiss::kAbort && now >= job.job.deadline) {
     releases_.expire_waiting(job.job);
     cancel(job, now);
@@ -243,7 +251,8 @@ void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept
   if (now >= job.job.deadline && s.on_miss == OnMiss::kDemote) demote(job, now);
   if (now >= job.job.deadline && s.on_miss == OnMiss::kAbort)
     task(job).give_up.store(true, std::memory_order_relaxed);
-  job.check = now < job.job.deadline ? job.job.deadline : now + s.period;
+  if (job.served && !job.is_demoted) return follow_server(job, now);
+  job.check = now < job.job.deadline && !job.served ? job.job.deadline : now + s.period;
   if (&job == on_processor_) job.check = std::min(job.check, end_of_budget(job, now));
 }
 

@@ -42,8 +42,8 @@ bool Preemptive::take_event(Served& s, Nanoseconds now) noexcept {
   if (!releases_.is_on(s.task)) {
     Job forgotten;
     if (s.is_ready) (void)releases_.queue().remove(s.task, forgotten);
+    if (s.has_job) ++task.profile.events_lost;
     s.is_active = s.has_job = s.is_ready = false;
-    task.events = 0;
     return false;
   }
   if (s.has_job) return true;
@@ -67,6 +67,7 @@ void Preemptive::stand(Served& s, Nanoseconds now) noexcept {
     if (may_run) return;
     leave_processor();
     releases_.record(TapKind::kPreempt, now, s.task, 0);
+    ++releases_.task(s.task).profile.exhausted;
     running_ = TaskId();
     s.is_ready = false;
     return;

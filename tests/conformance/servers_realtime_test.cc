@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Servers of the preemptive executor with real-time levels: the textbook examples unit by unit as in virtual time, and
+// what a storm of events does to the others: nothing.
+#include <gtest/gtest.h>
+
+#include "tests/conformance/classic_set.h"
+#include "tests/conformance/server_examples.h"
+
+namespace chimera::toy {
+namespace {
+
+ProcessorPlace place() {
+  ProcessorPlace made;
+  made.cpu = last_cpu();
+  made.ceiling = kCeiling;
+  made.base = 30;
+  made.checks = true;
+  return made;
+}
+
+// Runs the tasks of `app` for so long; what was recorded goes to `use`, with the origin.
+template <class Use>
+ProcessorCounts run(Application& app, Policy policy, std::span<const ScriptAct> acts, Nanoseconds time, Use use) {
+  auto ring = std::make_unique<TapRing>();
+  Tap tap(*ring);
+  TapReader reader(*ring);
+  RunOptions options;
+  options.policy = policy;
+  options.script = Script(acts);
+  options.tap = &tap;
+  PreemptiveExecutor executor(app.build_preemptive(), options, place());
+  std::thread edges([&] {
+    (void)enter_realtime({kCeiling, last_cpu(), false});
+    if (executor.start()) executor.run(time);
+  });
+  edges.join();
+  std::vector<TapRecord> records(kTapRecords);
+  records.resize(reader.read(records));
+  use(records, executor.origin());
+  return executor.counts();
+}
+
+struct Outcome {
+  std::string timeline;
+  Profile served;
+  ProcessorCounts counts;
+};
+
+// As judged() of the classic set.
+template <class Run>
+auto while_the_host_kept_its_word(Run run) -> std::optional<decltype(run())> {
+  Nanoseconds worst;
+  for (int i = 0; i < kTries; ++i) {
+    LinuxClock().wait_until(LinuxClock().now() + kRest);
+    Witness witness;
+    auto seen = run();
+    worst = witness.worst();
+    if (worst <= kGap) return seen;
+  }
+  std::printf("not judged: host stalled %lld us\n", static_cast<long long>(worst.count / 1000));
+  return std::nullopt;
+}
+
+// Jobs a little shorter than whole units, in both: capacity is left over, and what ends at an instant ends before it.
+std::string by_virtual_time(const Example& example) {
+  Application app;
+  const std::vector<ScriptAct> acts = add_example(app, example, kUnit, kALittleLess);
+  Runner run(app.build(), Kind::kPreemptive, example.policy, acts);
+  EXPECT_TRUE(run.start());
+  run.run(kUnit * kExampleUnits);
+  return timeline(run.records(), {}, kUnit, "ABS", kExampleUnits);
+}
+
+class ServedSchedule : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(ServedSchedule, IsThatOfVirtualTimeUnitByUnit) {
+  if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
+  const Example& example = kExamples[GetParam()];
+  const auto got = while_the_host_kept_its_word([&] {
+    Application app;
+    const std::vector<ScriptAct> acts = add_example(app, example, kUnit, kALittleLess);
+    Outcome seen;
+    seen.counts = run(app, example.policy, acts, kUnit * kExampleUnits, [&](const auto& records, Nanoseconds origin) {
+      seen.timeline = timeline(records, origin, kUnit, "ABS", kExampleUnits);
+    });
+    seen.served = app.task("S").profile;
+    return seen;
+  });
+  if (!got) GTEST_SKIP() << "not judged: host stalled";
+  EXPECT_EQ(got->timeline, by_virtual_time(example));
+  EXPECT_EQ(got->served.cycles, example.requests.size());
+  EXPECT_EQ(got->served.events, example.requests.size());
+  EXPECT_EQ(got->counts.section_taken, 0u) << "the kernel's order excludes";
+  EXPECT_EQ(got->counts.wrong_levels, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ServedSchedule, testing::Range(std::size_t{0}, std::size(kExamples)));
+
+// Halted in the middle of the job, and let go on.
+TEST(ServedJob, LongerThanTheCapacityGoesOnWhenSomeIsBack) {
+  if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
+  for (const ServerKind kind : {kDeferrable, kSporadic}) {
+    const auto got = while_the_host_kept_its_word([&] {
+      Application app;
+      app.add("A", kUnit * 15, milliseconds(1));
+      app.add("B", kUnit * 16, milliseconds(1));
+      add_served(app, "S", kind, kUnit * 2, kUnit * 5);
+      take_in_turn(app.toy("S"), {kUnit * 4 + kHalf});
+      const std::vector<ScriptAct> acts = {ring(kUnit * 3, app.id("S"))};
+      Outcome seen;
+      seen.counts = run(app, Policy::kEdf, acts, kUnit * 15, [&](const auto& records, Nanoseconds origin) {
+        seen.timeline = timeline(records, origin, kUnit, "--S", 15).substr(3);
+      });
+      seen.served = app.task("S").profile;
+      return seen;
+    });
+    if (!got) GTEST_SKIP() << "not judged: host stalled";
+    EXPECT_EQ(got->timeline, kind == kDeferrable ? "SSSS...S...." : "SS...SS...S.");
+    EXPECT_EQ(got->served.cycles, 1u);
+    EXPECT_GE(got->served.exhausted, kind == kDeferrable ? 1u : 2u);
+    EXPECT_EQ(got->counts.wrong_levels, 0u);
+  }
+}
+
+struct Storm {
+  std::uint64_t missed = 0, dropped = 0, cycles = 0;
+  Profile served;
+  ProcessorCounts counts;
+};
+
+constexpr Nanoseconds kStorm = milliseconds(400), kCapacity = milliseconds(1), kServerPeriod = milliseconds(8);
+
+// Three tasks at 60 %, and events of 200 us each for a server that ranks above them: eight times its capacity.
+Storm storm(Policy policy, ServerKind kind, bool blows) {
+  Application app;
+  app.add("a", milliseconds(10), microseconds(2500));
+  app.add("b", milliseconds(12), milliseconds(3));
+  app.add("c", milliseconds(20), milliseconds(2));
+  app.add("sender", milliseconds(3)).criticality = 2;
+  add_served(app, "S", kind, kCapacity, kServerPeriod).criticality = 2;
+  app.toy("S").spend = microseconds(200);
+  if (blows) {
+    app.toy("sender").during = [](const chimera_call& call) {
+      for (int i = 0; i < 16; ++i) EXPECT_EQ(call.host->signal(call.context, CHIMERA_SIGNAL_WAKEUP, "S"), CHIMERA_OK);
+      return CHIMERA_OK;
+    };
+  }
+  Storm seen;
+  seen.counts = run(app, policy, {}, kStorm, [](const auto&, Nanoseconds) {});
+  for (const char* name : {"a", "b", "c", "sender"}) {
+    const Profile& p = app.task(name).profile;
+    seen.missed += p.missed;
+    seen.dropped += p.dropped;
+    seen.cycles += p.cycles;
+  }
+  seen.served = app.task("S").profile;
+  return seen;
+}
+
+void expect_nobody_missed(const Storm& seen) {
+  EXPECT_EQ(seen.missed, 0u);
+  EXPECT_EQ(seen.dropped, 0u);
+  EXPECT_EQ(seen.cycles, 40u + 34u + 20u + 134u);
+  EXPECT_EQ(seen.counts.section_taken, 0u);
+  EXPECT_EQ(seen.counts.wrong_levels, 0u);
+}
+
+class ServedStorm : public testing::TestWithParam<std::tuple<Policy, ServerKind>> {};
+
+TEST(ServedCalm, IsWithoutMisses) {
+  if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
+  const auto got = while_the_host_kept_its_word([] { return storm(Policy::kEdf, kDeferrable, false); });
+  if (!got) GTEST_SKIP() << "not judged: host stalled";
+  expect_nobody_missed(*got);
+  EXPECT_EQ(got->served.events, 0u);
+}
+
+TEST_P(ServedStorm, OfEventsCostsTheOthersNoDeadline) {
+  if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
+  const auto [policy, kind] = GetParam();
+  const auto got = while_the_host_kept_its_word([policy = policy, kind = kind] { return storm(policy, kind, true); });
+  if (!got) GTEST_SKIP() << "not judged: host stalled";
+  expect_nobody_missed(*got);
+  EXPECT_EQ(got->served.events, 134u * 16u) << "every one is counted";
+  const std::int64_t periods = kStorm / kServerPeriod + 1;
+  EXPECT_LE(got->served.execution[CHIMERA_CYCLE].sum, kCapacity * periods);
+  EXPECT_GT(got->served.cycles, 2u * static_cast<std::uint64_t>(periods));
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ServedStorm,
+                         testing::Combine(testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf),
+                                          testing::Values(kDeferrable, kSporadic)));
+
+}  // namespace
+}  // namespace chimera::toy
