@@ -109,22 +109,25 @@ inline int repetitions(int argc, char** argv, int otherwise = 201) {
 class Comparison {
  public:
   using Body = std::function<void(std::uint64_t n)>;
+  using Prepare = std::function<void()>;
   using Clock = std::function<double()>;
 
   /// `clock` is another one only in the test of this class.
   explicit Comparison(int repetitions, Clock clock = now_ns)
       : repetitions_(repetitions), clock_(std::move(clock)) {}
 
-  /// Returns the candidate's number.
-  std::size_t add(std::string name, Body body) {
-    candidates_.push_back({std::move(name), std::move(body), {}});
+  /// Returns the candidate's number. `prepare` is called before each of its turns and not measured.
+  std::size_t add(std::string name, Body body, Prepare prepare = {}) {
+    candidates_.push_back({std::move(name), std::move(body), std::move(prepare), {}});
     return candidates_.size() - 1;
   }
+  /// Never more than `most` pieces of work in a turn: as many as a ring has room for. Before run().
+  void limit(std::uint64_t most) { most_ = most; }
 
   /// Measures all; ratios are to `baseline`, which is measured twice per repetition (A/A). Once per comparison.
   void run(std::size_t baseline) {
     baseline_ = baseline;
-    control_ = add("control", candidates_[baseline].body);
+    control_ = add("control", candidates_[baseline].body, candidates_[baseline].prepare);
     const std::uint64_t n = calibrate();
     for (int repetition = 0; repetition < repetitions_; ++repetition) {
       const double begin = clock_();
@@ -153,6 +156,7 @@ class Comparison {
   struct Candidate {
     std::string name;
     Body body;
+    Prepare prepare;
     std::vector<double> ns;  // per repetition, of one piece of work
   };
 
@@ -160,21 +164,23 @@ class Comparison {
   std::uint64_t calibrate() {
     constexpr double kBatchNs = 200e3;
     batch_ = 1;
-    while (batch_ < 1'000'000'000) {
+    while (batch_ < most_) {
       double slowest = 0;
       for (auto& candidate : candidates_) {
+        if (candidate.prepare) candidate.prepare();
         const double begin = clock_();
         candidate.body(batch_);
         slowest = std::max(slowest, clock_() - begin);
       }
       if (slowest >= kBatchNs) break;
-      batch_ *= 2;
+      batch_ = std::min(2 * batch_, most_);
     }
     return batch_;
   }
 
   void measure(Candidate& candidate, std::uint64_t n) {
     candidate.body(std::max<std::uint64_t>(1, n / 16));  // its data back into the cache
+    if (candidate.prepare) candidate.prepare();
     const double begin = clock_();
     candidate.body(n);
     candidate.ns.push_back((clock_() - begin) / static_cast<double>(n));
@@ -196,7 +202,7 @@ class Comparison {
 
   int repetitions_;
   Clock clock_;
-  std::uint64_t batch_ = 1;
+  std::uint64_t batch_ = 1, most_ = 1'000'000'000;
   std::size_t baseline_ = 0;
   std::size_t control_ = 0;
   std::vector<Candidate> candidates_;

@@ -57,6 +57,26 @@ TEST(Comparison, OneStallDoesNotChangeTheRatio) {
   EXPECT_DOUBLE_EQ(comparison.ratio(ours, raw), 2);
 }
 
+TEST(Comparison, PreparesEachTurnUnmeasuredAndKeepsToTheLimit) {
+  SteppedTime time;
+  Comparison comparison(11, time.clock());
+  std::uint64_t room = 0, most = 0;
+  const auto raw = comparison.add("raw", time.costs(10));
+  const auto ring = comparison.add(
+      "ring",
+      [&](std::uint64_t n) {
+        room -= std::min(room, n);
+        most = std::max(most, n);
+        time.costs(20)(n);
+      },
+      [&] { room = 64, time.now += 1e6; });
+  comparison.limit(60);
+  comparison.run(raw);
+  EXPECT_EQ(most, 60u);
+  EXPECT_EQ(room, 4u);
+  EXPECT_DOUBLE_EQ(comparison.ratio(ring, raw), 2);
+}
+
 TEST(Figure, MeetsOrMissesItsGoal) {
   Figure figure{.row = 1, .what = "read", .figure = 15, .ratio = 1.5, .goal = ratio_at_most(1.5)};
   EXPECT_TRUE(figure.met());

@@ -2,12 +2,11 @@
 // Row 16: forward kinematics and Jacobian of a Puma 560 from its Denavit-Hartenberg rows, beside the closed form and
 // beside Orocos KDL in the same run; then one cycle of each kinematics component, beside the bare law it is made of.
 // Components: gfwdkin ginvkin pfwdkin pinvkin fwdkin_jacobian damped_least_squares singularity_monitor
-// Components: computed_torque time_integrator ctraj
+// Components: computed_torque time_integrator ctraj cinterp pose_monitor tracking_monitor
 #include <cmath>
 #include <cstdio>
 
-#include "bench/bench.h"
-#include "library/kinematics/arm_rig.h"
+#include "bench/component.h"
 #include "library/kinematics/dh_dynamics.h"
 #include "library/kinematics/puma560_links.h"
 #include "library/kinematics/singular_values.h"
@@ -18,6 +17,7 @@
 namespace chimera {
 namespace {
 
+using bench::ComponentCase;
 using library::ArmRig;
 using library::Frame;
 using library::Jacobian;
@@ -80,13 +80,6 @@ void forward_kinematics(int repetitions) {
 #endif
 }
 
-struct Case {
-  const char* component;
-  const char* law;
-  std::function<void(ArmRig&)> give;
-  std::function<void(std::uint64_t)> raw;
-};
-
 Jacobian bent_jacobian() {
   Jacobian jacobian;
   Puma560::forward(kBent, jacobian);
@@ -102,7 +95,7 @@ Frame beside_bent() {
 
 void give_pose(ArmRig& rig, const char* port, const Frame& frame) { rig.set(port, library::pose_of(frame)); }
 
-std::vector<Case> forward_cases() {
+std::vector<ComponentCase> forward_cases() {
   const auto give = [](ArmRig& rig) { rig.build_puma(), rig.give("q", kBent); };
   const auto rows = [arm = SerialArm(puma_rows())](const auto& q, Jacobian& j) { return arm.tool_frame(q, j); };
   return {{"gfwdkin", "pose from rows", give, along_a_path([arm = SerialArm(puma_rows())](const Puma560::Vector& q) {
@@ -117,7 +110,7 @@ std::vector<Case> forward_cases() {
            })}};
 }
 
-std::vector<Case> inverse_cases() {
+std::vector<ComponentCase> inverse_cases() {
   return {{"pinvkin", "8 solutions, nearest",
            [](ArmRig& rig) { rig.give("q", kBent), give_pose(rig, "xr", beside_bent()); },
            [wanted = beside_bent()](std::uint64_t n) {
@@ -152,7 +145,7 @@ std::vector<Case> inverse_cases() {
            }}};
 }
 
-std::vector<Case> other_cases() {
+std::vector<ComponentCase> other_cases() {
   return {{"computed_torque", "Newton-Euler", [](ArmRig& rig) {
              rig.build_puma();
              for (std::size_t i = 0; i < 6; ++i) rig.set("links", library::kPuma560Links[i], i);
@@ -166,7 +159,7 @@ std::vector<Case> other_cases() {
              bench::keep(torque);
            })},
           {"time_integrator", "x += v dt", [](ArmRig& rig) {
-             rig.extent("n", 6), rig.give("rate_of_change", kBent), rig.give("start", kBent);
+             rig.give("rate_of_change", kBent), rig.give("start", kBent);
            },
            [](std::uint64_t n) {
              for (Puma560::Vector x{}; n > 0; --n) {
@@ -187,23 +180,49 @@ std::vector<Case> other_cases() {
            }}};
 }
 
-bool measure(const Case& of, int repetitions) {
-  ArmRig rig(of.component);
-  of.give(rig);
-  const RigAnswer made = rig.init();
-  if (!made || !rig.on() || !rig.cycle()) {
-    std::fprintf(stderr, "%s: %s\n", of.component, made.text.c_str());
-    return false;
+/// The distance and the turn between two poses.
+void between_poses(std::uint64_t n) {
+  Pose a = library::pose_of(Puma560::forward(kBent)), b = library::pose_of(beside_bent());
+  for (; n > 0; --n) {
+    bench::keep(a), bench::keep(b);
+    double way = 0, turn = 0;
+    for (int i = 0; i < 3; ++i) way += (a.position[i] - b.position[i]) * (a.position[i] - b.position[i]);
+    for (int i = 0; i < 4; ++i) turn += a.orientation[i] * b.orientation[i];
+    way = std::sqrt(way), turn = 2 * std::acos(std::min(1.0, std::abs(turn)));
+    bench::keep(way), bench::keep(turn);
   }
-  bench::Comparison comparison(repetitions);
-  bool is_well = true;
-  const auto raw = comparison.add(of.law, of.raw);
-  const auto ours = comparison.add(of.component, [&](std::uint64_t n) {
-    is_well = rig.repeat(n, milliseconds(1)) == CHIMERA_OK && is_well;
-  });
-  comparison.run(raw);
-  bench::print(bench::Figure{.row = 16, .what = std::string("cycle of ") + of.component}.of(comparison, ours));
-  return is_well;
+}
+
+void step_between_poses(std::uint64_t n) {
+  Pose a = library::pose_of(Puma560::forward(kBent));
+  const Pose b = library::pose_of(beside_bent());
+  for (; n > 0; --n) {
+    for (int i = 0; i < 3; ++i) a.position[i] += 0.01 * (b.position[i] - a.position[i]);
+    library::turn_towards(a.orientation, b.orientation, 1e-6);
+    bench::keep(a);
+  }
+}
+
+std::vector<ComponentCase> judging_cases() {
+  const auto poses = [](ArmRig& rig, const char* wanted) {
+    give_pose(rig, "xm", Puma560::forward(kBent)), give_pose(rig, wanted, beside_bent());
+  };
+  return {{"cinterp", "a step and a turn", [poses](ArmRig& rig) { poses(rig, "xd"); }, step_between_poses},
+          {"pose_monitor", "way and turn", [poses](ArmRig& rig) { poses(rig, "target"); }, between_poses},
+          {"tracking_monitor", "6 distances", [](ArmRig& rig) {
+             rig.set("ndof", std::int32_t{6}), rig.give("q", kBent), rig.give("q_ref", Puma560::kHigh); },
+           [](std::uint64_t n) {
+             Puma560::Vector q = kBent, to = Puma560::kHigh, most{};
+             double worst = 0;
+             for (; n > 0; --n) {
+               bench::keep(q), bench::keep(to);
+               for (std::size_t i = 0; i < 6; ++i) {
+                 worst = std::max(worst, std::abs(to[i] - q[i]));
+                 most[i] = std::max(most[i], std::abs(q[i] - kBent[i]));
+               }
+               bench::keep(worst), bench::keep(most);
+             }
+           }}};
 }
 
 }  // namespace
@@ -213,8 +232,8 @@ int main(int argc, char** argv) {
   using namespace chimera;
   const bench::Stage stage;
   forward_kinematics(bench::repetitions(argc, argv));
-  bool is_well = true;
-  for (const auto& cases : {forward_cases(), inverse_cases(), other_cases()})
-    for (const Case& of : cases) is_well = measure(of, bench::repetitions(argc, argv, 101)) && is_well;
-  return is_well ? 0 : 1;
+  int worst = 0;
+  for (const auto& cases : {forward_cases(), inverse_cases(), other_cases(), judging_cases()})
+    worst = std::max(worst, bench::measure(16, cases, argc, argv));
+  return worst;
 }

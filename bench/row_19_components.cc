@@ -9,8 +9,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "bench/bench.h"
-#include "chimera/task/rig.h"
+#include "bench/component.h"
 #include "library/joint_trajectory/quintic.h"
 
 namespace chimera {
@@ -19,14 +18,10 @@ namespace {
 constexpr std::size_t kJoints = 6;
 using Joints = std::array<double, kJoints>;
 
-struct Case {
-  const char* component;
-  const char* law;
-  std::function<void(Rig&)> give;
-  std::function<void(std::uint64_t)> raw;
-};
+using bench::ComponentCase;
+using BenchRig = library::ArmRig;
 
-void fill(Rig& rig, const char* port, double value, std::size_t instance = 0) {
+void fill(BenchRig& rig, const char* port, double value, std::size_t instance = 0) {
   for (std::size_t i = 0; i < kJoints; ++i) rig.set(port, value + 0.01 * static_cast<double>(i), i, instance);
 }
 
@@ -65,67 +60,67 @@ struct PidLaw {
   }
 };
 
-void give_motion(Rig& rig, const char* profile) {
+void give_motion(BenchRig& rig, const char* profile) {
   rig.set("ndof", static_cast<std::int32_t>(kJoints));
   for (const char* port : {"start_pose", "goal"}) fill(rig, port, port[0] == 'g' ? 1e5 : 0);
   fill(rig, "velocity_max", 1), fill(rig, "acceleration_max", 2), fill(rig, "jerk_max", 20);
   rig.set("duration", 3600.0), rig.set("is_synchronised", true), rig.set("profile", Text<16>(profile));
 }
 
-void give_inputs(Rig& rig) {
+void give_inputs(BenchRig& rig) {
   rig.instances("in", 3);
   for (std::size_t i = 0; i < 3; ++i) fill(rig, "in", 0.5, i);
 }
 
-std::vector<Case> signal_cases() {
+std::vector<ComponentCase> signal_cases() {
   return {
-      {"gain", "k x", [](Rig& r) { r.set("x", 1.0), r.set("k", 2.0); },
+      {"gain", "k x", [](BenchRig& r) { r.set("x", 1.0), r.set("k", 2.0); },
        [](std::uint64_t n) {
          double x = 1, y = 0;
          for (; n > 0; --n) bench::keep(x), y = 2 * x, bench::keep(y);
        }},
-      {"limit", "clamp", [](Rig& r) { fill(r, "x", 0.1), fill(r, "low", -1), fill(r, "high", 1); },
+      {"limit", "clamp", [](BenchRig& r) { fill(r, "x", 0.1), fill(r, "low", -1), fill(r, "high", 1); },
        loop([](std::size_t, double x, double) { return std::clamp(x, -1.0, 1.0); })},
-      {"deadband", "two branches", [](Rig& r) { fill(r, "x", 0.1), fill(r, "width", 0.2), fill(r, "center", 0); },
+      {"deadband", "two branches", [](BenchRig& r) { fill(r, "x", 0.1), fill(r, "width", 0.2), fill(r, "center", 0); },
        loop([](std::size_t, double x, double) { return x > 0.2 ? x - 0.2 : x < -0.2 ? x + 0.2 : 0; })},
-      {"rate_limit", "clamp about y", [](Rig& r) { fill(r, "x", 0.1), fill(r, "rise", 1), fill(r, "fall", 1); },
+      {"rate_limit", "clamp about y", [](BenchRig& r) { fill(r, "x", 0.1), fill(r, "rise", 1), fill(r, "fall", 1); },
        loop([](std::size_t, double x, double y) { return std::clamp(x, y - 1e-3, y + 1e-3); })},
-      {"unit_convert", "k x + c", [](Rig& r) { fill(r, "x", 0.1), r.set("factor", 57.3), r.set("offset", 0.0); },
+      {"unit_convert", "k x + c", [](BenchRig& r) { fill(r, "x", 0.1), r.set("factor", 57.3), r.set("offset", 0.0); },
        loop([](std::size_t, double x, double) { return 57.3 * x; })},
       {"lowpass", "biquad, direct form II",
-       [](Rig& r) { fill(r, "x", 0.1), r.set("cutoff", 50.0), r.set("order", 2); },
+       [](BenchRig& r) { fill(r, "x", 0.1), r.set("cutoff", 50.0), r.set("order", 2); },
        loop(Biquad{})},
       {"notch", "biquad, direct form II",
-       [](Rig& r) { fill(r, "x", 0.1), r.set("center", 50.0), r.set("width", 5.0); },
+       [](BenchRig& r) { fill(r, "x", 0.1), r.set("center", 50.0), r.set("width", 5.0); },
        loop(Biquad{})},
   };
 }
 
-std::vector<Case> other_cases() {
+std::vector<ComponentCase> other_cases() {
   return {
-      {"tderiv", "(x - last) / dt", [](Rig& r) { r.set("x", 1.0); },
+      {"tderiv", "(x - last) / dt", [](BenchRig& r) { r.set("x", 1.0); },
        [](std::uint64_t n) {
          double x = 1, last = 0, y = 0;
          for (; n > 0; --n) bench::keep(x), y = (x - last) / 1e-3, last = x, bench::keep(y);
        }},
-      {"join_mean", "mean of 3", [](Rig& r) { r.instances("in", 3), r.instances("weight", 0);
+      {"join_mean", "mean of 3", [](BenchRig& r) { r.instances("in", 3), r.instances("weight", 0);
          for (std::size_t i = 0; i < 3; ++i) r.set("in", 0.5, 0, i); },
        [](std::uint64_t n) {
          double x[3] = {1, 2, 3}, y = 0;
          for (; n > 0; --n) bench::keep(x), y = (x[0] + x[1] + x[2]) / 3, bench::keep(y);
        }},
-      {"join_priority", "copy of 6", [](Rig& r) { give_inputs(r), r.set("max_age", 0.0); },
+      {"join_priority", "copy of 6", [](BenchRig& r) { give_inputs(r), r.set("max_age", 0.0); },
        loop([](std::size_t, double x, double) { return x; })},
-      {"select", "copy of 6", [](Rig& r) { give_inputs(r), r.set("which", 1); },
+      {"select", "copy of 6", [](BenchRig& r) { give_inputs(r), r.set("which", 1); },
        loop([](std::size_t, double x, double) { return x; })},
-      {"watchdog", "3 comparisons", [](Rig& r) { give_inputs(r), r.set("max_age", 86400.0);
+      {"watchdog", "3 comparisons", [](BenchRig& r) { give_inputs(r), r.set("max_age", 86400.0);
          r.set("action", Text<16>("report")), r.set("target", Text<64>("")); },
        [](std::uint64_t n) {
          std::int64_t x[3] = {1, 2, 3}, now = 5;
          bool y = false;
          for (; n > 0; --n) bench::keep(x), y = now - x[0] < 9 && now - x[1] < 9 && now - x[2] < 9, bench::keep(y);
        }},
-      {"signal_generator", "6 std::sin", [](Rig& r) {
+      {"signal_generator", "6 std::sin", [](BenchRig& r) {
          fill(r, "amplitude", 1), fill(r, "offset", 0), fill(r, "phase", 0);
          r.set("wave", Text<16>("sine")), r.set("frequency", 1.0), r.set("end_frequency", 1.0);
          r.set("duration", 1.0), r.set("delay", 0.0), r.set("seed", std::int64_t{1}); },
@@ -149,44 +144,33 @@ void six_quintics(std::uint64_t n) {
   }
 }
 
-std::vector<Case> joint_cases() {
+/// Rows 10 ms apart, looked at every millisecond.
+void between_rows(std::uint64_t n) {
+  static const std::vector<Joints> rows(1001, Joints{1, 2, 3, 4, 5, 6});
+  static Joints y{};
+  for (double t = 0; n > 0; --n, t = t < 9.99 ? t + 1e-3 : 0) {
+    const double at = t / 1e-2, share = at - std::floor(at);
+    const auto row = static_cast<std::size_t>(at);
+    for (std::size_t i = 0; i < kJoints; ++i) y[i] = rows[row][i] + share * (rows[row + 1][i] - rows[row][i]);
+    bench::keep(y);
+  }
+}
+
+std::vector<ComponentCase> joint_cases() {
   return {
-      {"pid_joint", "6 PID, direct", [](Rig& r) { r.set("ndof", static_cast<std::int32_t>(kJoints));
+      {"pid_joint", "6 PID, direct", [](BenchRig& r) { r.set("ndof", static_cast<std::int32_t>(kJoints));
          for (const char* p : {"q_ref", "qd_ref", "q", "qd", "kp", "ki", "kd", "tau_max"}) fill(r, p, 0.5);
          r.set("filter_time", 0.002); },
        loop(PidLaw{})},
-      {"joint_trajectory", "6 quintics", [](Rig& r) { give_motion(r, "quintic"); },
+      {"joint_trajectory", "6 quintics", [](BenchRig& r) { give_motion(r, "quintic"); },
        six_quintics},
-      {"joint_trajectory", "jerk; 6 quintics", [](Rig& r) { give_motion(r, "jerk"); },
+      {"joint_trajectory", "jerk; 6 quintics", [](BenchRig& r) { give_motion(r, "jerk"); },
        six_quintics},
-      {"csv_player", "row of 6 by index", [](Rig& r) { r.instances("out", 1), r.resource("file", "row_19.csv");
+      {"csv_player", "6 lines between rows", [](BenchRig& r) {
+         r.instances("out", 1), r.resource("file", "row_19.csv");
          r.set("is_repeated", true), r.set("is_interpolated", true); },
-       [](std::uint64_t n) {
-         static const std::vector<Joints> rows(1001, Joints{1, 2, 3, 4, 5, 6});
-         static Joints y{};
-         for (; n > 0; --n) y = rows[n % 1000], bench::keep(y);
-       }},
+       between_rows},
   };
-}
-
-bool measure(const Case& of, int repetitions) {
-  Rig rig(of.component);
-  rig.extent("n", kJoints);
-  of.give(rig);
-  const RigAnswer made = rig.init();
-  if (!made || !rig.on() || !rig.cycle()) {
-    std::fprintf(stderr, "%s: %s\n", of.component, made.text.c_str());
-    return false;
-  }
-  bench::Comparison comparison(repetitions);
-  bool is_well = true;
-  const auto raw = comparison.add(of.law, of.raw);
-  const auto ours = comparison.add(of.component, [&](std::uint64_t n) {
-    is_well = rig.repeat(n, milliseconds(1)) == CHIMERA_OK && is_well;
-  });
-  comparison.run(raw);
-  bench::print(bench::Figure{.row = 19, .what = std::string("cycle of ") + of.component}.of(comparison, ours));
-  return is_well;
 }
 
 }  // namespace
@@ -200,9 +184,9 @@ int main(int argc, char** argv) {
     file << "t,a,b,c,d,e,f\n";
     for (int i = 0; i <= 1000; ++i) file << i * 1e-2 << ",1,2,3,4,5,6\n";
   }
-  bool is_well = true;
+  int worst = 0;
   for (const auto& cases : {signal_cases(), other_cases(), joint_cases()})
-    for (const Case& of : cases) is_well = measure(of, bench::repetitions(argc, argv, 101)) && is_well;
+    worst = std::max(worst, bench::measure(19, cases, argc, argv));
   std::remove("row_19.csv");
-  return is_well ? 0 : 1;
+  return worst;
 }

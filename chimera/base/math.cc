@@ -11,7 +11,6 @@
 namespace chimera::math {
 namespace {
 
-constexpr std::uint64_t kSignBit = std::uint64_t{1} << 63;
 constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
 constexpr double kInfinity = __builtin_inf();
 constexpr double kNan = __builtin_nan("");
@@ -102,19 +101,6 @@ Pair sqrt_pair(double z) noexcept {
 
 }  // namespace
 
-bool is_nan(double x) noexcept { return (bits(x) & ~kSignBit) > bits(kInfinity); }
-bool is_finite(double x) noexcept { return (bits(x) & ~kSignBit) < bits(kInfinity); }
-double fabs(double x) noexcept { return from_bits(bits(x) & ~kSignBit); }
-double copysign(double magnitude, double sign) noexcept {
-  return from_bits((bits(magnitude) & ~kSignBit) | (bits(sign) & kSignBit));
-}
-
-double floor(double x) noexcept {
-  if (!(fabs(x) < 0x1p52)) return x;  // whole already, infinite, or NaN
-  const auto cut = static_cast<double>(static_cast<std::int64_t>(x));
-  return copysign(cut > x ? cut - 1 : cut, x);
-}
-
 double sqrt(double x) noexcept { return sqrt_of_the_machine(x); }
 
 double fmod(double x, double y) noexcept {
@@ -140,10 +126,18 @@ double fmod(double x, double y) noexcept {
 
 double sin(double x) noexcept {
   if (fabs(x) < 0x1p-27) return x;  // keeps the sign of zero
-  return sincos(x).sin;
+  if (!is_finite(x)) return kNan;
+  const Reduced r = reduce(x);
+  const double value = (r.quadrant & 1) == 0 ? kernel_sin(r.rest) : kernel_cos(r.rest);
+  return r.quadrant < 2 ? value : -value;
 }
 
-double cos(double x) noexcept { return sincos(x).cos; }
+double cos(double x) noexcept {
+  if (!is_finite(x)) return kNan;
+  const Reduced r = reduce(x);
+  const double value = (r.quadrant & 1) == 0 ? kernel_cos(r.rest) : kernel_sin(r.rest);
+  return r.quadrant == 0 || r.quadrant == 3 ? value : -value;
+}
 
 SinCos sincos(double x) noexcept {
   if (!is_finite(x)) return {kNan, kNan};

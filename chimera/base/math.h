@@ -6,6 +6,9 @@
 // holds them. All functions: Context: any; wait-free; no errno, no exception flags promised. NaN in, NaN out.
 #pragma once
 
+#include <bit>
+#include <cstdint>
+
 namespace chimera::math {
 
 struct SinCos {
@@ -43,12 +46,23 @@ double hypot(double x, double y) noexcept;
 /// Exact: x minus the whole multiple of y that leaves the sign of x. NaN when y is 0 or x is infinite.
 /// At most 2100 steps.
 double fmod(double x, double y) noexcept;
-double floor(double x) noexcept;
-double fabs(double x) noexcept;
-double copysign(double magnitude, double sign) noexcept;
 
-bool is_nan(double x) noexcept;
-bool is_finite(double x) noexcept;
+// In the header: a cycle asks them of every element.
+inline constexpr std::uint64_t kSignBit = std::uint64_t{1} << 63;
+inline constexpr std::uint64_t kInfinityBits = std::uint64_t{0x7ff} << 52;
+
+constexpr bool is_nan(double x) noexcept { return (std::bit_cast<std::uint64_t>(x) & ~kSignBit) > kInfinityBits; }
+constexpr bool is_finite(double x) noexcept { return (std::bit_cast<std::uint64_t>(x) & ~kSignBit) < kInfinityBits; }
+constexpr double fabs(double x) noexcept { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & ~kSignBit); }
+constexpr double copysign(double magnitude, double sign) noexcept {
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(magnitude) & ~kSignBit) |
+                               (std::bit_cast<std::uint64_t>(sign) & kSignBit));
+}
+constexpr double floor(double x) noexcept {
+  if (!(fabs(x) < 0x1p52)) return x;  // whole already, infinite, or NaN
+  const auto cut = static_cast<double>(static_cast<std::int64_t>(x));
+  return copysign(cut > x ? cut - 1 : cut, x);
+}
 
 inline constexpr double kPi = 0x1.921fb54442d18p+1;
 
