@@ -102,13 +102,17 @@ void describe_joint(const mjModel* m, int joint, std::size_t i, ArmModel& arm) {
 
 }  // namespace
 
-Result<ArmModel> find_arm(const mjModel_* m, mjData_* d, const char* tip_name) {
+void stand_at_zero(const mjModel_* m, mjData_* d) {
   mj_resetData(m, d);
   mju_copy(d->qpos, m->qpos0, m->nq);
   for (int j = 0; j < m->njnt; ++j) {
     if (m->jnt_type[j] == mjJNT_HINGE) d->qpos[m->jnt_qposadr[j]] = 0;
   }
   mj_kinematics(m, d);
+}
+
+Result<ArmModel> find_arm(const mjModel_* m, mjData_* d, const char* tip_name) {
+  stand_at_zero(m, d);
   const Result<Tip> tip = find_tip(m, d, tip_name);
   if (!tip) return tip.error();
   const std::vector<int> joints = joints_to(m, tip->body);

@@ -28,6 +28,9 @@ struct ArmModel {
   DhChain chain;
 };
 
+/// Puts hinges at zero and all else where the model begins. Context: setup.
+void stand_at_zero(const mjModel_* model, mjData_* state);
+
 /// Finds the arm that ends at the body or site `tip`; an empty text stands for the body with the most hinges between
 /// itself and the world. Refuses an unknown tip, a joint on the way that is no hinge, no joint, more than kMostJoints.
 /// Context: setup; moves `state` to zero.

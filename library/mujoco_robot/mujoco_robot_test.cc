@@ -7,6 +7,7 @@
 #include <string>
 
 #include "chimera/task/rig.h"
+#include "library/kinematics/dh_dynamics.h"
 
 namespace chimera {
 namespace {
@@ -66,6 +67,14 @@ TEST_F(RobotTest, FallsWithoutTorque) {
   start(rig, "tau");
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle());
   EXPECT_GT(rig.get<double>("q", 0), 0.02);
+}
+
+TEST_F(RobotTest, ARobotThatTakesTorquesTellsWhatItsLinksWeigh) {
+  Rig rig("mujoco_robot_torque");
+  start(rig, "tau");
+  const auto link = rig.get<library::LinkMass>("links", 1);  // a ball of water behind an axis that points along y
+  EXPECT_NEAR(link.mass, 1000 * 4.0 / 3 * M_PI * 0.05 * 0.05 * 0.05, 1e-9);
+  EXPECT_NEAR(library::length({link.centre[0], link.centre[1], link.centre[2]}), 0.5, 1e-9);
 }
 
 TEST_F(RobotTest, IgnoresItsCommandWhileTheConfigurationIsIllegal) {

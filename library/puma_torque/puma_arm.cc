@@ -62,7 +62,7 @@ Result<void> PumaArm::read_model(const char* mjcf_path) {
   if (inertia < 0 || m->numeric_size[inertia] != 3) {
     return bad("%s: expected three numbers 'link3_inertia' under <custom>", mjcf_path);
   }
-  return {};
+  return arm_.load(mjcf_path, "payload", files.get());  // the tool is the flange
 }
 
 Result<void> PumaArm::load(const char* mjcf_path, const PumaSettings& settings) {
@@ -82,6 +82,9 @@ void PumaArm::apply(const PumaSettings& settings) {
   std::copy_n(m->numeric_data + m->numeric_adr[inertia], 3, m->body_inertia + 3 * link3);
 
   const int payload = mj_name2id(m, mjOBJ_BODY, "payload");
+  m->body_mass[payload] = 0;
+  std::fill_n(m->body_inertia + 3 * payload, 3, 0);
+  links_ = link_masses(m, arm_.state(), arm_.arm());
   m->body_mass[payload] = settings.payload_mass;
   std::fill_n(m->body_inertia + 3 * payload, 3, 0.4 * settings.payload_mass * kPayloadRadius * kPayloadRadius);
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "chimera/base/result.h"
+#include "library/mujoco/link_masses.h"
 #include "library/mujoco/simulated_arm.h"
 
 namespace chimera::library {
@@ -54,6 +55,9 @@ class PumaArm {
   PumaInput position() const noexcept;
   PumaInput velocity() const noexcept;
   const PumaVector& torque_limit() const noexcept { return torque_limit_; }
+  /// How the arm is built, base to flange; what its links weigh, without payload. Context: setup.
+  const DhChain& chain() const noexcept { return arm_.arm().chain; }
+  const std::array<LinkMass, kMostJoints>& links() const noexcept { return links_; }
   const ArmVector& lower_limit() const noexcept { return arm_.arm().low; }
   const ArmVector& upper_limit() const noexcept { return arm_.arm().high; }
 
@@ -74,6 +78,7 @@ class PumaArm {
 
   SimulatedArm arm_;
   PumaVector torque_limit_{};
+  std::array<LinkMass, kMostJoints> links_{};
 };
 
 }  // namespace chimera::library

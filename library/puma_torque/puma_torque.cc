@@ -22,6 +22,13 @@ struct PumaTorque {
   InConst<double> coulomb_share{"coulomb_share", "1", initial = 0.0, range(0, 1),
                                 doc = "Share of the published Coulomb friction."};
   OutConst<std::int32_t> ndof{"ndof", "1", doc = "Joints: 6."};
+  OutConst<library::DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to tip."};
+  OutConst<Pose> base{"base", "1", frame = "base", doc = "Frame 0."};
+  OutConst<Pose> tool{"tool", "1", frame = "last", doc = "The flange in frame ndof."};
+  OutConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]",
+                                      doc = "Mass and drive, a link a joint, base to tip; without payload."};
+  OutConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", frame = "joint", doc = "Lower joint limits."};
+  OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits."};
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
                              doc = "What the drives can give, either way; more is cut."};
   Resource model{"model", doc = "MJCF file; puma560.xml without a directory is built in."};
@@ -64,6 +71,12 @@ struct PumaTorque {
   void load() {
     check(arm_.load(model.c_str(), {.payload_mass = *payload_mass, .coulomb_share = *coulomb_share}));
     *ndof = static_cast<std::int32_t>(library::kPumaJoints);
+    std::copy_n(arm_.chain().dh.begin(), library::kPumaJoints, dh.begin());
+    *base = arm_.chain().base;
+    *tool = arm_.chain().tool;
+    std::copy_n(arm_.links().begin(), library::kPumaJoints, links.begin());
+    std::copy_n(arm_.lower_limit().begin(), library::kPumaJoints, q_min.begin());
+    std::copy_n(arm_.upper_limit().begin(), library::kPumaJoints, q_max.begin());
     std::ranges::copy(arm_.torque_limit(), tau_max.begin());
   }
   void publish() {

@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "chimera/task/rig.h"
+#include "library/kinematics/puma560.h"
+#include "library/kinematics/puma560_links.h"
 
 namespace chimera {
 namespace {
@@ -33,6 +35,30 @@ TEST_F(PumaTorqueTest, TellsItsJointsAndLimitsAtInit) {
   EXPECT_EQ(rig.get<std::int32_t>("ndof"), 6);
   EXPECT_EQ(rig.get<double>("tau_max", 0), 97.6);
   EXPECT_EQ(rig.get<double>("tau_max", 5), 21.3);
+}
+
+TEST_F(PumaTorqueTest, TellsHowItIsBuiltAndWhatItWeighsWithoutPayload) {
+  rig.set("payload_mass", 5.0);
+  start();
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto row = rig.get<library::DhLink>("dh", i), wanted = library::Puma560::kRows[i];
+    EXPECT_NEAR(row.a, wanted.a, 1e-12);
+    EXPECT_NEAR(row.alpha, wanted.alpha, 1e-12);
+    EXPECT_NEAR(row.d, wanted.d, 1e-12);
+    EXPECT_NEAR(row.theta, wanted.theta, 1e-12);
+    EXPECT_NEAR(rig.get<double>("q_min", i), library::Puma560::kLow[i], 1e-12);
+    EXPECT_NEAR(rig.get<double>("q_max", i), library::Puma560::kHigh[i], 1e-12);
+    const auto link = rig.get<library::LinkMass>("links", i), published = library::kPuma560Links[i];
+    EXPECT_NEAR(link.rotor, published.rotor, 1e-12);
+    EXPECT_NEAR(link.friction, published.friction, 1e-12);
+    EXPECT_NEAR(link.inertia[1], published.inertia[1], 1e-12);
+    if (i == 0) continue;  // of link 1 no more is published, and no more has an effect
+    EXPECT_NEAR(link.mass, published.mass, 1e-12);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(link.centre[c], published.centre[c], 1e-12);
+    for (std::size_t e = 0; e < 6; ++e) EXPECT_NEAR(link.inertia[e], published.inertia[e], 1e-12) << i << " " << e;
+  }
+  EXPECT_EQ(rig.get<Pose>("base").orientation[0], 1);
+  EXPECT_EQ(rig.get<Pose>("tool").orientation[0], 1);
 }
 
 TEST_F(PumaTorqueTest, PublishesItsStartPoseAtOn) {
