@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The `chimera` command: words of the command line to the commands of chimera/desk.
+#include <algorithm>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "apps/chimera/keep.h"
 #include "apps/chimera/run_command.h"
 #include "apps/chimera/shell_words.h"
+#include "chimera/config/nearest.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
 #include "chimera/desk/new.h"
@@ -127,10 +131,18 @@ int carry_out(CLI::App& app, Words& words) {
   return carry_out_run(words.run, workplace);
 }
 
-bool is_command(const CLI::App& app, const std::string& word) {
+std::vector<std::string> commands(const CLI::App& app) {
+  std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    if (command->get_name() == word) return true;
-  return false;
+    names.push_back(command->get_name());
+  return names;
+}
+
+int no_command(const std::string& word, const std::vector<std::string>& names) {
+  const std::string near = nearest(word, names);
+  const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
+  std::fprintf(stderr, "no command '%s'%s; `chimera --help` lists them\n", word.c_str(), hint.c_str());
+  return desk::kUsage;
 }
 
 }  // namespace
@@ -147,10 +159,9 @@ int main(int argc, char** argv) {
   add_test(app, words);
   add_new(app, words);
   words.shell = add_shell_commands(app);
-  if (argc > 1 && argv[1][0] != '-' && !is_command(app, argv[1])) {
-    std::fprintf(stderr, "no command '%s'; `chimera --help` lists them\n", argv[1]);
-    return desk::kUsage;
-  }
+  const std::vector<std::string> names = commands(app);
+  if (argc > 1 && argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end())
+    return no_command(argv[1], names);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
