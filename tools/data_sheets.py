@@ -13,6 +13,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 REQUIRED = ("Equation", "Ports", "Refused", "Execution time", "Source")
 HEAD = ("port", "kind", "type", "unit", "frame", "range", "initial", "what it is")
@@ -105,6 +106,17 @@ def check(name, text, descriptor):
             yield f"port {port['name']}: the code has no doc = \"...\""
 
 
+def pictures(folder, text):
+    """What is wrong with the pictures of a sheet: shown and not there, or there and not shown."""
+    shown = set(re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text))
+    for picture in sorted(shown):
+        if not (folder / picture).is_file():
+            yield f"there is no picture {picture}"
+    for picture in sorted(file.name for file in folder.glob("*.svg")):
+        if picture not in shown:
+            yield f"it does not show {picture}"
+
+
 def with_table(text, descriptor):
     lines = text.split("\n")
     for heading, start, end in sections(lines):
@@ -188,6 +200,12 @@ def planted():
     wrong = SHEET.replace("| m |", "| mm |")
     if with_table(wrong, DESCRIPTOR) != SHEET:
         yield "a table that is not right is not put right"
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "a.svg").touch()
+        if list(pictures(folder, "![a](a.svg)")) or list(pictures(folder, "![b](b.svg)")) != [
+                "there is no picture b.svg", "it does not show a.svg"]:
+            yield "a picture that is not there is not missed"
 
 
 def main():
@@ -213,7 +231,8 @@ def main():
         if (said.write or said.measure) and text:
             text = with_table(text, descriptor)
             sheet.write_text(text)
-        faults += [f"library/{name}/README.md: {fault}" for fault in check(name, text, descriptor)]
+        found = [*check(name, text, descriptor), *pictures(sheet.parent, text)]
+        faults += [f"library/{name}/README.md: {fault}" for fault in found]
     for fault in faults:
         print(fault)
     print(f"{judged} data sheets, {len(faults)} faults")

@@ -91,7 +91,8 @@ class Page {
     for (const Curve& curve : plot.curves)
       for (const PlotPoint& point : curve.points) times.take(point.at);
     for (const PlotGap& gap : plot.gaps) times.take(gap.from), times.take(gap.to);
-    times_ = times.is_empty() ? Span{0, 1} : times.low == times.high ? with_margin(times, 0) : times;
+    const Span nothing = plot.is_over_frequency ? Span{1, 10} : Span{0, 1};
+    times_ = times.is_empty() ? nothing : times.low == times.high ? with_margin(times, 0) : times;
   }
 
   std::string document() {
@@ -101,7 +102,11 @@ class Page {
   }
 
  private:
-  double x(double at) const { return kLeft + (at - times_.low) / (times_.high - times_.low) * kInner; }
+  double x(double at) const {
+    const double share = plot_.is_over_frequency ? std::log(at / times_.low) / std::log(times_.high / times_.low)
+                                                 : (at - times_.low) / (times_.high - times_.low);
+    return kLeft + share * kInner;
+  }
   static double y(const Panel& panel, double value) {
     const double share = (value - panel.values.low) / (panel.values.high - panel.values.low);
     return panel.top + kPanel * (1 - share);
@@ -167,11 +172,12 @@ class Page {
       line(kLeft, y(panel, value), kLeft + kInner, y(panel, value), value == 0 ? "zero" : "grid");
       words(kLeft - 7, y(panel, value) + 4, label(value), "mark", "end");
     }
-    for (const double at : axis_marks(times_.low, times_.high, 9)) {
+    const bool is_log = plot_.is_over_frequency;
+    for (const double at : is_log ? decade_marks(times_.low, times_.high) : axis_marks(times_.low, times_.high, 9)) {
       line(x(at), panel.top, x(at), bottom, "grid");
       if (with_times) words(x(at), bottom + 17, label(at), "mark", "middle");
     }
-    if (with_times) words(kLeft + kInner / 2, bottom + 36, "time [s]", "", "middle");
+    if (with_times) words(kLeft + kInner / 2, bottom + 36, is_log ? "frequency [Hz]" : "time [s]", "", "middle");
     const std::string middle = number(panel.top + kPanel / 2);
     const std::string text = panel.unit == "1" ? "[1]" : "[" + panel.unit + "]";
     body_ += "<text x=\"18\" y=\"" + middle + "\" text-anchor=\"middle\" transform=\"rotate(-90 18 " + middle + ")\">" +
@@ -260,6 +266,18 @@ std::vector<double> axis_marks(double low, double high, int wanted) {
   while (in_range(step) < 2) step /= 2;
   const double first = std::ceil(low / step - 1e-9), last = std::floor(high / step + 1e-9);
   for (double i = first; i <= last; ++i) marks.push_back(i == 0 ? 0 : i * step);
+  return marks;
+}
+
+std::vector<double> decade_marks(double low, double high) {
+  std::vector<double> marks;
+  if (!(low > 0 && low < high)) return marks;
+  const double slack = 1 + 1e-9;
+  for (auto power = static_cast<int>(std::floor(std::log10(low))); power <= std::log10(high) + 1; ++power)
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double at = factor * std::pow(10, power);
+      if (at * slack >= low && at <= high * slack) marks.push_back(at);
+    }
   return marks;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values over time as a picture: one panel for each unit, one below the other over the same time, a colour a channel.
+// Values over time or frequency as a picture: one panel for each unit, one below the other over the same axis, a colour
+// a channel.
 #pragma once
 
 #include <limits>
@@ -10,7 +11,7 @@
 namespace chimera::draw {
 
 struct PlotPoint {
-  double at = 0;     ///< s
+  double at = 0;     ///< s; over frequency Hz, above 0
   double value = 0;  ///< in the unit of the curve; not finite: the line ends here and starts again behind it
 };
 
@@ -35,11 +36,15 @@ struct Plot {
   /// A level drawn in the panel of `level_unit`, such as the trigger's.
   double level = std::numeric_limits<double>::quiet_NaN();
   std::string level_unit;
+  bool is_over_frequency = false;  ///< `at` is a frequency: its axis is logarithmic
 };
 
 /// Marks of an axis: round numbers (1, 2, 5 times a power of ten) that lie within [low, high], about `wanted` of them,
 /// at least 2 where low < high. Context: setup.
 std::vector<double> axis_marks(double low, double high, int wanted);
+
+/// Marks of a logarithmic axis: 1, 2 and 5 times the powers of ten within [low, high], 0 < low. Context: setup.
+std::vector<double> decade_marks(double low, double high);
 
 /// A whole SVG document. A curve with more points than the picture has columns shows the least and the greatest of each
 /// column, so that no peak is lost. Without any finite point the axes stand alone and say so. Context: setup.

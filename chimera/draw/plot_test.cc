@@ -50,6 +50,18 @@ TEST(Plot, MarksAreRoundNumbersWithinTheRange) {
     }
 }
 
+TEST(Plot, OverFrequencyEveryDecadeIsAsWide) {
+  EXPECT_EQ(decade_marks(1, 10), (std::vector<double>{1, 2, 5, 10}));
+  EXPECT_EQ(decade_marks(0.3, 30), (std::vector<double>{0.5, 1, 2, 5, 10, 20}));
+  EXPECT_TRUE(decade_marks(0, 10).empty());
+  Plot plot = plot_of({{"gain", "dB", {{1, 0}, {10, -20}, {100, -40}}}});
+  plot.is_over_frequency = true;
+  const std::string picture = svg(plot);
+  EXPECT_EQ(count(picture, "frequency [Hz]"), 1u);
+  EXPECT_EQ(count(picture, "time [s]"), 0u);
+  EXPECT_EQ(first_path(picture), "M78,89.25 L508,183 L938,276.75");  // a straight line falls 20 dB a decade
+}
+
 TEST(Plot, OnePanelForEachUnitOverTheSameTime) {
   const Plot plot = plot_of({wave("q[0]", "rad", 50), wave("tau", "N.m", 50), wave("q[1]", "rad", 50)});
   const std::string picture = svg(plot);

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each picture response.svg of a signal component is what the component answers today. UPDATE=1 draws them anew: look
+// Each picture response.svg or frequency.svg of a component is what it answers today. UPDATE=1 draws them anew: look
 // at them before they are committed.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <cstdlib>
 #include <fstream>
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "chimera/draw/plot.h"
+#include "chimera/task/geometry.h"
 #include "library/signals/signal_rig.h"
 
 namespace chimera {
@@ -19,9 +22,10 @@ namespace {
 using draw::Curve;
 using draw::Plot;
 
-void compare(const std::string& component, const Plot& plot) {
+void compare(const std::string& component, const Plot& plot, const std::string& name = "response") {
   const char* source = std::getenv("CHIMERA_SOURCE");
-  const std::string path = std::string(source != nullptr ? source : ".") + "/library/" + component + "/response.svg";
+  const std::string root = source != nullptr ? source : ".";
+  const std::string path = root + "/library/" + component + "/" + name + ".svg";
   const std::string drawn = draw::svg(plot);
   if (std::getenv("UPDATE") != nullptr) std::ofstream(path) << drawn;
   std::ostringstream committed;
@@ -37,6 +41,60 @@ Curve step_of(SignalRig& rig, const std::string& name, double until) {
   EXPECT_TRUE(rig.on());
   for (double t = 0; t < until; t += 1e-3) curve.points.push_back({t, rig.step(t < 0.0095 ? 0 : 1)});
   return curve;
+}
+
+/// Gain in dB and phase in degrees at 1 kHz, from what the filter answers to a single 1: exact, because it is linear.
+struct Bode {
+  Curve gain, phase;
+
+  Bode(SignalRig& rig, const std::string& name, double from, double to)
+      : gain{name, "dB", {}}, phase{name + " ", "degrees", {}} {
+    constexpr int kAnswer = 6000, kFrequencies = 400;
+    rig.set("x", 0.0);
+    EXPECT_TRUE(rig.init());
+    EXPECT_TRUE(rig.on());
+    std::vector<double> answer;
+    for (int i = 0; i < kAnswer; ++i) answer.push_back(rig.step(i == 0 ? 1 : 0));
+    double before = 0;
+    for (int f = 0; f <= kFrequencies; ++f) {
+      const double hz = from * std::pow(to / from, f / static_cast<double>(kFrequencies));
+      const std::complex<double> step = std::polar(1.0, -2 * std::numbers::pi * hz * 1e-3);
+      std::complex<double> sum = 0;
+      for (std::size_t i = answer.size(); i-- > 0;) sum = sum * step + answer[i];
+      const double decibels = 20 * std::log10(std::abs(sum));
+      double degrees = std::arg(sum) * 180 / std::numbers::pi;
+      while (degrees - before > 180) degrees -= 360;
+      while (degrees - before < -180) degrees += 360;
+      before = degrees;
+      const bool is_seen = decibels > -100;
+      gain.points.push_back({hz, is_seen ? decibels : std::nan("")});
+      phase.points.push_back({hz, is_seen ? degrees : std::nan("")});
+    }
+  }
+};
+
+TEST(Responses, LowpassOverFrequency) {
+  Plot plot{.title = "lowpass: gain and phase", .note = "cutoff 20 Hz at 1 kHz; the dashed line is the cutoff, -3 dB",
+            .curves = {}, .gaps = {}, .mark = 20, .level = -3.0103, .level_unit = "dB", .is_over_frequency = true};
+  for (const std::int32_t order : {1, 2, 4, 8}) {
+    SignalRig rig("lowpass");
+    rig.set("cutoff", 20.0), rig.set("order", order);
+    const Bode bode(rig, "order " + std::to_string(order), 1, 400);
+    plot.curves.push_back(bode.gain), plot.curves.push_back(bode.phase);
+  }
+  compare("lowpass", plot, "frequency");
+}
+
+TEST(Responses, NotchOverFrequency) {
+  Plot plot{.title = "notch: gain and phase", .note = "center 50 Hz at 1 kHz, three widths", .curves = {}, .gaps = {},
+            .mark = 50, .level = -3.0103, .level_unit = "dB", .is_over_frequency = true};
+  for (const double width : {2.0, 10.0, 50.0}) {
+    SignalRig rig("notch");
+    rig.set("center", 50.0), rig.set("width", width);
+    const Bode bode(rig, "width " + std::to_string(static_cast<int>(width)) + " Hz", 5, 480);
+    plot.curves.push_back(bode.gain), plot.curves.push_back(bode.phase);
+  }
+  compare("notch", plot, "frequency");
 }
 
 TEST(Responses, LowpassToAStep) {
@@ -89,6 +147,66 @@ TEST(Responses, DeadbandAndRateLimitToASine) {
                         .note = is_deadband ? "width 0.3" : "rise 2 /s, fall 6 /s", .curves = {in, out}, .gaps = {},
                         .mark = {}, .level_unit = {}});
   }
+}
+
+TEST(Responses, LimitToASine) {
+  SignalRig rig("limit");
+  rig.set("low", -0.4), rig.set("high", 0.8), rig.set("x", 0.0);
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  Curve in{"x", "1", {}}, out{"y", "1", {}};
+  for (double t = 0; t < 2; t += 5e-3) {
+    const double x = std::sin(2 * std::numbers::pi * t);
+    in.points.push_back({t, x});
+    out.points.push_back({t, rig.step(x, milliseconds(5))});
+  }
+  compare("limit", {.title = "limit: a sine of 1 Hz", .note = "low -0.4, high 0.8", .curves = {in, out}, .gaps = {},
+                    .mark = {}, .level_unit = {}});
+}
+
+TEST(Responses, SignalGeneratorInItsSevenWaves) {
+  Plot plot{.title = "signal_generator: its seven waves",
+            .note = "1 Hz, amplitude 1; the chirp from 1 Hz to 5 Hz in 3 s; delay 0.25 s",
+            .curves = {}, .gaps = {}, .mark = {}, .level_unit = {}};
+  constexpr const char* kWaves[] = {"sine", "triangle", "square", "sawtooth", "chirp", "step", "noise"};
+  for (int i = 0; i < 7; ++i) {
+    SignalRig rig("signal_generator");
+    rig.set("wave", Text<16>(kWaves[i]));
+    rig.set("amplitude", 1.0), rig.set("delay", 0.25), rig.set("end_frequency", 5.0), rig.set("duration", 3.0);
+    ASSERT_TRUE(rig.init());
+    ASSERT_TRUE(rig.on());
+    // Two and two to a panel: seven over each other could not be told apart.
+    Curve curve{kWaves[i], std::string("1") + std::string(static_cast<std::size_t>(i / 2), ' '), {}};
+    for (double t = 0; t < 3; t += 5e-3) {
+      curve.points.push_back({t, rig.get<double>("y")});
+      ASSERT_TRUE(rig.cycle(milliseconds(5)));
+    }
+    plot.curves.push_back(curve);
+  }
+  compare("signal_generator", plot);
+}
+
+TEST(Responses, CinterpToAStepOfItsGoal) {
+  Rig rig("cinterp");
+  const Pose here{{0.5, 0, 0.3}, {1, 0, 0, 0}}, there{{0.5, 0.2, 0.4}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}};
+  rig.set("xm", here), rig.set("xd", here), rig.set("leash", 10.0);
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  Curve y{"y", "m", {}}, z{"z", "m", {}}, wanted_y{"y wanted", "m", {}}, wanted_z{"z wanted", "m", {}};
+  Curve turn{"turn", "rad", {}}, wanted{"turn wanted", "rad", {}};
+  for (int i = 0; i < 2500; ++i) {
+    const double t = i * 1e-3;
+    const Pose goal = i < 100 ? here : there;
+    rig.set("xd", goal);
+    ASSERT_TRUE(rig.cycle());
+    const Pose xr = rig.get<Pose>("xr");
+    y.points.push_back({t, xr.position[1]}), wanted_y.points.push_back({t, goal.position[1]});
+    z.points.push_back({t, xr.position[2]}), wanted_z.points.push_back({t, goal.position[2]});
+    turn.points.push_back({t, 2 * std::atan2(xr.orientation[3], xr.orientation[0])});
+    wanted.points.push_back({t, 2 * std::atan2(goal.orientation[3], goal.orientation[0])});
+  }
+  compare("cinterp", {.title = "cinterp: another goal at 0.1 s", .note = "gain 10 /s, at most 0.5 m/s and 1 rad/s",
+                      .curves = {y, wanted_y, z, wanted_z, turn, wanted}, .gaps = {}, .mark = {}, .level_unit = {}});
 }
 
 TEST(Responses, JointTrajectoryInItsThreeProfiles) {
