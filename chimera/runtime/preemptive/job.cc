@@ -60,7 +60,7 @@ bool PreemptiveExecutor::release(JobThread& me, Nanoseconds now) noexcept {
     prepare(me, {me.task, me.served->taken, kNever});
     return true;
   }
-  const std::int64_t passed = (now - me.next) / s.period;
+  const std::int64_t passed = (newest_instant(now) - me.next) / s.period;
   const Nanoseconds release = me.next + s.period * passed;
   if (passed > 0) releases_.drop({me.task, release - s.period, static_cast<std::uint32_t>(passed)});
   if (releases_.has_lost_patience()) {

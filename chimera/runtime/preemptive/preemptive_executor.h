@@ -146,6 +146,8 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void arm(Nanoseconds instant) noexcept;
   Urgency urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept;
   Nanoseconds used(const JobThread& job) const noexcept;
+  /// Releases of this run come up to here: at its end and later there is none.
+  Nanoseconds newest_instant(Nanoseconds now) const noexcept { return std::min(now, until_ - Nanoseconds{1}); }
   Nanoseconds next_quantum(Nanoseconds now) const noexcept;
   static bool acts_at_once(OnMiss reaction) noexcept;
   void enter() noexcept {

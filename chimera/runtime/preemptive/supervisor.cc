@@ -226,8 +226,8 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
   if (s.on_miss == OnMiss::kAbort && now >= job.job.deadline) {
     releases_.expire_waiting(job.job);
     cancel(job, now);
-  } else if (now >= job.next) {
-    const std::int64_t passed = (now - job.next) / s.period;
+  } else if (now >= job.next && job.next < until_) {
+    const std::int64_t passed = (newest_instant(now) - job.next) / s.period;
     const Nanoseconds release = job.next + s.period * passed;
     releases_.drop({job.task, release - s.period, static_cast<std::uint32_t>(passed + 1)});
     job.job = {job.task, release, release + s.deadline};
@@ -242,7 +242,8 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
   }
   if (job.phase == JobPhase::kCancelled) return;
   job.phase = JobPhase::kWaiting;
-  job.check = now < job.job.deadline ? std::min(job.next, job.job.deadline) : job.next;
+  const Nanoseconds next = job.next < until_ ? job.next : kNever;
+  job.check = now < job.job.deadline ? std::min(next, job.job.deadline) : next;
 }
 
 void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept {
