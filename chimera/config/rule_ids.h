@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 73> kRules = {
+inline constexpr std::array<std::string_view, 74> kRules = {
     // the text
     "file-unreadable", "text-size", "text-encoding", "text-tab", "text-entries", "text-nesting", "value-size",
     "yaml-syntax", "yaml-anchor", "yaml-alias", "yaml-tag", "yaml-documents", "yaml-block-scalar", "yaml-key",
@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, 73> kRules = {
     // processors
     "rtpu-unknown", "rtpu-band",
     // spares, servers, sets
-    "standby-unknown", "standby-outputs", "standby-in-configuration", "server-periodic",
+    "standby-unknown", "standby-outputs", "standby-in-configuration", "server-periodic", "server-key",
     "configuration-unknown", "task-unknown", "configuration-empty", "configuration-task-twice",
     // warnings
     "unused", "standby-same-rtpu",

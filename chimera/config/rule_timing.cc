@@ -22,6 +22,11 @@ std::string say(Nanoseconds t) {
 
 void read_rate(Model& model, TaskModel& task) {
   const DraftTask& draft = *task.draft;
+  if (draft.server && draft.server->period.value.count > 0) {
+    task.period = draft.server->period.value;
+    task.rate_hz = 1e9 / static_cast<double>(task.period->count);
+    return;
+  }
   if (draft.rate) {
     task.period = draft.rate->value.period;
     task.rate_hz = draft.rate->value.hz;
@@ -56,6 +61,11 @@ void check_time(Model& model, const TaskModel& task, const char* key, const std:
   }
 }
 
+template <class Key>
+std::optional<Place> place_of(const std::optional<Key>& key) {
+  return key ? std::optional(key->at) : std::nullopt;
+}
+
 void check_server(Model& model, const TaskModel& task) {
   const auto& server = task.draft->server;
   if (!server) return;
@@ -66,6 +76,18 @@ void check_server(Model& model, const TaskModel& task) {
     model.error("server-periodic", server->at,
                 "task '" + task.name() + "' has a server, and component '" + task.component->name + "' is periodic",
                 task.component->name, "an aperiodic component", {}, "take 'server' out, or write a method sync");
+  const DraftTask& draft = *task.draft;
+  const std::pair<const char*, std::optional<Place>> of_releases[] = {
+      {"rate", place_of(draft.rate)}, {"deadline", place_of(draft.deadline)}, {"offset", place_of(draft.offset)},
+      {"min", place_of(draft.min_time)}, {"on_miss", place_of(draft.on_miss)},
+      {"max_consecutive", place_of(draft.max_consecutive)}, {"tolerate", place_of(draft.tolerate)}};
+  for (const auto& [key, at] : of_releases) {
+    if (!at) continue;
+    model.error("server-key", *at,
+                "task '" + task.name() + "' has a server, and '" + key +
+                    "' speaks of releases: it is released by events",
+                key, {}, {}, "take '" + std::string(key) + "' out; the server has the capacity and the period");
+  }
 }
 
 void check_task(Model& model, TaskModel& task) {
@@ -87,8 +109,19 @@ void check_task(Model& model, TaskModel& task) {
   task.criticality = draft.criticality ? draft.criticality->value : 0;
 }
 
+/// Of each period; behind a server its capacity, when that can be.
+Nanoseconds time_of(const TaskModel& task) {
+  const auto& server = task.draft->server;
+  if (!server) return task.budget;
+  return server->capacity.value <= server->period.value ? server->capacity.value : Nanoseconds{};
+}
+
+Place place_of_time(const TaskModel& task) {
+  return task.draft->server ? task.draft->server->capacity.at : task.draft->budget->at;
+}
+
 double load(const TaskModel& task) {
-  return task.period ? static_cast<double>(task.budget.count) / static_cast<double>(task.period->count) : 0;
+  return task.period ? static_cast<double>(time_of(task).count) / static_cast<double>(task.period->count) : 0;
 }
 
 /// Work that finds no time is gone at its deadline, by the task's own word.
@@ -97,10 +130,21 @@ bool gives_way(const TaskModel& task) {
 }
 
 void warn_of_overload(Model& model, const SetModel& set, const TaskModel& task, std::uint32_t cpu, const char* sum) {
-  model.warn("utilisation", task.draft->budget->at,
+  model.warn("utilisation", place_of_time(task),
              "the budgets of configuration '" + set.name + "' take " + sum + " of CPU " + std::to_string(cpu) +
                  ", more than 0.93: every task says 'on_miss: abort', so what finds no time ends at its deadline",
              "run it in virtual time");
+}
+
+/// A load that the task could have.
+std::string what_fits(const TaskModel& task, double load) {
+  const Nanoseconds time{static_cast<std::int64_t>(load * static_cast<double>(task.period->count))};
+  const double period_ns = static_cast<double>(time_of(task).count) / load;
+  if (task.draft->server)
+    return "capacity: " + say(time) + " or period: " + say(Nanoseconds{std::llround(std::ceil(period_ns))});
+  char room[64];
+  std::snprintf(room, sizeof room, "%.1f", 1e9 / period_ns);
+  return "budget: " + say(time) + " or rate: " + room + " Hz";
 }
 
 void limit(Model& model, const SetModel& set, std::uint32_t cpu) {
@@ -116,20 +160,16 @@ void limit(Model& model, const SetModel& set, std::uint32_t cpu) {
   }
   if (sum <= kMaxUtilisation) return;
   const TaskModel& task = model.tasks[heaviest];
-  char found[64], room[64];
+  char found[64];
   std::snprintf(found, sizeof found, "%.3f", sum);
   if (all_give_way) return warn_of_overload(model, set, task, cpu, found);
   const double fits = kMaxUtilisation - (sum - load(task));
-  std::snprintf(room, sizeof room, "%.1f", fits > 0 ? 1.0 / (static_cast<double>(task.budget.count) * 1e-9 / fits) : 0);
-  model.error("utilisation", task.draft->budget->at,
+  model.error("utilisation", place_of_time(task),
               "the budgets of configuration '" + set.name + "' take " + found + " of CPU " + std::to_string(cpu) +
                   "; expected at most 0.93",
               found, "at most 0.93", {},
-              fits > 0
-                  ? "task '" + task.name() + "' takes most: it would fit with budget: " +
-                        say(Nanoseconds{static_cast<std::int64_t>(fits * static_cast<double>(task.period->count))}) +
-                        " or rate: " + room + " Hz"
-                  : "move tasks to another CPU, or lower their rates");
+              fits > 0 ? "task '" + task.name() + "' takes most: it would fit with " + what_fits(task, fits)
+                       : "move tasks to another CPU, or lower their rates");
 }
 
 }  // namespace

@@ -17,16 +17,19 @@ struct Counter {
   const char* key;
   std::uint64_t Profile::* count;
 };
-constexpr std::array<Counter, 10> kCounters = {{{"missed", &Profile::missed},
-                                               {"overrun", &Profile::overrun},
-                                               {"min_refused", &Profile::min_refused},
-                                               {"dropped", &Profile::dropped},
-                                               {"held", &Profile::held},
-                                               {"aborted", &Profile::aborted},
-                                               {"stale", &Profile::stale},
-                                               {"rejected", &Profile::rejected},
+constexpr std::array<Counter, 13> kCounters = {{{"missed", &Profile::missed},
+                                                {"overrun", &Profile::overrun},
+                                                {"min_refused", &Profile::min_refused},
+                                                {"dropped", &Profile::dropped},
+                                                {"held", &Profile::held},
+                                                {"aborted", &Profile::aborted},
+                                                {"stale", &Profile::stale},
+                                                {"rejected", &Profile::rejected},
                                                 {"preempted", &Profile::preempted},
-                                                {"demoted", &Profile::demoted}}};
+                                                {"demoted", &Profile::demoted},
+                                                {"events", &Profile::events},
+                                                {"events_lost", &Profile::events_lost},
+                                                {"exhausted", &Profile::exhausted}}};
 
 std::string number(std::uint64_t n) { return std::to_string(n); }
 

@@ -30,12 +30,14 @@ class Refusals {
     refuse(at, "'" + std::string(key) + "' of task '" + task.name.text + "'", "take it out to run");
   }
 
+  bool is_virtual() const { return executor_ == Executor::kVirtual || executor_ == Executor::kPreemptiveVirtual; }
+
   void rtpu(std::size_t index) {
     const RtpuSpec& spec = configuration_.rtpus()[index];
-    if (executor_ != Executor::kVirtual && spec.policy == Policy::kLlf)
+    if (!is_virtual() && spec.policy == Policy::kLlf)
       refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time",
              "use muf-laxity, or run --virtual");
-    if (executor_ != Executor::kVirtual && configuration_.utilisation()[index] > kMaxUtilisation)
+    if (!is_virtual() && configuration_.utilisation()[index] > kMaxUtilisation)
       refuse(configuration_.tasks()[0].at, "budgets above 0.93 of a CPU in real time", "run --virtual");
     if (executor_ == Executor::kProcesses) return;
     if (executor_ == Executor::kOneProcess) return one_loop(index);
@@ -70,16 +72,25 @@ class Refusals {
                                    : "run without --virtual and --isolation none, or use another reaction");
   }
 
+  // A job behind a server is taken off the processor when the capacity is used up: one loop cannot do that.
+  void server(const DraftTask& task, bool is_preemptive) {
+    if (!task.server || executor_ == Executor::kPreemptiveVirtual) return;
+    if (is_preemptive && executor_ != Executor::kOneProcess) return;
+    std::string remedy = executor_ == Executor::kVirtual ? "run --virtual --preemptive, or give" : "give";
+    if (executor_ == Executor::kOneProcess) remedy = "run without --isolation none, and give";
+    refuse(task.server->at, "'server' of task '" + task.name.text + "'", remedy + " its rtpu 'executor: preemptive'");
+  }
+
   void judge(const DraftTask& task) {
     const auto tasks = configuration_.tasks();
     const auto here = std::find_if(tasks.begin(), tasks.end(),
                                    [&](const ConfiguredTask& t) { return t.name == task.name.text; });
-    const bool has_thread = executor_ == Executor::kProcesses && here != tasks.end() &&
-                            configuration_.rtpus()[here->rtpu].preemptive;
+    const bool is_preemptive = here != tasks.end() && configuration_.rtpus()[here->rtpu].preemptive;
+    const bool has_thread = executor_ == Executor::kProcesses && is_preemptive;
     reaction(task.on_miss, "on_miss", task, has_thread);
     reaction(task.on_overrun, "on_overrun", task, has_thread);
     if (task.on_fault && task.on_fault->kind != OnFault::kError) refuse_key(task.on_fault->at, "on_fault", task);
-    if (task.server) refuse_key(task.server->at, "server", task);
+    server(task, is_preemptive);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
     for (const NamedNode& step : task.max_step) refuse_key(step.name.at, "max_step", task);

@@ -25,7 +25,11 @@ struct Seldom {
   const char* name;
   std::uint64_t Profile::* count;
 };
-constexpr Seldom kSeldom[] = {{"preempted", &Profile::preempted}, {"demoted", &Profile::demoted}};
+constexpr Seldom kSeldom[] = {{"preempted", &Profile::preempted},
+                              {"demoted", &Profile::demoted},
+                              {"events", &Profile::events},
+                              {"events lost", &Profile::events_lost},
+                              {"times out of capacity", &Profile::exhausted}};
 
 /// "pid: 12 preempted, 1 demoted", or nothing.
 std::string seldom_line(const TaskProfile& task) {

@@ -19,8 +19,8 @@ std::vector<TaskProfile> profiles_of(const TaskSet& tasks, std::span<const State
                                      const Configuration& configuration);
 
 /// One line a task: state, cycles, execution time of cycle (mean, max), load, response, start jitter, failures; then a
-/// line for every task that was preempted or demoted, and one for every task with a fault. `ran` is the time that the
-/// loads refer to; faults are timed from `origin`. Context: setup.
+/// line for every task that was preempted or demoted or had events, and one for every task with a fault. `ran` is the
+/// time that the loads refer to; faults are timed from `origin`. Context: setup.
 std::string profile_table(std::span<const TaskProfile> tasks, Nanoseconds ran, Nanoseconds origin);
 
 }  // namespace chimera::desk

@@ -18,7 +18,7 @@ namespace {
 constexpr double kUsualRealtimeShare = 0.95;
 
 Executor executor_of(const RunRequest& request) {
-  if (request.virtual_time) return Executor::kVirtual;
+  if (request.virtual_time) return request.preemptive ? Executor::kPreemptiveVirtual : Executor::kVirtual;
   return request.one_process ? Executor::kOneProcess : Executor::kProcesses;
 }
 

@@ -128,6 +128,9 @@ Json task_json(const World& world, TaskId task, Nanoseconds at) {
           {"rejected", p.rejected},
           {"preempted", p.preempted},
           {"demoted", p.demoted},
+          {"events", p.events},
+          {"events_lost", p.events_lost},
+          {"exhausted", p.exhausted},
           {"fault", or_null(fault_text(world, task))},
           {"faults", fault.count},
           {"inputs", world.configuration ? inputs_json(world, task, at) : Json::array()}};

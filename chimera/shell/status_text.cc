@@ -76,7 +76,8 @@ std::string load_text(const Json& task) {
 /// The counters of a table of tasks: some only where they say something.
 std::vector<std::string> counters_of(const Json& answer) {
   std::vector<std::string> keys = {"missed", "overrun", "dropped", "stale", "rejected"};
-  for (const char* key : {"min_refused", "held", "aborted", "preempted", "demoted"})
+  for (const char* key :
+       {"min_refused", "held", "aborted", "preempted", "demoted", "events", "events_lost", "exhausted"})
     for (const Json& task : field(answer, "tasks"))
       if (whole_of(task, key) > 0) {
         keys.emplace_back(key);

@@ -44,7 +44,8 @@ void add_recent(Row& row, const Json& task, const Json& before, double seconds) 
       whole_of(task, "incarnation") != whole_of(before, "incarnation"))
     return;
   row.has_missed_since = row.missed > whole_of(before, "missed") ||
-                         whole_of(task, "demoted") > whole_of(before, "demoted");
+                         whole_of(task, "demoted") > whole_of(before, "demoted") ||
+                         whole_of(task, "events_lost") > whole_of(before, "events_lost");
   row.rate_hz = static_cast<double>(cycles - earlier) / seconds;
   if (cycles == earlier) return;
   const double sum = static_cast<double>(row.mean_ns) * static_cast<double>(cycles) -
