@@ -14,15 +14,34 @@ struct Ginvkin : library::DhPorts {
                       doc = "Joint positions for xr, near the last ones."};
   Out<double> residual{"residual", "1", initial = 0.0,
                        doc = "What is missing: the larger of metres and radians; large when xr is out of reach."};
+  Out<bool> is_reachable{"is_reachable", "1", initial = true,
+                         doc = "The residual is within tolerance; false: xr is out of reach, or beyond a joint limit."};
   InConst<double> tolerance{"tolerance", "1", initial = 1e-6, range(1e-9, 0.1), doc = "Metres and radians."};
+  InConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", initial = -1e6, frame = "joint",
+                          doc = "Lower joint limits; -1e6 for none."};
+  InConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", initial = 1e6, frame = "joint",
+                          doc = "Upper joint limits; 1e6 for none."};
 
-  void init() { read_chain(); }
-  void reinit() { read_chain(); }
+  Outcome init() {
+    read_chain();
+    for (std::size_t i = 0; i < q_min.size(); ++i) {
+      if (!(q_min[i] <= q_max[i])) return fault("a joint limit is not a number, or q_min is above q_max");
+      search_.limits.low[i] = q_min[i];
+      search_.limits.high[i] = q_max[i];
+    }
+    return ok();
+  }
+  Outcome reinit() {
+    const Outcome outcome = init();
+    cut();
+    return outcome;
+  }
   Outcome on() {
     for (std::size_t i = 0; i < q.size(); ++i) {
       if (!std::isfinite(q[i])) return fault("q is not finite: the search cannot begin there");
       q_ref[i] = q[i];
     }
+    cut();
     return ok();
   }
   Outcome cycle(Cycle c) {
@@ -30,13 +49,17 @@ struct Ginvkin : library::DhPorts {
     if (!is_pose(*xr)) return fault("xr is not finite or no orientation");
     std::array<double, library::kMostJoints> q_found{};
     std::copy_n(q_ref.begin(), q_ref.size(), q_found.begin());
-    search_.solve(arm_, library::frame_of(*xr), {q_found.data(), q_ref.size()}, *tolerance);
+    *is_reachable = search_.solve(arm_, library::frame_of(*xr), {q_found.data(), q_ref.size()}, *tolerance);
     *residual = search_.residual();
     std::copy_n(q_found.begin(), q_ref.size(), q_ref.begin());
     return ok();
   }
 
  private:
+  void cut() {
+    for (std::size_t i = 0; i < q_ref.size(); ++i) q_ref[i] = search_.limits.cut(i, q_ref[i]);
+  }
+
   library::PoseSearch search_;
 };
 

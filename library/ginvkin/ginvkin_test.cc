@@ -85,6 +85,62 @@ TEST_F(GinvkinTest, MovesAnArmOfThreeJointsAsNearAsItCan) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(three.get<double>("q_ref", i), goal[i], 1e-5);
 }
 
+TEST_F(GinvkinTest, StaysWithinItsLimitsSaysSoAndComesBack) {
+  rig.set("q_max", kBent[1] + 0.1, 1);
+  ASSERT_TRUE(rig.reinit());
+  Puma560::Vector goal = kBent;
+  goal[1] += 0.3;
+  want(Puma560::forward(goal));
+  for (int step = 0; step < 200; ++step) {
+    ASSERT_TRUE(rig.cycle());
+    ASSERT_LE(rig.six("q_ref")[1], kBent[1] + 0.1);
+  }
+  EXPECT_FALSE(rig.get<bool>("is_reachable"));
+  EXPECT_GT(rig.get<double>("residual"), 0.01);
+  EXPECT_NEAR(rig.get<double>("residual"), apart(reached(), Puma560::forward(goal)), 1e-12);
+  want(Puma560::forward(kBent));
+  for (int step = 0; step < 50; ++step) ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(rig.get<bool>("is_reachable"));
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], kBent[i], 1e-5);
+}
+
+TEST_F(GinvkinTest, NarrowerLimitsCutTheReferenceAtOnce) {
+  rig.set("q_max", kBent[1] - 0.05, 1);
+  ASSERT_TRUE(rig.reinit());
+  EXPECT_EQ(rig.six("q_ref")[1], kBent[1] - 0.05);
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.six("q_ref")[1], kBent[1] - 0.05);
+}
+
+TEST_F(GinvkinTest, JointsToSpareDoWhatALimitKeepsAnotherFrom) {
+  ArmRig four("ginvkin");
+  four.set("ndof", std::int32_t{4});
+  DhChain chain;
+  chain.ndof = 4;
+  const std::array<double, 4> begin{0.5, 0.4, 0.4, 0.4}, goal{0.7, 0.6, 0.2, 0.5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    four.set("dh", chain.dh[i] = DhLink{0.3, 0, 0, 0}, i);
+    four.set("q", begin[i], i);
+    four.set("q_min", i == 1 ? 0.4 : -3.0, i);
+    four.set("q_max", i == 1 ? 0.4 : 3.0, i);
+  }
+  ASSERT_TRUE(four.init());
+  ASSERT_TRUE(four.on());
+  four.set("xr", pose_of(tool_frame(chain, goal)));
+  for (int step = 0; step < 200; ++step) ASSERT_TRUE(four.cycle());
+  EXPECT_TRUE(four.get<bool>("is_reachable"));
+  EXPECT_LT(four.get<double>("residual"), 1e-6);
+  EXPECT_EQ(four.get<double>("q_ref", 1), 0.4);
+}
+
+TEST_F(GinvkinTest, RefusesLimitsThatAreNone) {
+  rig.set("q_min", 1.0, 3);
+  rig.set("q_max", 0.5, 3);
+  EXPECT_EQ(rig.init().text, "a joint limit is not a number, or q_min is above q_max");
+  rig.set("q_max", kNotANumber, 3);
+  EXPECT_EQ(rig.reinit().text, "a joint limit is not a number, or q_min is above q_max");
+}
+
 TEST_F(GinvkinTest, RefusesWhatIsNotFiniteAndGoesOnAfterIt) {
   rig.set("xr", Pose{{0, kNotANumber, 0}, {1, 0, 0, 0}});
   EXPECT_EQ(rig.refusal(), "xr is not finite or no orientation");

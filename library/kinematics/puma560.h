@@ -59,8 +59,9 @@ struct Puma560 {
   }
 
   /// All joint positions that bring the flange to `wanted`, up to eight: arm left or right, elbow up or down, wrist
-  /// turned over or not. Where the arm is singular two and two are the same. Where the wrist is stretched (q5 = 0) only
-  /// q4 + q6 is determined: q4 is that of `near`.
+  /// turned over or not. Where the arm is singular two and two are the same. Where the wrist is stretched
+  /// or folded back (q5 = 0 or pi) only the sum or difference of q4 and q6 is determined: q4 is that of `near`, within
+  /// its limits.
   struct Solutions {
     std::array<Vector, 8> q{};
     std::size_t count = 0;
@@ -96,7 +97,8 @@ struct Puma560 {
 
  private:
   static constexpr double kRounding = 1e-12;   // so that a stretched arm is still within reach
-  static constexpr double kStretched = 1e-7;  // rad of q5: what rounding makes of 0 where the elbow is stretched too
+  // What rounding makes of a q5 of 0 (rad): more where the elbow is nearly stretched too, and its angle uncertain.
+  static constexpr double kStretched = 4e-10, kDoublyStretched = 1e-7;
 
   /// Frame 3: the axes that the wrist turns in.
   static Frame forearm_frame(double c1, double s1, double c23, double s23) noexcept {
@@ -111,24 +113,24 @@ struct Puma560 {
       const double q3 = sign * std::acos(std::clamp(cosine, -1.0, 1.0)) - bend;
       const double along = a2 + a3 * std::cos(q3) - d4 * std::sin(q3), across = a3 * std::sin(q3) + d4 * std::cos(q3);
       const double q2 = std::atan2(up, out) - std::atan2(across, along);
-      add_wrists(wanted, near, {q1, q2, q3}, found);
+      const double elbow = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+      const double stretched = std::clamp(kRounding / (100 * elbow), kStretched, kDoublyStretched);
+      add_wrists(wanted, near, {q1, q2, q3}, stretched, found);
     }
   }
   static void add_wrists(const Frame& wanted, std::span<const double, kJoints> near, const Triple& arm,
-                         Solutions& found) noexcept {
+                         double stretched, Solutions& found) noexcept {
     const Frame forearm = forearm_frame(std::cos(arm[0]), std::sin(arm[0]), std::cos(arm[1] + arm[2]),
                                         std::sin(arm[1] + arm[2]));
     const Triple x = forearm.seen(wanted.x), y = forearm.seen(wanted.y), z = forearm.seen(wanted.z);
     const double s5 = std::hypot(z[0], z[1]);
     for (const double sign : {1.0, -1.0}) {
-      Vector q{arm[0], arm[1], arm[2], near[3], std::atan2(sign * s5, z[2]), 0};
-      if (s5 > kStretched) {
-        q[3] = std::atan2(-sign * z[1], -sign * z[0]);
-        q[5] = std::atan2(-sign * y[2], sign * x[2]);
-      } else {
-        q[5] = std::atan2(x[1], x[0]) - q[3];
-      }
-      found.q[found.count++] = q;
+      const bool is_told = s5 > stretched;
+      const double q4 = is_told ? std::atan2(-sign * z[1], -sign * z[0]) : std::clamp(near[3], kLow[3], kHigh[3]);
+      const double c4 = std::cos(q4), s4 = std::sin(q4);
+      // What is left of x and y across the axis of joint 5: right for whatever q4 rounding has made.
+      const double q6 = std::atan2(c4 * x[1] - s4 * x[0], c4 * y[1] - s4 * y[0]);
+      found.q[found.count++] = {arm[0], arm[1], arm[2], q4, std::atan2(sign * s5, z[2]), q6};
     }
   }
   /// Turns each angle by whole turns to where it is within its limits and nearest; how far the farthest joint then is,

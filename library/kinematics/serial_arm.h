@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "library/kinematics/dh_of_axes.h"
@@ -170,15 +171,28 @@ class DampedInverse {
   double manipulability_ = 0;
 };
 
-/// Joint positions for a tool pose, from those nearby: Newton's method with a DampedInverse.
+/// How far each joint may turn (rad); by itself as far as it likes.
+struct JointLimits {
+  std::array<double, kMostJoints> low, high;
+  JointLimits() noexcept {
+    low.fill(-std::numeric_limits<double>::infinity());
+    high.fill(std::numeric_limits<double>::infinity());
+  }
+  double cut(std::size_t joint, double angle) const noexcept { return std::clamp(angle, low[joint], high[joint]); }
+};
+
+/// Joint positions for a tool pose, from those nearby: Newton's method with a DampedInverse. A joint that would leave
+/// its limits stays there, and the others do what they can without it.
 class PoseSearch {
  public:
+  JointLimits limits;
+
   static constexpr int kMostSteps = 20;        ///< the bound of solve()
   static constexpr double kLongestStep = 0.2;  ///< rad, of any joint in a step
   static constexpr double kNearEnough = 1e-9;  ///< m and rad
 
-  /// Moves `q` so that the tool comes to `wanted`. True when it is within `tolerance` (m and rad); else `q` is as near
-  /// as it came. Context: cycle; wait-free.
+  /// Moves `q`, which is within the limits, so that the tool comes to `wanted`. True when it is within `tolerance` (m
+  /// and rad); else `q` is as near as it came. Context: cycle; wait-free.
   bool solve(const SerialArm& arm, const Frame& wanted, std::span<double> q, double tolerance) noexcept {
     std::array<double, kMostJoints> dq;
     Jacobian jacobian;
@@ -187,10 +201,11 @@ class PoseSearch {
       residual_ = size_of(e);
       if (residual_ < kNearEnough) break;
       inverse_.solve(jacobian, arm.joints(), e, dq);
+      if (hold(q, dq, jacobian)) inverse_.solve(jacobian, arm.joints(), e, dq);
       double largest = 0;
       for (std::size_t i = 0; i < arm.joints(); ++i) largest = std::max(largest, std::abs(dq[i]));
       const double share = largest > kLongestStep ? kLongestStep / largest : 1;
-      for (std::size_t i = 0; i < arm.joints(); ++i) q[i] += share * dq[i];
+      for (std::size_t i = 0; i < arm.joints(); ++i) q[i] = limits.cut(i, q[i] + share * dq[i]);
     }
     residual_ = size_of(motion_between(arm.tool_frame(q), wanted));
     return residual_ <= tolerance;
@@ -201,6 +216,16 @@ class PoseSearch {
   int steps() const noexcept { return steps_; }
 
  private:
+  /// Takes the joints out of the Jacobian that stand at a limit and would go on. False when there is none.
+  bool hold(std::span<const double> q, const std::array<double, kMostJoints>& dq, Jacobian& jacobian) const noexcept {
+    bool has_held = false;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      if (!(q[i] <= limits.low[i] && dq[i] < 0) && !(q[i] >= limits.high[i] && dq[i] > 0)) continue;
+      jacobian.linear[i] = jacobian.angular[i] = {0, 0, 0};
+      has_held = true;
+    }
+    return has_held;
+  }
   static double size_of(const Six& e) noexcept {
     return std::max(length({e[0], e[1], e[2]}), length({e[3], e[4], e[5]}));
   }

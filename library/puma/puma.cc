@@ -25,6 +25,8 @@ struct Puma {
   InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 10), doc = "Bolted to the flange."};
   OutConst<std::int32_t> ndof{"ndof", "1", doc = "Joints: 6."};
   OutConst<library::DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to flange."};
+  OutConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", frame = "joint", doc = "Lower joint limits."};
+  OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits."};
 
   void init() {
     load();
@@ -66,6 +68,8 @@ struct Puma {
     check(arm_.load(library::kPumaModel, {.payload_mass = *payload_mass, .coulomb_share = 0}));
     *ndof = 6;
     std::ranges::copy(library::Puma560::kRows, dh.begin());
+    std::ranges::copy(library::Puma560::kLow, q_min.begin());
+    std::ranges::copy(library::Puma560::kHigh, q_max.begin());
   }
   void publish() {
     std::ranges::copy(arm_.position(), q.begin());
