@@ -34,6 +34,7 @@ enum class Happening : std::uint8_t {
               ///< when somebody did
   kHang,      ///< a job of the task does not end: it used `detail` ns by now. The rtpu ends
 };
+inline constexpr auto kLastHappening = Happening::kHang;
 
 /// 64 bytes; what is not used is 0 (ids: invalid).
 struct Post {

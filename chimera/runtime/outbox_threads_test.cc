@@ -173,6 +173,24 @@ TEST_F(Outboxes, WhatNoSenderWritesIsPassedOver) {
   EXPECT_EQ(fill(outbox), kPosts);  // what was passed over is counted as taken
 }
 
+TEST_F(Outboxes, EveryHappeningArrives) {
+  Inbox inbox(*ring, progress, 1);
+  Outbox outbox(*ring, &progress, 1);
+  constexpr int kHappenings = static_cast<int>(Happening::kHang) + 1;
+  for (int i = 0; i < kHappenings; ++i) {
+    Post told = numbered(0);
+    told.kind = PostKind::kEvent;
+    told.happening = static_cast<Happening>(i);
+    ASSERT_TRUE(outbox.try_post(told));
+    ASSERT_TRUE(inbox.take(post)) << i;
+    EXPECT_EQ(post.happening, told.happening);
+  }
+  Post unknown = numbered(0);
+  unknown.happening = static_cast<Happening>(kHappenings);
+  ASSERT_TRUE(outbox.try_post(unknown));
+  EXPECT_FALSE(inbox.take(post));
+}
+
 TEST_F(Outboxes, RandomBytesNeverLeadOutOfTheRingOrIntoALoop) {
   std::mt19937_64 random(1);
   auto* words = reinterpret_cast<std::uint64_t*>(ring.get());
