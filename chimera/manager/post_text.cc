@@ -72,6 +72,7 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
     case Happening::kFlag: return flag_text(post.detail);
     case Happening::kMissed: return missed_text(spec, post);
     case Happening::kHang:
+      if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";
       return "a cycle used " + milliseconds_text(post.detail) + " and does not end: this real-time unit ends";
     case Happening::kStop: break;
   }

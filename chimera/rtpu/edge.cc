@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/rtpu/edge.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "chimera/rtpu/ending.h"
@@ -35,7 +37,7 @@ Edge::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service&
            std::uint32_t me, Nanoseconds method_limit)
     : EdgeGuest(decision.bells[me].word), spec_(spec), tasks_(tasks), others_(others), service_(service),
       method_limit_(method_limit), seen_changes_(others.changes() - 1), blocked_(spec.tasks.size()),
-      commands_(spec.tasks.size()), ending_order_(ending_order(spec)) {
+      commands_(spec.tasks.size()), hangs_(spec.tasks.size()), ending_order_(ending_order(spec)) {
   set_due({});  // the first edge looks around
 }
 
@@ -199,7 +201,15 @@ void Edge::missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now
 
 void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
   others_.tell(Happening::kHang, task, static_cast<std::uint64_t>(used.count), now);
+  hangs_[task.index] = true;
+  others_.die();
   hanging_ = true;
+  wake_supervisor();
+}
+
+void Edge::wake_supervisor() noexcept {
+  const std::uint64_t one = 1;
+  if (supervisor_ >= 0 && ::write(supervisor_, &one, sizeof one) < 0) return;  // it looks now and then anyway
 }
 
 void Edge::stop_all(Releases& releases, Nanoseconds now) noexcept {
@@ -229,6 +239,7 @@ void Edge::go_on_ending(Releases& releases, Nanoseconds now) noexcept {
   if (!turn_off_next(releases, now) || !kill_next(releases, now)) return set_due(now + kLookWhileEnding);
   others_.block().head().phase.store(PeerPhase::kEnded, std::memory_order_release);
   over_ = true;
+  wake_supervisor();
   set_due(now);  // no wait comes between this and the look at it
 }
 
@@ -237,12 +248,12 @@ bool Edge::turn_off_next(Releases& releases, Nanoseconds now) noexcept {
   for (; next_off_ < ending_order_.size(); ++next_off_) {
     const TaskId id = ending_order_[next_off_];
     if (!tasks_.is_mine(id)) {
-      if (others_.state(id) == State::kOn && now < patience_) return false;
+      if (others_.state(id) == State::kOn && now < patience_ && !hanging_) return false;
       continue;
     }
     if (tasks_.tasks()[id.index].state != State::kOn) continue;
     if (!releases.may_touch(id)) {  // its job ends, or hangs
-      if (now < patience_) return false;
+      if (now < patience_ && !hangs_[id.index]) return false;
       continue;
     }
     (void)releases.signal({&id, 1}, Signal::kOff, now);
@@ -261,7 +272,7 @@ bool Edge::kill_next(Releases& releases, Nanoseconds now) noexcept {
     if (task.in_service) return false;
     if (task.state == State::kNotCreated) continue;
     if (!releases.may_touch(id)) {
-      is_done = false;
+      is_done = is_done && hangs_[id.index];
       continue;
     }
     ++progress_;

@@ -27,6 +27,8 @@ class Edge final : public EdgeGuest {
   void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
   void missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now) noexcept override;
   void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
+  /// An event descriptor that is written to when a job hangs and when all is over. Setup.
+  void set_supervisor(int descriptor) noexcept { supervisor_ = descriptor; }
   /// A job of some task does not end. Any thread.
   bool has_hanging() const noexcept { return hanging_; }
   /// The reaction `stop` of a task: turns all tasks of the unit OFF.
@@ -56,6 +58,7 @@ class Edge final : public EdgeGuest {
   void go_on_ending(Releases& releases, Nanoseconds now) noexcept;
   bool turn_off_next(Releases& releases, Nanoseconds now) noexcept;
   bool kill_next(Releases& releases, Nanoseconds now) noexcept;
+  void wake_supervisor() noexcept;
 
   const ApplicationSpec& spec_;
   TaskSet& tasks_;
@@ -66,6 +69,8 @@ class Edge final : public EdgeGuest {
   FixedVector<Post, kWaiting> waiting_;
   std::vector<bool> blocked_;      // by task: an earlier signal for it waits
   std::vector<Post> commands_;     // by task: the signal that is being served
+  std::vector<bool> hangs_;        // by task: nobody waits for its job
+  int supervisor_ = -1;
   const std::vector<TaskId> ending_order_;
   std::size_t shown_ = 0;          // the task whose profile is shown next
   bool has_begun_ending_ = false;

@@ -76,7 +76,7 @@ std::uint32_t Others::flag_word() const noexcept {
 }
 
 void Others::changed() noexcept {
-  if (tasks_ == nullptr) return;  // set-up
+  if (tasks_ == nullptr || is_dying_) return;  // set-up; the last words are said
   bool any = false;
   for (const Task& task : tasks_->tasks()) {
     if (!tasks_->is_mine(task.id)) continue;

@@ -21,6 +21,8 @@ class Others final : public Neighbours {
          DecisionPage& decision, const KeeperPage& keeper, Peers& peers);
   /// By whom the states to publish are known. Context: setup.
   void attach(TaskSet& tasks) noexcept { tasks_ = &tasks; }
+  /// From now on nobody is told of states: what was ON when the unit began to end comes back with its successor.
+  void die() noexcept { is_dying_ = true; }
 
   State state(TaskId task) const noexcept override;
   GroupReader outputs(TaskId task) const noexcept override;
@@ -65,6 +67,7 @@ class Others final : public Neighbours {
   const KeeperPage* keeper_;
   Peers* peers_;
   TaskSet* tasks_ = nullptr;
+  bool is_dying_ = false;
   std::vector<Outbox> outboxes_;  // by peer
   std::vector<Inbox> inboxes_;    // by peer
   std::vector<bool> is_read_;     // by peer: a task may still read the segment before the present one

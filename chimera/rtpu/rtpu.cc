@@ -90,7 +90,7 @@ class Rtpu {
   const RtpuStart start_;
   Channel channel_;
   int signals_ = -1;
-  OwnedDescriptor over_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};  // readable when the cycling has ended
+  OwnedDescriptor over_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};  // written to when there is something to look at
   FrozenBytes image_bytes_;
   SharedPages decision_pages_;
   MemoryRegion keeper_pages_;
@@ -198,6 +198,7 @@ Result<void> Rtpu::make_tasks() {
   others_->attach(*tasks_);
   edge_ = std::make_unique<Edge>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
                                  image_->settings().method_limit);
+  edge_->set_supervisor(over_.fd);
   tap_ = std::make_unique<Tap>(block_.tap());
   return {};
 }
@@ -283,11 +284,13 @@ int Rtpu::run() {
   cycling_ = std::thread([this] { cycle(); });
   while (!has_ended_) {
     listen(kSuperviseEveryMs);
-    if (!is_ending_ && (edge_->has_hanging() || loop_hangs())) {
+    if (!is_ending_ && loop_hangs()) return kMethodHangs;  // nobody else takes edges
+    if (!is_ending_ && edge_->has_hanging()) {
       is_giving_up_ = true;
       end();
     }
     if (is_ending_ && hangs()) return kMethodHangs;
+    if (is_giving_up_ && edge_->is_over()) return kMethodHangs;  // but for the job that does not end
   }
   cycling_.join();
   service_->stop();
@@ -297,6 +300,8 @@ int Rtpu::run() {
 void Rtpu::listen(int timeout_ms) {
   pollfd fds[] = {{channel_.descriptor(), POLLIN, 0}, {over_.fd, POLLIN, 0}, {signals_, POLLIN, 0}};
   if (::poll(fds, 3, timeout_ms) <= 0) return peers_->clear();
+  std::uint64_t times = 0;
+  if (fds[1].revents != 0 && ::read(over_.fd, &times, sizeof times) < 0) return;
   if (fds[0].revents != 0) take_messages();
   if (fds[2].revents != 0) {
     signalfd_siginfo info;

@@ -15,22 +15,22 @@ Nanoseconds start_margin(const TaskSpec& spec) noexcept {
   return spec.on_miss == OnMiss::kAbort ? Nanoseconds{1} : Nanoseconds{INT64_MIN / 2};
 }
 
-// Only a job with a thread of its own can go on below the others.
-bool is_built(OnMiss reaction, bool has_threads) noexcept {
-  return reaction != OnMiss::kSwitch && (has_threads || reaction != OnMiss::kDemote);
+bool is_built(OnMiss reaction, bool can_demote) noexcept {
+  return reaction != OnMiss::kSwitch && (can_demote || reaction != OnMiss::kDemote);
 }
 
 }  // namespace
 
 Releases::Releases(TaskSet& set, const RunOptions& options)
-    : set_(set), tasks_(set.tasks()), options_(options), of_(tasks_.size()), members_(tasks_.size()),
+    : set_(set), tasks_(set.tasks()), options_(options), of_(tasks_.size()),
+      recent_(options.guest != nullptr ? tasks_.size() : 0), members_(tasks_.size()),
       classes_(tasks_.size()), queue_tasks_(tasks_.size()), loose_(tasks_.size()), pauses_(tasks_.size()),
       runs_(tasks_.size()),
       queue_(options.policy, set.spec().tasks, {members_, classes_, queue_tasks_, loose_, pauses_, runs_}) {
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     const TaskSpec& spec = *tasks_[i].spec;
-    CHIMERA_ASSERT(is_built(spec.on_miss, options_.threads != nullptr) &&
-                   is_built(spec.on_overrun, options_.threads != nullptr));
+    const bool can = options_.can_demote || !set.is_mine(tasks_[i].id);
+    CHIMERA_ASSERT(is_built(spec.on_miss, can) && is_built(spec.on_overrun, can));
     of_[i].start_margin = start_margin(spec);
     of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
@@ -244,8 +244,7 @@ void Releases::blame(const Task& missed, Nanoseconds now) noexcept {
   Nanoseconds worst_excess{INT64_MIN}, worst_used;
   for (const Task& task : tasks_) {
     const OfTask& t = of_[task.id.index];
-    const bool is_recent = t.last_end.load(std::memory_order_relaxed) >= since.count;
-    Nanoseconds used{is_recent ? t.last_used.load(std::memory_order_relaxed) : 0};
+    Nanoseconds used = recent_[task.id.index].most_since(since);
     if (options_.threads != nullptr) used = std::max(used, options_.threads->used_by_job(task.id));
     const Nanoseconds excess = t.budget == kNever ? used - task.spec->period : used - t.budget;
     if (used == Nanoseconds{} || excess <= worst_excess) continue;
@@ -302,8 +301,7 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
   bool failed = false;
   if (body.answer != Answer::kNoEvent) {
     Profile& p = task.profile;
-    t.last_used.store(used.count, std::memory_order_relaxed);
-    t.last_end.store(end.count, std::memory_order_relaxed);
+    if (!recent_.empty()) recent_[job.task.index].add(used, end);
     p.execution[CHIMERA_CYCLE].add(used);
     p.response.add(end - job.release);
     p.start_delay.add(start - job.release);

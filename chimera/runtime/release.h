@@ -13,7 +13,8 @@
 // Reactions: continue (a late result is published), hold (not published), skip (published; the next release is
 // dropped), abort (the job is over at its deadline: not started after it, nothing published; in preemptive virtual
 // time abandoned at that instant), error (the method error is called, nothing published), flag (published; the
-// illegal-configuration flag goes up and stays up until it is lowered), stop (published; the executor stops).
+// illegal-configuration flag goes up and stays up until it is lowered), stop (published; the executor stops), demote
+// (from then on the job runs below all others; published).
 // A refused minimum: continue and flag run the job all the same, the others do not start it.
 //
 // A release that is dropped because jobs took too long is a missed deadline as well, in Profile::missed and towards
@@ -57,6 +58,7 @@ struct RunOptions {
   EdgeGuest* guest = nullptr;                ///< null: nobody else takes part in the edges
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
   JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
+  bool can_demote = false;                   ///< jobs may go on below all others
 };
 
 /// A signal that was refused, from the script or from a task.
@@ -81,7 +83,7 @@ enum class RunEnd : std::uint8_t {
 /// The common half of all executors. Context of everything not marked: cycle; no allocation, no system call.
 class Releases {
  public:
-  /// Requires: no task with the reactions demote or switch (other executors have them). Context: setup.
+  /// Requires: no task of this context with the reaction switch, nor demote unless that can be done. Context: setup.
   Releases(TaskSet& set, const RunOptions& options);
 
   /// The grid of releases starts at `origin`; whoever is ON by now is released from there on. Context: edge.
@@ -204,7 +206,24 @@ class Releases {
     std::uint32_t rows = 0;     // appended to the tap
     std::uint64_t history = 0;  // of the last cycles, one bit each: 1 missed
     std::uint64_t tapped = 0;   // sequence of the last of them
-    std::atomic<std::int64_t> last_used{0}, last_end{0};  // of its last job
+  };
+  // What the last jobs of a task used and when they ended: it may have had several since the release that was missed.
+  struct Recent {
+    static constexpr std::uint32_t kJobs = 8;
+    std::atomic<std::int64_t> used[kJobs]{}, end[kJobs]{};
+    std::uint32_t next = 0;  // by the task's own thread
+    void add(Nanoseconds time, Nanoseconds at) noexcept {
+      used[next].store(time.count, std::memory_order_relaxed);
+      end[next].store(at.count, std::memory_order_relaxed);
+      next = (next + 1) % kJobs;
+    }
+    Nanoseconds most_since(Nanoseconds since) const noexcept {
+      std::int64_t most = 0;
+      for (std::uint32_t i = 0; i < kJobs; ++i)
+        if (end[i].load(std::memory_order_relaxed) >= since.count)
+          most = std::max(most, used[i].load(std::memory_order_relaxed));
+      return {most};
+    }
   };
   enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4, kBlame = 8 };
   /// What one job records at most is kept until it may go to the tap.
@@ -250,6 +269,7 @@ class Releases {
   std::vector<OfTask> of_;
   std::vector<Kept> kept_;  // with threads: by task
   std::vector<Nanoseconds> blamed_;  // with a guest: by task, when it was last told who is to blame
+  std::vector<Recent> recent_;       // with a guest: by task
   std::vector<QueueMember> members_;
   std::vector<QueueClass> classes_;
   std::vector<QueueTask> queue_tasks_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dies, hangs or writes everywhere, in the method it is told to, while a file exists.
 #include <sys/mman.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -16,7 +17,7 @@ using namespace chimera;
 struct Crash {
   InConst<Text<16>> where{"where", initial = "cycle", doc = "the method that does it"};
   InConst<Text<16>> how{"how", initial = "segv",
-                        doc = "segv abort bus fpe ill stack exit kill hang block nan scribble"};
+                        doc = "segv abort bus fpe ill stack exit kill hang block sleep vanish nan scribble"};
   Resource armed{"armed", doc = "the file whose existence lets it happen"};
   Out<double> y{"y", "1", initial = 0.0, safety};
 
@@ -41,6 +42,8 @@ struct Crash {
     if (is("exit")) ::_exit(42);
     if (is("nan")) *y = std::nan("");
     if (is("block")) ::usleep(2'000);
+    while (is("sleep")) ::pause();
+    if (is("vanish")) ::syscall(SYS_exit, 0);  // the thread and nothing else
     if (is("scribble")) scribble();
     while (is("hang")) ::access(armed.c_str(), F_OK);
   }

@@ -12,6 +12,7 @@ namespace {
 
 RunOptions with_threads(RunOptions options, JobThreads* threads) noexcept {
   options.threads = threads;
+  options.can_demote = true;
   return options;
 }
 
@@ -105,6 +106,8 @@ bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
   }
   if (releases_.has_lost_patience()) releases_.give_up_starved(now);
   if (releases_.edge_is_due(now)) releases_.take_edge(now);
+  for (JobThread& job : threads_)
+    if (!job.is_shown && job.phase == JobPhase::kNone) show(job, now);
   tell_threads(false);
   end = releases_.stop_requested() ? RunEnd::kStopped
         : releases_.task_stopped() ? RunEnd::kTaskStopped
@@ -193,6 +196,7 @@ void PreemptiveExecutor::close(TaskId id) noexcept {
   (void)apply(labels_.remove(id), nullptr);
   job->carrier = job->id;
   job->phase = JobPhase::kNone;
+  show_running();
 }
 
 ProcessorCounts PreemptiveExecutor::counts() const noexcept {

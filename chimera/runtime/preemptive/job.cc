@@ -77,6 +77,8 @@ void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
   me.job = job;
   me.illegal = releases_.is_illegal();
   me.is_overrun = false;
+  me.seen_at = now;
+  me.slept = {};
   task(me).give_up.store(false, std::memory_order_relaxed);
   if (set_.adopt(me.task)) ring_edge();
 }
@@ -141,10 +143,8 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   t.is_busy = false;
   releases_.flush_records(me.task);
   processor_goes_on(now);
-  if (guest_ != nullptr && now - me.shown >= kShowEvery) {
-    me.shown = now;
-    guest_->show(t);
-  }
+  me.is_shown = false;
+  if (now - me.shown >= kShowEvery) show(me, now);
   if (t.state != State::kOn) me.is_joined = false;  // the edge will say so too
   if (releases_.is_unsettled(me.task) || !t.pending.empty() || is_paused_) ring_edge();
 }
@@ -165,8 +165,7 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
     ++counts_.preemptions;
   }
   on_processor_ = top;
-  const bool goes_on = top != nullptr && top->phase == JobPhase::kBegun;
-  if (goes_on) {
+  if (top != nullptr && top->phase == JobPhase::kBegun) {
     top->slice.store(now.count, std::memory_order_relaxed);
   }
   if (goes_on || (top != nullptr && top->served && top->phase == JobPhase::kWaiting)) {
@@ -174,7 +173,20 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
     const Nanoseconds check = std::min(budget, end_of_capacity(*top, now));
     if (check < top->check) watch(*top, check, now);
   }
-  const std::uint32_t word = goes_on ? (top->task.index + 1) << 8 | CHIMERA_CYCLE : 0;
+  show_running();
+}
+
+void PreemptiveExecutor::show(JobThread& job, Nanoseconds now) noexcept {
+  job.shown = now;
+  job.is_shown = true;
+  if (guest_ != nullptr) guest_->show(task(job));
+}
+
+// Whoever asks what the unit does, or what it did when it died.
+void PreemptiveExecutor::show_running() noexcept {
+  const JobThread* top = on_processor_;
+  const bool is_begun = top != nullptr && top->phase == JobPhase::kBegun;
+  const std::uint32_t word = is_begun ? (top->task.index + 1) << 8 | CHIMERA_CYCLE : 0;
   tasks_[0].running->store(word, std::memory_order_relaxed);
 }
 

@@ -62,8 +62,11 @@ struct JobThread {
   bool is_overrun = false;     ///< was seen to have used more than its budget
   std::atomic<std::int64_t> used_before{0};  ///< of the thread's execution time, by earlier jobs; by the thread itself
   Nanoseconds charged;         ///< what it had used when it was last looked at
+  Nanoseconds seen_used, seen_at;  ///< the same, of every look
+  Nanoseconds slept;           ///< for how long it has used nothing though it could
   std::atomic<std::int64_t> slice{0};  ///< since when it has the processor, as far as can be told; also by the thread
   Nanoseconds shown;           ///< when its profile was last handed out
+  bool is_shown = true;        ///< as it is
   std::optional<Served> served;  ///< behind a server
 };
 

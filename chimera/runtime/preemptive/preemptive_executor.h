@@ -113,6 +113,8 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void end(JobThread& me, Nanoseconds now) noexcept;
   void record_slice(const JobThread& job, Nanoseconds now) noexcept;
   void processor_goes_on(Nanoseconds now) noexcept;
+  void show_running() noexcept;
+  void show(JobThread& job, Nanoseconds now) noexcept;
 
   // Tasks behind servers (servers.cc).
   void open_servers(Nanoseconds origin) noexcept;
@@ -136,7 +138,9 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void charge_running(Nanoseconds now) noexcept;
   void charge(JobThread& job, Nanoseconds now) noexcept;
   void overrun(JobThread& job, Nanoseconds now) noexcept;
-  void hang(JobThread& job, Nanoseconds now) noexcept;
+  bool sleeps_for_ever(JobThread& job, Nanoseconds spent, Nanoseconds now) noexcept;
+  void hang(JobThread& job, Nanoseconds spent, Nanoseconds now) noexcept;
+  void bury(JobThread& job, Nanoseconds now) noexcept;
   void demote(JobThread& job, Nanoseconds now) noexcept;
   void cancel(JobThread& job, Nanoseconds now) noexcept;
   JobThread* running() noexcept;

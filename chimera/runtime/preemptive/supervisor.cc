@@ -10,6 +10,8 @@ namespace {
 
 // A job that has used so many times its budget (without one: its period) does not end by itself.
 constexpr std::int64_t kHangsAfter = 10;
+// Nor does one that sleeps in system calls for so long, and for so many periods.
+constexpr Nanoseconds kSleepsAtMost = seconds(2);
 // The supervisor never comes again at once: at the ceiling it would keep everybody else from running.
 constexpr Nanoseconds kSoonest = microseconds(5), kSeldom = microseconds(25), kNowAndThen = milliseconds(50);
 
@@ -109,9 +111,11 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(job);
   const bool by_laxity = labels_.policy() == Policy::kMufLaxity;
   if (s.budget == Nanoseconds{} && !job.served && now < job.job.deadline) return;
-  const Nanoseconds spent = used(job);
+  const Nanoseconds all = used_by(job.id);
+  if (all == kNever) return bury(job, now);
+  const Nanoseconds spent = all - Nanoseconds{job.used_before.load(std::memory_order_relaxed)};
   const Nanoseconds allowed = s.budget > Nanoseconds{} ? s.budget : s.period;
-  if (spent > allowed * kHangsAfter) return hang(job, now);
+  if (spent > allowed * kHangsAfter || sleeps_for_ever(job, spent, now)) return hang(job, spent, now);
   if (s.budget > Nanoseconds{} && spent > s.budget && !job.is_overrun) return overrun(job, now);
   if (!by_laxity || job.is_demoted) return;
   (void)apply(labels_.rekey(job.task, urgency_of(job, std::max(s.budget - spent, Nanoseconds{}))), nullptr);
@@ -131,12 +135,35 @@ void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
   }
 }
 
+// It used nothing since the last look, and nobody more urgent had the processor.
+bool PreemptiveExecutor::sleeps_for_ever(JobThread& job, Nanoseconds spent, Nanoseconds now) noexcept {
+  const Nanoseconds period = spec(job).period, since = std::min(now - job.seen_at, period);
+  const bool sleeps = spent == job.seen_used && (job.is_demoted || &job == running());
+  if (spent != job.seen_used) job.slept = {};
+  if (sleeps) job.slept += since;
+  job.seen_used = spent;
+  job.seen_at = now;
+  return job.slept > std::max(kSleepsAtMost, period * kHangsAfter);
+}
+
+// Its thread ended in the body: nobody else would say that the job is over, and its task has no thread any more.
+void PreemptiveExecutor::bury(JobThread& job, Nanoseconds now) noexcept {
+  job.phase = JobPhase::kNone;
+  job.check = kNever;
+  job.is_hanging = true;
+  task(job).is_busy = false;
+  (void)apply(labels_.remove(job.task), nullptr);
+  processor_goes_on(now);
+  releases_.record_now(TapKind::kHang, now, job.task, task(job).call.cycle);
+  ring_edge();
+}
+
 // Others keep their deadlines; whoever runs the context ends it, for nothing else ends the job.
-void PreemptiveExecutor::hang(JobThread& job, Nanoseconds now) noexcept {
+void PreemptiveExecutor::hang(JobThread& job, Nanoseconds spent, Nanoseconds now) noexcept {
   if (job.is_given_up) return;
   job.is_given_up = job.is_hanging = true;
   demote(job, now);
-  releases_.record_now(TapKind::kHang, now, job.task, task(job).call.cycle, used(job).count);
+  releases_.record_now(TapKind::kHang, now, job.task, task(job).call.cycle, spent.count);
   ring_edge();
 }
 
