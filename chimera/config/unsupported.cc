@@ -31,6 +31,10 @@ class Refusals {
   }
 
   bool is_virtual() const { return executor_ == Executor::kVirtual || executor_ == Executor::kPreemptiveVirtual; }
+  bool is_preemptive(std::size_t rtpu) const {
+    if (executor_ == Executor::kPreemptiveVirtual) return true;
+    return executor_ != Executor::kOneProcess && configuration_.rtpus()[rtpu].preemptive;
+  }
 
   void rtpu(std::size_t index) {
     const RtpuSpec& spec = configuration_.rtpus()[index];
@@ -59,23 +63,23 @@ class Refusals {
   }
 
   void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task,
-                bool has_thread) {
+                bool is_preemptive) {
     if (!reaction || (reaction->kind != OnMiss::kDemote && reaction->kind != OnMiss::kSwitch)) return;
     const bool is_switch = reaction->kind == OnMiss::kSwitch;
-    if (!is_switch && has_thread) return;
+    if (!is_switch && is_preemptive) return;
     const std::string what =
         "'" + std::string(key) + (is_switch ? ": switch' of task '" : ": demote' of task '") + task.name.text + "'";
     if (is_switch)
       return refuse(reaction->at, what, "use continue, hold, skip, abort, demote, error, flag or stop to run");
-    refuse(reaction->at, what, executor_ == Executor::kProcesses
-                                   ? "give its rtpu 'executor: preemptive', or use another reaction"
-                                   : "run without --virtual and --isolation none, or use another reaction");
+    const char* const remedy = executor_ == Executor::kOneProcess ? "run without --isolation none"
+                               : executor_ == Executor::kVirtual  ? "run with --preemptive"
+                                                                  : "give its rtpu 'executor: preemptive'";
+    refuse(reaction->at, what, std::string(remedy) + ", or use another reaction");
   }
 
   // A job behind a server is taken off the processor when the capacity is used up: one loop cannot do that.
-  void server(const DraftTask& task, bool is_preemptive) {
-    if (!task.server || executor_ == Executor::kPreemptiveVirtual) return;
-    if (is_preemptive && executor_ != Executor::kOneProcess) return;
+  void server(const DraftTask& task, bool preempts) {
+    if (!task.server || preempts) return;
     std::string remedy = executor_ == Executor::kVirtual ? "run --virtual --preemptive, or give" : "give";
     if (executor_ == Executor::kOneProcess) remedy = "run without --isolation none, and give";
     refuse(task.server->at, "'server' of task '" + task.name.text + "'", remedy + " its rtpu 'executor: preemptive'");
@@ -85,16 +89,15 @@ class Refusals {
     const auto tasks = configuration_.tasks();
     const auto here = std::find_if(tasks.begin(), tasks.end(),
                                    [&](const ConfiguredTask& t) { return t.name == task.name.text; });
-    const bool is_preemptive = here != tasks.end() && configuration_.rtpus()[here->rtpu].preemptive;
-    const bool has_thread = executor_ == Executor::kProcesses && is_preemptive;
-    reaction(task.on_miss, "on_miss", task, has_thread);
-    reaction(task.on_overrun, "on_overrun", task, has_thread);
+    const bool preempts = here != tasks.end() && is_preemptive(here->rtpu);
+    reaction(task.on_miss, "on_miss", task, preempts);
+    reaction(task.on_overrun, "on_overrun", task, preempts);
     if (task.on_fault && task.on_fault->kind != OnFault::kError) refuse_key(task.on_fault->at, "on_fault", task);
-    server(task, is_preemptive);
+    server(task, preempts);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
     for (const NamedNode& step : task.max_step) refuse_key(step.name.at, "max_step", task);
-    if (task.stack_bytes && !has_thread && executor_ == Executor::kProcesses)
+    if (task.stack_bytes && !preempts && executor_ == Executor::kProcesses)
       refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
              "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");
     if (task.own_process && task.own_process->value) refuse_key(task.own_process->at, "isolation: process", task);

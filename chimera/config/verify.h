@@ -25,7 +25,12 @@ Verdict verify(const Draft& draft, const Library& library);
 /// Judges what was read, faults of the text included: the one call of `check` and `run`. Context: setup.
 Verdict verify(const Reading& reading, const Library& library);
 
-enum class Executor : std::uint8_t { kProcesses, kOneProcess, kVirtual, kPreemptiveVirtual };
+enum class Executor : std::uint8_t {
+  kProcesses,
+  kOneProcess,
+  kVirtual,            ///< as its rtpu says: preemptive or not
+  kPreemptiveVirtual,  ///< preemptive, whatever it says
+};
 
 /// What the executor does not have yet and this configuration asks for, each by name and place;
 /// empty: it can run. Context: setup.

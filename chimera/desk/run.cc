@@ -99,7 +99,7 @@ class Session {
 
 Result<void> Session::start() {
   RunOptions options;
-  options.policy = plan_.configuration.rtpus()[0].policy;
+  options.policy = followed_rtpu(plan_.configuration, request_.virtual_time).policy;
   options.script = Script(plan_.acts);
   options.stop = &stop_requested;
   if (sink_ != nullptr) {

@@ -12,13 +12,19 @@
 #include "chimera/runtime/virtual/virtual_executor.h"
 
 namespace chimera::desk {
+
+const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time) {
+  const bool has_tasks = !configuration.tasks().empty();
+  return configuration.rtpus()[virtual_time && has_tasks ? configuration.tasks()[0].rtpu : 0];
+}
+
 namespace {
 
 class VirtualLoop final : public RunLoop {
  public:
   VirtualLoop(Application& application, const RunRequest& request, const RunOptions& options)
       : request_(request),
-        is_preemptive_(request.preemptive || application.configuration().rtpus()[0].preemptive),
+        is_preemptive_(request.preemptive || followed_rtpu(application.configuration(), true).preemptive),
         executor_(application.tasks(), options, {is_preemptive_, request.seed, request.quantum}) {}
 
   Result<void> start() override { return executor_.start(); }

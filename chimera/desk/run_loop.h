@@ -27,6 +27,9 @@ class RunLoop {
   virtual std::string description() const = 0;
 };
 
+/// Whose policy a run of one context follows: in virtual time that of the only rtpu with tasks, else the first.
+const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time);
+
 std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
                                            const RunOptions& options);
 std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,

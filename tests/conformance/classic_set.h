@@ -56,7 +56,7 @@ inline int compute(const chimera_call& call, Nanoseconds origin, Nanoseconds wor
   }
 }
 
-// The task that had most of each unit.
+// The task that had each unit, or the greater part of it.
 inline std::string timeline(const std::vector<TapRecord>& records, Nanoseconds origin) {
   std::vector<std::array<std::int64_t, 4>> share(kUnits, std::array<std::int64_t, 4>{});
   for (const TapRecord& r : records) {
@@ -72,7 +72,7 @@ inline std::string timeline(const std::vector<TapRecord>& records, Nanoseconds o
   std::string line;
   for (const auto& unit : share) {
     const auto most = std::max_element(unit.begin(), unit.end());
-    line += *most == 0 ? '.' : static_cast<char>('A' + (most - unit.begin()));
+    line += *most < kHalf.count ? '.' : static_cast<char>('A' + (most - unit.begin()));
   }
   return line;
 }

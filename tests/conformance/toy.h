@@ -154,6 +154,8 @@ class Application {
     return one->spec;
   }
   Toy& toy(const std::string& name) { return ones_[id(name).index]->toy; }
+  /// Before build().
+  TaskSpec& spec(const std::string& name) { return ones_[id(name).index]->spec; }
   TaskId id(const std::string& name) const {
     for (std::size_t i = 0; i < ones_.size(); ++i) {
       if (ones_[i]->toy.name == name) return TaskId(i);

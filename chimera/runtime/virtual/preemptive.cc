@@ -13,7 +13,9 @@ Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, Mode
   for (std::uint32_t i = 0; i < tasks.size(); ++i) {
     if (tasks[i].server) served_.push_back({.task = TaskId(i), .server = {}, .job = {}});
     else if (tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back(i);
+    if (tasks[i].on_miss == OnMiss::kDemote) demoters_.push_back(i);
   }
+  demoted_.reserve(tasks.size());
 }
 
 RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
@@ -22,6 +24,7 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
     use_processor(now);
     complete();
     expire(now);
+    demote_due(now);
     if (releases_.stop_requested()) return RunEnd::kStopped;
     if (releases_.task_stopped()) return RunEnd::kTaskStopped;
     if (now >= until) {
@@ -39,7 +42,7 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
 }
 
 Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
-  Nanoseconds next = std::min({releases_.next_event(), next_deadline(), next_server(now)});
+  Nanoseconds next = std::min({releases_.next_event(), next_deadline(), next_demotion(now), next_server(now)});
   if (!running_.is_valid()) return next;
   next = std::min(next, now + active_[running_.index].remaining);
   if (!by_laxity_ || releases_.queue().is_empty()) return next;
@@ -61,12 +64,29 @@ Nanoseconds Preemptive::next_deadline() noexcept {
   return next;
 }
 
+Nanoseconds Preemptive::next_demotion(Nanoseconds now) noexcept {
+  Nanoseconds next = kNever;
+  for (const std::uint32_t i : demoters_)
+    if (active_[i].has_begun && !active_[i].is_demoted) next = std::min(next, active_[i].job.deadline);
+  if (!running_.is_valid()) return next;
+  const Nanoseconds left = budget_left(running_);
+  return left == kNever ? next : std::min(next, now + left);
+}
+
+// Of the task's job that has begun, where its end is a demotion; else kNever.
+Nanoseconds Preemptive::budget_left(TaskId task) const noexcept {
+  const TaskSpec& spec = tasks_[task.index];
+  const Active& a = active_[task.index];
+  const bool counts = spec.on_overrun == OnMiss::kDemote && spec.budget > Nanoseconds{} && !a.is_demoted;
+  return counts ? std::max(spec.budget - a.used, Nanoseconds{}) : kNever;
+}
+
 void Preemptive::use_processor(Nanoseconds until) noexcept {
   if (!running_.is_valid()) return;
   Active& a = active_[running_.index];
   a.used += until - mark_;
   a.remaining -= until - mark_;
-  if (Served* s = served(running_)) s->server.charge(until - mark_);
+  if (Served* s = served(running_); s != nullptr && !a.is_demoted) s->server.charge(until - mark_);
   mark_ = until;
 }
 
@@ -89,6 +109,8 @@ void Preemptive::complete() noexcept {
 
 void Preemptive::end(Active& a, Nanoseconds now) noexcept {
   a.has_begun = false;
+  if (a.is_demoted) demoted_.erase(std::find(demoted_.begin(), demoted_.end(), a.job.task));
+  a.is_demoted = false;
   releases_.queue().finish(a.job.task);
   forget(a.job.task);
   releases_.end_job(without_server(a.job), a.time, a.body, a.first_start, now, a.used);
@@ -124,6 +146,32 @@ void Preemptive::expire(TaskId task) noexcept {
   end(a, deadline);
 }
 
+// What is over at this instant has ended by now: these need more.
+void Preemptive::demote_due(Nanoseconds now) noexcept {
+  if (running_.is_valid() && budget_left(running_) == Nanoseconds{}) {
+    const Active& a = active_[running_.index];
+    releases_.record(TapKind::kOverrun, now, running_, releases_.task(running_).call.cycle, a.used.count);
+    demote(running_);
+  }
+  for (const std::uint32_t i : demoters_) {
+    const Active& a = active_[i];
+    if (a.has_begun && !a.is_demoted && a.job.deadline <= now) demote(TaskId(i));
+  }
+}
+
+void Preemptive::demote(TaskId task) noexcept {
+  Job job;
+  if (running_ == task) {
+    leave_processor();
+    running_ = TaskId();
+  } else {
+    (void)releases_.queue().remove(task, job);
+  }
+  active_[task.index].is_demoted = true;
+  demoted_.push_back(task);
+  ++releases_.task(task).profile.demoted;
+}
+
 void Preemptive::take_edge(Nanoseconds& now) noexcept {
   clock_.set(now);
   releases_.take_edge(now);
@@ -140,20 +188,33 @@ bool Preemptive::dispatch(Nanoseconds now) noexcept {
   while (!queue.is_empty()) {
     if (running_.is_valid()) {
       if (!must_yield()) return false;
-      leave_processor();
-      releases_.record(TapKind::kPreempt, now, running_, 0);
-      queue.put_back(active_[running_.index].job, active_[running_.index].remaining);
-      running_ = TaskId();
+      preempt(now);
     }
     if (!take_processor(queue.pop(), now)) continue;
     complete();
     if (!running_.is_valid()) return true;
   }
+  if (!running_.is_valid() && !demoted_.empty()) {
+    running_ = demoted_.front();
+    slice_start_ = mark_ = now;
+  }
   return false;
+}
+
+void Preemptive::preempt(Nanoseconds now) noexcept {
+  const Active& a = active_[running_.index];
+  leave_processor();
+  if (!a.is_demoted) {
+    releases_.record(TapKind::kPreempt, now, running_, 0);
+    ++releases_.task(running_).profile.preempted;
+    releases_.queue().put_back(a.job, a.remaining);
+  }
+  running_ = TaskId();
 }
 
 bool Preemptive::must_yield() noexcept {
   const Active& a = active_[running_.index];
+  if (a.is_demoted) return true;
   const TaskSpec& spec = tasks_[running_.index];
   const Urgency mine{spec.criticality, spec.user_priority, spec.period, a.job.deadline, a.remaining};
   return is_more_urgent(releases_.queue().policy(), releases_.queue().top_urgency(), mine);

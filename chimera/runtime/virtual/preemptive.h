@@ -3,7 +3,8 @@
 //
 // A body runs at its first dispatch (inputs as they are then) and its job then holds the processor for the modelled
 // time, in slices; it publishes, and its signals leave, when that time is used up. Order of things at one instant:
-// completion (publication), deadlines of jobs with the reaction abort, signals, releases, servers, dispatch (reads).
+// completion (publication), deadlines of jobs with the reaction abort, demotions, signals, releases, servers, dispatch
+// (reads).
 //
 // Behind a server a job is released by an event, one after the other. It is as urgent as its server, leaves the
 // processor when the capacity is used up, and goes on when some is back. It has no deadline of its own.
@@ -44,6 +45,7 @@ class Preemptive {
     Nanoseconds first_start, used, remaining;
     Nanoseconds next_deadline = kNever;  // of the task, when its reaction is abort and it is ON
     bool has_begun = false;
+    bool is_demoted = false;
   };
 
   /// A task behind a server.
@@ -58,14 +60,19 @@ class Preemptive {
 
   Nanoseconds next_event(Nanoseconds now) noexcept;
   Nanoseconds next_deadline() noexcept;
+  Nanoseconds next_demotion(Nanoseconds now) noexcept;
+  Nanoseconds budget_left(TaskId task) const noexcept;
   void use_processor(Nanoseconds until) noexcept;
   void leave_processor() noexcept;
   void complete() noexcept;
   void expire(Nanoseconds now) noexcept;
   void expire(TaskId task) noexcept;
+  void demote_due(Nanoseconds now) noexcept;
+  void demote(TaskId task) noexcept;
   void take_edge(Nanoseconds& now) noexcept;
   bool dispatch(Nanoseconds now) noexcept;
   bool must_yield() noexcept;
+  void preempt(Nanoseconds now) noexcept;
   bool take_processor(const Job& job, Nanoseconds now) noexcept;
   void end(Active& active, Nanoseconds now) noexcept;
   void open_servers() noexcept;
@@ -84,6 +91,8 @@ class Preemptive {
   std::vector<Active> active_;            // one per task
   std::vector<std::uint32_t> abandoners_;  // tasks with the reaction abort
   std::vector<Served> served_;
+  std::vector<std::uint32_t> demoters_;    // tasks with the reaction demote to a missed deadline
+  std::vector<TaskId> demoted_;            // their jobs run when nobody else does, the first until it ends
   TaskId running_;
   Nanoseconds slice_start_, mark_;  // of the running job: start of its slice, up to where its time is counted
   bool by_laxity_;

@@ -21,6 +21,7 @@ Preemptive::Served* Preemptive::served(TaskId task) noexcept {
 Nanoseconds Preemptive::next_server(Nanoseconds now) noexcept {
   Nanoseconds next = kNever;
   for (const Served& s : served_) {
+    if (active_[s.task.index].is_demoted) continue;
     if (!s.has_job) {
       if (releases_.task(s.task).events > 0) return now;
       continue;
@@ -39,6 +40,7 @@ void Preemptive::follow_servers(Nanoseconds now) noexcept {
 // True when the server has a job.
 bool Preemptive::take_event(Served& s, Nanoseconds now) noexcept {
   Task& task = releases_.task(s.task);
+  if (active_[s.task.index].is_demoted) return false;  // below all others no server counts
   if (!releases_.is_on(s.task)) {
     Job forgotten;
     if (s.is_ready) (void)releases_.queue().remove(s.task, forgotten);
