@@ -73,6 +73,18 @@ LOOPS += ("configurations: {all: [guarded_a, guarded_b, " + ", ".join(f"loop_{n}
           "]}\nstart: all\n")
 
 
+def started(text):
+    """In real time; without it while somebody else has the CPUs."""
+    for _ in range(20):
+        try:
+            return System(text, REAL_TIME)
+        except AssertionError as refusal:
+            if "is in use by another real-time subsystem" not in str(refusal):
+                raise
+        time.sleep(0.5)
+    return System(text)
+
+
 def median(values):
     return sorted(values)[len(values) // 2]
 
@@ -144,7 +156,7 @@ class Preemptive(unittest.TestCase):
             for task, unit, mates in (("loops", "second", ("beside", "blocks")), ("vanishes", "third", ("sleeps",)),
                                       ("sleeps", "third", ("vanishes",))):
                 def once():
-                    with System(APPLICATION, REAL_TIME) as system:
+                    with started(APPLICATION) as system:
                         return self.recovers(system, unit, task, mates)
                 self.undisturbed(once)
 
@@ -158,7 +170,7 @@ class Preemptive(unittest.TestCase):
             self.count("jobs that blocked", 30)
             lost = self.grown(system, before)
             return None if "watch" in lost or not self.is_judged(system) else lost
-        with System(APPLICATION, REAL_TIME) as system:
+        with started(APPLICATION) as system:
             trigger = system.armed.with_name(f"{system.armed.name}-blocks")
             for _ in range(ROUNDS):
                 self.undisturbed(once)
@@ -167,7 +179,7 @@ class Preemptive(unittest.TestCase):
     def test_row_4_overruns_make_no_burst_and_every_miss_has_its_culprit(self):
         for executor, policy in (("preemptive", "muf"), ("preemptive", "edf"), ("executive", "edf")):
             text = OVERRUNS.replace("POLICY", policy).replace("EXECUTOR", executor)
-            with self.subTest(executor=executor, policy=policy), System(text, REAL_TIME) as system:
+            with self.subTest(executor=executor, policy=policy), started(text) as system:
                 await_that(lambda: system.task("bad")["cycles"] > 400 * ROUNDS, 10 + ROUNDS, "cycles")
                 system.signal("off", "bad")
                 values = system.call("get", variables=["bursts", "unsaid", "over"])["values"]
@@ -185,7 +197,7 @@ class Preemptive(unittest.TestCase):
 
     def test_row_18_endless_loops_in_every_task_but_the_guarded_ones(self):
         def once():
-            with System(LOOPS, REAL_TIME) as system:
+            with started(LOOPS) as system:
                 control = self.lost(system, ("guarded_a", "guarded_b"))
                 time.sleep(0.5)
                 is_judged = self.is_judged(system) and not self.grown(system, control)

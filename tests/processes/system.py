@@ -139,7 +139,11 @@ class System:
         self.socket = self.runtime / "chimera" / f"{name}.sock"
         self.client = None
         if wait:
-            self.await_started()
+            try:
+                self.await_started()
+            except BaseException:
+                self.end()
+                raise
 
     def __enter__(self):
         return self

@@ -77,7 +77,7 @@ void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
   me.job = job;
   me.illegal = releases_.is_illegal();
   me.is_overrun = false;
-  me.seen_at = now;
+  me.seen_at = job.release;
   me.slept = {};
   task(me).give_up.store(false, std::memory_order_relaxed);
   if (set_.adopt(me.task)) ring_edge();
@@ -165,7 +165,8 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
     ++counts_.preemptions;
   }
   on_processor_ = top;
-  if (top != nullptr && top->phase == JobPhase::kBegun) {
+  const bool goes_on = top != nullptr && top->phase == JobPhase::kBegun;
+  if (goes_on) {
     top->slice.store(now.count, std::memory_order_relaxed);
   }
   if (goes_on || (top != nullptr && top->served && top->phase == JobPhase::kWaiting)) {

@@ -70,6 +70,7 @@ void Preemptive::stand(Served& s, Nanoseconds now) noexcept {
     leave_processor();
     releases_.record(TapKind::kPreempt, now, s.task, 0);
     ++releases_.task(s.task).profile.exhausted;
+    ++releases_.task(s.task).profile.preempted;
     running_ = TaskId();
     s.is_ready = false;
     return;
