@@ -106,8 +106,8 @@ bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
   }
   if (releases_.has_lost_patience()) releases_.give_up_starved(now);
   if (releases_.edge_is_due(now)) releases_.take_edge(now);
-  for (JobThread& job : threads_)
-    if (!job.is_shown && job.phase == JobPhase::kNone) show(job, now);
+  for (JobThread& job : threads_)  // events are counted also while no job is run
+    if ((job.served || !job.is_shown) && job.phase == JobPhase::kNone) show(job, now);
   tell_threads(false);
   end = releases_.stop_requested() ? RunEnd::kStopped
         : releases_.task_stopped() ? RunEnd::kTaskStopped
