@@ -161,8 +161,11 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
   if (on_processor_ != nullptr && on_processor_->phase == JobPhase::kBegun && !on_processor_->is_demoted) {
     record_slice(*on_processor_, now);
     releases_.record_now(TapKind::kPreempt, now, on_processor_->task, 0);
-    ++task(*on_processor_).profile.preempted;
-    ++counts_.preemptions;
+    const bool is_halted = on_processor_->served && on_processor_->served->is_halted;
+    if (!is_halted) {
+      ++task(*on_processor_).profile.preempted;
+      ++counts_.preemptions;
+    }
   }
   on_processor_ = top;
   const bool goes_on = top != nullptr && top->phase == JobPhase::kBegun;

@@ -71,7 +71,7 @@ void PreemptiveExecutor::pay(JobThread& job) noexcept {
   Served& s = *job.served;
   const Nanoseconds all = used_by(job.id);
   if (all == kNever || all <= s.charged) return;
-  s.server.charge(all - s.charged);
+  if (!job.is_demoted) s.server.charge(all - s.charged);  // below all others no server counts
   s.charged = all;
 }
 
