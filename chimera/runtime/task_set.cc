@@ -211,7 +211,8 @@ void TaskSet::deliver(Task& task) noexcept {
     }
     const bool is_asked_of_manager = place_.others != nullptr && sent.signal == Signal::kOn;
     if (!is_mine(sent.target) || is_asked_of_manager) {
-      (void)place_.others->post(sent.signal, sent.target, task.id, false);
+      const bool is_sent = place_.others->post(sent.signal, sent.target, task.id, false);
+      if (!is_sent && sent.signal == Signal::kWakeup) ++task.profile.events_lost;
       continue;
     }
     if (target.pending.try_push(sent.signal)) ++n_pending_;

@@ -45,7 +45,8 @@ struct Profile {
   std::uint64_t preempted = 0;        ///< times a more urgent job took the processor
   std::uint64_t demoted = 0;          ///< jobs that went on below all others
   std::uint64_t events = 0;           ///< behind a server: that came while it was ON
-  std::uint64_t events_lost = 0;      ///< behind a server: that came while it was not, or waited when it ceased to be
+  std::uint64_t events_lost = 0;      ///< behind a server: that came while it was not, or waited when it ceased to be;
+                                      ///< of any task: that it sent and that found no room on the way to another rtpu
   std::uint64_t exhausted = 0;        ///< times its server ran out of capacity in the middle of a job
   std::uint32_t missed_in_a_row = 0;
 };

@@ -118,5 +118,37 @@ TEST(Servers, WhatWaitsWhenTheTaskGoesOffIsForgotten) {
   EXPECT_EQ(app.task("S").profile.events_lost, 2u);
 }
 
+/// Another rtpu that has no room for a post.
+struct Deaf final : Neighbours {
+  chimera::State state(TaskId) const noexcept override { return chimera::State::kOn; }
+  GroupReader outputs(TaskId) const noexcept override { return {}; }
+  GroupReader constants(TaskId) const noexcept override { return {}; }
+  GroupReader operator_variable(std::size_t) const noexcept override { return {}; }
+  bool post(Signal, TaskId, TaskId, bool) noexcept override {
+    ++posts;
+    return posts % 2 == 0;
+  }
+  void changed() noexcept override {}
+  void faulted(const Task&) noexcept override {}
+  int posts = 0;
+};
+
+TEST(Servers, ARingThatFindsNoRoomOnItsWayIsLostAndCounted) {
+  Application app;
+  app.add("A", milliseconds(4));
+  add_served(app, "S", kDeferrable, 1, 6).rtpu = RtpuId(1u);
+  Deaf others;
+  ContextPlace place;
+  place.rtpu = RtpuId(0u);
+  place.others = &others;
+  TaskSet& set = app.build({}, place);
+  Task& a = set.tasks()[0];
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(a.outbox.try_push({Signal::kWakeup, app.id("S")}));
+  EXPECT_TRUE(a.outbox.try_push({Signal::kReinit, app.id("S")}));
+  set.deliver(a);
+  EXPECT_EQ(others.posts, 6);
+  EXPECT_EQ(app.task("A").profile.events_lost, 3u);
+}
+
 }  // namespace
 }  // namespace chimera::toy
