@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kMaxTableBytes = 4 << 20;
 
-using ExtentBindings = Bindings<SolvedExtent>;
+using ExtentBindings = Bindings<std::vector<SolvedExtent>>;  // one, but for shape variables
 
 /// The constant port of the component that is called like the extent, or nullptr: then it is an extent variable.
 const PortDescriptor* giver(const TaskModel& task, const std::string& symbol) {
@@ -92,7 +92,7 @@ bool try_shape(Model& model, LinkedPort& port, const ExtentBindings& bindings) {
     }
     const auto bound = bindings.find(key_of(task, port, declared.symbol));
     if (bound == bindings.end()) return false;
-    extents.push_back(bound->second.value);
+    extents.insert(extents.end(), bound->second.value.begin(), bound->second.value.end());
   }
   port.extents = std::move(extents);
   port.has_extents = true;
@@ -105,12 +105,31 @@ void settle(Model& model, VariableModel& variable, PortRef ref) {
   variable.shape_from = ref;
 }
 
+/// A shape variable takes the dimensions of the variable as they are.
+void bind_shape(Model& model, PortRef ref, const LinkedPort& port, const VariableModel& variable,
+                ExtentBindings& bindings) {
+  const Extent& declared = port.declared->extents[0];
+  const auto [bound, is_new] = bindings.try_emplace(key_of(model.tasks[port.task], port, declared.symbol),
+                                                    Binding<std::vector<SolvedExtent>>{variable.extents, ref});
+  if (!is_new) return;
+  const std::uint32_t most = element_count(variable.extents);
+  if (most <= declared.max) return;
+  model.error("shape-clash", port.at,
+              model.say(port) + " holds at most " + std::to_string(declared.max) + " elements (shape " +
+                  port.declared->shape + "), and " + shape_text(variable.extents) + " by " +
+                  settled_by(model, variable, variable.shape_from) + " may be " + std::to_string(most),
+              std::to_string(most), "at most " + std::to_string(declared.max), {},
+              "use a component with a larger maximum, or a smaller shape");
+}
+
 /// Binds the open extent variables of a port to the shape of its variable.
 void bind(Model& model, PortRef ref, const LinkedPort& port, const VariableModel& variable, ExtentBindings& bindings) {
   const TaskModel& task = model.tasks[port.task];
   const std::vector<Extent>& declared = port.declared->extents;
   const std::vector<SolvedExtent> one{{.constant = {}, .max = 1, .known = 1}};  // a scalar is a vector of one
   const std::vector<SolvedExtent>& theirs = variable.extents.empty() ? one : variable.extents;
+  if (declared.size() == 1 && declared[0].is_shape && variable.extents.size() != 1)
+    return bind_shape(model, ref, port, variable, bindings);
   if (declared.size() != theirs.size()) return;
   for (std::size_t i = 0; i < declared.size(); ++i) {
     if (declared[i].is_literal() || giver(task, declared[i].symbol) != nullptr) continue;
@@ -118,11 +137,11 @@ void bind(Model& model, PortRef ref, const LinkedPort& port, const VariableModel
     const std::uint32_t most = std::min(extent.max, declared[i].max);
     extent.max = declared[i].max;
     const auto [bound, is_new] =
-        bindings.try_emplace(key_of(task, port, declared[i].symbol), Binding<SolvedExtent>{extent, ref});
+        bindings.try_emplace(key_of(task, port, declared[i].symbol), Binding<std::vector<SolvedExtent>>{{extent}, ref});
     if (!is_new) continue;
     is_too_large(model, port, declared[i].symbol, extent,
                  " by " + settled_by(model, variable, variable.shape_from));
-    bound->second.value.max = extent.known ? std::max(most, *extent.known) : most;
+    bound->second.value[0].max = extent.known ? std::max(most, *extent.known) : most;
   }
 }
 

@@ -212,8 +212,15 @@ Verdict extent_rule(const Descriptor& descriptor, const PortDescriptor& port, co
                            (giver->type != CHIMERA_INT32 && giver->type != CHIMERA_INT64))) {
     return "shape \"" + port.shape + "\": the port " + extent.symbol + " is no whole-number scalar constant";
   }
+  if (giver != nullptr && extent.is_shape) {
+    return "shape \"" + port.shape + "\": the port " + extent.symbol + " is one number, and no shape";
+  }
   for (const PortDescriptor& other : descriptor.ports) {
     for (const Extent& said : other.extents) {
+      if (said.symbol == extent.symbol && said.is_shape != extent.is_shape) {
+        return "shape \"" + port.shape + "\": port " + other.name + " has " + extent.symbol + " as " +
+               (said.is_shape ? "a shape" : "an extent");
+      }
       if (said.symbol == extent.symbol && said.max != extent.max) {
         return "shape \"" + port.shape + "\": port " + other.name + " gives " + extent.symbol + " the maximum " +
                std::to_string(said.max);

@@ -129,6 +129,10 @@ TEST(Describe, RefusesShapesThatDoNotParse) {
   EXPECT_EQ(sample.refusal(), "component tderiv: port x: shape \"6\": expected [6], [n<=16] or two of these");
   sample.ports[0].shape = "[2][2][2]";
   EXPECT_EQ(sample.refusal(), "component tderiv: port x: shape \"[2][2][2]\": more than 2 dimensions");
+  sample.ports[0].shape = "[n...<=8][2]";
+  EXPECT_EQ(sample.refusal(), "component tderiv: port x: shape \"[n...<=8][2]\": a shape variable stands alone");
+  sample.ports[0].shape = "[...<=8]";
+  EXPECT_EQ(sample.refusal(), "component tderiv: port x: shape \"[...<=8]\": \"\" is no name: [a-z][a-z0-9_]*");
   sample.ports[0].shape = "[300][300]";
   EXPECT_EQ(sample.refusal(), "component tderiv: port x: shape \"[300][300]\": more than 65536 elements");
 }
@@ -146,6 +150,19 @@ TEST(Describe, AnExtentNamedLikeAPortMustBeAWholeConstant) {
   sample.ports[1].shape = "[ndof<=4]";
   EXPECT_EQ(sample.refusal(),
             "component tderiv: port x: shape \"[ndof<=3]\": port dx gives ndof the maximum 4");
+}
+
+TEST(Describe, AShapeVariableIsNoConstantAndNoExtent) {
+  Sample sample;
+  sample.ports[0].shape = sample.ports[1].shape = "[n...<=64]";
+  EXPECT_EQ(sample.refusal(), "accepted");
+  sample.ports[1].shape = "[n<=64]";
+  EXPECT_EQ(sample.refusal(), "component tderiv: port x: shape \"[n...<=64]\": port dx has n as an extent");
+  sample.ports[1].shape = "";
+  sample.ports.push_back(port("n", CHIMERA_IN_CONST));
+  sample.ports[2].type = CHIMERA_INT32;
+  sample.ports[2].element_size = 4;
+  EXPECT_EQ(sample.refusal(), "component tderiv: port x: shape \"[n...<=64]\": the port n is one number, and no shape");
 }
 
 TEST(Describe, CountsEveryInstanceAgainstTheLimit) {

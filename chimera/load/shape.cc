@@ -22,7 +22,9 @@ std::uint32_t number(std::string_view text) {
 
 Result<Extent> parse_extent(std::string_view shape, std::string_view inner) {
   const auto bound = inner.find("<=");
-  const std::string_view symbol = bound == std::string_view::npos ? std::string_view() : inner.substr(0, bound);
+  std::string_view symbol = bound == std::string_view::npos ? std::string_view() : inner.substr(0, bound);
+  const bool is_shape = symbol.ends_with("...");
+  if (is_shape) symbol.remove_suffix(3);
   const std::string_view literal = bound == std::string_view::npos ? inner : inner.substr(bound + 2);
   if (bound != std::string_view::npos && !is_identifier(symbol)) {
     return refused(shape, "\"" + std::string(symbol) + "\" is no name: [a-z][a-z0-9_]*");
@@ -33,7 +35,7 @@ Result<Extent> parse_extent(std::string_view shape, std::string_view inner) {
   }
   const std::uint32_t max = number(literal);
   if (max == 0) return refused(shape, "\"" + std::string(literal) + "\" is no whole number from 1 to 65536");
-  return Extent{std::string(symbol), max};
+  return Extent{std::string(symbol), max, is_shape};
 }
 
 }  // namespace
@@ -52,6 +54,8 @@ Result<std::vector<Extent>> parse_shape(std::string_view text) {
     extents.push_back(*std::move(extent));
     rest.remove_prefix(close + 1);
   }
+  for (const Extent& extent : extents)
+    if (extent.is_shape && extents.size() > 1) return refused(text, "a shape variable stands alone");
   std::uint64_t count = 1;
   for (const Extent& extent : extents) count *= extent.max;
   if (count > kMaxExtent) return refused(text, "more than 65536 elements");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shape of a port as text: "" scalar, "[6]", "[ndof<=10]", "[3][3]".
+// The shape of a port as text: "" scalar, "[6]", "[ndof<=10]", "[3][3]"; "[n...<=64]" whatever it is joined to.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,19 @@ namespace chimera {
 
 inline constexpr std::uint32_t kMaxExtent = 65'536;  ///< of one dimension, and of all together
 
-/// One dimension: a literal (`symbol` empty), or a constant or extent variable with a maximum.
+/// One dimension: a literal (`symbol` empty), or a constant or extent variable with a maximum; or, standing alone, a
+/// shape variable: any number of dimensions, `max` elements together.
 struct Extent {
   std::string symbol;
   std::uint32_t max = 1;
+  bool is_shape = false;
 
   bool is_literal() const noexcept { return symbol.empty(); }
   bool operator==(const Extent&) const = default;
 };
 
-/// The dimensions of `text`, none for a scalar. Refuses, saying what was found, anything but one or two
-/// `[literal]` or `[symbol<=literal]`, and a literal outside 1..kMaxExtent. Context: setup; may block.
+/// The dimensions of `text`, none for a scalar. Refuses, saying what was found, all but one or two `[literal]` or
+/// `[symbol<=literal]`, or one `[symbol...<=literal]`, of 1..kMaxExtent. Context: setup; may block.
 Result<std::vector<Extent>> parse_shape(std::string_view text);
 
 /// Product of the maxima; 1 for a scalar. Context: any; wait-free.

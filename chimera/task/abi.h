@@ -105,7 +105,7 @@ typedef struct chimera_field {
 /* A port as declared in code.
  * shape: "" scalar; "[6]" literal; "[ndof<=10]" an extent given by the constant port `ndof`, at most 10;
  *        "[n<=16]" where no constant port is called n: an extent variable, solved by verification;
- *        two dimensions as "[3][3]".
+ *        two dimensions as "[3][3]"; "[n...<=64]" a shape variable: any dimensions of at most 64 elements together.
  * unit:  UDUNITS-2 text with our unit file; the letters U, X, Y and Z, which are no units, are unit
  *        variables ("U", "U/s", "U.X"; V is the volt).
  */

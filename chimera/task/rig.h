@@ -60,7 +60,12 @@ class Rig {
   }
   /// Fixes an extent that no constant of the component gives; its maximum until said.
   void extent(const char* symbol, std::uint32_t size) {
-    fixed_.push_back({symbol, size});
+    fixed_.push_back({symbol, size, 1});
+    fix_extents();
+  }
+  /// Fixes a shape that nothing of the component gives to a matrix.
+  void shape(const char* symbol, std::uint32_t rows, std::uint32_t columns) {
+    fixed_.push_back({symbol, rows, columns});
     fix_extents();
   }
   /// The text of a resource port.
@@ -152,7 +157,7 @@ class Rig {
   };
   struct Fixed {
     std::string symbol;
-    std::uint32_t size;
+    std::uint32_t size, columns;
   };
   struct Destroy {
     const chimera_component* component;
@@ -218,18 +223,21 @@ class Rig {
     if (is_given) cell.live->value = cell.memory.get();
   }
 
-  /// Extent `dimension` of a shape: literal, a constant's value, what extent() said, or the maximum; 1 beyond the last.
+  /// Extent `dimension` of a shape: literal, a constant's value, what extent() or shape() said, or the maximum; 1
+  /// beyond the last.
   std::uint32_t extent_of(const chimera_port_decl& decl, int dimension, bool maximum) {
     const char* at = decl.shape;
-    for (; dimension > 0 && *at != '\0'; --dimension) at = std::strchr(at, ']') + 1;
+    const bool is_shape = std::strstr(at, "...<=") != nullptr;
+    for (int d = dimension; d > 0 && *at != '\0' && !is_shape; --d) at = std::strchr(at, ']') + 1;
     if (*at == '\0') return 1;
     const char* bound = std::strstr(at, "<=");
     const char* end = std::strchr(at, ']');
     if (bound == nullptr || bound > end) return static_cast<std::uint32_t>(std::atoi(at + 1));
-    const auto most = static_cast<std::uint32_t>(std::atoi(bound + 2));
-    return maximum ? most : symbol_value({at + 1, static_cast<std::size_t>(bound - at - 1)}, most);
+    const std::uint32_t most = is_shape && dimension > 0 ? 1 : static_cast<std::uint32_t>(std::atoi(bound + 2));
+    const std::string symbol(at + 1, is_shape ? bound - 3 : bound);
+    return maximum ? most : symbol_value(symbol, most, is_shape ? dimension : 0);
   }
-  std::uint32_t symbol_value(const std::string& symbol, std::uint32_t most) {
+  std::uint32_t symbol_value(const std::string& symbol, std::uint32_t most, int dimension) {
     for (const auto& cell : cells_) {
       if (symbol != cell->decl->name || cell->live->value == nullptr) continue;
       const bool is_small = cell->decl->type == CHIMERA_INT32;
@@ -237,7 +245,7 @@ class Rig {
       return value >= 1 && value <= most ? static_cast<std::uint32_t>(value) : most;
     }
     for (const Fixed& fixed : fixed_)
-      if (fixed.symbol == symbol) return fixed.size;
+      if (fixed.symbol == symbol) return dimension == 0 ? fixed.size : fixed.columns;
     return most;
   }
   void fix_extents() {

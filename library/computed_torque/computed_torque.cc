@@ -16,7 +16,8 @@ struct ComputedTorque : library::DhPorts {
   Out<double[]> tau{"tau", "N.m", "[ndof<=10]", frame = "joint", initial = 0.0, safety,
                     doc = "Torque for each joint, within tau_max."};
   InConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive, a link a joint, base to tip."};
-  InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint", doc = "What the drives can give."};
+  InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", range(0, 1e6), frame = "joint",
+                            doc = "What the drives can give."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 20.0, range(0, 500),
                             doc = "Angular frequency at which an error decays; 0: no feedback."};
   InConst<double> damping_ratio{"damping_ratio", "1", initial = 1.0, range(0, 10), doc = "1: without overshoot."};

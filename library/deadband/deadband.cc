@@ -6,10 +6,11 @@
 using namespace chimera;
 
 struct Deadband {
-  In<double[]>      x{"x", "U", "[n<=64]", doc = "Any signal."};
-  InConst<double[]> width{"width", "U", "[n<=64]", doc = "How far x may be from the centre unseen; 0 or more."};
-  InConst<double[]> center{"center", "U", "[n<=64]", initial = 0.0, doc = "The middle of the band."};
-  Out<double[]>     y{"y", "U", "[n<=64]", doc = "The centre within the band, x moved towards it by width outside."};
+  In<double[]>      x{"x", "U", "[n...<=64]", doc = "Any signal."};
+  InConst<double[]> width{"width", "U", "[n...<=64]", range(0, library::kNoLimit),
+                          doc = "How far x may be from the centre unseen."};
+  InConst<double[]> center{"center", "U", "[n...<=64]", initial = 0.0, doc = "The middle of the band."};
+  Out<double[]>     y{"y", "U", "[n...<=64]", doc = "The centre within the band, x moved towards it by width outside."};
 
   Outcome init() {
     for (std::size_t i = 0; i < width.size(); ++i)

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kRowsWaiting = 64;
 
 struct Display {
-  Many<In<Any[]>>     in{"in*", "U", "[n<=64]", type = "T",
+  Many<In<Any[]>>     in{"in*", "U", "[n...<=64]", type = "T",
                          doc = "What is shown: numbers or truth values of one unit."};
   InConst<Text<32>>   title{"title", "1", initial = "", doc = "What every line begins with."};
   InConst<std::int32_t> digits{"digits", "1", initial = 6, range(1, 17), doc = "Significant digits."};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "chimera/task/rig.h"
 
 namespace chimera {
@@ -23,6 +25,16 @@ TEST(Gain, PassesTheSignalOnWithoutAConstant) {
   rig.set("x", 4.0);
   ASSERT_TRUE(rig.cycle());
   EXPECT_DOUBLE_EQ(rig.get<double>("y"), 4.0);
+}
+
+TEST(Gain, PassesNaNOnAndIsOverItWithTheNextInput) {
+  Rig rig("gain");
+  rig.set("x", std::nan(""));
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(std::isnan(rig.get<double>("y")));
+  rig.set("x", 4.0);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(rig.get<double>("y"), 4.0);
 }
 
 }  // namespace

@@ -62,5 +62,17 @@ TEST(JoinMean, RefusesWeightsThatDoNotMatch) {
   EXPECT_EQ(other.init().text, "give one weight for each input, or none");
 }
 
+TEST(JoinMean, IsOverNaNWithTheNextGoodInput) {
+  Joined rig(2, 0);
+  rig.set("in", 7.0, 0, 0);
+  rig.set("in", std::nan(""), 0, 1);
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(std::isnan(rig.get<double>("out")));
+  rig.set("in", 9.0, 0, 1);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_DOUBLE_EQ(rig.get<double>("out"), 8.0);
+}
+
 }  // namespace
 }  // namespace chimera

@@ -8,10 +8,10 @@
 using namespace chimera;
 
 struct JoinPriority {
-  Many<In<double[]>> in{"in*", "U", "[n<=64]", doc = "The producers, the most important first."};
+  Many<In<double[]>> in{"in*", "U", "[n...<=64]", doc = "The producers, the most important first."};
   InConst<double>    max_age{"max_age", "s", initial = 0.1, range(0, 86400),
                              doc = "A value older than this does not count; 0: no age is too old."};
-  Out<double[]>      out{"out", "U", "[n<=64]",
+  Out<double[]>      out{"out", "U", "[n...<=64]",
                          doc = "The values of the first that counts; the last ones stand while none does."};
   Out<std::int32_t>  chosen{"chosen", "1", initial = -1, range(-1, 15),
                             doc = "Its number, from 0; -1 while none counts."};

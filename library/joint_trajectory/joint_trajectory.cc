@@ -26,11 +26,11 @@ struct JointTrajectory {
   InConst<double> duration{"duration", "s", initial = 0.0, range(0, 3600),
                            doc = "From rest to rest; with limits the least time it takes."};
   InConst<Text<16>> profile{"profile", "1", initial = "quintic", doc = "quintic, trapezoid or jerk."};
-  InConst<double[]> velocity_max{"velocity_max", "rad/s", "[ndof<=10]", frame = "joint", initial = 1.0,
+  InConst<double[]> velocity_max{"velocity_max", "rad/s", "[ndof<=10]", range(0, 1e6), frame = "joint", initial = 1.0,
                                  doc = "Limit of trapezoid and jerk."};
-  InConst<double[]> acceleration_max{"acceleration_max", "rad/s2", "[ndof<=10]", frame = "joint", initial = 2.0,
-                                     doc = "Limit of trapezoid and jerk."};
-  InConst<double[]> jerk_max{"jerk_max", "rad/s3", "[ndof<=10]", frame = "joint", initial = 20.0,
+  InConst<double[]> acceleration_max{"acceleration_max", "rad/s2", "[ndof<=10]", range(0, 1e6), frame = "joint",
+                                     initial = 2.0, doc = "Limit of trapezoid and jerk."};
+  InConst<double[]> jerk_max{"jerk_max", "rad/s3", "[ndof<=10]", range(0, 1e9), frame = "joint", initial = 20.0,
                              doc = "Limit of jerk."};
   InConst<bool> is_synchronised{"is_synchronised", "1", initial = true,
                                 doc = "With limits: all joints arrive with the slowest."};

@@ -9,10 +9,11 @@ using namespace chimera;
 namespace {
 
 struct Notch {
-  In<double[]>    x{"x", "U", "[n<=64]", doc = "Any signal."};
-  InConst<double> center{"center", "Hz", doc = "What is taken out; above 0, below half the rate."};
-  InConst<double> width{"width", "Hz", doc = "Between the two frequencies where the gain is 1/sqrt(2); above 0."};
-  Out<double[]>   y{"y", "U", "[n<=64]", doc = "x without the centre frequency."};
+  In<double[]>    x{"x", "U", "[n...<=64]", doc = "Any signal."};
+  InConst<double> center{"center", "Hz", range(0, 1e6), doc = "What is taken out; above 0, below half the rate."};
+  InConst<double> width{"width", "Hz", range(0, 1e6),
+                        doc = "Between the two frequencies where the gain is 1/sqrt(2); above 0."};
+  Out<double[]>   y{"y", "U", "[n...<=64]", doc = "x without the centre frequency."};
 
   Outcome init() {
     if (!(*center > 0 && *width > 0) || !math::is_finite(*center) || !math::is_finite(*width))

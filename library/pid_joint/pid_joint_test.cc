@@ -80,5 +80,13 @@ TEST_F(PidJointTest, RefusesLimitsBeyondTheRangeOfTau) {
   EXPECT_EQ(rig.init().text, "tau_max must be 0 to 200 N.m, the range of tau");
 }
 
+TEST_F(PidJointTest, RefusesAFilterThatRunsBackwards) {
+  give();
+  rig.set("filter_time", -1e-3);
+  EXPECT_EQ(rig.init().text, "filter_time must be 0 s or more");
+  rig.set("filter_time", std::nan(""));
+  EXPECT_EQ(rig.init().text, "filter_time must be 0 s or more");
+}
+
 }  // namespace
 }  // namespace chimera

@@ -65,5 +65,10 @@ TEST_F(PumaTest, RefusesAReferenceThatIsNoNumberAndAPoseOutsideItsLimits) {
   EXPECT_EQ(rig.init().text, "joint 4 at 9 rad is outside its limits -1.92 to 2.967 rad");
 }
 
+TEST_F(PumaTest, RefusesAPayloadThatItCannotCarry) {
+  rig.set("payload_mass", 10.5);
+  EXPECT_EQ(rig.init().text, "payload_mass is 10.5 kg, expected 0 to 10 kg");
+}
+
 }  // namespace
 }  // namespace chimera

@@ -8,10 +8,12 @@
 using namespace chimera;
 
 struct RateLimit {
-  In<double[]>      x{"x", "U", "[n<=64]", doc = "Any signal."};
-  InConst<double[]> rise{"rise", "U/s", "[n<=64]", doc = "How fast y may grow; above 0."};
-  InConst<double[]> fall{"fall", "U/s", "[n<=64]", doc = "How fast y may fall; above 0."};
-  Out<double[]>     y{"y", "U", "[n<=64]", doc = "x, as near as the rates allow."};
+  In<double[]>      x{"x", "U", "[n...<=64]", doc = "Any signal."};
+  InConst<double[]> rise{"rise", "U/s", "[n...<=64]", range(0, library::kNoLimit),
+                         doc = "How fast y may grow; above 0."};
+  InConst<double[]> fall{"fall", "U/s", "[n...<=64]", range(0, library::kNoLimit),
+                         doc = "How fast y may fall; above 0."};
+  Out<double[]>     y{"y", "U", "[n...<=64]", doc = "x, as near as the rates allow."};
 
   Outcome init() {
     for (std::size_t i = 0; i < rise.size(); ++i)

@@ -83,5 +83,19 @@ TEST_F(StoreTest, BothBuildsTellTheChainOfTheirStore) {
   }
 }
 
+TEST(Rmms, RefusesAReferenceThatIsNoNumberAndAPoseOutsideItsLimits) {
+  Rig rig("rmms");
+  rig.resource("store", shipped("rmms_a.store").c_str());
+  for (std::size_t i = 0; i < 10; ++i) rig.set("q_ref", 0.0, i);
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  rig.set("q_ref", std::nan(""), 1);
+  EXPECT_EQ(rig.cycle().text, "q_ref[1] is not finite");
+  EXPECT_FALSE(rig.error());
+  EXPECT_TRUE(rig.clear());
+  rig.set("start_pose", 9.0, 0);
+  EXPECT_EQ(rig.init().text, "joint 1 at 9 rad is outside its limits -2.967 to 2.967 rad");
+}
+
 }  // namespace
 }  // namespace chimera::library

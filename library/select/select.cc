@@ -9,9 +9,9 @@
 using namespace chimera;
 
 struct Select {
-  Many<In<double[]>> in{"in*", "U", "[n<=64]", doc = "What there is to choose from."};
+  Many<In<double[]>> in{"in*", "U", "[n...<=64]", doc = "What there is to choose from."};
   In<std::int32_t>   which{"which", "1", range(0, 15), doc = "The number of the input that counts, from 0."};
-  Out<double[]>      out{"out", "U", "[n<=64]", doc = "The values of that input."};
+  Out<double[]>      out{"out", "U", "[n...<=64]", doc = "The values of that input."};
 
   Outcome init() const {
     return in.size() > 0 ? ok() : fault("there is nothing to choose from: name at least one input");

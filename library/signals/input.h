@@ -10,8 +10,12 @@
 
 namespace chimera::library {
 
-/// Elements of a signal at most: every signal component declares [n<=64], and a scalar is a list of one.
+/// Elements of a signal at most: every signal component declares [n...<=64], any shape, and
+/// sees a list of its elements.
 inline constexpr std::size_t kMostElements = 64;
+
+/// The upper end of a range that has none.
+inline constexpr double kNoLimit = __builtin_inf();
 
 /// Whether every element is finite. Context: cycle; wait-free.
 template <class P>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "chimera/task/rig.h"
 
 namespace chimera {
@@ -36,6 +38,21 @@ TEST(TimeDerivative, StartsAtZeroWhateverTheSignalIs) {
   EXPECT_EQ(rig.get<double>("dx"), 0.0);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rig.get<double>("dx"), 0.0);
+}
+
+TEST(TimeDerivative, IsOverNaNTwoGoodInputsLater) {
+  Rig rig("tderiv");
+  rig.set("x", 1.0);
+  ASSERT_TRUE(rig.on());
+  rig.set("x", std::nan(""));
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(std::isnan(rig.get<double>("dx")));
+  rig.set("x", 1.0);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(std::isnan(rig.get<double>("dx")));
+  rig.set("x", 1.5);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_DOUBLE_EQ(rig.get<double>("dx"), 500.0);
 }
 
 }  // namespace

@@ -6,10 +6,10 @@
 using namespace chimera;
 
 struct UnitConvert {
-  In<double[]>    x{"x", "U", "[n<=64]", doc = "A signal in one unit."};
+  In<double[]>    x{"x", "U", "[n...<=64]", doc = "A signal in one unit."};
   InConst<double> factor{"factor", "X/U", doc = "What one U is in X; not 0."};
   InConst<double> offset{"offset", "X", initial = 0.0, doc = "What 0 U is in X, as 273.15 K for 0 degC."};
-  Out<double[]>   y{"y", "X", "[n<=64]", doc = "The same signal in the other unit."};
+  Out<double[]>   y{"y", "X", "[n...<=64]", doc = "The same signal in the other unit."};
 
   Outcome init() {
     if (!math::is_finite(*factor) || *factor == 0) return fault("factor must be finite and not 0");

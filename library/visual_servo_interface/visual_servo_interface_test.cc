@@ -130,5 +130,32 @@ TEST(PoseMonitor, JudgesAfterItHasSettled) {
   EXPECT_EQ(rig.cycle(kStep).text, "a pose is not a number");
 }
 
+TEST(VisualServoInterface, DoesNotBeginWhereTheToolIsNot) {
+  Rig rig("visual_servo_interface");
+  rig.set("camera", kCamera);
+  rig.resource("link", "unix:@chimera_nowhere_test");
+  ASSERT_TRUE(rig.init());
+  EXPECT_EQ(rig.on().text, "xm was never written: where the tool is is not known");
+  rig.set("xm", Pose{{std::nan(""), 0, 0}, {1, 0, 0, 0}});
+  EXPECT_EQ(rig.on().text, "xm is not a number");
+}
+
+TEST(CameraTargets, RefusesALinkThatIsNoneAndACameraThatStandsNowhere) {
+  Rig rig("camera_targets");
+  rig.set("camera", kCamera);
+  rig.resource("link", "camera");
+  EXPECT_EQ(rig.init().text, "camera: expected udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH");
+  rig.set("camera", Pose{{0, 0, 0}, {0, 0, 0, 0}});
+  EXPECT_EQ(rig.init().text, "camera: the orientation is no unit quaternion");
+}
+
+TEST(PoseMonitor, JudgesNothingThatNobodyHasWritten) {
+  Rig rig("pose_monitor");
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  rig.set("xm", Pose{{0, 0, 0}, {1, 0, 0, 0}});
+  EXPECT_EQ(rig.cycle(kStep).text, "target or xm was never written");
+}
+
 }  // namespace
 }  // namespace chimera

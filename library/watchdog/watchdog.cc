@@ -12,7 +12,7 @@ namespace {
 enum class Action { kReport, kFault, kOff };
 
 struct Watchdog {
-  Many<In<Any[]>>    in{"in*", "U", "[n<=64]", type = "T", doc = "The values to watch, of one type and unit."};
+  Many<In<Any[]>>    in{"in*", "U", "[n...<=64]", type = "T", doc = "The values to watch, of one type and unit."};
   InConst<double>    max_age{"max_age", "s", range(1e-6, 86400), doc = "A value must be renewed at least this often."};
   InConst<Text<16>>  action{"action", "1", initial = "report", doc = "What follows: report, fault, or off."};
   InConst<Text<64>>  target{"target", "1", initial = "", doc = "The task that the action off turns off."};
