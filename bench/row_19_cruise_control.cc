@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Row 19: one cycle of each component of the cruise control, and of the two that tests are made of, beside the same law
-// written out.
+// Row 19: one cycle of each component of the cruise control, and of those that schedules and tests are made of, beside
+// the same law written out.
 // Components: accel brake busy car ccui control dashboard electric_car engine faulty motor position split_pm
-// Components: split_pm_override wheels
+// Components: split_pm_override wheels on_event ringer
 #include <algorithm>
 #include <cmath>
 
@@ -82,6 +82,14 @@ std::vector<ComponentCase> worlds() {
              sum += std::llround(x * 1e9);
              return static_cast<double>(sum);
            }, 1e-3)},
+          {"on_event", "sum and count", [](ArmRig& rig) { rig.set("time", 1e-3); },
+           repeated([sum = std::int64_t{0}, count = std::int64_t{0}](double x) mutable {
+             sum += std::llround(x * 1e9);
+             return static_cast<double>(sum + ++count);
+           }, 1e-3)},
+          {"ringer", "countdown", [](ArmRig& rig) {
+             rig.set("target", Text<64>("x")), rig.set("every", std::int64_t{1'000'000'000}); },
+           repeated([left = std::int64_t{1'000'000'000}](double x) mutable { return --left > 0 ? x : 0; }, 1)},
           {"faulty", "counter", [](ArmRig&) {}, repeated([](double x) { return x + 1; }, 0)}};
 }
 
