@@ -125,6 +125,10 @@ Result<ArmModel> find_arm(const mjModel_* m, mjData_* d, const char* tip_name) {
     const int j = joints[i];
     if (m->jnt_type[j] != mjJNT_HINGE) return bad("joint '%s' is no hinge: an arm has hinges only", joint_name(m, j));
     describe_joint(m, j, i, arm);
+    // In MJCF the compiler refuses it; in URDF it would take the joint for one without limits.
+    if (m->jnt_range[2 * j] > m->jnt_range[2 * j + 1]) {
+      return bad("the lower limit of joint '%s' is above its upper one", joint_name(m, j));
+    }
     std::copy_n(d->xanchor + 3 * j, 3, axes[i].point.at);
     std::copy_n(d->xaxis + 3 * j, 3, axes[i].direction.at);
   }

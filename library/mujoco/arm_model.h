@@ -32,7 +32,8 @@ struct ArmModel {
 void stand_at_zero(const mjModel_* model, mjData_* state);
 
 /// Finds the arm that ends at the body or site `tip`; an empty text stands for the body with the most hinges between
-/// itself and the world. Refuses an unknown tip, a joint on the way that is no hinge, no joint, more than kMostJoints.
+/// itself and the world. Refuses an unknown tip, a joint on the way that is no hinge, no joint, more than kMostJoints,
+/// limits that are not in order.
 /// Context: setup; moves `state` to zero.
 Result<ArmModel> find_arm(const mjModel_* model, mjData_* state, const char* tip);
 

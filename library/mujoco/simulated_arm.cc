@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
 #include "library/mujoco/mujoco_guard.h"
 
@@ -26,6 +27,16 @@ Error bad(const char* format, Values... values) {
   return error;
 }
 
+/// One line of what MuJoCo says in several.
+void join_lines(char* text) {
+  char* to = text;
+  for (const char* from = text; *from != '\0'; ++from) {
+    if (*from != '\n') *to++ = *from;
+    else if (to != text && to[-1] != ' ' && from[1] != '\0') *to++ = ' ';
+  }
+  *to = '\0';
+}
+
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 }  // namespace
@@ -35,9 +46,13 @@ void SimulatedArm::DataRelease::operator()(mjData_* data) const { mj_deleteData(
 
 Result<void> SimulatedArm::load(const char* path, const char* tip, const mjVFS_* files) {
   install_mujoco_handlers();
+  if (files == nullptr && std::ifstream(path).peek() == std::ifstream::traits_type::eof()) {
+    return bad("%s: cannot be read, or there is nothing in it", path);
+  }
   char why[1000] = "";
   state_.reset();
   model_.reset(mj_loadXML(path, files, why, sizeof why));
+  join_lines(why);
   if (!model_) return bad("%s: %.300s", path, why);
   mjModel* m = model_.get();
   m->opt.disableflags |= mjDSBL_ACTUATION;

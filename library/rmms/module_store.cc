@@ -18,8 +18,15 @@ Error bad(const std::string& text) {
   return error;
 }
 
+constexpr int kMostLines = 1000, kLongestLine = 256;
+
 const char* judge(const RmmsModule& m) {
+  if (std::abs(m.link.a) > 10 || std::abs(m.link.d) > 10) return "a and d are at most 10 m";
+  if (m.mass > 1000 || m.torque > 1e6) return "the mass is at most 1000 kg, the torque 1e6 N.m";
+  if (std::abs(m.link.alpha) > 7 || std::abs(m.link.theta) > 7) return "alpha and theta are at most 400 deg";
+  if (m.low < -1000 || m.high > 1000) return "the limits are at most 1000 rad either way";
   if (!(m.mass > 0)) return "the mass is not positive";
+  if (m.mass < 1e-3) return "the mass is at least 1 g";
   if (!(m.torque > 0)) return "the torque is not positive";
   if (!(m.low < m.high)) return "the lower limit is not below the upper one";
   if (std::hypot(m.link.a, m.link.d) < 1e-3) return "the link has no extent: at least 1 mm of a or d";
@@ -65,11 +72,14 @@ Result<ModuleStore> ModuleStore::read(const std::string& path) {
   std::ifstream file(path);
   if (!file) return bad(path + ": cannot be read");
   ModuleStore store;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
+  char text[kLongestLine + 1];
+  for (int number = 1; file.getline(text, sizeof text) || file.gcount() > 0; ++number) {
+    const std::string at = path + ":" + std::to_string(number) + ": ";
+    if (!file && !file.eof()) return bad(at + "the line is longer than " + std::to_string(kLongestLine) + " bytes");
+    if (number > kMostLines) return bad(at + "there are more than " + std::to_string(kMostLines) + " lines");
+    std::string line = text;
     line = line.substr(0, line.find('#'));
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const std::string at = path + ":" + std::to_string(number) + ": ";
     if (store.count == kMostJoints) return bad(at + "there are more than " + std::to_string(kMostJoints) + " modules");
     const char* wrong = read_module(line, store.modules[store.count]);
     if (wrong != nullptr) return bad(at + wrong);

@@ -30,7 +30,8 @@ struct ModuleStore {
 
   /// Reads a store. Refuses, with the number of the line: a file that cannot be read, a line that is not a name and
   /// eight finite numbers, a mass or torque that is not positive, limits that are not in order, a module without
-  /// extent, no module, more than kMostJoints. Context: setup; may block.
+  /// extent or such as nobody builds, no module, more than kMostJoints, a line or a file that is too long.
+  /// Context: setup; may block.
   static Result<ModuleStore> read(const std::string& path);
   /// The same arm as MJCF, its tip a site `tip`.
   std::string mjcf() const;

@@ -52,6 +52,14 @@ TEST_F(StoreTest, RefusesABadStoreWithTheLine) {
   std::string eleven;
   for (int i = 0; i < 11; ++i) eleven += "m 0.1 0 0 0 1 -90 90 10\n";
   EXPECT_EQ(refusal(eleven), ":11: there are more than 10 modules");
+  EXPECT_EQ(refusal("a 0 90 10.1 0 9 -170 170 270\n"), ":1: a and d are at most 10 m");
+  EXPECT_EQ(refusal("a 0 90 1 0 1e300 -170 170 270\n"), ":1: the mass is at most 1000 kg, the torque 1e6 N.m");
+  EXPECT_EQ(refusal("a 0 90 1 0 1e-300 -170 170 270\n"), ":1: the mass is at least 1 g");
+  EXPECT_EQ(refusal("a 0 1e9 1 0 9 -170 170 270\n"), ":1: alpha and theta are at most 400 deg");
+  EXPECT_EQ(refusal("a 0 90 1 0 9 -1e300 170 270\n"), ":1: the limits are at most 1000 rad either way");
+  EXPECT_EQ(refusal(std::string(300, 'x')), ":1: the line is longer than 256 bytes");
+  EXPECT_EQ(refusal(std::string(1001, '\n')), ":1001: there are more than 1000 lines");
+  EXPECT_EQ(ModuleStore::read("/dev/zero").error().message.view(), "/dev/zero:1: the line is longer than 256 bytes");
   EXPECT_EQ(ModuleStore::read("no_such.store").error().message.view(), "no_such.store: cannot be read");
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@ namespace chimera::library {
 namespace {
 
 constexpr double kNone = 1e6;
+constexpr std::size_t kLongest = std::size_t{4} << 20;  // bytes of a file
 
 Error bad(const std::string& text) {
   Error error;
@@ -42,15 +42,21 @@ bool turns(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS;
 }
 
-/// Joints from the root to `link`, fixed ones too.
+/// Joints from the root to `link`, fixed ones too; one more than the model has where they go round in a circle.
 std::vector<urdf::JointConstSharedPtr> joints_to(const urdf::ModelInterface& model, urdf::LinkConstSharedPtr link) {
   std::vector<urdf::JointConstSharedPtr> joints;
-  while (link && link->parent_joint) {
+  while (link && link->parent_joint && joints.size() <= model.joints_.size()) {
     joints.push_back(link->parent_joint);
     link = model.getLink(link->parent_joint->parent_link_name);
   }
   std::reverse(joints.begin(), joints.end());
   return joints;
+}
+
+bool has_circle(const urdf::ModelInterface& model) {
+  return std::ranges::any_of(model.links_, [&model](const auto& named) {
+    return joints_to(model, named.second).size() > model.joints_.size();
+  });
 }
 
 /// The link behind the most turning joints. Links are kept by name, so the choice is the same every time.
@@ -100,7 +106,11 @@ Result<UrdfChain> walk(const std::vector<urdf::JointConstSharedPtr>& joints) {
     const Triple axis{joint->axis.x, joint->axis.y, joint->axis.z};
     if (!(length(axis) > 1e-9)) return bad("the axis of joint '" + joint->name + "' has no direction");
     axes[n] = {frame.origin, frame.turned(axis)};
-    take_limits(*joint, n++, found);
+    take_limits(*joint, n, found);
+    if (found.low[n] > found.high[n]) {
+      return bad("the lower limit of joint '" + joint->name + "' is above its upper one");
+    }
+    ++n;
   }
   if (n == 0) return bad("no joint turns between the root and the tip");
   found.chain = dh_of_axes(std::span(axes.data(), n), frame);
@@ -112,13 +122,19 @@ Result<UrdfChain> walk(const std::vector<urdf::JointConstSharedPtr>& joints) {
 Result<UrdfChain> read_urdf(const std::string& path, const std::string& tip) {
   std::ifstream file(path);
   if (!file) return bad(path + ": cannot be read");
-  std::ostringstream text;
-  text << file.rdbuf();
+  std::string text(kLongest + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kLongest) return bad(path + ": is longer than 4 MiB");
   urdf::ModelInterfaceSharedPtr model;
   {
     FirstReason reason;
-    model = urdf::parseURDF(text.str());
+    model = urdf::parseURDF(text);
     if (!model) return bad(path + ": " + reason.text());
+  }
+  if (has_circle(*model)) {
+    for (const auto& [name, link] : model->links_) link->child_links.clear();  // they would own each other for ever
+    return bad(path + ": its joints go round in a circle");
   }
   const std::string link = tip.empty() ? farthest_link(*model) : tip;
   if (!tip.empty() && !model->getLink(tip)) return bad(path + ": there is no link '" + tip + "'");

@@ -90,6 +90,13 @@ TEST_F(UrdfChainTest, RefusesWhatIsNoChainOfTurningJoints) {
   EXPECT_EQ(refusal("<joint name='j' type='continuous'>" + ends + "</joint>", "hand"), ": there is no link 'hand'");
   EXPECT_EQ(refusal("<joint name='j' type='revolute'>" + ends + "</joint>"),
             ": Joint [j] is of type REVOLUTE but it does not specify limits");
+  const std::string turns = "' type='revolute'><limit lower='1' upper='-1' effort='1' velocity='1'/>";
+  EXPECT_EQ(refusal("<joint name='j" + turns + ends + "</joint>"),
+            ": the lower limit of joint 'j' is above its upper one");
+  EXPECT_EQ(refusal("<link name='c'/><joint name='j" + turns + "<parent link='c'/><child link='b'/></joint>" +
+                    "<joint name='k" + turns + "<parent link='b'/><child link='c'/></joint>"),
+            ": its joints go round in a circle");
+  EXPECT_EQ(read_urdf("/dev/zero", "").error().message.view(), "/dev/zero: is longer than 4 MiB");
   std::ofstream(path) << "<robot";
   EXPECT_FALSE(read_urdf(path, ""));
   EXPECT_EQ(read_urdf("no_such.urdf", "").error().message.view(), "no_such.urdf: cannot be read");
