@@ -17,12 +17,14 @@ struct Counter {
   const char* key;
   std::uint64_t Profile::* count;
 };
-constexpr std::array<Counter, 13> kCounters = {{{"missed", &Profile::missed},
+constexpr std::array<Counter, 15> kCounters = {{{"missed", &Profile::missed},
                                                 {"overrun", &Profile::overrun},
                                                 {"min_refused", &Profile::min_refused},
                                                 {"dropped", &Profile::dropped},
                                                 {"held", &Profile::held},
                                                 {"aborted", &Profile::aborted},
+                                                {"partial", &Profile::partial},
+                                                {"tolerated", &Profile::tolerated},
                                                 {"stale", &Profile::stale},
                                                 {"rejected", &Profile::rejected},
                                                 {"preempted", &Profile::preempted},

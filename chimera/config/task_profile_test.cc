@@ -25,6 +25,8 @@ TaskProfile sample() {
   made.profile.missed = 1;
   made.profile.rejected = 4;
   made.profile.preempted = 5;
+  made.profile.partial = 10;
+  made.profile.tolerated = 11;
   made.profile.demoted = 6;
   made.profile.events = 9;
   made.profile.events_lost = 8;
@@ -45,7 +47,7 @@ TEST(TaskProfile, ReadsAsDocumented) {
             "\"mean\": 4000, \"max\": 5000}}, \"response_ns\": {\"count\": 1, \"min\": 7000, \"mean\": 7000, "
             "\"max\": 7000}, \"start_delay_ns\": {\"count\": 0}, \"transfer\": {\"groups\": 2, \"bytes\": 48}, "
             "\"missed\": 1, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, \"held\": 0, \"aborted\": 0, "
-            "\"stale\": 0, \"rejected\": 4, \"preempted\": 5, \"demoted\": 6, "
+            "\"partial\": 10, \"tolerated\": 11, \"stale\": 0, \"rejected\": 4, \"preempted\": 5, \"demoted\": 6, "
             "\"events\": 9, \"events_lost\": 8, \"exhausted\": 7, \"faults\": 1, \"last_fault\": "
             "{\"method\": \"cycle\", \"at_ns\": 1000000000, \"code\": 12, \"text\": \"too \\\"hot\\\"\"}}]");
 }

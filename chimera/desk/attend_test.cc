@@ -72,7 +72,7 @@ class MadeUp final : public control::Subject {
             {"period_ns", 1000000}, {"cycles", 100},
             {"execution_ns", Json::object()}, {"response_ns", {{"count", 0}}}, {"start_delay_ns", {{"count", 0}}},
             {"missed", 0}, {"overrun", 0}, {"min_refused", 0}, {"dropped", 0}, {"held", 0}, {"aborted", 0},
-            {"stale", 0}, {"rejected", 0}, {"preempted", 0}, {"demoted", 0},
+            {"partial", 0}, {"tolerated", 0}, {"stale", 0}, {"rejected", 0}, {"preempted", 0}, {"demoted", 0},
             {"events", 0}, {"events_lost", 0}, {"exhausted", 0},
             {"transfer", {{"groups", 1}, {"bytes", 48}}}, {"faults", 0}};
   }

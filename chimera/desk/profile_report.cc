@@ -25,7 +25,12 @@ struct Seldom {
   const char* name;
   std::uint64_t Profile::* count;
 };
-constexpr Seldom kSeldom[] = {{"preempted", &Profile::preempted},
+constexpr Seldom kSeldom[] = {{"over budget", &Profile::overrun},
+                              {"held", &Profile::held},
+                              {"aborted", &Profile::aborted},
+                              {"partial", &Profile::partial},
+                              {"tolerated", &Profile::tolerated},
+                              {"preempted", &Profile::preempted},
                               {"demoted", &Profile::demoted},
                               {"events", &Profile::events},
                               {"events lost", &Profile::events_lost},

@@ -149,7 +149,7 @@ TEST(ProfileReport, ATaskThatNeverRanHasNoFiguresButALine) {
             "\"period_ns\": 1000000, \"cycles\": 0, \"execution_ns\": {}, \"response_ns\": {\"count\": 0}, "
             "\"start_delay_ns\": {\"count\": 0}, \"transfer\": {\"groups\": 0, \"bytes\": 0}, "
             "\"missed\": 0, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, \"held\": 0, \"aborted\": 0, "
-            "\"stale\": 0, \"rejected\": 0, \"preempted\": 0, \"demoted\": 0, "
+            "\"partial\": 0, \"tolerated\": 0, \"stale\": 0, \"rejected\": 0, \"preempted\": 0, \"demoted\": 0, "
             "\"events\": 0, \"events_lost\": 0, \"exhausted\": 0, \"faults\": 0}]");
 }
 

@@ -124,6 +124,8 @@ Json task_json(const World& world, TaskId task, Nanoseconds at) {
           {"missed", p.missed},
           {"overrun", p.overrun},
           {"dropped", p.dropped},
+          {"partial", p.partial},
+          {"tolerated", p.tolerated},
           {"stale", p.stale},
           {"rejected", p.rejected},
           {"preempted", p.preempted},

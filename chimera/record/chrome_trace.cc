@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/record/chrome_trace.h"
 
+#include <algorithm>
+
 #include "chimera/task/signal.h"
 #include "chimera/task/state_machine.h"
 
 namespace chimera {
 namespace {
+
+constexpr Nanoseconds kHeldBack = seconds(2);
 
 // Names are identifiers of a verified description; whatever else comes must not break the JSON.
 std::string quoted(const std::string& text) {
@@ -19,6 +23,10 @@ std::string quoted(const std::string& text) {
 
 std::string argument(const char* name, std::int64_t value) {
   return ", \"" + std::string(name) + "\": " + std::to_string(value);
+}
+
+std::string release_of(const TapRecord& record) {
+  return argument("cycle", record.a) + (record.b > 0 ? argument("deadline_ns", record.b) : "");
 }
 
 const char* method_of(const TapRecord& record) {
@@ -76,9 +84,9 @@ void ChromeTrace::event(const TapRecord& record, const char* phase, const std::s
   is_first_ = false;
 }
 
-void ChromeTrace::add_one(const TapRecord& record) {
+void ChromeTrace::write(const TapRecord& record) {
   switch (record.kind) {
-    case TapKind::kRelease: return event(record, "i", "release", argument("cycle", record.a));
+    case TapKind::kRelease: return event(record, "i", "release", release_of(record));
     case TapKind::kRun: return event(record, "X", method_of(record), argument("dur_ns", record.b));
     case TapKind::kPreempt: return event(record, "i", "preempt", "");
     case TapKind::kMiss: return event(record, "i", "miss", argument("late_ns", record.b));
@@ -94,11 +102,33 @@ void ChromeTrace::add_one(const TapRecord& record) {
   }
 }
 
+void ChromeTrace::hold(const TapRecord& record, Nanoseconds at, bool is_deadline) {
+  held_.push_back({at, n_held_++, record, is_deadline});
+  std::push_heap(held_.begin(), held_.end(), comes_later);
+}
+
+void ChromeTrace::write_until(Nanoseconds instant) {
+  while (!held_.empty() && held_.front().at <= instant) {
+    std::pop_heap(held_.begin(), held_.end(), comes_later);
+    Held next = held_.back();
+    held_.pop_back();
+    next.record.at = next.at;
+    if (next.is_deadline) event(next.record, "i", "deadline", argument("cycle", next.record.a));
+    else write(next.record);
+  }
+}
+
 void ChromeTrace::add(std::span<const TapRecord> records) {
-  for (const TapRecord& record : records) add_one(record);
+  for (const TapRecord& record : records) {
+    if (record.kind == TapKind::kGroup || record.kind == TapKind::kValue) continue;
+    hold(record, record.at, false);
+    if (record.kind == TapKind::kRelease && record.b > 0) hold(record, record.at + Nanoseconds{record.b}, true);
+    write_until(record.at - kHeldBack);
+  }
 }
 
 bool ChromeTrace::end(std::uint64_t lost) {
+  write_until(kNever);
   std::fprintf(file_,
                "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"lost_records\": %llu}}\n",
                quoted(subsystem_).c_str(), static_cast<unsigned long long>(lost));

@@ -11,14 +11,16 @@
 
 namespace chimera {
 
-/// Writes one trace while records come in; memory does not grow. Context: setup; may block.
+/// Writes one trace while records come in, sorted by their instants: those of the last two seconds are held back, since
+/// a release is told when its job starts. What is told later than that comes where it is told.
+/// Context: setup; may block.
 class ChromeTrace {
  public:
   /// `file` stays open and the caller's. Names by index; records refer to them.
   /// Times are written relative to `origin`.
   ChromeTrace(std::FILE* file, std::string subsystem, std::span<const std::string> rtpus,
               std::span<const std::string> tasks, Nanoseconds origin);
-  /// Adds records in the order in which they were made.
+  /// Adds records in the order in which they were told.
   void add(std::span<const TapRecord> records);
   /// Closes the JSON, saying how many records were lost. Afterwards nothing more may be added. False when anything of
   /// the trace, now or before, could not be written: the file is cut short and errno tells the last reason.
@@ -26,13 +28,27 @@ class ChromeTrace {
 
  private:
   void event(const TapRecord& record, const char* phase, const std::string& name, const std::string& more);
-  void add_one(const TapRecord& record);
+  /// A record that waits for those before it.
+  struct Held {
+    Nanoseconds at;
+    std::uint64_t number = 0;
+    TapRecord record;
+    bool is_deadline = false;  // of the job that `record` released
+  };
+  static bool comes_later(const Held& a, const Held& b) noexcept {
+    return a.at != b.at ? a.at > b.at : a.number > b.number;
+  }
+  void hold(const TapRecord& record, Nanoseconds at, bool is_deadline);
+  void write_until(Nanoseconds instant);
+  void write(const TapRecord& record);
   void metadata(const char* what, std::size_t pid, std::size_t tid, const std::string& name);
 
   std::FILE* file_;
   std::string subsystem_;
   Nanoseconds origin_;
   bool is_first_ = true;
+  std::vector<Held> held_;  // a heap, the earliest on top
+  std::uint64_t n_held_ = 0;
 };
 
 /// `t` in microseconds with exactly three decimals: "1.234", "-0.001". No rounding.

@@ -47,16 +47,16 @@ TEST(ChromeTrace, KeepsEveryNanosecond) {
   const TapRecord records[] = {record(TapKind::kRun, 1001, 1, CHIMERA_CYCLE, 12'345),
                                record(TapKind::kMiss, 999, 0, 0, 7)};
   const auto events = trace_of(records, 3)["traceEvents"];
-  EXPECT_EQ(events[3]["ph"], "X");
-  EXPECT_EQ(events[3]["name"], "cycle");
-  EXPECT_EQ(events[3]["tid"], 1);
-  EXPECT_DOUBLE_EQ(events[3]["ts"].get<double>(), 0.001);
-  EXPECT_DOUBLE_EQ(events[3]["dur"].get<double>(), 12.345);
-  EXPECT_EQ(events[3]["args"]["ns"], 1);
-  EXPECT_EQ(events[3]["args"]["dur_ns"], 12'345);
-  EXPECT_EQ(events[4]["name"], "miss");
-  EXPECT_EQ(events[4]["args"]["ns"], -1);
-  EXPECT_EQ(events[4]["args"]["late_ns"], 7);
+  EXPECT_EQ(events[3]["name"], "miss") << "what came first stands first";
+  EXPECT_EQ(events[3]["args"]["ns"], -1);
+  EXPECT_EQ(events[3]["args"]["late_ns"], 7);
+  EXPECT_EQ(events[4]["ph"], "X");
+  EXPECT_EQ(events[4]["name"], "cycle");
+  EXPECT_EQ(events[4]["tid"], 1);
+  EXPECT_DOUBLE_EQ(events[4]["ts"].get<double>(), 0.001);
+  EXPECT_DOUBLE_EQ(events[4]["dur"].get<double>(), 12.345);
+  EXPECT_EQ(events[4]["args"]["ns"], 1);
+  EXPECT_EQ(events[4]["args"]["dur_ns"], 12'345);
 }
 
 TEST(ChromeTrace, NamesEveryKindOfRecord) {
@@ -74,6 +74,30 @@ TEST(ChromeTrace, NamesEveryKindOfRecord) {
     if (event["ph"] == "i") names += event["name"].get<std::string>() + ", ";
   EXPECT_EQ(names, "release, preempt, drop, signal off, fault in cycle, state ERROR, flag up, flag down, ");
   EXPECT_EQ(trace["otherData"]["lost_records"], 3);
+}
+
+TEST(ChromeTrace, SortsWhatIsToldLaterAndShowsDeadlines) {
+  const TapRecord records[] = {record(TapKind::kRun, 3'000, 0, CHIMERA_CYCLE, 500),
+                               record(TapKind::kRelease, 2'000, 0, 7, 5'000),
+                               record(TapKind::kRun, 4'000, 1, CHIMERA_CYCLE, 10),
+                               record(TapKind::kRelease, 4'000, 1, 8)};
+  std::string seen;
+  const auto trace = trace_of(records);
+  for (const auto& event : trace["traceEvents"])
+    if (event["ph"] != "M")
+      seen += event["name"].get<std::string>() + " " + std::to_string(event["args"]["ns"].get<int>()) + ", ";
+  EXPECT_EQ(seen, "release 1000, cycle 2000, cycle 3000, release 3000, deadline 6000, ");
+}
+
+TEST(ChromeTrace, HoldsBackNoMoreThanTwoSeconds) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const TapRecord records[] = {record(TapKind::kPreempt, 5 * kSecond, 0), record(TapKind::kPreempt, 8 * kSecond, 0),
+                               record(TapKind::kDrop, 1 * kSecond, 0, 1)};
+  std::string seen;
+  const auto trace = trace_of(records);
+  for (const auto& event : trace["traceEvents"])
+    if (event["ph"] != "M") seen += event["name"].get<std::string>() + " ";
+  EXPECT_EQ(seen, "preempt drop preempt ");
 }
 
 TEST(ChromeTrace, GivesTheWholeProcessWhatConcernsNoTask) {

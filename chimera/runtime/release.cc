@@ -263,7 +263,7 @@ void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noex
 }
 
 void Releases::expire_waiting(const Job& job) noexcept {
-  record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle);
+  record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
   record(TapKind::kMiss, job.deadline, job.task, tasks_[job.task.index].call.cycle);
   drop(DroppedRelease{job.task, job.release, 1});
 }

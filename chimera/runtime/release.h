@@ -133,7 +133,7 @@ class Releases {
   /// False when the job must not start: its release is then counted as dropped, with all that follows.
   bool may_start(const Job& job, Nanoseconds now) noexcept {
     const OfTask& t = of_[job.task.index];
-    record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle);
+    record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
     if (!t.skip_next && now + t.start_margin <= job.deadline) return true;
     const bool starts = decide_start(job, now);
     if (t.wants != 0 && options_.threads == nullptr) settle_job(job.task, now);
@@ -229,6 +229,9 @@ class Releases {
   /// What one job records at most is kept until it may go to the tap.
   using Kept = FixedVector<TapRecord, 16>;
 
+  static std::int64_t time_to_deadline(const Job& job) noexcept {
+    return job.deadline == kNever ? 0 : (job.deadline - job.release).count;
+  }
   void append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept;
   TapRecord record_of(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) const noexcept;
   void tap_row(const Task& task) noexcept;

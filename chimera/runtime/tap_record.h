@@ -13,7 +13,7 @@
 namespace chimera {
 
 enum class TapKind : std::uint8_t {
-  kRelease,  ///< a job became ready; a = cycle number
+  kRelease,  ///< a job became ready; a = cycle number, b = ns to its deadline, 0: none
   kRun,      ///< a task held the processor from `at` for `b` ns; a = method
   kPreempt,  ///< a more urgent job took the processor
   kMiss,     ///< a cycle ended after its deadline; b = lateness in ns

@@ -44,15 +44,35 @@ Columns rtpu_table(const Json& status) {
   return table;
 }
 
+/// Those of `keys` that count something in some task.
+std::vector<std::string> that_count(const Json& answer, std::initializer_list<const char*> keys) {
+  std::vector<std::string> found;
+  for (const char* key : keys)
+    for (const Json& task : field(answer, "tasks"))
+      if (whole_of(task, key) > 0) {
+        found.emplace_back(key);
+        break;
+      }
+  return found;
+}
+
 Columns task_table(const Json& status) {
-  Columns table({"task", "state", "rtpu", ">rate", ">cycles", ">mean", ">max", ">budget", ">jitter", ">missed",
-                 ">faults", "oldest input"});
-  for (const Json& task : field(status, "tasks"))
-    table.add({text_of(task, "task"), text_of(task, "state"), text_of(task, "rtpu"),
-               rate_text(number_of(task, "rate_hz")), count_of(task, "cycles"),
-               time_of(field(task, "execution_ns"), "mean"), time_of(field(task, "execution_ns"), "max"),
-               time_of(task, "budget_ns"), time_of(task, "jitter_ns"), count_of(task, "missed"),
-               count_of(task, "faults"), input_text(task)});
+  const auto seldom = that_count(status, {"partial", "tolerated", "preempted", "demoted", "events_lost", "exhausted"});
+  std::vector<std::string> heading = {"task", "state", "rtpu", ">rate", ">cycles", ">mean", ">max", ">budget",
+                                      ">jitter", ">missed"};
+  for (const std::string& key : seldom) heading.push_back(">" + key);
+  heading.insert(heading.end(), {">faults", "oldest input"});
+  Columns table(std::move(heading));
+  for (const Json& task : field(status, "tasks")) {
+    std::vector<std::string> row = {text_of(task, "task"), text_of(task, "state"), text_of(task, "rtpu"),
+                                    rate_text(number_of(task, "rate_hz")), count_of(task, "cycles"),
+                                    time_of(field(task, "execution_ns"), "mean"),
+                                    time_of(field(task, "execution_ns"), "max"), time_of(task, "budget_ns"),
+                                    time_of(task, "jitter_ns"), count_of(task, "missed")};
+    for (const std::string& key : seldom) row.push_back(count_of(task, key.c_str()));
+    row.insert(row.end(), {count_of(task, "faults"), input_text(task)});
+    table.add(std::move(row));
+  }
   return table;
 }
 
@@ -76,13 +96,9 @@ std::string load_text(const Json& task) {
 /// The counters of a table of tasks: some only where they say something.
 std::vector<std::string> counters_of(const Json& answer) {
   std::vector<std::string> keys = {"missed", "overrun", "dropped", "stale", "rejected"};
-  for (const char* key :
-       {"min_refused", "held", "aborted", "preempted", "demoted", "events", "events_lost", "exhausted"})
-    for (const Json& task : field(answer, "tasks"))
-      if (whole_of(task, key) > 0) {
-        keys.emplace_back(key);
-        break;
-      }
+  const auto seldom = that_count(answer, {"min_refused", "held", "aborted", "partial", "tolerated", "preempted",
+                                          "demoted", "events", "events_lost", "exhausted"});
+  keys.insert(keys.end(), seldom.begin(), seldom.end());
   keys.emplace_back("faults");
   return keys;
 }
