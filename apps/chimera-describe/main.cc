@@ -38,7 +38,8 @@ void print_methods(const Descriptor& descriptor) {
   std::printf("%s:", descriptor.name.c_str());
   for (std::uint32_t i = 0; i < CHIMERA_METHODS; ++i)
     if (descriptor.methods[i]) std::printf(" %s", method_name(static_cast<Method>(i)));
-  std::printf("%s\n", descriptor.background ? "; background" : "");
+  std::printf("%s%s\n", descriptor.background ? "; background" : "",
+              descriptor.event_source ? "; event_source" : "");
 }
 
 int describe_object(const std::string& object, const std::string& output) {

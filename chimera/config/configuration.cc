@@ -32,6 +32,7 @@ ConfiguredTask configured(const TaskModel& task) {
   out.rtpu = task.rtpu;
   out.rate_hz = task.rate_hz;
   out.is_aperiodic = task.component->is_aperiodic();
+  out.has_event_source = task.component->event_source;
   out.is_hardware = task.has_resource();
   if (task.draft->standby_for) out.standby_for = task.draft->standby_for->text;
   for (const LinkedPort& port : task.ports) out.ports.push_back(configured(port));

@@ -37,6 +37,7 @@ struct ConfiguredTask {
   std::size_t rtpu = 0;
   double rate_hz = 0;
   bool is_aperiodic = false;
+  bool has_event_source = false;
   bool is_hardware = false;    ///< has a resource port
   std::string standby_for;     ///< empty: not a standby
   std::vector<ConfiguredPort> ports;

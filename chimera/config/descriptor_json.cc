@@ -151,7 +151,7 @@ PortDescriptor read_port(const JsonCursor& at) {
 
 Descriptor read_component(const JsonCursor& at) {
   at.expect_keys({"format", "name", "abi_version", "default_rate_hz", "state_size", "state_align", "methods", "ports"},
-                 {"doc", "source", "background", "fingerprint"});
+                 {"doc", "source", "background", "event_source", "fingerprint"});
   if (at.at("format").whole() != 1) at.at("format").refuse("this reader knows format 1");
   Descriptor descriptor;
   descriptor.name = at.at("name").text();
@@ -169,6 +169,7 @@ Descriptor read_component(const JsonCursor& at) {
     descriptor.methods[word_at(methods.at(i), "method", words(CHIMERA_METHODS, name_of_method))] = true;
   }
   if (at.has("background")) descriptor.background = at.at("background").truth();
+  if (at.has("event_source")) descriptor.event_source = at.at("event_source").truth();
   const JsonCursor ports = at.at("ports");
   for (std::size_t i = 0; i < ports.size(CHIMERA_MAX_PORTS); ++i) descriptor.ports.push_back(read_port(ports.at(i)));
   if (const auto sound = complete(descriptor); !sound) at.refuse(sound.error().message.view());
@@ -256,6 +257,7 @@ std::string to_json(const Descriptor& descriptor) {
     if (descriptor.methods[m]) json["methods"].push_back(name_of_method(m));
   }
   if (descriptor.background) json["background"] = true;
+  if (descriptor.event_source) json["event_source"] = true;
   json["ports"] = Json::array();
   for (const PortDescriptor& port : descriptor.ports) json["ports"].push_back(port_json(port));
   json["fingerprint"] = hex(fingerprint(descriptor));

@@ -78,7 +78,10 @@ class Refusals {
   }
 
   // A job behind a server is taken off the processor when the capacity is used up: one loop cannot do that.
-  void server(const DraftTask& task, bool preempts) {
+  void server(const DraftTask& task, bool preempts, bool has_source) {
+    if (task.server && has_source && is_virtual())
+      refuse(task.server->at, "events of task '" + task.name.text + "' from a descriptor, in virtual time",
+             "run without --virtual, or take a component whose events are rung");
     if (!task.server || preempts) return;
     std::string remedy = executor_ == Executor::kVirtual ? "run --virtual --preemptive, or give" : "give";
     if (executor_ == Executor::kOneProcess) remedy = "run without --isolation none, and give";
@@ -93,7 +96,7 @@ class Refusals {
     reaction(task.on_miss, "on_miss", task, preempts);
     reaction(task.on_overrun, "on_overrun", task, preempts);
     if (task.on_fault && task.on_fault->kind != OnFault::kError) refuse_key(task.on_fault->at, "on_fault", task);
-    server(task, preempts);
+    server(task, preempts, here != tasks.end() && here->has_event_source);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
     for (const NamedNode& step : task.max_step) refuse_key(step.name.at, "max_step", task);

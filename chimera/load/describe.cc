@@ -6,6 +6,7 @@
 
 #include "chimera/load/descriptor.h"
 #include "chimera/task/background.h"
+#include "chimera/task/event_source.h"
 
 namespace chimera {
 namespace {
@@ -122,8 +123,9 @@ Result<void> check_version(const chimera_component& component) {
     return refused("component", "ABI version " + std::to_string(component.abi_version) + ", this framework speaks " +
                                     std::to_string(CHIMERA_ABI_VERSION));
   }
-  // One that ends before `background` was built before there was one.
+  // One that ends before a member was built before there was one.
   if (component.struct_size != sizeof(chimera_component) &&
+      component.struct_size != offsetof(chimera_component, event_source) &&
       component.struct_size != offsetof(chimera_component, background)) {
     return refused("component", "declaration of " + std::to_string(component.struct_size) + " bytes, expected " +
                                     std::to_string(sizeof(chimera_component)));
@@ -148,6 +150,7 @@ Result<Descriptor> describe(const chimera_component& component) {
   if (const auto sound = check_component(place, component); !sound) return sound.error();
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m) descriptor.methods[m] = component.methods[m] != nullptr;
   descriptor.background = background_of(component) != nullptr;
+  descriptor.event_source = event_source_of(component) != nullptr;
   for (std::uint32_t i = 0; i < component.n_ports; ++i) {
     const chimera_port_decl& port = component.ports[i];
     const auto sound = check_pointers(place + ": port " + text_of(port.name), port, component);

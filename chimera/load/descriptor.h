@@ -66,6 +66,7 @@ struct Descriptor {
   std::uint32_t state_align = 8;
   std::array<bool, CHIMERA_METHODS> methods{};  ///< which of the nine are written
   bool background = false;                      ///< does something beside its cycles
+  bool event_source = false;                    ///< its events come from a descriptor
   std::vector<PortDescriptor> ports{};
 
   /// Has a sync method, so it is released by events.

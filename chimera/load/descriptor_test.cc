@@ -103,7 +103,13 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   EXPECT_TRUE(sample.described().value().background);
   sample.component.struct_size = offsetof(chimera_component, background);
   EXPECT_FALSE(sample.described().value().background);  // what stands there is none of its
+  sample.component.event_source = [](void*) -> std::int32_t { return 3; };
+  sample.component.struct_size = offsetof(chimera_component, event_source);
+  EXPECT_TRUE(sample.described().value().background);
+  EXPECT_FALSE(sample.described().value().event_source);
   const std::uint32_t size = sizeof(chimera_component);
+  sample.component.struct_size = size;
+  EXPECT_TRUE(sample.described().value().event_source);
   sample.component.struct_size = size + 8;
   EXPECT_EQ(sample.refusal(), "component: declaration of " + std::to_string(size + 8) + " bytes, expected " +
                                   std::to_string(size));

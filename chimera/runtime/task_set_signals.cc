@@ -5,6 +5,7 @@
 
 #include "chimera/runtime/task_set.h"
 #include "chimera/task/background.h"
+#include "chimera/task/event_source.h"
 
 namespace chimera {
 Result<void> TaskSet::start(Nanoseconds now) {
@@ -153,12 +154,15 @@ Next TaskSet::conclude(Task& task, const StepRule& step, Answer answer, Nanoseco
 
 Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock* clock) {
   const Nanoseconds began = clock == nullptr ? now : clock->now();
+  if (method == Method::kKill) task.descriptor = -1;
   if (method == Method::kKill && !end_background(task, now)) return Answer::kFault;
   MethodGate* gate = clock == clock_ ? gate_ : nullptr;  // not on the service thread
   if (gate != nullptr) gate->open(task.id);
   Answer answer = call_method(task, method, now);
   if (gate != nullptr) gate->close(task.id);
   if (method == Method::kInit && answer == Answer::kOk && !begin_background(task, now)) answer = Answer::kFault;
+  const chimera_event_source source = event_source_of(*task.component);
+  if (method == Method::kInit && answer == Answer::kOk && source != nullptr) task.descriptor = source(task.instance);
   const Nanoseconds ended = clock == nullptr ? now : clock->now();
   task.profile.execution[static_cast<int>(method)].add(ended - began);
   return answer;

@@ -180,10 +180,16 @@ typedef int32_t (*chimera_method)(void* state, const chimera_call* call);
  * writes no port. CHIMERA_OK, or CHIMERA_FAULT with a text: then it is not called again. */
 typedef int32_t (*chimera_background)(void* state, chimera_fault* fault);
 
+/* Where the events of an aperiodic component come from: a descriptor that is readable while there is one, asked for
+ * after init and good until kill; below 0: none. Behind a server the framework waits for it, and calls sync, which
+ * takes one event from it and does not block, for as long as it is readable. Context: setup. */
+typedef int32_t (*chimera_event_source)(void* state);
+
 /* A component. Constant, lives as long as the shared object. */
 typedef struct chimera_component {
   uint32_t abi_version; /* CHIMERA_ABI_VERSION */
-  uint32_t struct_size; /* sizeof(chimera_component); an object that ends before `background` has none */
+  uint32_t struct_size; /* sizeof(chimera_component); an object that ends before `background` has none, nor
+                           what comes behind it */
   const char* name;
   const char* doc;
   const char* source;   /* paper or book behind it; "" for none */
@@ -197,6 +203,7 @@ typedef struct chimera_component {
   void (*destroy)(void* state);
   chimera_method methods[CHIMERA_METHODS]; /* NULL: not written */
   chimera_background background;           /* NULL: not written */
+  chimera_event_source event_source;       /* NULL: not written */
 } chimera_component;
 
 /* The one symbol of a shared object. NULL when `abi_version` is not the one it was built with. */

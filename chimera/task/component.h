@@ -19,7 +19,8 @@
 //   sync                            returns bool (an event was taken), or an Outcome with no_event()
 //   error clear                     return bool (recovered; the cause is gone), or an Outcome
 // Beside them void background(), for what may wait: called every 10 ms or so by a thread without real-time rights,
-// while other methods run. docs/howto/write-a-component.md.
+// while other methods run; and int event_source() const noexcept, with sync: the descriptor whose events those are.
+// docs/howto/write-a-component.md.
 // An exception that leaves a method is a fault with its text.
 #pragma once
 
@@ -116,6 +117,13 @@ constexpr chimera_background background_of() {
   else return nullptr;
 }
 
+template <class T>
+constexpr chimera_event_source event_source_of() {
+  if constexpr (Name_event_source<T>::kCallable)
+    return [](void* state) -> std::int32_t { return static_cast<T*>(state)->event_source(); };
+  else return nullptr;
+}
+
 /// The declaration of T in this object.
 template <class T>
 inline Declaration declared;
@@ -168,6 +176,7 @@ const chimera_component* declare() noexcept {
   made.methods[CHIMERA_ERROR] = method_of<T, Name_error<T>, Method::kError>();
   made.methods[CHIMERA_CLEAR] = method_of<T, Name_clear<T>, Method::kClear>();
   made.background = background_of<T>();
+  made.event_source = event_source_of<T>();
   return &made;
 }
 

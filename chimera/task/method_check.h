@@ -44,6 +44,7 @@ CHIMERA_FACE_NAME(kill)
 CHIMERA_FACE_NAME(error)
 CHIMERA_FACE_NAME(clear)
 CHIMERA_FACE_NAME(background)
+CHIMERA_FACE_NAME(event_source)
 
 // The usual misspellings, and the method that is meant: the one list. Only words that nobody chooses for something
 // else; a member counts only when it could be called as a method is.
@@ -108,6 +109,11 @@ constexpr bool check_signatures() {
                                                 Name_background<T>::kVoid),
                 "'background' runs beside the cycles: write it as void background(), public, or give this member "
                 "another name");
+  static_assert(!Name_event_source<T>::kFound ||
+                    (Name_event_source<T>::kCallable && !Name_event_source<T>::kTakesCycle && Name_sync<T>::kFound &&
+                     std::is_same_v<typename Name_event_source<T>::Answer, int>),
+                "'event_source' tells the descriptor that sync reads: write it as int event_source(), public, beside "
+                "sync, or give this member another name");
 #undef CHIMERA_FACE_ANSWERS
 #undef CHIMERA_FACE_ACTS
 #undef CHIMERA_FACE_CALLS

@@ -89,6 +89,7 @@ struct Task {
 
   GiveUp give_up;        ///< the present job was told to: it used up its budget
   std::uint32_t events = 0;  ///< behind a server: rings of its doorbell that no job has answered; by the executor
+  int descriptor = -1;   ///< readable while there is an event, from the end of init to kill; below 0: none
   bool is_busy = false;  ///< a job of it is under way; by the executor
 
   // Written by the executor and the task set at edges.

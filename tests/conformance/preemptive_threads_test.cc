@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The preemptive executor without real-time levels, where the section alone excludes: what it promises about data,
 // states and counts, also under the thread sanitizer.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 #include "tests/conformance/toy.h"
@@ -141,6 +143,49 @@ TEST(PreemptiveThreads, EventsOfATaskThatIsNotOnAreLostAndCounted) {
   EXPECT_EQ(p.events + p.events_lost, 23u);
   EXPECT_GT(p.events, 0u);
   EXPECT_EQ(p.cycles, p.events);
+}
+
+/// Tells bytes of a pipe, one at a time.
+struct Pipe {
+  Pipe() { EXPECT_EQ(::pipe2(ends, O_NONBLOCK | O_CLOEXEC), 0); }
+  ~Pipe() {
+    ::close(ends[0]);
+    ::close(ends[1]);
+  }
+  void write(std::size_t bytes) const { EXPECT_EQ(::write(ends[1], "0123456789", bytes), static_cast<long>(bytes)); }
+  int ends[2]{};
+};
+
+TEST(PreemptiveThreads, AServerAnswersADescriptorForAsLongAsItIsReadable) {
+  const Pipe pipe;
+  Application app;
+  app.add("other", milliseconds(10));
+  TaskSpec& spec = app.add("served", milliseconds(20));
+  spec.aperiodic = true;
+  spec.server = ServerSpec{ServerKind::kDeferrable, milliseconds(10), milliseconds(20)};
+  TaskSet& set = app.build_preemptive();
+  Task& task = set.tasks()[app.id("served").index];
+  app.toy("served").descriptor = pipe.ends[0];
+  app.toy("served").during = [&pipe](const chimera_call&) {
+    char byte = 0;
+    return ::read(pipe.ends[0], &byte, 1) == 1 ? CHIMERA_OK : CHIMERA_FAULT;
+  };
+  PreemptiveExecutor executor(set, {}, {});
+  ASSERT_TRUE(executor.start());
+  std::thread writer([&] {
+    LinuxClock().wait_until(LinuxClock().now() + milliseconds(20));
+    pipe.write(3);
+    LinuxClock().wait_until(LinuxClock().now() + milliseconds(20));
+    pipe.write(4);
+  });
+  for (int until = 200; until <= 10'000 && task.profile.cycles < 7; until += 200)
+    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  writer.join();
+  EXPECT_EQ(task.profile.cycles, 7u);
+  EXPECT_EQ(task.profile.events, 7u);
+  EXPECT_EQ(task.faults.count, 0u);
+  executor.shut_down();
+  EXPECT_EQ(task.descriptor, -1) << "kill ends it";
 }
 
 }  // namespace

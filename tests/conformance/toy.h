@@ -35,6 +35,7 @@ struct Toy {
   std::array<std::deque<int>, CHIMERA_METHODS> answers;  // of the next calls; CHIMERA_OK when none is left
   std::deque<std::pair<Signal, std::string>> sends;      // one a cycle; an empty name: none
   std::function<int(const chimera_call&)> during;        // by cycle; its answer when it is not CHIMERA_OK
+  int descriptor = -1;                                   // where its events come from
   double value = 0;
 };
 
@@ -93,6 +94,12 @@ inline chimera_port_decl port(const char* name, std::uint32_t kind, std::uint32_
   return p;
 }
 
+inline std::int32_t event_source(void* memory) {
+  Toy* toy = nullptr;  // there may be none
+  std::memcpy(&toy, static_cast<State*>(memory)->me.value, sizeof toy);
+  return toy == nullptr ? -1 : toy->descriptor;
+}
+
 inline const chimera_component& component(bool aperiodic) {
   static const std::array<chimera_port_decl, 3> ports = {
       port("me", CHIMERA_IN_CONST, CHIMERA_INT64, offsetof(State, me)),
@@ -102,8 +109,7 @@ inline const chimera_component& component(bool aperiodic) {
     chimera_component c{};
     c.abi_version = CHIMERA_ABI_VERSION;
     c.struct_size = sizeof c;
-    c.name = "toy";
-    c.doc = c.source = "";
+    c.name = "toy", c.doc = c.source = "";
     c.state_size = sizeof(State);
     c.state_align = alignof(State);
     c.n_ports = 3;
@@ -114,6 +120,7 @@ inline const chimera_component& component(bool aperiodic) {
         method<CHIMERA_INIT>, method<CHIMERA_REINIT>, method<CHIMERA_ON>,   method<CHIMERA_CYCLE>, method<CHIMERA_SYNC>,
         method<CHIMERA_OFF>,  method<CHIMERA_KILL>,   method<CHIMERA_ERROR>, method<CHIMERA_CLEAR>};
     std::copy(std::begin(methods), std::end(methods), c.methods);
+    c.event_source = event_source;
     if (!with_sync) c.methods[CHIMERA_SYNC] = nullptr;
     return c;
   };

@@ -47,7 +47,7 @@ PreemptiveExecutor::~PreemptiveExecutor() {
   quits_ = true;
   alarm_.set({});  // nobody sets it anew after this
   leave();
-  for (JobThread& thread : threads_) Doorbell(thread.bell).ring();
+  for (JobThread& thread : threads_) wake(thread);
   for (JobThread& thread : threads_) thread.thread.join();
   supervisor_.join();
 }
@@ -126,7 +126,7 @@ void PreemptiveExecutor::tell_threads(bool all) noexcept {
     if (!is_on && job.served) forget_event(job);
     job.is_joined = is_on;
     job.is_held = false;
-    if (is_new) Doorbell(job.bell).ring();
+    if (is_new) wake(job);
   }
 }
 

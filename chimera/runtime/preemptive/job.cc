@@ -27,9 +27,12 @@ void PreemptiveExecutor::follow_releases(JobThread& me) {
       continue;
     }
     const Nanoseconds until = may_run ? me.next : kNever;
+    const int descriptor = listens(me) ? task(me).descriptor : -1;
     leave();
-    (void)Doorbell(me.bell).wait_until(heard, until);
+    const bool has_come = descriptor >= 0 && me.served->bell.await(descriptor, kNever);
+    if (descriptor < 0) (void)Doorbell(me.bell).wait_until(heard, until);
     enter();
+    if (has_come && listens(me)) (void)set_.ring(me.task);
   }
   leave();
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "chimera/platform/descriptor_bell.h"
 #include "chimera/platform/halt.h"
 #include "chimera/schedule/ready_queue.h"
 #include "chimera/schedule/server_state.h"
@@ -38,6 +39,7 @@ struct Served {
   bool has_event = false;    ///< one was taken; its job waits for capacity, or is under way
   bool is_halted = false;    ///< in the middle of its job, for want of capacity
   Halt halt;
+  DescriptorBell bell;       ///< where its thread waits, in place of the other one, while it listens to a descriptor
 };
 
 /// Written in the section by whoever is in it, unless said otherwise.

@@ -101,6 +101,10 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void stop_jobs() noexcept;
   bool is_idle() const noexcept;
   void ring_edge() noexcept { Doorbell(*bell_).ring(); }
+  static void wake(JobThread& job) noexcept {
+    Doorbell(job.bell).ring();
+    if (job.served) job.served->bell.ring();
+  }
 
   // Jobs (job.cc).
   void follow_releases(JobThread& me);
@@ -120,6 +124,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void open_servers(Nanoseconds origin) noexcept;
   void take_event(JobThread& me, Nanoseconds now) noexcept;
   void forget_event(JobThread& job) noexcept;
+  bool listens(const JobThread& me) const noexcept;
   void pay(JobThread& job) noexcept;
   void follow_server(JobThread& job, Nanoseconds now) noexcept;
   void halt(JobThread& job, Nanoseconds now) noexcept;

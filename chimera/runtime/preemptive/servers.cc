@@ -60,6 +60,13 @@ void PreemptiveExecutor::take_event(JobThread& me, Nanoseconds now) noexcept {
   me.next = may_begin ? now : s.server.next_change(now);
 }
 
+// No event has come, and one that does may be taken at once: it stays readable meanwhile.
+bool PreemptiveExecutor::listens(const JobThread& me) const noexcept {
+  if (!me.served || !me.is_joined || me.is_held || is_paused_) return false;
+  const Task& t = tasks_[me.task.index];
+  return t.descriptor >= 0 && !me.served->has_event && t.events == 0;
+}
+
 // The task is not ON any more.
 void PreemptiveExecutor::forget_event(JobThread& job) noexcept {
   Served& s = *job.served;
