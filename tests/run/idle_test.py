@@ -19,6 +19,7 @@ class Idle(unittest.TestCase):
         self.socket = pathlib.Path(self.place.name) / "chimera" / "idle.sock"
         self.process = subprocess.Popen([str(CHIMERA), "idle"], env=self.environment, stdin=subprocess.DEVNULL,
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(lambda: self.process.poll() is None and (self.process.kill(), self.process.communicate()))
         self.client = await_that(self.connected, 10, "the socket")
 
     def connected(self):
