@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Events from one rtpu for a task behind a server in another: each is counted, answered in turn, lost only while the
 task is not ON."""
+import os
+import pathlib
+import subprocess
+import tempfile
 import unittest
 
-from system import System, await_that
+from system import CHIMERA, System, await_that
 
 APPLICATION = """
 subsystem: subject
@@ -24,7 +28,41 @@ start: all
 """
 
 
+OF_A_PIPE = """
+subsystem: subject
+rtpus:
+  served: {cpu: 1, policy: edf, executor: preemptive}
+tasks:
+  steady: {component: t_counter, rate: 100 Hz}
+  reader:
+    component: t_pipe
+    resources: {pipe: PIPE}
+    server: {kind: sporadic, capacity: 1 ms, period: 20 ms}
+"""
+
+
 class Events(unittest.TestCase):
+    def test_of_a_descriptor_that_a_resource_port_names_are_answered_as_long_as_there_are_some(self):
+        with tempfile.TemporaryDirectory(prefix="chimera-events-") as place:
+            pipe = pathlib.Path(place) / "pipe"
+            os.mkfifo(pipe)
+            text = OF_A_PIPE.replace("PIPE", str(pipe))
+            with System(text) as system:
+                system.await_state("reader", "ON")
+                with open(pipe, "wb", buffering=0) as end:
+                    end.write(b"12345")
+                    await_that(lambda: system.task("reader")["cycles"] == 5, 10, "five events")
+                    end.write(b"678")
+                    reader = await_that(lambda: (t := system.task("reader"))["cycles"] == 8 and t, 10, "three more")
+                self.assertEqual((reader["events"], reader["events_lost"], reader["faults"]), (8, 0, 0))
+            file = pathlib.Path(place) / "subject.yaml"
+            file.write_text(text)
+            refused = subprocess.run([str(CHIMERA), "run", str(file), "--virtual", "--for", "1 s"], text=True,
+                                     capture_output=True, timeout=30, stdin=subprocess.DEVNULL)
+            self.assertEqual(refused.returncode, 1)
+            self.assertIn("events of task 'reader' from a descriptor, in virtual time: run cannot do this yet",
+                          refused.stderr)
+
     def test_of_other_rtpus_are_answered_each_by_one_job(self):
         with System(APPLICATION) as system:
             system.await_state("alarm", "ON")
