@@ -114,7 +114,11 @@ class Words {
     constexpr const char* kSources[] = {"not stated", " budget", " profile", " server"};
     const WorkVerdict& v = row.verdict;
     const std::string source = kSources[static_cast<std::size_t>(row.source)];
-    std::string response = v.response == kNever ? "no bound" : (v.is_exact ? "" : "at most ") + time_text(v.response);
+    const RtpuSpec& spec = configuration_.rtpus()[row.work.rtpu];
+    const bool is_beyond = spec.policy == Policy::kRm && spec.preemptive && v.guarantee == Guarantee::kNo;
+    std::string response = v.response != kNever ? (v.is_exact ? "" : "at most ") + time_text(v.response)
+                           : is_beyond          ? "over " + time_text(row.work.period)
+                                                : "no bound";
     std::string promise = v.guarantee == Guarantee::kYes   ? "kept"
                           : v.guarantee == Guarantee::kNo  ? "NOT KEPT"
                           : v.guarantee == Guarantee::kTooLong ? "NOT DECIDED"

@@ -31,7 +31,7 @@ enum class Happening : std::uint8_t {
   kFlag,      ///< this rtpu's flag word went to `detail`
   kStop,      ///< reaction `stop` of the task: the rtpu turned all its tasks OFF
   kMissed,    ///< the task missed its deadline; `from` used the processor most, for `detail` ns: more than its budget
-              ///< when somebody did
+              ///< when somebody did. Invalid `from`: for so long nobody here had the processor
   kHang,      ///< a job of the task does not end: it used `detail` ns by now. The rtpu ends
 };
 inline constexpr auto kLastHappening = Happening::kHang;

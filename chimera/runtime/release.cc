@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "chimera/base/assert.h"
 
@@ -35,7 +36,9 @@ Releases::Releases(TaskSet& set, const RunOptions& options)
     of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
   if (options_.threads != nullptr) kept_.resize(tasks_.size());
-  if (options_.guest != nullptr) blamed_.assign(tasks_.size(), Nanoseconds{INT64_MIN / 2});
+  if (options_.guest == nullptr) return;
+  blamed_.assign(tasks_.size(), Nanoseconds{INT64_MIN / 2});
+  waits_.assign(tasks_.size(), kNever);
 }
 
 void Releases::begin(Nanoseconds origin) noexcept {
@@ -200,7 +203,7 @@ void Releases::drop(const DroppedRelease& dropped) noexcept {
   Task& task = tasks_[dropped.task.index];
   task.profile.missed += dropped.count;
   task.profile.missed_in_a_row += dropped.count;
-  if (options_.guest != nullptr) want(task, kBlame);
+  waits_since(task, dropped.last - task.spec->period * (std::int64_t{dropped.count} - 1));
   if (is_out_of_patience(task)) patience_lost_ = true;
 }
 
@@ -234,9 +237,24 @@ void Releases::settle(Task& task, Nanoseconds now) noexcept {
   refresh(task, now);
 }
 
-// Who used the processor most since the release that was missed: beyond the budget, if somebody did.
+// For how long nobody of this context can have had the processor although somebody wanted it: real-time threads were
+// throttled, or the kernel or another process had it. At least so much; 0: not known.
+Nanoseconds Releases::taken_away(Nanoseconds since, Nanoseconds now) const noexcept {
+  Nanoseconds left = now - since;
+  for (const Task& task : tasks_) {
+    const Nanoseconds used = recent_[task.id.index].sum_since(since);
+    if (used == kNever) return {};
+    left = left - used;
+    if (options_.threads != nullptr) left = left - options_.threads->used_by_job(task.id);
+  }
+  return std::max(left, Nanoseconds{});
+}
+
+// Who used the processor most since the release that was missed: beyond the budget, if somebody did. If nobody did and
+// the processor was away, that is told.
 void Releases::blame(const Task& missed, Nanoseconds now) noexcept {
-  constexpr Nanoseconds kSeldom = milliseconds(100);
+  constexpr Nanoseconds kSeldom = milliseconds(100), kAway = milliseconds(1);
+  const Nanoseconds waited_since = std::exchange(waits_[missed.id.index], kNever);
   if (now - blamed_[missed.id.index] < kSeldom) return;
   blamed_[missed.id.index] = now;
   const Nanoseconds since = now - missed.spec->deadline - missed.spec->period;
@@ -252,11 +270,14 @@ void Releases::blame(const Task& missed, Nanoseconds now) noexcept {
     worst_used = used;
     culprit = task.id;
   }
+  const Nanoseconds away = worst_excess > Nanoseconds{} || waited_since == kNever ? Nanoseconds{}
+                                                                                  : taken_away(waited_since, now);
+  if (away >= kAway) return options_.guest->missed(missed.id, TaskId(), away, now);
   options_.guest->missed(missed.id, culprit, worst_used, now);
 }
 
 void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept {
-  if (options_.guest != nullptr) want(task, kBlame);
+  waits_since(task, at - lateness - task.spec->deadline);
   ++task.profile.missed;
   ++task.profile.missed_in_a_row;
   record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);

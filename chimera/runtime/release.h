@@ -224,6 +224,15 @@ class Releases {
           most = std::max(most, used[i].load(std::memory_order_relaxed));
       return {most};
     }
+    /// What jobs that ended since then used together, or kNever: more of them ended than are remembered.
+    Nanoseconds sum_since(Nanoseconds since) const noexcept {
+      std::int64_t sum = 0;
+      std::uint32_t n = 0;
+      for (std::uint32_t i = 0; i < kJobs; ++i)
+        if (end[i].load(std::memory_order_relaxed) >= since.count)
+          sum += used[i].load(std::memory_order_relaxed), ++n;
+      return n == kJobs ? kNever : Nanoseconds{sum};
+    }
   };
   enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4, kBlame = 8 };
   /// What one job records at most is kept until it may go to the tap.
@@ -243,6 +252,12 @@ class Releases {
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
   void blame(const Task& task, Nanoseconds now) noexcept;
+  Nanoseconds taken_away(Nanoseconds since, Nanoseconds now) const noexcept;
+  void waits_since(const Task& task, Nanoseconds release) noexcept {
+    if (options_.guest == nullptr) return;
+    waits_[task.id.index] = std::min(waits_[task.id.index], release);
+    want(task, kBlame);
+  }
   bool is_tolerated(Task& task, bool missed) noexcept;
   bool judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept;
   bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
@@ -273,6 +288,7 @@ class Releases {
   std::vector<Kept> kept_;  // with threads: by task
   std::vector<Nanoseconds> blamed_;  // with a guest: by task, when it was last told who is to blame
   std::vector<Recent> recent_;       // with a guest: by task
+  std::vector<Nanoseconds> waits_;   // with a guest: by task, the first release that was missed since the last blame
   std::vector<QueueMember> members_;
   std::vector<QueueClass> classes_;
   std::vector<QueueTask> queue_tasks_;

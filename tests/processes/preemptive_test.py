@@ -2,6 +2,8 @@
 """What a bad job in a preemptive real-time unit costs the others: nothing. Bounded counts here; the same with more of
 them is the campaign `process_preemptive`. CHIMERA_ROUNDS says how often each is repeated."""
 import os
+import re
+import signal
 import sys
 import time
 import unittest
@@ -49,6 +51,16 @@ tasks:
 configurations: {all: [bad, patient]}
 start: all
 """
+
+# Nothing of its own takes long.
+TAKEN = """
+subsystem: subject
+rtpus:
+  only: {policy: edf, executor: EXECUTOR}
+tasks:
+  brief: {component: t_source, rate: 100 Hz, budget: 1 ms}
+"""
+AWAY = re.compile(r"^missed its deadline: for ([0-9.]+) ms nobody here had the processor")
 
 # Every task but the guarded ones is an endless loop, and all begin at once, on all processors.
 LOOPS = """
@@ -194,6 +206,21 @@ class Preemptive(unittest.TestCase):
                 self.count("row 4 cycles", bad["cycles"])
                 self.count("row 4 overruns", bad["overrun"])
                 self.count("row 4 culprits named", len(blamed))
+
+    def test_row_18_a_processor_that_is_taken_away_is_told(self):
+        for executor in ("executive", "preemptive"):
+            with self.subTest(executor=executor), System(TAKEN.replace("EXECUTOR", executor)) as system:
+                def once():
+                    since, pid = system.events()[-1]["number"] + 1, system.rtpu("only")["pid"]
+                    self.assertTrue(system.kill(pid, signal.SIGSTOP))
+                    time.sleep(0.06)
+                    self.assertTrue(system.kill(pid, signal.SIGCONT))
+                    time.sleep(0.15)  # one is told every 100 ms at most
+                    told = [AWAY.search(e["text"]) for e in system.events(since) if e["kind"] == "blame"]
+                    return [float(away[1]) for away in told if away]
+                away = max(await_that(once, 10, "what was taken away"))
+                self.assertGreater(away, 50)
+                self.assertLess(away, 1000)
 
     def test_row_18_endless_loops_in_every_task_but_the_guarded_ones(self):
         def once():

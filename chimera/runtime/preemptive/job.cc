@@ -147,7 +147,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   releases_.flush_records(me.task);
   processor_goes_on(now);
   me.is_shown = false;
-  if (now - me.shown >= kShowEvery) show(me, now);
+  if (me.served || now - me.shown >= kShowEvery) show(me, now);  // another event may never come
   if (t.state != State::kOn) me.is_joined = false;  // the edge will say so too
   if (releases_.is_unsettled(me.task) || !t.pending.empty() || is_paused_) ring_edge();
 }
