@@ -219,8 +219,7 @@ void Releases::give_up_starved(Nanoseconds now) noexcept {
 }
 
 void Releases::settle_job(TaskId id, Nanoseconds now) noexcept {
-  const std::uint8_t wants = of_[id.index].wants;
-  of_[id.index].wants = 0;
+  const std::uint8_t wants = of_[id.index].wants.exchange(0, std::memory_order_relaxed);
   if (wants & kRaiseFlag) raise_flag(now);
   if (wants & kStop) task_stopped_ = true;
   if (wants & kBlame) blame(tasks_[id.index], now);

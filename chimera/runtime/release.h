@@ -136,7 +136,7 @@ class Releases {
     record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
     if (!t.skip_next && now + t.start_margin <= job.deadline) return true;
     const bool starts = decide_start(job, now);
-    if (t.wants != 0 && options_.threads == nullptr) settle_job(job.task, now);
+    if (options_.threads == nullptr && t.wants.load(std::memory_order_relaxed) != 0) settle_job(job.task, now);
     return starts;
   }
   /// The illegal-configuration flag, to be read once for each job. Context: edge.
@@ -157,7 +157,7 @@ class Releases {
                Nanoseconds used) noexcept {
     tasks_[job.task.index].is_busy = false;
     conclude_job(job, time, body, start, end, used);
-    if (of_[job.task.index].wants != 0) settle_job(job.task, end);
+    if (of_[job.task.index].wants.load(std::memory_order_relaxed) != 0) settle_job(job.task, end);
   }
   /// The first half of end_job, which touches nothing but the task: failures of time, publication, error handling.
   /// Context: cycle, on the task's own thread.
@@ -165,7 +165,7 @@ class Releases {
                     Nanoseconds used) noexcept;
   /// What jobs of the task left for the others: the flag, signals sent, its state. Context: edge.
   void settle_job(TaskId id, Nanoseconds now) noexcept;
-  bool is_unsettled(TaskId id) const noexcept { return of_[id.index].wants != 0; }
+  bool is_unsettled(TaskId id) const noexcept { return of_[id.index].wants.load(std::memory_order_relaxed) != 0; }
   /// With threads: hands over the records that the task's thread kept. Context: whoever may append to the tap.
   void flush_records(TaskId id) noexcept;
   /// The job began and is abandoned at its deadline (reaction abort): counts the miss; end_job follows.
@@ -202,7 +202,7 @@ class Releases {
     std::uint32_t dropped = 0;  // since the last completed cycle
     bool skip_next = false;
     bool is_on = false;
-    std::uint8_t wants = 0;     // of the others, once its job is over
+    std::atomic<std::uint8_t> wants{0};  // of the others, once its job is over
     std::uint32_t rows = 0;     // appended to the tap
     std::uint64_t history = 0;  // of the last cycles, one bit each: 1 missed
     std::uint64_t tapped = 0;   // sequence of the last of them
@@ -276,7 +276,7 @@ class Releases {
   void settle(Task& task, Nanoseconds now) noexcept;
   void raise_flag(Nanoseconds at) noexcept;
   void want(const Task& task, Wants what) noexcept {
-    of_[task.id.index].wants = static_cast<std::uint8_t>(of_[task.id.index].wants | what);
+    of_[task.id.index].wants.fetch_or(what, std::memory_order_relaxed);
   }
 
   TaskSet& set_;
