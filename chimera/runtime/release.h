@@ -144,7 +144,7 @@ class Releases {
   /// Runs the body: inputs are read at this moment, nothing is published. `time` is for end().
   BodyEnd begin_job(const Job& job, CycleTime& time, bool illegal) noexcept {
     Task& task = tasks_[job.task.index];
-    task.is_busy = true;
+    if (options_.threads == nullptr) task.is_busy = true;  // else whoever released the job has said so
     // Field by field: a copy of a fresh aggregate loads wider than it was stored, and waits for the store buffer.
     time.release = job.release;
     time.deadline = job.deadline;
