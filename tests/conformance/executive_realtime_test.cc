@@ -3,18 +3,14 @@
 // host did not let even a thread above everything else run in time (the witness).
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <optional>
 #include <thread>
 
 #include "chimera/runtime/executive/counter_clock.h"
+#include "tests/conformance/judged.h"
 #include "tests/conformance/runner.h"
-#include "tests/conformance/witness.h"
 
 namespace chimera::toy {
 namespace {
-
-constexpr int kTries = 5;
 
 struct Seen {
   RunEnd end = RunEnd::kStopped;
@@ -58,22 +54,8 @@ Seen run_once(bool overload) {
   return seen;
 }
 
-// A run during which the host kept its word; nothing after kTries that did not.
-std::optional<Seen> judged(bool overload) {
-  Nanoseconds worst;
-  for (int i = 0; i < kTries; ++i) {
-    Witness witness;
-    const Seen seen = run_once(overload);
-    worst = witness.worst();
-    if (worst <= kGapAllowed) return seen;
-    std::printf("try %d: the witness was %lld us late\n", i + 1, static_cast<long long>(worst.count / 1000));
-  }
-  std::printf("not judged: host stalled %lld us\n", static_cast<long long>(worst.count / 1000));
-  return std::nullopt;
-}
-
 TEST(ExecutiveRealtime, RunsEveryCycleInOrderAndDropsNone) {
-  const auto seen = judged(false);
+  const auto seen = judged(kGapAllowed, [] { return run_once(false); });
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   EXPECT_EQ(seen->end, RunEnd::kTime);
   EXPECT_EQ(seen->first_order, "fms");
@@ -86,7 +68,7 @@ TEST(ExecutiveRealtime, RunsEveryCycleInOrderAndDropsNone) {
 }
 
 TEST(ExecutiveRealtime, CountsWhatAnOverloadedSetDropsAndNeverBursts) {
-  const auto seen = judged(true);
+  const auto seen = judged(kGapAllowed, [] { return run_once(true); });
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   EXPECT_EQ(seen->first_order, "fms");
   EXPECT_LE(seen->cycles[2], 400u / 15 + 1);

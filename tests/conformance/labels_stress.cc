@@ -9,14 +9,11 @@
 #include <cstring>
 #include <random>
 
-#include "chimera/platform/realtime.h"
-#include "chimera/runtime/preemptive/preemptive_executor.h"
-#include "tests/conformance/toy.h"
+#include "tests/conformance/by_threads.h"
 
 namespace chimera::toy {
 namespace {
 
-constexpr int kCeiling = 49;
 constexpr Nanoseconds kRound = milliseconds(600), kRest = milliseconds(300);
 
 // Twenty tasks of 0.7 to 3 ms at 60 % to 110 %; some sleep, some overrun, some are demoted for it.
@@ -42,20 +39,14 @@ ProcessorCounts one_round(unsigned seed) {
     };
   }
   constexpr Policy kPolicies[] = {Policy::kRm, Policy::kEdf, Policy::kMuf, Policy::kMufLaxity};
+  ProcessorPlace place = checked_place();
+  place.base = kCeiling - (seed % 2 == 0 ? 19 : 6);  // few levels: parking is used
   RunOptions options;
   options.policy = kPolicies[seed % 4];
-  ProcessorPlace place;
-  place.cpu = static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) - 1;
-  place.ceiling = kCeiling;
-  place.base = kCeiling - (seed % 2 == 0 ? 19 : 6);  // few levels: parking is used
-  place.checks = true;
-  TaskSet& set = app.build_preemptive();
-  PreemptiveExecutor executor(set, options, place);
-  std::thread edges([&] {
-    (void)enter_realtime({kCeiling, place.cpu, true});  // memory locked, as in an rtpu
+  PreemptiveExecutor executor(app.build_preemptive(), options, place);
+  at_the_ceiling([&] {
     if (executor.start()) executor.run(kRound);
   });
-  edges.join();
   return executor.counts();
 }
 
@@ -64,6 +55,7 @@ int run(Nanoseconds time, std::uint64_t entries, unsigned seed) {
     std::puts("no real-time rights: levels cannot be judged");
     return 77;
   }
+  (void)enter_realtime({0, -1, true});  // memory locked, as in an rtpu
   LinuxClock clock;
   ProcessorCounts all;
   const Nanoseconds end = clock.now() + time;

@@ -1,31 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one bad task does to the others under preemptive scheduling: nothing. Each fault beside a run without it.
 #include <gtest/gtest.h>
-#include <pthread.h>
 
-#include <optional>
+#include <functional>
+#include <string>
 
-#include "chimera/platform/realtime.h"
-#include "chimera/runtime/preemptive/preemptive_executor.h"
-#include "tests/conformance/toy.h"
-#include "tests/conformance/witness.h"
+#include "tests/conformance/by_threads.h"
+#include "tests/conformance/judged.h"
 
 namespace chimera::toy {
 namespace {
 
-constexpr int kTries = 5, kCeiling = 49;
-constexpr Nanoseconds kRest = milliseconds(500);  // real-time threads are throttled above 0.95 of a second
-constexpr Nanoseconds kGap = microseconds(500);   // 10 % of the shortest period
+constexpr Nanoseconds kGap = microseconds(500);  // 10 % of the shortest period
 constexpr Nanoseconds kRun = milliseconds(600);
-
-ProcessorPlace place() {
-  ProcessorPlace made;
-  made.cpu = static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) - 1;
-  made.ceiling = kCeiling;
-  made.base = 30;
-  made.checks = true;
-  return made;
-}
 
 /// What was seen of the three good tasks, and of the bad one.
 struct Seen {
@@ -47,17 +34,8 @@ Seen run_once(const Bad& bad, Policy policy) {
   spec.on_overrun = OnMiss::kDemote;
   spec.criticality = 2;
   bad(app);
-  TaskSet& set = app.build_preemptive();
-  RunOptions options;
-  options.policy = policy;
   Seen seen;
-  PreemptiveExecutor executor(set, options, place());
-  std::thread edges([&] {
-    (void)enter_realtime({kCeiling, place().cpu, false});
-    if (!executor.start()) return;
-    executor.run(kRun);
-  });
-  edges.join();
+  seen.counts = run_by_threads(app, policy, kRun).counts;
   for (const char* name : {"a", "b", "c"}) {
     const Profile& p = app.task(name).profile;
     seen.missed += p.missed;
@@ -65,28 +43,16 @@ Seen run_once(const Bad& bad, Policy policy) {
     seen.cycles += p.cycles;
   }
   seen.bad = app.task("bad").profile;
-  seen.counts = executor.counts();
   return seen;
-}
-
-std::optional<Seen> judged(const Bad& bad, Policy policy = Policy::kMuf) {
-  Nanoseconds worst;
-  for (int i = 0; i < kTries; ++i) {
-    LinuxClock().wait_until(LinuxClock().now() + kRest);
-    Witness witness;
-    const Seen seen = run_once(bad, policy);
-    worst = witness.worst();
-    if (worst <= kGap) return seen;
-    std::printf("try %d: the witness was %lld us late\n", i + 1, static_cast<long long>(worst.count / 1000));
-  }
-  std::printf("not judged: host stalled %lld us\n", static_cast<long long>(worst.count / 1000));
-  return std::nullopt;
 }
 
 class PreemptiveFaults : public testing::TestWithParam<Policy> {
  protected:
   void SetUp() override {
     if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
+  }
+  auto judged_beside(const Bad& bad) {
+    return judged(kGap, [&] { return run_once(bad, GetParam()); });
   }
   void expect_others_untouched(const Seen& seen) {
     EXPECT_EQ(seen.missed, 0u);
@@ -98,7 +64,7 @@ class PreemptiveFaults : public testing::TestWithParam<Policy> {
 };
 
 TEST_P(PreemptiveFaults, WithoutAFaultNobodyMisses) {
-  const auto seen = judged([](Application& app) { app.toy("bad").spend = microseconds(100); }, GetParam());
+  const auto seen = judged_beside([](Application& app) { app.toy("bad").spend = microseconds(100); });
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   expect_others_untouched(*seen);
   EXPECT_EQ(seen->bad.demoted, 0u);
@@ -116,7 +82,7 @@ TEST_P(PreemptiveFaults, AnEndlessLoopIsDemotedOnce) {
       return CHIMERA_OK;
     };
   };
-  const auto seen = judged(loop, GetParam());
+  const auto seen = judged_beside(loop);
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   expect_others_untouched(*seen);
   EXPECT_EQ(seen->bad.demoted, 1u);
@@ -131,7 +97,7 @@ TEST_P(PreemptiveFaults, AJobThatBlocksTwoMillisecondsHoldsNothing) {
       return CHIMERA_OK;
     };
   };
-  const auto seen = judged(block, GetParam());
+  const auto seen = judged_beside(block);
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   expect_others_untouched(*seen);
   EXPECT_EQ(seen->bad.missed, 0u);
@@ -146,51 +112,36 @@ TEST_P(PreemptiveFaults, RandomOverrunsNeverMakeABurst) {
       return CHIMERA_OK;
     };
   };
-  const auto seen = judged(overruns, GetParam());
+  const auto seen = judged_beside(overruns);
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   expect_others_untouched(*seen);
   EXPECT_GT(seen->bad.overrun, 60u);
   EXPECT_LE(seen->bad.cycles + seen->bad.dropped, 120u);
 }
 
-std::string name_of(const testing::TestParamInfo<Policy>& one) {
-  const char* const names[] = {"Rm", "Edf", "Llf", "Muf", "MufLaxity"};
-  return names[static_cast<int>(one.param)];
-}
-
 INSTANTIATE_TEST_SUITE_P(Under, PreemptiveFaults, testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf), name_of);
 
 TEST(PreemptiveMany, TwoHundredTasksOnOneProcessorMissNothing) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
-  for (int tries = 0; tries < kTries; ++tries) {
+  const auto seen = judged(milliseconds(2), [] {
     Application app;
     for (int i = 0; i < 200; ++i) {
       const int period = 40 + i * 160 / 200;
       app.add("t" + std::to_string(i), milliseconds(period), microseconds(period * 3));  // 200 tasks, 60 % in all
     }
-    TaskSet& set = app.build_preemptive();
-    LinuxClock().wait_until(LinuxClock().now() + kRest);
-    Witness witness;
-    PreemptiveExecutor executor(set, {}, place());
-    std::thread edges([&] {
-      (void)enter_realtime({kCeiling, place().cpu, false});
-      if (executor.start()) executor.run(kRun);
-    });
-    edges.join();
-    if (witness.worst() > milliseconds(2)) continue;
-    std::uint64_t missed = 0, dropped = 0;
+    Seen all;
+    all.counts = run_by_threads(app, Policy::kEdf, kRun).counts;
     for (int i = 0; i < 200; ++i) {
-      missed += app.task("t" + std::to_string(i)).profile.missed;
-      dropped += app.task("t" + std::to_string(i)).profile.dropped;
+      all.missed += app.task("t" + std::to_string(i)).profile.missed;
+      all.dropped += app.task("t" + std::to_string(i)).profile.dropped;
     }
-    const ProcessorCounts counts = executor.counts();
-    EXPECT_EQ(missed, 0u);
-    EXPECT_EQ(dropped, 0u);
-    EXPECT_EQ(counts.wrong_levels, 0u);
-    EXPECT_LE(counts.level_changes, counts.jobs * 4) << "changes of the levels of others, a job";
-    return;
-  }
-  GTEST_SKIP() << "not judged: host stalled";
+    return all;
+  });
+  if (!seen) GTEST_SKIP() << "not judged: host stalled";
+  EXPECT_EQ(seen->missed, 0u);
+  EXPECT_EQ(seen->dropped, 0u);
+  EXPECT_EQ(seen->counts.wrong_levels, 0u);
+  EXPECT_LE(seen->counts.level_changes, seen->counts.jobs * 4) << "changes of the levels of others, a job";
 }
 
 }  // namespace

@@ -3,65 +3,21 @@
 // Counts and order are judged, durations are not, and nothing while the host did not let even the witness run in time.
 #include <gtest/gtest.h>
 
+#include "tests/conformance/by_threads.h"
 #include "tests/conformance/classic_set.h"
+#include "tests/conformance/judged.h"
 
 namespace chimera::toy {
 namespace {
 
-ProcessorPlace place() {
-  ProcessorPlace made;
-  made.cpu = last_cpu();
-  made.ceiling = kCeiling;
-  made.base = 30;
-  made.quantum = kUnit;
-  made.checks = true;
-  return made;
-}
-
-Schedule by_virtual_time(Policy policy) {
-  Application app;
-  add_classic_set(app, true, {});
-  VirtualOptions how;
-  how.quantum = kUnit;
-  Runner run(app.build(), Kind::kPreemptive, policy, {}, how);
-  EXPECT_TRUE(run.start());
-  run.run(kUnit * kUnits);
-  Schedule schedule;
-  const auto records = run.records();
-  schedule.timeline = timeline(records, Nanoseconds{} - kHalfAfter);
-  schedule.missed = missed(records, {});
-  return schedule;
-}
-
 Schedule by_threads(Policy policy) {
   Application app;
-  add_classic_set(app, false, kGrace);
-  auto ring = std::make_unique<TapRing>();
-  Tap tap(*ring);
-  TapReader reader(*ring);
-  RunOptions options;
-  options.policy = policy;
-  options.tap = &tap;
-  TaskSet& set = app.build_preemptive();
-  Nanoseconds origin;
-  for (const char* name : {"A", "B", "C", "D"})
-    app.toy(name).during = [&origin, budget = app.task(name).spec->budget](const chimera_call& call) {
-      return compute(call, origin, budget);
-    };
-  PreemptiveExecutor executor(set, options, place());
-  Schedule schedule;
-  std::thread edges([&] {
-    enter_realtime({kCeiling, last_cpu(), false});
-    if (!executor.start()) return;
-    origin = executor.origin();
-    executor.run(kUnit * kUnits);
-  });
-  edges.join();
-  std::vector<TapRecord> records(kTapRecords);
-  records.resize(reader.read(records));
-  schedule.timeline = timeline(records, executor.origin());
-  schedule.missed = missed(records, executor.origin());
-  schedule.counts = executor.counts();
+  add_classic_set(app, false, OnMiss::kAbort, kGrace);
+  ProcessorPlace place = checked_place();
+  place.quantum = kUnit;
+  const Left left = run_by_threads(app, policy, kUnit * kUnits, place);
+  Schedule schedule = schedule_of(left.records, left.origin);
+  schedule.counts = left.counts;
   return schedule;
 }
 
@@ -71,10 +27,10 @@ class PreemptiveSchedule : public testing::TestWithParam<Policy> {};
 // than in virtual time: one run of a few must be exact, none may miss what is critical.
 TEST_P(PreemptiveSchedule, IsThatOfVirtualTimeUnitByUnit) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
-  const Schedule wanted = by_virtual_time(GetParam());
+  const Schedule wanted = by_virtual_time(Kind::kPreemptive, GetParam(), OnMiss::kAbort);
   std::string seen;
   for (int left = GetParam() == Policy::kMufLaxity ? 4 : 1; left > 0 && seen != wanted.timeline; --left) {
-    const auto got = judged([] { return by_threads(GetParam()); });
+    const auto got = judged(kGap, [] { return by_threads(GetParam()); });
     if (!got) GTEST_SKIP() << "not judged: host stalled";
     seen = got->timeline;
     for (std::size_t i = 0; i < 3; ++i) {  // the critical ones

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The executors behind one face, so that one suite runs over all of them.
+// The executors behind one face, so that one suite runs over all of them; and what any of them leaves on its tap.
 #pragma once
 
 #include <memory>
@@ -29,16 +29,40 @@ inline const char* kind_name(Kind kind) {
   return kind == Kind::kExecutiveOnTwin ? "executive" : kind == Kind::kVirtual ? "virtual" : "preemptive";
 }
 
+/// For suites over policies.
+inline std::string name_of(const testing::TestParamInfo<Policy>& one) {
+  const char* const names[] = {"Rm", "Edf", "Llf", "Muf", "MufLaxity"};
+  return names[static_cast<int>(one.param)];
+}
+
+/// A tap and what came to it.
+class Listened {
+ public:
+  Tap* tap() { return &tap_; }
+  /// The records since the last call.
+  std::vector<TapRecord> records() {
+    std::vector<TapRecord> all(kTapRecords);
+    all.resize(reader_.read(all));
+    EXPECT_EQ(reader_.lost(), 0u);
+    return all;
+  }
+
+ private:
+  std::unique_ptr<TapRing> ring_ = std::make_unique<TapRing>();
+  Tap tap_{*ring_};
+  TapReader reader_{*ring_};
+};
+
 /// One run of one application on one executor.
 class Runner {
  public:
   Runner(TaskSet& set, Kind kind, Policy policy = Policy::kEdf, std::span<const ScriptAct> acts = {},
       const VirtualOptions& how = {})
-      : tap_(*ring_), reader_(*ring_), job_clock_(clock_) {
+      : job_clock_(clock_) {
     RunOptions options;
     options.policy = policy;
     options.script = Script(acts);
-    options.tap = &tap_;
+    options.tap = listened_.tap();
     VirtualOptions virtual_options = how;
     virtual_options.preemptive = kind == Kind::kPreemptive;
     if (kind == Kind::kExecutiveOnTwin) executive_ = std::make_unique<Executive>(set, clock_, job_clock_, options);
@@ -50,17 +74,10 @@ class Runner {
   void shut_down() { executive_ ? executive_->shut_down() : virtual_->shut_down(); }
 
   /// The records since the last call.
-  std::vector<TapRecord> records() {
-    std::vector<TapRecord> all(kTapRecords);
-    all.resize(reader_.read(all));
-    EXPECT_EQ(reader_.lost(), 0u);
-    return all;
-  }
+  std::vector<TapRecord> records() { return listened_.records(); }
 
  private:
-  std::unique_ptr<TapRing> ring_ = std::make_unique<TapRing>();
-  Tap tap_;
-  TapReader reader_;
+  Listened listened_;
   VirtualClock clock_;
   TwinClock job_clock_;
   std::unique_ptr<Executive> executive_;

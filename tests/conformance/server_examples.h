@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/conformance/runner.h"
+#include "tests/conformance/timeline.h"
 
 namespace chimera::toy {
 
@@ -95,28 +96,6 @@ inline std::vector<ScriptAct> add_example(Application& app, const Example& examp
   }
   take_in_turn(app.toy("S"), works);
   return acts;
-}
-
-/// The task that had most of each unit, '.' where none had a fifth of it.
-inline std::string timeline(const std::vector<TapRecord>& records, Nanoseconds origin, Nanoseconds unit,
-                            const std::string& names, std::size_t length) {
-  std::vector<std::vector<std::int64_t>> share(length, std::vector<std::int64_t>(names.size()));
-  for (const TapRecord& r : records) {
-    if (r.kind != TapKind::kRun) continue;
-    std::int64_t at = (r.at - origin).count, left = r.b;
-    while (left > 0 && at / unit.count < static_cast<std::int64_t>(length)) {
-      const std::int64_t cell = at / unit.count, part = std::min(left, (cell + 1) * unit.count - at);
-      share[static_cast<std::size_t>(cell)][r.task.index] += part;
-      at += part;
-      left -= part;
-    }
-  }
-  std::string line;
-  for (const auto& cell : share) {
-    const auto most = std::max_element(cell.begin(), cell.end());
-    line += *most * 5 < unit.count ? '.' : names[static_cast<std::size_t>(most - cell.begin())];
-  }
-  return line;
 }
 
 }  // namespace chimera::toy

@@ -3,63 +3,19 @@
 // what a storm of events does to the others: nothing.
 #include <gtest/gtest.h>
 
+#include "tests/conformance/by_threads.h"
 #include "tests/conformance/classic_set.h"
+#include "tests/conformance/judged.h"
 #include "tests/conformance/server_examples.h"
 
 namespace chimera::toy {
 namespace {
-
-ProcessorPlace place() {
-  ProcessorPlace made;
-  made.cpu = last_cpu();
-  made.ceiling = kCeiling;
-  made.base = 30;
-  made.checks = true;
-  return made;
-}
-
-// Runs the tasks of `app` for so long; what was recorded goes to `use`, with the origin.
-template <class Use>
-ProcessorCounts run(Application& app, Policy policy, std::span<const ScriptAct> acts, Nanoseconds time, Use use) {
-  auto ring = std::make_unique<TapRing>();
-  Tap tap(*ring);
-  TapReader reader(*ring);
-  RunOptions options;
-  options.policy = policy;
-  options.script = Script(acts);
-  options.tap = &tap;
-  PreemptiveExecutor executor(app.build_preemptive(), options, place());
-  std::thread edges([&] {
-    (void)enter_realtime({kCeiling, last_cpu(), false});
-    if (executor.start()) executor.run(time);
-  });
-  edges.join();
-  std::vector<TapRecord> records(kTapRecords);
-  records.resize(reader.read(records));
-  use(records, executor.origin());
-  return executor.counts();
-}
 
 struct Outcome {
   std::string timeline;
   Profile served;
   ProcessorCounts counts;
 };
-
-// As judged() of the classic set.
-template <class Run>
-auto while_the_host_kept_its_word(Run run) -> std::optional<decltype(run())> {
-  Nanoseconds worst;
-  for (int i = 0; i < kTries; ++i) {
-    LinuxClock().wait_until(LinuxClock().now() + kRest);
-    Witness witness;
-    auto seen = run();
-    worst = witness.worst();
-    if (worst <= kGap) return seen;
-  }
-  std::printf("not judged: host stalled %lld us\n", static_cast<long long>(worst.count / 1000));
-  return std::nullopt;
-}
 
 // Jobs a little shorter than whole units, in both: capacity is left over, and what ends at an instant ends before it.
 std::string by_virtual_time(const Example& example) {
@@ -76,15 +32,12 @@ class ServedSchedule : public testing::TestWithParam<std::size_t> {};
 TEST_P(ServedSchedule, IsThatOfVirtualTimeUnitByUnit) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
   const Example& example = kExamples[GetParam()];
-  const auto got = while_the_host_kept_its_word([&] {
+  const auto got = judged(kGap, [&] {
     Application app;
     const std::vector<ScriptAct> acts = add_example(app, example, kUnit, kALittleLess);
-    Outcome seen;
-    seen.counts = run(app, example.policy, acts, kUnit * kExampleUnits, [&](const auto& records, Nanoseconds origin) {
-      seen.timeline = timeline(records, origin, kUnit, "ABS", kExampleUnits);
-    });
-    seen.served = app.task("S").profile;
-    return seen;
+    const Left left = run_by_threads(app, example.policy, kUnit * kExampleUnits, checked_place(), acts);
+    return Outcome{timeline(left.records, left.origin, kUnit, "ABS", kExampleUnits), app.task("S").profile,
+                   left.counts};
   });
   if (!got) GTEST_SKIP() << "not judged: host stalled";
   EXPECT_EQ(got->timeline, by_virtual_time(example));
@@ -100,19 +53,16 @@ INSTANTIATE_TEST_SUITE_P(Of, ServedSchedule, testing::Range(std::size_t{0}, std:
 TEST(ServedJob, LongerThanTheCapacityGoesOnWhenSomeIsBack) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
   for (const ServerKind kind : {kDeferrable, kSporadic}) {
-    const auto got = while_the_host_kept_its_word([&] {
+    const auto got = judged(kGap, [&] {
       Application app;
       app.add("A", kUnit * 15, milliseconds(1));
       app.add("B", kUnit * 16, milliseconds(1));
       add_served(app, "S", kind, kUnit * 2, kUnit * 5);
       take_in_turn(app.toy("S"), {kUnit * 4 + kHalf});
       const std::vector<ScriptAct> acts = {ring(kUnit * 3, app.id("S"))};
-      Outcome seen;
-      seen.counts = run(app, Policy::kEdf, acts, kUnit * 15, [&](const auto& records, Nanoseconds origin) {
-        seen.timeline = timeline(records, origin, kUnit, "--S", 15).substr(3);
-      });
-      seen.served = app.task("S").profile;
-      return seen;
+      const Left left = run_by_threads(app, Policy::kEdf, kUnit * 15, checked_place(), acts);
+      return Outcome{timeline(left.records, left.origin, kUnit, "--S", 15).substr(3), app.task("S").profile,
+                     left.counts};
     });
     if (!got) GTEST_SKIP() << "not judged: host stalled";
     EXPECT_EQ(got->timeline, kind == kDeferrable ? "SSSS...S...." : "SS...SS...S.");
@@ -146,7 +96,7 @@ Storm storm(Policy policy, ServerKind kind, bool blows) {
     };
   }
   Storm seen;
-  seen.counts = run(app, policy, {}, kStorm, [](const auto&, Nanoseconds) {});
+  seen.counts = run_by_threads(app, policy, kStorm).counts;
   for (const char* name : {"a", "b", "c", "sender"}) {
     const Profile& p = app.task(name).profile;
     seen.missed += p.missed;
@@ -169,7 +119,7 @@ class ServedStorm : public testing::TestWithParam<std::tuple<Policy, ServerKind>
 
 TEST(ServedCalm, IsWithoutMisses) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
-  const auto got = while_the_host_kept_its_word([] { return storm(Policy::kEdf, kDeferrable, false); });
+  const auto got = judged(kGap, [] { return storm(Policy::kEdf, kDeferrable, false); });
   if (!got) GTEST_SKIP() << "not judged: host stalled";
   expect_nobody_missed(*got);
   EXPECT_EQ(got->served.events, 0u);
@@ -178,7 +128,7 @@ TEST(ServedCalm, IsWithoutMisses) {
 TEST_P(ServedStorm, OfEventsCostsTheOthersNoDeadline) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
   const auto [policy, kind] = GetParam();
-  const auto got = while_the_host_kept_its_word([policy = policy, kind = kind] { return storm(policy, kind, true); });
+  const auto got = judged(kGap, [policy = policy, kind = kind] { return storm(policy, kind, true); });
   if (!got) GTEST_SKIP() << "not judged: host stalled";
   expect_nobody_missed(*got);
   EXPECT_EQ(got->served.events, 134u * 16u) << "every one is counted";

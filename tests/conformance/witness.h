@@ -17,10 +17,12 @@ namespace chimera::toy {
 inline constexpr Nanoseconds kWitnessPeriod = milliseconds(1);
 inline constexpr Nanoseconds kGapAllowed = microseconds(200);  // 10 % of the shortest period
 
+inline int last_cpu() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) - 1; }
+
 inline void pin_here(int priority) {
   cpu_set_t one;
   CPU_ZERO(&one);
-  CPU_SET(static_cast<unsigned>(std::max(1u, std::thread::hardware_concurrency()) - 1), &one);
+  CPU_SET(static_cast<unsigned>(last_cpu()), &one);
   pthread_setaffinity_np(pthread_self(), sizeof one, &one);
   const sched_param p{.sched_priority = priority};
   if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &p) != 0) {
