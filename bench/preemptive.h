@@ -21,7 +21,9 @@
 namespace chimera::bench {
 
 inline constexpr int kCeiling = 49;
+inline constexpr Nanoseconds kLeadIn = milliseconds(20);  // before anything is measured
 
+/// The last one.
 inline int bench_cpu() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) - 1; }
 
 /// n tasks of one period, released one after the other over the period or all at one instant.
@@ -65,6 +67,24 @@ class Window {
   double cpu_ = 0, switches_ = 0;
 };
 
+/// Starts the preemptive executor for `axes` and lets `use` run it, in a thread at the ceiling of the last CPU.
+template <class Use>
+void with_executor(Axes& axes, Policy policy, Use use) {
+  RunOptions options;
+  options.policy = policy;
+  ProcessorPlace place;
+  place.cpu = bench_cpu();
+  place.ceiling = kCeiling;
+  place.base = kCeiling - 19;
+  PreemptiveExecutor executor(axes.set(), options, place);
+  std::thread edges([&] {
+    (void)enter_realtime({kCeiling, place.cpu, false});
+    if (!executor.start()) std::exit(1);
+    use(executor);
+  });
+  edges.join();
+}
+
 /// Ours: the preemptive executor under `policy`. `budget` zero: budgets are not stated.
 inline Cost run_ours(const Load& load, Policy policy, Nanoseconds time, Nanoseconds budget = {},
                      const chimera_component& component = axis_component()) {
@@ -74,28 +94,31 @@ inline Cost run_ours(const Load& load, Policy policy, Nanoseconds time, Nanoseco
   form.budget = budget;
   form.component = &component;
   Axes axes(load.n, [&](std::uint32_t) { return load.period; }, form);
-  RunOptions options;
-  options.policy = policy;
-  ProcessorPlace place;
-  place.cpu = bench_cpu();
-  place.ceiling = kCeiling;
-  place.base = kCeiling - 19;
-  PreemptiveExecutor executor(axes.set(), options, place);
   Cost cost;
-  std::thread edges([&] {
-    (void)enter_realtime({kCeiling, place.cpu, false});
-    if (!executor.start()) std::exit(1);
-    (void)executor.run(milliseconds(20));
+  with_executor(axes, policy, [&](PreemptiveExecutor& executor) {
+    (void)executor.run(kLeadIn);
     const ProcessorCounts before = executor.counts();
     const Window window;
-    (void)executor.run(milliseconds(20) + time);
+    (void)executor.run(kLeadIn + time);
     const ProcessorCounts after = executor.counts();
     cost.jobs = after.jobs - before.jobs;
     cost.level_changes =
         static_cast<double>(after.level_changes - before.level_changes) / static_cast<double>(cost.jobs);
     window.end(cost);
   });
-  edges.join();
+  return cost;
+}
+
+/// What the two others do, whose jobs are counted in `jobs`: from kLeadIn after `origin` to `end`.
+inline Cost measured(const std::atomic<std::uint64_t>& jobs, Nanoseconds origin, Nanoseconds end) {
+  LinuxClock clock;
+  (void)clock.wait_until(origin + kLeadIn);
+  Cost cost;
+  const std::uint64_t before = jobs;
+  const Window window;
+  (void)clock.wait_until(end);
+  cost.jobs = jobs - before;
+  window.end(cost);
   return cost;
 }
 
@@ -113,17 +136,20 @@ class RawAxis {
   std::array<double, kAxes> values_{};
 };
 
+/// The priority of task i where priorities are fixed.
+inline int fixed_priority(std::uint32_t i) { return kCeiling - 1 - static_cast<int>(i % 18); }
+
 /// A thread for each task at a fixed priority that sleeps to absolute instants.
 inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false) {
   LinuxClock clock;
-  const Nanoseconds origin = clock.now() + milliseconds(20), end = origin + milliseconds(20) + time;
+  const Nanoseconds origin = clock.now() + kLeadIn, end = origin + kLeadIn + time;
   std::atomic<std::uint64_t> jobs{0};
   std::vector<std::vector<double>> late(load.n);
   std::vector<std::thread> threads;
   for (std::uint32_t i = 0; i < load.n; ++i)
     threads.emplace_back([&, i] {
       late[i].reserve(keep_late ? static_cast<std::size_t>((end - origin) / load.period) + 1 : 0);
-      (void)enter_realtime({kCeiling - 1 - static_cast<int>(i % 18), bench_cpu(), false});
+      (void)enter_realtime({fixed_priority(i), bench_cpu(), false});
       RawAxis axis;
       for (Nanoseconds next = origin + load.step() * i; next < end; next += load.period) {
         (void)clock.wait_until(next);
@@ -132,68 +158,72 @@ inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false
         jobs.fetch_add(1, std::memory_order_relaxed);
       }
     });
-  (void)clock.wait_until(origin + milliseconds(20));
-  Cost cost;
-  const std::uint64_t before = jobs;
-  const Window window;
-  (void)clock.wait_until(end);
-  cost.jobs = jobs - before;
-  window.end(cost);
+  Cost cost = measured(jobs, origin, end);
   for (std::thread& thread : threads) thread.join();
   for (const auto& one : late) cost.late_ns.insert(cost.late_ns.end(), one.begin(), one.end());
   return cost;
 }
 
 /// One thread above the others that sleeps to each release and wakes the thread of the task, which reports its end.
-inline Cost run_dispatched(const Load& load, Nanoseconds time) {
-  LinuxClock clock;
-  const Nanoseconds origin = clock.now() + milliseconds(20), end = origin + milliseconds(20) + time;
-  std::atomic<std::uint64_t> jobs{0};
-  std::atomic<bool> over{false};
-  std::deque<std::atomic<std::uint32_t>> bells(load.n);
-  std::atomic<std::uint32_t> done{0};
-  std::vector<std::thread> threads;
-  for (std::uint32_t i = 0; i < load.n; ++i)
-    threads.emplace_back([&, i] {
-      (void)enter_realtime({kCeiling - 1 - static_cast<int>(i % 18), bench_cpu(), false});
-      RawAxis axis;
-      for (std::uint32_t heard = 0;; ++heard) {
-        while (Doorbell(bells[i]).read() == heard) (void)Doorbell(bells[i]).wait_until(heard, kNever);
-        if (over) return;
-        axis();
-        jobs.fetch_add(1, std::memory_order_relaxed);
-        Doorbell(done).ring();
-      }
-    });
-  std::thread dispatcher([&] {
-    (void)enter_realtime({kCeiling, bench_cpu(), false});
-    std::vector<Nanoseconds> next(load.n);
-    for (std::uint32_t i = 0; i < load.n; ++i) next[i] = origin + load.step() * i;
-    for (;;) {
-      const std::uint32_t seen = Doorbell(done).read();
-      const Nanoseconds now = clock.now();
-      if (now >= end) break;
-      Nanoseconds soonest = kNever;
-      for (std::uint32_t i = 0; i < load.n; ++i) {
-        if (next[i] <= now) {
-          Doorbell(bells[i]).ring();
-          next[i] += load.period;
-        }
-        soonest = std::min(soonest, next[i]);
-      }
-      (void)Doorbell(done).wait_until(seen, std::min(soonest, end));
+class Dispatched {
+ public:
+  explicit Dispatched(const Load& load) : load_(load), bells_(load.n) {}
+
+  /// The thread of task i, until the dispatcher ends.
+  void follow(std::uint32_t i) {
+    (void)enter_realtime({fixed_priority(i), bench_cpu(), false});
+    RawAxis axis;
+    for (std::uint32_t heard = 0;; ++heard) {
+      while (Doorbell(bells_[i]).read() == heard) (void)Doorbell(bells_[i]).wait_until(heard, kNever);
+      if (over_) return;
+      axis();
+      jobs_.fetch_add(1, std::memory_order_relaxed);
+      Doorbell(done_).ring();
     }
-    over = true;
-    for (auto& bell : bells) Doorbell(bell).ring();
-  });
-  (void)clock.wait_until(origin + milliseconds(20));
-  Cost cost;
-  const std::uint64_t before = jobs;
-  const Window window;
-  (void)clock.wait_until(end);
-  cost.jobs = jobs - before;
-  window.end(cost);
-  dispatcher.join();
+  }
+  void dispatch(Nanoseconds origin, Nanoseconds end) {
+    (void)enter_realtime({kCeiling, bench_cpu(), false});
+    std::vector<Nanoseconds> next(load_.n);
+    for (std::uint32_t i = 0; i < load_.n; ++i) next[i] = origin + load_.step() * i;
+    for (;;) {
+      const std::uint32_t seen = Doorbell(done_).read();
+      const Nanoseconds now = LinuxClock().now();
+      if (now >= end) break;
+      (void)Doorbell(done_).wait_until(seen, std::min(release(next, now), end));
+    }
+    over_ = true;
+    for (auto& bell : bells_) Doorbell(bell).ring();
+  }
+  const std::atomic<std::uint64_t>& jobs() const { return jobs_; }
+
+ private:
+  // Wakes those whose release has come; answers with the next release.
+  Nanoseconds release(std::vector<Nanoseconds>& next, Nanoseconds now) {
+    Nanoseconds soonest = kNever;
+    for (std::uint32_t i = 0; i < load_.n; ++i) {
+      if (next[i] <= now) {
+        Doorbell(bells_[i]).ring();
+        next[i] += load_.period;
+      }
+      soonest = std::min(soonest, next[i]);
+    }
+    return soonest;
+  }
+
+  const Load load_;
+  std::deque<std::atomic<std::uint32_t>> bells_;
+  std::atomic<std::uint32_t> done_{0};
+  std::atomic<std::uint64_t> jobs_{0};
+  std::atomic<bool> over_{false};
+};
+
+inline Cost run_dispatched(const Load& load, Nanoseconds time) {
+  const Nanoseconds origin = LinuxClock().now() + kLeadIn, end = origin + kLeadIn + time;
+  Dispatched tasks(load);
+  std::vector<std::thread> threads;
+  for (std::uint32_t i = 0; i < load.n; ++i) threads.emplace_back([&tasks, i] { tasks.follow(i); });
+  threads.emplace_back([&] { tasks.dispatch(origin, end); });
+  const Cost cost = measured(tasks.jobs(), origin, end);
   for (std::thread& thread : threads) thread.join();
   return cost;
 }

@@ -154,19 +154,7 @@ void in_real_time(int sets, Policy policy, const char* name) {
     const auto work = set.budgets(0.9);
     for (std::uint32_t t = 0; t < kTasks; ++t) spends[t] = set.periods[t].count << 32 | work[t].count;
     Axes axes(kTasks, [&](std::uint32_t t) { return set.periods[t]; }, form);
-    RunOptions options;
-    options.policy = policy;
-    ProcessorPlace place;
-    place.cpu = bench_cpu();
-    place.ceiling = kCeiling;
-    place.base = kCeiling - 19;
-    PreemptiveExecutor executor(axes.set(), options, place);
-    std::thread edges([&] {
-      (void)enter_realtime({kCeiling, place.cpu, false});
-      if (!executor.start()) std::exit(1);
-      (void)executor.run(milliseconds(500));
-    });
-    edges.join();
+    with_executor(axes, policy, [](PreemptiveExecutor& executor) { (void)executor.run(milliseconds(500)); });
     std::uint64_t all = 0;
     for (const Task& task : axes.set().tasks()) all += task.profile.missed;
     clean += all == 0;

@@ -37,18 +37,7 @@ void run(int repetitions) {
     form.component = &component;
     form.on_overrun = OnMiss::kAbort;
     Axes axes(1, [](std::uint32_t) { return kPeriod; }, form);
-    RunOptions options;
-    ProcessorPlace place;
-    place.cpu = bench_cpu();
-    place.ceiling = kCeiling;
-    place.base = kCeiling - 19;
-    PreemptiveExecutor executor(axes.set(), options, place);
-    std::thread edges([&] {
-      (void)enter_realtime({kCeiling, place.cpu, false});
-      if (!executor.start()) std::exit(1);
-      (void)executor.run(milliseconds(600));
-    });
-    edges.join();
+    with_executor(axes, Policy::kEdf, [](PreemptiveExecutor& executor) { (void)executor.run(milliseconds(600)); });
     (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(200));
   }
   for (const auto& [part, name, goal] :
