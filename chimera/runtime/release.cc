@@ -23,8 +23,7 @@ bool is_built(OnMiss reaction, bool can_demote) noexcept {
 }  // namespace
 
 Releases::Releases(TaskSet& set, const RunOptions& options)
-    : set_(set), tasks_(set.tasks()), options_(options), of_(tasks_.size()),
-      recent_(options.guest != nullptr ? tasks_.size() : 0), members_(tasks_.size()),
+    : set_(set), tasks_(set.tasks()), options_(options), of_(tasks_.size()), members_(tasks_.size()),
       classes_(tasks_.size()), queue_tasks_(tasks_.size()), loose_(tasks_.size()), pauses_(tasks_.size()),
       runs_(tasks_.size()),
       queue_(options.policy, set.spec().tasks, {members_, classes_, queue_tasks_, loose_, pauses_, runs_}) {
@@ -36,9 +35,7 @@ Releases::Releases(TaskSet& set, const RunOptions& options)
     of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
   if (options_.threads != nullptr) kept_.resize(tasks_.size());
-  if (options_.guest == nullptr) return;
-  blamed_.assign(tasks_.size(), Nanoseconds{INT64_MIN / 2});
-  waits_.assign(tasks_.size(), kNever);
+  if (options_.guest != nullptr) blame_.emplace(tasks_, options_.threads);
 }
 
 void Releases::begin(Nanoseconds origin) noexcept {
@@ -203,7 +200,7 @@ void Releases::drop(const DroppedRelease& dropped) noexcept {
   Task& task = tasks_[dropped.task.index];
   task.profile.missed += dropped.count;
   task.profile.missed_in_a_row += dropped.count;
-  waits_since(task, dropped.last - task.spec->period * (std::int64_t{dropped.count} - 1));
+  want_blame(task, dropped.last - task.spec->period * (std::int64_t{dropped.count} - 1));
   if (is_out_of_patience(task)) patience_lost_ = true;
 }
 
@@ -222,7 +219,7 @@ void Releases::settle_job(TaskId id, Nanoseconds now) noexcept {
   const std::uint8_t wants = of_[id.index].wants.exchange(0, std::memory_order_relaxed);
   if (wants & kRaiseFlag) raise_flag(now);
   if (wants & kStop) task_stopped_ = true;
-  if (wants & kBlame) blame(tasks_[id.index], now);
+  if (wants & kBlame) tell_blame(id, now);
   settle(tasks_[id.index], now);
 }
 
@@ -236,47 +233,13 @@ void Releases::settle(Task& task, Nanoseconds now) noexcept {
   refresh(task, now);
 }
 
-// For how long nobody of this context can have had the processor although somebody wanted it: real-time threads were
-// throttled, or the kernel or another process had it. At least so much; 0: not known.
-Nanoseconds Releases::taken_away(Nanoseconds since, Nanoseconds now) const noexcept {
-  Nanoseconds left = now - since;
-  for (const Task& task : tasks_) {
-    const Nanoseconds used = recent_[task.id.index].sum_since(since);
-    if (used == kNever) return {};
-    left = left - used;
-    if (options_.threads != nullptr) left = left - options_.threads->used_by_job(task.id);
-  }
-  return std::max(left, Nanoseconds{});
-}
-
-// Who used the processor most since the release that was missed: beyond the budget, if somebody did. If nobody did and
-// the processor was away, that is told.
-void Releases::blame(const Task& missed, Nanoseconds now) noexcept {
-  constexpr Nanoseconds kSeldom = milliseconds(100), kAway = milliseconds(1);
-  const Nanoseconds waited_since = std::exchange(waits_[missed.id.index], kNever);
-  if (now - blamed_[missed.id.index] < kSeldom) return;
-  blamed_[missed.id.index] = now;
-  const Nanoseconds since = now - missed.spec->deadline - missed.spec->period;
-  TaskId culprit = missed.id;
-  Nanoseconds worst_excess{INT64_MIN}, worst_used;
-  for (const Task& task : tasks_) {
-    const OfTask& t = of_[task.id.index];
-    Nanoseconds used = recent_[task.id.index].most_since(since);
-    if (options_.threads != nullptr) used = std::max(used, options_.threads->used_by_job(task.id));
-    const Nanoseconds excess = t.budget == kNever ? used - task.spec->period : used - t.budget;
-    if (used == Nanoseconds{} || excess <= worst_excess) continue;
-    worst_excess = excess;
-    worst_used = used;
-    culprit = task.id;
-  }
-  const Nanoseconds away = worst_excess > Nanoseconds{} || waited_since == kNever ? Nanoseconds{}
-                                                                                  : taken_away(waited_since, now);
-  if (away >= kAway) return options_.guest->missed(missed.id, TaskId(), away, now);
-  options_.guest->missed(missed.id, culprit, worst_used, now);
+void Releases::tell_blame(TaskId missed, Nanoseconds now) noexcept {
+  if (const auto verdict = blame_->judge(missed, now))
+    options_.guest->missed(missed, verdict->culprit, verdict->used, now);
 }
 
 void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept {
-  waits_since(task, at - lateness - task.spec->deadline);
+  want_blame(task, at - lateness - task.spec->deadline);
   ++task.profile.missed;
   ++task.profile.missed_in_a_row;
   record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);
@@ -321,7 +284,7 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
   bool failed = false;
   if (body.answer != Answer::kNoEvent) {
     Profile& p = task.profile;
-    if (!recent_.empty()) recent_[job.task.index].add(used, end);
+    if (blame_) blame_->ended(job.task, used, end);
     p.execution[CHIMERA_CYCLE].add(used);
     p.response.add(end - job.release);
     p.start_delay.add(start - job.release);

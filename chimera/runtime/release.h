@@ -24,30 +24,20 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "chimera/base/fixed.h"
+#include "chimera/runtime/blame.h"
 #include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/job_step.h"
+#include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/runtime/task_set.h"
 #include "chimera/schedule/ready_queue.h"
 
 namespace chimera {
-
-/// Who runs the jobs, where that is not the executor's own thread: every task has one.
-class JobThreads {
- public:
-  /// Keeps the task's thread from beginning a job until the edge is over; a job that waits is put back. False while a
-  /// job of it is under way: then an edge follows its end. Context: edge; wait-free.
-  virtual bool claim(TaskId task) noexcept = 0;
-  /// Execution time of the job of the task that is under way; 0 without one. Context: edge; wait-free.
-  virtual Nanoseconds used_by_job(TaskId task) noexcept = 0;
-
- protected:
-  ~JobThreads() = default;
-};
 
 /// How a context is to be run. What it points at outlives the executor.
 struct RunOptions {
@@ -207,33 +197,6 @@ class Releases {
     std::uint64_t history = 0;  // of the last cycles, one bit each: 1 missed
     std::uint64_t tapped = 0;   // sequence of the last of them
   };
-  // What the last jobs of a task used and when they ended: it may have had several since the release that was missed.
-  struct Recent {
-    static constexpr std::uint32_t kJobs = 8;
-    std::atomic<std::int64_t> used[kJobs]{}, end[kJobs]{};
-    std::uint32_t next = 0;  // by the task's own thread
-    void add(Nanoseconds time, Nanoseconds at) noexcept {
-      used[next].store(time.count, std::memory_order_relaxed);
-      end[next].store(at.count, std::memory_order_relaxed);
-      next = (next + 1) % kJobs;
-    }
-    Nanoseconds most_since(Nanoseconds since) const noexcept {
-      std::int64_t most = 0;
-      for (std::uint32_t i = 0; i < kJobs; ++i)
-        if (end[i].load(std::memory_order_relaxed) >= since.count)
-          most = std::max(most, used[i].load(std::memory_order_relaxed));
-      return {most};
-    }
-    /// What jobs that ended since then used together, or kNever: more of them ended than are remembered.
-    Nanoseconds sum_since(Nanoseconds since) const noexcept {
-      std::int64_t sum = 0;
-      std::uint32_t n = 0;
-      for (std::uint32_t i = 0; i < kJobs; ++i)
-        if (end[i].load(std::memory_order_relaxed) >= since.count)
-          sum += used[i].load(std::memory_order_relaxed), ++n;
-      return n == kJobs ? kNever : Nanoseconds{sum};
-    }
-  };
   enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4, kBlame = 8 };
   /// What one job records at most is kept until it may go to the tap.
   using Kept = FixedVector<TapRecord, 16>;
@@ -251,13 +214,12 @@ class Releases {
   }
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
-  void blame(const Task& task, Nanoseconds now) noexcept;
-  Nanoseconds taken_away(Nanoseconds since, Nanoseconds now) const noexcept;
-  void waits_since(const Task& task, Nanoseconds release) noexcept {
-    if (options_.guest == nullptr) return;
-    waits_[task.id.index] = std::min(waits_[task.id.index], release);
+  void want_blame(const Task& task, Nanoseconds release) noexcept {
+    if (!blame_) return;
+    blame_->missed(task.id, release);
     want(task, kBlame);
   }
+  void tell_blame(TaskId missed, Nanoseconds now) noexcept;
   bool is_tolerated(Task& task, bool missed) noexcept;
   bool judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept;
   bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
@@ -286,9 +248,7 @@ class Releases {
   Nanoseconds next_act_ = kNever;  ///< of the script, on the clock
   std::vector<OfTask> of_;
   std::vector<Kept> kept_;  // with threads: by task
-  std::vector<Nanoseconds> blamed_;  // with a guest: by task, when it was last told who is to blame
-  std::vector<Recent> recent_;       // with a guest: by task
-  std::vector<Nanoseconds> waits_;   // with a guest: by task, the first release that was missed since the last blame
+  std::optional<Blame> blame_;  // with a guest
   std::vector<QueueMember> members_;
   std::vector<QueueClass> classes_;
   std::vector<QueueTask> queue_tasks_;

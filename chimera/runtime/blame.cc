@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/blame.h"
+
+#include <utility>
+
+namespace chimera {
+
+Nanoseconds Blame::Recent::most_since(Nanoseconds since) const noexcept {
+  std::int64_t most = 0;
+  for (std::uint32_t i = 0; i < kJobs; ++i)
+    if (end_[i].load(std::memory_order_relaxed) >= since.count)
+      most = std::max(most, used_[i].load(std::memory_order_relaxed));
+  return {most};
+}
+
+Nanoseconds Blame::Recent::sum_since(Nanoseconds since) const noexcept {
+  std::int64_t sum = 0;
+  std::uint32_t n = 0;
+  for (std::uint32_t i = 0; i < kJobs; ++i) {
+    if (end_[i].load(std::memory_order_relaxed) < since.count) continue;
+    sum += used_[i].load(std::memory_order_relaxed);
+    ++n;
+  }
+  return n == kJobs ? kNever : Nanoseconds{sum};
+}
+
+Blame::Blame(std::span<const Task> tasks, JobThreads* threads)
+    : tasks_(tasks), threads_(threads), recent_(tasks.size()), judged_(tasks.size(), Nanoseconds{INT64_MIN / 2}),
+      waits_(tasks.size(), kNever) {}
+
+// For how long nobody of this context can have had the processor although somebody wanted it. At least so much; 0: not
+// known.
+Nanoseconds Blame::taken_away(Nanoseconds since, Nanoseconds now) const noexcept {
+  Nanoseconds left = now - since;
+  for (const Task& task : tasks_) {
+    const Nanoseconds used = recent_[task.id.index].sum_since(since);
+    if (used == kNever) return {};
+    left = left - used - used_by_job(task.id);
+  }
+  return std::max(left, Nanoseconds{});
+}
+
+std::optional<Blame::Verdict> Blame::judge(TaskId missed, Nanoseconds now) noexcept {
+  constexpr Nanoseconds kSeldom = milliseconds(100), kAway = milliseconds(1);
+  const Nanoseconds waited_since = std::exchange(waits_[missed.index], kNever);
+  if (now - judged_[missed.index] < kSeldom) return std::nullopt;
+  judged_[missed.index] = now;
+  const TaskSpec& spec = *tasks_[missed.index].spec;
+  const Nanoseconds since = now - spec.deadline - spec.period;
+  Verdict worst{missed, {}};
+  Nanoseconds worst_excess{INT64_MIN};
+  for (const Task& task : tasks_) {
+    const Nanoseconds used = std::max(recent_[task.id.index].most_since(since), used_by_job(task.id));
+    const Nanoseconds allowed = task.spec->budget > Nanoseconds{} ? task.spec->budget : task.spec->period;
+    if (used == Nanoseconds{} || used - allowed <= worst_excess) continue;
+    worst_excess = used - allowed;
+    worst = {task.id, used};
+  }
+  if (worst_excess > Nanoseconds{} || waited_since == kNever) return worst;
+  const Nanoseconds away = taken_away(waited_since, now);
+  return away >= kAway ? Verdict{TaskId(), away} : worst;
+}
+
+}  // namespace chimera
