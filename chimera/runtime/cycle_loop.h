@@ -38,7 +38,7 @@ RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
     CycleTime cycle;
     const BodyEnd body = releases.begin_job(job, cycle, releases.is_illegal());
     const Nanoseconds end = time.end_of(job, body, now);
-    releases.record(TapKind::kRun, now, job.task, CHIMERA_CYCLE, (end - now).count);
+    releases.tap().record(TapKind::kRun, now, job.task, CHIMERA_CYCLE, (end - now).count);
     releases.end_job(job, cycle, body, now, end, end - now);
     now = time.after(end);
   }

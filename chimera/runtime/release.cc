@@ -23,7 +23,8 @@ bool is_built(OnMiss reaction, bool can_demote) noexcept {
 }  // namespace
 
 Releases::Releases(TaskSet& set, const RunOptions& options)
-    : set_(set), tasks_(set.tasks()), options_(options), of_(tasks_.size()), members_(tasks_.size()),
+    : set_(set), tasks_(set.tasks()), options_(options), of_(tasks_.size()),
+      tap_(tasks_, options.tap, options.rtpu, options.threads != nullptr), members_(tasks_.size()),
       classes_(tasks_.size()), queue_tasks_(tasks_.size()), loose_(tasks_.size()), pauses_(tasks_.size()),
       runs_(tasks_.size()),
       queue_(options.policy, set.spec().tasks, {members_, classes_, queue_tasks_, loose_, pauses_, runs_}) {
@@ -34,7 +35,6 @@ Releases::Releases(TaskSet& set, const RunOptions& options)
     of_[i].start_margin = start_margin(spec);
     of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
-  if (options_.threads != nullptr) kept_.resize(tasks_.size());
   if (options_.guest != nullptr) blame_.emplace(tasks_, options_.threads);
 }
 
@@ -45,49 +45,12 @@ void Releases::begin(Nanoseconds origin) noexcept {
   refresh_members(origin);
 }
 
-void Releases::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
-  const TapRecord r = record_of(kind, at, task, a, b);
-  if (kept_.empty() || !task.is_valid() || !tasks_[task.index].is_busy) return options_.tap->append(r);
-  (void)kept_[task.index].try_push(r);  // one job has fewer
-}
-
-void Releases::record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
-  if (options_.tap != nullptr) options_.tap->append(record_of(kind, at, task, a, b));
-}
-
-TapRecord Releases::record_of(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a,
-                              std::int64_t b) const noexcept {
-  TapRecord r;
-  r.at = at;
-  r.b = b;
-  r.a = static_cast<std::uint32_t>(a);
-  r.task = task;
-  r.kind = kind;
-  r.rtpu = options_.rtpu;
-  return r;
-}
-
-void Releases::flush_records(TaskId id) noexcept {
-  if (options_.tap == nullptr) return;
-  for (const TapRecord& record : kept_[id.index]) options_.tap->append(record);
-  kept_[id.index].clear();
-  if (tasks_[id.index].is_tapped) tap_row(tasks_[id.index]);
-}
-
-// Appends the latest publication of a tapped task, unless that was done before.
-void Releases::tap_row(const Task& task) noexcept {
-  OfTask& t = of_[task.id.index];
-  if (options_.tap == nullptr || task.group.sequence() == t.tapped || task.group.sequence() == 0) return;
-  t.tapped = task.group.sequence();
-  options_.tap->append_row(*task.group.published(), task.group.payload_bytes(), task.id, options_.rtpu, t.rows++);
-}
-
 void Releases::record_faults(Task& task) noexcept {
   OfTask& t = of_[task.id.index];
   if (task.faults.count == t.faults_seen) return;
   t.faults_seen = task.faults.count;
   set_.faulted(task);
-  record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
+  tap_.record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
 }
 
 Nanoseconds Releases::next_event() const noexcept {
@@ -111,14 +74,14 @@ void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
     set_.raise_flag(up);
-    record(TapKind::kFlag, now, TaskId(), up ? 1 : 0);
+    tap_.record(TapKind::kFlag, now, TaskId(), up ? 1 : 0);
     return;
   }
   Task& task = tasks_[act.task.index];
   if (act.signal == Signal::kWakeup) return ring(task, now);
   // A busy task takes it like a signal it sent itself: after its job and the error handling of that.
   if (may_touch(act.task)) carry_out(task, act.signal, now);
-  else if (!task.outbox.try_push({act.signal, act.task})) record(TapKind::kSignal, now, task.id, 0, 0);
+  else if (!task.outbox.try_push({act.signal, act.task})) tap_.record(TapKind::kSignal, now, task.id, 0, 0);
 }
 
 void Releases::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
@@ -132,13 +95,18 @@ void Releases::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
 void Releases::ring(Task& task, Nanoseconds now) noexcept {
   const bool counts = set_.ring(task.id);
   if (!counts) (void)refused_.try_push({now, task.id, Signal::kWakeup, Refusal::kState, task.state});
-  record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(Signal::kWakeup), counts ? 1 : 0);
+  tap_.record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(Signal::kWakeup), counts ? 1 : 0);
 }
 
 void Releases::record_signal(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept {
-  record(TapKind::kSignal, now, report.task, static_cast<std::uint64_t>(report.signal), report.is_accepted ? 1 : 0);
-  record_faults(tasks_[report.task.index]);
-  if (set_.is_illegal() != was_illegal) record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
+  const int accepted = report.is_accepted ? 1 : 0;
+  tap_.record(TapKind::kSignal, now, report.task, static_cast<std::uint64_t>(report.signal), accepted);
+  record_outcome(report.task, was_illegal, now);
+}
+
+void Releases::record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept {
+  record_faults(tasks_[task.index]);
+  if (set_.is_illegal() != was_illegal) tap_.record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
 }
 
 SignalReport Releases::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
@@ -151,16 +119,15 @@ SignalReport Releases::signal(std::span<const TaskId> tasks, Signal signal, Nano
 SignalReport Releases::served(TaskId task, Nanoseconds now) noexcept {
   const bool was_illegal = set_.is_illegal();
   const SignalReport report = set_.served(task, now);
-  record_faults(tasks_[task.index]);
-  if (set_.is_illegal() != was_illegal) record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
+  record_outcome(task, was_illegal, now);
   return report;
 }
 
 void Releases::refresh_members(Nanoseconds now) noexcept {
   for (Task& task : tasks_) {
-    if (!kept_.empty() && task.is_busy) continue;  // its thread has it
+    if (options_.threads != nullptr && task.is_busy) continue;  // its thread has it
     refresh(task, now);
-    if (task.is_tapped) tap_row(task);
+    if (task.is_tapped) tap_.append_row(task);
   }
 }
 
@@ -170,7 +137,7 @@ void Releases::refresh(Task& task, Nanoseconds now) noexcept {
   const bool on = task.state == State::kOn;
   if (on == t.is_on) return;
   t.is_on = on;
-  record(TapKind::kState, now, task.id, static_cast<std::uint64_t>(task.state));
+  tap_.record(TapKind::kState, now, task.id, static_cast<std::uint64_t>(task.state));
   if (!on) {
     --n_on_;
     task.profile.events_lost += task.events;
@@ -192,7 +159,7 @@ void Releases::refresh(Task& task, Nanoseconds now) noexcept {
 void Releases::drop_on_purpose(const DroppedRelease& dropped) noexcept {
   tasks_[dropped.task.index].profile.dropped += dropped.count;
   of_[dropped.task.index].dropped += dropped.count;
-  record(TapKind::kDrop, dropped.last, dropped.task, dropped.count);
+  tap_.record(TapKind::kDrop, dropped.last, dropped.task, dropped.count);
 }
 
 void Releases::drop(const DroppedRelease& dropped) noexcept {
@@ -226,7 +193,7 @@ void Releases::settle_job(TaskId id, Nanoseconds now) noexcept {
 // After methods of the task ran outside an edge: what they left behind.
 void Releases::settle(Task& task, Nanoseconds now) noexcept {
   record_faults(task);
-  if (task.is_tapped) tap_row(task);
+  if (task.is_tapped) tap_.append_row(task);
   if (!task.outbox.empty()) set_.deliver(task);
   if (task.state == State::kOn) return;
   set_.on_set_changed();
@@ -242,12 +209,12 @@ void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noex
   want_blame(task, at - lateness - task.spec->deadline);
   ++task.profile.missed;
   ++task.profile.missed_in_a_row;
-  record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);
+  tap_.record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);
 }
 
 void Releases::expire_waiting(const Job& job) noexcept {
-  record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
-  record(TapKind::kMiss, job.deadline, job.task, tasks_[job.task.index].call.cycle);
+  tap_.record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
+  tap_.record(TapKind::kMiss, job.deadline, job.task, tasks_[job.task.index].call.cycle);
   drop(DroppedRelease{job.task, job.release, 1});
 }
 
@@ -264,7 +231,7 @@ bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
   if (task.spec->min_time > Nanoseconds{}) ++task.profile.min_refused;
   if (reaction == OnMiss::kFlag) want(task, kRaiseFlag);
   if (reaction == OnMiss::kContinue || reaction == OnMiss::kFlag) return true;
-  record(TapKind::kMiss, now, job.task, task.call.cycle);
+  tap_.record(TapKind::kMiss, now, job.task, task.call.cycle);
   drop(dropped);
   if (reaction == OnMiss::kStop) want(task, kStop);
   if (reaction == OnMiss::kError) {
@@ -297,10 +264,10 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
   const State state = end_cycle(task, body, time, end, may_publish);
   if (task.profile.cycles != cycles) t.dropped -= time.dropped;  // this cycle was told of those
   if (failed && is_out_of_patience(task) && state == State::kOn) give_up(task, end);
-  const bool listens = options_.tap != nullptr || options_.guest != nullptr;
+  const bool listens = tap_.is_on() || options_.guest != nullptr;
   const bool tells = listens && task.faults.count != t.faults_seen;
   if (task.state != State::kOn || !task.outbox.empty() || tells) want(task, kSettle);
-  else if (task.is_tapped && kept_.empty()) tap_row(task);
+  else if (task.is_tapped && options_.threads == nullptr) tap_.append_row(task);
 }
 
 // m-in-n: were there at most so many misses in the last cycles, this one included?
@@ -363,7 +330,7 @@ bool Releases::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why
 }
 
 void Releases::raise_flag(Nanoseconds at) noexcept {
-  if (!set_.is_illegal()) record(TapKind::kFlag, at, TaskId(), 1);
+  if (!set_.is_illegal()) tap_.record(TapKind::kFlag, at, TaskId(), 1);
   set_.raise_flag(true);
 }
 

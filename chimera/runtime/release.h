@@ -29,6 +29,7 @@
 
 #include "chimera/base/fixed.h"
 #include "chimera/runtime/blame.h"
+#include "chimera/runtime/context_tap.h"
 #include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/job_threads.h"
@@ -123,7 +124,7 @@ class Releases {
   /// False when the job must not start: its release is then counted as dropped, with all that follows.
   bool may_start(const Job& job, Nanoseconds now) noexcept {
     const OfTask& t = of_[job.task.index];
-    record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
+    tap_.record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
     if (!t.skip_next && now + t.start_margin <= job.deadline) return true;
     const bool starts = decide_start(job, now);
     if (options_.threads == nullptr && t.wants.load(std::memory_order_relaxed) != 0) settle_job(job.task, now);
@@ -156,8 +157,6 @@ class Releases {
   /// What jobs of the task left for the others: the flag, signals sent, its state. Context: edge.
   void settle_job(TaskId id, Nanoseconds now) noexcept;
   bool is_unsettled(TaskId id) const noexcept { return of_[id.index].wants.load(std::memory_order_relaxed) != 0; }
-  /// With threads: hands over the records that the task's thread kept. Context: whoever may append to the tap.
-  void flush_records(TaskId id) noexcept;
   /// The job began and is abandoned at its deadline (reaction abort): counts the miss; end_job follows.
   void abandon(const Job& job) noexcept { count_miss(tasks_[job.task.index], job.deadline, {}); }
   /// The job never started and its deadline has come (reaction abort).
@@ -166,12 +165,8 @@ class Releases {
   /// The first kRefusedKept signals that were refused. Context: setup.
   std::span<const RefusedSignal> refused() const noexcept { return {refused_.begin(), refused_.end()}; }
 
-  /// Writes one record, if anybody wants it.
-  void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept {
-    if (options_.tap != nullptr) append(kind, at, task, a, b);
-  }
-  /// The same past those, from the section of a preemptive processor.
-  void record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
+  /// What happens is recorded here.
+  ContextTap& tap() noexcept { return tap_; }
   /// flag or stop, at the moment at which a job is seen to have used more than its budget. Context: edge.
   void act_on_overrun(TaskId task, OnMiss reaction) noexcept {
     want(tasks_[task.index], reaction == OnMiss::kStop ? kStop : kRaiseFlag);
@@ -193,20 +188,13 @@ class Releases {
     bool skip_next = false;
     bool is_on = false;
     std::atomic<std::uint8_t> wants{0};  // of the others, once its job is over
-    std::uint32_t rows = 0;     // appended to the tap
     std::uint64_t history = 0;  // of the last cycles, one bit each: 1 missed
-    std::uint64_t tapped = 0;   // sequence of the last of them
   };
   enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4, kBlame = 8 };
-  /// What one job records at most is kept until it may go to the tap.
-  using Kept = FixedVector<TapRecord, 16>;
 
   static std::int64_t time_to_deadline(const Job& job) noexcept {
     return job.deadline == kNever ? 0 : (job.deadline - job.release).count;
   }
-  void append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept;
-  TapRecord record_of(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) const noexcept;
-  void tap_row(const Task& task) noexcept;
   void drop_on_purpose(const DroppedRelease& dropped) noexcept;
   static bool is_out_of_patience(const Task& task) noexcept {
     const std::uint32_t limit = task.spec->max_consecutive;
@@ -232,6 +220,7 @@ class Releases {
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
   void ring(Task& task, Nanoseconds now) noexcept;
   void record_signal(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;
+  void record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept;
   void refresh_members(Nanoseconds now) noexcept;
   void refresh(Task& task, Nanoseconds now) noexcept;
   void record_faults(Task& task) noexcept;
@@ -247,7 +236,7 @@ class Releases {
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever;  ///< of the script, on the clock
   std::vector<OfTask> of_;
-  std::vector<Kept> kept_;  // with threads: by task
+  ContextTap tap_;
   std::optional<Blame> blame_;  // with a guest
   std::vector<QueueMember> members_;
   std::vector<QueueClass> classes_;

@@ -144,7 +144,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   me.check = kNever;
   Task& t = task(me);
   t.is_busy = false;
-  releases_.flush_records(me.task);
+  releases_.tap().flush(me.task);
   processor_goes_on(now);
   me.is_shown = false;
   if (me.served || now - me.shown >= kShowEvery) show(me, now);  // another event may never come
@@ -154,7 +154,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
 
 void PreemptiveExecutor::record_slice(const JobThread& job, Nanoseconds now) noexcept {
   const Nanoseconds since{job.slice.load(std::memory_order_relaxed)};
-  if (now > since) releases_.record_now(TapKind::kRun, since, job.task, CHIMERA_CYCLE, (now - since).count);
+  if (now > since) releases_.tap().record_now(TapKind::kRun, since, job.task, CHIMERA_CYCLE, (now - since).count);
 }
 
 // After every change of the list: whoever is the most urgent now has the processor. One that begins says so himself.
@@ -163,7 +163,7 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
   if (top == on_processor_) return;
   if (on_processor_ != nullptr && on_processor_->phase == JobPhase::kBegun && !on_processor_->is_demoted) {
     record_slice(*on_processor_, now);
-    releases_.record_now(TapKind::kPreempt, now, on_processor_->task, 0);
+    releases_.tap().record_now(TapKind::kPreempt, now, on_processor_->task, 0);
     const bool is_halted = on_processor_->served && on_processor_->served->is_halted;
     if (!is_halted) {
       ++task(*on_processor_).profile.preempted;

@@ -126,7 +126,7 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
 void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
   job.is_overrun = true;
   const OnMiss reaction = spec(job).on_overrun;
-  releases_.record_now(TapKind::kOverrun, now, job.task, task(job).call.cycle, used(job).count);
+  releases_.tap().record_now(TapKind::kOverrun, now, job.task, task(job).call.cycle, used(job).count);
   if (reaction == OnMiss::kDemote) demote(job, now);
   if (reaction == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
   if (reaction == OnMiss::kFlag || reaction == OnMiss::kStop) {
@@ -154,7 +154,7 @@ void PreemptiveExecutor::bury(JobThread& job, Nanoseconds now) noexcept {
   task(job).is_busy = false;
   (void)apply(labels_.remove(job.task), nullptr);
   processor_goes_on(now);
-  releases_.record_now(TapKind::kHang, now, job.task, task(job).call.cycle);
+  releases_.tap().record_now(TapKind::kHang, now, job.task, task(job).call.cycle);
   ring_edge();
 }
 
@@ -163,7 +163,7 @@ void PreemptiveExecutor::hang(JobThread& job, Nanoseconds spent, Nanoseconds now
   if (job.is_given_up) return;
   job.is_given_up = job.is_hanging = true;
   demote(job, now);
-  releases_.record_now(TapKind::kHang, now, job.task, task(job).call.cycle, spent.count);
+  releases_.tap().record_now(TapKind::kHang, now, job.task, task(job).call.cycle, spent.count);
   ring_edge();
 }
 

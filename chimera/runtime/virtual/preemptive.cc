@@ -94,7 +94,7 @@ void Preemptive::use_processor(Nanoseconds until) noexcept {
 void Preemptive::leave_processor() noexcept {
   if (!running_.is_valid()) return;
   if (mark_ > slice_start_) {
-    releases_.record(TapKind::kRun, slice_start_, running_, CHIMERA_CYCLE, (mark_ - slice_start_).count);
+    releases_.tap().record(TapKind::kRun, slice_start_, running_, CHIMERA_CYCLE, (mark_ - slice_start_).count);
   }
   slice_start_ = mark_;
 }
@@ -150,7 +150,7 @@ void Preemptive::expire(TaskId task) noexcept {
 void Preemptive::demote_due(Nanoseconds now) noexcept {
   if (running_.is_valid() && budget_left(running_) == Nanoseconds{}) {
     const Active& a = active_[running_.index];
-    releases_.record(TapKind::kOverrun, now, running_, releases_.task(running_).call.cycle, a.used.count);
+    releases_.tap().record(TapKind::kOverrun, now, running_, releases_.task(running_).call.cycle, a.used.count);
     demote(running_);
   }
   for (const std::uint32_t i : demoters_) {
@@ -205,7 +205,7 @@ void Preemptive::preempt(Nanoseconds now) noexcept {
   const Active& a = active_[running_.index];
   leave_processor();
   if (!a.is_demoted) {
-    releases_.record(TapKind::kPreempt, now, running_, 0);
+    releases_.tap().record(TapKind::kPreempt, now, running_, 0);
     ++releases_.task(running_).profile.preempted;
     releases_.queue().put_back(a.job, a.remaining);
   }

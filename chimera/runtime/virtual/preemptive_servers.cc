@@ -68,7 +68,7 @@ void Preemptive::stand(Served& s, Nanoseconds now) noexcept {
     a.job.deadline = s.job.deadline;
     if (may_run) return;
     leave_processor();
-    releases_.record(TapKind::kPreempt, now, s.task, 0);
+    releases_.tap().record(TapKind::kPreempt, now, s.task, 0);
     ++releases_.task(s.task).profile.exhausted;
     ++releases_.task(s.task).profile.preempted;
     running_ = TaskId();

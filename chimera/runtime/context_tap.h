@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one context writes to its tap: what happens to its tasks, and every publication of those that are tapped.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chimera/base/fixed.h"
+#include "chimera/runtime/tap_ring.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+/// Context of everything not marked: cycle; wait-free, by whoever may append to the tap.
+class ContextTap {
+ public:
+  /// `tap` null: nothing is recorded. With `keeps`, records of a task with a job under way stay with the thread of the
+  /// task until flush(). The tasks and the tap outlive this. Context: setup.
+  ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps);
+
+  bool is_on() const noexcept { return tap_ != nullptr; }
+  /// Writes one record, if anybody wants it. An invalid task: of the context. Also by the thread of a task, about it,
+  /// where records are kept.
+  void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept {
+    if (tap_ != nullptr) append(kind, at, task, a, b);
+  }
+  /// The same, past those that are kept.
+  void record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
+  /// Hands over what the task's thread kept, and its latest publication if it is tapped.
+  void flush(TaskId id) noexcept;
+  /// The latest publication of the task, once.
+  void append_row(const Task& task) noexcept;
+
+ private:
+  /// One job has fewer.
+  using Kept = FixedVector<TapRecord, 16>;
+  struct Rows {
+    std::uint64_t last = 0;   // sequence of the publication
+    std::uint32_t count = 0;
+  };
+
+  void append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept;
+  TapRecord record_of(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) const noexcept;
+
+  std::span<const Task> tasks_;
+  Tap* tap_;
+  std::uint8_t rtpu_;
+  // By task.
+  std::vector<Rows> rows_;
+  std::vector<Kept> kept_;  // empty: none are
+};
+
+}  // namespace chimera
