@@ -126,15 +126,6 @@ void TaskSet::plan_foreign_constants() {
   constant_scratch_ = AlignedBytes(largest, kCacheLine);
 }
 
-void TaskSet::read_foreign_constants() noexcept {
-  for (const ForeignConstant& constant : foreign_constants_) {
-    const GroupReader reader = place_.others->constants(constant.producer);
-    chimera_slot slot;
-    if (!reader.is_bound() || !reader.try_read(slot, constant_scratch_.data()) || slot.sequence == 0) continue;
-    constants_.set(constant.name, {constant_scratch_.data() + constant.offset, constant.bytes}, constant.producer);
-  }
-}
-
 void TaskSet::place_operators() {
   if (place_.rtpu.is_valid()) return;  // they are the manager's
   for (std::size_t o = 0; o < spec_.operators.size(); ++o) {

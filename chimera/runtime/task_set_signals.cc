@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The signalling half of TaskSet: one signal, the steps it starts, and what follows for the other tasks.
-#include <cstdio>
 #include <cstring>
 
 #include "chimera/runtime/task_set.h"
@@ -8,6 +7,7 @@
 #include "chimera/task/event_source.h"
 
 namespace chimera {
+
 Result<void> TaskSet::start(Nanoseconds now) {
   for (TaskId id : spec_.init_order) {
     carry_out(id, Signal::kSpawn, now);
@@ -261,34 +261,6 @@ Answer TaskSet::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
   return Answer::kOk;
 }
 
-const GivenSpec* TaskSet::given(std::string_view variable) const noexcept {
-  for (const auto& list : {spec_.constants, spec_.operators})
-    for (const GivenSpec& given : list)
-      if (given.name == variable) return &given;
-  return nullptr;
-}
-
-// A value written as a list has as many entries as the constant says that fixes the extent.
-bool TaskSet::lists_fit(const Task& task, FixedString<160>& why) const noexcept {
-  for (const PortSpec& port : task.spec->ports) {
-    const GivenSpec* from = port.value.empty() && !port.variable.empty() ? given(port.variable) : nullptr;
-    const std::uint32_t* listed = from != nullptr ? from->listed : port.listed;
-    for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
-      const ExtentSpec& extent = port.extent[d];
-      if (extent.constant.empty() || listed[d] == 0) continue;
-      const std::int64_t n = constants_.integer(extent.constant, listed[d]);
-      if (n == listed[d]) continue;
-      char text[160];
-      std::snprintf(text, sizeof text, "%.*s has a list of %u values, but %.*s is %lld",
-                    static_cast<int>(port.variable.size()), port.variable.data(), listed[d],
-                    static_cast<int>(extent.constant.size()), extent.constant.data(), static_cast<long long>(n));
-      why.assign(text);
-      return false;
-    }
-  }
-  return true;
-}
-
 // >out-var: what a predecessor left is where this task starts from (2000 paper 5.1).
 void TaskSet::take_over(Task& task) noexcept {
   taken_over_valid_ = 0;
@@ -309,54 +281,6 @@ std::uint64_t TaskSet::valid_after_on(const Task& task) const noexcept {
   for (std::size_t i = 0; i < task.outputs.size(); ++i)
     if (!memory.is_unwritten(task, i)) valid |= std::uint64_t{1} << i;
   return valid;
-}
-
-// Exactly the users of the constants that changed, in the order of initialisation; a circle is refused by
-// verification, so this ends. Users in other contexts are sent the signal and compare for themselves.
-void TaskSet::reinit_users(TaskId of, Nanoseconds now) {
-  for (TaskId id : spec_.init_order) {
-    if (id == of) continue;
-    if (!is_mine(id)) {
-      const State there = place_.others->state(id);
-      if ((there == State::kOff || there == State::kOn) && uses_constant_of(id, of))
-        (void)place_.others->post(Signal::kReinit, id, of, true);
-      continue;
-    }
-    Task& user = tasks_[id.index];
-    const bool waits = user.in_service || user.is_busy;
-    if (waits && uses_constant_of(id, of) && user.pending.try_push(Signal::kReinit)) ++n_pending_;
-    if (waits || (user.state != State::kOff && user.state != State::kOn)) continue;
-    if (memories_[id.index].uses_changed(constants_)) carry_out(id, Signal::kReinit, now);
-  }
-}
-
-bool TaskSet::uses_constant_of(TaskId user, TaskId producer) const noexcept {
-  for (const PortSpec& made : spec_.tasks[producer.index].ports)
-    for (const PortSpec& used : spec_.tasks[user.index].ports)
-      if (made.kind == CHIMERA_OUT_CONST && used.kind == CHIMERA_IN_CONST && made.variable == used.variable)
-        return true;
-  return false;
-}
-
-bool TaskSet::uses_changed_constants(TaskId task) noexcept {
-  read_foreign_constants();
-  return memories_[task.index].uses_changed(constants_);
-}
-
-void TaskSet::publish_constants(const Task& task) noexcept {
-  const GroupId group = layout_->constants(task.id);
-  const GroupPlace& place = layout_->place(group);
-  if (place.payload_bytes == 0) return;
-  GroupWriter writer(group_memory(group), place.payload_bytes);
-  const auto places = layout_->variables(group);
-  std::size_t i = 0;
-  for (const PortSpec& port : task.spec->ports) {
-    if (port.kind != CHIMERA_OUT_CONST) continue;
-    const Constant* constant = constants_.find(port.variable);
-    std::memcpy(writer.staging() + places[i].offset, constant->value.data(), places[i].bytes);
-    ++i;
-  }
-  writer.publish(Nanoseconds{}, ~std::uint64_t{0});
 }
 
 }  // namespace chimera
