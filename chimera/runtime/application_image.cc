@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "chimera/base/assert.h"
+#include "chimera/runtime/image_archive.h"
 #include "chimera/runtime/pages.h"
 #include "chimera/table/layout.h"
 
@@ -44,92 +45,6 @@ std::uint64_t hash_of(std::span<const std::byte> bytes) noexcept {
   for (const std::byte b : bytes) hash = (hash ^ static_cast<unsigned char>(b)) * 0x100000001b3u;
   return hash;
 }
-
-// Writer and Reader offer the same operations, so that the fields are listed once and cannot drift apart.
-class Writer {
- public:
-  template <class T>
-  void number(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    const auto* at = reinterpret_cast<const std::byte*>(&value);
-    out_.insert(out_.end(), at, at + sizeof value);
-  }
-  template <class T>
-  void choice(const T& value, T) { number(value); }
-  void text(const std::string_view& text) { values(std::as_bytes(std::span(text.data(), text.size()))); }
-  void values(const std::span<const std::byte>& bytes) {
-    number(static_cast<std::uint32_t>(bytes.size()));
-    out_.insert(out_.end(), bytes.begin(), bytes.end());
-  }
-  template <class T, class Each>
-  void list(const std::span<const T>& items, std::vector<T>&, std::size_t, const char*, Each each) {
-    number(static_cast<std::uint32_t>(items.size()));
-    for (const T& item : items) each(item);
-  }
-  void require(bool, const char*) {}
-  bool is_good() const { return true; }
-
-  std::vector<std::byte> out_;
-};
-
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-
-  template <class T>
-  void number(T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    const auto from = take(sizeof value);
-    if (!from.empty()) std::memcpy(static_cast<void*>(&value), from.data(), sizeof value);
-  }
-  // An enumeration or a bool: judged before it becomes one.
-  template <class T>
-  void choice(T& value, T last) {
-    unsigned char read = 0;
-    static_assert(sizeof(T) == 1);
-    number(read);
-    require(read <= static_cast<unsigned char>(last), "a choice that does not exist");
-    if (is_good()) value = static_cast<T>(read);
-  }
-  void text(std::string_view& text) {
-    std::span<const std::byte> bytes;
-    values(bytes);
-    text = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-  }
-  void values(std::span<const std::byte>& bytes) {
-    std::uint32_t n = 0;
-    number(n);
-    bytes = take(n);
-  }
-  template <class T, class Each>
-  void list(std::span<const T>& items, std::vector<T>& storage, std::size_t most, const char* what, Each each) {
-    std::uint32_t n = 0;
-    number(n);
-    // Every item takes at least a byte: a count beyond them is not believed, and no memory is taken for it.
-    require(n <= most && n <= bytes_.size() - at_, what);
-    if (!is_good()) return;
-    storage.resize(n);
-    for (std::uint32_t i = 0; i < n && is_good(); ++i) each(storage[i]);
-    items = storage;
-  }
-  void require(bool kept, const char* broken) {
-    if (!kept && why_ == nullptr) why_ = broken;
-  }
-  bool is_good() const { return why_ == nullptr; }
-  const char* why() const { return why_; }
-  std::size_t position() const { return at_; }
-
- private:
-  std::span<const std::byte> take(std::size_t n) {
-    require(n <= bytes_.size() - at_, "cut short");
-    if (!is_good()) return {};
-    at_ += n;
-    return bytes_.subspan(at_ - n, n);
-  }
-  std::span<const std::byte> bytes_;
-  std::size_t at_ = 0;
-  const char* why_ = nullptr;
-};
 
 template <class T>
 bool is_valued(const T& item) {
@@ -220,7 +135,7 @@ void task_ids(Archive& archive, std::span<const TaskId>& ids, std::vector<TaskId
 // Far beyond what a description of 256 KiB can hold.
 constexpr std::size_t kMostTasks = 4096, kMostGiven = 65536;
 
-// `parts` holds what a Reader makes; a Writer only looks at what spec and places point at.
+// `parts` holds what an ImageReader makes; an ImageWriter only looks at what spec and places point at.
 template <class Archive>
 void image_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationSpec& spec,
                   std::span<const ComponentPlace>& places, RunSettings& settings) {
@@ -260,17 +175,17 @@ Error refusal(std::string text) { return {ErrorCode::kBadInput, {std::move(text)
 std::vector<std::byte> encode(const ApplicationSpec& spec, std::span<const ComponentPlace> places,
                               const RunSettings& settings) {
   CHIMERA_ASSERT(places.size() == spec.tasks.size());
-  Writer writer;
+  ImageWriter writer;
   writer.number(Header{});
   ApplicationImage::Parts unused;
   ApplicationSpec same = spec;
   RunSettings same_settings = settings;
   image_fields(writer, unused, same, places, same_settings);
   Header header;
-  header.total_bytes = writer.out_.size();
-  header.hash = hash_of(std::span(writer.out_).subspan(sizeof header));
-  std::memcpy(writer.out_.data(), &header, sizeof header);
-  return std::move(writer.out_);
+  header.total_bytes = writer.bytes().size();
+  header.hash = hash_of(writer.bytes().subspan(sizeof header));
+  std::memcpy(writer.bytes().data(), &header, sizeof header);
+  return std::move(writer).bytes();
 }
 
 Result<ApplicationImage> ApplicationImage::decode(std::span<const std::byte> bytes) {
@@ -291,7 +206,7 @@ Result<ApplicationImage> ApplicationImage::decode(std::span<const std::byte> byt
   const auto body = bytes.subspan(sizeof header);
   if (header.hash != hash_of(body)) return refusal("damaged image: its bytes have another hash");
   auto parts = std::make_shared<Parts>();
-  Reader reader(body);
+  ImageReader reader(body);
   std::span<const ComponentPlace> places;
   image_fields(reader, *parts, parts->spec, places, parts->settings);
   reader.require(reader.position() == body.size(), "more than there should be");
