@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# chimera_floor(NAME [LINKS floor...] [LIBRARIES lib...] [EXCEPTIONS])
+# chimera_floor(NAME [LINKS floor...] [LIBRARIES lib...] [EXCEPTIONS [TEXT]])
 #   One floor of the library: every x.cc of the folder makes the static library chimera_NAME,
 #   every x_test.cc goes into one test binary NAME_test. Suffixes choose where a file goes:
 #     x_test.cc           debug (address+undefined sanitizers)
@@ -9,8 +9,12 @@
 #     x_fuzz.cc           fuzz (clang, libFuzzer), see chimera_fuzz
 #     x_stress.cc         release; the program x_stress, a campaign for tests/stress.txt
 #   Without EXCEPTIONS the floor is built with -fno-exceptions -fno-rtti (floors 0 to 5).
-# chimera_tests(NAME LIBS lib... [DEPENDS target...]) does the test half alone, for folders without a library.
-#   DEPENDS: targets the tests run (programs, components).
+#   TEXT: a floor of JSON and other texts, slow to compile and without memory of its own making. Its files are compiled
+#   eight at a time (./dev lint looks at each alone) and without the sanitizers' checks of null and alignment.
+# chimera_tests(NAME LIBS lib... [DEPENDS target...] [MEMORY]) does the test half alone, for folders without a library.
+#   DEPENDS: targets the tests run (programs, components). MEMORY: the tests of a floor that makes memory of its own
+#   (0 to 5) have every check of the sanitizers;
+#   others are compiled without those of null and alignment, a fifth faster.
 # chimera_script_test(NAME LABEL label [TREES tree...] [DEPENDS target...] COMMAND command...)
 #   A test that is a command. Exit 77 = skipped, the last line of its output is the reason.
 #   Labels: unit process realtime size symbol model (and page firmware). TREES: debug (default) tsan release.
@@ -41,7 +45,9 @@ endif()
 if(CHIMERA_SANITIZE)
   # Without vptr: that check wants the type information which floors 0 to 5 do not have.
   target_compile_options(chimera_flags INTERFACE
-    -fsanitize=${CHIMERA_SANITIZE} -fno-sanitize=vptr -fno-sanitize-recover=all -fno-omit-frame-pointer -g1 -O1)
+    -fsanitize=${CHIMERA_SANITIZE} -fno-sanitize=vptr -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+  # -Og compiles in half the time of -O1; a fuzzer lives from executions.
+  target_compile_options(chimera_flags INTERFACE $<IF:$<BOOL:${CHIMERA_FUZZ}>,-O1,-Og>)
   target_link_options(chimera_flags INTERFACE -fsanitize=${CHIMERA_SANITIZE})
 else()
   target_compile_options(chimera_flags INTERFACE -O2 -g1)
@@ -49,6 +55,9 @@ endif()
 if(CHIMERA_TREE STREQUAL "tsan")
   target_compile_definitions(chimera_flags INTERFACE CHIMERA_WORDWISE_COPY=1)
 endif()
+
+# A null pointer is caught by the address sanitizer all the same.
+set(CHIMERA_FEWER_CHECKS -fno-sanitize=null,alignment)
 
 # Everything `./dev test` runs in this tree; `all` in the debug tree, less in the others.
 add_custom_target(tests_needed)
@@ -75,8 +84,9 @@ function(_chimera_test_properties name label)
   endif()
 endfunction()
 
-function(_chimera_test_binary target label sources libs depends)
+function(_chimera_test_binary target label sources libs depends)  # [compile options...]
   add_executable(${target} ${sources})
+  target_compile_options(${target} PRIVATE ${ARGN})
   target_link_libraries(${target} PRIVATE ${libs} chimera_gtest GTest::gtest_main)
   target_precompile_headers(${target} REUSE_FROM chimera_gtest)
   add_test(NAME ${target} COMMAND ${target} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
@@ -85,9 +95,13 @@ function(_chimera_test_binary target label sources libs depends)
 endfunction()
 
 function(chimera_tests name)
-  cmake_parse_arguments(arg "" "" "LIBS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(arg "MEMORY" "" "LIBS;DEPENDS" ${ARGN})
   if(NOT CHIMERA_TESTS)
     return()
+  endif()
+  set(options ${CHIMERA_FEWER_CHECKS})
+  if(arg_MEMORY)
+    set(options)
   endif()
   file(GLOB all CONFIGURE_DEPENDS *_test.cc linux/*_test.cc virtual/*_test.cc executive/*_test.cc preemptive/*_test.cc)
   set(plain ${all})
@@ -98,17 +112,17 @@ function(chimera_tests name)
   endforeach()
   if(CHIMERA_TREE STREQUAL "tsan")
     if(threads)
-      _chimera_test_binary(${name}_threads_test threads "${threads}" "${arg_LIBS}" "${arg_DEPENDS}")
+      _chimera_test_binary(${name}_threads_test threads "${threads}" "${arg_LIBS}" "${arg_DEPENDS}" ${options})
     endif()
   elseif(CHIMERA_TREE STREQUAL "debug")
     if(plain OR threads)
-      _chimera_test_binary(${name}_test unit "${plain};${threads}" "${arg_LIBS}" "${arg_DEPENDS}")
+      _chimera_test_binary(${name}_test unit "${plain};${threads}" "${arg_LIBS}" "${arg_DEPENDS}" ${options})
     endif()
     if(process)
-      _chimera_test_binary(${name}_process_test process "${process}" "${arg_LIBS}" "${arg_DEPENDS}")
+      _chimera_test_binary(${name}_process_test process "${process}" "${arg_LIBS}" "${arg_DEPENDS}" ${options})
     endif()
   elseif(realtime)
-    _chimera_test_binary(${name}_realtime_test realtime "${realtime}" "${arg_LIBS}" "${arg_DEPENDS}")
+    _chimera_test_binary(${name}_realtime_test realtime "${realtime}" "${arg_LIBS}" "${arg_DEPENDS}" ${options})
   endif()
 endfunction()
 
@@ -160,8 +174,13 @@ function(_chimera_campaigns libs)
   endforeach()
 endfunction()
 
+function(_chimera_text target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  target_compile_options(${target} PRIVATE ${CHIMERA_FEWER_CHECKS})
+endfunction()
+
 function(chimera_floor name)
-  cmake_parse_arguments(arg "EXCEPTIONS" "" "LINKS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "EXCEPTIONS;TEXT" "" "LINKS;LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cc hosted/*.cc linux/*.cc virtual/*.cc executive/*.cc preemptive/*.cc)
   list(FILTER sources EXCLUDE REGEX "_(test|fuzz|stress)\\.cc$")
   set(target chimera_${name})
@@ -171,12 +190,19 @@ function(chimera_floor name)
     if(NOT arg_EXCEPTIONS)
       target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
     endif()
+    if(arg_TEXT)
+      _chimera_text(${target})
+    endif()
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
   endif()
   list(TRANSFORM arg_LINKS PREPEND chimera_)
   target_link_libraries(${target} ${scope} chimera_flags ${arg_LINKS} ${arg_LIBRARIES})
-  chimera_tests(${name} LIBS ${target})
+  if(arg_EXCEPTIONS)
+    chimera_tests(${name} LIBS ${target})
+  else()
+    chimera_tests(${name} LIBS ${target} MEMORY)
+  endif()
   _chimera_campaigns(${target})
 endfunction()

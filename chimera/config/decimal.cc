@@ -9,7 +9,6 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The parts of a number, found before anything is converted.
 struct Scan {

@@ -18,6 +18,8 @@ struct Decimal {
   std::optional<std::int64_t> whole(std::int64_t scale) const noexcept;
 };
 
+constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
 /// A decimal number at the beginning of a text: its exact form and its length in bytes.
 struct DecimalText {
   Decimal value;

@@ -3,13 +3,13 @@
 
 #include <array>
 
+#include "chimera/config/criticality.h"
 #include "chimera/config/draft_values.h"
 #include "chimera/config/keys.h"
 
 namespace chimera {
 namespace {
 
-constexpr std::array<std::string_view, 3> kCriticalities = {"low", "medium", "high"};
 // In the order of OnMiss. `switch` is written as a map.
 constexpr std::array<std::string_view, 9> kReactions = {"continue", "hold",   "skip", "abort", "demote",
                                                         "error",    "switch", "flag", "stop"};

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <vector>
 
+#include "chimera/config/decimal.h"
 #include "chimera/config/nearest.h"
 
 namespace chimera {
@@ -12,7 +13,6 @@ namespace {
 constexpr std::size_t kMaxNameBytes = 64;
 
 bool is_letter(char c) noexcept { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
 void add(Report& report, std::string_view rule, const Node& node, std::string message, std::string expected,
          std::string near = {}, std::string remedy = {}) {

@@ -22,7 +22,7 @@ constexpr std::size_t kMostBytes = 256 * 1024;
 constexpr std::size_t kNesting = 4;
 constexpr std::size_t kMostTasks = 256;
 constexpr std::size_t kMostName = 100;
-constexpr std::int64_t kLongest = 3'600'000'000'000;  // the longest period there is
+constexpr std::int64_t kLongestPeriod = 3'600'000'000'000;  // the longest period there is
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 53;
 
 std::uint64_t count_at(const JsonCursor& at, std::uint64_t most) {
@@ -33,7 +33,7 @@ std::uint64_t count_at(const JsonCursor& at, std::uint64_t most) {
 }
 
 Nanoseconds time_at(const JsonCursor& at, std::string_view key) {
-  return {static_cast<std::int64_t>(count_at(at.at(key), kLongest))};
+  return {static_cast<std::int64_t>(count_at(at.at(key), kLongestPeriod))};
 }
 
 std::string name_at(const JsonCursor& at) {
@@ -72,7 +72,7 @@ RecordedProfile profile_at(const JsonCursor& at) {
   return profile;
 }
 
-Nanoseconds bounded(Nanoseconds time) { return {std::clamp<std::int64_t>(time.count, 0, kLongest)}; }
+Nanoseconds bounded(Nanoseconds time) { return {std::clamp<std::int64_t>(time.count, 0, kLongestPeriod)}; }
 
 /// A new file beside `path`, to be put into its place.
 struct PartFile {

@@ -2,32 +2,13 @@
 #include "chimera/config/report.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "chimera/base/assert.h"
+#include "chimera/config/json_text.h"
 #include "chimera/config/rule_ids.h"
 
 namespace chimera {
 namespace {
-
-/// Text as a JSON string. Bytes that are not printable ASCII or part of valid UTF-8 were refused by the reader.
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (byte < 0x20) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(byte));
-      out += escape;
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
 
 std::string_view word(Severity severity) { return severity == Severity::kError ? "error" : "warning"; }
 
@@ -83,17 +64,17 @@ std::string Report::text() const {
 }
 
 std::string Report::json() const {
-  std::string out = "{\"file\": " + quoted(file_) + ", \"legal\": " + (is_legal() ? "true" : "false") +
+  std::string out = "{\"file\": " + json_string(file_) + ", \"legal\": " + (is_legal() ? "true" : "false") +
                     ", \"errors\": " + std::to_string(errors_) + ", \"warnings\": " + std::to_string(warnings_) +
                     ", \"faults\": [";
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     const Fault& fault = faults_[i];
-    out += std::string(i == 0 ? "" : ", ") + "{\"rule\": " + quoted(fault.rule) + ", \"severity\": " +
-           quoted(word(fault.severity)) + ", \"file\": " + quoted(file_) +
+    out += std::string(i == 0 ? "" : ", ") + "{\"rule\": " + json_string(fault.rule) + ", \"severity\": " +
+           json_string(word(fault.severity)) + ", \"file\": " + json_string(file_) +
            ", \"line\": " + std::to_string(fault.at.line) + ", \"column\": " + std::to_string(fault.at.column) +
-           ", \"found\": " + quoted(fault.found) + ", \"expected\": " + quoted(fault.expected) +
-           ", \"nearest\": " + quoted(fault.nearest) + ", \"message\": " + quoted(fault.message) +
-           ", \"remedy\": " + quoted(remedy(fault)) + '}';
+           ", \"found\": " + json_string(fault.found) + ", \"expected\": " + json_string(fault.expected) +
+           ", \"nearest\": " + json_string(fault.nearest) + ", \"message\": " + json_string(fault.message) +
+           ", \"remedy\": " + json_string(remedy(fault)) + '}';
   }
   return out + "]}";
 }

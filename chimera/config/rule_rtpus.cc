@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 
+#include "chimera/config/criticality.h"
 #include "chimera/config/draft_values.h"
 #include "chimera/config/nearest.h"
 #include "chimera/config/rules.h"
 
 namespace chimera {
 namespace {
-
-constexpr std::array<const char*, 3> kCriticalities = {"low", "medium", "high"};
 
 DraftRtpu default_rtpu() {
   DraftRtpu rtpu;
@@ -53,10 +51,10 @@ void compare_bands(Model& model, std::size_t above, std::size_t below) {
   if (low == nullptr || high == nullptr || low->criticality >= high->criticality) return;
   const std::string cpu = std::to_string(model.rtpus[above].cpu.value);
   model.error("rtpu-band", low->draft->name.at,
-              "CPU " + cpu + ": task '" + low->name() + "' (" + kCriticalities[low->criticality] + ") on rtpu '" +
+              "CPU " + cpu + ": task '" + low->name() + "' (" + criticality_name(low->criticality) + ") on rtpu '" +
                   model.rtpus[above].name.text + "' would go before task '" + high->name() + "' (" +
-                  kCriticalities[high->criticality] + ") on rtpu '" + model.rtpus[below].name.text + "'",
-              kCriticalities[low->criticality], "at least " + std::string(kCriticalities[high->criticality]), {},
+                  criticality_name(high->criticality) + ") on rtpu '" + model.rtpus[below].name.text + "'",
+              criticality_name(low->criticality), std::string("at least ") + criticality_name(high->criticality), {},
               "move one of them to the other rtpu, or give the rtpus different CPUs");
 }
 

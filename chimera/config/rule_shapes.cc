@@ -23,12 +23,12 @@ const PortDescriptor* giver(const TaskModel& task, const std::string& symbol) {
   return port != nullptr && port->is_constant() ? port : nullptr;
 }
 
-bool uses(const PortDescriptor& port, const std::string& symbol) {
+bool uses_shape(const PortDescriptor& port, const std::string& symbol) {
   return std::any_of(port.extents.begin(), port.extents.end(), [&](const Extent& e) { return e.symbol == symbol; });
 }
 
 SymbolKey key_of(const TaskModel& task, const LinkedPort& port, const std::string& symbol) {
-  return symbol_key(task, port, symbol, uses);
+  return symbol_key(task, port, symbol, uses_shape);
 }
 
 /// A written or default number of elements; nullopt when it is none (check_values says so).
@@ -99,7 +99,7 @@ bool try_shape(Model& model, LinkedPort& port, const ExtentBindings& bindings) {
   return true;
 }
 
-void settle(Model& model, VariableModel& variable, PortRef ref) {
+void settle_shape(Model& model, VariableModel& variable, PortRef ref) {
   variable.extents = model.port(ref).extents;
   variable.has_extents = true;
   variable.shape_from = ref;
@@ -123,7 +123,8 @@ void bind_shape(Model& model, PortRef ref, const LinkedPort& port, const Variabl
 }
 
 /// Binds the open extent variables of a port to the shape of its variable.
-void bind(Model& model, PortRef ref, const LinkedPort& port, const VariableModel& variable, ExtentBindings& bindings) {
+void bind_extents(Model& model, PortRef ref, const LinkedPort& port, const VariableModel& variable,
+                  ExtentBindings& bindings) {
   const TaskModel& task = model.tasks[port.task];
   const std::vector<Extent>& declared = port.declared->extents;
   const std::vector<SolvedExtent> one{{.constant = {}, .max = 1, .known = 1}};  // a scalar is a vector of one
@@ -153,11 +154,11 @@ void spread(Model& model, ExtentBindings& bindings) {
       VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
       if (!try_shape(model, port, bindings)) {
         if (variable == nullptr || !variable->has_extents) return;
-        bind(model, ref, port, *variable, bindings);
+        bind_extents(model, ref, port, *variable, bindings);
         if (!try_shape(model, port, bindings)) return;
       }
       moved = true;
-      if (variable != nullptr && !variable->has_extents) settle(model, *variable, ref);
+      if (variable != nullptr && !variable->has_extents) settle_shape(model, *variable, ref);
     });
   }
 }
@@ -186,7 +187,7 @@ void take_from_values(Model& model, ExtentBindings& bindings) {
       written.extents = shape_of(*port.own);
       if (written.extents.empty() == is_list) return;
       written.shape_from = ref;
-      bind(model, ref, port, written, bindings);
+      bind_extents(model, ref, port, written, bindings);
       spread(model, bindings);
     });
 }
@@ -239,7 +240,7 @@ void compare(Model& model, const VariableModel& variable, const LinkedPort& port
               "link it to another variable by alias");
 }
 
-void report_unsolved(Model& model, const LinkedPort& port) {
+void report_unsolved_shape(Model& model, const LinkedPort& port) {
   const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
   if (variable != nullptr && variable->has_extents && variable->shape_from) return;  // compare() said it
   model.error("extent-unsolved", port.at,
@@ -289,7 +290,7 @@ void agree_on_shapes(Model& model) {
   for_each_port(model, [&](PortRef, LinkedPort& port) { try_shape(model, port, bindings); });
   for (VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) {
-      if (!variable.has_extents && model.port(ref).has_extents) settle(model, variable, ref);
+      if (!variable.has_extents && model.port(ref).has_extents) settle_shape(model, variable, ref);
     });
   spread(model, bindings);
   take_from_values(model, bindings);
@@ -298,7 +299,7 @@ void agree_on_shapes(Model& model) {
     for_each_port_of(variable, [&](PortRef ref) { compare(model, variable, model.port(ref), bindings); });
   if (!model.is_incomplete() && !model.has_unmet)  // what is missing would settle it
     for_each_port(model, [&](PortRef, const LinkedPort& port) {
-      if (!port.has_extents) report_unsolved(model, port);
+      if (!port.has_extents) report_unsolved_shape(model, port);
     });
   share_maxima(model);
 }

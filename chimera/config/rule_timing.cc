@@ -4,6 +4,8 @@
 
 #include "chimera/config/rules.h"
 
+#include "chimera/schedule/utilisation.h"
+
 namespace chimera {
 namespace {
 

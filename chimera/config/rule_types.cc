@@ -7,12 +7,12 @@ namespace {
 
 using TypeBindings = Bindings<std::uint32_t>;
 
-bool uses(const PortDescriptor& port, const std::string& symbol) {
+bool uses_type(const PortDescriptor& port, const std::string& symbol) {
   return port.type == CHIMERA_ANY && port.type_name == symbol;
 }
 
 SymbolKey key_of(const Model& model, const LinkedPort& port) {
-  return symbol_key(model.tasks[port.task], port, port.declared->type_name, uses);
+  return symbol_key(model.tasks[port.task], port, port.declared->type_name, uses_type);
 }
 
 bool is_scalar(std::uint32_t type) { return type <= CHIMERA_FLOAT64; }
@@ -28,7 +28,7 @@ std::string text_of(const Model& model, const VariableModel& variable) {
   return variable.type_from ? type_text(model.port(*variable.type_from)) : std::string(type_name(*variable.type));
 }
 
-void settle(Model& model, VariableModel& variable, PortRef ref) {
+void settle_type(Model& model, VariableModel& variable, PortRef ref) {
   variable.type = model.port(ref).type;
   variable.type_from = ref;
 }
@@ -41,7 +41,7 @@ void start_with_concrete(Model& model) {
   });
   for (VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) {
-      if (!variable.type && model.port(ref).type) settle(model, variable, ref);
+      if (!variable.type && model.port(ref).type) settle_type(model, variable, ref);
     });
 }
 
@@ -60,7 +60,7 @@ void spread(Model& model, TypeBindings& bindings) {
       port.type = bound->second.value;
       port.element_bytes = type_size(*port.type);
       moved = true;
-      if (variable != nullptr && !variable->type) settle(model, *variable, ref);
+      if (variable != nullptr && !variable->type) settle_type(model, *variable, ref);
     });
   }
 }
@@ -137,11 +137,12 @@ bool is_refused(Model& model, const LinkedPort& port) {
 /// Another port of the same type variable is linked to something that it cannot take.
 bool follows_from_another(Model& model, const LinkedPort& port) {
   for (const LinkedPort& other : model.tasks[port.task].ports)
-    if (&other != &port && uses(*other.declared, port.declared->type_name) && is_refused(model, other)) return true;
+    if (&other != &port && uses_type(*other.declared, port.declared->type_name) && is_refused(model, other))
+      return true;
   return false;
 }
 
-void report_unsolved(Model& model, const LinkedPort& port) {
+void report_unsolved_type(Model& model, const LinkedPort& port) {
   const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
   if (is_refused(model, port)) {
     model.error("type-clash", port.at,
@@ -169,7 +170,7 @@ void agree_on_types(Model& model) {
     for_each_port_of(variable, [&](PortRef ref) { compare(model, variable, ref, bindings); });
   if (model.is_incomplete() || model.has_unmet) return;  // what is missing would settle it
   for_each_port(model, [&](PortRef, const LinkedPort& port) {
-    if (!port.type) report_unsolved(model, port);
+    if (!port.type) report_unsolved_type(model, port);
   });
 }
 

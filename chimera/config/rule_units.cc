@@ -39,7 +39,7 @@ SymbolKey key_of(const Model& model, UnitTable& table, const LinkedPort& port, c
 /// Structs carry their units in their fields (rule_types.cc).
 bool has_unit(const LinkedPort& port) { return port.declared->type != CHIMERA_STRUCT; }
 
-void settle(Model& model, VariableModel& variable, PortRef ref) {
+void settle_unit(Model& model, VariableModel& variable, PortRef ref) {
   variable.unit = model.port(ref).unit;
   variable.unit_text = model.port(ref).unit_text;
   variable.unit_from = ref;
@@ -55,7 +55,7 @@ void start_with_concrete(Model& model, UnitTable& table) {
   });
   for (VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) {
-      if (!variable.unit && model.port(ref).unit) settle(model, variable, ref);
+      if (!variable.unit && model.port(ref).unit) settle_unit(model, variable, ref);
     });
 }
 
@@ -108,7 +108,7 @@ void spread(Model& model, UnitTable& table) {
         substituted(model, table, port);
       if (!port.unit) return;
       moved = true;
-      if (variable != nullptr && !variable->unit) settle(model, *variable, ref);
+      if (variable != nullptr && !variable->unit) settle_unit(model, *variable, ref);
     });
   }
 }
@@ -223,7 +223,7 @@ void compare(Model& model, UnitTable& table, const VariableModel& variable, cons
               port.unit_text, variable.unit_text, {}, remedy(model, table, port, variable));
 }
 
-void report_unsolved(Model& model, const LinkedPort& port) {
+void report_unsolved_unit(Model& model, const LinkedPort& port) {
   model.error("unit-unsolved", port.at, "nothing settles the unit '" + port.declared->unit + "' of " + model.say(port),
               port.declared->unit, "a linked port or a value of a known unit", {},
               "link one of its ports to a component with a fixed unit");
@@ -244,7 +244,7 @@ void agree_on_units(Model& model) {
     });
   if (model.is_incomplete() || model.has_unmet) return;  // what is missing would settle it
   for_each_port(model, [&](PortRef, const LinkedPort& port) {
-    if (!port.unit && has_unit(port)) report_unsolved(model, port);
+    if (!port.unit && has_unit(port)) report_unsolved_unit(model, port);
   });
 }
 

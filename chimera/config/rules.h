@@ -61,7 +61,6 @@ void order_sets(Model& model);
 void check_times(Model& model);
 /// The budgets of a configuration take at most kMaxUtilisation of each CPU.
 void limit_utilisation(Model& model);
-inline constexpr double kMaxUtilisation = 0.93;  // Linux throttles real-time threads above 0.95
 
 // rule_rtpus.cc
 /// Tasks name declared rtpus.

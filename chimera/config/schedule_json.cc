@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "chimera/config/criticality.h"
 #include "chimera/config/schedule_report.h"
 #include "chimera/schedule/utilisation.h"
 
@@ -19,11 +20,6 @@ const char* word(TimeSource source) {
 const char* word(Guarantee guarantee) {
   constexpr const char* kWords[] = {"yes", "no", "not-stated", "not-decided"};
   return kWords[static_cast<std::size_t>(guarantee)];
-}
-
-std::string criticality_word(std::uint32_t criticality) {
-  constexpr const char* kWords[] = {"low", "medium", "high"};
-  return kWords[criticality < 3 ? criticality : 2];
 }
 
 class Pages {
@@ -50,7 +46,7 @@ class Pages {
     const WorkVerdict& v = row.verdict;
     return {{"task", name(row.task)},
             {"rtpu", rtpu_name(row.work.rtpu)},
-            {"criticality", criticality_word(row.work.criticality)},
+            {"criticality", criticality_name(row.work.criticality)},
             {"hard", row.is_hard},
             {"period_ns", row.work.period.count},
             {"deadline_ns", row.work.deadline.count},
@@ -70,7 +66,7 @@ class Pages {
       case Remedy::Kind::kRate: said["rate_hz"] = remedy.hz; break;
       case Remedy::Kind::kProcessor: said["rtpu"] = rtpu_name(remedy.rtpu); break;
       case Remedy::Kind::kNewProcessor: said["rtpu"] = Json(); break;
-      case Remedy::Kind::kCriticality: said["criticality"] = criticality_word(remedy.criticality); break;
+      case Remedy::Kind::kCriticality: said["criticality"] = criticality_name(remedy.criticality); break;
     }
     return said;
   }

@@ -20,9 +20,9 @@ std::vector<std::string> names_of(const Configuration& configuration) {
   return names;
 }
 
-class Writer {
+class ReportWriter {
  public:
-  Writer(const Configuration& configuration, const ScheduleOptions& options)
+  ReportWriter(const Configuration& configuration, const ScheduleOptions& options)
       : configuration_(configuration), options_(options) {}
 
   ScheduleReport write() {
@@ -174,7 +174,7 @@ const char* ScheduleReport::dispatch_name() const noexcept {
 }
 
 ScheduleReport schedule_report(const Configuration& configuration, const ScheduleOptions& options) {
-  return Writer(configuration, options).write();
+  return ReportWriter(configuration, options).write();
 }
 
 }  // namespace chimera

@@ -10,8 +10,6 @@
 namespace chimera {
 namespace {
 
-using Json = nlohmann::json;
-
 /// The counters, in the order of docs/formats/run.md.
 struct Counter {
   const char* key;
@@ -69,7 +67,7 @@ std::string task_json(const TaskProfile& task, Nanoseconds origin) {
   return text + "}";
 }
 
-Spread spread_of(const Json& json) {
+Spread spread_of(const nlohmann::json& json) {
   Spread spread;
   spread.count = json.at("count").get<std::uint64_t>();
   if (spread.count == 0) return spread;
@@ -91,7 +89,7 @@ Method method_of(const std::string& name) {
   throw std::invalid_argument("unknown method " + name);
 }
 
-FaultRecord fault_of(const Json& json, std::uint64_t count, Nanoseconds origin) {
+FaultRecord fault_of(const nlohmann::json& json, std::uint64_t count, Nanoseconds origin) {
   FaultRecord faults;
   faults.count = count;
   faults.method = method_of(json.at("method").get<std::string>());
@@ -102,7 +100,7 @@ FaultRecord fault_of(const Json& json, std::uint64_t count, Nanoseconds origin) 
   return faults;
 }
 
-TaskProfile profile_of(const Json& json, Nanoseconds origin) {
+TaskProfile profile_of(const nlohmann::json& json, Nanoseconds origin) {
   TaskProfile made;
   made.task = json.at("task").get<std::string>();
   made.component = json.at("component").get<std::string>();
@@ -133,7 +131,7 @@ std::string profile_json(std::span<const TaskProfile> tasks, Nanoseconds origin)
 Result<std::vector<TaskProfile>> parse_profiles(std::string_view json, Nanoseconds origin) {
   try {
     std::vector<TaskProfile> tasks;
-    for (const Json& task : Json::parse(json)) tasks.push_back(profile_of(task, origin));
+    for (const nlohmann::json& task : nlohmann::json::parse(json)) tasks.push_back(profile_of(task, origin));
     return tasks;
   } catch (const std::exception& error) {
     return Error{ErrorCode::kBadInput, std::string_view(error.what()), std::string_view("profile")};

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "chimera/config/criticality.h"
+
 namespace chimera {
 namespace {
 
@@ -24,14 +26,13 @@ std::string time_text(Nanoseconds time) {
 
 std::string remedy_text(const Configuration& configuration, const Remedy& remedy) {
   const std::string task = "task '" + configuration.tasks()[remedy.task].name + "'";
-  constexpr const char* kCriticalities[] = {"low", "medium", "high"};
   switch (remedy.kind) {
     case Remedy::Kind::kRate: return task + " at rate: " + number("%g", remedy.hz) + " Hz";
     case Remedy::Kind::kProcessor: return task + " on rtpu: " + std::string(configuration.rtpus()[remedy.rtpu].name);
     case Remedy::Kind::kNewProcessor: return task + " on an rtpu of another CPU";
     case Remedy::Kind::kCriticality: break;
   }
-  return task + " with criticality: " + kCriticalities[remedy.criticality < 3 ? remedy.criticality : 2] +
+  return task + " with criticality: " + criticality_name(remedy.criticality) +
          " (then all others are guaranteed)";
 }
 

@@ -10,12 +10,6 @@ namespace {
 
 constexpr const char* kBaseNames[kBaseUnits] = {"m", "kg", "s", "A", "K", "mol", "cd", "rad"};
 constexpr double kRounding = 1e-12;
-constexpr int kLargestExponent = 1000;
-
-std::int16_t bounded(int exponent) {
-  return static_cast<std::int16_t>(std::clamp(exponent, -kLargestExponent, kLargestExponent));
-}
-
 bool nearly(double a, double b) {
   return a == b || std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));
 }
@@ -33,6 +27,11 @@ void append(std::string& text, const char* name, int exponent) {
 }
 
 }  // namespace
+
+std::int16_t bounded_exponent(int exponent) noexcept {
+  constexpr int kLargest = 1000;
+  return static_cast<std::int16_t>(std::clamp(exponent, -kLargest, kLargest));
+}
 
 std::string base_unit_name(std::size_t index) { return kBaseNames[index]; }
 
@@ -60,7 +59,7 @@ std::optional<Conversion> conversion(const Unit& from, const Unit& to) noexcept 
 
 Unit operator*(const Unit& a, const Unit& b) noexcept {
   Unit product{.exponents = {}, .factor = a.factor * b.factor, .offset = 0};
-  for (std::size_t i = 0; i < kBaseUnits; ++i) product.exponents[i] = bounded(a.exponents[i] + b.exponents[i]);
+  for (std::size_t i = 0; i < kBaseUnits; ++i) product.exponents[i] = bounded_exponent(a.exponents[i] + b.exponents[i]);
   return product;
 }
 
@@ -69,7 +68,7 @@ Unit operator/(const Unit& a, const Unit& b) noexcept { return a * power(b, -1);
 Unit power(const Unit& unit, int exponent) noexcept {
   if (exponent == 1) return unit;
   Unit raised{.exponents = {}, .factor = std::pow(unit.factor, exponent), .offset = 0};
-  for (std::size_t i = 0; i < kBaseUnits; ++i) raised.exponents[i] = bounded(unit.exponents[i] * exponent);
+  for (std::size_t i = 0; i < kBaseUnits; ++i) raised.exponents[i] = bounded_exponent(unit.exponents[i] * exponent);
   return raised;
 }
 

@@ -39,7 +39,9 @@ bool same(const Unit& a, const Unit& b) noexcept;
 /// How to make values in `to` from values in `from`; nullopt when they measure different things. Context: setup.
 std::optional<Conversion> conversion(const Unit& from, const Unit& to) noexcept;
 
-/// Products and powers; exponents stay within +-1000. An offset is lost: degC/s is K/s, because only a lone degC
+/// Within +-1000. Context: setup.
+std::int16_t bounded_exponent(int exponent) noexcept;
+/// Products and powers; exponents are bounded. An offset is lost: degC/s is K/s, because only a lone degC
 /// is a point on a scale.
 Unit operator*(const Unit& a, const Unit& b) noexcept;
 Unit operator/(const Unit& a, const Unit& b) noexcept;

@@ -4,16 +4,6 @@
 #include <algorithm>
 
 namespace chimera {
-namespace {
-
-constexpr int kLargestExponent = 1000;
-
-std::int16_t bounded(int exponent) {
-  return static_cast<std::int16_t>(std::clamp(exponent, -kLargestExponent, kLargestExponent));
-}
-
-}  // namespace
-
 bool UnitExpression::is_concrete() const noexcept { return unknowns() == 0; }
 
 int UnitExpression::unknowns() const noexcept {
@@ -23,7 +13,7 @@ int UnitExpression::unknowns() const noexcept {
 UnitExpression operator*(const UnitExpression& a, const UnitExpression& b) noexcept {
   UnitExpression product{.variables = {}, .rest = a.rest * b.rest};
   for (std::size_t i = 0; i < product.variables.size(); ++i) {
-    product.variables[i] = bounded(a.variables[i] + b.variables[i]);
+    product.variables[i] = bounded_exponent(a.variables[i] + b.variables[i]);
   }
   return product;
 }
@@ -33,7 +23,7 @@ UnitExpression operator/(const UnitExpression& a, const UnitExpression& b) noexc
 UnitExpression power(const UnitExpression& expression, int exponent) noexcept {
   UnitExpression raised{.variables = {}, .rest = power(expression.rest, exponent)};
   for (std::size_t i = 0; i < raised.variables.size(); ++i) {
-    raised.variables[i] = bounded(expression.variables[i] * exponent);
+    raised.variables[i] = bounded_exponent(expression.variables[i] * exponent);
   }
   return raised;
 }

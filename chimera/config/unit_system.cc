@@ -36,12 +36,12 @@ const std::map<std::string, std::string, std::less<>>& slips() {
 }
 
 /// Collects what UDUNITS says a unit is made of: value_in_base = factor * (x + offset).
-struct Parts {
+struct UnitParts {
   Unit unit;
   bool is_known = true;
 };
 
-void add_base(Parts& parts, const ut_unit* base, int exponent) {
+void add_base(UnitParts& parts, const ut_unit* base, int exponent) {
   const char* symbol = ut_get_symbol(base, UT_ASCII);
   for (std::size_t i = 0; i < kBaseUnits; ++i) {
     if (symbol != nullptr && base_unit_name(i) == symbol) {
@@ -53,31 +53,31 @@ void add_base(Parts& parts, const ut_unit* base, int exponent) {
 }
 
 ut_status visit_basic(const ut_unit* unit, void* parts) {
-  add_base(*static_cast<Parts*>(parts), unit, 1);
+  add_base(*static_cast<UnitParts*>(parts), unit, 1);
   return UT_SUCCESS;
 }
 
 ut_status visit_product(const ut_unit*, int count, const ut_unit* const* bases, const int* powers, void* parts) {
-  for (int i = 0; i < count; ++i) add_base(*static_cast<Parts*>(parts), bases[i], powers[i]);
+  for (int i = 0; i < count; ++i) add_base(*static_cast<UnitParts*>(parts), bases[i], powers[i]);
   return UT_SUCCESS;
 }
 
 ut_status visit_galilean(const ut_unit*, double scale, const ut_unit* under, double offset, void* data);
 
 ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void* parts) {
-  static_cast<Parts*>(parts)->is_known = false;
+  static_cast<UnitParts*>(parts)->is_known = false;
   return UT_SUCCESS;
 }
 
 ut_status visit_logarithmic(const ut_unit*, double, const ut_unit*, void* parts) {
-  static_cast<Parts*>(parts)->is_known = false;
+  static_cast<UnitParts*>(parts)->is_known = false;
   return UT_SUCCESS;
 }
 
 const ut_visitor kVisitor{visit_basic, visit_product, visit_galilean, visit_timestamp, visit_logarithmic};
 
 ut_status visit_galilean(const ut_unit*, double scale, const ut_unit* under, double offset, void* data) {
-  Parts& parts = *static_cast<Parts*>(data);
+  UnitParts& parts = *static_cast<UnitParts*>(data);
   const ut_status status = ut_accept_visitor(under, &kVisitor, data);
   // f * (s * (x + o) + p) = f * s * (x + o + p / s)
   parts.unit.offset = offset + parts.unit.offset / scale;
@@ -149,7 +149,7 @@ struct UnitSystem::Content {
     const std::string name(word);
     std::optional<Unit> found;
     if (ut_unit* unit = ut_parse(system, name.c_str(), UT_ASCII); unit != nullptr) {
-      Parts parts;
+      UnitParts parts;
       if (ut_accept_visitor(unit, &kVisitor, &parts) == UT_SUCCESS && parts.is_known) found = parts.unit;
       ut_free(unit);
     }

@@ -3,10 +3,11 @@
 
 #include <cstdlib>
 
+#include "chimera/config/decimal.h"
+
 namespace chimera {
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%'; }
 
 /// The signs people type for their ASCII spelling: micro, degree and the product dot.

@@ -29,9 +29,9 @@ void store(std::byte* to, T value) {
   std::memcpy(to, &value, sizeof value);
 }
 
-class Writer {
+class ValueWriter {
  public:
-  Writer(Model& model, const ValueTarget& target) : model_(model), target_(target), port_(target.port) {}
+  ValueWriter(Model& model, const ValueTarget& target) : model_(model), target_(target), port_(target.port) {}
 
   std::optional<std::vector<std::byte>> write(const Node& node) {
     bytes_.assign(std::size_t{element_count(port_.extents)} * port_.element_bytes, std::byte{0});
@@ -271,7 +271,7 @@ class Writer {
 }  // namespace
 
 std::optional<std::vector<std::byte>> value_bytes(Model& model, const Node& node, const ValueTarget& target) {
-  return Writer(model, target).write(node);
+  return ValueWriter(model, target).write(node);
 }
 
 bool is_solved(const LinkedPort& port) {

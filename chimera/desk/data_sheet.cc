@@ -9,16 +9,12 @@
 #include <vector>
 
 #include "chimera/config/value_text.h"
+#include "chimera/desk/blanks.h"
 
 namespace chimera::desk {
 namespace {
 
 constexpr const char* kMethodWords[] = {"init", "reinit", "on", "cycle", "sync", "off", "kill", "error", "clear"};
-
-std::string padded(std::string text, std::size_t width) {
-  text.resize(std::max(text.size(), width), ' ');
-  return text;
-}
 
 std::string type_text(const PortDescriptor& port) {
   const std::string base = port.type_name.empty() ? std::string(type_name(port.type)) : port.type_name;

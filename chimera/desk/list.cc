@@ -4,26 +4,10 @@
 #include <algorithm>
 
 #include "chimera/config/descriptor_json.h"
+#include "chimera/desk/blanks.h"
 #include "chimera/desk/data_sheet.h"
 
 namespace chimera::desk {
-namespace {
-
-std::string padded(std::string text, std::size_t width) {
-  text.resize(std::max(text.size(), width), ' ');
-  return text;
-}
-
-Error unknown(const std::string& name, const Library& library) {
-  const std::string nearest = library.nearest_name(name);
-  std::string message = "no component '" + name + "' is installed";
-  if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";
-  else message += "; `chimera list` names those that are, CHIMERA_PATH says where to look";
-  return {ErrorCode::kNotFound, {message}, {}};
-}
-
-}  // namespace
-
 Output list(const Workplace& workplace, bool json) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), json);
@@ -48,7 +32,7 @@ Output describe_component(const std::string& name, const Workplace& workplace, b
   const auto library = workplace.library();
   if (!library) return refused(library.error(), json);
   const LibraryEntry* entry = library->find(name);
-  if (entry == nullptr) return refused(unknown(name, *library), json);
+  if (entry == nullptr) return refused(no_component(name, *library), json);
   Output output;
   output.out = json ? to_json(entry->descriptor) : data_sheet(*entry);
   return output;

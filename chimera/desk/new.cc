@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kLongestName = 40;
 
 /// What the templates call @NAME@ and so on.
-struct Words {
+struct Filling {
   std::string name, type, package, program;
 };
 
@@ -70,7 +70,7 @@ Result<fs::path> template_folder(const fs::path& prefix, NewKind kind) {
   return (Message() << "there are no templates: no " << place.string()).error(ErrorCode::kNotFound, prefix.string());
 }
 
-File fill_in(const fs::path& file, const Words& words) {
+File fill_in(const fs::path& file, const Filling& words) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();
   File made{file.filename().string(), without_licence(text.str()), file.extension() == ".sh"};
@@ -108,7 +108,7 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
   const fs::path prefix = fs::absolute(program).parent_path().parent_path();
   const auto templates = template_folder(prefix, request.kind);
   if (!templates) return templates.error();
-  const Words words{request.name, type_of(request.name), (prefix / "lib/cmake/chimera").string(),
+  const Filling words{request.name, type_of(request.name), (prefix / "lib/cmake/chimera").string(),
                     fs::absolute(program).string()};
   std::vector<fs::path> sources;
   for (const auto& entry : fs::directory_iterator(*templates)) sources.push_back(entry.path());

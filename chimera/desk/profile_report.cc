@@ -7,7 +7,7 @@
 namespace chimera::desk {
 namespace {
 
-std::string time_text(Nanoseconds t) {
+std::string spread_text(Nanoseconds t) {
   char text[32];
   const double us = static_cast<double>(t.count) * 1e-3;
   if (us < 1000) std::snprintf(text, sizeof text, "%.1f us", us);
@@ -16,9 +16,9 @@ std::string time_text(Nanoseconds t) {
   return text;
 }
 
-std::string max_text(const Spread& spread) { return spread.count == 0 ? "-" : time_text(spread.max); }
-std::string mean_text(const Spread& spread) { return spread.count == 0 ? "-" : time_text(spread.mean()); }
-std::string jitter_text(const Spread& spread) { return spread.count == 0 ? "-" : time_text(spread.max - spread.min); }
+std::string max_text(const Spread& spread) { return spread.count == 0 ? "-" : spread_text(spread.max); }
+std::string mean_text(const Spread& spread) { return spread.count == 0 ? "-" : spread_text(spread.mean()); }
+std::string jitter_text(const Spread& spread) { return spread.count == 0 ? "-" : spread_text(spread.max - spread.min); }
 
 /// What is told only where it happened.
 struct Seldom {
@@ -91,7 +91,7 @@ std::string profile_table(std::span<const TaskProfile> tasks, Nanoseconds ran, N
   for (const TaskProfile& task : tasks)
     if (task.faults.count > 0)
       text += task.task + ": last fault in " + method_name(task.faults.method) + " at " +
-              time_text(task.faults.at - origin) + ": " + task.faults.last.text + "\n";
+              spread_text(task.faults.at - origin) + ": " + task.faults.last.text + "\n";
   return text;
 }
 

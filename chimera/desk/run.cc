@@ -22,7 +22,7 @@ namespace {
 std::atomic<bool> stop_requested{false};
 
 constexpr Nanoseconds kDrainEvery = milliseconds(10);
-constexpr Nanoseconds kLookEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
+constexpr Nanoseconds kWatchEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
 constexpr Nanoseconds kTellEvery = seconds(3);         // of wall time
 
 std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
@@ -153,7 +153,7 @@ RunEnd Session::run() {
   for (Nanoseconds at;;) {
     const Nanoseconds next_drain = sink_ == nullptr ? kNever : at + kDrainEvery;
     const bool looks_up = !request_.virtual_time || progress.is_on();
-    const Nanoseconds patience = looks_up ? at + kLookEvery : kNever;
+    const Nanoseconds patience = looks_up ? at + kWatchEvery : kNever;
     const Nanoseconds next = std::min({next_watch, next_drain, patience, request_.duration});
     const std::optional<RunEnd> end = loop_->advance(next);
     drain();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "chimera/config/criticality.h"
 #include "chimera/config/time_text.h"
 #include "chimera/draw/timeline.h"
 #include "chimera/schedule/utilisation.h"
@@ -24,11 +25,6 @@ std::string list(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
-}
-
-const char* word(std::uint32_t criticality) {
-  constexpr const char* kWords[] = {"low", "medium", "high"};
-  return kWords[std::min(criticality, 2u)];
 }
 
 /// 1, 2 or 5 times a power of ten, so that `length` takes about kWindowLetters of it.
@@ -128,7 +124,7 @@ class Words {
     const std::string transfer = row.transfer.groups == 0 ? "-"
                                  : std::to_string(row.transfer.bytes) + " B of " +
                                        std::to_string(row.transfer.groups);
-    return {name(row.task), rtpu(row.work.rtpu), word(row.work.criticality),
+    return {name(row.task), rtpu(row.work.rtpu), criticality_name(row.work.criticality),
             (row.source == TimeSource::kNone ? "" : time_text(row.work.time)) + source, time_text(row.work.period),
             time_text(row.work.deadline), response, v.blocking.count == 0 ? "-" : time_text(v.blocking), transfer,
             promise};

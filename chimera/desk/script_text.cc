@@ -5,17 +5,13 @@
 
 #include "chimera/config/nearest.h"
 #include "chimera/config/quantity.h"
+#include "chimera/desk/blanks.h"
 
 namespace chimera::desk {
 namespace {
 
-Error wrong(const std::string& text, const std::string& why) {
+Error wrong_act(const std::string& text, const std::string& why) {
   return {ErrorCode::kBadInput, {"--at '" + text + "': " + why}, {}};
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(' ');
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
 std::string unknown(const char* what, const std::string& found, std::span<const std::string> names) {
@@ -24,7 +20,7 @@ std::string unknown(const char* what, const std::string& found, std::span<const 
 }
 
 Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, ScriptAct act) {
-  if (which != "up" && which != "down") return wrong(text, "the flag goes 'up' or 'down'");
+  if (which != "up" && which != "down") return wrong_act(text, "the flag goes 'up' or 'down'");
   act.kind = which == "up" ? ScriptAct::Kind::kRaiseFlag : ScriptAct::Kind::kLowerFlag;
   return act;
 }
@@ -33,23 +29,23 @@ Result<ScriptAct> parse_signal(const std::string& text, const std::string& word,
                                const ApplicationSpec& spec) {
   const std::vector<std::string> words = {"spawn", "on", "off", "kill", "clear", "reinit"};
   const auto found = std::find(words.begin(), words.end(), word);
-  if (found == words.end()) return wrong(text, unknown("signal", word, words));
+  if (found == words.end()) return wrong_act(text, unknown("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
   std::vector<std::string> names;
   for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
   act.task = TaskId(static_cast<std::size_t>(std::find(names.begin(), names.end(), task) - names.begin()));
   if (act.task.index < names.size()) return act;
-  return wrong(text, unknown("task", task, names));
+  return wrong_act(text, unknown("task", task, names));
 }
 
 Result<ScriptAct> parse(const std::string& text, const ApplicationSpec& spec) {
   const std::size_t colon = text.find(':');
-  if (colon == std::string::npos) return wrong(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
+  if (colon == std::string::npos) return wrong_act(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
   const auto at = parse_duration(text.substr(0, colon));
-  if (!at) return wrong(text, at.error().message.c_str());
+  if (!at) return wrong_act(text, at.error().message.c_str());
   const std::string act_text = trimmed(text.substr(colon + 1));
   const std::size_t blank = act_text.find(' ');
-  if (blank == std::string::npos) return wrong(text, "after the time stand a signal and a task, or 'flag up'");
+  if (blank == std::string::npos) return wrong_act(text, "after the time stand a signal and a task, or 'flag up'");
   const std::string word = act_text.substr(0, blank);
   const std::string object = trimmed(act_text.substr(blank));
   ScriptAct act;

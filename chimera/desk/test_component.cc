@@ -131,7 +131,7 @@ const char* word(trial::Finding finding) {
   return finding == trial::Finding::kOk ? "ok" : finding == trial::Finding::kFails ? "fails" : "not judged";
 }
 
-std::string time_text(double ns) {
+std::string short_text(double ns) {
   char text[32];
   if (ns < 10) return "less than 10 ns";  // the steps of a processor's counter
   if (ns < 1000) std::snprintf(text, sizeof text, "%.0f ns", ns);
@@ -151,8 +151,8 @@ std::string text_of(const trial::TrialReport& report) {
     text += head + body + "\n";
   }
   if (report.measured.cycles > 0)
-    text += "  measured    time          " + time_text(report.measured.typical_ns) + " (mean of the middle half), " +
-            time_text(static_cast<double>(report.measured.worst_ns)) + " worst of " +
+    text += "  measured    time          " + short_text(report.measured.typical_ns) + " (mean of the middle half), " +
+            short_text(static_cast<double>(report.measured.worst_ns)) + " worst of " +
             std::to_string(report.measured.cycles) + " cycles, each the least of three\n";
   return text;
 }
@@ -169,13 +169,6 @@ std::string json_of(const trial::TrialReport& report) {
          ", \"worst_ns\": " + std::to_string(report.measured.worst_ns) + "}";
 }
 
-Error unknown(const std::string& name, const Library& library) {
-  const std::string nearest = library.nearest_name(name);
-  const std::string help =
-      nearest.empty() ? "; `chimera list` names those that are" : "; did you mean '" + nearest + "'?";
-  return {ErrorCode::kNotFound, {"no component '" + name + "' is installed" + help}, {}};
-}
-
 Result<std::vector<LibraryEntry>> wanted(const TestOptions& options, const Library& library) {
   std::vector<LibraryEntry> entries;
   if (options.all) entries.assign(library.entries().begin(), library.entries().end());
@@ -187,7 +180,7 @@ Result<std::vector<LibraryEntry>> wanted(const TestOptions& options, const Libra
       continue;
     }
     const LibraryEntry* entry = library.find(name);
-    if (entry == nullptr) return unknown(name, library);
+    if (entry == nullptr) return no_component(name, library);
     entries.push_back(*entry);
   }
   return entries;

@@ -24,6 +24,14 @@ Result<Library> Workplace::library() const {
   return Library::make(component_folders, *std::move(units));
 }
 
+Error no_component(const std::string& name, const Library& library) {
+  const std::string nearest = library.nearest_name(name);
+  std::string message = "no component '" + name + "' is installed";
+  if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";
+  else message += "; `chimera list` names those that are, CHIMERA_PATH says where to look";
+  return {ErrorCode::kNotFound, {message}, {}};
+}
+
 std::string program_path() {
   char path[PATH_MAX];
   const ssize_t n = ::readlink("/proc/self/exe", path, sizeof path);

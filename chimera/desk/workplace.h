@@ -22,6 +22,9 @@ struct Workplace {
   Result<Library> library() const;
 };
 
+/// That no component of this name is installed, with the nearest one that is. Context: setup.
+Error no_component(const std::string& name, const Library& library);
+
 /// The path of the running program. Context: setup.
 std::string program_path();
 

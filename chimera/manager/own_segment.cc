@@ -4,8 +4,6 @@
 namespace chimera::manager {
 namespace {
 
-constexpr std::uint32_t kOperatorFlag = 4;  // bit 2 of BlockHead::flag
-
 template <class T>
 void copy_word(std::atomic<T>& to, const std::atomic<T>& from) noexcept {
   to.store(from.load(std::memory_order_relaxed), std::memory_order_relaxed);

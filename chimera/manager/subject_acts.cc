@@ -13,8 +13,6 @@ namespace {
 using control::Answer;
 using control::Json;
 
-constexpr std::uint32_t kOperatorFlag = 4;  // bit 2 of BlockHead::flag
-
 Answer unknown(const char* what, const std::string& name, const std::vector<std::string>& names) {
   const std::string near = nearest(name, names);
   const std::string message = std::string("no ") + what + " '" + name + "'";

@@ -40,6 +40,8 @@ struct TaskStatus {
   }
 };
 
+inline constexpr std::uint32_t kOperatorFlag = 4;  ///< bit 2 of BlockHead::flag: an operator raised it
+
 /// At the start of a block.
 struct alignas(64) BlockHead {
   std::uint64_t magic = 0;                     ///< kBlockMagic
@@ -48,8 +50,7 @@ struct alignas(64) BlockHead {
   std::uint32_t n_tasks = 0;
   std::uint32_t n_peers = 0;
   std::atomic<PeerPhase> phase{PeerPhase::kStarting};
-  std::atomic<std::uint32_t> flag{
-      0};  ///< bit 0: the ON set is not legal; bit 1: raised by a task; bit 2: by an operator
+  std::atomic<std::uint32_t> flag{0};          ///< bit 0: the ON set is not legal; 1: a task raised it; kOperatorFlag
   std::atomic<std::uint32_t> running{0};       ///< (task + 1) << 8 | method; 0: between jobs
   std::atomic<std::uint32_t> serving{0};       ///< the same for the service thread: init and kill
   std::atomic<std::uint32_t> seen_changes{0};

@@ -12,13 +12,6 @@
 namespace chimera::shell {
 namespace {
 
-int print(const Said& said, std::FILE* out, std::FILE* err) {
-  std::fputs(said.out.c_str(), out);
-  std::fputs(said.err.c_str(), err);
-  std::fflush(out);
-  return said.code;
-}
-
 }  // namespace
 
 int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err) {

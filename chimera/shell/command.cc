@@ -53,7 +53,7 @@ std::vector<Command> table() {
   };
 }
 
-Error refused(const std::string& message) { return {ErrorCode::kBadInput, std::string_view(message), {}}; }
+Error bad_call(const std::string& message) { return {ErrorCode::kBadInput, std::string_view(message), {}}; }
 
 std::string with_nearest(std::string message, const std::string& wrong, const std::vector<std::string>& names) {
   const std::string near = nearest(wrong, names);
@@ -76,11 +76,11 @@ Result<void> read_option(Call& call, const std::vector<std::string>& words, std:
     names.emplace_back(option.name);
     if (words[i] != option.name) continue;
     if (option.value == nullptr) return call.options[option.name] = "", Result<void>();
-    if (i + 1 == words.size()) return refused(words[i] + " needs a value: " + option.value);
+    if (i + 1 == words.size()) return bad_call(words[i] + " needs a value: " + option.value);
     ++i;
     return call.options[option.name] = words[i], Result<void>();
   }
-  return refused(with_nearest(std::string(call.command->name) + " has no option '" + words[i] + "'", words[i], names));
+  return bad_call(with_nearest(std::string(call.command->name) + " has no option '" + words[i] + "'", words[i], names));
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ Result<Call> read_call(const std::vector<std::string>& words) {
   if (call.command == nullptr) {
     std::vector<std::string> names;
     for (const Command& command : commands()) names.emplace_back(command.name);
-    return refused(with_nearest("no command '" + words[0] + "'", words[0], names) + "; `help` lists them");
+    return bad_call(with_nearest("no command '" + words[0] + "'", words[0], names) + "; `help` lists them");
   }
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (!words[i].starts_with("--")) {
@@ -117,7 +117,7 @@ Result<Call> read_call(const std::vector<std::string>& words) {
     }
   }
   if (call.operands.size() < call.command->least || call.operands.size() > call.command->most)
-    return refused("usage: " + usage(*call.command));
+    return bad_call("usage: " + usage(*call.command));
   return call;
 }
 

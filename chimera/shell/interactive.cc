@@ -22,13 +22,6 @@
 namespace chimera::shell {
 namespace {
 
-int print(const Said& said, std::FILE* out, std::FILE* err) {
-  std::fputs(said.out.c_str(), out);
-  std::fputs(said.err.c_str(), err);
-  std::fflush(out);
-  return said.code;
-}
-
 struct Outcome {
   int code = kOk;
   bool is_quit = false;

@@ -22,13 +22,6 @@ namespace {
 using Json = nlohmann::json;
 using By = Woken::By;
 
-int print(const Said& said, std::FILE* out, std::FILE* err) {
-  std::fputs(said.out.c_str(), out);
-  std::fputs(said.err.c_str(), err);
-  std::fflush(out);
-  return said.code;
-}
-
 /// The period of --every in whole milliseconds, as the protocol takes it.
 Result<std::int64_t> period_ms(const Call& call, std::int64_t otherwise) {
   if (!call.has("--every")) return otherwise;

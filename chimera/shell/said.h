@@ -2,6 +2,7 @@
 // What a command of this folder says and how it ends.
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 namespace chimera::shell {
@@ -15,5 +16,8 @@ struct Said {
   std::string err;  ///< for standard error
   int code = kOk;
 };
+
+/// Writes both texts and returns the code. Context: edge; may block.
+int print(const Said& said, std::FILE* out, std::FILE* err);
 
 }  // namespace chimera::shell

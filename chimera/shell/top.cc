@@ -15,7 +15,7 @@ namespace chimera::shell {
 namespace {
 
 using Json = nlohmann::json;
-using Look = TopLine::Look;
+using LineLook = TopLine::Look;
 
 constexpr std::size_t kNarrow = 80;
 
@@ -112,8 +112,8 @@ TopLine task_line(const Row& row, std::size_t width) {
   TopLine line{cells({row.name, row.state, rate_text(row.rate_hz), or_dash(row.mean_ns), or_dash(row.max_ns),
                       or_dash(row.budget_ns), used, or_dash(row.jitter_ns), count_text(row.missed), input},
                      width)};
-  if (row.state == "ERROR" || row.has_missed_since) line.look = Look::kAlarm;
-  else if (row.state != "ON") line.look = Look::kFaint;
+  if (row.state == "ERROR" || row.has_missed_since) line.look = LineLook::kAlarm;
+  else if (row.state != "ON") line.look = LineLook::kFaint;
   return line;
 }
 
@@ -121,7 +121,7 @@ TopLine rtpu_line(const Json& rtpu, std::size_t width) {
   const bool is_dead = !truth_of(rtpu, "alive") || truth_of(rtpu, "flag");
   const std::string head = "cpu " + std::to_string(whole_of(rtpu, "cpu")) + " " + text_of(rtpu, "policy") +
                            (text_of(rtpu, "executor") == "preemptive" ? " preemptive" : "") + "  ";
-  return {fitted(head + rtpu_remarks(rtpu), width), is_dead ? Look::kAlarm : Look::kPlain};
+  return {fitted(head + rtpu_remarks(rtpu), width), is_dead ? LineLook::kAlarm : LineLook::kPlain};
 }
 
 /// Lines for tasks: what the headline, the rtpus, an empty line, the heading and the keys leave.
@@ -147,12 +147,12 @@ std::size_t most_skipped(const Json& status, const TopView& view) {
 std::vector<TopLine> top_lines(const Json& status, const Json& previous, const TopView& view) {
   std::vector<TopLine> lines;
   const bool is_alarm = truth_of(field(status, "flag"), "up") || truth_of(status, "ending");
-  lines.push_back({fitted(headline(status), view.width), is_alarm ? Look::kAlarm : Look::kPlain});
+  lines.push_back({fitted(headline(status), view.width), is_alarm ? LineLook::kAlarm : LineLook::kPlain});
   for (const Json& rtpu : field(status, "rtpus")) lines.push_back(rtpu_line(rtpu, view.width));
   lines.push_back({std::string(view.width, ' ')});
   lines.push_back({cells({"TASK", "STATE", "RATE", "EXEC", "MAX", "BUDGET", "USED", "JITTER", "MISSED", "INPUT"},
                          view.width),
-                   Look::kHeading});
+                   LineLook::kHeading});
   std::vector<Row> rows = rows_of(status, previous);
   sort(rows, view.order);
   const std::size_t room = room_for_tasks(status, view), skipped = std::min(view.skipped, most_skipped(status, view));
@@ -164,7 +164,7 @@ std::vector<TopLine> top_lines(const Json& status, const Json& previous, const T
   const std::size_t hidden = rows.size() - std::min(room, rows.size());
   std::string keys = "q quit  sort: o order  n name  e exec  b used  j jitter  m missed  a input age";
   if (hidden > 0) keys = std::to_string(hidden) + " more: up, down  q quit  sort: o order n name e exec b used j m a";
-  lines.push_back({fitted(keys, view.width), Look::kFaint});
+  lines.push_back({fitted(keys, view.width), LineLook::kFaint});
   return lines;
 }
 

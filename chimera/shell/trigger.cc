@@ -19,7 +19,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-Error refused(std::string_view text, std::string_view why) {
+Error bad_trigger(std::string_view text, std::string_view why) {
   return {ErrorCode::kBadInput, std::string_view("trigger '" + std::string(text) + "': " + std::string(why)), {}};
 }
 
@@ -43,7 +43,7 @@ Result<Trigger> Trigger::read(std::string_view text, const UnitSystem& units) {
   for (const Sign& candidate : kSigns)
     if (sign == nullptr && at != std::string_view::npos && text.substr(at).starts_with(candidate.text))
       sign = &candidate;
-  if (sign == nullptr) return refused(text, "expected VARIABLE, one of > >= < <= == !=, QUANTITY");
+  if (sign == nullptr) return bad_trigger(text, "expected VARIABLE, one of > >= < <= == !=, QUANTITY");
   Trigger trigger;
   trigger.text_ = trimmed(text);
   trigger.comparison_ = sign->comparison;
@@ -53,7 +53,7 @@ Result<Trigger> Trigger::read(std::string_view text, const UnitSystem& units) {
     left = trimmed(left.substr(1, left.size() - 2));
   }
   auto channel = read_channel(left);
-  if (!channel) return refused(text, channel.error().message.view());
+  if (!channel) return bad_trigger(text, channel.error().message.view());
   trigger.channel_ = std::move(*channel);
   const std::string_view right = trimmed(text.substr(at + sign->text.size()));
   if (right == "true" || right == "false") {
@@ -61,7 +61,7 @@ Result<Trigger> Trigger::read(std::string_view text, const UnitSystem& units) {
     return trigger;
   }
   auto quantity = parse_quantity(right, units);
-  if (!quantity) return refused(text, quantity.error().message.view());
+  if (!quantity) return bad_trigger(text, quantity.error().message.view());
   trigger.quantity_ = *quantity;
   return trigger;
 }
@@ -70,7 +70,7 @@ Result<double> Trigger::settle(std::string_view unit, const UnitSystem& units) {
   const auto wanted = units.parse(unit);
   if (!wanted) return wanted.error();
   const auto level = value_in(quantity_, wanted.value(), unit);
-  if (!level) return refused(text_, level.error().message.view());
+  if (!level) return bad_trigger(text_, level.error().message.view());
   return level_ = level.value();
 }
 

@@ -3,6 +3,7 @@
 import concurrent.futures
 import json
 import os
+import pathlib
 import re
 import subprocess
 import sys
@@ -14,11 +15,21 @@ FOREIGN = re.compile(r" -include \S+cmake_pch\.hxx| -(Winvalid-pch|fpch-preproce
 LAUNCHER = re.compile(r"^.*?(?=\S*/(c\+\+|g\+\+|cc|gcc)\s)")
 
 
+def alone(entry):
+    """The entries of what `entry` compiles: several files when its own only includes others."""
+    if "/Unity/" not in entry["file"]:
+        return [entry]
+    together = pathlib.Path(entry["file"]).read_text()
+    return [{"directory": entry["directory"], "file": file, "command": entry["command"].replace(entry["file"], file)}
+            for file in re.findall(r'^#include "([^"]+)"', together, re.MULTILINE)]
+
+
 def commands():
     """Writes the translated compile commands; returns their folder and the files they cover."""
     folder = common.BUILD / "lint"
     folder.mkdir(parents=True, exist_ok=True)
-    entries = json.loads((common.BUILD / "debug" / "compile_commands.json").read_text())
+    listed = json.loads((common.BUILD / "debug" / "compile_commands.json").read_text())
+    entries = [single for entry in listed for single in alone(entry)]
     for entry in entries:
         entry["command"] = FOREIGN.sub("", LAUNCHER.sub("", entry["command"])) + " -Wno-invalid-constexpr"
     (folder / "compile_commands.json").write_text(json.dumps(entries))

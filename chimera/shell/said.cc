@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/shell/said.h"
+
+namespace chimera::shell {
+
+int print(const Said& said, std::FILE* out, std::FILE* err) {
+  std::fputs(said.out.c_str(), out);
+  std::fputs(said.err.c_str(), err);
+  std::fflush(out);
+  return said.code;
+}
+
+}  // namespace chimera::shell
