@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Data sheets: library/NAME/README.md has its sections, and its table of ports is what the descriptor says.
+"""Data sheets: library/NAME/README.md has its sections, and its table of ports is what the descriptor says;
+library/README.md lists each in the words of its descriptor.
 
 usage: data_sheets.py COMPONENTS [--library FOLDER] [--write] [--measure PROGRAM] [NAME...]
 
@@ -193,10 +194,22 @@ PLANTED = (
 )
 
 
+def listed(index, descriptors):
+    """The list of components has a row for each, and none for what is not there."""
+    wanted = [f"| [{d['name']}]({d['name']}/README.md) | {d['doc']} |" for d in descriptors]
+    rows = [line for line in index.splitlines() if line.startswith("| [")]
+    yield from (f"has no line {row}" for row in wanted if row not in rows)
+    yield from (f"lists what is not there: {row}" for row in rows if row not in wanted)
+
+
 def planted():
     for sheet, descriptor, expected in PLANTED:
         if list(check("t", sheet, descriptor)) != expected:
             yield f"a planted fault is not found: {expected}, but {list(check('t', sheet, descriptor))}"
+    if list(listed("| [a](a/README.md) | A. |\n| [b](b/README.md) | B. |", [{"name": "a", "doc": "Another."}])) != [
+            "has no line | [a](a/README.md) | Another. |", "lists what is not there: | [a](a/README.md) | A. |",
+            "lists what is not there: | [b](b/README.md) | B. |"]:
+        yield "a list that is not right is not found"
     wrong = SHEET.replace("| m |", "| mm |")
     if with_table(wrong, DESCRIPTOR) != SHEET:
         yield "a table that is not right is not put right"
@@ -217,14 +230,14 @@ def main():
     words.add_argument("--measure", metavar="PROGRAM")
     said = words.parse_intermixed_args()
     faults = [f"tools/data_sheets.py: {fault}" for fault in planted()]
-    judged = 0
+    descriptors = []
     for file in sorted(said.components.glob("*.component.json")):
         name = file.name.removesuffix(".component.json")
         sheet = said.library / name / "README.md"
         if not (said.library / name).is_dir() or (said.names and name not in said.names):
             continue
-        judged += 1
         descriptor = json.loads(file.read_text())
+        descriptors.append(descriptor)
         text = sheet.read_text() if sheet.exists() else ""
         if said.measure and text:
             text = with_time(text, measured(said.measure, name, said.components))
@@ -233,10 +246,13 @@ def main():
             sheet.write_text(text)
         found = [*check(name, text, descriptor), *pictures(sheet.parent, text)]
         faults += [f"library/{name}/README.md: {fault}" for fault in found]
+    if not said.names:
+        index = (said.library / "README.md").read_text()
+        faults += [f"library/README.md: {fault}" for fault in listed(index, descriptors)]
     for fault in faults:
         print(fault)
-    print(f"{judged} data sheets, {len(faults)} faults")
-    return 1 if faults or not judged else 0
+    print(f"{len(descriptors)} data sheets, {len(faults)} faults")
+    return 1 if faults or not descriptors else 0
 
 
 if __name__ == "__main__":

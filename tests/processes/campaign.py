@@ -19,7 +19,7 @@ CAMPAIGNS = {
     "ending": ((("ending_test.py", 1), ("kills_test.py", 20)), "kills"),
     "exhaustion": ((("exhaustion_test.py", 0),), "failed calls"),
     "logging": ((("logging_test.py", 5),), None),
-    "preemptive": ((("preemptive_test.py", 5),), None),
+    "preemptive": ((("preemptive_test.py", 5),), "bad jobs"),
     "numbers": ((("numbers_test.py", 50),), "restarts"),
 }
 

@@ -158,6 +158,7 @@ class Preemptive(unittest.TestCase):
         self.assertEqual([(e["task"], e["rtpu"]) for e in seen], [(task, unit)])
         self.assertEqual(system.rtpu(unit)["restarts"], was["restarts"] + 1)
         self.count(f"row 3 {task}")
+        self.count("bad jobs")
         self.took(f"{task}: seen after", seen[0]["at_ns"] - armed)
         self.took(f"{task}: ON again after", back - seen[0]["at_ns"])
         lost = self.grown(system, before)
@@ -205,6 +206,7 @@ class Preemptive(unittest.TestCase):
                     self.assertIn("missed its deadline: bad used ", event["text"])
                 self.count("row 4 cycles", bad["cycles"])
                 self.count("row 4 overruns", bad["overrun"])
+                self.count("bad jobs", bad["overrun"])
                 self.count("row 4 culprits named", len(blamed))
 
     def test_row_18_a_processor_that_is_taken_away_is_told(self):
@@ -241,6 +243,7 @@ class Preemptive(unittest.TestCase):
                 system.disarm()
             self.took("row 18: slowest answer", slowest)
             self.count("row 18 loops", N_LOOPS)
+            self.count("bad jobs", N_LOOPS)
             self.assertLess(slowest, 1e9, "an answer within a second")
             self.assertTrue(told)
             return lost if is_judged else None
