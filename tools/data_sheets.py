@@ -44,6 +44,8 @@ def row(port):
     if port["type"] == "any":
         type_name = f"any {type_name}"
     spread = " to ".join(number(end) for end in port["range"]) if "range" in port else ""
+    if "at_least" in port:
+        spread += (", " if spread else "") + f"at least `{port['at_least']}`"
     return (name, kind, type_name + port["shape"], port["unit"], port.get("frame", ""), spread, values(port),
             port.get("doc", ""))
 

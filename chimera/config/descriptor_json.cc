@@ -101,7 +101,7 @@ FieldDescriptor read_field(const JsonCursor& at) {
 
 PortDescriptor read_port_frame(const JsonCursor& at) {
   at.expect_keys({"name", "kind", "type", "element_size", "unit", "shape"},
-                 {"doc", "type_name", "frame", "safety", "max_instances", "range", "fields", "initial"});
+                 {"doc", "type_name", "frame", "safety", "max_instances", "range", "at_least", "fields", "initial"});
   PortDescriptor port;
   port.name = at.at("name").text();
   port.kind = word_at(at.at("kind"), "kind", words(CHIMERA_OUT_STREAM + 1, name_of_kind));
@@ -112,6 +112,7 @@ PortDescriptor read_port_frame(const JsonCursor& at) {
   port.doc = optional_text(at, "doc");
   port.type_name = optional_text(at, "type_name");
   port.frame = optional_text(at, "frame");
+  port.at_least = optional_text(at, "at_least");
   port.safety = at.has("safety") && at.at("safety").truth();
   port.repeated = at.has("max_instances");
   if (port.repeated) port.max_instances = at.at("max_instances").whole();
@@ -123,6 +124,7 @@ void prove_sizes(const JsonCursor& at, const PortDescriptor& port) {
   Descriptor alone{.name = "c", .doc = {}, .source = {}, .default_rate_hz = 0, .methods = {}, .ports = {port}};
   alone.methods[CHIMERA_CYCLE] = true;
   alone.ports[0].initial.clear();
+  alone.ports[0].at_least.clear();
   if (const auto sound = complete(alone); !sound) {
     at.refuse(sound.error().message.view().substr(std::string_view("component c: ").size()));
   }
@@ -215,6 +217,7 @@ Json port_json(const PortDescriptor& port) {
   if (port.safety) json["safety"] = true;
   if (port.repeated) json["max_instances"] = port.max_instances;
   if (port.has_range) json["range"] = {number_json(port.min), number_json(port.max)};
+  if (!port.at_least.empty()) json["at_least"] = port.at_least;
   for (const FieldDescriptor& field : port.fields) {
     json["fields"].push_back(Json{{"name", field.name},
                                   {"unit", field.unit},

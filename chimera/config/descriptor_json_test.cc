@@ -36,6 +36,9 @@ Descriptor rich() {
   ndof.initial = bytes<std::int32_t>({3});
   PortDescriptor big{.name = "big", .shape = "[2]", .kind = CHIMERA_IN_CONST, .type = CHIMERA_INT64};
   big.initial = bytes<std::int64_t>({INT64_MIN, INT64_MAX});
+  PortDescriptor bigger = big;
+  bigger.name = "bigger";
+  bigger.at_least = "big";
   PortDescriptor narrow{.name = "narrow", .kind = CHIMERA_OUT_VAR, .type = CHIMERA_FLOAT32, .element_size = 4};
   narrow.initial = bytes<float>({0.1f});
   PortDescriptor label{.name = "label", .kind = CHIMERA_IN_CONST, .type = CHIMERA_STRING, .element_size = 8};
@@ -48,7 +51,7 @@ Descriptor rich() {
   pose.initial = bytes<double>({0, -0.0, 1e-300});
   pose.initial[0] = std::byte{1};
   PortDescriptor file{.name = "file", .kind = CHIMERA_RESOURCE, .type = CHIMERA_STRING, .element_size = 256};
-  d.ports = {q, tau, ndof, big, narrow, label, many, pose, file};
+  d.ports = {q, tau, ndof, big, bigger, narrow, label, many, pose, file};
   const auto sound = complete(d);
   EXPECT_TRUE(sound) << (sound ? "" : sound.error().message.c_str());
   return d;

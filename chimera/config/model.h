@@ -49,6 +49,8 @@ struct LinkedPort {
   std::string unit_text;
   std::vector<SolvedExtent> extents;
   bool has_extents = false;
+  /// In-const: its written or default value, elements at their maxima; empty where only init will know it.
+  std::vector<std::byte> value;
 
   bool is(std::uint32_t kind) const noexcept { return declared->kind == kind; }
   bool is_linked() const noexcept { return !variable.empty(); }

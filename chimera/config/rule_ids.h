@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 74> kRules = {
+inline constexpr std::array<std::string_view, 75> kRules = {
     // the text
     "file-unreadable", "text-size", "text-encoding", "text-tab", "text-entries", "text-nesting", "value-size",
     "yaml-syntax", "yaml-anchor", "yaml-alias", "yaml-tag", "yaml-documents", "yaml-block-scalar", "yaml-key",
@@ -26,6 +26,7 @@ inline constexpr std::array<std::string_view, 74> kRules = {
     "extent-contradiction",
     // constants
     "constant-unmet", "constant-two-producers", "constant-produced", "constant-circle",
+    "constant-order",
     // values
     "value-type", "value-unit", "value-shape", "value-range", "value-field",
     // loops and time

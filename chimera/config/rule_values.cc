@@ -6,19 +6,23 @@
 namespace chimera {
 namespace {
 
-void check_own(Model& model, const LinkedPort& port) {
+void check_own(Model& model, LinkedPort& port) {
   const char* key = port.is(CHIMERA_IN_CONST) ? "constant" : "initial value";
-  value_bytes(model, *port.own, {port, std::string(key) + " '" + port.declared->name + "' of task '" +
-                                 model.tasks[port.task].name() + "'"});
+  auto bytes = value_bytes(model, *port.own, {port, std::string(key) + " '" + port.declared->name + "' of task '" +
+                                                        model.tasks[port.task].name() + "'"});
+  if (bytes && port.is(CHIMERA_IN_CONST)) port.value = *std::move(bytes);
 }
 
 /// A given value must fit everybody who uses it; the first who refuses it speaks.
 void check_given(Model& model, const VariableModel& variable) {
   const char* key = variable.is_constant ? "constant" : "operator variable";
   for (const PortRef ref : variable.consumers) {
-    const LinkedPort& port = model.port(ref);
+    LinkedPort& port = model.port(ref);
     const std::string what = std::string(key) + " '" + variable.name + "'";
-    if (is_solved(port) && !value_bytes(model, variable.given->value, {port, what})) return;
+    if (!is_solved(port)) continue;
+    auto bytes = value_bytes(model, variable.given->value, {port, what});
+    if (!bytes) return;
+    if (port.is(CHIMERA_IN_CONST)) port.value = *std::move(bytes);
   }
 }
 
@@ -44,8 +48,10 @@ void check_resources(Model& model, const TaskModel& task) {
 }  // namespace
 
 void check_values(Model& model) {
-  for_each_port(model, [&](PortRef, const LinkedPort& port) {
-    if (port.own != nullptr && is_solved(port)) check_own(model, port);
+  for_each_port(model, [&](PortRef, LinkedPort& port) {
+    if (!is_solved(port)) return;
+    if (port.own != nullptr) check_own(model, port);
+    else if (port.source == ConstSource::kDefault) port.value = declared_bytes(port);
   });
   for (const VariableModel& variable : model.variables)
     if (variable.given != nullptr) check_given(model, variable);

@@ -49,8 +49,12 @@ void agree_on_shapes(Model& model);
 void limit_table(Model& model);
 
 // rule_values.cc
-/// Every value of the description fits its port in type, unit, shape and range.
+/// Every value of the description fits its port in type, unit, shape and range. Makes LinkedPort::value.
 void check_values(Model& model);
+
+// rule_order.cc
+/// No element of a constant is below that of the constant which its component names as the lower one.
+void check_order_of_constants(Model& model);
 
 // rule_loops.cc
 /// Every loop of a configuration has an initial value. Makes SetModel::order.

@@ -30,6 +30,7 @@ void judge_values(Model& model) {
   agree_on_shapes(model);
   limit_table(model);
   check_values(model);
+  check_order_of_constants(model);
 }
 
 void judge_order(Model& model) {

@@ -39,6 +39,7 @@ std::string remarks(const PortDescriptor& port) {
   if (!port.doc.empty()) add(port.doc.substr(0, port.doc.find_last_not_of('.') + 1));
   if (!port.frame.empty()) add("frame " + port.frame);
   if (port.has_range) add("from " + number_text(port.min) + " to " + number_text(port.max));
+  if (!port.at_least.empty()) add("at least " + port.at_least);
   if (port.safety) add("safety");
   if (port.repeated) add("repeated, at most " + std::to_string(port.max_instances));
   if (!port.initial.empty()) add(initial_text(port));

@@ -32,6 +32,7 @@ TEST(DataSheet, ShowsDefaultsRangesAndFrames) {
   port.has_range = true;
   port.min = -1;
   port.max = 2;
+  port.at_least = "low";
   const double initial = 0.5;
   const auto* bytes = reinterpret_cast<const std::byte*>(&initial);
   port.initial.assign(bytes, bytes + sizeof initial);
@@ -40,7 +41,7 @@ TEST(DataSheet, ShowsDefaultsRangesAndFrames) {
   entry.object_file = "/nowhere/g.so";
   EXPECT_EQ(data_sheet(entry),
             "g: Does.\nrate     stated by the description\nreleased by the timer\nmethods \nports\n"
-            "  in-const   k     float64  m     The factor; frame base; from -1 to 2; default 0.5\n"
+            "  in-const   k     float64  m     The factor; frame base; from -1 to 2; at least low; default 0.5\n"
             "file     /nowhere/g.so\n");
 }
 

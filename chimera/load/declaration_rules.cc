@@ -230,6 +230,18 @@ Verdict extent_rule(const Descriptor& descriptor, const PortDescriptor& port, co
   return {};
 }
 
+Verdict order_rule(const Descriptor& descriptor, const PortDescriptor& port) {
+  if (port.at_least.empty()) return {};
+  const PortDescriptor* lower = descriptor.port(port.at_least);
+  const bool is_number = port.type >= CHIMERA_INT32 && port.type <= CHIMERA_FLOAT64;
+  if (lower != nullptr && lower != &port && is_number && port.kind == CHIMERA_IN_CONST &&
+      lower->kind == CHIMERA_IN_CONST && !port.repeated && !lower->repeated && lower->type == port.type &&
+      lower->unit == port.unit && lower->shape == port.shape) {
+    return {};
+  }
+  return "at least \"" + port.at_least + "\": expected two in-consts of numbers, of one type, unit and shape";
+}
+
 Verdict component_rules(const Descriptor& descriptor) {
   if (!is_identifier(descriptor.name)) return name_fault("component", descriptor.name);
   const double rate = descriptor.default_rate_hz;
@@ -275,6 +287,7 @@ Result<void> complete(Descriptor& descriptor) {
   }
   if (const Verdict v = count_rules(descriptor); !v.empty()) return refused(place, v);
   for (const PortDescriptor& port : descriptor.ports) {
+    if (const Verdict v = order_rule(descriptor, port); !v.empty()) return refused(place + ": port " + port.name, v);
     for (const Extent& extent : port.extents) {
       const Verdict v = extent_rule(descriptor, port, extent);
       if (!v.empty()) return refused(place + ": port " + port.name, v);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the pointers of a declaration to owned data. The rules themselves are in declaration_rules.cc.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -7,6 +8,7 @@
 #include "chimera/load/descriptor.h"
 #include "chimera/task/background.h"
 #include "chimera/task/event_source.h"
+#include "chimera/task/orders.h"
 
 namespace chimera {
 namespace {
@@ -85,6 +87,7 @@ PortDescriptor copy_port(const chimera_port_decl& port) {
                       .has_range = (port.flags & CHIMERA_PORT_HAS_RANGE) != 0,
                       .min = 0,
                       .max = 0,
+                      .at_least = {},
                       .extents = {},
                       .fields = {},
                       .initial = {}};
@@ -114,7 +117,19 @@ Result<void> check_component(const std::string& place, const chimera_component& 
   if (component.n_ports > CHIMERA_MAX_PORTS) {
     return refused(place, std::to_string(component.n_ports) + " ports, at most 64 are allowed");
   }
+  if (orders_of(component).size() > CHIMERA_MAX_PORTS) return refused(place, "has more orders than ports");
   if (component.n_ports > 0 && component.ports == nullptr) return refused(place, "has ports but no list of them");
+  return {};
+}
+
+Result<void> copy_orders(const std::string& place, const chimera_component& component, Descriptor& to) {
+  for (const chimera_order& order : orders_of(component)) {
+    const std::string lower = text_of(order.lower), upper = text_of(order.upper);
+    const auto port = std::find_if(to.ports.begin(), to.ports.end(), [&](const auto& p) { return p.name == upper; });
+    if (port == to.ports.end()) return refused(place, "no port \"" + upper + "\" is there to be at least " + lower);
+    if (!port->at_least.empty()) return refused(place + ": port " + upper, "is at least two others");
+    port->at_least = lower;
+  }
   return {};
 }
 
@@ -125,6 +140,7 @@ Result<void> check_version(const chimera_component& component) {
   }
   // One that ends before a member was built before there was one.
   if (component.struct_size != sizeof(chimera_component) &&
+      component.struct_size != offsetof(chimera_component, n_orders) &&
       component.struct_size != offsetof(chimera_component, event_source) &&
       component.struct_size != offsetof(chimera_component, background)) {
     return refused("component", "declaration of " + std::to_string(component.struct_size) + " bytes, expected " +
@@ -157,6 +173,7 @@ Result<Descriptor> describe(const chimera_component& component) {
     if (!sound) return sound.error();
     descriptor.ports.push_back(copy_port(port));
   }
+  if (const auto copied = copy_orders(place, component, descriptor); !copied) return copied.error();
   if (const auto done = complete(descriptor); !done) return done.error();
   return descriptor;
 }

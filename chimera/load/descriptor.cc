@@ -32,7 +32,8 @@ std::string hex(const std::vector<std::byte>& bytes) {
 }
 
 std::string range_text(const PortDescriptor& port) {
-  return port.has_range ? "[" + number(port.min) + ", " + number(port.max) + "]" : "none";
+  const std::string range = port.has_range ? "[" + number(port.min) + ", " + number(port.max) + "]" : "none";
+  return port.at_least.empty() ? range : range + ", at least " + port.at_least;
 }
 
 /// What one side says of one thing, in the order in which differences are named.

@@ -107,12 +107,47 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   sample.component.struct_size = offsetof(chimera_component, event_source);
   EXPECT_TRUE(sample.described().value().background);
   EXPECT_FALSE(sample.described().value().event_source);
+  const chimera_order nobody{"x", "nobody"};
+  sample.component.orders = &nobody;
+  sample.component.n_orders = 1;
+  sample.component.struct_size = offsetof(chimera_component, n_orders);
+  EXPECT_TRUE(sample.described().value().event_source);
+  sample.component.n_orders = 0;
   const std::uint32_t size = sizeof(chimera_component);
   sample.component.struct_size = size;
   EXPECT_TRUE(sample.described().value().event_source);
   sample.component.struct_size = size + 8;
   EXPECT_EQ(sample.refusal(), "component: declaration of " + std::to_string(size + 8) + " bytes, expected " +
                                   std::to_string(size));
+}
+
+TEST(Describe, AnOrderStandsBetweenTwoConstantsOfOneKind) {
+  Sample sample;
+  sample.ports.push_back(port("low", CHIMERA_IN_CONST, "m"));
+  sample.ports.push_back(port("high", CHIMERA_IN_CONST, "m"));
+  chimera_order orders[] = {{"low", "high"}, {"x", "high"}};
+  sample.component.orders = orders;
+  sample.component.n_orders = 1;
+  EXPECT_EQ(sample.described().value().port("high")->at_least, "low");
+  EXPECT_EQ(sample.described().value().port("low")->at_least, "");
+  const std::string kinds = "component tderiv: port high: at least \"low\": expected two in-consts of numbers, of one "
+                            "type, unit and shape";
+  sample.ports[3].unit = "s";
+  EXPECT_EQ(sample.refusal(), kinds);
+  sample.ports[3].unit = "m";
+  sample.ports[2].kind = CHIMERA_IN_VAR;
+  EXPECT_EQ(sample.refusal(), kinds);
+  sample.ports[2].kind = CHIMERA_IN_CONST;
+  sample.component.n_orders = 2;
+  EXPECT_EQ(sample.refusal(), "component tderiv: port high: is at least two others");
+  orders[0] = {"low", "heigh"};
+  EXPECT_EQ(sample.refusal(), "component tderiv: no port \"heigh\" is there to be at least low");
+  orders[0] = {"high", "high"};
+  sample.component.n_orders = 1;
+  EXPECT_EQ(sample.refusal(), "component tderiv: port high: at least \"high\": expected two in-consts of numbers, of "
+                              "one type, unit and shape");
+  sample.component.n_orders = 65;
+  EXPECT_EQ(sample.refusal(), "component tderiv: has more orders than ports");
 }
 
 TEST(Describe, RefusesSizesThatDoNotFitTheType) {

@@ -185,11 +185,18 @@ typedef int32_t (*chimera_background)(void* state, chimera_fault* fault);
  * takes one event from it and does not block, for as long as it is readable. Context: setup. */
 typedef int32_t (*chimera_event_source)(void* state);
 
+/* What holds between two in-consts of one type, unit and shape: no element of `lower` is above that of `upper`. The
+ * checker holds written values against it; a value that another component tells is the business of init. */
+typedef struct chimera_order {
+  const char* lower;
+  const char* upper;
+} chimera_order;
+
 /* A component. Constant, lives as long as the shared object. */
 typedef struct chimera_component {
   uint32_t abi_version; /* CHIMERA_ABI_VERSION */
-  uint32_t struct_size; /* sizeof(chimera_component); an object that ends before `background` has none, nor
-                           what comes behind it */
+  uint32_t struct_size; /* sizeof(chimera_component); an object that ends before `background`, `event_source` or
+                           `n_orders` has none, nor what comes behind it */
   const char* name;
   const char* doc;
   const char* source;   /* paper or book behind it; "" for none */
@@ -204,6 +211,8 @@ typedef struct chimera_component {
   chimera_method methods[CHIMERA_METHODS]; /* NULL: not written */
   chimera_background background;           /* NULL: not written */
   chimera_event_source event_source;       /* NULL: not written */
+  uint32_t n_orders;
+  const chimera_order* orders;
 } chimera_component;
 
 /* The one symbol of a shared object. NULL when `abi_version` is not the one it was built with. */

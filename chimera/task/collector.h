@@ -16,6 +16,7 @@ namespace chimera::face {
 struct Declaration {
   chimera_component component{};
   chimera_port_decl ports[CHIMERA_MAX_PORTS] = {};
+  chimera_order orders[CHIMERA_MAX_PORTS] = {};
   char error[CHIMERA_FAULT_TEXT] = {};  ///< why the component cannot be used; "" when it can
   std::size_t kept = 0;
   alignas(16) std::byte memory[8192] = {};  ///< initial values, and names without their '*'
@@ -41,6 +42,13 @@ class Collector {
     if (!place(live, port.live_offset) || (instances != nullptr && !place(instances, port.instances_offset)))
       return refuse(port.name, "must be a member of the component, not on the heap or static");
     to_.ports[n++] = port;
+  }
+
+  /// Notes that no element of the constant `lower` is above that of `upper`.
+  void add_order(const char* lower, const char* upper) noexcept {
+    std::uint32_t& n = to_.component.n_orders;
+    if (n == CHIMERA_MAX_PORTS) return refuse(upper, "is one too many with at_least");
+    to_.orders[n++] = {lower, upper};
   }
 
   /// A copy of `bytes` that lives as long as the declaration; null when there is no more room.

@@ -164,6 +164,7 @@ const chimera_component* declare() noexcept {
   made.state_align = alignof(T);
   collect_ports<T>(to);
   made.ports = to.ports;
+  made.orders = to.orders;
   made.construct = &construct<T>;
   made.destroy = [](void* state) { static_cast<T*>(state)->~T(); };
   made.methods[CHIMERA_INIT] = method_of<T, Name_init<T>, Method::kInit>();

@@ -67,6 +67,13 @@ struct Observer {
 };
 CHIMERA_COMPONENT(Observer, "observer", "Shows its cycle.");
 
+struct Ordered {
+  InConst<double> low{"low", "m", initial = 0.0};
+  InConst<double> high{"high", "m", initial = 1.0, range(0, 9), at_least = "low"};
+  void cycle() {}
+};
+CHIMERA_COMPONENT(Ordered, "ordered", "Says what holds between its constants.");
+
 struct Unmakeable {
   Unmakeable() { throw std::runtime_error("the licence has run out"); }
   void cycle() {}
@@ -109,6 +116,13 @@ TEST(Component, SaysItsNameAndExtras) {
   EXPECT_STREQ(component("complete").source, "A book");
   EXPECT_EQ(component("complete").default_rate_hz, 250);
   EXPECT_EQ(component("complete").abi_version, CHIMERA_ABI_VERSION);
+}
+
+TEST(Component, SaysWhatHoldsBetweenItsConstants) {
+  EXPECT_EQ(component("minimal").n_orders, 0u);
+  ASSERT_EQ(component("ordered").n_orders, 1u);
+  EXPECT_STREQ(component("ordered").orders[0].lower, "low");
+  EXPECT_STREQ(component("ordered").orders[0].upper, "high");
 }
 
 TEST(Component, AnotherAbiVersionGetsNothing) {

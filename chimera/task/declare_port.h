@@ -26,6 +26,8 @@ constexpr bool check_option() {
                 "first value from its producer");
   static_assert(!std::is_same_v<Option, SafetyIs> || Kind == CHIMERA_OUT_VAR,
                 "safety goes with an out-var: it guards what is published");
+  static_assert(!std::is_same_v<Option, AtLeastIs> || Kind == CHIMERA_IN_CONST,
+                "at_least goes with an in-const, and names another: it is checked before anything runs");
   static_assert(!std::is_same_v<Option, RangeIs> || Kind != CHIMERA_RESOURCE, "a resource has no range");
   return true;
 }
@@ -71,6 +73,10 @@ void apply_option(chimera_port_decl& port, Collector&, const RangeIs& option) {
   port.min = option.min;
   port.max = option.max;
   port.flags |= CHIMERA_PORT_HAS_RANGE;
+}
+template <class E>
+void apply_option(chimera_port_decl& port, Collector& to, const AtLeastIs& option) {
+  to.add_order(option.port, port.name);
 }
 template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const SafetyIs&) { port.flags |= CHIMERA_PORT_SAFETY; }

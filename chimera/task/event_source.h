@@ -10,7 +10,7 @@ namespace chimera {
 /// How the component tells where its events come from; null: nowhere, or it was built before there was such a thing.
 /// Context: any; wait-free.
 inline chimera_event_source event_source_of(const chimera_component& component) noexcept {
-  return component.struct_size >= sizeof(chimera_component) ? component.event_source : nullptr;
+  return component.struct_size >= offsetof(chimera_component, n_orders) ? component.event_source : nullptr;
 }
 
 }  // namespace chimera

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The named extras of a port and of a component: `initial = 0.0`, `range(-1, 1)`, `safety`, `frame = "base"`,
-// `doc = "..."`, `type = "T"`; `rate = 1000.0`, `source = "..."`.
+// `doc = "..."`, `type = "T"`, `at_least = "low"`; `rate = 1000.0`, `source = "..."`.
 #pragma once
 
 #include <concepts>
@@ -78,6 +78,10 @@ struct TypeIs : OptionBase {
   explicit constexpr TypeIs(const char* t) : text(t) {}
   const char* text;
 };
+struct AtLeastIs : OptionBase {
+  explicit constexpr AtLeastIs(const char* p) : port(p) {}
+  const char* port;
+};
 struct RateIs {
   double hertz;
 };
@@ -100,6 +104,9 @@ struct DocName {
 struct TypeName {
   constexpr TypeIs operator=(Literal t) const { return TypeIs(t.text); }  // NOLINT
 };
+struct AtLeastName {
+  constexpr AtLeastIs operator=(PortName p) const { return AtLeastIs(p.text); }  // NOLINT
+};
 struct RateName {
   constexpr RateIs operator=(double hertz) const { return {hertz}; }  // NOLINT
 };
@@ -115,6 +122,7 @@ inline constexpr SafetyIs safety{};      ///< never publishes NaN, infinity or a
 inline constexpr FrameName frame{};      ///< reference frame of the values
 inline constexpr DocName doc{};          ///< one sentence for the data sheet
 inline constexpr TypeName type{};        ///< name of the type variable of an Any port ("T" if not given)
+inline constexpr AtLeastName at_least{};  ///< in-const: the in-const that no element of this one is below
 inline constexpr RateName rate{};        ///< CHIMERA_COMPONENT: default rate in Hz
 inline constexpr SourceName source{};    ///< CHIMERA_COMPONENT: the paper or book behind it
 

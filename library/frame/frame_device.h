@@ -29,7 +29,8 @@ struct FrameDevice {
   InConst<double> command_resolution{"command_resolution", "U", initial = 1.0,
                                      doc = "Command that is a 1 in the frame."};
   InConst<double> state_resolution{"state_resolution", "X", initial = 1.0, doc = "State that is a 1 in the frame."};
-  InConst<double> limit{"limit", "U", initial = 1e6, range(0, 1e9), doc = "Commands are held within +- limit."};
+  InConst<double> limit{"limit", "U", initial = 1e6, range(0, 1e9), at_least = "idle",
+                        doc = "Commands are held within +- limit."};
   InConst<double> idle{"idle", "U", initial = 0.0,
                        doc = "What is sent at off and in place of commands that mean nothing."};
   InConst<double> timeout{"timeout", "s", initial = 0.1, range(0.001, 3600),

@@ -19,7 +19,7 @@ struct Ginvkin : library::DhPorts {
   InConst<double> tolerance{"tolerance", "1", initial = 1e-6, range(1e-9, 0.1), doc = "Metres and radians."};
   InConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", initial = -1e6, frame = "joint",
                           doc = "Lower joint limits; -1e6 for none."};
-  InConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", initial = 1e6, frame = "joint",
+  InConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", initial = 1e6, at_least = "q_min", frame = "joint",
                           doc = "Upper joint limits; 1e6 for none."};
 
   Outcome init() {

@@ -17,7 +17,7 @@ struct SingularityMonitor {
   Out<bool> is_near{"is_near", "1", initial = true, doc = "Near a singular pose."};
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<double> near{"near", "1", initial = 0.05, range(1e-9, 10), doc = "Singular value below which it is near."};
-  InConst<double> clear_of{"clear_of", "1", initial = 0.08, range(1e-9, 10),
+  InConst<double> clear_of{"clear_of", "1", initial = 0.08, range(1e-9, 10), at_least = "near",
                            doc = "Singular value above which it is near no more; at least near."};
   InConst<double> length{"length", "m", initial = 1.0, range(1e-3, 100),
                          doc = "Motion of the tool that counts as much as one radian."};

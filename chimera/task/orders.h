@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "chimera/task/abi.h"
+
+namespace chimera {
+
+/// What holds between the component's constants; nothing, when it was built before there was such a thing.
+/// Context: any; wait-free.
+inline std::span<const chimera_order> orders_of(const chimera_component& component) noexcept {
+  if (component.struct_size < sizeof(chimera_component) || component.orders == nullptr) return {};
+  return {component.orders, component.n_orders};
+}
+
+}  // namespace chimera
