@@ -25,10 +25,11 @@ using namespace chimera;
 
 namespace {
 
-constexpr std::size_t kTextBytes = 1 << 16;  // gathered for one write
+constexpr std::size_t kTextBytes = 1 << 16;     // gathered for one write
+constexpr std::uint64_t kMostBytes = 1u << 29;  // of all rows that may wait
 
 struct CsvLog {
-  Many<In<Any[]>>       in{"in*", "U", "[n<=16]", type = "T", doc = "What is kept: numbers or truth values."};
+  Many<In<Any[]>>       in{"in*", "U", "[n...<=64]", type = "T", doc = "What is kept: numbers or truth values."};
   InConst<std::int32_t> capacity{"capacity", "1", initial = 10000, range(1, 1000000),
                                  doc = "Rows that may wait for the disk."};
   Out<std::int64_t>     rows{"rows", "1", initial = 0, doc = "Rows that found room: in the file, or on the way."};
@@ -44,6 +45,7 @@ struct CsvLog {
     columns_ = 1;
     for (const auto& port : in) columns_ += port.size();
     capacity_ = static_cast<std::uint64_t>(*capacity);
+    check_room();
     // Filled, not reserved: the first touch of a page is a fault of the memory, and that belongs here.
     ring_.assign(columns_ * capacity_, 0.0);
     text_.reserve(2 * kTextBytes);
@@ -108,7 +110,14 @@ struct CsvLog {
     for (const auto& port : in)
       if (port.element_type() > CHIMERA_FLOAT64) throw std::runtime_error("texts and structs cannot be logged");
   }
-  // A component does not know the names of the variables it is joined to.
+  void check_room() const {
+    const std::uint64_t row = columns_ * sizeof(double);
+    if (capacity_ * row > kMostBytes)
+      throw std::runtime_error("rows of " + std::to_string(columns_) + " values are " + std::to_string(row) +
+                               " bytes: at most " + std::to_string(kMostBytes / row) +
+                               " of them may wait, and capacity is " + std::to_string(capacity_));
+  }
+  // A component does not know the names of the variables it is joined to; a matrix is told row by row.
   std::string header() const {
     std::string line = "t";
     for (std::size_t p = 0; p < in.size(); ++p) {

@@ -90,6 +90,30 @@ TEST_F(CsvLogTest, CountsTheRowsThatFindNoRoomAndGoesOnWhenThereIsSome) {
   EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n0.006,,,,\n");
 }
 
+TEST_F(CsvLogTest, TellsAScalarByItsNumberAndAMatrixRowByRow) {
+  const auto written = [this](std::uint32_t rows, std::uint32_t columns) {
+    Rig log("csv_log");
+    log.shape("n", rows, columns);
+    log.instances("in", 1);
+    log.set("capacity", std::int32_t{10});
+    log.resource("file", path.c_str());
+    for (std::uint32_t i = 0; i < rows * columns; ++i) log.set("in", 10.0 + i, i);
+    EXPECT_TRUE(log.init() && log.on() && log.cycle() && log.background() && log.kill());
+    return text();
+  };
+  EXPECT_EQ(written(1, 1), "t,in[0]\n0.001,10\n");
+  EXPECT_EQ(written(2, 3), "t,in[0][0],in[0][1],in[0][2],in[0][3],in[0][4],in[0][5]\n0.001,10,11,12,13,14,15\n");
+}
+
+TEST_F(CsvLogTest, RefusesRowsThatNoMemoryIsMeantFor) {
+  rig.shape("n", 8, 8);
+  rig.instances("in", 16);
+  rig.set("capacity", std::int32_t{100'000});
+  rig.resource("file", path.c_str());
+  EXPECT_EQ(rig.init().text,
+            "rows of 1025 values are 8200 bytes: at most 65472 of them may wait, and capacity is 100000");
+}
+
 TEST_F(CsvLogTest, GoesOnInTheSameFileAfterItWasOff) {
   start(10);
   ASSERT_TRUE(rig.cycle());

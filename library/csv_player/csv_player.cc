@@ -12,7 +12,8 @@ using namespace chimera;
 namespace {
 
 struct CsvPlayer {
-  Many<Out<double[]>> out{"out*", "U", "[n<=64]", doc = "The columns of the file after the first, in their order."};
+  Many<Out<double[]>> out{"out*", "U", "[n...<=64]",
+                          doc = "The columns of the file after the first, in their order; a matrix row by row."};
   InConst<bool>       is_repeated{"is_repeated", "1", initial = false, doc = "Begins again behind the last row."};
   InConst<bool>       is_interpolated{"is_interpolated", "1", initial = false,
                                       doc = "Straight lines between the rows; else a row holds until the next."};

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "library/signals/signal_rig.h"
 
@@ -45,6 +46,22 @@ TEST_F(CsvPlayerTest, HoldsEachRowUntilTheNextFromItsFirstTimeOn) {
   EXPECT_TRUE(rig.get<bool>("done"));
   ASSERT_TRUE(rig.cycle(seconds(100)));
   EXPECT_EQ(value(1), 30);
+}
+
+TEST_F(CsvPlayerTest, FillsAMatrixRowByRowAndAScalar) {
+  const auto played = [this](const char* rows, std::uint32_t size) {
+    std::ofstream(path) << rows;
+    Rig player("csv_player");
+    player.shape("n", size, size);
+    player.instances("out", 1);
+    player.resource("file", path.c_str());
+    EXPECT_TRUE(player.init() && player.on());
+    std::vector<double> values;
+    for (std::uint32_t i = 0; i < player.size("out"); ++i) values.push_back(player.get<double>("out", i));
+    return values;
+  };
+  EXPECT_EQ(played("t,a,b,c,d\n0,1,2,3,4\n", 2), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(played("t,a\n0,9\n", 1), (std::vector<double>{9}));
 }
 
 TEST_F(CsvPlayerTest, DrawsStraightLinesWhenAsked) {

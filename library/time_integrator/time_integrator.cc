@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The integral over time of each element of a vector (1994 paper, figure 9: joint speeds to joint positions).
+// The integral over time of each element of a signal (1994 paper, figure 9: joint speeds to joint positions).
+#include <algorithm>
 #include <cmath>
 
 #include "chimera/task/component.h"
@@ -9,16 +10,16 @@ using namespace chimera;
 namespace {
 
 struct TimeIntegrator {
-  In<double[]> rate_of_change{"rate_of_change", "U/s", "[n<=16]", doc = "What is integrated."};
-  In<double[]> start{"start", "U", "[n<=16]", doc = "Where the integral begins when the task goes on."};
-  Out<double[]> integral{"integral", "U", "[n<=16]", initial = 0.0,
+  In<double[]> rate_of_change{"rate_of_change", "U/s", "[n...<=64]", doc = "What is integrated."};
+  In<double[]> start{"start", "U", "[n...<=64]", doc = "Where the integral begins when the task goes on."};
+  Out<double[]> integral{"integral", "U", "[n...<=64]", initial = 0.0,
                          doc = "start at on, plus what was integrated since."};
 
   Outcome on() {
     for (std::size_t i = 0; i < integral.size(); ++i) {
       if (!std::isfinite(start[i])) return fault("start is not finite");
-      integral[i] = start[i];
     }
+    std::ranges::copy(start, integral.begin());
     return ok();
   }
   Outcome cycle(Cycle c) {
@@ -31,7 +32,7 @@ struct TimeIntegrator {
   }
 };
 
-CHIMERA_COMPONENT(TimeIntegrator, "time_integrator", "The integral of a vector over time.", rate = 1000.0,
-                  source = "1994 paper, figure 9");
+CHIMERA_COMPONENT(TimeIntegrator, "time_integrator", "The integral of a signal over time, each element by itself.",
+                  rate = 1000.0, source = "1994 paper, figure 9");
 
 }  // namespace

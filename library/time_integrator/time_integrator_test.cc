@@ -29,6 +29,32 @@ TEST_F(TimeIntegratorTest, IsTheRectangleSumFromItsStart) {
   EXPECT_EQ(rig.get<double>("integral", 1), -1);
 }
 
+TEST_F(TimeIntegratorTest, TakesAScalarAndAMatrixElementByElement) {
+  Rig scalar("time_integrator");
+  scalar.shape("n", 1, 1);
+  scalar.set("start", 1.0);
+  scalar.set("rate_of_change", 2.0);
+  ASSERT_TRUE(scalar.init() && scalar.on() && scalar.cycle(milliseconds(500)));
+  EXPECT_EQ(scalar.get<double>("integral"), 2);
+  Rig matrix("time_integrator");
+  matrix.shape("n", 8, 8);
+  for (int i = 0; i < 64; ++i) {
+    matrix.set("start", 1.0 * i, static_cast<std::size_t>(i));
+    matrix.set("rate_of_change", -1.0 * i, static_cast<std::size_t>(i));
+  }
+  ASSERT_TRUE(matrix.init() && matrix.on() && matrix.cycle(milliseconds(500)));
+  ASSERT_EQ(matrix.size("integral"), 64u);
+  for (int i = 0; i < 64; ++i) EXPECT_EQ(matrix.get<double>("integral", static_cast<std::size_t>(i)), 0.5 * i);
+}
+
+TEST_F(TimeIntegratorTest, AStartThatIsRefusedLeavesWhatStood) {
+  start();
+  rig.set("start", 7.0, 0);
+  rig.set("start", std::nan(""), 1);
+  EXPECT_EQ(rig.on().text, "start is not finite");
+  EXPECT_EQ(rig.get<double>("integral", 0), 1);
+}
+
 TEST_F(TimeIntegratorTest, StandsWhileTheConfigurationIsIllegal) {
   start();
   rig.illegal(true);
