@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "library/mujoco/model_numbers.h"
 #include "library/mujoco/mujoco_guard.h"
 
 namespace chimera::library {
@@ -48,6 +49,9 @@ Result<void> SimulatedArm::load(const char* path, const char* tip, const mjVFS_*
   install_mujoco_handlers();
   if (files == nullptr && std::ifstream(path).peek() == std::ifstream::traits_type::eof()) {
     return bad("%s: cannot be read, or there is nothing in it", path);
+  }
+  if (files == nullptr) {
+    if (Result<void> sound = check_model_numbers(path); !sound) return sound;
   }
   char why[1000] = "";
   state_.reset();

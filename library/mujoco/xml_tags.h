@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The start tags of an XML text, one after the other: enough to look at attributes before a parser that says less.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace chimera::library {
+
+/// A start tag. Views into the text that was read; values as they are written, entities and all.
+struct XmlTag {
+  std::string_view element;
+  std::vector<std::pair<std::string_view, std::string_view>> attributes;
+  std::size_t line = 1;
+};
+
+/// Goes through a text. Comments, declarations and CDATA sections are passed over; at what is no XML it ends, because
+/// whoever parses the text says why. Context: setup.
+class XmlTags {
+ public:
+  explicit XmlTags(std::string_view text) : rest_(text) {}
+
+  /// False at the end.
+  bool next(XmlTag& tag) {
+    for (;;) {
+      if (!skip_past("<")) return false;
+      if (rest_.starts_with("!--")) skip_past("-->");
+      else if (rest_.starts_with("![CDATA[")) skip_past("]]>");
+      else if (rest_.starts_with("!") || rest_.starts_with("/")) skip_past(">");
+      else if (rest_.starts_with("?")) skip_past("?>");
+      else return read(tag);
+    }
+  }
+
+ private:
+  static constexpr std::string_view kSpace = " \t\r\n";
+
+  void drop(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) line_ += rest_[i] == '\n' ? 1 : 0;
+    rest_.remove_prefix(count);
+  }
+  bool skip_past(std::string_view mark) {
+    const std::size_t at = rest_.find(mark);
+    drop(at == std::string_view::npos ? rest_.size() : at + mark.size());
+    return at != std::string_view::npos;
+  }
+  void skip_space() {
+    const std::size_t at = rest_.find_first_not_of(kSpace);
+    drop(at == std::string_view::npos ? rest_.size() : at);
+  }
+  std::string_view take(std::string_view until) {
+    const std::string_view taken = rest_.substr(0, rest_.find_first_of(until));
+    drop(taken.size());
+    return taken;
+  }
+  bool read(XmlTag& tag) {
+    tag.line = line_;
+    tag.element = take(" \t\r\n/>");
+    tag.attributes.clear();
+    for (skip_space(); !rest_.empty() && rest_.front() != '>' && rest_.front() != '/'; skip_space()) {
+      const std::string_view name = take(" \t\r\n=/>");
+      skip_space();
+      if (rest_.empty() || rest_.front() != '=') return false;
+      drop(1);
+      skip_space();
+      if (rest_.empty() || (rest_.front() != '"' && rest_.front() != '\'')) return false;
+      const char quote[] = {rest_.front(), '\0'};
+      drop(1);
+      tag.attributes.emplace_back(name, take(quote));
+      if (rest_.empty()) return false;
+      drop(1);
+    }
+    return !tag.element.empty();
+  }
+
+  std::string_view rest_;
+  std::size_t line_ = 1;
+};
+
+}  // namespace chimera::library
