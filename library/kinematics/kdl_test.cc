@@ -2,6 +2,7 @@
 // Against a reference that nobody here wrote: Orocos KDL.
 #include <gtest/gtest.h>
 
+#include "library/kinematics/kdl_proof.h"
 #include "library/kinematics/puma560.h"
 #include "library/kinematics/random_arms.h"
 #include "library/kinematics/singular_values.h"
@@ -47,6 +48,15 @@ TEST(AgainstKdl, ThePumaInClosedForm) {
     farthest = std::max({farthest, difference(tool, kdl.tool_frame(theirs)), difference(ours, theirs, chain.ndof)});
   }
   EXPECT_LT(farthest, 1e-12);
+}
+
+// What `./dev test --stress kinematics` does for as long as it is given.
+TEST(AgainstKdl, TheSeedsOfTheCampaign) {
+  KdlTally tally;
+  for (unsigned seed = 1; seed <= 300; ++seed) ASSERT_EQ(judge_kinematics(seed, tally), "");
+  EXPECT_EQ(tally.poses, 6000u);
+  EXPECT_GT(tally.inverses, 24000u);
+  EXPECT_GT(10 * tally.solved, 8 * tally.searches);
 }
 
 }  // namespace
