@@ -26,11 +26,15 @@ struct CameraTargets : library::CameraPorts {
   Resource link{"link", doc = "Where features go: udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
 
   void init() {
-    pinhole_ = pinhole();
+    reinit();
     const Result<void> opened = writer_.open(link.c_str());
     if (!opened) throw std::runtime_error(std::string(opened.error().message.view()));
   }
-  void reinit() { pinhole_ = pinhole(); }
+  void reinit() {
+    pinhole_ = pinhole();
+    for (const double number : {centre[0], centre[1], centre[2], phase[0], phase[1], phase[2]})
+      if (!std::isfinite(number)) throw std::runtime_error("centre and phase must be finite");
+  }
   void on(Cycle c) {
     begin_ = c.now();
     move(0);

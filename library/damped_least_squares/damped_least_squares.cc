@@ -24,6 +24,8 @@ struct DampedLeastSquares {
 
   void init() { reinit(); }
   void reinit() {
+    if (!(*speed_limit > 0) || !(*threshold > 0) || !std::isfinite(*damping) || !std::isfinite(*gain))
+      throw std::runtime_error("speed_limit and threshold must be above 0, damping and gain finite");
     inverse_.damping = *damping;
     inverse_.threshold = *threshold;
   }

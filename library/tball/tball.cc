@@ -38,7 +38,10 @@ struct TrackBall {
     lost_.set(device.text(), "is gone");
     reinit();
   }
-  void reinit() { ball_.reset(*full, from_seconds(*hold)); }
+  void reinit() {
+    if (*full < 1) throw std::runtime_error("full must be at least 1");
+    ball_.reset(*full, from_seconds(*hold));
+  }
   Outcome on(Cycle c) {
     is_gone_ = false;
     reinit();

@@ -23,6 +23,8 @@ struct CameraPorts {
     const Pose& pose = *camera;
     double square = 0;
     for (double q : pose.orientation) square += q * q;
+    for (double p : pose.position)
+      if (!std::isfinite(p)) throw std::runtime_error("camera: the position is not finite");
     if (!(std::abs(square - 1) < 1e-6)) throw std::runtime_error("camera: the orientation is no unit quaternion");
     return {*focal_length, image_size[0], image_size[1], frame_of(pose), *ball_diameter};
   }

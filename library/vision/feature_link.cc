@@ -90,7 +90,7 @@ int datagram_socket(const Address& address) {
 
 std::size_t feature_text(const Feature& f, char (&text)[96]) {
   const int n = std::snprintf(text, sizeof text, "%.6f,%.4f,%.4f,%.5f", f.time, f.u, f.v, f.size);
-  return static_cast<std::size_t>(n);
+  return n > 0 && n + 1 < static_cast<int>(sizeof text) ? static_cast<std::size_t>(n) : 0;
 }
 
 bool read_feature(const char* text, Feature& feature) {
@@ -131,6 +131,7 @@ void FeatureWriter::flush() {
   char text[96];
   while (ring_.take(feature)) {
     const std::size_t n = feature_text(feature, text);
+    if (n == 0) continue;
     if (records_) {
       text[n] = '\n';
       if (::write(file_, text, n + 1) < 0) return;

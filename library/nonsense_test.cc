@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every component takes nonsense: in constants (also such as the checker refuses, because another component may tell
+// them), in inputs, in resources. It refuses with a text or goes on, and the sanitizers have nothing to say; and what
+// was given nothing but numbers that can be squared publishes numbers. The seed is in the message:
+// CHIMERA_NONSENSE=COUNT tries more.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "chimera/task/rig.h"
+
+namespace chimera {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kHostile[] = {NAN, kInfinity, -kInfinity, 0, -0.0, -1, 1e308, -1e308, 5e-324, 1e-300, 1e6, -1e6, 1e18};
+
+/// What each component with a resource works with.
+std::string sound_resource(const std::string& component, const std::string& port) {
+  const char* source = std::getenv("CHIMERA_SOURCE");
+  const std::string library = (source != nullptr ? source : "") + std::string("/library/");
+  const std::map<std::string, std::string> kKnown{
+      {"accel", "0:0 2:1"}, {"brake", "0:0 2:1"}, {"car", "0:0 200:0.06"}, {"electric_car", "0:0 200:0.06"},
+      {"ccui", "0:0 2:100"}, {"camera_targets", "file:/dev/null"}, {"csv_log", "/dev/null"},
+      {"csv_player", library + "csv_player/csv_player_example.csv"}, {"puma_torque", "puma560.xml"},
+      {"mujoco_robot", library + "puma_torque/puma560.xml"}, {"rmms", library + "rmms/rmms_a.store"},
+      {"mujoco_robot_torque", library + "puma_torque/puma560.xml"},
+      {"mujoco_robot_velocity", library + "puma_torque/puma560.xml"},
+      {"tball", library + "tball/wave.events"}, {"urdf_model", library + "urdf_model/puma560.urdf"},
+      {"udp_frame", "127.0.0.1:9"}, {"visual_servo_interface", "here:nonsense"}};
+  const auto known = kKnown.find(component);
+  return known == kKnown.end() ? "/dev/null/" + port : known->second;
+}
+
+class Nonsense {
+ public:
+  Nonsense(const chimera_component& component, unsigned seed) : component_(component), random_(seed) {}
+
+  /// "" or what is wrong.
+  std::string run() {
+    Rig rig(component_.name);
+    shape(rig);
+    const bool is_hostile = draw(4) != 0;
+    for (std::uint32_t i = 0; i < component_.n_ports; ++i)
+      give(rig, component_.ports[i], is_hostile && draw(4) == 0);
+    if (!answered(rig.init(), "init")) return wrong_;
+    if (is_faulty_) return end(rig);
+    answered(rig.on(), "on");
+    for (int cycle = 0; cycle < 20 && wrong_.empty(); ++cycle) {
+      for (std::uint32_t i = 0; i < component_.n_ports; ++i)
+        if (component_.ports[i].kind == CHIMERA_IN_VAR) give(rig, component_.ports[i], draw(6) == 0);
+      step(rig);
+    }
+    return end(rig);
+  }
+
+ private:
+  void step(Rig& rig) {
+    if (component_.methods[CHIMERA_SYNC] != nullptr) answered(rig.sync(), "sync");
+    rig.illegal(draw(8) == 0);
+    const RigAnswer answer = rig.cycle(draw(10) == 0 ? milliseconds(50) : milliseconds(1));
+    answered(answer, "cycle");
+    if (answer && !is_extreme_) judge_outputs(rig);
+    if (is_faulty_) answered(rig.error(), "error"), answered(rig.clear(), "clear");
+    is_faulty_ = false;
+  }
+  std::string end(Rig& rig) {
+    answered(rig.off(), "off");
+    answered(rig.background(), "background");
+    answered(rig.kill(), "kill");
+    return wrong_;
+  }
+  bool answered(const RigAnswer& answer, const char* method) {
+    is_faulty_ = answer.status == CHIMERA_FAULT;
+    const bool is_told = !is_faulty_ || !answer.text.empty() || std::string_view("error clear").find(method) == 0;
+    if (!is_told) wrong_ = std::string(method) + " failed without a text";
+    return wrong_.empty();
+  }
+  void judge_outputs(Rig& rig) {
+    for (std::uint32_t i = 0; i < component_.n_ports; ++i) {
+      const chimera_port_decl& port = component_.ports[i];
+      if (port.kind != CHIMERA_OUT_VAR || port.type != CHIMERA_FLOAT64 || !wrong_.empty()) continue;
+      for (std::uint32_t e = 0; e < rig.size(port.name); ++e) {
+        if (std::isfinite(rig.get<double>(port.name, e))) continue;
+        wrong_ = std::string(port.name) + "[" + std::to_string(e) + "] is " +
+                 std::to_string(rig.get<double>(port.name, e)) + " after " + told_;
+        return;
+      }
+    }
+  }
+
+  std::uint32_t draw(std::size_t below) { return static_cast<std::uint32_t>(random_() % below); }
+  void shape(Rig& rig) {
+    const std::uint32_t rows = 1 + draw(3), columns = 1 + draw(2);
+    rig.shape("n", rows, columns);
+    for (std::uint32_t i = 0; i < component_.n_ports; ++i) {
+      const chimera_port_decl& port = component_.ports[i];
+      const bool is_repeated = (port.flags & CHIMERA_PORT_REPEATED) != 0;
+      if (is_repeated) rig.instances(port.name, std::min<std::uint32_t>(port.max_instances, draw(4)));
+      instances_[port.name] = is_repeated ? std::min<std::uint32_t>(port.max_instances, 3) : 1;
+    }
+  }
+  void give(Rig& rig, const chimera_port_decl& port, bool is_hostile) {
+    if (port.kind == CHIMERA_RESOURCE) return rig.resource(port.name, resource(port, is_hostile).c_str());
+    if (port.kind != CHIMERA_IN_VAR && port.kind != CHIMERA_IN_CONST) return;
+    const bool has_default = (port.flags & CHIMERA_PORT_HAS_INITIAL) != 0;
+    if (!is_hostile && has_default) return;
+    if (std::string_view(port.name) == "ndof") is_hostile = false;  // an extent: the framework holds it in its range
+    for (std::uint32_t instance = 0; instance < instances_[port.name]; ++instance)
+      for (std::uint32_t e = 0; e < rig.size(port.name); ++e)
+        put(rig, port, e, instance, is_hostile && (e == 0 || draw(2) == 0));
+    if (is_hostile) told_ += std::string(port.name) + " ";
+  }
+  void put(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
+    const double value = is_hostile ? kHostile[draw(std::size(kHostile))] : sound(port);
+    if (is_hostile) note(value);
+    const auto whole = [value](double most) { return std::isnan(value) ? 0 : std::clamp(value, -most, most); };
+    switch (port.type) {
+      case CHIMERA_BOOL: return rig.set(port.name, value > 0, e, instance);
+      case CHIMERA_INT32: return rig.set(port.name, static_cast<std::int32_t>(whole(2147483647)), e, instance);
+      case CHIMERA_INT64: return rig.set(port.name, static_cast<std::int64_t>(whole(9e18)), e, instance);
+      case CHIMERA_FLOAT32: return rig.set(port.name, static_cast<float>(value), e, instance);
+      case CHIMERA_STRING: return text(rig, port, e, instance, is_hostile);
+      case CHIMERA_STRUCT: return structure(rig, port, e, instance, is_hostile);
+      default: return rig.set(port.name, value, e, instance);
+    }
+  }
+  static double sound(const chimera_port_decl& port) {
+    if ((port.flags & CHIMERA_PORT_HAS_RANGE) == 0) return 0.5;
+    return std::min(std::max({port.min, 0.5, port.type == CHIMERA_INT32 ? 1.0 : 0.0}), port.max);
+  }
+  void note(double value) {
+    is_extreme_ = is_extreme_ || !(std::abs(value) < 1e100);
+    char text[32];
+    std::snprintf(text, sizeof text, "%g ", value);
+    told_ += text;
+  }
+  void text(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
+    std::array<char, 64> bytes{};
+    if (is_hostile) bytes.fill(draw(2) == 0 ? 'x' : '%');
+    bytes[port.element_size - 1] = '\0';
+    sized<1>(rig, port, e, instance, bytes.data());
+  }
+  /// Structs of the library are all of float64. The identity in the middle of a pose is its orientation.
+  void structure(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
+    std::array<double, 64> numbers;
+    numbers.fill(0.1);
+    if (std::string_view(port.type_name) == "Pose") numbers = {0.3, 0.2, 0.1, 1};
+    if (is_hostile) note(numbers[draw(port.element_size / 8)] = kHostile[draw(std::size(kHostile))]);
+    sized<1>(rig, port, e, instance, reinterpret_cast<const char*>(numbers.data()));
+  }
+  template <std::size_t kWords>
+  void sized(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, const char* bytes) {
+    if constexpr (kWords <= 64) {
+      if (port.element_size != 8 * kWords) return sized<kWords + 1>(rig, port, e, instance, bytes);
+      struct alignas(8) Element { char bytes[8 * kWords]; } element;
+      std::memcpy(element.bytes, bytes, sizeof element);
+      rig.set(port.name, element, e, instance);
+    } else {
+      wrong_ = "an element of " + std::to_string(port.element_size) + " bytes";
+    }
+  }
+  std::string resource(const chimera_port_decl& port, bool is_hostile) {
+    if (!is_hostile) return sound_resource(component_.name, port.name);
+    const char* kBad[] = {"", "/", "/dev/null", "no/such/thing", ":", "0:nan", "tcp:127.0.0.1:99999", "%s%n",
+                          "0:1e400 1:x"};
+    told_ += "resource ";
+    return draw(8) == 0 ? std::string(255, 'x') : kBad[draw(std::size(kBad))];
+  }
+
+  const chimera_component& component_;
+  std::mt19937 random_;
+  std::map<std::string, std::uint32_t> instances_;
+  std::string wrong_, told_;
+  bool is_faulty_ = false;
+  bool is_extreme_ = false;  // NaN, an infinity or what no square holds was given
+};
+
+TEST(AnyComponent, RefusesNonsenseWithATextOrGoesOnAndPublishesNumbers) {
+  const char* asked = std::getenv("CHIMERA_NONSENSE");
+  const unsigned trials = asked != nullptr ? static_cast<unsigned>(std::atoi(asked)) : 40;
+  const std::filesystem::path before = std::filesystem::current_path();
+  const std::filesystem::path folder = testing::TempDir() + "nonsense_" + std::to_string(::getpid());
+  std::filesystem::create_directory(folder);
+  std::filesystem::current_path(folder);  // a log goes to whatever file it is told
+  std::uint32_t count = 0;
+  const chimera_component* const* all = chimera_components(CHIMERA_ABI_VERSION, &count);
+  ASSERT_GT(count, 50u);
+  for (std::uint32_t c = 0; c < count; ++c) {
+    if (std::string_view(all[c]->name) == "faulty") continue;  // publishes NaN on purpose
+    for (unsigned trial = 0; trial < trials; ++trial) {
+      const std::string wrong = Nonsense(*all[c], trial).run();
+      EXPECT_EQ(wrong, "") << all[c]->name << ", seed " << trial;
+      if (!wrong.empty()) break;
+    }
+  }
+  std::filesystem::current_path(before);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace chimera
