@@ -143,10 +143,16 @@ TEST(VisualServoInterface, DoesNotBeginWhereTheToolIsNot) {
 TEST(CameraTargets, RefusesALinkThatIsNoneAndACameraThatStandsNowhere) {
   Rig rig("camera_targets");
   rig.set("camera", kCamera);
+  for (std::size_t i = 0; i < 3; ++i) rig.set("centre", 0.0, i);
   rig.resource("link", "camera");
   EXPECT_EQ(rig.init().text, "camera: expected udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH");
   rig.set("camera", Pose{{0, 0, 0}, {0, 0, 0, 0}});
   EXPECT_EQ(rig.init().text, "camera: the orientation is no unit quaternion");
+  rig.set("camera", Pose{{0, std::nan(""), 0}, {1, 0, 0, 0}});
+  EXPECT_EQ(rig.init().text, "camera: the position is not finite");
+  rig.set("camera", kCamera);
+  rig.set("centre", std::nan(""), 1);
+  EXPECT_EQ(rig.init().text, "centre and phase must be finite");
 }
 
 TEST(PoseMonitor, JudgesNothingThatNobodyHasWritten) {
