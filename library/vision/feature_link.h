@@ -22,8 +22,8 @@
 
 namespace chimera::library {
 
-/// One line without its end, at most 94 bytes; its length. 0: a number of it is beyond what any picture has, and the line
-/// would not fit. Context: any.
+/// One line without its end, at most 94 bytes; its length. 0: it would not fit, because a number is beyond what any
+/// picture has. Context: any.
 std::size_t feature_text(const Feature& feature, char (&text)[96]);
 /// False when `text` is not four finite numbers with commas between. Context: any.
 bool read_feature(const char* text, Feature& feature);
