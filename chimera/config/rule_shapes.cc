@@ -13,8 +13,6 @@
 namespace chimera {
 namespace {
 
-constexpr std::uint64_t kMaxTableBytes = 4 << 20;
-
 using ExtentBindings = Bindings<std::vector<SolvedExtent>>;  // one, but for shape variables
 
 /// The constant port of the component that is called like the extent, or nullptr: then it is an extent variable.
@@ -249,40 +247,6 @@ void report_unsolved_shape(Model& model, const LinkedPort& port) {
               "link one of its ports to a component with a fixed shape");
 }
 
-/// Every port of a variable reserves the same room: the least of their maxima, which no legal extent exceeds.
-void share_maxima(Model& model) {
-  std::map<std::string, std::uint32_t> of_constant;
-  for (bool moved = true; moved;) {
-    moved = false;
-    const auto lower = [&](SolvedExtent& extent, std::uint32_t& most) {
-      if (!extent.constant.empty()) {
-        auto& shared = of_constant.try_emplace(extent.constant, extent.max).first->second;
-        most = std::min(most, shared);
-        if (most < shared) moved = true;
-        shared = most;
-      }
-      most = std::min(most, extent.max);
-      if (most < extent.max) moved = true;
-      extent.max = most;
-    };
-    for (VariableModel& variable : model.variables)
-      for (std::size_t i = 0; i < variable.extents.size(); ++i) {
-        std::uint32_t most = variable.extents[i].max;
-        for_each_port_of(variable, [&](PortRef ref) {
-          LinkedPort& port = model.port(ref);
-          if (port.extents.size() == variable.extents.size()) lower(port.extents[i], most);
-        });
-        lower(variable.extents[i], most);
-      }
-    for_each_port(model, [&](PortRef, LinkedPort& port) {
-      for (SolvedExtent& extent : port.extents) {
-        std::uint32_t most = extent.max;
-        lower(extent, most);
-      }
-    });
-  }
-}
-
 }  // namespace
 
 void agree_on_shapes(Model& model) {
@@ -301,20 +265,6 @@ void agree_on_shapes(Model& model) {
     for_each_port(model, [&](PortRef, const LinkedPort& port) {
       if (!port.has_extents) report_unsolved_shape(model, port);
     });
-  share_maxima(model);
-}
-
-void limit_table(Model& model) {
-  std::uint64_t bytes = 0;
-  for_each_port(model, [&](PortRef, const LinkedPort& port) {
-    if (port.is_producer()) bytes += std::uint64_t{element_count(port.extents)} * port.element_bytes;
-  });
-  if (bytes <= kMaxTableBytes) return;
-  model.error("table-limit", model.draft.subsystem.at,
-              "the outputs of all tasks take " + std::to_string(bytes) + " bytes; at most " +
-                  std::to_string(kMaxTableBytes),
-              std::to_string(bytes), "at most " + std::to_string(kMaxTableBytes), {},
-              "large data belongs into a subsystem of its own, attached by a resource port");
 }
 
 }  // namespace chimera

@@ -45,6 +45,10 @@ void agree_on_units(Model& model);
 // rule_shapes.cc
 /// All ports of a variable can have one shape; extent variables are solved per task.
 void agree_on_shapes(Model& model);
+
+// rule_room.cc
+/// Every port of a variable reserves the same room: the least of their maxima, which no legal extent exceeds.
+void share_maxima(Model& model);
 /// The largest table that a description may ask for.
 void limit_table(Model& model);
 

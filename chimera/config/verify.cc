@@ -28,6 +28,7 @@ void judge_values(Model& model) {
   agree_on_types(model);
   agree_on_units(model);
   agree_on_shapes(model);
+  share_maxima(model);
   limit_table(model);
   check_values(model);
   check_order_of_constants(model);
