@@ -39,6 +39,14 @@ struct ArmRig : Rig {
     return found;
   }
   Frame pose(const char* port) { return frame_of(get<Pose>(port)); }
+  /// True when `output` does not move under the illegal-configuration flag, whatever is wanted; the flag stays up.
+  bool stands_while_illegal(const char* output) {
+    if (!cycle()) return false;
+    const Puma560::Vector stands = six(output);
+    set("xr", Pose{{kNotANumber, 0, 0}, {1, 0, 0, 0}});
+    illegal(true);
+    return cycle() && six(output) == stands;
+  }
   /// The text of what init or cycle refuses; "accepted" when they do not.
   std::string refusal() {
     RigAnswer answer = init();

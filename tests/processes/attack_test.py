@@ -10,22 +10,10 @@ import sys
 import unittest
 
 from protocol_test import FORMATS, GOOD, METHODS
-from system import System
+from system import System, TWO_UNITS
 
 NOBODY, STRANGERS = 65534, 65534
 OPERATORS = next(g for g in grp.getgrall() if g.gr_gid not in (0, STRANGERS))
-
-APPLICATION = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
-tasks:
-  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
-  beside: {component: t_source, rtpu: second, rate: 100 Hz}
-configurations: {all: [steady, beside]}
-start: all
-"""
 
 # Run as the stranger, with the pids and the socket as arguments; prints what succeeded.
 ATTACK = r'''
@@ -176,7 +164,7 @@ class Attack(unittest.TestCase):
 
     def test_row_23_a_stranger_gets_nowhere(self):
         for arguments in ((), ("--observe-group", OPERATORS.gr_name)):
-            with self.subTest(arguments), System(APPLICATION, arguments) as system:
+            with self.subTest(arguments), System(TWO_UNITS, arguments) as system:
                 self.open_folders(system)
                 before = {t["task"]: t for t in system.call("status")["tasks"]}
                 pids = system.pids().values()
@@ -196,7 +184,7 @@ class Attack(unittest.TestCase):
                                   "unlink the socket"])
 
     def test_seals_hold_against_the_systems_own_user(self):
-        with System(APPLICATION) as system:
+        with System(TWO_UNITS) as system:
             done = subprocess.run([sys.executable, "-c", OWN_USER, *map(str, system.pids().values())],
                                   capture_output=True, text=True, timeout=60)
             won, seen = json.loads(done.stdout)
@@ -208,7 +196,7 @@ class Attack(unittest.TestCase):
         self.assertEqual(sorted(ROLES), sorted(METHODS))
         for has in (None, "observe", "operate", "configure"):
             arguments = (f"--{has}-group", OPERATORS.gr_name) if has else ()
-            with self.subTest(has), System(APPLICATION, arguments) as system:
+            with self.subTest(has), System(TWO_UNITS, arguments) as system:
                 self.open_folders(system)
                 if has is None:  # the administrator opened the way, the system did not
                     system.socket.parent.chmod(0o711)

@@ -6,25 +6,9 @@ import signal
 import time
 import unittest
 
-from system import System
+from system import CHAIN, System
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
-
-# A chain over two units: device -> a -> b -> c -> device, so that the order of the end is known.
-CHAIN = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
-tasks:
-  a: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: x0, y: x1}, constants: {label: a}}
-  b: {component: t_recorder, rtpu: second, rate: 100 Hz, alias: {x: x1, y: x2}, constants: {label: b}}
-  c: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: x2, y: x3}, constants: {label: c}}
-operator: {x0: 0}
-configurations:
-  all: [a, b, c]
-start: all
-"""
 
 
 class Ending(unittest.TestCase):

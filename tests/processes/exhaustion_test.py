@@ -9,25 +9,13 @@ import re
 import sys
 import unittest
 
-from system import BUILD, QUIET, System, await_that
+from system import BUILD, QUIET, System, TWO_UNITS, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "3"))
 REASON = re.compile("Cannot allocate memory|Too many open files|Resource temporarily unavailable|"
                     "Device or resource busy|cannot be opened|cannot be read")
 ABOUT = {"run": 48, "chimera-manager": 20, "chimera-rtpu": 24, "attend": 1}  # calls; spreads the bounded count only
 MOST = 400  # calls of one program; more would be a leak of its own
-
-APPLICATION = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
-tasks:
-  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
-  beside: {component: t_source, rtpu: second, rate: 100 Hz}
-configurations: {all: [steady, beside]}
-start: all
-"""
 
 
 class Exhaustion(unittest.TestCase):
@@ -40,7 +28,7 @@ class Exhaustion(unittest.TestCase):
     def attempt(self, program, n, once):
         """One start in which the n-th call fails; what failed, None when there was none."""
         shim = BUILD / "tests/processes/libfailing_calls.so"
-        with System(APPLICATION, ("--for", "0.1 s"), wait=False, environment={
+        with System(TWO_UNITS, ("--for", "0.1 s"), wait=False, environment={
                 "LD_PRELOAD": str(shim), "CHIMERA_FAIL": f"{program} {n}{' once' if once else ''}",
                 "CHIMERA_FAILED": "FAILED", "ASAN_OPTIONS": QUIET + ":verify_asan_link_order=0"}) as system:
             await_that(lambda: system.process.poll() is not None, 40, f"an end of the run ({system.said()})")

@@ -10,25 +10,10 @@ import sys
 import time
 import unittest
 
-from system import System, await_that, processes_of
+from system import CHAIN, System, await_that, processes_of
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "3"))
 SEED = int(os.environ.get("CHIMERA_SEED", str(random.SystemRandom().randrange(1 << 32))))
-
-APPLICATION = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
-tasks:
-  a: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: x0, y: x1}, constants: {label: a}}
-  b: {component: t_recorder, rtpu: second, rate: 100 Hz, alias: {x: x1, y: x2}, constants: {label: b}}
-  c: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: x2, y: x3}, constants: {label: c}}
-operator: {x0: 0}
-configurations:
-  all: [a, b, c]
-start: all
-"""
 
 
 def locks_of(path):
@@ -71,7 +56,7 @@ class Kills(unittest.TestCase):
         random.seed(SEED)
         shared = set(os.listdir("/dev/shm"))
         for _ in range(ROUNDS):
-            with System(APPLICATION, wait=random.random() < 0.5) as system:
+            with System(CHAIN, wait=random.random() < 0.5) as system:
                 for _ in range(random.randrange(1, 8)):
                     time.sleep(random.random() * 0.1)
                     self.wave(system)
@@ -83,7 +68,7 @@ class Kills(unittest.TestCase):
         self.assertEqual({name for name in set(os.listdir("/dev/shm")) - shared if "chimera" in name}, set())
 
     def test_a_keeper_that_outlives_its_children_gathers_no_descriptors(self):
-        with System(APPLICATION) as system:
+        with System(CHAIN) as system:
             def descriptors():
                 return len(os.listdir(f"/proc/{system.process.pid}/fd"))
             before = descriptors()

@@ -16,8 +16,36 @@ CHIMERA = BUILD / "bin" / "chimera"
 # A sanitizer that catches the signal would hide how the process died.
 QUIET = "handle_segv=0:handle_abort=0:handle_sigbus=0:handle_sigfpe=0:handle_sigill=0:detect_leaks=0:use_sigaltstack=0"
 
-
 TOO_FAST = -32003
+
+# A task of its own in each of two units.
+TWO_UNITS = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  beside: {component: t_source, rtpu: second, rate: 100 Hz}
+configurations: {all: [steady, beside]}
+start: all
+"""
+
+# A chain over two units: device -> a -> b -> c -> device, so that the order of the end is known.
+CHAIN = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+tasks:
+  a: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: x0, y: x1}, constants: {label: a}}
+  b: {component: t_recorder, rtpu: second, rate: 100 Hz, alias: {x: x1, y: x2}, constants: {label: b}}
+  c: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: x2, y: x3}, constants: {label: c}}
+operator: {x0: 0}
+configurations:
+  all: [a, b, c]
+start: all
+"""
 
 
 class Refused(Exception):

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: a car of either kind on a level road, nothing pressed.
+#pragma once
+
+#include <string_view>
+
+#include "chimera/task/rig.h"
+
+namespace chimera::library {
+
+struct CarRig : Rig {
+  explicit CarRig(const char* component) : Rig(component) {
+    resource("road", "0:0");
+    if (std::string_view(component) == "electric_car") {
+      set("fm", 0.0);
+    } else {
+      set("gas", 0.0);
+      set("fb", 0.0);
+    }
+  }
+  /// False as soon as a cycle fails.
+  bool drive(double seconds) {
+    for (int i = 0; i < static_cast<int>(seconds * 100 + 0.5); ++i)
+      if (!cycle(milliseconds(10))) return false;
+    return true;
+  }
+  /// m/s.
+  double speed() { return get<double>("speed") / 3.6; }
+};
+
+}  // namespace chimera::library
