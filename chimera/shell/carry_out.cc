@@ -10,9 +10,6 @@
 #include "chimera/shell/terminal.h"
 
 namespace chimera::shell {
-namespace {
-
-}  // namespace
 
 int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   if (std::string_view(call.command->name) == "scope") return print(scope(session, call), out, err);

@@ -3,27 +3,12 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
+#include "chimera/config/values.h"
 #include "chimera/trial/record.h"
 
 namespace chimera::trial {
 namespace {
-
-double number_at(const std::byte* at, std::uint32_t type) {
-  const auto read = [at]<class T>(T value) {
-    std::memcpy(&value, at, sizeof value);
-    return static_cast<double>(value);
-  };
-  switch (type) {
-    case CHIMERA_BOOL: return read(std::uint8_t{});
-    case CHIMERA_INT32: return read(std::int32_t{});
-    case CHIMERA_INT64: return read(std::int64_t{});
-    case CHIMERA_FLOAT32: return read(float{});
-    case CHIMERA_FLOAT64: return read(double{});
-    default: return 0;
-  }
-}
 
 std::optional<std::string> why_unsound(double value, const PortSpec& spec, bool with_ranges) {
   if (std::isnan(value)) return "is NaN";
@@ -36,10 +21,10 @@ std::optional<std::string> why_unsound(double value, const PortSpec& spec, bool 
 
 std::optional<std::string> unsound_element(const std::byte* at, const PortSpec& spec, const PortDescriptor& port,
                                            bool with_ranges) {
-  if (spec.type != CHIMERA_STRUCT) return why_unsound(number_at(at, spec.type), spec, with_ranges);
+  if (spec.type != CHIMERA_STRUCT) return why_unsound(number_at(spec.type, at), spec, with_ranges);
   for (const FieldDescriptor& field : port.fields)
     for (std::uint32_t i = 0; i < field.count; ++i)
-      if (const auto why = why_unsound(number_at(at + field.offset + i * field.size, field.type), spec, false))
+      if (const auto why = why_unsound(number_at(field.type, at + field.offset + i * field.size), spec, false))
         return "." + field.name + " " + *why;
   return std::nullopt;
 }

@@ -154,7 +154,9 @@ TEST_F(GinvkinTest, RefusesWhatIsNotFiniteAndGoesOnAfterIt) {
   EXPECT_EQ(rig.refusal(), "dh: a number is not finite");
 }
 
-TEST_F(GinvkinTest, TheReferenceStandsWhileTheConfigurationIsIllegal) { EXPECT_TRUE(rig.stands_while_illegal("q_ref")); }
+TEST_F(GinvkinTest, TheReferenceStandsWhileTheConfigurationIsIllegal) {
+  EXPECT_TRUE(rig.stands_while_illegal("q_ref"));
+}
 
 }  // namespace
 }  // namespace chimera::library

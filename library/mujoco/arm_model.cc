@@ -5,20 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
+
+#include "library/mujoco/refusal.h"
 
 namespace chimera::library {
 namespace {
-
-template <class... Values>
-Error bad(const char* format, Values... values) {
-  Error error;
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  error.message = FixedString<400>(text);
-  return error;
-}
 
 const char* joint_name(const mjModel* m, int joint) {
   const char* name = mj_id2name(m, mjOBJ_JOINT, joint);
@@ -70,7 +62,7 @@ Result<Tip> find_tip(const mjModel* m, const mjData* d, const char* name) {
   if (const int site = mj_name2id(m, mjOBJ_SITE, name); site >= 0) {
     return Tip{m->site_bodyid[site], frame_at(d->site_xpos + 3 * site, d->site_xmat + 9 * site)};
   }
-  return bad("there is no body and no site '%s'", name);
+  return refusal("there is no body and no site '%s'", name);
 }
 
 /// What the motors on a joint can give together, either way.
@@ -116,18 +108,19 @@ Result<ArmModel> find_arm(const mjModel_* m, mjData_* d, const char* tip_name) {
   const Result<Tip> tip = find_tip(m, d, tip_name);
   if (!tip) return tip.error();
   const std::vector<int> joints = joints_to(m, tip->body);
-  if (joints.empty()) return bad("found no joint that turns a link of an arm");
-  if (joints.size() > kMostJoints) return bad("found %zu joints, expected at most %zu", joints.size(), kMostJoints);
+  if (joints.empty()) return refusal("found no joint that turns a link of an arm");
+  if (joints.size() > kMostJoints) return refusal("found %zu joints, expected at most %zu", joints.size(), kMostJoints);
   ArmModel arm;
   arm.ndof = joints.size();
   std::array<JointAxis, kMostJoints> axes;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const int j = joints[i];
-    if (m->jnt_type[j] != mjJNT_HINGE) return bad("joint '%s' is no hinge: an arm has hinges only", joint_name(m, j));
+    if (m->jnt_type[j] != mjJNT_HINGE)
+      return refusal("joint '%s' is no hinge: an arm has hinges only", joint_name(m, j));
     describe_joint(m, j, i, arm);
     // In MJCF the compiler refuses it; in URDF it would take the joint for one without limits.
     if (m->jnt_range[2 * j] > m->jnt_range[2 * j + 1]) {
-      return bad("the lower limit of joint '%s' is above its upper one", joint_name(m, j));
+      return refusal("the lower limit of joint '%s' is above its upper one", joint_name(m, j));
     }
     std::copy_n(d->xanchor + 3 * j, 3, axes[i].point.at);
     std::copy_n(d->xaxis + 3 * j, 3, axes[i].direction.at);

@@ -10,6 +10,7 @@
 
 #include "library/mujoco/model_numbers.h"
 #include "library/mujoco/mujoco_guard.h"
+#include "library/mujoco/refusal.h"
 
 namespace chimera::library {
 namespace {
@@ -18,15 +19,6 @@ namespace {
 // as much.
 constexpr double kLongestSubStep = 0.5e-3;
 constexpr double kHoldRate = 20;  // 1/s: how fast what moves is damped while the configuration is illegal
-
-template <class... Values>
-Error bad(const char* format, Values... values) {
-  Error error;
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  error.message = FixedString<400>(text);
-  return error;
-}
 
 /// One line of what MuJoCo says in several.
 void join_lines(char* text) {
@@ -48,7 +40,7 @@ void SimulatedArm::DataRelease::operator()(mjData_* data) const { mj_deleteData(
 Result<void> SimulatedArm::load(const char* path, const char* tip, const mjVFS_* files) {
   install_mujoco_handlers();
   if (files == nullptr && std::ifstream(path).peek() == std::ifstream::traits_type::eof()) {
-    return bad("%s: cannot be read, or there is nothing in it", path);
+    return refusal("%s: cannot be read, or there is nothing in it", path);
   }
   if (files == nullptr) {
     if (Result<void> sound = check_model_numbers(path); !sound) return sound;
@@ -57,13 +49,13 @@ Result<void> SimulatedArm::load(const char* path, const char* tip, const mjVFS_*
   state_.reset();
   model_.reset(mj_loadXML(path, files, why, sizeof why));
   join_lines(why);
-  if (!model_) return bad("%s: %.300s", path, why);
+  if (!model_) return refusal("%s: %.300s", path, why);
   mjModel* m = model_.get();
   m->opt.disableflags |= mjDSBL_ACTUATION;
   longest_sub_step_ = m->opt.timestep > 0 ? std::min(m->opt.timestep, kLongestSubStep) : kLongestSubStep;
   state_.reset(mj_makeData(m));
   const Result<ArmModel> arm = find_arm(m, state_.get(), tip);
-  if (!arm) return bad("%s: %s", path, arm.error().message.c_str());
+  if (!arm) return refusal("%s: %s", path, arm.error().message.c_str());
   arm_ = *arm;
   const auto numbers = static_cast<std::size_t>(m->nv);
   wanted_ = std::make_unique<double[]>(numbers);
@@ -88,10 +80,10 @@ void SimulatedArm::set_hold_damping(std::span<const double> damping) noexcept {
 }
 
 Result<void> SimulatedArm::place(std::span<const double> q) {
-  if (q.size() != arm_.ndof) return bad("a pose of %zu joints, but the arm has %zu", q.size(), arm_.ndof);
+  if (q.size() != arm_.ndof) return refusal("a pose of %zu joints, but the arm has %zu", q.size(), arm_.ndof);
   for (std::size_t i = 0; i < arm_.ndof; ++i) {
     if (!within(q[i], arm_.low[i], arm_.high[i])) {
-      return bad("joint %zu at %.4g rad is outside its limits %.4g to %.4g rad", i + 1, q[i], arm_.low[i],
+      return refusal("joint %zu at %.4g rad is outside its limits %.4g to %.4g rad", i + 1, q[i], arm_.low[i],
                  arm_.high[i]);
     }
   }

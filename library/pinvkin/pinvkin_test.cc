@@ -81,7 +81,9 @@ TEST_F(PinvkinTest, RefusesAPoseThatIsNoneAndGoesOnAfterIt) {
   EXPECT_EQ(rig.on().text, "q is not finite: no solution is near");
 }
 
-TEST_F(PinvkinTest, TheReferenceStandsWhileTheConfigurationIsIllegal) { EXPECT_TRUE(rig.stands_while_illegal("q_ref")); }
+TEST_F(PinvkinTest, TheReferenceStandsWhileTheConfigurationIsIllegal) {
+  EXPECT_TRUE(rig.stands_while_illegal("q_ref"));
+}
 
 }  // namespace
 }  // namespace chimera::library

@@ -4,10 +4,10 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 
+#include "library/mujoco/refusal.h"
 #include "puma560_mjcf.h"
 
 namespace chimera::library {
@@ -16,15 +16,6 @@ namespace {
 // Damping of the drives while the configuration is illegal (N.m.s/rad): 20/s times each joint's inertia or so.
 constexpr PumaVector kHoldDamping{80, 80, 20, 4, 4, 4};
 constexpr double kPayloadRadius = 0.05;
-
-template <class... Values>
-Error bad(const char* format, Values... values) {
-  Error error;
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  error.message = FixedString<400>(text);
-  return error;
-}
 
 struct FilesRelease {
   void operator()(mjVFS* files) const {
@@ -52,24 +43,25 @@ Result<void> PumaArm::read_model(const char* mjcf_path) {
   if (Result<void> read = arm_.load(mjcf_path, "", files.get()); !read) return read;
   const mjModel* m = arm_.model();
   if (m->nq != 6 || m->nv != 6 || m->nu != 6) {
-    return bad("%s: found %d joints and %d motors, expected 6 and 6", mjcf_path, static_cast<int>(m->nv),
+    return refusal("%s: found %d joints and %d motors, expected 6 and 6", mjcf_path, static_cast<int>(m->nv),
                static_cast<int>(m->nu));
   }
   for (const char* body : {"link3", "link6", "payload"}) {
-    if (mj_name2id(m, mjOBJ_BODY, body) < 0) return bad("%s: there is no body '%s'", mjcf_path, body);
+    if (mj_name2id(m, mjOBJ_BODY, body) < 0) return refusal("%s: there is no body '%s'", mjcf_path, body);
   }
   const int inertia = mj_name2id(m, mjOBJ_NUMERIC, "link3_inertia");
   if (inertia < 0 || m->numeric_size[inertia] != 3) {
-    return bad("%s: expected three numbers 'link3_inertia' under <custom>", mjcf_path);
+    return refusal("%s: expected three numbers 'link3_inertia' under <custom>", mjcf_path);
   }
   return arm_.load(mjcf_path, "payload", files.get());  // the tool is the flange
 }
 
 Result<void> PumaArm::load(const char* mjcf_path, const PumaSettings& settings) {
   if (!within(settings.payload_mass, 0, 10)) {
-    return bad("payload_mass is %g kg, expected 0 to 10 kg", settings.payload_mass);
+    return refusal("payload_mass is %g kg, expected 0 to 10 kg", settings.payload_mass);
   }
-  if (!within(settings.coulomb_share, 0, 1)) return bad("coulomb_share is %g, expected 0 to 1", settings.coulomb_share);
+  if (!within(settings.coulomb_share, 0, 1))
+    return refusal("coulomb_share is %g, expected 0 to 1", settings.coulomb_share);
   if (Result<void> read = read_model(mjcf_path); !read) return read;
   apply(settings);
   return place(PumaVector{});

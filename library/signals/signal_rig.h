@@ -2,6 +2,10 @@
 // For the tests of signal components: a rig whose signals have one element until said.
 #pragma once
 
+#include <cmath>
+#include <complex>
+#include <numbers>
+
 #include "chimera/task/rig.h"
 
 namespace chimera {
@@ -13,6 +17,17 @@ struct SignalRig : Rig {
   double step(double x, Nanoseconds dt = milliseconds(1)) {
     set("x", x);
     return cycle(dt) ? get<double>("y") : std::nan("");
+  }
+  /// Of a linear filter at 1 kHz: by correlation over whole periods, once the transient has gone. `frequency` in whole
+  /// quarters of a hertz.
+  double gain(double frequency) {
+    constexpr int kSettle = 4000, kSamples = 4000;
+    std::complex<double> sum = 0;
+    for (int k = 0; k < kSettle + kSamples; ++k) {
+      const double turn = 2 * std::numbers::pi * frequency * k * 1e-3, y = step(std::sin(turn));
+      if (k >= kSettle) sum += y * std::polar(1.0, turn);
+    }
+    return std::abs(sum) * 2 / kSamples;
   }
 };
 

@@ -33,6 +33,29 @@ void compare(const std::string& component, const Plot& plot, const std::string& 
   EXPECT_TRUE(committed.str() == drawn) << path << " is out of date: UPDATE=1 draws it anew";
 }
 
+Plot titled(const std::string& title, const std::string& note) {
+  Plot plot;
+  plot.title = title;
+  plot.note = note;
+  return plot;
+}
+
+/// What `signal(t)` is and what becomes of it, every `ms` milliseconds until so many seconds.
+template <class Signal>
+std::vector<Curve> in_and_out(SignalRig& rig, double until, std::int64_t ms, Signal signal) {
+  rig.set("x", 0.0);
+  EXPECT_TRUE(rig.init());
+  EXPECT_TRUE(rig.on());
+  Curve in{"x", "1", {}}, out{"y", "1", {}};
+  for (double t = 0; t < until; t += static_cast<double>(ms) * 1e-3) {
+    in.points.push_back({t, signal(t)});
+    out.points.push_back({t, rig.step(signal(t), milliseconds(ms))});
+  }
+  return {in, out};
+}
+
+double sine(double hz, double t) { return std::sin(2 * std::numbers::pi * hz * t); }
+
 /// The answer of a filter to 1 from 10 ms on.
 Curve step_of(SignalRig& rig, const std::string& name, double until) {
   Curve curve{name, "1", {}};
@@ -98,8 +121,7 @@ TEST(Responses, NotchOverFrequency) {
 }
 
 TEST(Responses, LowpassToAStep) {
-  Plot plot{.title = "lowpass: a step at 10 ms", .note = "cutoff 20 Hz at 1 kHz", .curves = {}, .gaps = {}, .mark = {},
-            .level_unit = {}};
+  Plot plot = titled("lowpass: a step at 10 ms", "cutoff 20 Hz at 1 kHz");
   for (const std::int32_t order : {1, 2, 4, 8}) {
     SignalRig rig("lowpass");
     rig.set("cutoff", 20.0);
@@ -110,64 +132,34 @@ TEST(Responses, LowpassToAStep) {
 }
 
 TEST(Responses, NotchToAToneAndAStep) {
-  Plot plot{.title = "notch: a step of 1 with a tone of 50 Hz", .note = "center 50 Hz, width 10 Hz at 1 kHz",
-            .curves = {}, .gaps = {}, .mark = {}, .level_unit = {}};
+  Plot plot = titled("notch: a step of 1 with a tone of 50 Hz", "center 50 Hz, width 10 Hz at 1 kHz");
   SignalRig rig("notch");
   rig.set("center", 50.0);
   rig.set("width", 10.0);
-  rig.set("x", 0.0);
-  ASSERT_TRUE(rig.init());
-  ASSERT_TRUE(rig.on());
-  Curve in{"x", "1", {}}, out{"y", "1", {}};
-  for (double t = 0; t < 0.3; t += 1e-3) {
-    const double x = (t < 0.15 ? 0 : 1) + 0.5 * std::sin(2 * std::numbers::pi * 50 * t);
-    in.points.push_back({t, x});
-    out.points.push_back({t, rig.step(x)});
-  }
-  plot.curves = {in, out};
+  plot.curves = in_and_out(rig, 0.3, 1, [](double t) { return (t < 0.15 ? 0 : 1) + 0.5 * sine(50, t); });
   compare("notch", plot);
 }
 
-TEST(Responses, DeadbandAndRateLimitToASine) {
-  for (const char* component : {"deadband", "rate_limit"}) {
-    SignalRig rig(component);
-    const bool is_deadband = std::string(component) == "deadband";
-    if (is_deadband) rig.set("width", 0.3), rig.set("center", 0.0);
-    else rig.set("rise", 2.0), rig.set("fall", 6.0);
-    rig.set("x", 0.0);
-    ASSERT_TRUE(rig.init());
-    ASSERT_TRUE(rig.on());
-    Curve in{"x", "1", {}}, out{"y", "1", {}};
-    for (double t = 0; t < 2; t += 5e-3) {
-      const double x = std::sin(2 * std::numbers::pi * t);
-      in.points.push_back({t, x});
-      out.points.push_back({t, rig.step(x, milliseconds(5))});
-    }
-    compare(component, {.title = std::string(component) + ": a sine of 1 Hz",
-                        .note = is_deadband ? "width 0.3" : "rise 2 /s, fall 6 /s", .curves = {in, out}, .gaps = {},
-                        .mark = {}, .level_unit = {}});
+TEST(Responses, DeadbandRateLimitAndLimitToASine) {
+  struct Shaper {
+    const char* component;
+    const char* note;
+    std::vector<std::pair<const char*, double>> constants;
+  };
+  for (const Shaper& shaper : {Shaper{"deadband", "width 0.3", {{"width", 0.3}, {"center", 0.0}}},
+                               Shaper{"rate_limit", "rise 2 /s, fall 6 /s", {{"rise", 2.0}, {"fall", 6.0}}},
+                               Shaper{"limit", "low -0.4, high 0.8", {{"low", -0.4}, {"high", 0.8}}}}) {
+    Plot plot = titled(std::string(shaper.component) + ": a sine of 1 Hz", shaper.note);
+    SignalRig rig(shaper.component);
+    for (const auto& [name, value] : shaper.constants) rig.set(name, value);
+    plot.curves = in_and_out(rig, 2, 5, [](double t) { return sine(1, t); });
+    compare(shaper.component, plot);
   }
-}
-
-TEST(Responses, LimitToASine) {
-  SignalRig rig("limit");
-  rig.set("low", -0.4), rig.set("high", 0.8), rig.set("x", 0.0);
-  ASSERT_TRUE(rig.init());
-  ASSERT_TRUE(rig.on());
-  Curve in{"x", "1", {}}, out{"y", "1", {}};
-  for (double t = 0; t < 2; t += 5e-3) {
-    const double x = std::sin(2 * std::numbers::pi * t);
-    in.points.push_back({t, x});
-    out.points.push_back({t, rig.step(x, milliseconds(5))});
-  }
-  compare("limit", {.title = "limit: a sine of 1 Hz", .note = "low -0.4, high 0.8", .curves = {in, out}, .gaps = {},
-                    .mark = {}, .level_unit = {}});
 }
 
 TEST(Responses, SignalGeneratorInItsSevenWaves) {
-  Plot plot{.title = "signal_generator: its seven waves",
-            .note = "1 Hz, amplitude 1; the chirp from 1 Hz to 5 Hz in 3 s; delay 0.25 s",
-            .curves = {}, .gaps = {}, .mark = {}, .level_unit = {}};
+  Plot plot = titled("signal_generator: its seven waves",
+                     "1 Hz, amplitude 1; the chirp from 1 Hz to 5 Hz in 3 s; delay 0.25 s");
   constexpr const char* kWaves[] = {"sine", "triangle", "square", "sawtooth", "chirp", "step", "noise"};
   for (int i = 0; i < 7; ++i) {
     SignalRig rig("signal_generator");
