@@ -160,7 +160,7 @@ void limit(Model& model, const SetModel& set, std::uint32_t cpu) {
     all_give_way = all_give_way && gives_way(task);
     if (heaviest == model.tasks.size() || load(task) > load(model.tasks[heaviest])) heaviest = index;
   }
-  if (sum <= kMaxUtilisation) return;
+  if (!is_beyond(sum)) return;
   const TaskModel& task = model.tasks[heaviest];
   char found[64];
   std::snprintf(found, sizeof found, "%.3f", sum);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "chimera/config/model.h"
+#include "chimera/schedule/utilisation.h"
 
 namespace chimera {
 

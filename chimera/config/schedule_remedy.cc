@@ -19,7 +19,7 @@ double share(const Work& w) { return static_cast<double>(w.time.count) / static_
 std::uint32_t cpu_of(const SetWorks& set, std::size_t i) { return set.uses[set.works[i].rtpu].cpu; }
 
 bool is_enough(const CpuVerdict& verdict) {
-  return verdict.fits() && verdict.utilisation <= kMaxUtilisation + 1e-9;
+  return verdict.fits() && !is_beyond(verdict.utilisation);
 }
 
 /// With a period longer by `factor`; a deadline that is the period stays it.
@@ -116,7 +116,7 @@ class Search {
           return Remedy{.kind = Remedy::Kind::kProcessor, .task = task, .rtpu = r};
     for (const std::size_t task : tasks) {
       const Work& w = set_.works[task];
-      if (w.time <= w.deadline && share(w) <= kMaxUtilisation &&
+      if (w.time <= w.deadline && !is_beyond(share(w)) &&
           would_fit(task, [](Work& without) { without.time = {}; }))
         return Remedy{.kind = Remedy::Kind::kNewProcessor, .task = task};
     }

@@ -163,7 +163,7 @@ bool all_fit(const Parts& parts) {
 
 }  // namespace
 
-bool CpuSchedule::fits() const noexcept { return verdict.fits() && verdict.utilisation <= kMaxUtilisation + 1e-9; }
+bool CpuSchedule::fits() const noexcept { return verdict.fits() && !is_beyond(verdict.utilisation); }
 bool SetSchedule::fits() const noexcept { return all_fit(cpus); }
 bool ScheduleReport::fits() const noexcept { return all_fit(sets); }
 

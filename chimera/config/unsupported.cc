@@ -41,7 +41,7 @@ class Refusals {
     if (!is_virtual() && spec.policy == Policy::kLlf)
       refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time",
              "use muf-laxity, or run --virtual");
-    if (!is_virtual() && configuration_.utilisation()[index] > kMaxUtilisation)
+    if (!is_virtual() && is_beyond(configuration_.utilisation()[index]))
       refuse(configuration_.tasks()[0].at, "budgets above 0.93 of a CPU in real time", "run --virtual");
     if (executor_ == Executor::kProcesses) return;
     if (executor_ == Executor::kOneProcess) return one_loop(index);
@@ -57,7 +57,7 @@ class Refusals {
   void one_loop(std::size_t index) {
     double sum = 0;
     for (const double utilisation : configuration_.utilisation()) sum += utilisation;
-    if (index == 0 && configuration_.rtpus().size() > 1 && sum > kMaxUtilisation)
+    if (index == 0 && configuration_.rtpus().size() > 1 && is_beyond(sum))
       refuse(configuration_.tasks()[0].at, "budgets of all rtpus together above 0.93 of one CPU in one process",
              "run without --isolation none");
   }

@@ -73,7 +73,7 @@ Result<void> admit_below(const Configuration& configuration, double share) {
     double load = 0;
     for (std::size_t r = 0; r < rtpus.size(); ++r)
       if (rtpus[r].cpu == rtpu.cpu) load += configuration.utilisation()[r];
-    if (load <= limit + 1e-9) continue;
+    if (!is_beyond(load, limit)) continue;
     char text[300];
     std::snprintf(text, sizeof text,
                   "the budgets take %.3f of the processor; of the %.2f that the kernel leaves to real-time threads at "

@@ -35,7 +35,7 @@ namespace {
 
 constexpr int kCouldNotStart = 1, kMethodHangs = 3;
 constexpr int kSuperviseEveryMs = 50;
-constexpr std::size_t kStackBytes = 256 * 1024;  // design section 6: locked whole, and given back whole when it dies
+constexpr std::size_t kStackBytes = 256 * 1024;  // locked whole, and given back whole when it dies
 
 // Of all threads that are started from here on.
 void limit_stacks() noexcept {

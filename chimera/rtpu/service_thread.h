@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The SCHED_OTHER thread of a real-time unit that runs init and kill (design section 6, "Who runs what").
+// The SCHED_OTHER thread of a real-time unit that runs init and kill.
 #pragma once
 
 #include <atomic>

@@ -22,6 +22,7 @@ struct GivenSpec {
   std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};  ///< as PortSpec::listed
 };
 
+/// A real-time processing unit.
 struct RtpuSpec {
   std::string_view name;
   std::uint32_t cpu = 0;

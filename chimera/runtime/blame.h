@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is to blame for a missed deadline, by the execution time that jobs of a context used (design section 6): the task
-// that went furthest beyond its budget (one without: its period) since the release before the one that was missed. If
-// none went beyond and the processor was away for 1 ms and more, it is nobody: real-time threads were throttled, or the
-// kernel or another process had it. Else it is whoever came nearest.
+// Who is to blame for a missed deadline, by the execution time that jobs of a context used: the task that went furthest
+// beyond its budget (one without: its period) since the release before the one that was missed. If none went beyond and
+// the processor was away for 1 ms and more, it is nobody: real-time threads were throttled, or the kernel or another
+// process had it. Else it is whoever came nearest.
 #pragma once
 
 #include <algorithm>

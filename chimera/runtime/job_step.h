@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one job step: transfer, method, check, publication. Every executor runs a cycle through these and adds
-// only when it is released and how it waits (design section 3, runtime).
+// only when it is released and how it waits.
 //
 //   begin_cycle   [sync] >in-var cycle             (virtual time: at first dispatch)
 //   end_cycle     out-var> | error ...             (virtual time: at modelled completion)

@@ -6,7 +6,7 @@
 //   release_due: releases                 -> ready queue; what is dropped is counted
 //   may_start: last chance to say no      -> begin: inputs and body -> end: failures, publication, profile
 //
-// The three failures of time (Stewart & Khosla; design section 6) and what they see:
+// The three failures of time (Stewart & Khosla; docs/decisions/0003-releases-and-late-jobs.md) and what they see:
 //   missed deadline    the job ended after its deadline                                      on_miss
 //   budget exceeded    it used more execution time than its budget                           on_overrun
 //   minimum refused    at its start less than `min` was left before the deadline             on_miss

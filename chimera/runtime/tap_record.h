@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the runtime tells about itself while it runs: fixed-size records in a bounded ring (design section 6).
+// What the runtime tells about itself while it runs: fixed-size records in a bounded ring.
 // Traces, timelines, logs and the scope read these and nothing else.
 #pragma once
 

@@ -93,7 +93,6 @@ Result<void> TaskMemory::plan_port(const PortSpec& port) {
       if (outputs_.size() == 64) return misfit(*spec_, "more than 64 out-vars, at port", decl.name);
       if (!port.value.empty()) initial_valid_ |= std::uint64_t{1} << outputs_.size();
       outputs_.push_back({nullptr, &port, 0, port.max_bytes()});
-      variables_.push_back({port.variable, port.element_bytes, port.max_count()});
       break;
     case CHIMERA_IN_CONST:
     case CHIMERA_OUT_CONST:

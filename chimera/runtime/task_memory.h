@@ -28,8 +28,6 @@ class TaskMemory {
   /// (a descriptor of another build): names task and port.
   static Result<TaskMemory> create(const TaskSpec& spec, const chimera_component& component);
 
-  /// The group of the task's out-vars, for the table's layout. Valid while this lives and does not move.
-  GroupSpec group_spec() const noexcept { return {spec_->name, variables_}; }
   /// Gives the task its places in the table: two groups, used in turn by its incarnations, with the never-written
   /// fill and initial values published in both. `places` are those of the first one's variables.
   void place(std::span<std::byte> first, std::span<std::byte> second, std::uint32_t payload_bytes,
@@ -58,8 +56,6 @@ class TaskMemory {
   bool is_planned() const noexcept { return component_ != nullptr; }
   std::span<Input> inputs() noexcept { return inputs_; }
   std::span<const ConstantPort> constants() const noexcept { return constants_; }
-  /// The variables behind inputs(), in the same order.
-  std::span<const PortSpec* const> input_specs() const noexcept { return input_specs_; }
   std::uint64_t initial_valid() const noexcept { return initial_valid_; }
   /// Where output `i` lies in the payload, what was specified for it, and its live half (nullptr: not constructed).
   std::uint32_t output_offset(std::size_t i) const noexcept { return outputs_[i].offset; }
@@ -82,14 +78,13 @@ class TaskMemory {
   AlignedBytes state_;
   AlignedBytes constant_memory_;
   std::span<std::byte> groups_[2];
-  std::vector<VariableSpec> variables_;  ///< of the group: the out-vars
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t constant_bytes_ = 0;
   std::uint32_t incarnation_ = 0;
   std::uint64_t initial_valid_ = 0;
   bool is_constructed_ = false;
   std::vector<Input> inputs_;
-  std::vector<const PortSpec*> input_specs_;
+  std::vector<const PortSpec*> input_specs_;  ///< of inputs_, in the same order
   std::vector<Output> outputs_;
   std::vector<std::byte> fill_;  ///< payload of a group at spawn: initial values, else the never-written fill
   std::vector<ConstantPort> constants_;

@@ -58,6 +58,7 @@ class MethodGate {
  public:
   /// From here to close() the task's method runs, and what the edge may touch may change. Context: edge.
   virtual void open(TaskId task) noexcept = 0;
+  /// It has ended. Context: edge.
   virtual void close(TaskId task) noexcept = 0;
 
  protected:
@@ -76,6 +77,7 @@ struct ContextPlace {
   bool preemptive = false;         ///< tasks preempt each other: each reads through copies of its own
 };
 
+/// Everything about the tasks of one context but time. One thread at a time, but for serve().
 class TaskSet {
  public:
   /// Plans memory for every task and binds what can be bound. `components[i]` runs task i (not looked at for tasks of
@@ -156,6 +158,7 @@ class TaskSet {
   /// The ON set over all contexts obeys the two set equations, as far as this context has looked. Context: cycle.
   bool is_on_set_legal() const noexcept { return on_set_legal_; }
   bool is_flag_raised() const noexcept { return flag_raised_; }
+  /// Raises or lowers the part of the flag that does not follow from the ON set. Context: edge.
   void raise_flag(bool up) noexcept { flag_raised_ = up; }
   /// To be told by the executor when a cycle left the ON state by itself. Context: edge.
   void on_set_changed() noexcept;

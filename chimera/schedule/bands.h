@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bands of SCHED_FIFO priorities: real-time units that share a CPU get one band each, ordered by their most critical
-// task, ties by the order of the description (design section 6).
+// task, ties by the order of the description.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Decides what happens in a subsystem: a step function (event, time) -> actions without any call to the system, driven
-// on Linux by chimera/manager and in virtual time by simulated processes. docs/formats/processes.md, design section 7.
+// on Linux by chimera/manager and in virtual time by simulated processes. docs/formats/processes.md.
 //
 // What it knows of the processes it is told by events; what it must not forget it asks the driver to remember, and a
 // new Subsystem given that memory goes on where the old one died. The driver carries out actions in order.

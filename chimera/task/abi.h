@@ -58,7 +58,7 @@ enum {
   CHIMERA_METHODS = 9
 };
 
-/* Signals (design section 7). WAKEUP comes from the timer or the event source; sent to a task behind a server it is
+/* Signals. WAKEUP comes from the timer or the event source; sent to a task behind a server it is
    one event for it, and no other task can be sent it. */
 enum {
   CHIMERA_SIGNAL_SPAWN = 0,

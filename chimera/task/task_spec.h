@@ -45,7 +45,7 @@ struct PortSpec {
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }
 };
 
-/// What happens when a cycle ends after its deadline (design section 6).
+/// The reactions to a failure of time; chimera/runtime/release.h says what each does.
 enum class OnMiss : std::uint8_t { kContinue, kHold, kSkip, kAbort, kDemote, kError, kSwitch, kFlag, kStop };
 
 /// One task. Times are zero or positive; period > 0.

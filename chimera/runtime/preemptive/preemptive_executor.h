@@ -87,8 +87,6 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   std::span<const RefusedSignal> refused() const noexcept { return releases_.refused(); }
   /// Context: between runs.
   ProcessorCounts counts() const noexcept;
-  /// False: the system refused the levels, and threads run as it likes. Context: any.
-  bool has_levels() const noexcept { return has_levels_; }
 
  private:
   // Edges (edges.cc).
@@ -192,7 +190,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   std::thread supervisor_;
   pid_t edge_thread_ = 0;
   JobThread* on_processor_ = nullptr;    // the most urgent job at the last change of the list
-  bool has_levels_ = false;
+  bool has_levels_ = false;              // else the system refused them, and threads run as it likes
   bool is_paused_ = true;                // no job is released
   Nanoseconds until_ = kNever;           // nor from here on
   std::atomic<bool> quits_{false};
