@@ -7,7 +7,8 @@ namespace chimera {
 
 Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, ModelledClock& clock,
                        const PreemptiveOptions& options)
-    : releases_(releases), tasks_(tasks), clock_(clock), options_(options), active_(tasks.size()) {
+    : releases_(releases), tasks_(tasks), clock_(clock), options_(options), active_(tasks.size()),
+      demoted_(tasks.size()) {
   const Policy policy = releases.queue().policy();
   by_laxity_ = policy == Policy::kLlf || policy == Policy::kMufLaxity;
   for (std::uint32_t i = 0; i < tasks.size(); ++i) {
@@ -15,7 +16,6 @@ Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, Mode
     else if (tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back(i);
     if (tasks[i].on_miss == OnMiss::kDemote) demoters_.push_back(i);
   }
-  demoted_.reserve(tasks.size());
 }
 
 RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
@@ -109,7 +109,7 @@ void Preemptive::complete() noexcept {
 
 void Preemptive::end(Active& a, Nanoseconds now) noexcept {
   a.has_begun = false;
-  if (a.is_demoted) demoted_.erase(std::find(demoted_.begin(), demoted_.end(), a.job.task));
+  if (a.is_demoted) (void)std::remove(demoted_.begin(), demoted_.begin() + n_demoted_--, a.job.task);
   a.is_demoted = false;
   releases_.queue().finish(a.job.task);
   forget(a.job.task);
@@ -168,7 +168,7 @@ void Preemptive::demote(TaskId task) noexcept {
     (void)releases_.queue().remove(task, job);
   }
   active_[task.index].is_demoted = true;
-  demoted_.push_back(task);
+  demoted_[static_cast<std::size_t>(n_demoted_++)] = task;
   ++releases_.task(task).profile.demoted;
 }
 
@@ -194,8 +194,8 @@ bool Preemptive::dispatch(Nanoseconds now) noexcept {
     complete();
     if (!running_.is_valid()) return true;
   }
-  if (!running_.is_valid() && !demoted_.empty()) {
-    running_ = demoted_.front();
+  if (!running_.is_valid() && n_demoted_ > 0) {
+    running_ = demoted_[0];
     slice_start_ = mark_ = now;
   }
   return false;

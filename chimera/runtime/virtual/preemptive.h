@@ -93,6 +93,7 @@ class Preemptive {
   std::vector<Served> served_;
   std::vector<std::uint32_t> demoters_;    // tasks with the reaction demote to a missed deadline
   std::vector<TaskId> demoted_;            // their jobs run when nobody else does, the first until it ends
+  std::ptrdiff_t n_demoted_ = 0;
   TaskId running_;
   Nanoseconds slice_start_, mark_;  // of the running job: start of its slice, up to where its time is counted
   bool by_laxity_;
