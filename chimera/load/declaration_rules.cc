@@ -249,6 +249,8 @@ Verdict component_rules(const Descriptor& descriptor) {
     return "default rate " + std::to_string(rate) + " Hz is not from 1/3600 to 1000000 Hz";
   }
   if (!descriptor.methods[CHIMERA_CYCLE]) return "has no cycle method";
+  if (descriptor.event_source && !descriptor.is_aperiodic())
+    return "has an event source but no sync to take its events";
   if (!is_utf8(descriptor.doc) || !is_utf8(descriptor.source)) return "a text that is no UTF-8";
   return {};
 }

@@ -104,6 +104,7 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   sample.component.struct_size = offsetof(chimera_component, background);
   EXPECT_FALSE(sample.described().value().background);  // what stands there is none of its
   sample.component.event_source = [](void*) -> std::int32_t { return 3; };
+  sample.component.methods[CHIMERA_SYNC] = nothing;
   sample.component.struct_size = offsetof(chimera_component, event_source);
   EXPECT_TRUE(sample.described().value().background);
   EXPECT_FALSE(sample.described().value().event_source);
@@ -148,6 +149,12 @@ TEST(Describe, AnOrderStandsBetweenTwoConstantsOfOneKind) {
                               "one type, unit and shape");
   sample.component.n_orders = 65;
   EXPECT_EQ(sample.refusal(), "component tderiv: has more orders than ports");
+}
+
+TEST(Describe, RefusesAnEventSourceWhoseEventsNobodyTakes) {
+  Sample sample;
+  sample.component.event_source = [](void*) -> std::int32_t { return 3; };
+  EXPECT_EQ(sample.refusal(), "component tderiv: has an event source but no sync to take its events");
 }
 
 TEST(Describe, RefusesSizesThatDoNotFitTheType) {

@@ -19,7 +19,12 @@
  * One module per source file. Methods: tballInit Reinit On Cycle Sync Off Kill Error Clear, each int f(tballLocal_t*);
  * only Cycle must be written; Term is another name of Kill. PBO_MODULE declares them all, so a method of another type
  * does not compile, and a function that is not static and no method of ours is an error of the build.
- * They return PBO_OK, PBO_FAULT("text"), Sync also PBO_NO_EVENT, Cycle also PBO_ABORTED; anything else is a fault.
+ * They return PBO_OK, PBO_FAULT("text"), Sync also PBO_NO_EVENT, Cycle also PBO_ABORTED and PBO_PARTIAL; anything else
+ * is a fault.
+ *
+ * With Sync the component is aperiodic: one cycle for each event. Events are rings of its task's doorbell
+ * (PBO_RING("task") in another one), and where int tballEventSource(tballLocal_t*) is written, with Sync, also that the
+ * descriptor it returns is readable (below 0: there is none). It is asked after Init and calls nothing of this header.
  *
  * The framework allocates the local state and zeroes it. The papers' Init returns it as (int)local, which does not
  * survive 64 bits: write `return PBO_LOCAL(local);`, which says ok unless local is NULL.
@@ -148,7 +153,8 @@ typedef struct pboPort_t {
 #define PBO_DROPPED (PBO_CALL->dropped)         /* releases dropped since the last completed cycle */
 #define PBO_ILLEGAL (PBO_CALL->illegal)         /* the illegal-configuration flag */
 #define PBO_EXPIRED (PBO_CALL->host->expired(PBO_CALL->context))
-#define PBO_SIGNAL(signal, task) (PBO_CALL->host->signal(PBO_CALL->context, signal, task))
+#define PBO_SIGNAL(which, task) (PBO_CALL->host->signal(PBO_CALL->context, which, task))
+#define PBO_RING(task) PBO_SIGNAL(CHIMERA_SIGNAL_WAKEUP, task) /* one event for a task behind a server */
 #define PBO_SPEND(ns) (PBO_CALL->host->spend(PBO_CALL->context, ns))
 /* Notes the text of a fault and is PBO_ERROR: return PBO_FAULT("the device does not answer"); */
 #define PBO_FAULT(message) pboFault(PBO_CALL, message)
@@ -173,7 +179,7 @@ static inline int pboFault(const chimera_call* call, const char* text) {
 static inline int32_t pboJudge(uint32_t method, int status, const chimera_call* call) {
   if (status == PBO_OK) return status;
   if (status == PBO_NO_EVENT && method == CHIMERA_SYNC) return status;
-  if (status == PBO_ABORTED && method == CHIMERA_CYCLE) return status;
+  if ((status == PBO_ABORTED || status == PBO_PARTIAL) && method == CHIMERA_CYCLE) return status;
   call->fault->code = status;
   if (call->fault->text[0] == '\0') pboFault(call, "the method returned neither PBO_OK nor a fault with a text");
   return CHIMERA_FAULT;
@@ -225,6 +231,9 @@ static inline void pboDestroy(void* state) { (void)state; }
     m##Background(&((m##State_t*)state)->local);                                            \
     return CHIMERA_OK;                                                                      \
   }
+#define PBO_EVENT_SOURCE(m)                                                                 \
+  int m##EventSource(m##Local_t* local) __attribute__((weak, visibility("hidden")));        \
+  static int32_t m##RunEventSource(void* state) { return m##EventSource(&((m##State_t*)state)->local); }
 #define PBO_TAKE(m, Name, METHOD) \
   if (m##Name != NULL) m##Component.methods[METHOD] = m##Run##Name;
 
@@ -243,6 +252,7 @@ static inline void pboDestroy(void* state) { (void)state; }
   PBO_OPTIONAL(m, Error, CHIMERA_ERROR)                                                             \
   PBO_OPTIONAL(m, Clear, CHIMERA_CLEAR)                                                             \
   PBO_BACKGROUND(m)                                                                                 \
+  PBO_EVENT_SOURCE(m)                                                                               \
   static chimera_port_decl m##Declared[sizeof m##PortList / sizeof m##PortList[0]];                 \
   static chimera_component m##Component = {.name = #m, __VA_ARGS__};                                \
   static const chimera_component* m##Declare(void) {                                                \
@@ -269,6 +279,7 @@ static inline void pboDestroy(void* state) { (void)state; }
     PBO_TAKE(m, Error, CHIMERA_ERROR)                                                               \
     PBO_TAKE(m, Clear, CHIMERA_CLEAR)                                                               \
     if (m##Background != NULL) m##Component.background = m##RunBackground;                          \
+    if (m##EventSource != NULL) m##Component.event_source = m##RunEventSource;                      \
     return &m##Component;                                                                           \
   }                                                                                                 \
   __attribute__((constructor)) static void m##Offer(void) { (void)chimera_offer(m##Declare); }      \

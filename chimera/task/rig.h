@@ -138,6 +138,11 @@ class Rig {
     return {status, fault.code, fault.text};
   }
 
+  /// The descriptor its events come from; below 0: there is none.
+  int event_source() {
+    return component_->event_source == nullptr ? -1 : static_cast<int>(component_->event_source(state_.get()));
+  }
+
   /// What Cycle::expired(), illegal() and dropped() say from now on.
   void expire(bool is_expired) { expired_ = is_expired; }
   void illegal(bool is_illegal) { call_.illegal = is_illegal ? 1 : 0; }
