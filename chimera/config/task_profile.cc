@@ -39,6 +39,13 @@ std::string spread_json(const Spread& spread) {
          ", \"mean\": " + std::to_string(spread.mean().count) + ", \"max\": " + std::to_string(spread.max.count) + "}";
 }
 
+std::string server_json(const std::optional<ServerSpec>& server) {
+  if (!server) return "null";
+  return std::string("{\"kind\": ") + json_string(server_kind_name(server->kind)) +
+         ", \"capacity_ns\": " + std::to_string(server->capacity.count) +
+         ", \"period_ns\": " + std::to_string(server->period.count) + "}";
+}
+
 std::string fault_json(const FaultRecord& faults, Nanoseconds origin) {
   return "{\"method\": " + json_string(method_name(faults.method)) +
          ", \"at_ns\": " + std::to_string((faults.at - origin).count) + ", \"code\": " +
@@ -55,7 +62,9 @@ std::string task_json(const TaskProfile& task, Nanoseconds origin) {
   std::string text = "{\"task\": " + json_string(task.task) + ", \"component\": " + json_string(task.component) +
                      ", \"rtpu\": " + json_string(task.rtpu) +
                      ", \"state\": " + json_string(state_name(task.state)) +
-                     ", \"period_ns\": " + std::to_string(task.period.count) + ", \"cycles\": " + number(p.cycles) +
+                     ", \"period_ns\": " + std::to_string(task.period.count) +
+                     ", \"server\": " + server_json(task.server) +
+                     ", \"on_ns\": " + std::to_string(task.on.count) + ", \"cycles\": " + number(p.cycles) +
                      ", \"execution_ns\": {" + methods + "}, \"response_ns\": " + spread_json(p.response) +
                      ", \"start_delay_ns\": " + spread_json(p.start_delay) +
                      ", \"transfer\": {\"groups\": " + number(task.transfer.groups) +
@@ -100,6 +109,14 @@ FaultRecord fault_of(const nlohmann::json& json, std::uint64_t count, Nanosecond
   return faults;
 }
 
+ServerSpec server_of(const nlohmann::json& json) {
+  const std::string kind = json.at("kind").get<std::string>();
+  for (const ServerKind known : {ServerKind::kDeferrable, ServerKind::kSporadic})
+    if (kind == server_kind_name(known))
+      return {known, {json.at("capacity_ns").get<std::int64_t>()}, {json.at("period_ns").get<std::int64_t>()}};
+  throw std::invalid_argument("unknown server " + kind);
+}
+
 TaskProfile profile_of(const nlohmann::json& json, Nanoseconds origin) {
   TaskProfile made;
   made.task = json.at("task").get<std::string>();
@@ -107,6 +124,8 @@ TaskProfile profile_of(const nlohmann::json& json, Nanoseconds origin) {
   made.rtpu = json.at("rtpu").get<std::string>();
   made.state = state_of(json.at("state").get<std::string>());
   made.period = {json.at("period_ns").get<std::int64_t>()};
+  made.on = {json.at("on_ns").get<std::int64_t>()};
+  if (const nlohmann::json& server = json.at("server"); !server.is_null()) made.server = server_of(server);
   made.profile.cycles = json.at("cycles").get<std::uint64_t>();
   for (const auto& [method, spread] : json.at("execution_ns").items())
     made.profile.execution[static_cast<std::uint32_t>(method_of(method))] = spread_of(spread);

@@ -3,6 +3,7 @@
 // docs/formats/run.md, written and read back here alone.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "chimera/config/transfer_cost.h"
 #include "chimera/task/fault_record.h"
 #include "chimera/task/profile.h"
+#include "chimera/task/server_spec.h"
 #include "chimera/task/state_machine.h"
 
 namespace chimera {
@@ -26,6 +28,8 @@ struct TaskProfile {
   FaultRecord faults;
   std::string rtpu;
   TransferCost transfer;  ///< of each cycle
+  Nanoseconds on;         ///< time that it was ON
+  std::optional<ServerSpec> server;
 };
 
 /// A JSON array with everything counted, one object a task, times in nanoseconds, of faults from `origin`.

@@ -18,6 +18,8 @@ TaskProfile sample() {
   made.transfer = {2, 48};
   made.state = State::kOn;
   made.period = milliseconds(1);
+  made.on = milliseconds(2);
+  made.server = {ServerKind::kSporadic, microseconds(200), milliseconds(1)};
   made.profile.cycles = 2;
   made.profile.execution[CHIMERA_CYCLE].add(microseconds(3));
   made.profile.execution[CHIMERA_CYCLE].add(microseconds(5));
@@ -43,7 +45,9 @@ TEST(TaskProfile, ReadsAsDocumented) {
   const TaskProfile task = sample();
   EXPECT_EQ(profile_json({&task, 1}, kOrigin),
             "[{\"task\": \"pid\", \"component\": \"pid_joint\", \"rtpu\": \"servo\", \"state\": \"ON\", "
-            "\"period_ns\": 1000000, \"cycles\": 2, \"execution_ns\": {\"cycle\": {\"count\": 2, \"min\": 3000, "
+            "\"period_ns\": 1000000, "
+            "\"server\": {\"kind\": \"sporadic\", \"capacity_ns\": 200000, \"period_ns\": 1000000}, "
+            "\"on_ns\": 2000000, \"cycles\": 2, \"execution_ns\": {\"cycle\": {\"count\": 2, \"min\": 3000, "
             "\"mean\": 4000, \"max\": 5000}}, \"response_ns\": {\"count\": 1, \"min\": 7000, \"mean\": 7000, "
             "\"max\": 7000}, \"start_delay_ns\": {\"count\": 0}, \"transfer\": {\"groups\": 2, \"bytes\": 48}, "
             "\"missed\": 1, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, \"held\": 0, \"aborted\": 0, "

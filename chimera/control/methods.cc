@@ -34,6 +34,7 @@ constexpr MethodRule kMethods[] = {
     {"library", Role::kObserve, false, {}},
     {"signal", Role::kOperate, true,
      {{"signal", Kind::kText, true, "spawn on off kill clear reinit"}, {"tasks", Kind::kTexts, true}}},
+    {"ring", Role::kOperate, true, {{"tasks", Kind::kTexts, true}}},
     {"set", Role::kOperate, true, {{"values", Kind::kObject, true}}},
     {"flag", Role::kOperate, true, {{"up", Kind::kBool, true}}},
     {"save", Role::kConfigure, true, {}},

@@ -22,6 +22,7 @@ TEST(Methods, TakeWhatTheTableSays) {
   EXPECT_EQ(judged("events", {{"since", 0}, {"limit", 1000}}), "");
   EXPECT_EQ(judged("subscribe", {{"to", "tap"}, {"period_ms", 20}, {"variables", Json::array()}, {"since", 3u}}), "");
   EXPECT_EQ(judged("signal", {{"signal", "on"}, {"tasks", {"pid"}}}), "");
+  EXPECT_EQ(judged("ring", {{"tasks", {"lamp", "lamp"}}}), "");
   EXPECT_EQ(judged("set", {{"values", {{"kp", {1, 2}}}}}), "");
   EXPECT_EQ(judged("end", {{"code", 255}}), "");
 }
@@ -34,6 +35,7 @@ TEST(Methods, NameWhatIsWrongWithAParameter) {
   EXPECT_EQ(judged("why", {{"variable", 1}}), "variable: 'variable' must be a text");
   EXPECT_EQ(judged("get", {{"variables", {"q", 1}}}), "variables: 'variables' must be an array of texts");
   EXPECT_EQ(judged("flag", {{"up", 1}}), "up: 'up' must be true or false");
+  EXPECT_EQ(judged("ring", Json::object()), "tasks: 'ring' needs 'tasks'");
   EXPECT_EQ(judged("set", {{"values", Json::array()}}), "values: 'values' must be an object");
   EXPECT_EQ(judged("events", {{"since", -1}}), "since: 'since' must be a whole number from 0 on");
   EXPECT_EQ(judged("events", {{"since", 1.5}}), "since: 'since' must be a whole number from 0 on");

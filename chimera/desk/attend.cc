@@ -105,9 +105,9 @@ Result<void> Attendance::know_tasks(const Json& status) {
   if (!acts) return acts.error();
   acts_ = *std::move(acts);
   if (sink_ == nullptr) return {};
-  sink_->begin(names_.spec(), started_);
+  sink_->begin(names_.spec(), instant(status["origin_ns"]), kNever);
   records_.emplace(request_.socket, names_);
-  return records_->subscribe();
+  return records_->subscribe(RecordLine::From::kOldest);
 }
 
 void Attendance::print_grants(const Json& status) {
@@ -148,11 +148,13 @@ std::string Attendance::since_start(Nanoseconds at) const {
 void Attendance::act(const ScriptAct& act) {
   const bool is_signal = act.kind == ScriptAct::Kind::kSignal;
   const std::string task = is_signal ? names_.tasks[act.task.index] : "";
+  const bool is_ring = is_signal && act.signal == Signal::kWakeup;
   const auto answer =
-      is_signal ? line_.ask("signal", {{"signal", signal_name(act.signal)}, {"tasks", {task}}})
-                : line_.ask("flag", {{"up", act.kind == ScriptAct::Kind::kRaiseFlag}});
+      is_ring     ? line_.ask("ring", {{"tasks", {task}}})
+      : is_signal ? line_.ask("signal", {{"signal", signal_name(act.signal)}, {"tasks", {task}}})
+                  : line_.ask("flag", {{"up", act.kind == ScriptAct::Kind::kRaiseFlag}});
   if (answer) return;
-  const std::string what = is_signal ? std::string(signal_name(act.signal)) + " " + task : "flag";
+  const std::string what = is_signal ? std::string(is_ring ? "ring" : signal_name(act.signal)) + " " + task : "flag";
   refused_ += "refused at " + since_start(clock_.now()) + ": " + what + ": " + answer.error().message.c_str() + "\n";
 }
 

@@ -44,15 +44,17 @@ class MadeUp final : public control::Subject {
   }
   void close(std::uint64_t) override {}
   std::shared_ptr<const Json> pull(std::uint64_t) override {
-    if (records.is_null()) return nullptr;
-    return std::make_shared<const Json>(std::exchange(records, Json()));
+    if (records.empty()) return nullptr;
+    auto next = std::make_shared<const Json>(records.front());
+    records.erase(records.begin());
+    return next;
   }
 
   std::string asked;
   Json started_ns;
   Json events = Json::array();
   Json values = Json::object();
-  Json records;
+  Json records = Json::array();  // a notification each
 
  private:
   Json status() const {
@@ -69,7 +71,7 @@ class MadeUp final : public control::Subject {
   }
   static Json profile() {
     return {{"task", "pid"}, {"component", "pid_joint"}, {"rtpu", "servo"}, {"state", "ON"},
-            {"period_ns", 1000000}, {"cycles", 100},
+            {"period_ns", 1000000}, {"server", nullptr}, {"on_ns", 100000000}, {"cycles", 100},
             {"execution_ns", Json::object()}, {"response_ns", {{"count", 0}}}, {"start_delay_ns", {{"count", 0}}},
             {"missed", 0}, {"overrun", 0}, {"min_refused", 0}, {"dropped", 0}, {"held", 0}, {"aborted", 0},
             {"partial", 0}, {"tolerated", 0}, {"stale", 0}, {"rejected", 0}, {"preempted", 0}, {"demoted", 0},
@@ -226,7 +228,8 @@ TEST_F(Attend, GoesOnWithTheNextManagerWhenOneDies) {
 
 TEST_F(Attend, HandsTheRecordsOfTheTapOn) {
   struct Sink final : RecordSink {
-    void begin(const ApplicationSpec& spec, Nanoseconds at) override {
+    void begin(const ApplicationSpec& spec, Nanoseconds at, Nanoseconds start) override {
+      EXPECT_EQ(start, kNever) << "with the first release";
       text = std::string(spec.name) + " " + std::string(spec.tasks[0].name) + " " + std::string(spec.rtpus[1].name);
       origin = at;
     }
@@ -236,15 +239,22 @@ TEST_F(Attend, HandsTheRecordsOfTheTapOn) {
                 std::to_string(r.task.index) + " " + std::to_string(r.a) + " " + std::to_string(r.b) + " " +
                 std::to_string(r.rtpu);
     }
-    void end(std::uint64_t lost) override { text += " | lost " + std::to_string(lost); }
+    void end(std::uint64_t lost, std::uint64_t missed) override {
+      text += " | lost " + std::to_string(lost) + " missed " + std::to_string(missed);
+    }
     std::string text;
     Nanoseconds origin;
   } sink;
-  const std::int64_t started = subject_.started_ns;
-  subject_.records = {{"rtpu", "spare"}, {"first", 0}, {"lost", 3},
-                      {"records", {{started + 7, "run", "pid", 2, 900}, {started + 8, "flag", nullptr, 1, 0}}}};
+  constexpr std::int64_t kOrigin = 5;
+  subject_.records = {
+      {{"rtpu", "spare"}, {"first", 0}, {"lost", 2}, {"records", Json::array()}},
+      {{"rtpu", "spare"}, {"first", 2}, {"lost", 3},
+       {"records", {{kOrigin + 7, "run", "pid", 2, 900}, {kOrigin + 8, "flag", nullptr, 1, 0}}}}};
   EXPECT_EQ(attend(&sink), kOk);
-  EXPECT_EQ(sink.text, "arm pid spare | 7 1 0 2 900 1 | 8 8 " + std::to_string(TaskId().index) + " 1 0 1 | lost 3");
+  EXPECT_EQ(sink.text, "arm pid spare | 7 1 0 2 900 1 | 8 8 " + std::to_string(TaskId().index) +
+                           " 1 0 1 | lost 3 missed 2");
+  EXPECT_NE(subject_.asked.find(R"(subscribe{"since":0,"to":"tap","variables":[]})"), std::string::npos)
+      << "from the oldest record on: " << subject_.asked;
 }
 
 }  // namespace

@@ -14,9 +14,9 @@ namespace chimera::desk {
 /// The state of every task, in order: taken at the end of a run, before everything is shut down.
 std::vector<State> states_of(const TaskSet& tasks);
 
-/// What is to be told about every task of an application in one process, in order.
+/// What is to be told about every task of an application in one process, in order, at `now`.
 std::vector<TaskProfile> profiles_of(const TaskSet& tasks, std::span<const State> states,
-                                     const Configuration& configuration);
+                                     const Configuration& configuration, Nanoseconds now);
 
 /// One line a task: state, cycles, execution time of cycle (mean, max), load, response, start jitter, failures; then a
 /// line for every task that was preempted or demoted or had events, and one for every task with a fault. `ran` is the

@@ -37,20 +37,23 @@ ApplicationSpec TaskNames::spec() const noexcept {
   return spec;
 }
 
-Result<void> RecordLine::subscribe() {
-  const auto answer = line_.ask("subscribe", {{"to", "tap"}, {"variables", Json::array()}});
+Result<void> RecordLine::subscribe(From from) {
+  Json wanted = {{"to", "tap"}, {"variables", Json::array()}};
+  if (from == From::kOldest) wanted["since"] = 0;
+  const auto answer = line_.ask("subscribe", wanted);
   if (!answer) return answer.error();
   return {};
 }
 
 void RecordLine::take(Nanoseconds instant, RecordSink& sink) {
-  if (!line_.is_connected() && !subscribe()) {
+  if (!line_.is_connected() && !subscribe(From::kNow)) {
     LinuxClock().wait_until(std::min(instant, LinuxClock().now() + milliseconds(10)));
     return;
   }
   const auto heard = line_.notification(instant);
   if (!heard || !heard->contains("records")) return;
-  lost_ += heard->value("lost", std::uint64_t{0});
+  const bool is_first = heard->value("first", std::uint64_t{0}) == 0;
+  (is_first ? missed_ : lost_) += heard->value("lost", std::uint64_t{0});
   std::vector<TapRecord> records;
   for (const Json& row : (*heard)["records"]) {
     TapRecord record;
@@ -72,7 +75,7 @@ void RecordLine::take(Nanoseconds instant, RecordSink& sink) {
 void RecordLine::finish(RecordSink& sink) {
   const Nanoseconds until = LinuxClock().now() + kLastRecords;
   while (line_.is_connected() && LinuxClock().now() < until) take(until, sink);
-  sink.end(lost_);
+  sink.end(lost_, missed_);
 }
 
 }  // namespace chimera::desk

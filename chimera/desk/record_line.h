@@ -34,7 +34,8 @@ class RecordLine {
   /// `names` outlives it.
   RecordLine(const std::string& socket, const TaskNames& names) : names_(names), line_(socket) {}
 
-  Result<void> subscribe();
+  enum class From : unsigned char { kOldest, kNow };
+  Result<void> subscribe(From from);
   /// Hands what comes until `instant` to `sink`; returns with the first, or earlier when a signal came.
   void take(Nanoseconds instant, RecordSink& sink);
   /// Hands on what is there, and ends.
@@ -43,7 +44,7 @@ class RecordLine {
  private:
   const TaskNames& names_;
   ControlLine line_;
-  std::uint64_t lost_ = 0;
+  std::uint64_t lost_ = 0, missed_ = 0;
 };
 
 }  // namespace chimera::desk

@@ -29,10 +29,13 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
   const std::string name(task.spec->name);
   std::string why = task.faults.last.text;
   if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
+  const bool is_ring = refused.signal == Signal::kWakeup;
+  if (is_ring && !task.spec->server) why = "it is not behind a server";
   if (refused.why == Refusal::kIllegalSet) why = "the tasks ON would not be a legal set";
   char at[32];
   std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
-  return std::string("refused at ") + at + ": " + signal_name(refused.signal) + " " + name + ": " + why + "\n";
+  const std::string signal = is_ring ? "ring" : signal_name(refused.signal);
+  return std::string("refused at ") + at + ": " + signal + " " + name + ": " + why + "\n";
 }
 
 /// Lines of progress, each over the one before; silent unless somebody can see them.
@@ -113,7 +116,7 @@ Result<void> Session::start() {
   // Now that extents are known.
   for (const std::string& name : request_.watch) watched_.push_back(*application_.probe(name));
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
-  if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin());
+  if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin(), loop_->origin());
   return {};
 }
 
@@ -182,12 +185,13 @@ int Session::report(RunEnd end) {
   const std::vector<State> states = states_of(application_.tasks());
   for (const RefusedSignal& r : loop_->refused())
     report.refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
+  const Nanoseconds now = loop_->now();
   loop_->shut_down();
   // What `off` and `kill` cost, and their faults, too.
-  report.profiles = profiles_of(application_.tasks(), states, application_.configuration());
+  report.profiles = profiles_of(application_.tasks(), states, application_.configuration(), now);
   if (sink_ != nullptr) {
     drain();
-    sink_->end(reader_.lost());
+    sink_->end(reader_.lost(), 0);
   }
   print(report, request_.json, out_);
   return write_plot() && save_profile(report, request_.profile, err_) ? report.code() : kRefused;

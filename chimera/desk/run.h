@@ -38,10 +38,11 @@ struct RunRequest {
 class RecordSink {
  public:
   virtual ~RecordSink() = default;
-  virtual void begin(const ApplicationSpec& spec, Nanoseconds origin) = 0;
+  /// `origin` is that of the grid of releases, `start` the beginning of the run; kNever: its first release on record.
+  virtual void begin(const ApplicationSpec& spec, Nanoseconds origin, Nanoseconds start) = 0;
   virtual void take(std::span<const TapRecord> records) = 0;
-  /// `lost` records were overwritten before they were read.
-  virtual void end(std::uint64_t lost) = 0;
+  /// `lost` records were overwritten before they were read; `missed` of those before the first that was read.
+  virtual void end(std::uint64_t lost, std::uint64_t missed) = 0;
 };
 
 /// Runs in this process and reports on `out` and `err`; answers the exit code: kOk when it ran to its end and every

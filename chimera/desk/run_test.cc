@@ -10,13 +10,13 @@ namespace {
 /// Keeps every record as text.
 class Records final : public RecordSink {
  public:
-  void begin(const ApplicationSpec&, Nanoseconds origin) override { origin_ = origin; }
+  void begin(const ApplicationSpec&, Nanoseconds origin, Nanoseconds) override { origin_ = origin; }
   void take(std::span<const TapRecord> records) override {
     for (const TapRecord& r : records)
       text += std::to_string((r.at - origin_).count) + " " + std::to_string(static_cast<int>(r.kind)) + " " +
               std::to_string(r.a) + " " + std::to_string(r.b) + "\n";
   }
-  void end(std::uint64_t dropped) override { lost = dropped; }
+  void end(std::uint64_t dropped, std::uint64_t) override { lost = dropped; }
 
   std::string text;
   std::uint64_t lost = 99;
@@ -138,7 +138,7 @@ TEST(Run, AnIllegalDescriptionIsReportedAndNotRun) {
 TEST(ProfileReport, ATaskThatNeverRanHasNoFiguresButALine) {
   Application application = test_application(kCounterText, test_library());
   const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()),
-                                    application.configuration());
+                                    application.configuration(), Nanoseconds{});
   EXPECT_EQ(profile_table(profiles, Nanoseconds{}, Nanoseconds{}),
             "task     state          cycles        mean        max      load    response      jitter  missed dropped "
             "faults\n"
@@ -146,7 +146,8 @@ TEST(ProfileReport, ATaskThatNeverRanHasNoFiguresButALine) {
             "   0\n");
   EXPECT_EQ(profile_json(profiles, Nanoseconds{}),
             "[{\"task\": \"counter\", \"component\": \"t_counter\", \"rtpu\": \"main\", \"state\": \"NOT-CREATED\", "
-            "\"period_ns\": 1000000, \"cycles\": 0, \"execution_ns\": {}, \"response_ns\": {\"count\": 0}, "
+            "\"period_ns\": 1000000, \"server\": null, \"on_ns\": 0, "
+            "\"cycles\": 0, \"execution_ns\": {}, \"response_ns\": {\"count\": 0}, "
             "\"start_delay_ns\": {\"count\": 0}, \"transfer\": {\"groups\": 0, \"bytes\": 0}, "
             "\"missed\": 0, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, \"held\": 0, \"aborted\": 0, "
             "\"partial\": 0, \"tolerated\": 0, \"stale\": 0, \"rejected\": 0, \"preempted\": 0, \"demoted\": 0, "
@@ -161,7 +162,7 @@ TEST(ProfileReport, FaultsAreTimedFromTheOrigin) {
   task.faults.method = Method::kCycle;
   std::snprintf(task.faults.last.text, sizeof task.faults.last.text, "worn");
   const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()),
-                                    application.configuration());
+                                    application.configuration(), Nanoseconds{});
   EXPECT_NE(profile_table(profiles, seconds(2), seconds(4999))
                 .find("counter: last fault in cycle at 1.00 s: worn\n"), std::string::npos);
   EXPECT_NE(profile_json(profiles, seconds(4999)).find("\"at_ns\": 1000000000, "),

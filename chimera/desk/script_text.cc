@@ -27,10 +27,11 @@ Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, 
 
 Result<ScriptAct> parse_signal(const std::string& text, const std::string& word, const std::string& task, ScriptAct act,
                                const ApplicationSpec& spec) {
-  const std::vector<std::string> words = {"spawn", "on", "off", "kill", "clear", "reinit"};
+  const std::vector<std::string> words = {"spawn", "on", "off", "kill", "clear", "reinit", "ring"};
   const auto found = std::find(words.begin(), words.end(), word);
   if (found == words.end()) return wrong_act(text, unknown("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
+  static_assert(static_cast<int>(Signal::kWakeup) == 6);  // a ring is sent as wakeup
   std::vector<std::string> names;
   for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
   act.task = TaskId(static_cast<std::size_t>(std::find(names.begin(), names.end(), task) - names.begin()));

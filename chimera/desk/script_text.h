@@ -12,7 +12,7 @@
 
 namespace chimera::desk {
 
-/// The acts in order of time. Each text is `DURATION: SIGNAL TASK` with spawn, on, off, kill, clear or reinit, or
+/// The acts in order of time. Each text is `DURATION: SIGNAL TASK` with spawn, on, off, kill, clear, reinit or ring, or
 /// `DURATION: flag up|down`. Refuses with the text and what would be right. Context: setup.
 Result<std::vector<ScriptAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec);
 

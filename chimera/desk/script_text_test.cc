@@ -33,7 +33,8 @@ TEST_F(ScriptText, OrdersActsByTimeAndKeepsTheOrderOfOneInstant) {
 TEST_F(ScriptText, KnowsEverySignal) {
   const std::pair<const char*, int> words[] = {
       {"spawn", CHIMERA_SIGNAL_SPAWN}, {"on", CHIMERA_SIGNAL_ON},       {"off", CHIMERA_SIGNAL_OFF},
-      {"kill", CHIMERA_SIGNAL_KILL},   {"clear", CHIMERA_SIGNAL_CLEAR}, {"reinit", CHIMERA_SIGNAL_REINIT}};
+      {"kill", CHIMERA_SIGNAL_KILL},   {"clear", CHIMERA_SIGNAL_CLEAR}, {"reinit", CHIMERA_SIGNAL_REINIT},
+      {"ring", CHIMERA_SIGNAL_WAKEUP}};
   for (const auto& [word, signal] : words) {
     const auto acts = parse({std::string("1 s: ") + word + " counter"});
     ASSERT_TRUE(acts) << word;

@@ -232,6 +232,8 @@ void Driver::command(Signal signal, std::vector<TaskId> tasks, Answered answered
   feed(subsystem::Commanded{id, signal, std::move(tasks)});
 }
 
+RtpuId Driver::ring(std::span<const TaskId> tasks) { return fleet_->ring(tasks, now()); }
+
 void Driver::end(std::int32_t code) { end_wish_ = code; }
 
 void Driver::pass_end_on() {

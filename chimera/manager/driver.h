@@ -46,6 +46,8 @@ class Driver {
   bool step(Nanoseconds at_most = kNever, int also = -1);
   /// Asks for a signal; `answered` is called when it is over, maybe at once.
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered);
+  /// Rings doorbells, as Fleet::ring.
+  RtpuId ring(std::span<const TaskId> tasks);
   /// Has the keeper end everything; it is told in the next step(), when whoever asked has been answered.
   void end(std::int32_t code);
   /// Hands over the listening socket, once.

@@ -85,6 +85,8 @@ class FakeRtpu {
     post.signal = Signal::kOn;
     tell(post);
   }
+  /// Of the doorbells of its tasks.
+  std::atomic<int> rings{0};
   /// Serves no signal until set again.
   std::atomic<bool> is_deaf{false};
 
@@ -128,8 +130,9 @@ class FakeRtpu {
       {
         const std::scoped_lock lock(mutex_);
         for (Post post; !is_deaf && inbox_.take(post);) {
-          step_.push_back(post);
-          if (!post.more) carry_out();
+          if (post.signal == Signal::kWakeup) ++rings;
+          else step_.push_back(post);
+          if (!step_.empty() && !post.more) carry_out();
         }
         for (const TaskId task : mine_)
           if (block_.view().status(task).state == State::kOn) cycle(task);

@@ -52,12 +52,25 @@ configurations: {run: [sensor, filter, law], rest: [sensor]}
 start: run
 )";
 
+/// The same with a task behind a server in `servo`.
+inline constexpr const char* kServedText = R"(subsystem: fake
+rtpus: {servo: {cpu: 0, policy: edf, executor: preemptive}, spare: {cpu: 1, policy: muf}}
+tasks:
+  sensor: {rtpu: servo, rate: 10 Hz}
+  lamp:   {rtpu: servo, server: {kind: deferrable, capacity: 2 ms, period: 10 ms}}
+configurations: {run: [sensor, lamp]}
+start: run
+)";
+
 inline Bundle fake_bundle(const std::string& text = kFakeText) {
+  Descriptor lamp = test_component("lamp", {test_port("lit", CHIMERA_OUT_VAR)});
+  lamp.methods[CHIMERA_SYNC] = true;
   Library library = Library::of(
       {test_component("sensor", {test_port("x", CHIMERA_OUT_VAR, "rad", "[2]")}),
        test_component("filter", {test_port("x", CHIMERA_IN_VAR, "rad", "[2]"), test_port("y", CHIMERA_OUT_VAR, "rad")}),
        test_component("law", {test_port("y", CHIMERA_IN_VAR, "rad"), test_port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"),
-                              test_port("tau", CHIMERA_OUT_VAR, "N.m")})},
+                              test_port("tau", CHIMERA_OUT_VAR, "N.m")}),
+       lamp},
       test_units());
   return {"0.1.0", text.empty() ? "" : "fake.yaml", text, {}, {}, {}, std::move(library)};
 }

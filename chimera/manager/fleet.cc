@@ -146,9 +146,31 @@ void Fleet::count(TaskId task, Nanoseconds at) {
   before = {p.missed, p.overrun, p.stale};
 }
 
+bool Fleet::has_room(RtpuId rtpu, std::size_t posts) const noexcept {
+  const Outbox& outbox = links_[rtpu.index].outbox;
+  return world_.rtpus[rtpu.index].is_alive && outbox.is_followed() && outbox.room() >= posts;
+}
+
+RtpuId Fleet::ring(std::span<const TaskId> tasks, Nanoseconds at) {
+  std::vector<std::size_t> posts(links_.size());
+  for (const TaskId task : tasks) ++posts[world_.spec().tasks[task.index].rtpu.index];
+  for (std::size_t r = 0; r < posts.size(); ++r)
+    if (posts[r] > 0 && !has_room(RtpuId(r), posts[r])) return RtpuId(r);
+  for (const TaskId task : tasks) {
+    Post post;
+    post.at = at;
+    post.task = task;
+    post.signal = Signal::kWakeup;
+    (void)links_[world_.spec().tasks[task.index].rtpu.index].outbox.try_post(post);  // there is room
+  }
+  for (std::size_t r = 0; r < posts.size(); ++r)
+    if (posts[r] > 0) Doorbell(world_.page.bells[r].word).ring();
+  return {};
+}
+
 bool Fleet::send(const subsystem::Send& send, Nanoseconds at) {
   Outbox& outbox = links_[send.rtpu.index].outbox;
-  if (!record(send.rtpu).is_alive || !outbox.is_followed() || outbox.room() < send.tasks.size()) return false;
+  if (!has_room(send.rtpu, send.tasks.size())) return false;
   for (std::size_t i = 0; i < send.tasks.size(); ++i) {
     Post post;
     post.command = send.command;

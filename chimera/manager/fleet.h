@@ -35,6 +35,9 @@ class Fleet {
 
   /// Posts the signals as one transaction, all or none; false when there is no room or no reader.
   bool send(const subsystem::Send& send, Nanoseconds at);
+  /// Rings the doorbell of each task, as often as it is named, all or none; the rtpu that has no room or does not read
+  /// when it was none, else invalid.
+  RtpuId ring(std::span<const TaskId> tasks, Nanoseconds at);
 
  private:
   struct Counted {
@@ -49,6 +52,7 @@ class Fleet {
 
   RtpuRecord& record(RtpuId rtpu) noexcept { return world_.rtpus[rtpu.index]; }
   bool is_current(RtpuId rtpu) const noexcept;
+  bool has_room(RtpuId rtpu, std::size_t posts) const noexcept;
   void take_posts(RtpuId rtpu, Events& events);
   void take(const Post& post, RtpuId rtpu, Events& events);
   void see(TaskId task, Events& events, bool always = false);

@@ -8,6 +8,7 @@
 
 #include "chimera/config/nearest.h"
 #include "chimera/manager/cause.h"
+#include "chimera/manager/command_text.h"
 #include "chimera/manager/subject_acts.h"
 #include "chimera/manager/subject_status.h"
 #include "chimera/manager/subject_values.h"
@@ -47,7 +48,7 @@ Answer Subject::answer(std::string_view method, const Json& parameters, control:
   if (method == "status") return Answer::good(status_json(world(), now()));
   if (method == "describe") return Answer::good(describe_json(world()));
   if (method == "get") return get(parameters);
-  if (method == "profile") return Answer::good(profile_json(world()));
+  if (method == "profile") return Answer::good(profile_json(world(), now()));
   if (method == "events") return events(parameters);
   if (method == "why") return why(parameters);
   if (method == "check")
@@ -55,6 +56,7 @@ Answer Subject::answer(std::string_view method, const Json& parameters, control:
   if (method == "schedule")
     return Answer::good(schedule_json(world(), parameters.at("text"), parameters.value("file", std::string("text"))));
   if (method == "library") return Answer::good(library_json(world()));
+  if (method == "ring") return ring(parameters);
   if (method == "set") return set_values(world(), parameters.at("values"));
   if (method == "flag") return set_flag(world(), parameters.at("up"));
   if (method == "save") return saved_values(world());
@@ -121,17 +123,40 @@ Answer Subject::told(const subsystem::Answer& said) const {
     return Answer::good({{"tasks", std::move(tasks)}});
   }
   const std::string where = said.at.is_valid() ? world().name(said.at) : "";
-  if (said.at.is_valid() && said.text.starts_with("no answer from")) {
-    const RtpuId rtpu = world().spec().tasks[said.at.index].rtpu;
-    const PeerSegment& segment = world().peers[rtpu];
-    const std::string running = segment.is_there() ? running_text(world().spec(), segment.block().head().running) : "";
-    return Answer::error(control::kNoAnswer, said.text,
-                         {{"rtpu", world().name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
-  }
+  if (said.at.is_valid() && said.text.starts_with("no answer from"))
+    return no_answer(world().spec().tasks[said.at.index].rtpu, said.text);
   Json data = {{"where", where}};
   if (const std::size_t remedy = said.text.find("the smallest legal set is"); remedy != std::string::npos)
     data["remedy"] = said.text.substr(remedy);
   return Answer::error(control::kRefused, said.text, data);
+}
+
+Answer Subject::no_answer(RtpuId rtpu, const std::string& text) const {
+  const PeerSegment& segment = world().peers[rtpu];
+  const std::string running = segment.is_there() ? running_text(world().spec(), segment.block().head().running) : "";
+  return Answer::error(control::kNoAnswer, text,
+                       {{"rtpu", world().name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
+}
+
+Answer Subject::ring(const Json& parameters) {
+  const auto named = tasks_named(world(), texts(parameters, "tasks"));
+  if (const auto* refused = std::get_if<Answer>(&named)) return *refused;
+  const auto& tasks = std::get<0>(named);
+  if (world().keeper.ending.load(std::memory_order_acquire) != 0)
+    return Answer::error(control::kEnding, "everything ends");
+  const std::string words = command_text(world().spec(), Signal::kWakeup, tasks);
+  const auto refused = [&](const Answer& answer, TaskId task) {
+    world().tell("command", task, RtpuId{}, words + ": refused: " + answer.message, now());
+    return answer;
+  };
+  for (const TaskId task : tasks)
+    if (const Answer judged = judge_ring(world(), task); !judged.is_good()) return refused(judged, task);
+  if (const RtpuId full = driver_.ring(tasks); full.is_valid())
+    return refused(no_answer(full, "no answer from rtpu " + world().name(full)), TaskId{});
+  world().tell("command", TaskId{}, RtpuId{}, words + ": done", now());
+  Json names = Json::array();
+  for (const TaskId task : tasks) names.push_back(world().name(task));
+  return Answer::good({{"tasks", std::move(names)}});
 }
 
 Answer Subject::open(std::uint64_t subscription, const Json& parameters) {
@@ -146,7 +171,8 @@ Answer Subject::open(std::uint64_t subscription, const Json& parameters) {
   else if (made.to == To::kTap)
     made.tap = std::make_unique<TapFeed>(world(), parameters.contains("variables") && !parameters["variables"].empty()
                                                       ? std::get<0>(std::move(variables))
-                                                      : std::vector<VariableId>());
+                                                      : std::vector<VariableId>(),
+                                         number(parameters, "since", 1) == 0);
   subscriptions_[subscription] = std::move(made);
   return Answer{};
 }

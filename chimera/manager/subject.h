@@ -42,10 +42,12 @@ class Subject final : public control::Subject {
   control::Answer hello(control::Role role) const;
   control::Answer get(const control::Json& parameters) const;
   control::Answer events(const control::Json& parameters) const;
+  control::Answer ring(const control::Json& parameters);
   control::Answer why(const control::Json& parameters) const;
   control::Answer end(const control::Json& parameters);
   void signal(const control::Json& parameters, const control::Reply& reply);
   control::Answer told(const subsystem::Answer& answer) const;
+  control::Answer no_answer(RtpuId rtpu, const std::string& text) const;
   std::shared_ptr<const control::Json> pull_events(Subscription& subscription) const;
   std::shared_ptr<const control::Json> pull_tap(Subscription& subscription) const;
 

@@ -69,6 +69,17 @@ std::variant<std::vector<TaskId>, Answer> tasks_named(const World& world, const 
   return found;
 }
 
+Answer judge_ring(const World& world, TaskId task) {
+  const std::string name = world.name(task);
+  if (!world.spec().tasks[task.index].server)
+    return Answer::error(control::kRefused, name + " is not behind a server: it has no doorbell",
+                         {{"where", name}, {"remedy", "give it 'server:' in the description"}});
+  const State state = world.state(task);
+  if (state == State::kOn) return {};
+  return Answer::error(control::kRefused, name + " is " + state_name(state) + ": nobody would answer the event",
+                       {{"where", name}, {"remedy", "turn it ON first"}});
+}
+
 Answer set_values(World& world, const Json& values) {
   std::vector<VariableId> variables;
   std::map<std::string, ValueForm> forms;

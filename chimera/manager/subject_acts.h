@@ -20,6 +20,8 @@ std::variant<std::vector<VariableId>, control::Answer> variables_named(const Wor
 /// The tasks of these names; refuses none at all, and an unknown one with the nearest.
 std::variant<std::vector<TaskId>, control::Answer> tasks_named(const World& world,
                                                                const std::vector<std::string>& names);
+/// Why nobody would answer a ring of the task's doorbell; good when it is behind a server and ON.
+control::Answer judge_ring(const World& world, TaskId task);
 /// {name: value}: sets operator variables, all or none. The answer has their readings.
 control::Answer set_values(World& world, const nlohmann::json& values);
 /// Raises or lowers the operator's part of the flag.

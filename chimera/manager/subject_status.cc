@@ -103,6 +103,18 @@ Profile profile_of(const World& world, TaskId task) {
   return segment.is_there() ? segment.block().profile(task) : Profile{};
 }
 
+Json server_json(const std::optional<ServerSpec>& server) {
+  if (!server) return nullptr;
+  return {{"kind", server_kind_name(server->kind)},
+          {"capacity_ns", server->capacity.count},
+          {"period_ns", server->period.count}};
+}
+
+/// Of a task that ceased to be ON without saying so only what it was ON before that is known.
+Nanoseconds on_time(const World& world, TaskId task, const Profile& profile, Nanoseconds at) {
+  return world.state(task) == State::kOn ? profile.on_by(at) : profile.on_before;
+}
+
 Json task_json(const World& world, TaskId task, Nanoseconds at) {
   const TaskSpec& spec = world.spec().tasks[task.index];
   const TaskStatus status = world.peers.status(task);
@@ -117,6 +129,9 @@ Json task_json(const World& world, TaskId task, Nanoseconds at) {
           {"rate_hz", world.configuration ? world.configuration->tasks()[task.index].rate_hz : 0},
           {"period_ns", spec.period.count},
           {"budget_ns", spec.budget.count},
+          {"server", server_json(spec.server)},
+          {"on_ns", on_time(world, task, p, at).count},
+          {"busy_ns", p.execution[CHIMERA_CYCLE].sum.count},
           {"cycles", p.cycles},
           {"execution_ns", spread_json(p.execution[CHIMERA_CYCLE])},
           {"response_ns", {{"max", p.response.count == 0 ? 0 : p.response.max.count}}},
@@ -230,13 +245,15 @@ Json describe_json(const World& world) {
           {"start", start}};
 }
 
-Json profile_json(const World& world) {
+Json profile_json(const World& world, Nanoseconds at) {
   std::vector<TaskProfile> tasks;
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) {
     const TaskSpec& spec = world.spec().tasks[t];
+    const Profile profile = profile_of(world, TaskId(t));
     tasks.push_back({std::string(spec.name), std::string(spec.component), world.state(TaskId(t)), spec.period,
-                     profile_of(world, TaskId(t)), world.peers.fault(TaskId(t)), std::string(world.name(spec.rtpu)),
-                     world.configuration ? transfer_of(*world.configuration, t) : TransferCost{}});
+                     profile, world.peers.fault(TaskId(t)), std::string(world.name(spec.rtpu)),
+                     world.configuration ? transfer_of(*world.configuration, t) : TransferCost{},
+                     on_time(world, TaskId(t), profile, at), spec.server});
   }
   return {{"tasks", Json::parse(chimera::profile_json(tasks, world.keeper.origin))}};
 }

@@ -12,7 +12,7 @@ namespace chimera::manager {
 /// Context of all: setup; may block for the time of a copy.
 nlohmann::json status_json(const World& world, Nanoseconds at);
 nlohmann::json describe_json(const World& world);
-nlohmann::json profile_json(const World& world);
+nlohmann::json profile_json(const World& world, Nanoseconds at);
 nlohmann::json event_json(const World& world, const LoggedEvent& event);
 /// At most `limit` events from number `since` on.
 nlohmann::json events_json(const World& world, std::uint64_t since, std::size_t limit);

@@ -256,6 +256,13 @@ TEST_F(SubjectTest, SubscriptionsOfTheTapGiveRows) {
   EXPECT_FALSE(world().own.block().view().is_tapped(fake_.task("sensor")));
 }
 
+TEST_F(SubjectTest, SubscriptionsOfTheTapMayBeginWithTheOldestRecord) {
+  ASSERT_TRUE(subject_->open(1, {{"to", "tap"}, {"since", 0}}).is_good());
+  const auto news = subject_->pull(1);
+  ASSERT_NE(news, nullptr);
+  EXPECT_EQ((*news)["records"][0][0], fake_.rtpu(0).block().tap().records[0].at.count);
+}
+
 TEST_F(SubjectTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {
   ASSERT_TRUE(subject_->open(1, {{"to", "tap"}}).is_good());  // both rtpus: two messages of each reading
   std::vector<Nanoseconds> pulled;
@@ -285,6 +292,59 @@ TEST_F(SubjectTest, AnalysesATextWithTheLibraryOfTheStart) {
   EXPECT_EQ(good("schedule", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}})["legal"], false);
 }
 
+class ServedTest : public SubjectTest {
+ protected:
+  ServedTest() : SubjectTest(kServedText) {}
+};
+
+TEST_F(ServedTest, RingsReachTheUnitAsOftenAsTheTaskIsNamed) {
+  EXPECT_EQ(good("ring", {{"tasks", {"lamp"}}}), (Json{{"tasks", {"lamp"}}}));
+  EXPECT_EQ(good("ring", {{"tasks", {"lamp", "lamp"}}})["tasks"].size(), 2u);
+  ASSERT_TRUE(fake_.until([&] { return fake_.rtpu(0).rings == 3; }));
+  EXPECT_EQ(fake_.told("command"), "ring lamp: done\nring lamp, lamp: done\n");
+}
+
+TEST_F(ServedTest, StatusTellsTheServerAndForHowLongTheTaskWasOn) {
+  const Nanoseconds since = now() - seconds(2);
+  fake_.rtpu(0).block().profile(fake_.task("lamp")).on_since = since;
+  const Json lamp = good("status")["tasks"][1], sensor = good("status")["tasks"][0];
+  const Json server = {{"kind", "deferrable"}, {"capacity_ns", 2000000}, {"period_ns", 10000000}};
+  EXPECT_EQ(lamp["server"], server);
+  EXPECT_GE(lamp["on_ns"], 2'000'000'000);
+  EXPECT_LT(lamp["on_ns"], 20'000'000'000);
+  EXPECT_GE(lamp["busy_ns"], 3 * 3000) << "of the fake: 3 us a cycle";
+  EXPECT_EQ(sensor["server"], nullptr);
+  const Json profile = good("profile")["tasks"][1];
+  EXPECT_EQ(profile["server"], server);
+  EXPECT_GE(profile["on_ns"], 2'000'000'000);
+  (void)good("signal", {{"signal", "off"}, {"tasks", {"lamp"}}});
+  EXPECT_EQ(good("status")["tasks"][1]["on_ns"], 0) << "what it was ON for has not been told";
+}
+
+TEST_F(ServedTest, ARingThatNobodyWouldAnswerIsRefusedAndRingsNothing) {
+  EXPECT_EQ(refusal("ring", {{"tasks", {"lamp", "sensor"}}}),
+            "-32000 sensor is not behind a server: it has no doorbell "
+            "{\"remedy\":\"give it 'server:' in the description\",\"where\":\"sensor\"}");
+  EXPECT_EQ(refusal("ring", {{"tasks", {"lmp"}}}),
+            "-32005 no task 'lmp'; did you mean 'lamp'? {\"nearest\":\"lamp\",\"where\":\"lmp\"}");
+  EXPECT_EQ(refusal("ring", {{"tasks", Json::array()}}), "-32602 'tasks' must name at least one {\"where\":\"tasks\"}");
+  (void)good("signal", {{"signal", "off"}, {"tasks", {"lamp"}}});
+  EXPECT_EQ(refusal("ring", {{"tasks", {"lamp"}}}),
+            "-32000 lamp is OFF: nobody would answer the event {\"remedy\":\"turn it ON first\",\"where\":\"lamp\"}");
+  EXPECT_EQ(fake_.rtpu(0).rings, 0);
+  fake_.page().ending = 1;
+  EXPECT_EQ(refusal("ring", {{"tasks", {"lamp"}}}), "-32007 everything ends");
+}
+
+TEST_F(ServedTest, MoreRingsThanAUnitTakesAreRefusedAsAWhole) {
+  fake_.rtpu(0).is_deaf = true;
+  const Json many = {{"tasks", std::vector<std::string>(kPosts, "lamp")}};
+  (void)good("ring", {{"tasks", {"lamp"}}});
+  EXPECT_EQ(refusal("ring", many), "-32006 no answer from rtpu servo {\"rtpu\":\"servo\",\"running\":null}");
+  fake_.rtpu(0).is_deaf = false;
+  ASSERT_TRUE(fake_.until([&] { return fake_.rtpu(0).rings == 1; }));
+}
+
 class IdleTest : public SubjectTest {
  protected:
   IdleTest() : SubjectTest("") {}
@@ -294,7 +354,7 @@ TEST_F(IdleTest, ServesEditors) {
   EXPECT_EQ(good("hello")["file"], "");
   EXPECT_EQ(good("check", {{"text", kFakeText}})["legal"], true);
   EXPECT_EQ(good("schedule", {{"text", kFakeText}})["fits"], true);
-  EXPECT_EQ(good("library")["components"].size(), 3u);
+  EXPECT_EQ(good("library")["components"].size(), 4u);
   EXPECT_EQ(good("status")["tasks"], Json::array());
   EXPECT_EQ(good("describe")["tasks"], Json::array());
   EXPECT_EQ(good("get")["values"], Json::object());

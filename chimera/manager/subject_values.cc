@@ -52,6 +52,19 @@ TaskId likely_producer(const World& world, VariableId variable) {
   return producer.is_valid() || candidates.size() != 1 ? producer : candidates[0].task;
 }
 
+/// In order of gravity.
+std::string timing_text(const Profile& p) {
+  const std::pair<std::uint64_t, const char*> counts[] = {
+      {p.missed, "missed"},        {p.dropped, "dropped"},           {p.overrun, "over budget"},
+      {p.demoted, "demoted"},      {p.exhausted, "out of capacity"}, {p.events_lost, "events lost"},
+      {p.aborted, "aborted"},      {p.held, "held"},                 {p.partial, "partial"},
+      {p.tolerated, "tolerated"}};
+  std::string text;
+  for (const auto& [count, word] : counts)
+    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + word;
+  return text;
+}
+
 void add_producer(const World& world, TaskId task, VariableFacts& facts) {
   const TaskSpec& spec = world.spec().tasks[task.index];
   const RtpuRecord& rtpu = world.rtpus[spec.rtpu.index];
@@ -62,6 +75,11 @@ void add_producer(const World& world, TaskId task, VariableFacts& facts) {
   facts.is_rtpu_dead = !rtpu.is_alive;
   facts.last_words = rtpu.is_alive ? fault_text(world, task) : facts.rtpu + " " + rtpu.last_end;
   facts.period = spec.aperiodic ? Nanoseconds{} : spec.period;
+  if (const PeerSegment& segment = world.peers[spec.rtpu]; segment.is_there()) {
+    const Profile profile = segment.block().profile(task);
+    facts.timing = timing_text(profile);
+    facts.waits_for_events = spec.server && profile.events == 0;
+  }
   for (const PortSpec& port : spec.ports)
     if (port.kind == CHIMERA_IN_VAR) facts.inputs.emplace_back(port.variable);
 }
@@ -110,6 +128,7 @@ Json link_json(const WhyLink& link) {
           {"valid", f.is_written},
           {"value", f.value},
           {"verdict", trouble_name(link.trouble)},
+          {"timing", f.timing},
           {"inputs", f.inputs}};
 }
 

@@ -25,7 +25,8 @@ std::vector<std::uint32_t> payload_sizes(const Peers& peers) {
 
 }  // namespace
 
-TapFeed::TapFeed(World& world, std::vector<VariableId> variables) : world_(world), buffer_(kAtOnce) {
+TapFeed::TapFeed(World& world, std::vector<VariableId> variables, bool from_oldest)
+    : world_(world), from_oldest_(from_oldest && variables.empty()), buffer_(kAtOnce) {
   for (const VariableId variable : variables)
     for (const PortOf& port : world.readings->variables().all()[variable.index].producers)
       add_producer(variable, port);
@@ -66,7 +67,9 @@ void TapFeed::tap(TaskId task, bool up) {
 bool TapFeed::follow(Ring& ring) {
   auto present = world_.peers.hold(ring.rtpu);
   if (!present->is_there() || present == ring.segment) return false;
-  ring.reader = TapReader(present->block().tap(), ring.segment != nullptr);
+  const bool is_first = ring.segment == nullptr;
+  ring.reader = TapReader(present->block().tap(), from_oldest_ || !is_first);
+  ring.gone = is_first && from_oldest_ ? ring.reader.position() : 0;
   ring.segment = std::move(present);
   ring.assembler = std::make_unique<TapRows>(payload_sizes(world_.peers));
   ring.lost_before = 0;
@@ -85,7 +88,8 @@ void TapFeed::pump(const TapSink& sink) {
 void TapFeed::drain(Ring& ring, const TapSink& sink) {
   for (std::size_t rounds = 0; rounds < kTapRecords / kAtOnce; ++rounds) {
     const std::size_t n = ring.reader.read(buffer_);
-    const std::uint64_t lost = ring.reader.lost() - std::exchange(ring.lost_before, ring.reader.lost());
+    const std::uint64_t lost = ring.reader.lost() - std::exchange(ring.lost_before, ring.reader.lost()) +
+                               std::exchange(ring.gone, 0);
     if (rows_.empty() && lost > 0) flush(ring, lost, sink);
     for (std::size_t i = 0; i < n; ++i) take(ring, buffer_[i], sink);
     if (n < buffer_.size()) return;

@@ -20,8 +20,9 @@ using TapSink = std::function<void(nlohmann::json)>;
 /// As long as one lives its tasks are tapped: their rtpus append what they publish. Context: setup.
 class TapFeed {
  public:
-  /// `variables` empty: scheduling records. Requires: not idle; `world` outlives it.
-  TapFeed(World& world, std::vector<VariableId> variables);
+  /// `variables` empty: scheduling records; `from_oldest`: those that are still there, too, the rest of them counted
+  /// as lost. Requires: not idle; `world` outlives it.
+  TapFeed(World& world, std::vector<VariableId> variables, bool from_oldest = false);
   ~TapFeed();
   TapFeed(const TapFeed&) = delete;
   TapFeed& operator=(const TapFeed&) = delete;
@@ -47,6 +48,7 @@ class TapFeed {
     TapReader reader;
     std::unique_ptr<TapRows> assembler;
     std::uint64_t lost_before = 0;
+    std::uint64_t gone = 0;               // before it was followed, and not told yet
     std::uint64_t first = 0;              // of scheduling records
     std::vector<nlohmann::json> waiting;
   };
@@ -61,6 +63,7 @@ class TapFeed {
   void flush(Ring& ring, std::uint64_t lost, const TapSink& sink);
 
   World& world_;
+  const bool from_oldest_;
   std::vector<Rows> rows_;
   std::vector<Ring> rings_;
   std::vector<TapRecord> buffer_;

@@ -101,6 +101,38 @@ TEST_F(TapFeedTest, WhatWasOverwrittenIsCounted) {
   fake_.kill_rtpu(1, SIGKILL);
 }
 
+TEST_F(TapFeedTest, FromTheOldestTheFirstRecordsComeToo) {
+  ASSERT_TRUE(fake_.until([&] { return fake_.rtpu(1).block().profile(fake_.task("law")).cycles > 20; }));
+  const auto first = fake_.rtpu(1).block().tap().records[0].at.count;
+  TapFeed feed(world(), {}, true);
+  pump(feed);
+  const Json& message = messages_.at(1);
+  EXPECT_EQ(message["rtpu"], "spare");
+  EXPECT_EQ(message["first"], 0);
+  EXPECT_EQ(message["lost"], 0);
+  EXPECT_EQ(message["records"][0][0], first);
+  EXPECT_GT(message["records"].size(), 20u);
+}
+
+TEST_F(TapFeedTest, FromTheOldestWhatIsGoneByThenCountsAsLost) {
+  Tap writer(const_cast<TapRing&>(fake_.rtpu(1).block().tap()));
+  fake_.rtpu(1).die();
+  for (std::size_t i = 0; i < kTapRecords + 10; ++i) writer.append(TapRecord{});
+  const std::uint64_t written = fake_.rtpu(1).block().tap().head;
+  TapFeed feed(world(), {}, true);
+  pump(feed);
+  std::uint64_t lost = 0, records = 0;
+  for (const Json& message : messages_) {
+    if (message["rtpu"] != "spare") continue;
+    EXPECT_EQ(message["first"], lost + records);
+    lost += message["lost"].get<std::uint64_t>();
+    records += message["records"].size();
+  }
+  EXPECT_GE(lost, 10u);
+  EXPECT_EQ(lost + records, written);
+  fake_.kill_rtpu(1, SIGKILL);
+}
+
 TEST_F(TapFeedTest, TheLastRowsOfADeadOneAreReadFromItsSegment) {
   TapFeed feed(world(), {variable("tau")});
   ASSERT_TRUE(pump_until(feed, 5));

@@ -35,6 +35,8 @@ std::string with_words(std::string text, const VariableFacts& facts) {
   return facts.last_words.empty() ? text : text + ": " + facts.last_words;
 }
 
+std::string with_timing(const VariableFacts& facts) { return facts.timing.empty() ? "" : " (" + facts.timing + ")"; }
+
 std::string complaint(const WhyLink& link) {
   const VariableFacts& f = link.facts;
   switch (link.trouble) {
@@ -44,10 +46,13 @@ std::string complaint(const WhyLink& link) {
       return f.producer.empty() ? "no task that produces it was created" : producer_text(f) + " was not created";
     case Trouble::kProducerError: return with_words(producer_text(f) + " is in ERROR", f);
     case Trouble::kProducerOff: return producer_text(f) + " is OFF";
-    case Trouble::kNeverWritten: return "never written, though " + producer_text(f) + " is ON";
+    case Trouble::kNeverWritten:
+      return "never written, though " + producer_text(f) + " is ON" +
+             (f.waits_for_events ? ": it waits for an event" : with_timing(f));
     case Trouble::kNotFinite: return f.producer + " published " + f.value;
     case Trouble::kStale:
-      return "stale: " + f.producer + " wrote it " + time_text(f.age) + " ago, its period is " + time_text(f.period);
+      return "stale: " + f.producer + " wrote it " + time_text(f.age) + " ago, its period is " + time_text(f.period) +
+             with_timing(f);
     case Trouble::kNone: break;
   }
   return "";

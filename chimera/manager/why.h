@@ -34,6 +34,8 @@ struct VariableFacts {
   Nanoseconds age;
   bool is_written = false;           ///< has been published at all, and is valid
   bool is_finite = true;
+  bool waits_for_events = false;     ///< the producer stands behind a server, and none has come
+  std::string timing;                ///< of the producer: "3 missed, 1 demoted"; "" when nothing failed in time
   std::string value;                 ///< for people
   std::vector<std::string> inputs;   ///< variables that the producer reads
 

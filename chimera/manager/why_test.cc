@@ -92,6 +92,18 @@ TEST_F(WhyTest, EveryTroubleHasItsSentence) {
   EXPECT_EQ(verdict("x"), "x: no task that produces it was created");
 }
 
+TEST_F(WhyTest, WhatFailedInTimeIsToldWithWhatIsLate) {
+  VariableFacts& x = facts_["x"];
+  x.timing = "3 missed, 1 demoted";
+  EXPECT_EQ(ask("x").chain[0].trouble, Trouble::kNone);
+  x.age = milliseconds(12);
+  EXPECT_EQ(verdict("x"), "x: stale: arm wrote it 12 ms ago, its period is 1 ms (3 missed, 1 demoted)");
+  x.is_written = false;
+  EXPECT_EQ(verdict("x"), "x: never written, though its producer arm is ON (3 missed, 1 demoted)");
+  x.waits_for_events = true;
+  EXPECT_EQ(verdict("x"), "x: never written, though its producer arm is ON: it waits for an event");
+}
+
 TEST_F(WhyTest, TroublesHaveTheirWords) {
   EXPECT_STREQ(trouble_name(Trouble::kRtpuDead), "rtpu-dead");
   EXPECT_STREQ(trouble_name(Trouble::kStale), "stale");

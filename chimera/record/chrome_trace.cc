@@ -127,11 +127,13 @@ void ChromeTrace::add(std::span<const TapRecord> records) {
   }
 }
 
-bool ChromeTrace::end(std::uint64_t lost) {
+bool ChromeTrace::end(std::uint64_t lost, std::uint64_t missed) {
   write_until(kNever);
   std::fprintf(file_,
-               "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"lost_records\": %llu}}\n",
-               quoted(subsystem_).c_str(), static_cast<unsigned long long>(lost));
+               "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"lost_records\": %llu, "
+               "\"missed_records\": %llu}}\n",
+               quoted(subsystem_).c_str(), static_cast<unsigned long long>(lost),
+               static_cast<unsigned long long>(missed));
   return std::fflush(file_) == 0 && std::ferror(file_) == 0;
 }
 

@@ -22,9 +22,10 @@ class ChromeTrace {
               std::span<const std::string> tasks, Nanoseconds origin);
   /// Adds records in the order in which they were told.
   void add(std::span<const TapRecord> records);
-  /// Closes the JSON, saying how many records were lost. Afterwards nothing more may be added. False when anything of
-  /// the trace, now or before, could not be written: the file is cut short and errno tells the last reason.
-  [[nodiscard]] bool end(std::uint64_t lost);
+  /// Closes the JSON, saying how many records were lost, and `missed` before the first of all. Afterwards nothing more
+  /// may be added. False when anything of the trace, now or before, could not be written: the file is cut short and
+  /// errno tells the last reason.
+  [[nodiscard]] bool end(std::uint64_t lost, std::uint64_t missed);
 
  private:
   void event(const TapRecord& record, const char* phase, const std::string& name, const std::string& more);

@@ -29,7 +29,7 @@ nlohmann::json trace_of(std::span<const TapRecord> records, std::uint64_t lost =
   std::FILE* file = ::open_memstream(&text, &size);
   ChromeTrace trace(file, "arm", rtpus, tasks, Nanoseconds{1000});
   trace.add(records);
-  EXPECT_TRUE(trace.end(lost));
+  EXPECT_TRUE(trace.end(lost, 2 * lost));
   std::fclose(file);
   nlohmann::json parsed = nlohmann::json::parse(std::string(text, size));
   std::free(text);
@@ -74,6 +74,7 @@ TEST(ChromeTrace, NamesEveryKindOfRecord) {
     if (event["ph"] == "i") names += event["name"].get<std::string>() + ", ";
   EXPECT_EQ(names, "release, preempt, drop, signal off, fault in cycle, state ERROR, flag up, flag down, ");
   EXPECT_EQ(trace["otherData"]["lost_records"], 3);
+  EXPECT_EQ(trace["otherData"]["missed_records"], 6);
 }
 
 TEST(ChromeTrace, SortsWhatIsToldLaterAndShowsDeadlines) {
@@ -113,7 +114,7 @@ TEST(ChromeTrace, TellsThatItCouldNotBeWritten) {
   std::FILE* full = std::fopen("/dev/full", "w");
   ASSERT_NE(full, nullptr);
   ChromeTrace trace(full, "arm", {}, {}, Nanoseconds{});
-  EXPECT_FALSE(trace.end(0));
+  EXPECT_FALSE(trace.end(0, 0));
   std::fclose(full);
 }
 

@@ -31,7 +31,7 @@ class EdgeGuest {
   virtual void missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now) noexcept = 0;
   /// A job of the task has used `used` and does not end by itself. Context: edge.
   virtual void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
-  /// A job of the task is over and its numbers may be shown. Context: edge.
+  /// A job of the task is over, or its state changed, and its numbers may be shown. Context: edge.
   virtual void show(const Task& task) noexcept = 0;
 
  protected:

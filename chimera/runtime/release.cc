@@ -136,13 +136,22 @@ void Releases::refresh(Task& task, Nanoseconds now) noexcept {
   if (on == t.is_on) return;
   t.is_on = on;
   tap_.record(TapKind::kState, now, task.id, static_cast<std::uint64_t>(task.state));
-  if (!on) {
-    --n_on_;
-    task.profile.events_lost += task.events;
-    task.events = 0;
-    queue_.leave(task.id);
-    return;
-  }
+  task.profile.on_before = task.profile.on_by(now);
+  task.profile.on_since = on ? now : kNever;
+  if (on) join(task, now);
+  else leave(task);
+  if (options_.guest != nullptr) options_.guest->show(task);
+}
+
+void Releases::leave(Task& task) noexcept {
+  --n_on_;
+  task.profile.events_lost += task.events;
+  task.events = 0;
+  queue_.leave(task.id);
+}
+
+void Releases::join(Task& task, Nanoseconds now) noexcept {
+  OfTask& t = of_[task.id.index];
   ++n_on_;
   t.dropped = 0;
   t.skip_next = false;

@@ -223,6 +223,8 @@ class Releases {
   void record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept;
   void refresh_members(Nanoseconds now) noexcept;
   void refresh(Task& task, Nanoseconds now) noexcept;
+  void join(Task& task, Nanoseconds now) noexcept;
+  void leave(Task& task) noexcept;
   void record_faults(Task& task) noexcept;
   void settle(Task& task, Nanoseconds now) noexcept;
   void raise_flag(Nanoseconds at) noexcept;

@@ -58,6 +58,7 @@ std::string why_head(const Json& link) {
   if (const std::int64_t period = whole_of(link, "period_ns"); period > 0) text += ", every " + duration_text(period);
   std::string inputs;
   for (const std::string& input : texts_of(link, "inputs")) inputs += (inputs.empty() ? "" : ", ") + input;
+  if (const std::string timing = text_of(link, "timing"); !timing.empty()) text += "\n  in time      " + timing;
   return text + "\n  from         " + (inputs.empty() ? "no inputs" : inputs) + "\n";
 }
 
@@ -111,6 +112,12 @@ std::string save_text(const Json& answer) {
   return text;
 }
 
+std::string ring_text(const Json& answer) {
+  std::string text;
+  for (const std::string& task : texts_of(answer, "tasks")) text += task + ": rung\n";
+  return text;
+}
+
 std::string flag_text(const Json& answer) { return truth_of(answer, "up") ? "flag up\n" : "flag down\n"; }
 
 std::string why_text(const Json& answer, std::size_t height) {
@@ -119,8 +126,9 @@ std::string why_text(const Json& answer, std::size_t height) {
   std::vector<const Json*> links;
   for (std::size_t i = 1; i < chain.size(); ++i) links.push_back(&chain[i]);
   std::stable_partition(links.begin(), links.end(), [](const Json* link) { return !is_well(*link); });
-  // 4 lines of head, an empty one, the heading of the table, an empty one, the verdict.
-  const std::size_t room = height > 10 ? height - 9 : 1;
+  // 4 or 5 lines of head, an empty one, the heading of the table, an empty one, the verdict.
+  const std::size_t taken = text_of(chain[0], "timing").empty() ? 9 : 10;
+  const std::size_t room = height > taken + 1 ? height - taken : 1;
   Columns table({"ancestor", "verdict", "producer", "state", ">age", ">period", "value"});
   for (std::size_t i = 0; i < std::min(room, links.size()); ++i) {
     const Json& link = *links[i];

@@ -18,6 +18,8 @@ std::string event_line(const nlohmann::json& event);
 std::string events_text(const nlohmann::json& answer, std::int64_t since);
 /// `save`: lines for the section `operator:` of a description.
 std::string save_text(const nlohmann::json& answer);
+/// `ring`: "lamp: rung" for each.
+std::string ring_text(const nlohmann::json& answer);
 /// `flag`: "flag up" or "flag down".
 std::string flag_text(const nlohmann::json& answer);
 /// `why` on one screen of `height` lines: who produces the variable, when, from what; then its ancestors, those in

@@ -82,6 +82,15 @@ TEST(AnswerText, WhyStaysOnOneScreen) {
   EXPECT_NE(text.find("... and 84 more\n"), std::string::npos) << text;
 }
 
+TEST(AnswerText, WhyTellsWhatFailedInTimeAndStillStaysOnOneScreen) {
+  Json chain = Json::array();
+  for (int i = 0; i < 100; ++i) chain.push_back(link(i, "v" + std::to_string(i), "ok"));
+  chain[0]["timing"] = "3 missed, 1 demoted";
+  const std::string text = why_text({{"chain", chain}, {"verdict", "v0 is good"}}, 24);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 24) << text;
+  EXPECT_NE(text.find("\n  in time      3 missed, 1 demoted\n"), std::string::npos) << text;
+}
+
 TEST(AnswerText, WhyOfAnOperatorVariable) {
   const Json answer = {{"chain", {{{"variable", "kp"}, {"producer", "operator"}, {"state", "ON"}, {"valid", true},
                                    {"value", "3"}, {"published_ns", 0}, {"verdict", "ok"}}}},
@@ -89,6 +98,10 @@ TEST(AnswerText, WhyOfAnOperatorVariable) {
   EXPECT_EQ(why_text(answer, 24),
             "kp = 3\n  produced by  operator\n  published    never\n  from         no inputs\n\n"
             "kp is good: set by the operator\n");
+}
+
+TEST(AnswerText, ARingNamesEachTaskAsOftenAsItIsRung) {
+  EXPECT_EQ(ring_text({{"tasks", {"lamp", "lamp"}}}), "lamp: rung\nlamp: rung\n");
 }
 
 TEST(AnswerText, RefusalsSayEachThingOnce) {

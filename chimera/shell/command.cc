@@ -32,6 +32,8 @@ std::vector<Command> table() {
        {{"--save", "FILE", "write it into this file, for `chimera schedule --profile`"}}, "chimera profile"},
       {"quit", "", 0, 0, "Leave the shell; the subsystem goes on", {}, "quit", true},
       {"reinit", "TASK...", 1, kAny, "Have tasks read their constants anew", {}, "chimera reinit pid"},
+      {"ring", "TASK...", 1, kAny, "Ring the doorbell of tasks behind a server: one event for each", {},
+       "chimera ring lamp"},
       {"save", "", 0, 0, "Show the operator's values in the words of the description",
        {{"--write", nullptr, "write them into the description file; nothing else in it changes"}},
        "chimera save --write"},

@@ -100,6 +100,7 @@ Said one_shot(Session& session, const Call& call, const Look& look) {
   if (name == "set") return set(session, call);
   if (name == "events") return events(session, call);
   if (name == "flag") return flag(session, call);
+  if (name == "ring") return tell(session.ask("ring", {{"tasks", call.operands}}), call.json, ring_text);
   if (name == "get") {
     const Json asked = call.operands.empty() ? Json::object() : Json{{"variables", call.operands}};
     return tell(session.ask("get", asked), call.json, readings_text);

@@ -42,7 +42,7 @@ control::Answer Session::ask(std::string_view method, const nlohmann::json& para
   const control::Answer answer = client_.call(method, parameters, kPatience);
   if (answer.code != control::kNoConnection) return answer;
   // The manager died. Its successor answers at the same door; what may have been carried out is not asked for twice.
-  const bool may_repeat = method != "signal" && method != "end" && method != "unsubscribe";
+  const bool may_repeat = method != "signal" && method != "ring" && method != "end" && method != "unsubscribe";
   return reopen() && may_repeat ? client_.call(method, parameters, kPatience) : answer;
 }
 

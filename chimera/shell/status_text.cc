@@ -56,10 +56,32 @@ std::vector<std::string> that_count(const Json& answer, std::initializer_list<co
   return found;
 }
 
+std::string percent(double part) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f %%", 100 * part);
+  return text;
+}
+
+bool has_server(const Json& answer) {
+  for (const Json& task : field(answer, "tasks"))
+    if (field(task, "server").is_object()) return true;
+  return false;
+}
+
+/// "2.00 ms / 10.0 ms", and how much of that is used; both "-" without a server.
+std::vector<std::string> server_cells(const Json& task, double load) {
+  const Json& server = field(task, "server");
+  if (!server.is_object()) return {"-", "-"};
+  return {duration_text(whole_of(server, "capacity_ns")) + " / " + duration_text(whole_of(server, "period_ns")),
+          percent(share_of_server(server, load))};
+}
+
 Columns task_table(const Json& status) {
   const auto seldom = that_count(status, {"partial", "tolerated", "preempted", "demoted", "events_lost", "exhausted"});
   std::vector<std::string> heading = {"task", "state", "rtpu", ">rate", ">cycles", ">mean", ">max", ">budget",
                                       ">jitter", ">missed"};
+  const bool serves = has_server(status);
+  if (serves) heading.insert(heading.end(), {">server", ">used"});
   for (const std::string& key : seldom) heading.push_back(">" + key);
   heading.insert(heading.end(), {">faults", "oldest input"});
   Columns table(std::move(heading));
@@ -69,6 +91,9 @@ Columns task_table(const Json& status) {
                                     time_of(field(task, "execution_ns"), "mean"),
                                     time_of(field(task, "execution_ns"), "max"), time_of(task, "budget_ns"),
                                     time_of(task, "jitter_ns"), count_of(task, "missed")};
+    const auto on = static_cast<double>(whole_of(task, "on_ns"));
+    const double load = on > 0 ? number_of(task, "busy_ns") / on : 0;
+    if (const auto cells = server_cells(task, load); serves) row.insert(row.end(), cells.begin(), cells.end());
     for (const std::string& key : seldom) row.push_back(count_of(task, key.c_str()));
     row.insert(row.end(), {count_of(task, "faults"), input_text(task)});
     table.add(std::move(row));
@@ -76,17 +101,11 @@ Columns task_table(const Json& status) {
   return table;
 }
 
-/// Mean execution time of a cycle as a part of the period; 0 before the first.
+/// Execution time of the cycles as a part of the time that the task was ON; 0 before that.
 double load_of(const Json& task) {
-  const auto period = static_cast<double>(whole_of(task, "period_ns"));
+  const auto on = static_cast<double>(whole_of(task, "on_ns"));
   const Json& cycle = field(field(task, "execution_ns"), "cycle");
-  return period <= 0 || whole_of(cycle, "count") == 0 ? 0 : number_of(cycle, "mean") / period;
-}
-
-std::string percent(double part) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f %%", 100 * part);
-  return text;
+  return on <= 0 ? 0 : number_of(cycle, "mean") * static_cast<double>(whole_of(cycle, "count")) / on;
 }
 
 std::string load_text(const Json& task) {
@@ -169,6 +188,11 @@ std::string headline(const Json& status) {
   return line + by + (truth_of(status, "ending") ? ", ENDING" : "");
 }
 
+double share_of_server(const Json& server, double load) {
+  const auto capacity = static_cast<double>(whole_of(server, "capacity_ns"));
+  return capacity <= 0 ? 0 : load * static_cast<double>(whole_of(server, "period_ns")) / capacity;
+}
+
 std::string rtpu_remarks(const Json& rtpu) {
   std::string line = text_of(rtpu, "name") + " " + (truth_of(rtpu, "alive") ? text_of(rtpu, "phase") : "DEAD");
   if (const std::int64_t n = whole_of(rtpu, "restarts"); n > 0)
@@ -207,6 +231,8 @@ std::string status_text(const Json& status) {
 std::string profile_text(const Json& answer) {
   const std::vector<std::string> counters = counters_of(answer);
   std::vector<std::string> heading = {"task", "state", ">cycles", ">mean", ">max", ">load", ">response", ">jitter"};
+  const bool serves = has_server(answer);
+  if (serves) heading.insert(heading.end(), {">server", ">used"});
   for (const std::string& key : counters) heading.push_back(">" + key);
   Columns table(std::move(heading));
   std::string faults;
@@ -218,6 +244,8 @@ std::string profile_text(const Json& answer) {
         text_of(task, "task"), text_of(task, "state"), count_of(task, "cycles"), time_of(cycle, "mean"),
         time_of(cycle, "max"), load_text(task), time_of(field(task, "response_ns"), "max"),
         has_delay ? duration_text(whole_of(delay, "max") - whole_of(delay, "min")) : "-"};
+    if (const auto cells = server_cells(task, load_of(task)); serves)
+      row.insert(row.end(), cells.begin(), cells.end());
     for (const std::string& key : counters) row.push_back(count_of(task, key));
     table.add(std::move(row));
     const Json& fault = field(task, "last_fault");

@@ -9,6 +9,8 @@ namespace chimera::shell {
 
 /// "puma_pid: run, up 12.5 min, flag down": what is true of the whole subsystem. Context of all: setup.
 std::string headline(const nlohmann::json& status);
+/// How much of the capacity of its server (an object as in docs/formats/run.md) a task with this load uses.
+double share_of_server(const nlohmann::json& server, double load);
 /// "servo serving, restarted 2 times, running pid.cycle, FLAG; last end: ...".
 std::string rtpu_remarks(const nlohmann::json& rtpu);
 /// The age of the oldest input of a task and the variable; none of them ever written: no variable, age -1.

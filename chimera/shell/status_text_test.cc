@@ -41,6 +41,44 @@ TEST(StatusText, TellsTheWholeTheUnitsAndTheTasks) {
             "trajectory: last fault: cycle: goal out of reach\n");
 }
 
+TEST(StatusText, ATaskBehindAServerShowsItAndHowMuchOfItIsUsed) {
+  auto json = status();
+  json["rtpus"].clear();
+  json["tasks"].erase(2);
+  json["tasks"].erase(2);
+  auto& pid = json["tasks"][1];
+  pid["server"] = {{"kind", "sporadic"}, {"capacity_ns", 2000000}, {"period_ns", 10000000}};
+  pid["on_ns"] = 1000000000;
+  pid["busy_ns"] = 50000000;
+  pid["exhausted"] = 4;
+  EXPECT_EQ(status_text(json),
+            "puma_pid: run, up 12.5 min, flag UP by spare, operator\n"
+            "\n"
+            "task        state  rtpu     rate  cycles     mean      max   budget   jitter  missed             server"
+            "     used  exhausted  faults  oldest input\n"
+            "trajectory  ERROR  spare  100 Hz   41234  4.10 us  18.2 us        -  12.3 us       3                  -"
+            "        -          0       1  -\n"
+            "pid         ON     servo   1 kHz    750k  12.1 us  30.2 us  40.0 us  3.10 us       0  2.00 ms / 10.0 ms"
+            "  25.00 %          4       0  3.12 s q_ref\n"
+            "trajectory: last fault: cycle: goal out of reach\n");
+}
+
+TEST(StatusText, TheLoadOfATaskThatEventsReleaseIsMeasured) {
+  const std::string text = profile_text(nlohmann::json::parse(R"({"tasks": [
+      {"task": "lamp", "rtpu": "servo", "state": "ON", "period_ns": 10000000, "on_ns": 1000000000, "cycles": 3,
+       "server": {"kind": "deferrable", "capacity_ns": 2000000, "period_ns": 10000000},
+       "execution_ns": {"cycle": {"count": 3, "min": 1000000, "mean": 2000000, "max": 3000000}},
+       "response_ns": {"count": 0}, "start_delay_ns": {"count": 0}}]})"));
+  EXPECT_EQ(text,
+            "task  state  cycles     mean      max    load  response  jitter             server    used  missed"
+            "  overrun  dropped  stale  rejected  faults\n"
+            "lamp  ON          3  2.00 ms  3.00 ms  0.60 %         -       -  2.00 ms / 10.0 ms  3.00 %       0"
+            "        0        0      0         0       0\n"
+            "\n"
+            "rtpu   tasks    load  missed  overrun  dropped  stale  rejected  faults\n"
+            "servo      1  0.60 %       0        0        0      0         0       0\n");
+}
+
 TEST(StatusText, AnIdleSubsystemHasOnlyItsHeadline) {
   EXPECT_EQ(status_text(nlohmann::json::parse(R"({"subsystem": "idle", "configuration": "", "started_ns": null,
               "ending": true, "flag": {"up": false, "by": []}, "rtpus": [], "tasks": []})")),
@@ -57,7 +95,7 @@ TEST(StatusText, TheRemarksOnAnRtpu) {
 TEST(StatusText, TheProfileHasALineForEachTaskAndItsFaults) {
   EXPECT_EQ(profile_text(nlohmann::json::parse(R"({"tasks": [
               {"task": "pid", "component": "pid_joint", "rtpu": "servo", "state": "ON", "period_ns": 1000000,
-               "cycles": 750000,
+               "on_ns": 750000000000, "cycles": 750000,
                "execution_ns": {"init": {"count": 1, "min": 9, "mean": 9, "max": 9},
                                 "cycle": {"count": 750000, "min": 8000, "mean": 12100, "max": 30200}},
                "response_ns": {"count": 750000, "min": 9000, "mean": 20000, "max": 71000},

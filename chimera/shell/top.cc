@@ -26,8 +26,13 @@ struct Row {
   std::int64_t mean_ns = 0, max_ns = 0, budget_ns = 0, jitter_ns = 0, missed = 0;
   bool has_missed_since = false, has_run = false;
   OldestInput oldest;
+  double share = -1;    ///< of the capacity of its server; below 0: it has none
+  std::string remarks;  ///< what seldom happens
 
-  double used() const { return budget_ns > 0 ? static_cast<double>(max_ns) / static_cast<double>(budget_ns) : 0; }
+  double used() const {
+    if (share >= 0) return share;
+    return budget_ns > 0 ? static_cast<double>(max_ns) / static_cast<double>(budget_ns) : 0;
+  }
 };
 
 const Json& task_of(const Json& status, const std::string& name) {
@@ -35,6 +40,24 @@ const Json& task_of(const Json& status, const std::string& name) {
   for (const Json& task : field(status, "tasks"))
     if (text_of(task, "task") == name) return task;
   return kNull;
+}
+
+/// Execution time over time ON: of all of it, or of what lies between two looks.
+double load_of(const Json& task, const Json& before) {
+  const std::int64_t on = whole_of(task, "on_ns") - whole_of(before, "on_ns");
+  const std::int64_t busy = whole_of(task, "busy_ns") - whole_of(before, "busy_ns");
+  return on > 0 && busy >= 0 ? static_cast<double>(busy) / static_cast<double>(on) : 0;
+}
+
+std::string remarks_on(const Json& task) {
+  std::string text;
+  constexpr std::pair<const char*, const char*> kSeldom[] = {
+      {"demoted", "demoted"},   {"exhausted", "out of capacity"}, {"events_lost", "events lost"},
+      {"partial", "partial"},   {"tolerated", "tolerated"},       {"preempted", "preempted"}};
+  for (const auto& [key, word] : kSeldom)
+    if (const std::int64_t n = whole_of(task, key); n > 0)
+      text += (text.empty() ? "" : ", ") + count_text(n) + " " + word;
+  return text;
 }
 
 /// What happened between two looks at the same incarnation of a task.
@@ -46,6 +69,7 @@ void add_recent(Row& row, const Json& task, const Json& before, double seconds) 
   row.has_missed_since = row.missed > whole_of(before, "missed") ||
                          whole_of(task, "demoted") > whole_of(before, "demoted") ||
                          whole_of(task, "events_lost") > whole_of(before, "events_lost");
+  if (row.share >= 0) row.share = share_of_server(field(task, "server"), load_of(task, before));
   row.rate_hz = static_cast<double>(cycles - earlier) / seconds;
   if (cycles == earlier) return;
   const double sum = static_cast<double>(row.mean_ns) * static_cast<double>(cycles) -
@@ -61,7 +85,12 @@ std::vector<Row> rows_of(const Json& status, const Json& previous) {
     const Json& execution = field(task, "execution_ns");
     Row row{text_of(task, "task"), text_of(task, "state"), number_of(task, "rate_hz"), whole_of(execution, "mean"),
             whole_of(execution, "max"), whole_of(task, "budget_ns"), whole_of(task, "jitter_ns"),
-            whole_of(task, "missed"), false, whole_of(task, "cycles") > 0, oldest_input(task)};
+            whole_of(task, "missed"), false, whole_of(task, "cycles") > 0, oldest_input(task), -1,
+            remarks_on(task)};
+    if (const Json& server = field(task, "server"); server.is_object()) {
+      row.share = share_of_server(server, load_of(task, nullptr));
+      row.budget_ns = whole_of(server, "capacity_ns");
+    }
     add_recent(row, task, task_of(previous, row.name), previous.is_object() ? seconds : 0);
     if (row.state == "NOT-CREATED") row.state = "none";
     rows.push_back(std::move(row));
@@ -109,6 +138,7 @@ TopLine task_line(const Row& row, std::size_t width) {
                       : row.oldest.age_ns < 0     ? "never"
                                                   : duration_text(row.oldest.age_ns);
   if (is_wide && !row.oldest.variable.empty()) input = fitted(input, 9) + row.oldest.variable;
+  if (is_wide && !row.remarks.empty()) input += "  " + row.remarks;
   TopLine line{cells({row.name, row.state, rate_text(row.rate_hz), or_dash(row.mean_ns), or_dash(row.max_ns),
                       or_dash(row.budget_ns), used, or_dash(row.jitter_ns), count_text(row.missed), input},
                      width)};

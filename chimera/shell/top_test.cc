@@ -112,6 +112,31 @@ TEST(Top, EverySizeIsFilledExactly) {
     }
 }
 
+Json served(std::int64_t on, std::int64_t busy) {
+  Json json = status();
+  Json& pid = json["tasks"][1];
+  pid["server"] = {{"kind", "deferrable"}, {"capacity_ns", 2'000'000}, {"period_ns", 10'000'000}};
+  pid["on_ns"] = on;
+  pid["busy_ns"] = busy;
+  return json;
+}
+
+TEST(Top, OfATaskBehindAServerTheCapacityCountsAndWhatWasUsedOfItSinceTheLastLook) {
+  const Json first = served(1'000'000'000, 10'000'000);
+  EXPECT_EQ(top_lines(first, nullptr, {})[6].text.substr(43, 12), "2.00 ms   5%") << "of 200 ms since it is ON";
+  Json then = served(2'000'000'000, 110'000'000);
+  then["now_ns"] = 756'000'000'000;
+  EXPECT_EQ(top_lines(then, first, {})[6].text.substr(43, 12), "2.00 ms  50%");
+}
+
+TEST(Top, AWideScreenTellsWhatSeldomHappens) {
+  Json json = status();
+  json["tasks"][1]["demoted"] = 2;
+  json["tasks"][1]["preempted"] = 1'200'000;
+  const std::vector<TopLine> lines = top_lines(json, nullptr, {.width = 130});
+  EXPECT_NE(lines[6].text.find("q_ref  2 demoted, 1.20M preempted"), std::string::npos) << lines[6].text;
+}
+
 TEST(Top, AWideScreenNamesTheOldestInput) {
   const std::vector<TopLine> lines = top_lines(status(), nullptr, {.width = 110});
   EXPECT_NE(lines[6].text.find("3.12 s   q_ref"), std::string::npos) << lines[6].text;

@@ -14,7 +14,7 @@ namespace {
 enum class Takes : char { kNothing, kTasks, kVariables, kSettings, kUpDown, kCommands };
 
 Takes taken_by(std::string_view command) {
-  for (const char* signal : {"spawn", "on", "off", "kill", "clear", "reinit"})
+  for (const char* signal : {"spawn", "on", "off", "kill", "clear", "reinit", "ring"})
     if (command == signal) return Takes::kTasks;
   for (const char* reader : {"get", "watch", "why", "scope"})
     if (command == reader) return Takes::kVariables;

@@ -41,6 +41,7 @@ TEST(Words, CommandsAreCompletedFirstThenWhatTheyTake) {
   EXPECT_EQ(offered("sta"), Words{"status"});
   EXPECT_EQ(offered("s"), (Words{"save", "scope", "set", "spawn", "status"}));
   EXPECT_EQ(offered("off "), (Words{"trajectory", "pid", "arm"}));
+  EXPECT_EQ(offered("ring a"), Words{"arm"});
   EXPECT_EQ(offered("on h"), Words{"hand"}) << "a configuration";
   EXPECT_EQ(offered("off h"), Words{});
   EXPECT_EQ(offered("get q"), (Words{"q", "q_ref"}));

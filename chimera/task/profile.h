@@ -49,6 +49,13 @@ struct Profile {
                                       ///< of any task: that it sent and that found no room on the way to another rtpu
   std::uint64_t exhausted = 0;        ///< times its server ran out of capacity in the middle of a job
   std::uint32_t missed_in_a_row = 0;
+  Nanoseconds on_since = kNever;      ///< kNever: it is not ON
+  Nanoseconds on_before;              ///< time that it was ON until then
+
+  /// Time that it was ON by `now`. Context: any; wait-free.
+  Nanoseconds on_by(Nanoseconds now) const noexcept {
+    return on_since == kNever ? on_before : on_before + (now - on_since);
+  }
 };
 
 }  // namespace chimera

@@ -18,6 +18,11 @@ namespace chimera {
 
 enum class ServerKind : std::uint8_t { kDeferrable, kSporadic };
 
+/// "deferrable". Context: any; wait-free.
+constexpr const char* server_kind_name(ServerKind kind) noexcept {
+  return kind == ServerKind::kDeferrable ? "deferrable" : "sporadic";
+}
+
 /// 0 < capacity <= period.
 struct ServerSpec {
   ServerKind kind = ServerKind::kDeferrable;

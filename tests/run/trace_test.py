@@ -84,6 +84,11 @@ class Trace(unittest.TestCase):
             with self.subTest(policy):
                 events, tasks = self.traced(policy, "demote", "--priority", "40")
                 by = self.judge(events, tasks)
+                for name, task in tasks.items():  # from the first cycle on, and so all that the profile counts
+                    releases = by["release", name]
+                    self.assertEqual(releases[0]["cycle"], 0, name)
+                    self.assertGreaterEqual(len(releases), task["cycles"], name)
+                self.assertGreaterEqual(events[0]["args"]["ns"], 0)
                 self.assertGreater(tasks["c"]["demoted"], 0)
                 self.assertTrue(by["overrun", "c"])
 

@@ -6,7 +6,7 @@
 _chimera_words() {
   case $1 in
     '') echo '--help --version check schedule run idle list describe test new clear end events flag get kill off on' \
-      'profile reinit save scope set spawn status top watch why shell' ;;
+      'profile reinit ring save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --graph' ;;
     schedule) echo '--help --profile --svg --dispatch --json' ;;
     run) echo '--help --for --at --watch --every --svg --expect --trace --profile --timeline --virtual --preemptive' \
@@ -15,7 +15,7 @@ _chimera_words() {
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
     test) echo '--help --all --setup --inputs --names --seed --cycles --json' ;;
-    clear | end | flag | kill | off | on | reinit | set | spawn | status | why)
+    clear | end | flag | kill | off | on | reinit | ring | set | spawn | status | why)
       echo '--help --json --subsystem' ;;
     events) echo '--help --json --subsystem --since --follow' ;;
     get) echo '--help --json --subsystem --every' ;;
@@ -65,7 +65,7 @@ _chimera() {
     mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -- "$word")
   elif [[ " get set watch why scope " == *" $command "* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_names)" -- "$word")
-  elif [[ " on off kill clear reinit spawn " == *" $command "* ]]; then
+  elif [[ " on off kill clear reinit ring spawn " == *" $command "* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_tasks)" -- "$word")
   elif [[ $command == flag ]]; then
     mapfile -t COMPREPLY < <(compgen -W 'up down' -- "$word")
