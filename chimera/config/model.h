@@ -16,6 +16,7 @@
 #include "chimera/config/report.h"
 #include "chimera/config/unit.h"
 #include "chimera/config/unit_expression.h"
+#include "chimera/config/verify.h"
 #include "chimera/load/descriptor.h"
 
 namespace chimera {
@@ -120,6 +121,7 @@ struct Model {
   std::vector<TaskId> init_order;
   std::vector<double> utilisation;        ///< per rtpu, start configuration
   std::map<std::string, WrittenLength> written_lengths;  ///< by constant
+  Overload overload = Overload::kRefused;
   bool has_unmet = false;                 ///< an input or a constant without producer was reported
 
   LinkedPort& port(PortRef ref) { return tasks[ref.task].ports[ref.port]; }

@@ -177,7 +177,9 @@ Result<RecordedProfile> read_recorded_profile(const std::string& path) {
   text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > kMostBytes) return bad("is larger than 256 KiB", path);
   auto profile = parse_recorded_profile(text);
-  if (!profile) return bad(std::string(profile.error().message.view()), path);
+  if (!profile)
+    return bad("is no recorded profile: " + std::string(profile.error().message.view()) +
+                   "; `chimera profile --save FILE` writes one", path);
   return profile;
 }
 

@@ -138,9 +138,15 @@ void warn_of_overload(Model& model, const SetModel& set, const TaskModel& task, 
              "run it in virtual time");
 }
 
+/// The first three digits.
+Nanoseconds first_digits(double ns) {
+  const double unit = std::max(1.0, std::pow(10.0, std::floor(std::log10(std::max(ns, 1.0))) - 2));
+  return {std::llround(std::floor(ns / unit * (1 + 1e-12)) * unit)};
+}
+
 /// A load that the task could have.
 std::string what_fits(const TaskModel& task, double load) {
-  const Nanoseconds time{static_cast<std::int64_t>(load * static_cast<double>(task.period->count))};
+  const Nanoseconds time = first_digits(load * static_cast<double>(task.period->count));
   const double period_ns = static_cast<double>(time_of(task).count) / load;
   if (task.draft->server)
     return "capacity: " + say(time) + " or period: " + say(Nanoseconds{std::llround(std::ceil(period_ns))});
@@ -166,12 +172,13 @@ void limit(Model& model, const SetModel& set, std::uint32_t cpu) {
   std::snprintf(found, sizeof found, "%.3f", sum);
   if (all_give_way) return warn_of_overload(model, set, task, cpu, found);
   const double fits = kMaxUtilisation - (sum - load(task));
-  model.error("utilisation", place_of_time(task),
-              "the budgets of configuration '" + set.name + "' take " + found + " of CPU " + std::to_string(cpu) +
-                  "; expected at most 0.93",
-              found, "at most 0.93", {},
-              fits > 0 ? "task '" + task.name() + "' takes most: it would fit with " + what_fits(task, fits)
-                       : "move tasks to another CPU, or lower their rates");
+  const std::string message = "the budgets of configuration '" + set.name + "' take " + found + " of CPU " +
+                              std::to_string(cpu) + "; expected at most 0.93";
+  const std::string remedy = fits > 0
+                                 ? "task '" + task.name() + "' takes most: it would fit with " + what_fits(task, fits)
+                                 : "move tasks to another CPU, or lower their rates";
+  if (model.overload == Overload::kTold) return model.warn("utilisation", place_of_time(task), message, remedy);
+  model.error("utilisation", place_of_time(task), message, found, "at most 0.93", {}, remedy);
 }
 
 }  // namespace

@@ -44,13 +44,14 @@ void judge_order(Model& model) {
   warn_of_unused(model);
 }
 
-Verdict judge(const Draft& draft, const Library& library, Report report) {
+Verdict judge(const Draft& draft, const Library& library, Report report, Overload overload) {
   Verdict verdict{std::nullopt, std::move(report)};
   if (draft.tasks.empty() && !draft.is_partial && verdict.report.is_legal())
     verdict.report.add({.rule = "key-missing", .at = draft.subsystem.at, .message = "there is no task", .found = {},
                         .expected = "tasks", .nearest = {},
                         .remedy = "write 'tasks:' and a line 'NAME: {component: COMPONENT, rate: 100 Hz}' for each"});
   Model model(draft, library, verdict.report);
+  model.overload = overload;
   link(model);
   judge_links(model);
   judge_values(model);
@@ -62,11 +63,13 @@ Verdict judge(const Draft& draft, const Library& library, Report report) {
 
 }  // namespace
 
-Verdict verify(const Draft& draft, const Library& library) { return judge(draft, library, Report(draft.file)); }
+Verdict verify(const Draft& draft, const Library& library) {
+  return judge(draft, library, Report(draft.file), Overload::kRefused);
+}
 
-Verdict verify(const Reading& reading, const Library& library) {
+Verdict verify(const Reading& reading, const Library& library, Overload overload) {
   if (!reading.draft) return {std::nullopt, reading.report};
-  return judge(*reading.draft, library, reading.report);
+  return judge(*reading.draft, library, reading.report, overload);
 }
 
 }  // namespace chimera

@@ -18,12 +18,15 @@ struct Verdict {
   Report report;
 };
 
+/// Budgets that take more of a CPU than there is: an error, or, for whoever wants to know what fits instead, a warning.
+enum class Overload : std::uint8_t { kRefused, kTold };
+
 /// Judges a draft by every legality rule. Faults that follow from another are left out.
 /// The configuration needs neither draft nor library afterwards. Context: setup.
 Verdict verify(const Draft& draft, const Library& library);
 
-/// Judges what was read, faults of the text included: the one call of `check` and `run`. Context: setup.
-Verdict verify(const Reading& reading, const Library& library);
+/// Judges what was read, faults of the text included: the one call of `check`, `run` and `schedule`. Context: setup.
+Verdict verify(const Reading& reading, const Library& library, Overload overload = Overload::kRefused);
 
 enum class Executor : std::uint8_t {
   kProcesses,

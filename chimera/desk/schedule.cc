@@ -32,7 +32,7 @@ ScheduleOptions options_of(const ScheduleRequest& request, const std::optional<R
 Output schedule(const ScheduleRequest& request, const Workplace& workplace) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), request.json);
-  const Verdict verdict = verify(read_description_file(request.file), *library);
+  const Verdict verdict = verify(read_description_file(request.file), *library, Overload::kTold);
   Output output;
   if (!request.json) output.err = verdict.report.text();
   if (!verdict.configuration) {

@@ -51,6 +51,21 @@ TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
       << output.out;
 }
 
+TEST(Schedule, ASetThatTakesMoreThanThereIsIsAnalysedAndToldWhatFits) {
+  std::string text = kTwo;
+  text.replace(text.find("budget: 9 ms"), 12, "budget: 45 ms");
+  const Output output = scheduled(text, "preemptive");
+  EXPECT_EQ(output.code, kRefused);
+  EXPECT_NE(output.err.find("warning: the budgets of configuration 'all' take 1.100 of CPU 0; expected at most 0.93 "
+                            "[utilisation]\n  task 'b' takes most: it would fit with budget: 36.5 ms or rate: "
+                            "16.2 Hz\n"),
+            std::string::npos)
+      << output.err;
+  EXPECT_NE(output.out.find("  does not fit\n  guaranteed: a\n  not guaranteed: b\n"), std::string::npos)
+      << output.out;
+  EXPECT_NE(output.out.find("  would fit: task 'b' at rate: 16.2 Hz\n"), std::string::npos) << output.out;
+}
+
 TEST(Schedule, JudgesEachUnitAsTheDescriptionHasIt) {
   std::string text = kTwo;
   text.replace(text.find("policy: rm"), 10, "policy: rm, executor: preemptive");
@@ -93,7 +108,8 @@ TEST(Schedule, RefusesAProfileThatIsNone) {
   const TestFile file("{}");
   const Output output = scheduled(kTwo, "", file.path());
   EXPECT_EQ(output.code, kRefused);
-  EXPECT_EQ(output.err, file.path() + ": error: $: the key \"version\" is missing\n");
+  EXPECT_EQ(output.err, file.path() + ": error: is no recorded profile: $: the key \"version\" is missing; "
+                                        "`chimera profile --save FILE` writes one\n");
 }
 
 TEST(TimeText, WritesTimesAsPeopleDo) {

@@ -78,7 +78,12 @@ std::string text(const Timeline& timeline) {
     std::snprintf(number, sizeof number, "%8zu  ", at);
     all += number + timeline.letters.substr(at, kLine) + "\n";
   }
-  for (const auto& [letter, name] : timeline.legend) all += std::string("          ") + letter + " = " + name + "\n";
+  std::size_t others = 0;  // for whom no letter is left
+  for (const auto& [letter, name] : timeline.legend) {
+    if (letter == '?' && others++ > 0) continue;
+    all += std::string("          ") + letter + " = " + name + "\n";
+  }
+  if (others > 1) all.insert(all.size() - 1, " and " + std::to_string(others - 1) + " more");
   return all + "          . = nobody\n";
 }
 

@@ -53,5 +53,13 @@ TEST(Timeline, BreaksLinesAtSixtyUnits) {
   EXPECT_EQ(text(drawn), "       0  " + std::string(60, '.') + "\n      60  .\n          . = nobody\n");
 }
 
+TEST(Timeline, TasksWithoutALetterOfTheirOwnShareALineOfTheLegend) {
+  std::vector<std::string> tasks;
+  for (int i = 0; i < 65; ++i) tasks.push_back("t" + std::to_string(i));
+  const std::string said = text(timeline({}, tasks, {}, milliseconds(1), milliseconds(2)));
+  EXPECT_NE(said.find("          9 = t61\n          ? = t62 and 2 more\n          . = nobody\n"), std::string::npos)
+      << said;
+}
+
 }  // namespace
 }  // namespace chimera::draw

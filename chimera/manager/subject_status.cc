@@ -290,7 +290,7 @@ Json check_json(const World& world, const std::string& text, const std::string& 
 }
 
 Json schedule_json(const World& world, const std::string& text, const std::string& file) {
-  const Verdict verdict = chimera::verify(read_description(text, file), world.bundle.library);
+  const Verdict verdict = chimera::verify(read_description(text, file), world.bundle.library, Overload::kTold);
   if (!verdict.configuration) return Json::parse(verdict.report.json());
   const ScheduleReport report = schedule_report(*verdict.configuration, {});
   return Json::parse(chimera::schedule_json(*verdict.configuration, report));
