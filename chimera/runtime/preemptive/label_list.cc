@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-constexpr std::int32_t kStep = 4;  // levels left free beside a new first or last one
+constexpr std::int32_t kStep = 4;  // at most so many levels are left free beside a new first or last one
 
 }  // namespace
 
@@ -27,16 +27,18 @@ bool LabelList::goes_before(const LabelledJob& a, const LabelledJob& b) const no
   return a.task.index < b.task.index;
 }
 
+// Above all that it goes before. Whoever ran once stands above its equals, so they need not be in order of tasks: then
+// it is a place between one that it goes before and one that it does not.
 std::size_t LabelList::place_of(const LabelledJob& job) const noexcept {
-  std::size_t at = jobs_.size();
-  while (at > 0 && !goes_before(job, jobs_[at - 1])) --at;
-  return at;
+  const auto goes_before_it = [&](const LabelledJob& other) { return goes_before(job, other); };
+  return static_cast<std::size_t>(std::partition_point(jobs_.begin(), jobs_.end(), goes_before_it) - jobs_.begin());
 }
 
+// From the most urgent on: it is mostly one of those that ends.
 std::size_t LabelList::find(TaskId task) const noexcept {
-  std::size_t at = 0;
-  while (at < jobs_.size() && jobs_[at].task != task) ++at;
-  return at;
+  for (std::size_t at = jobs_.size(); at-- > 0;)
+    if (jobs_[at].task == task) return at;
+  return jobs_.size();
 }
 
 void LabelList::set(std::size_t at, std::int32_t level) noexcept {
@@ -68,7 +70,7 @@ void LabelList::label(std::size_t at) noexcept {
   if (high - low >= 2) {
     const bool is_first = at == n_parked_, is_last = at + 1 == jobs_.size();
     if (is_last && !is_first) return set(at, std::min(low + kStep, high - 1));
-    if (is_first && !is_last) return set(at, std::max(high - kStep, low + 1));
+    if (is_first && !is_last) return set(at, high - std::clamp((high - low) / 4, 1, kStep));  // others follow below it
     return set(at, low + (high - low) / 2);
   }
   if (make_room(at, kFewMoves)) return;

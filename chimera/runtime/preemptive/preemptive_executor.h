@@ -187,6 +187,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   std::atomic<std::uint32_t>* bell_;
   Alarm alarm_;
   Nanoseconds armed_ = kNever;
+  bool is_lax_ = false;                  // a job in the list has a check that the alarm does not know of
   std::thread supervisor_;
   pid_t edge_thread_ = 0;
   JobThread* on_processor_ = nullptr;    // the most urgent job at the last change of the list

@@ -101,9 +101,11 @@ JobThread* PreemptiveExecutor::running() noexcept {
   return nullptr;
 }
 
+// Where the most urgent job has not begun yet, nobody else of the list has run since the last look.
 void PreemptiveExecutor::charge_running(Nanoseconds now) noexcept {
-  JobThread* job = running();
-  if (job != nullptr) charge(*job, now);
+  if (labels_.size() == 0) return;
+  JobThread& top = *of_task_[labels_.jobs().back().task.index];
+  if (top.phase == JobPhase::kBegun) charge(top, now);
 }
 
 // Looks at what a job that has begun has used by now, and acts on it.
@@ -200,8 +202,12 @@ void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check, Nanoseconds no
   const bool is_exact = (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) || s.on_miss == OnMiss::kDemote ||
                         job.served.has_value();
   // A second job in the list: the first one's check counts from here on.
-  for (const LabelledJob& other : labels_.jobs()) check = std::min(check, of_task_[other.task.index]->check);
+  if (is_lax_ && labels_.size() > 1) {
+    for (const LabelledJob& other : labels_.jobs()) check = std::min(check, of_task_[other.task.index]->check);
+    is_lax_ = false;
+  }
   const Nanoseconds wanted = alarm_for(check, is_exact, now);
+  is_lax_ = is_lax_ || wanted > check;
   if (wanted < armed_) arm(wanted);
 }
 
@@ -229,6 +235,7 @@ void PreemptiveExecutor::look_at_jobs(Nanoseconds now) noexcept {
     if (job.check <= now) look_at(job, now);
     next = std::min(next, job.check);
   }
+  is_lax_ = false;
   if (next == kNever) return arm(kNever);
   next = std::max(next, now + kSoonest);
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) next = std::min(next, next_quantum(now));
