@@ -28,6 +28,7 @@ struct Span {
 
 struct Panel {
   std::string unit;
+  int number = 0;
   std::vector<const Curve*> curves;
   Span values;
   double top = 0;
@@ -59,13 +60,13 @@ Span with_margin(Span span, double share) {
 std::vector<Panel> panels_of(const Plot& plot) {
   std::vector<Panel> panels;
   for (const Curve& curve : plot.curves) {
-    const auto same = [&](const Panel& p) { return p.unit == curve.unit; };
+    const auto same = [&](const Panel& p) { return p.unit == curve.unit && p.number == curve.panel; };
     auto panel = std::find_if(panels.begin(), panels.end(), same);
-    if (panel == panels.end()) panel = panels.insert(panels.end(), Panel{curve.unit, {}, {}});
+    if (panel == panels.end()) panel = panels.insert(panels.end(), Panel{curve.unit, curve.panel, {}, {}});
     panel->curves.push_back(&curve);
     for (const PlotPoint& point : curve.points) panel->values.take(point.value);
   }
-  if (panels.empty()) panels.push_back({"1", {}, {}});
+  if (panels.empty()) panels.push_back({"1", 0, {}, {}});
   double top = kTop + (plot.note.empty() ? 0 : 16);
   for (Panel& panel : panels) {
     if (panel.unit == plot.level_unit) panel.values.take(plot.level);

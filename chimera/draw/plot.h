@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values over time or frequency as a picture: one panel for each unit, one below the other over the same axis, a colour
-// a channel.
+// Values over time or frequency as a picture: one panel for each unit (or more), one below the other over one axis,
+// a colour a channel.
 #pragma once
 
 #include <limits>
@@ -19,6 +19,7 @@ struct Curve {
   std::string name;
   std::string unit = "1";
   std::vector<PlotPoint> points;  ///< in order of time
+  int panel = 0;                  ///< curves of one unit stand in one panel where this is the same
 };
 
 /// A time from which something is missing: hatched over the whole height, with its text.

@@ -8,16 +8,19 @@ using namespace chimera;
 
 namespace {
 
+// Hz. Far below it nothing is left of the ratio of width and center.
+constexpr double kLeast = 1e-6;
+
 struct Notch {
   In<double[]>    x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  InConst<double> center{"center", "Hz", range(0, 1e6), doc = "What is taken out; above 0, below half the rate."};
-  InConst<double> width{"width", "Hz", range(0, 1e6),
-                        doc = "Between the two frequencies where the gain is 1/sqrt(2); above 0."};
+  InConst<double> center{"center", "Hz", range(kLeast, 1e6), doc = "What is taken out; below half the rate."};
+  InConst<double> width{"width", "Hz", range(kLeast, 1e6),
+                        doc = "Between the two frequencies where the gain is 1/sqrt(2)."};
   Out<double[]>   y{"y", "U", "[n...<=64]", doc = "x without the centre frequency."};
 
   Outcome init() {
-    if (!(*center > 0 && *width > 0) || !math::is_finite(*center) || !math::is_finite(*width))
-      return fault("center and width must be above 0 Hz");
+    if (!(*center >= kLeast && *width >= kLeast) || !math::is_finite(*center) || !math::is_finite(*width))
+      return fault("center and width must be at least 1e-6 Hz");
     last_dt_ = 0;
     return ok();
   }

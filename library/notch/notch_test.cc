@@ -51,9 +51,11 @@ TEST_F(NotchTest, LetsAConstantThroughFromTheFirstCycle) {
 TEST_F(NotchTest, RefusesWrongConstantsAndNaNDoesNotStay) {
   rig.set("center", 0.0);
   rig.set("width", 5.0);
-  EXPECT_EQ(rig.init().text, "center and width must be above 0 Hz");
+  EXPECT_EQ(rig.init().text, "center and width must be at least 1e-6 Hz");
+  rig.set("center", 5e-324);
+  EXPECT_EQ(rig.init().text, "center and width must be at least 1e-6 Hz");
   rig.set("center", std::nan(""));
-  EXPECT_EQ(rig.init().text, "center and width must be above 0 Hz");
+  EXPECT_EQ(rig.init().text, "center and width must be at least 1e-6 Hz");
   start(500, 5);
   rig.step(0);
   EXPECT_EQ(rig.on().text, "center and width must be below half the rate of the task");

@@ -168,7 +168,7 @@ TEST(Responses, SignalGeneratorInItsSevenWaves) {
     ASSERT_TRUE(rig.init());
     ASSERT_TRUE(rig.on());
     // Two and two to a panel: seven over each other could not be told apart.
-    Curve curve{kWaves[i], std::string("1") + std::string(static_cast<std::size_t>(i / 2), ' '), {}};
+    Curve curve{kWaves[i], "1", {}, i / 2};
     for (double t = 0; t < 3; t += 5e-3) {
       curve.points.push_back({t, rig.get<double>("y")});
       ASSERT_TRUE(rig.cycle(milliseconds(5)));
