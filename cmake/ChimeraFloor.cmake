@@ -177,6 +177,9 @@ endfunction()
 function(_chimera_text target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   target_compile_options(${target} PRIVATE ${CHIMERA_FEWER_CHECKS})
+  if(CHIMERA_TREE STREQUAL "release")  # where more is inlined g++ 12 takes the storage of a variant for its content
+    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+  endif()
 endfunction()
 
 function(chimera_floor name)
