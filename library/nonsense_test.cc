@@ -19,8 +19,9 @@
 namespace chimera {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kHostile[] = {NAN, kInfinity, -kInfinity, 0, -0.0, -1, 1e308, -1e308, 5e-324, 1e-300, 1e6, -1e6, 1e18};
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr double kHostile[] = {NAN,    kUnbounded, -kUnbounded, 0,   -0.0, -1,  1e308,
+                               -1e308, 5e-324,     1e-300,      1e6, -1e6, 1e18};
 
 /// What each component with a resource works with.
 std::string sound_resource(const std::string& component, const std::string& port) {

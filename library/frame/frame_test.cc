@@ -15,7 +15,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-Bytes frame_of(const Bytes& payload) {
+Bytes framed(const Bytes& payload) {
   Bytes made(payload.size() + kFrameOverhead);
   std::memcpy(made.data() + 2, payload.data(), payload.size());
   EXPECT_EQ(close_frame(made.data(), payload.size()), made.size());
@@ -44,7 +44,7 @@ TEST(Crc16, IsCcittFalse) {
 TEST_F(FrameReaderTest, FindsFramesHoweverTheyAreCut) {
   Bytes stream;
   for (std::uint8_t i = 0; i < 50; ++i) {
-    const Bytes frame = frame_of({i, 0xA5, 0x04, i});
+    const Bytes frame = framed({i, 0xA5, 0x04, i});
     stream.insert(stream.end(), frame.begin(), frame.end());
   }
   for (std::size_t cut = 1; cut < 20; ++cut) {
@@ -63,7 +63,7 @@ TEST_F(FrameReaderTest, FindsFramesHoweverTheyAreCut) {
 TEST_F(FrameReaderTest, AFalseStartHidesNoFrame) {
   reader.reset(4);
   Bytes bytes = {0xA5, 0x04, 0x11};  // looks like the start of a frame and is none
-  const Bytes frame = frame_of({1, 2, 3, 4});
+  const Bytes frame = framed({1, 2, 3, 4});
   bytes.insert(bytes.end(), frame.begin(), frame.end());
   feed(bytes);
   EXPECT_EQ(got, std::vector<Bytes>({{1, 2, 3, 4}}));
@@ -72,7 +72,7 @@ TEST_F(FrameReaderTest, AFalseStartHidesNoFrame) {
 }
 
 TEST_F(FrameReaderTest, NoFlippedBitPasses) {
-  const Bytes good = frame_of({9, 8, 7, 6});
+  const Bytes good = framed({9, 8, 7, 6});
   for (std::size_t bit = 0; bit < good.size() * 8; ++bit) {
     reader.reset(4);
     Bytes bad = good;
@@ -90,7 +90,7 @@ TEST_F(FrameReaderTest, TrueFramesAreFoundInNoise) {
     Bytes noise(random() % 40);
     for (auto& byte : noise) byte = random() % 4 == 0 ? kFrameStart : static_cast<std::uint8_t>(random() % 0xA0);
     feed(noise);
-    feed(frame_of({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8), 77}));
+    feed(framed({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8), 77}));
     ++sent;
   }
   feed(Bytes(20, 0));  // nothing is left waiting behind a false start

@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 #include <vector>
 
+#include "chimera/base/math.h"
+
 namespace chimera::library {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 void expect_near(const Frame& found, const Frame& expected, double within) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -51,8 +50,8 @@ std::vector<JointAxis> axes_of(const DhChain& chain) {
 TEST(DhOfAxes, FindsThePumasOwnTable) {
   DhChain puma;
   puma.ndof = 6;
-  puma.dh = {DhLink{0, kPi / 2, 0, 0},       {.4318, 0, 0, 0},   {.0203, -kPi / 2, .15005, 0},
-             {0, kPi / 2, .4318, 0}, {0, -kPi / 2, 0, 0}, {0, 0, .05625, 0}};
+  puma.dh = {DhLink{0, math::kPi / 2, 0, 0},       {.4318, 0, 0, 0},   {.0203, -math::kPi / 2, .15005, 0},
+             {0, math::kPi / 2, .4318, 0}, {0, -math::kPi / 2, 0, 0}, {0, 0, .05625, 0}};
   const std::vector<double> zero(6, 0.0);
   const DhChain found = dh_of_axes(axes_of(puma), tool_frame(puma, zero));
   ASSERT_EQ(found.ndof, 6u);

@@ -6,23 +6,18 @@
 #include <random>
 #include <vector>
 
+#include "chimera/base/math.h"
+#include "library/kinematics/arm_rig.h"
 #include "library/kinematics/puma560.h"
 
 namespace chimera::library {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 SerialArm puma() {
   DhChain chain;
   chain.ndof = 6;
   std::copy(Puma560::kRows.begin(), Puma560::kRows.end(), chain.dh.begin());
   return SerialArm(chain);
-}
-
-double apart(const Frame& a, const Frame& b) {
-  const Six e = motion_between(a, b);
-  return std::max(length({e[0], e[1], e[2]}), length({e[3], e[4], e[5]}));
 }
 
 struct RandomJoints {
@@ -55,7 +50,7 @@ TEST(SerialArm, JacobianIsTheSlopeOfTheForwardKinematics) {
 
 TEST(SerialArm, TurnsAreFoundUpToHalfARevolution) {
   const Frame start;
-  for (const double angle : {0.0, 1e-12, 1e-6, 0.3, 3.0, kPi - 1e-9, kPi}) {
+  for (const double angle : {0.0, 1e-12, 1e-6, 0.3, 3.0, math::kPi - 1e-9, math::kPi}) {
     const Frame turned = frame_of(DhLink{0, angle, 0, 0}, 0);
     const Triple found = turn_between(start, turned);
     EXPECT_NEAR(std::abs(found[0]), angle, 2e-8) << angle;
@@ -82,8 +77,8 @@ TEST(DampedInverse, IsTheInverseFarFromSingularPoses) {
 
 TEST(DampedInverse, StaysBoundedAtSingularPoses) {
   const SerialArm arm = puma();
-  const Puma560::Vector singular[] = {{0, 0, 0, 0, 0, 0}, {0, kPi / 2, -kPi / 2, 0, 0, 0}, {0, 0, -kPi / 2, 0, 1e-7, 0},
-                                      {0, kPi / 4, -kPi, 0, 1e-3, 0}};
+  const Puma560::Vector singular[] = {{0, 0, 0, 0, 0, 0}, {0, math::kPi / 2, -math::kPi / 2, 0, 0, 0},
+                                      {0, 0, -math::kPi / 2, 0, 1e-7, 0}, {0, math::kPi / 4, -math::kPi, 0, 1e-3, 0}};
   for (const Puma560::Vector& q : singular) {
     Jacobian jacobian;
     arm.tool_frame(q, jacobian);
@@ -183,7 +178,7 @@ TEST(Puma560, ThePosesOfAnArmThatIsNotSingularHaveEightDifferentSolutions) {
       for (std::size_t t = 0; t < s; ++t) {
         double differs = 0;
         for (std::size_t i = 0; i < 6; ++i) {
-          differs = std::max(differs, std::abs(std::remainder(all.q[s][i] - all.q[t][i], 2 * kPi)));
+          differs = std::max(differs, std::abs(std::remainder(all.q[s][i] - all.q[t][i], 2 * math::kPi)));
         }
         ASSERT_GT(differs, 0.05) << s << " and " << t;
       }

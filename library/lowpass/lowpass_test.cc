@@ -4,12 +4,11 @@
 #include <complex>
 #include <numbers>
 
+#include "chimera/base/math.h"
 #include "library/signals/signal_rig.h"
 
 namespace chimera {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct LowpassTest : testing::Test {
   SignalRig rig{"lowpass"};
@@ -27,7 +26,8 @@ TEST_F(LowpassTest, HasTheGainOfTheClosedFormAtEveryFrequencyForEveryOrder) {
   for (std::int32_t order = 1; order <= 8; ++order) {
     start(50, order);
     for (double f : {1.0, 10.0, 25.0, 50.0, 75.0, 100.0, 200.0, 400.0}) {
-      const double closed = 1 / std::sqrt(1 + std::pow(std::tan(kPi * f * 1e-3) / std::tan(kPi * 0.05), 2 * order));
+      const double ratio = std::tan(math::kPi * f * 1e-3) / std::tan(math::kPi * 0.05);
+      const double closed = 1 / std::sqrt(1 + std::pow(ratio, 2 * order));
       EXPECT_NEAR(rig.gain(f), closed, 1e-9) << "order " << order << " at " << f << " Hz";
     }
   }
@@ -37,8 +37,8 @@ TEST_F(LowpassTest, HasTheGainOfTheClosedFormAtEveryFrequencyForEveryOrder) {
 // 0.0007378 (1 + z^-1)^6 / ((1 - 1.2686 z^-1 + 0.7051 z^-2) (1 - 1.0106 z^-1 + 0.3583 z^-2)
 // (1 - 0.9044 z^-1 + 0.2155 z^-2)).
 TEST_F(LowpassTest, IsThePrintedExampleOfOrderSix) {
-  const double analog = std::tan(0.15 * kPi) / std::pow(1 / (0.17783 * 0.17783) - 1, 1.0 / 12);
-  start(std::atan(analog) / kPi * 1000, 6);
+  const double analog = std::tan(0.15 * math::kPi) / std::pow(1 / (0.17783 * 0.17783) - 1, 1.0 / 12);
+  start(std::atan(analog) / math::kPi * 1000, 6);
   constexpr double a[3][2] = {{-1.2686, 0.7051}, {-1.0106, 0.3583}, {-0.9044, 0.2155}};
   double w1[3] = {}, w2[3] = {};  // direct form II, a section each
   for (int k = 0; k < 80; ++k) {
@@ -70,8 +70,8 @@ TEST_F(LowpassTest, TakesLongerStepsWhenReleasesWereDropped) {
     t += ms * 1e-3;
     y = rig.step(t, milliseconds(ms));
   }
-  const double g = std::tan(kPi * 5e-3) / kPi / 5e-3;  // prewarping stretches the delay a little
-  EXPECT_NEAR(t - y, std::numbers::sqrt2 / (2 * kPi * 5) / g, 2e-4);
+  const double g = std::tan(math::kPi * 5e-3) / math::kPi / 5e-3;  // prewarping stretches the delay a little
+  EXPECT_NEAR(t - y, std::numbers::sqrt2 / (2 * math::kPi * 5) / g, 2e-4);
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(std::isfinite(rig.step(t, milliseconds(5000))));  // far beyond half the rate
 }
 

@@ -4,12 +4,11 @@
 #include <complex>
 #include <numbers>
 
+#include "chimera/base/math.h"
 #include "library/signals/signal_rig.h"
 
 namespace chimera {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct NotchTest : testing::Test {
   SignalRig rig{"notch"};
@@ -24,9 +23,9 @@ struct NotchTest : testing::Test {
 
 TEST_F(NotchTest, HasTheGainOfTheClosedFormAtEveryFrequency) {
   start(50, 10);
-  const double g = std::tan(kPi * 0.05), k = std::tan(kPi * 0.01) * (1 + g * g) / g;
+  const double g = std::tan(math::kPi * 0.05), k = std::tan(math::kPi * 0.01) * (1 + g * g) / g;
   for (double f : {1.0, 20.0, 40.0, 45.0, 49.0, 50.0, 51.0, 60.0, 100.0, 250.0, 450.0}) {
-    const std::complex<double> s(0, std::tan(kPi * f * 1e-3) / g);
+    const std::complex<double> s(0, std::tan(math::kPi * f * 1e-3) / g);
     EXPECT_NEAR(rig.gain(f), std::abs((s * s + 1.0) / (s * s + k * s + 1.0)), 1e-9) << f << " Hz";
   }
 }
@@ -34,9 +33,9 @@ TEST_F(NotchTest, HasTheGainOfTheClosedFormAtEveryFrequency) {
 TEST_F(NotchTest, IsExactlyAsWideAsItSays) {
   start(200, 60);  // far up, where the transform bends most
   // cos(2 pi f1) and cos(2 pi f2) of the edges: their frequencies differ by the width, and tan tan = g^2.
-  const double g = std::tan(kPi * 0.2), t = std::tan(kPi * 0.06);
+  const double g = std::tan(math::kPi * 0.2), t = std::tan(math::kPi * 0.06);
   const double low = (-t * (1 + g * g) + std::sqrt(t * t * (1 + g * g) * (1 + g * g) + 4 * g * g)) / 2;
-  const double f1 = std::atan(low) / kPi * 1000;
+  const double f1 = std::atan(low) / math::kPi * 1000;
   EXPECT_NEAR(rig.gain(200), 0, 1e-9);
   EXPECT_NEAR(rig.gain(std::round(f1 * 4) / 4), std::numbers::sqrt2 / 2, 5e-3);
   EXPECT_NEAR(rig.gain(std::round((f1 + 60) * 4) / 4), std::numbers::sqrt2 / 2, 5e-3);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "chimera/base/math.h"
 #include "library/joint_trajectory/quintic.h"
 #include "library/pid_joint/pid.h"
 #include "library/puma_torque/puma_arm.h"
@@ -13,9 +13,8 @@
 namespace chimera::library {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr PumaVector kStart{0, kPi / 2, -kPi / 2, 0, 0, 0};
-constexpr PumaVector kGoal{0.8, kPi / 2 - 0.7, -kPi / 2 + 0.7, 0.6, -0.6, 0.8};
+constexpr PumaVector kStart{0, math::kPi / 2, -math::kPi / 2, 0, 0, 0};
+constexpr PumaVector kGoal{0.8, math::kPi / 2 - 0.7, -math::kPi / 2 + 0.7, 0.6, -0.6, 0.8};
 constexpr double kDt = 1e-3, kMove = 1.8, kEnd = 4.0, kFilter = 2e-3;
 constexpr PumaVector kKp{2500, 3500, 1200, 250, 250, 250};
 constexpr PumaVector kKi{5000, 12000, 4000, 800, 800, 800};

@@ -9,20 +9,19 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
-#include <numbers>
 #include <string>
 
+#include "chimera/base/math.h"
 #include "library/mujoco/mujoco_guard.h"
 
 namespace chimera::library {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr PumaVector kQz{};
-constexpr PumaVector kQr{0, kPi / 2, -kPi / 2, 0, 0, 0};
-constexpr PumaVector kQs{0, 0, -kPi / 2, 0, 0, 0};
+constexpr PumaVector kQr{0, math::kPi / 2, -math::kPi / 2, 0, 0, 0};
+constexpr PumaVector kQs{0, 0, -math::kPi / 2, 0, 0, 0};
 // The published nominal pose has joint 3 at +180 degrees; -180 is the same place within the limits.
-constexpr PumaVector kQn{0, kPi / 4, -kPi, 0, kPi / 4, 0};
+constexpr PumaVector kQn{0, math::kPi / 4, -math::kPi, 0, math::kPi / 4, 0};
 
 const char* model_path() { return kPumaModel; }
 
@@ -80,7 +79,7 @@ TEST_F(PumaArmTest, PayloadAddsItsWeightAtTheFlange) {
   EXPECT_NEAR(arm.bias_torque()[1], 46.0069 + 2 * 9.81 * (.8636 + .05625), 1e-3);
   EXPECT_NEAR(arm.bias_torque()[4], (2 * .05625 + .09 * .032) * 9.81, 1e-6);
   PumaVector upright = kQs;
-  upright[4] = kPi / 2;
+  upright[4] = math::kPi / 2;
   ASSERT_TRUE(arm.place(upright));
   EXPECT_NEAR(arm.bias_torque()[1], 46.0069 - .09 * .032 * 9.81 + 2 * 9.81 * .8636, 1e-3);
   EXPECT_NEAR(arm.bias_torque()[4], 0, 1e-6);
@@ -144,7 +143,7 @@ TEST_F(PumaArmTest, StopsAtAJointLimit) {
   load();
   ASSERT_TRUE(arm.place(kQr));
   for (int i = 0; i < 3000; ++i) ASSERT_TRUE(arm.step(PumaVector{0, 0, 0, 0, 20, 0}, 1e-3));
-  EXPECT_NEAR(arm.position()[4], 100 * kPi / 180, 0.05);
+  EXPECT_NEAR(arm.position()[4], 100 * math::kPi / 180, 0.05);
 }
 
 TEST_F(PumaArmTest, ComesToRestAndStaysWhenLocallyStable) {

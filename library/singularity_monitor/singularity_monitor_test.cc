@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "chimera/base/math.h"
 #include "library/kinematics/arm_rig.h"
 #include "library/kinematics/singular_values.h"
 
@@ -14,8 +14,6 @@ namespace {
 using library::Jacobian;
 using library::Puma560;
 using library::SingularValues;
-
-constexpr double kPi = std::numbers::pi;
 
 Jacobian of_puma(const Puma560::Vector& q) {
   Jacobian jacobian;
@@ -35,13 +33,13 @@ TEST(SingularValues, OfAJacobianWhoseMotionsAreOrthogonalAreTheirLengths) {
 }
 
 TEST(SingularValues, TheirProductIsTheDeterminant) {
-  const Puma560::Vector nominal{0, kPi / 4, kPi, 0, kPi / 4, 0};
+  const Puma560::Vector nominal{0, math::kPi / 4, math::kPi, 0, math::kPi / 4, 0};
   EXPECT_NEAR(SingularValues(of_puma(nominal), 6).manipulability(), 0.078617, 5e-7);  // as published for this pose
 }
 
 TEST(SingularValues, AreFoundWithinTheBoundAndAreSmallWhereThePumaIsSingular) {
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> angle(-kPi, kPi), little(-1e-9, 1e-9);
+  std::uniform_real_distribution<double> angle(-math::kPi, math::kPi), little(-1e-9, 1e-9);
   int most = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     Puma560::Vector q;
@@ -64,7 +62,7 @@ struct SingularityMonitorTest : testing::Test {
   void SetUp() override { rig.set("ndof", std::int32_t{6}); }
   void stand(const Puma560::Vector& q) { rig.give_jacobian(of_puma(q), 6); }
   bool is_near_at(double wrist) {
-    stand({0, kPi / 4, -kPi, 0, wrist, 0});
+    stand({0, math::kPi / 4, -math::kPi, 0, wrist, 0});
     EXPECT_TRUE(rig.cycle());
     return rig.get<bool>("is_near");
   }
@@ -72,7 +70,7 @@ struct SingularityMonitorTest : testing::Test {
 
 TEST_F(SingularityMonitorTest, IsNearBelowOneValueUntilAboveTheOther) {
   ASSERT_TRUE(rig.init());
-  stand({0, kPi / 4, -kPi, 0, 0.8, 0});
+  stand({0, math::kPi / 4, -math::kPi, 0, 0.8, 0});
   ASSERT_TRUE(rig.on());
   EXPECT_FALSE(rig.get<bool>("is_near"));
   const auto value = [this] { return rig.get<double>("singular_value"); };
@@ -87,7 +85,7 @@ TEST_F(SingularityMonitorTest, IsNearBelowOneValueUntilAboveTheOther) {
 
 TEST_F(SingularityMonitorTest, CountsAsNearAtOnUntilItIsSeenToBeClear) {
   ASSERT_TRUE(rig.init());
-  stand({0, kPi / 4, -kPi, 0, 0, 0});
+  stand({0, math::kPi / 4, -math::kPi, 0, 0, 0});
   ASSERT_TRUE(rig.on());
   EXPECT_TRUE(rig.get<bool>("is_near"));
   EXPECT_NEAR(rig.get<double>("singular_value"), 0, 1e-12);
@@ -97,13 +95,13 @@ TEST_F(SingularityMonitorTest, CountsAsNearAtOnUntilItIsSeenToBeClear) {
 TEST_F(SingularityMonitorTest, RefusesAJacobianThatIsNotFiniteOrTooLarge) {
   ASSERT_TRUE(rig.init());
   for (const double bad : {std::nan(""), HUGE_VAL, 1e200}) {
-    stand({0, kPi / 4, -kPi, 0, 0.8, 0});
+    stand({0, math::kPi / 4, -math::kPi, 0, 0.8, 0});
     rig.set("jw", bad, 7);
     const RigAnswer answer = rig.cycle();
     EXPECT_FALSE(answer);
     EXPECT_EQ(answer.text, "the Jacobian is not finite, or too large");
   }
-  stand({0, kPi / 4, -kPi, 0, 0.8, 0});
+  stand({0, math::kPi / 4, -math::kPi, 0, 0.8, 0});
   EXPECT_TRUE(rig.cycle());
 }
 

@@ -7,19 +7,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "chimera/base/math.h"
 #include "chimera/task/rig.h"
 #include "library/mujoco/simulated_arm.h"
 
 namespace chimera::library {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-std::string shipped(const char* file) {
+std::string shipped_urdf(const char* file) {
   const char* source = std::getenv("CHIMERA_SOURCE");
   return std::string(source != nullptr ? source : ".") + "/library/urdf_model/" + file;
 }
@@ -36,16 +34,16 @@ struct UrdfChainTest : testing::Test {
 };
 
 TEST_F(UrdfChainTest, ThePumasFlangeStandsWhereItIsPublished) {
-  const Result<UrdfChain> puma = read_urdf(shipped("puma560.urdf"), "");
+  const Result<UrdfChain> puma = read_urdf(shipped_urdf("puma560.urdf"), "");
   ASSERT_TRUE(puma) << puma.error().message.view();
   ASSERT_EQ(puma->chain.ndof, 6u);
   // Wrist centres of Corke and Armstrong-Helouvry, and the flange 56.25 mm further along z of frame 6.
-  const Result<UrdfChain> wrist = read_urdf(shipped("puma560.urdf"), "link6");
+  const Result<UrdfChain> wrist = read_urdf(shipped_urdf("puma560.urdf"), "link6");
   const struct { std::vector<double> q; Triple p; } published[] = {
       {{0, 0, 0, 0, 0, 0}, {.4521, -.15005, .4318}},
-      {{0, kPi / 2, -kPi / 2, 0, 0, 0}, {.0203, -.15005, .8636}},
-      {{0, 0, -kPi / 2, 0, 0, 0}, {.8636, -.15005, -.0203}},
-      {{0, kPi / 4, -kPi, 0, kPi / 4, 0}, {.5963, -.15005, -.01435}}};
+      {{0, math::kPi / 2, -math::kPi / 2, 0, 0, 0}, {.0203, -.15005, .8636}},
+      {{0, 0, -math::kPi / 2, 0, 0, 0}, {.8636, -.15005, -.0203}},
+      {{0, math::kPi / 4, -math::kPi, 0, math::kPi / 4, 0}, {.5963, -.15005, -.01435}}};
   for (const auto& [q, p] : published) {
     const Frame frame = tool_frame(wrist->chain, q), flange = tool_frame(puma->chain, q);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(frame.origin[i], p[i], 6e-5);
@@ -54,7 +52,7 @@ TEST_F(UrdfChainTest, ThePumasFlangeStandsWhereItIsPublished) {
 }
 
 TEST_F(UrdfChainTest, TellsNamesAndLimits) {
-  const Result<UrdfChain> puma = read_urdf(shipped("puma560.urdf"), "flange");
+  const Result<UrdfChain> puma = read_urdf(shipped_urdf("puma560.urdf"), "flange");
   ASSERT_TRUE(puma);
   EXPECT_EQ(puma->joints[4], "q5");
   EXPECT_EQ(puma->low[1], -0.785398);
@@ -64,9 +62,9 @@ TEST_F(UrdfChainTest, TellsNamesAndLimits) {
 }
 
 TEST_F(UrdfChainTest, MujocoSeesTheSameRobotInTheFile) {
-  const Result<UrdfChain> puma = read_urdf(shipped("puma560.urdf"), "link6");
+  const Result<UrdfChain> puma = read_urdf(shipped_urdf("puma560.urdf"), "link6");
   SimulatedArm arm;
-  const Result<void> loaded = arm.load(shipped("puma560.urdf").c_str(), "link6");
+  const Result<void> loaded = arm.load(shipped_urdf("puma560.urdf").c_str(), "link6");
   ASSERT_TRUE(loaded) << loaded.error().message.view();
   ASSERT_EQ(arm.joints(), 6u);
   const std::vector<double> q{0.3, 0.5, -1.2, 0.7, -0.6, 1.1};
@@ -104,7 +102,7 @@ TEST_F(UrdfChainTest, RefusesWhatIsNoChainOfTurningJoints) {
 
 TEST_F(UrdfChainTest, TheComponentPublishesTheConstants) {
   Rig rig("urdf_model");
-  rig.resource("model", shipped("puma560.urdf").c_str());
+  rig.resource("model", shipped_urdf("puma560.urdf").c_str());
   const RigAnswer made = rig.init();
   ASSERT_TRUE(made) << made.text;
   EXPECT_EQ(rig.get<std::int32_t>("ndof"), 6);

@@ -17,11 +17,12 @@ LAUNCHER = re.compile(r"^.*?(?=\S*/(c\+\+|g\+\+|cc|gcc)\s)")
 
 def alone(entry):
     """The entries of what `entry` compiles: several files when its own only includes others."""
-    if "/Unity/" not in entry["file"]:
+    if "/together/" not in entry["file"]:
         return [entry]
     together = pathlib.Path(entry["file"]).read_text()
+    files = [str(common.ROOT / file) for file in re.findall(r'^#include "([^"]+)"', together, re.MULTILINE)]
     return [{"directory": entry["directory"], "file": file, "command": entry["command"].replace(entry["file"], file)}
-            for file in re.findall(r'^#include "([^"]+)"', together, re.MULTILINE)]
+            for file in files]
 
 
 def commands():
