@@ -11,7 +11,7 @@ namespace chimera::library {
 template <class... Values>
 Error refusal(const char* format, Values... values) {
   Error error;
-  char text[400];
+  char text[1024];  // the message keeps what it has room for
   std::snprintf(text, sizeof text, format, values...);
   error.message = FixedString<400>(text);
   return error;
