@@ -68,6 +68,7 @@ typedef struct pboPort_t {
   uint32_t offset;
   const void* initial;
   uint32_t initial_bytes;
+  const char* at_least;
   double min, max;
   int has_range;
   int safety;
@@ -78,6 +79,7 @@ typedef struct pboPort_t {
 #define PBO_FRAME(text) .frame = text
 #define PBO_RANGE(low, high) .has_range = 1, .min = low, .max = high
 #define PBO_SAFETY .safety = 1
+#define PBO_AT_LEAST(lower) .at_least = lower /* in_const of numbers: no element is below that of in_const `lower` */
 #define PBO_INITIAL(type, ...) \
   .initial = (const PBO_TYPE_##type[]){__VA_ARGS__}, .initial_bytes = sizeof((const PBO_TYPE_##type[]){__VA_ARGS__})
 
@@ -254,6 +256,7 @@ static inline void pboDestroy(void* state) { (void)state; }
   PBO_BACKGROUND(m)                                                                                 \
   PBO_EVENT_SOURCE(m)                                                                               \
   static chimera_port_decl m##Declared[sizeof m##PortList / sizeof m##PortList[0]];                 \
+  static chimera_order m##Orders[sizeof m##PortList / sizeof m##PortList[0]];                       \
   static chimera_component m##Component = {.name = #m, __VA_ARGS__};                                \
   static const chimera_component* m##Declare(void) {                                                \
     uint32_t i;                                                                                     \
@@ -266,6 +269,10 @@ static inline void pboDestroy(void* state) { (void)state; }
     m##Component.n_ports = sizeof m##PortList / sizeof m##PortList[0];                              \
     for (i = 0; i < m##Component.n_ports; ++i) pboDeclarePort(&m##Declared[i], &m##PortList[i]);    \
     m##Component.ports = m##Declared;                                                               \
+    for (i = 0; i < m##Component.n_ports; ++i)                                                      \
+      if (m##PortList[i].at_least != NULL)                                                          \
+        m##Orders[m##Component.n_orders++] = (chimera_order){m##PortList[i].at_least, m##PortList[i].name}; \
+    m##Component.orders = m##Orders;                                                                \
     m##Component.construct = pboConstruct;                                                          \
     m##Component.destroy = pboDestroy;                                                              \
     m##Component.methods[CHIMERA_CYCLE] = m##RunCycle;                                              \

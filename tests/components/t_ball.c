@@ -11,6 +11,7 @@ typedef struct {
 PBO_PORTS(t_ball,
   (resource,  device, text,    "",    "1", PBO_DOC("which ball; \"broken\" fails in init")),
   (in_const,  scale,  float64, "",    "m", PBO_INITIAL(float64, 0.5), PBO_RANGE(0, 10), PBO_DOC("a full turn")),
+  (in_const,  reach,  float64, "",    "m", PBO_INITIAL(float64, 1e3), PBO_AT_LEAST("scale"), PBO_DOC("of xd")),
   (out_const, axes,   int32,   "",    "1"),
   (in_var,    turn,   float64, "[3]", "1/s", PBO_DOC("how fast it is turned; a negative third axis is a fault")),
   (out_var,   xd,     float64, "[3]", "m", PBO_INITIAL(float64, 0.0), PBO_FRAME("base")),
@@ -37,6 +38,7 @@ int t_ballOn(t_ballLocal_t *local) {
 
 int t_ballCycle(t_ballLocal_t *local) {
   SVAR_IN(scale);
+  SVAR_IN(reach);
   SVAR_IN(turn);
   SVAR_OUT(xd);
   SVAR_OUT(moving);
@@ -45,7 +47,10 @@ int t_ballCycle(t_ballLocal_t *local) {
   if (turn[2] < 0) return PBO_FAULT("the third axis turns the wrong way");
   if (turn[0] > 100) return 17; /* no answer that a method may give */
   if (PBO_EXPIRED) return PBO_ABORTED;
-  for (i = 0; i < SVAR_SIZE(xd); ++i) xd[i] = local->position[i] += *scale * turn[i] * PBO_DT;
+  for (i = 0; i < SVAR_SIZE(xd); ++i) {
+    const double next = local->position[i] + *scale * turn[i] * PBO_DT;
+    xd[i] = local->position[i] = next > *reach ? *reach : next < -*reach ? -*reach : next;
+  }
   *moving = turn[0] != 0 || turn[1] != 0 || turn[2] != 0;
   strcpy(*state, *moving ? "moving" : "idle");
   return PBO_OK;

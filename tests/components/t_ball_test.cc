@@ -29,7 +29,7 @@ struct Ball : Rig {
 };
 
 TEST(CFace, DeclaresWhatPboPortsSays) {
-  EXPECT_EQ(ball().n_ports, 9u);
+  EXPECT_EQ(ball().n_ports, 10u);
   EXPECT_STREQ(ball().doc, "Trackball, written in C.");
   EXPECT_STREQ(ball().source, "Stewart 2000, figure 9");
   EXPECT_EQ(ball().default_rate_hz, 50);
@@ -50,6 +50,12 @@ TEST(CFace, DeclaresOptions) {
   EXPECT_EQ(port("scale").flags, CHIMERA_PORT_HAS_RANGE | CHIMERA_PORT_HAS_INITIAL);
   EXPECT_EQ(port("scale").max, 10);
   EXPECT_EQ(port("force").flags, CHIMERA_PORT_HAS_RANGE | CHIMERA_PORT_HAS_INITIAL | CHIMERA_PORT_SAFETY);
+}
+
+TEST(CFace, DeclaresThatAConstantIsAtLeastAnother) {
+  ASSERT_EQ(ball().n_orders, 1u);
+  EXPECT_STREQ(ball().orders[0].lower, "scale");
+  EXPECT_STREQ(ball().orders[0].upper, "reach");
 }
 
 TEST(CFace, FindsTheMethodsThatAreWrittenAndTakesTermForKill) {
