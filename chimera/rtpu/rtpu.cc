@@ -7,28 +7,22 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <memory>
-#include <thread>
 #include <vector>
 
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/linux/owned_descriptor.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/realtime.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/platform/undertaker.h"
-#include "chimera/rtpu/bell_clock.h"
 #include "chimera/rtpu/components.h"
+#include "chimera/rtpu/cycling_thread.h"
+#include "chimera/rtpu/hang_watch.h"
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/service_thread.h"
-#include "chimera/runtime/executive/executive.h"
-#include "chimera/runtime/preemptive/preemptive_executor.h"
-#include "chimera/schedule/bands.h"
 
 namespace chimera {
 namespace {
@@ -46,16 +40,6 @@ void limit_stacks() noexcept {
   ::pthread_attr_destroy(&attributes);
 }
 
-std::int32_t priority_of(const ApplicationSpec& spec, std::uint32_t me, std::int32_t top) {
-  std::vector<BandMember> members;
-  for (const RtpuSpec& rtpu : spec.rtpus) members.push_back({rtpu.cpu, 0});
-  for (const TaskSpec& task : spec.tasks) {
-    BandMember& member = members[task.rtpu.index];
-    member.criticality = std::max(member.criticality, task.criticality);
-  }
-  return band_top(members, me, top);
-}
-
 /// Everything a unit has, in the order in which it is made.
 class Rtpu {
  public:
@@ -68,19 +52,11 @@ class Rtpu {
   Result<void> map();
   Result<void> make_segment();
   Result<void> make_tasks();
-  void say(std::string_view text, PeerPhase phase);
   void announce();
-  void cycle();
-  RunOptions options();
-  void make_loop();
-  void run_loop();
-  void make_threads(int ceiling);
-  void run_threads();
   void listen(int timeout_ms);
   void take_messages();
   void take_peer(const KeeperMessage& message, int descriptor);
   void end();
-  bool hangs();
   bool loop_hangs();
   std::uint64_t jobs_of(std::uint32_t task) const;
 
@@ -106,20 +82,10 @@ class Rtpu {
   BackgroundWriter writer_;
   std::unique_ptr<TaskSet> tasks_;
   std::unique_ptr<Edge> edge_;
-  std::unique_ptr<BellClock> clock_;
-  std::unique_ptr<ComputingClock> job_clock_;
-  std::unique_ptr<Tap> tap_;
-  std::unique_ptr<Executive> executive_;
-  std::unique_ptr<PreemptiveExecutor> preemptive_;  // one of the two
-  std::thread cycling_;
-  std::atomic<bool> has_ended_{false};
+  std::unique_ptr<HangWatch> hang_watch_;
+  std::unique_ptr<CyclingThread> cycling_;
   bool is_ending_ = false;
   bool is_giving_up_ = false;  // because a job does not end
-  std::uint64_t beats_seen_ = 0;
-  std::uint32_t running_seen_ = 0;
-  Nanoseconds beaten_at_;
-  std::uint32_t progress_ = 0;
-  Nanoseconds progress_at_;
   LinuxClock wall_;
 };
 
@@ -139,7 +105,7 @@ Result<void> Rtpu::prepare() {
   if (auto mapped = map(); !mapped) return mapped;
   if (auto made = make_segment(); !made) return made;
   if (auto made = make_tasks(); !made) {
-    say(made.error().message.view(), PeerPhase::kEnded);
+    say(block_.head(), made.error().message.view(), PeerPhase::kEnded);
     announce();
     return made;
   }
@@ -186,11 +152,12 @@ Result<void> Rtpu::make_tasks() {
   if (!components) return components.error();
   components_ = *std::move(components);
   BlockHead& head = block_.head();
-  const Doorbell bell(decision_->bells[start_.peer].word);
-  service_ = std::make_unique<ServiceThread>(spec.tasks.size(), bell);
+  service_ = std::make_unique<ServiceThread>(spec.tasks.size(), Doorbell(bell()));
   others_ = std::make_unique<Others>(spec, start_.peer, segment_.writable(), block_, *decision_, *keeper_, *peers_);
-  const ContextPlace place{RtpuId(start_.peer), segment_.writable().subspan(sizeof(SegmentHeader)), others_.get(),
-                           service_.get(), &head.running, &head.serving, self().preemptive};
+  const ContextPlace place{RtpuId(start_.peer), segment_.writable().subspan(sizeof(SegmentHeader)),
+                           others_.get(),       service_.get(),
+                           &head.running,       &head.serving,
+                           self().preemptive};
   auto tasks = TaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);
@@ -199,26 +166,10 @@ Result<void> Rtpu::make_tasks() {
   edge_ = std::make_unique<Edge>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
                                  image_->settings().method_limit);
   edge_->set_supervisor(over_.fd);
-  tap_ = std::make_unique<Tap>(block_.tap());
+  hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
+  cycling_ = std::make_unique<CyclingThread>(CyclingPlace{spec, start_.peer, image_->settings().priority, *tasks_,
+                                                          *edge_, *others_, keeper_->origin, bell(), over_.fd});
   return {};
-}
-
-RunOptions Rtpu::options() {
-  RunOptions options;
-  options.policy = self().policy;
-  options.tap = tap_.get();
-  options.rtpu = static_cast<std::uint8_t>(start_.peer);
-  options.guest = edge_.get();
-  options.stop = &edge_->is_over();
-  return options;
-}
-
-void Rtpu::say(std::string_view text, PeerPhase phase) {
-  char (&grant)[sizeof block_.head().grant] = block_.head().grant;
-  const std::size_t n = std::min(text.size(), sizeof grant - 1);
-  std::memcpy(grant, text.data(), n);
-  grant[n] = '\0';
-  block_.head().phase.store(phase, std::memory_order_release);
 }
 
 void Rtpu::announce() {
@@ -229,70 +180,21 @@ void Rtpu::announce() {
   (void)channel_.send(bytes_of(message), segment_.descriptor());
 }
 
-// The thread that cycles, or that takes the edges of those that do.
-void Rtpu::cycle() {
-  const int ceiling = priority_of(image_->spec(), start_.peer, image_->settings().priority);
-  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
-  if (self().preemptive) make_threads(grant.priority ? ceiling : 0);
-  else make_loop();
-  say(grant.report.view(), PeerPhase::kServing);
-  if (self().preemptive) run_threads();
-  else run_loop();
-  has_ended_ = true;
-  const std::uint64_t one = 1;
-  if (::write(over_.fd, &one, sizeof one) < 0) return;  // then the next look of listen() finds it
-}
-
-void Rtpu::make_loop() {
-  clock_ = std::make_unique<BellClock>(Doorbell(bell()), block_.head().running);
-  clock_->attach(*edge_);
-  job_clock_ = std::make_unique<ComputingClock>(*clock_);
-  executive_ = std::make_unique<Executive>(*tasks_, *clock_, *job_clock_, options());
-}
-
-void Rtpu::run_loop() {
-  executive_->start(keeper_->origin);
-  others_->changed();
-  while (executive_->run(kNever) == RunEnd::kTaskStopped) {
-    edge_->stop_all(executive_->releases(), clock_->now());
-    executive_->releases().forget_stop();
-  }
-}
-
-void Rtpu::make_threads(int ceiling) {
-  ProcessorPlace place;
-  place.cpu = static_cast<int>(self().cpu);
-  place.ceiling = ceiling;
-  place.base = ceiling - kBandWidth + 1;
-  place.bell = &bell();
-  preemptive_ = std::make_unique<PreemptiveExecutor>(*tasks_, options(), place);
-}
-
-void Rtpu::run_threads() {
-  preemptive_->start(keeper_->origin);
-  others_->changed();
-  while (preemptive_->run(kNever) == RunEnd::kTaskStopped)
-    preemptive_->at_edge([this] {
-      edge_->stop_all(preemptive_->releases(), wall_.now());
-      preemptive_->releases().forget_stop();
-    });
-}
-
 int Rtpu::run() {
   service_->start(*tasks_);
   announce();
-  cycling_ = std::thread([this] { cycle(); });
-  while (!has_ended_) {
+  cycling_->start();
+  while (!cycling_->has_ended()) {
     listen(kSuperviseEveryMs);
     if (!is_ending_ && loop_hangs()) return kMethodHangs;  // nobody else takes edges
     if (!is_ending_ && edge_->has_hanging()) {
       is_giving_up_ = true;
       end();
     }
-    if (is_ending_ && hangs()) return kMethodHangs;
+    if (is_ending_ && hang_watch_->end_hangs(edge_->progress(), wall_.now())) return kMethodHangs;
     if (is_giving_up_ && edge_->is_over()) return kMethodHangs;  // but for the job that does not end
   }
-  cycling_.join();
+  cycling_->join();
   service_->stop();
   return is_giving_up_ ? kMethodHangs : 0;
 }
@@ -329,7 +231,7 @@ void Rtpu::take_messages() {
 void Rtpu::take_peer(const KeeperMessage& message, int descriptor) {
   if (message.index == start_.peer) return;
   if (const auto offered = peers_->offer(message.index, message.incarnation, descriptor); offered)
-    return Doorbell(decision_->bells[start_.peer].word).ring();
+    return Doorbell(bell()).ring();
   else if (start_.parent != 0)
     std::fprintf(stderr, "chimera-rtpu %s: goes on without the memory of peer %u: %s\n",
                  std::string(self().name).c_str(), message.index, offered.error().message.c_str());
@@ -338,9 +240,9 @@ void Rtpu::take_peer(const KeeperMessage& message, int descriptor) {
 void Rtpu::end() {
   if (is_ending_) return;
   is_ending_ = true;
-  progress_at_ = wall_.now();
+  hang_watch_->begin_end(wall_.now());
   edge_->end();
-  Doorbell(decision_->bells[start_.peer].word).ring();
+  Doorbell(bell()).ring();
 }
 
 // Jobs of that task that have ended, as far as the loop's own thread has counted.
@@ -349,28 +251,11 @@ std::uint64_t Rtpu::jobs_of(std::uint32_t task) const {
   return __atomic_load_n(&tasks_->tasks()[task].profile.execution[CHIMERA_CYCLE].count, __ATOMIC_RELAXED);
 }
 
-// The one loop has been in the same method for too long: nobody else sees it.
+// The preemptive executor has a supervisor of its own for this.
 bool Rtpu::loop_hangs() {
+  if (self().preemptive) return false;
   const std::uint32_t running = block_.head().running;
-  const std::uint64_t beats = block_.head().beats + jobs_of((running >> 8) - 1);
-  const Nanoseconds now = wall_.now();
-  if (self().preemptive || running == 0 || beats != beats_seen_ || running != running_seen_) {
-    beats_seen_ = beats;
-    running_seen_ = running;
-    beaten_at_ = now;
-  }
-  if (now - beaten_at_ <= image_->settings().method_limit) return false;
-  return true;
-}
-
-// No method of the end came to its own end within its limit. What waits for others waits one limit more.
-bool Rtpu::hangs() {
-  const Nanoseconds now = wall_.now();
-  if (edge_->progress() != progress_) {
-    progress_ = edge_->progress();
-    progress_at_ = now;
-  }
-  return now - progress_at_ > image_->settings().method_limit * 2 + milliseconds(100);
+  return hang_watch_->loop_hangs(running, block_.head().beats + jobs_of((running >> 8) - 1), wall_.now());
 }
 
 }  // namespace

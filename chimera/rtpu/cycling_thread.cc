@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/cycling_thread.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "chimera/platform/realtime.h"
+#include "chimera/schedule/bands.h"
+
+namespace chimera {
+namespace {
+
+std::int32_t priority_of(const ApplicationSpec& spec, std::uint32_t me, std::int32_t top) {
+  std::vector<BandMember> members;
+  for (const RtpuSpec& rtpu : spec.rtpus) members.push_back({rtpu.cpu, 0});
+  for (const TaskSpec& task : spec.tasks) {
+    BandMember& member = members[task.rtpu.index];
+    member.criticality = std::max(member.criticality, task.criticality);
+  }
+  return band_top(members, me, top);
+}
+
+}  // namespace
+
+void say(BlockHead& head, std::string_view text, PeerPhase phase) noexcept {
+  const std::size_t n = std::min(text.size(), sizeof head.grant - 1);
+  std::memcpy(head.grant, text.data(), n);
+  head.grant[n] = '\0';
+  head.phase.store(phase, std::memory_order_release);
+}
+
+CyclingThread::CyclingThread(const CyclingPlace& place) : place_(place), tap_(place.others.block().tap()) {}
+
+void CyclingThread::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void CyclingThread::run() {
+  const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
+  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
+  if (self().preemptive)
+    make_threads(grant.priority ? ceiling : 0);
+  else
+    make_loop();
+  say(head(), grant.report.view(), PeerPhase::kServing);
+  if (self().preemptive)
+    run_threads();
+  else
+    run_loop();
+  has_ended_ = true;
+  const std::uint64_t one = 1;
+  if (::write(place_.over, &one, sizeof one) < 0) return;  // then the main thread finds it at its next look
+}
+
+RunOptions CyclingThread::options() {
+  RunOptions options;
+  options.policy = self().policy;
+  options.tap = &tap_;
+  options.rtpu = static_cast<std::uint8_t>(place_.me);
+  options.guest = &place_.edge;
+  options.stop = &place_.edge.is_over();
+  return options;
+}
+
+void CyclingThread::make_loop() {
+  clock_ = std::make_unique<BellClock>(Doorbell(place_.bell), head().running);
+  clock_->attach(place_.edge);
+  job_clock_ = std::make_unique<ComputingClock>(*clock_);
+  executive_ = std::make_unique<Executive>(place_.tasks, *clock_, *job_clock_, options());
+}
+
+void CyclingThread::run_loop() {
+  executive_->start(place_.origin);
+  place_.others.changed();
+  while (executive_->run(kNever) == RunEnd::kTaskStopped) {
+    place_.edge.stop_all(executive_->releases(), clock_->now());
+    executive_->releases().forget_stop();
+  }
+}
+
+void CyclingThread::make_threads(int ceiling) {
+  ProcessorPlace processor;
+  processor.cpu = static_cast<int>(self().cpu);
+  processor.ceiling = ceiling;
+  processor.base = ceiling - kBandWidth + 1;
+  processor.bell = &place_.bell;
+  preemptive_ = std::make_unique<PreemptiveExecutor>(place_.tasks, options(), processor);
+}
+
+void CyclingThread::run_threads() {
+  preemptive_->start(place_.origin);
+  place_.others.changed();
+  while (preemptive_->run(kNever) == RunEnd::kTaskStopped)
+    preemptive_->at_edge([this] {
+      place_.edge.stop_all(preemptive_->releases(), wall_.now());
+      preemptive_->releases().forget_stop();
+    });
+}
+
+}  // namespace chimera

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/hang_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace chimera {
+namespace {
+
+constexpr std::uint32_t kCycleOfFirst = 1 << 8 | 3, kOffOfFirst = 1 << 8 | 5;
+
+struct HangWatchTest : ::testing::Test {
+  HangWatch watch{milliseconds(500)};
+  Nanoseconds now = seconds(1000);
+};
+
+TEST_F(HangWatchTest, ALoopThatStaysInOneMethodForLongerThanTheLimitHangs) {
+  EXPECT_FALSE(watch.loop_hangs(kCycleOfFirst, 7, now));
+  EXPECT_FALSE(watch.loop_hangs(kCycleOfFirst, 7, now + milliseconds(500)));
+  EXPECT_TRUE(watch.loop_hangs(kCycleOfFirst, 7, now + milliseconds(500) + Nanoseconds{1}));
+}
+
+TEST_F(HangWatchTest, ALoopThatWaitsDoesNotHangHoweverLong) {
+  EXPECT_FALSE(watch.loop_hangs(0, 7, now));
+  EXPECT_FALSE(watch.loop_hangs(0, 7, now + seconds(60)));
+  EXPECT_FALSE(watch.loop_hangs(kCycleOfFirst, 7, now + seconds(120)));  // in it for 50 ms at most
+}
+
+TEST_F(HangWatchTest, AJobThatEndsOrAnotherMethodBeginsTheLimitAnew) {
+  EXPECT_FALSE(watch.loop_hangs(kCycleOfFirst, 7, now));
+  EXPECT_FALSE(watch.loop_hangs(kCycleOfFirst, 8, now + milliseconds(600)));
+  EXPECT_FALSE(watch.loop_hangs(kOffOfFirst, 8, now + milliseconds(1200)));
+  EXPECT_FALSE(watch.loop_hangs(kOffOfFirst, 8, now + milliseconds(1700)));
+  EXPECT_TRUE(watch.loop_hangs(kOffOfFirst, 8, now + milliseconds(1701)));
+}
+
+TEST_F(HangWatchTest, AnEndInWhichNothingGetsDoneHangsAfterTwoLimitsAndAMargin) {
+  watch.begin_end(now);
+  EXPECT_FALSE(watch.end_hangs(0, now + milliseconds(1100)));
+  EXPECT_TRUE(watch.end_hangs(0, now + milliseconds(1101)));
+}
+
+TEST_F(HangWatchTest, EachMethodOfTheEndHasItsOwnTime) {
+  watch.begin_end(now);
+  EXPECT_FALSE(watch.end_hangs(1, now + milliseconds(1100)));
+  EXPECT_FALSE(watch.end_hangs(2, now + milliseconds(2200)));
+  EXPECT_FALSE(watch.end_hangs(2, now + milliseconds(3300)));
+  EXPECT_TRUE(watch.end_hangs(2, now + milliseconds(3301)));
+}
+
+}  // namespace
+}  // namespace chimera
