@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cstring>
+#include <filesystem>
+#include <iterator>
 
 #include "chimera/platform/frozen_bytes.h"
 
@@ -100,15 +102,14 @@ TEST(Channel, SurplusDescriptorsAreClosed) {
   control.head.cmsg_len = CMSG_LEN(sizeof two);
   std::memcpy(CMSG_DATA(&control.head), two, sizeof two);
   ASSERT_EQ(::sendmsg(here.descriptor(), &message, 0), 8);
-  const int next = ::dup(2);
-  ::close(next);
+  const auto n_open = [] { return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}); };
+  const auto before = n_open();
   Letter got{};
   int passed = -1;
   ASSERT_EQ(there.receive(got, passed), Channel::Got::kMessage);
-  EXPECT_EQ(passed, next);
-  const int after = ::dup(2);
-  EXPECT_EQ(after, next + 1) << "one more is open than before";
-  for (const int fd : {two[0], two[1], passed, after}) ::close(fd);
+  EXPECT_GE(passed, 0);
+  EXPECT_EQ(n_open(), before + 1);
+  for (const int fd : {two[0], two[1], passed}) ::close(fd);
 }
 
 TEST(Channel, AFullOneRefusesAndNeverBlocks) {
