@@ -82,7 +82,7 @@ double atan_rest(double t) noexcept {
 // atan(x) as a pair, 0 <= x <= 1: from the nearest multiple of 1/8.
 Pair atan_of_unit(double x) noexcept {
   if (x < 3.0 / 16) return {x, atan_rest(x)};
-  const auto k = static_cast<int>(x * 8 + 0.5);
+  const auto k = static_cast<int>(x * 8 + 0.5);  // NOLINT: either neighbour of a half will do
   const double c = k * 0.125;
   const double t = (x - c) / (1 + c * x);
   return {kAtanOfEighths[k].hi, kAtanOfEighths[k].lo + atan_rest(t) + t};

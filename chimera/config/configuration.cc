@@ -49,7 +49,8 @@ ConfiguredVariable configured(const Model& model, const VariableModel& variable)
   const LinkedPort* port = !variable.producers.empty()   ? &model.port(variable.producers[0])
                            : !variable.consumers.empty() ? &model.port(variable.consumers[0])
                                                          : nullptr;
-  out.at = variable.given != nullptr ? variable.given->name.at : port->at;
+  if (variable.given != nullptr) out.at = variable.given->name.at;
+  else if (port != nullptr) out.at = port->at;
   if (port == nullptr) return out;  // given and used by nobody
   const ConfiguredPort like = configured(*port);
   out.type = like.type;

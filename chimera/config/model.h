@@ -128,6 +128,8 @@ struct Model {
   const LinkedPort& port(PortRef ref) const { return tasks[ref.task].ports[ref.port]; }
   std::optional<std::size_t> task_named(std::string_view name) const;
   VariableModel* variable(std::string_view name);
+  /// What the port is linked to; nullptr: nothing.
+  VariableModel* variable(const LinkedPort& p) { return p.is_linked() ? variable(p.variable) : nullptr; }
   /// Something is missing that could supply what else seems to be missing: say nothing about lacks.
   bool is_incomplete() const noexcept;
 

@@ -8,7 +8,7 @@ namespace chimera {
 namespace {
 
 void settle(Model& model, LinkedPort& port) {
-  const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
+  const VariableModel* variable = model.variable(port);
   const bool produced = variable != nullptr && variable->is_constant;
   if (port.own != nullptr) {
     port.source = ConstSource::kOwn;

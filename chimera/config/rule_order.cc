@@ -17,7 +17,7 @@ const LinkedPort* port_named(const TaskModel& task, const std::string& name) {
 /// Where the value was written, or nullptr: it is the component's own.
 const Node* written(Model& model, const LinkedPort& port) {
   if (port.own != nullptr) return port.own;
-  const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
+  const VariableModel* variable = model.variable(port);
   return variable != nullptr && variable->given != nullptr ? &variable->given->value : nullptr;
 }
 

@@ -149,7 +149,7 @@ void spread(Model& model, ExtentBindings& bindings) {
     moved = false;
     for_each_port(model, [&](PortRef ref, LinkedPort& port) {
       if (port.has_extents) return;
-      VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
+      VariableModel* variable = model.variable(port);
       if (!try_shape(model, port, bindings)) {
         if (variable == nullptr || !variable->has_extents) return;
         bind_extents(model, ref, port, *variable, bindings);
@@ -239,7 +239,7 @@ void compare(Model& model, const VariableModel& variable, const LinkedPort& port
 }
 
 void report_unsolved_shape(Model& model, const LinkedPort& port) {
-  const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
+  const VariableModel* variable = model.variable(port);
   if (variable != nullptr && variable->has_extents && variable->shape_from) return;  // compare() said it
   model.error("extent-unsolved", port.at,
               "nothing settles the shape " + port.declared->shape + " of " + model.say(port), port.declared->shape,

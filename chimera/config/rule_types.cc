@@ -51,7 +51,7 @@ void spread(Model& model, TypeBindings& bindings) {
     moved = false;
     for_each_port(model, [&](PortRef ref, LinkedPort& port) {
       if (port.type) return;
-      VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
+      VariableModel* variable = model.variable(port);
       const SymbolKey key = key_of(model, port);
       if (variable != nullptr && variable->type && is_scalar(*variable->type))
         bindings.try_emplace(key, Binding<std::uint32_t>{*variable->type, ref});
@@ -129,22 +129,21 @@ void compare(Model& model, const VariableModel& variable, PortRef ref, const Typ
               port.declared->type_name, {}, {}, "build both components against one definition of the struct");
 }
 
-bool is_refused(Model& model, const LinkedPort& port) {
-  const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
+bool is_refused(const VariableModel* variable) {
   return variable != nullptr && variable->type && !is_scalar(*variable->type);
 }
 
 /// Another port of the same type variable is linked to something that it cannot take.
 bool follows_from_another(Model& model, const LinkedPort& port) {
   for (const LinkedPort& other : model.tasks[port.task].ports)
-    if (&other != &port && uses_type(*other.declared, port.declared->type_name) && is_refused(model, other))
+    if (&other != &port && uses_type(*other.declared, port.declared->type_name) && is_refused(model.variable(other)))
       return true;
   return false;
 }
 
 void report_unsolved_type(Model& model, const LinkedPort& port) {
-  const VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
-  if (is_refused(model, port)) {
+  const VariableModel* variable = model.variable(port);
+  if (is_refused(variable)) {
     model.error("type-clash", port.at,
                 model.say(port) + " takes any number; " + settled_by(model, *variable, variable->type_from) + " is " +
                     text_of(model, *variable),

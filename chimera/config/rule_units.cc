@@ -101,7 +101,7 @@ void spread(Model& model, UnitTable& table) {
     moved = false;
     for_each_port(model, [&](PortRef ref, LinkedPort& port) {
       if (port.unit || !has_unit(port)) return;
-      VariableModel* variable = port.is_linked() ? model.variable(port.variable) : nullptr;
+      VariableModel* variable = model.variable(port);
       UnitExpression open = substituted(model, table, port);
       if (!port.unit && variable != nullptr && variable->unit &&
           bind(model, table, ref, port, open, {*variable->unit, variable->unit_text}))

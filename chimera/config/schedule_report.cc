@@ -96,6 +96,8 @@ class ReportWriter {
     for (const TaskId id : configured.order) works.tasks.push_back(id.index);
     std::sort(works.tasks.begin(), works.tasks.end());  // ties go by the order of the description
     std::vector<ScheduleRow> rows;
+    rows.reserve(works.tasks.size());
+    works.works.reserve(works.tasks.size());
     for (const std::size_t task : works.tasks) {
       rows.push_back(row(task));
       works.works.push_back(rows.back().work);

@@ -80,7 +80,7 @@ Verdict fields_rule(const PortDescriptor& port) {
   std::uint32_t free_from = 0;
   for (std::size_t i = 0; i < port.fields.size(); ++i) {
     const FieldDescriptor& field = port.fields[i];
-    if (const Verdict v = field_rule(port, field, free_from); !v.empty()) return v;
+    if (Verdict v = field_rule(port, field, free_from); !v.empty()) return v;
     free_from = field.offset + field.size * field.count;
     for (std::size_t j = 0; j < i; ++j) {
       if (port.fields[j].name == field.name) return "two fields are called " + field.name;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <mutex>
+#include <utility>
 
 #include "chimera/runtime/job_step.h"
 #include "chimera/table/never_written.h"
@@ -199,7 +200,7 @@ void TaskMemory::abandon(Task& task) {
   static auto& never_freed = *new std::vector<AlignedBytes>;
   static std::mutex guard;
   AlignedBytes left(component_->state_size, component_->state_align);
-  state_ = std::move(left);  // changes places
+  std::swap(state_, left);
   const std::lock_guard lock(guard);
   never_freed.push_back(std::move(left));
   is_constructed_ = false;

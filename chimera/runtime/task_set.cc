@@ -200,8 +200,8 @@ void TaskSet::deliver(Task& task) noexcept {
       (void)ring(sent.target);
       continue;
     }
-    const bool is_asked_of_manager = place_.others != nullptr && sent.signal == Signal::kOn;
-    if (!is_mine(sent.target) || is_asked_of_manager) {
+    const bool is_asked_of_manager = sent.signal == Signal::kOn;
+    if (place_.others != nullptr && (!is_mine(sent.target) || is_asked_of_manager)) {
       const bool is_sent = place_.others->post(sent.signal, sent.target, task.id, false);
       if (!is_sent && sent.signal == Signal::kWakeup) ++task.profile.events_lost;
       continue;

@@ -107,7 +107,7 @@ class Rig {
   RigAnswer cycle(Nanoseconds dt = milliseconds(1)) {
     call_.now_ns += dt.count;
     call_.dt_ns = dt.count;
-    const RigAnswer answer = run(Method::kCycle);
+    RigAnswer answer = run(Method::kCycle);
     if (answer) ++call_.cycle;
     for (auto& cell : cells_) cell->live->seen = cell->slot.sequence;
     return answer;

@@ -33,7 +33,7 @@ constexpr int kFirst = 3;  // of the descriptors that are passed on
 [[noreturn]] void become(const char* program, char* const* words, std::span<const int> passed, int failed) noexcept {
   const int above = kFirst + static_cast<int>(passed.size());
   // Out of the way first: a descriptor to pass on may itself be 3 or 4 here. The copies do not survive exec.
-  int copies[kMaxPassed + 1];
+  int copies[kMaxPassed] = {};
   const int report = ::fcntl(failed, F_DUPFD_CLOEXEC, above);
   bool good = report >= 0;
   for (std::size_t i = 0; good && i < passed.size(); ++i) {

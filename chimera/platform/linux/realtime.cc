@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 
@@ -128,7 +129,7 @@ RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
   if (request.priority > 0) {
     grant.throttle_share = realtime_share();
     if (grant.throttle_share < 1)
-      parts << "; throttled to " << static_cast<int>(grant.throttle_share * 100 + 0.5) << " % of a CPU";
+      parts << "; throttled to " << std::lround(grant.throttle_share * 100) << " % of a CPU";
   }
   Message report;
   report << "real time: " << (parts.empty() ? "nothing asked for" : parts.view().substr(2));

@@ -47,7 +47,7 @@ bool start_undertaker() noexcept {
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  void* const pidfd = reinterpret_cast<void*>(static_cast<std::intptr_t>(self.fd));
+  void* const pidfd = reinterpret_cast<void*>(static_cast<std::intptr_t>(self.fd));  // NOLINT: a number all the way
   const int pid = ::clone(outlive, stack + sizeof stack, CLONE_VM, pidfd);  // its end is told to nobody
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   return pid > 0;
