@@ -10,6 +10,7 @@ namespace chimera {
 namespace {
 
 constexpr Nanoseconds kHeldBack = seconds(2);
+constexpr std::uint32_t kFirst = 1;  // of rtpus and tasks: viewers take process 0 and thread 0 for those of an idle CPU
 
 // Names are identifiers of a verified description; whatever else comes must not break the JSON.
 std::string quoted(const std::string& text) {
@@ -57,8 +58,8 @@ ChromeTrace::ChromeTrace(std::FILE* file, std::string subsystem, std::span<const
     : file_(file), subsystem_(std::move(subsystem)), origin_(origin) {
   std::fputs("{\"traceEvents\": [\n", file_);
   for (std::size_t r = 0; r < rtpus.size(); ++r) {
-    metadata("process_name", r, 0, rtpus[r]);
-    for (std::size_t t = 0; t < tasks.size(); ++t) metadata("thread_name", r, t, tasks[t]);
+    metadata("process_name", kFirst + r, 0, rtpus[r]);
+    for (std::size_t t = 0; t < tasks.size(); ++t) metadata("thread_name", kFirst + r, kFirst + t, tasks[t]);
   }
 }
 
@@ -70,7 +71,7 @@ void ChromeTrace::metadata(const char* what, std::size_t pid, std::size_t tid, c
 
 void ChromeTrace::event(const TapRecord& record, const char* phase, const std::string& name, const std::string& more) {
   const bool is_of_task = record.task.is_valid();
-  const std::uint32_t tid = is_of_task ? record.task.index : 0;
+  const std::uint32_t pid = kFirst + record.rtpu, tid = is_of_task ? kFirst + record.task.index : 0;
   const Nanoseconds at = record.at - origin_;
   const bool is_slice = *phase == 'X';
   // What concerns no single task (the flag) spans the whole rtpu; the viewers then ignore its tid.
@@ -79,7 +80,7 @@ void ChromeTrace::event(const TapRecord& record, const char* phase, const std::s
   constexpr const char* kEvent =
       "%s{\"ph\": \"%s\", \"name\": %s, \"pid\": %u, \"tid\": %u, \"ts\": %s%s, \"args\": {\"ns\": %lld%s}}";
   std::fprintf(file_, kEvent,
-               is_first_ ? "" : ",\n", phase, quoted(name).c_str(), static_cast<unsigned>(record.rtpu), tid,
+               is_first_ ? "" : ",\n", phase, quoted(name).c_str(), pid, tid,
                microseconds_text(at).c_str(), shape.c_str(), static_cast<long long>(at.count), more.c_str());
   is_first_ = false;
 }

@@ -52,7 +52,7 @@ TEST(ChromeTrace, KeepsEveryNanosecond) {
   EXPECT_EQ(events[3]["args"]["late_ns"], 7);
   EXPECT_EQ(events[4]["ph"], "X");
   EXPECT_EQ(events[4]["name"], "cycle");
-  EXPECT_EQ(events[4]["tid"], 1);
+  EXPECT_EQ(events[4]["tid"], 2);
   EXPECT_DOUBLE_EQ(events[4]["ts"].get<double>(), 0.001);
   EXPECT_DOUBLE_EQ(events[4]["dur"].get<double>(), 12.345);
   EXPECT_EQ(events[4]["args"]["ns"], 1);

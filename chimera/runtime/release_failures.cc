@@ -72,6 +72,9 @@ bool Releases::judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end,
   bool may_publish = true;
   if (used > of_[job.task.index].budget) {
     ++task.profile.overrun;
+    // Jobs with threads, and those that were demoted for it, were seen to use too much while they ran.
+    if (options_.threads == nullptr && task.spec->on_overrun != OnMiss::kDemote)
+      tap_.record(TapKind::kOverrun, end, task.id, task.call.cycle, used.count);
     may_publish = react(task.spec->on_overrun, task, body, "used more execution time than its budget", end);
   }
   const bool is_late = end > job.deadline;

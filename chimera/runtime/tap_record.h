@@ -24,7 +24,7 @@ enum class TapKind : std::uint8_t {
   kFlag,     ///< a = 1 raised, 0 lowered
   kGroup,    ///< a row begins: what `task` published at `at`; a = words that follow, b = sequence of the publication
   kValue,    ///< a word of the row; a = its place from 0, b = 8 bytes of the payload as they lie in memory
-  kOverrun,  ///< a job was seen to have used more than its budget, while it ran; b = ns used
+  kOverrun,  ///< a job was seen to have used more than its budget, mostly while it ran; b = ns used
   kHang,     ///< a job does not end by itself; b = ns used
 };
 /// Their words in traces and in the control protocol. Rows are told in a form of their own there.

@@ -102,7 +102,7 @@ class Run(unittest.TestCase):
         with System(TWO, words, wait=False) as system:
             self.assertEqual(system.process.wait(30), 0, system.said())
             events = json.loads((system.place / "trace.json").read_text())["traceEvents"]
-            self.assertEqual({event["pid"] for event in events if event.get("name") == "cycle"}, {0, 1})
+            self.assertEqual({event["pid"] for event in events if event.get("name") == "cycle"}, {1, 2})
             self.assertIn("\nfirst:\n", system.said())
             self.assertIn("\nsecond:\n", system.said())
 

@@ -43,7 +43,7 @@ class Trace(unittest.TestCase):
         self.assertEqual([e["args"]["ns"] for e in events], sorted(e["args"]["ns"] for e in events))
         by = collections.defaultdict(list)
         for event in events:
-            by[event["name"], "abc"[event["tid"]]].append(event["args"])
+            by[event["name"], "abc"[event["tid"] - 1]].append(event["args"])
         slices = [(e["args"]["ns"], e["args"]["ns"] + e["args"]["dur_ns"], e["tid"]) for e in events
                   if e["name"] == "cycle"]
         for (_, end, _), (start, _, _) in zip(slices, slices[1:]):
@@ -53,12 +53,12 @@ class Trace(unittest.TestCase):
             self.assertTrue(releases)
             self.assertEqual({d["cycle"]: d["ns"] for d in by["deadline", name]},
                              {r["cycle"]: r["ns"] + r["deadline_ns"] for r in by["release", name]})
-            ends = {end for _, end, tid in slices if "abc"[tid] == name}
+            ends = {end for _, end, tid in slices if "abc"[tid - 1] == name}
             for preempted in by["preempt", name]:
                 self.assertIn(preempted["ns"], ends, "the processor is taken from whoever has it")
             self.assertEqual(len(by["hang", name]), 0)
             first = min(releases.values())
-            self.assertTrue(all(start >= first for start, _, tid in slices if "abc"[tid] == name))
+            self.assertTrue(all(start >= first for start, _, tid in slices if "abc"[tid - 1] == name))
         self.assertGreater(tasks["b"]["preempted"], 0)
         return by
 
@@ -73,7 +73,10 @@ class Trace(unittest.TestCase):
         for policy in ("rm", "edf", "muf"):
             with self.subTest(policy):
                 events, tasks = self.traced(policy, "continue", "--virtual")
-                self.all_is_told(self.judge(events, tasks), tasks)
+                by = self.judge(events, tasks)
+                self.all_is_told(by, tasks)
+                self.assertEqual(len(by["overrun", "c"]), tasks["c"]["overrun"])
+                self.assertEqual(by["overrun", "c"][0]["used_ns"], 12_000_000)
                 events, tasks = self.traced(policy, "demote", "--virtual")
                 by = self.judge(events, tasks)
                 self.all_is_told(by, tasks)
