@@ -89,6 +89,7 @@ class Pages {
             {"demand", std::move(demand)},
             {"give_way", std::move(gives)},
             {"remedies", std::move(helps)},
+            {"scale", cpu.scale > 0 ? Json(cpu.scale) : Json()},
             {"window", {{"length_ns", cpu.window.length.count}, {"runs", std::move(runs)}}}};
   }
 

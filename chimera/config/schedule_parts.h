@@ -6,11 +6,17 @@
 
 namespace chimera {
 
+/// Criticalities of the tasks of an rtpu that are not in the set: its band counts them, too.
+struct Outside {
+  std::uint32_t least = UINT32_MAX, most = 0;
+};
+
 /// One set of tasks as the analysis takes it. `tasks[i]` is the task of `works[i]`.
 struct SetWorks {
   std::vector<std::size_t> tasks;
   std::vector<Work> works;
   std::vector<ProcessorUse> uses;
+  std::vector<Outside> outside;  ///< of each of `uses`
 };
 
 /// Context of all: setup.
@@ -22,6 +28,8 @@ bool fits(const SetWorks& set, std::uint32_t cpu);
 std::vector<std::size_t> give_way(const SetWorks& set, std::uint32_t cpu, const std::vector<WorkVerdict>& verdicts);
 /// The smallest change of each kind with which the CPU fits; `Remedy::task` as an index into the set.
 std::vector<Remedy> remedies(const SetWorks& set, std::uint32_t cpu, const std::vector<WorkVerdict>& verdicts);
+/// All times of that CPU may be so many times as long and it still fits (three digits); 0: no factor was found.
+double most_scale(const SetWorks& set, const CpuVerdict& verdict, const std::vector<WorkVerdict>& verdicts);
 /// Every way from a task with a resource port to one, over the variables that they link, with its worst data age.
 void find_paths(const Configuration& configuration, const SetWorks& set, const std::vector<WorkVerdict>& verdicts,
                 SetSchedule& schedule);

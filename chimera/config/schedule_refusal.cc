@@ -11,12 +11,19 @@ bool is_broken(const ScheduleRow& row) {
   return row.is_hard && (row.verdict.guarantee == Guarantee::kNo || row.verdict.guarantee == Guarantee::kTooLong);
 }
 
+/// Of what makes everything fit.
+std::string what_helps(const Configuration& configuration, const CpuSchedule& cpu) {
+  for (const Remedy& remedy : cpu.remedies)
+    if (!remedy.is_for_others) return remedy_text(configuration, remedy);
+  return cpu.scale > 0 ? "all times at most " + scale_text(cpu.scale) : "";
+}
+
 Fault fault_of(const Configuration& configuration, const CpuSchedule& cpu, const ScheduleRow& row) {
   const ConfiguredTask& task = configuration.tasks()[row.task];
   const Nanoseconds response = row.verdict.response;
   const std::string found = response == kNever ? "" : time_text(response);
-  const std::string helps =
-      cpu.remedies.empty() ? "" : "all would be with " + remedy_text(configuration, cpu.remedies[0]) + "; ";
+  const std::string change = what_helps(configuration, cpu);
+  const std::string helps = change.empty() ? "" : "all would be with " + change + "; ";
   return {.rule = "unschedulable", .at = task.at,
           .message = "task '" + task.name + "' is not guaranteed to keep its deadline of " +
                      time_text(row.work.deadline) + " on CPU " + std::to_string(cpu.verdict.cpu) +

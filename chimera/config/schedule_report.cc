@@ -6,12 +6,14 @@
 #include "chimera/base/assert.h"
 #include "chimera/config/nearest.h"
 #include "chimera/config/schedule_parts.h"
+#include "chimera/config/time_text.h"
 #include "chimera/schedule/utilisation.h"
 
 namespace chimera {
 namespace {
 
 constexpr std::size_t kMostRuns = 400;
+constexpr std::uint64_t kFewSamples = 100;
 constexpr std::int64_t kMostPeriods = 4;  // of the longest, in the picture
 
 std::vector<std::string> names_of(const Configuration& configuration) {
@@ -45,9 +47,26 @@ class ReportWriter {
     };
     if (options_.profile == nullptr) return;
     if (options_.profile->subsystem != configuration_.subsystem())
-      report_.notes.push_back("the profile was recorded of subsystem '" + options_.profile->subsystem + "'");
+      report_.notes.push_back("the profile was recorded of subsystem '" + options_.profile->subsystem +
+                              "': tasks of the same name have their times from it");
     for (const RecordedTask& task : options_.profile->tasks)
       if (unknown(task.task)) report_.notes.push_back("the profile has a task '" + task.task + "' that is not there");
+    note_measured();
+  }
+
+  /// What a measured time says of the budget, and how much it is worth.
+  void note_measured() {
+    std::string few;
+    for (const TaskSpec& task : configuration_.spec().tasks) {
+      const RecordedTask* seen = options_.profile->find(task.name);
+      if (seen == nullptr || task.server) continue;
+      const std::string name(task.name);
+      if (task.budget.count > 0 && seen->worst > task.budget)
+        report_.notes.push_back("task '" + name + "' was seen to take " + time_text(seen->worst) +
+                                ", more than its budget of " + time_text(task.budget));
+      if (seen->samples < kFewSamples) few += (few.empty() ? "" : ", ") + name + " " + std::to_string(seen->samples);
+    }
+    if (!few.empty()) report_.notes.push_back("few cycles were measured: " + few + "; the longest of few is no bound");
   }
 
   std::vector<ProcessorUse> uses() const {
@@ -58,6 +77,18 @@ class ReportWriter {
     for (const TaskSpec& task : configuration_.spec().tasks) {
       std::uint32_t& most = made[options_.one_rtpu ? 0 : task.rtpu.index].criticality;
       most = std::max(most, task.criticality);
+    }
+    return made;
+  }
+
+  std::vector<Outside> outside(const std::vector<std::size_t>& set) const {
+    std::vector<Outside> made(configuration_.rtpus().size());
+    const auto tasks = configuration_.spec().tasks;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      if (std::binary_search(set.begin(), set.end(), i)) continue;
+      Outside& of = made[options_.one_rtpu ? 0 : tasks[i].rtpu.index];
+      of.least = std::min(of.least, tasks[i].criticality);
+      of.most = std::max(of.most, tasks[i].criticality);
     }
     return made;
   }
@@ -92,9 +123,10 @@ class ReportWriter {
   SetSchedule set(std::size_t index) {
     const ConfiguredSet& configured = configuration_.sets()[index];
     SetSchedule made{.name = configured.name, .is_start = index == configuration_.start(), .cpus = {}, .paths = {}};
-    SetWorks works{.tasks = {}, .works = {}, .uses = uses()};
+    SetWorks works{.tasks = {}, .works = {}, .uses = uses(), .outside = {}};
     for (const TaskId id : configured.order) works.tasks.push_back(id.index);
     std::sort(works.tasks.begin(), works.tasks.end());  // ties go by the order of the description
+    works.outside = outside(works.tasks);
     std::vector<ScheduleRow> rows;
     rows.reserve(works.tasks.size());
     works.works.reserve(works.tasks.size());
@@ -132,6 +164,7 @@ class ReportWriter {
       made.remedies = remedies(set, cpu, verdicts);
       for (Remedy& remedy : made.remedies) remedy.task = set.tasks[remedy.task];
     }
+    made.scale = most_scale(set, made.verdict, verdicts);
     draw(set, cpu, made);
     return made;
   }

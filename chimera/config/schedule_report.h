@@ -44,7 +44,8 @@ struct Remedy {
   std::size_t task = 0;
   double hz = 0;                 ///< kRate: at most this
   std::size_t rtpu = 0;          ///< kProcessor: move it there
-  std::uint32_t criticality = 0; ///< kCriticality: all others are promised then, this one is not
+  std::uint32_t criticality = 0; ///< kCriticality
+  bool is_for_others = false;    ///< kCriticality: all others are promised then, this one may not be
 };
 
 struct CpuSchedule {
@@ -52,6 +53,7 @@ struct CpuSchedule {
   std::vector<ScheduleRow> rows;          ///< in the order of levels
   std::vector<std::size_t> give_way;      ///< rows, in order: without these tasks the rest fits; empty when it does
   std::vector<Remedy> remedies;           ///< the smallest of each kind that was found
+  double scale = 0;                       ///< all times may be so many times as long and it fits; 0: none was found
   WorstWindow window;
   std::vector<WindowRun> runs;            ///< `task` as in Configuration::tasks()
 

@@ -33,7 +33,9 @@ std::string remedy_text(const Configuration& configuration, const Remedy& remedy
     case Remedy::Kind::kCriticality: break;
   }
   return task + " with criticality: " + criticality_name(remedy.criticality) +
-         " (then all others are guaranteed)";
+         (remedy.is_for_others ? " (then all others are guaranteed)" : "");
 }
+
+std::string scale_text(double scale) { return number("%.3g", scale) + " times as long as stated"; }
 
 }  // namespace chimera

@@ -14,4 +14,7 @@ std::string time_text(Nanoseconds time);
 /// "task 'a' at rate: 90.9 Hz". Context: setup.
 std::string remedy_text(const Configuration& configuration, const Remedy& remedy);
 
+/// "1.25 times as long as stated". Context: any.
+std::string scale_text(double scale);
+
 }  // namespace chimera

@@ -14,6 +14,7 @@ namespace chimera::desk {
 namespace {
 
 constexpr double kWindowLetters = 60;  // about so many in a picture
+constexpr std::size_t kMostUnseen = 6;  // names in a line
 
 std::string number(const char* pattern, double value) {
   char text[48];
@@ -62,8 +63,11 @@ class Words {
   }
 
   std::string verdict(const CpuSchedule& cpu) const {
+    if (cpu.verdict.unstated == cpu.verdict.tasks) return "  nothing to judge: no task has a time\n";
     const char* who = cpu.verdict.unstated > 0 ? "every task with a time" : "every task";
-    if (cpu.fits()) return std::string("  fits: ") + who + " keeps its deadline\n";
+    if (cpu.fits())
+      return std::string("  fits: ") + who + " keeps its deadline" +
+             (cpu.scale > 0 ? ", also with all times " + scale_text(cpu.scale) : "") + "\n";
     std::vector<std::string> kept, lost, giving;
     for (const ScheduleRow& row : cpu.rows) {
       if (row.verdict.guarantee == Guarantee::kYes) kept.push_back(name(row.task));
@@ -83,8 +87,11 @@ class Words {
 
   std::string remedies(const CpuSchedule& cpu) const {
     std::string text;
-    for (const Remedy& r : cpu.remedies)
-      text += (text.empty() ? "  would fit: " : "         or: ") + remedy_text(configuration_, r) + "\n";
+    const auto add = [&text](const std::string& change) {
+      text += (text.empty() ? "  would fit: " : "         or: ") + change + "\n";
+    };
+    for (const Remedy& r : cpu.remedies) add(remedy_text(configuration_, r));
+    if (!cpu.fits() && cpu.scale > 0) add("all times " + scale_text(cpu.scale));
     return text;
   }
 
@@ -115,12 +122,14 @@ class Words {
     std::string response = v.response != kNever ? (v.is_exact ? "" : "at most ") + time_text(v.response)
                            : is_beyond          ? "over " + time_text(row.work.period)
                                                 : "no bound";
-    std::string promise = v.guarantee == Guarantee::kYes   ? "kept"
-                          : v.guarantee == Guarantee::kNo  ? "NOT KEPT"
-                          : v.guarantee == Guarantee::kTooLong ? "NOT DECIDED"
-                                                               : "not judged";
+    const bool is_server = row.work.server.has_value();
+    std::string promise = is_server && v.guarantee == Guarantee::kYes ? "capacity given"
+                          : v.guarantee == Guarantee::kYes              ? "kept"
+                          : v.guarantee == Guarantee::kNo               ? "NOT KEPT"
+                          : v.guarantee == Guarantee::kTooLong          ? "NOT DECIDED"
+                                                                        : "not judged";
     if (v.guarantee == Guarantee::kNotStated) response = "-";
-    if (!row.is_hard) promise += ", may miss";
+    if (!row.is_hard && !is_server) promise += ", may miss";
     const std::string transfer = row.transfer.groups == 0 ? "-"
                                  : std::to_string(row.transfer.bytes) + " B of " +
                                        std::to_string(row.transfer.groups);
@@ -173,11 +182,37 @@ class Words {
     }
     const Nanoseconds unit = unit_for(cpu.window.length);
     return "  worst window, a letter for " + time_text(unit) + ":\n" +
-           draw::text(draw::timeline(records, names, {}, unit, cpu.window.length));
+           window_text(draw::timeline(records, names, {}, unit, cpu.window.length));
+  }
+
+  /// Whoever holds no unit for longest has no letter in the picture, and none in the legend.
+  static std::string window_text(draw::Timeline drawn) {
+    std::vector<std::string> unseen;
+    std::erase_if(drawn.legend, [&](const auto& entry) {
+      const bool is_unseen = drawn.letters.find(entry.first) == std::string::npos;
+      if (is_unseen) unseen.push_back(entry.second);
+      return is_unseen;
+    });
+    std::string text = draw::text(drawn);
+    if (unseen.empty()) return text;
+    const std::size_t more = unseen.size() > kMostUnseen ? unseen.size() - kMostUnseen : 0;
+    unseen.resize(unseen.size() - more);
+    return text + "          in no letter the longest: " + list(unseen) +
+           (more > 0 ? " and " + std::to_string(more) + " more" : "") + "\n";
   }
 
   const Configuration& configuration_;
 };
+
+/// Whether the window opens behind a job that cannot be taken off the processor.
+bool has_blocker(const ScheduleReport& report, const CpuSchedule& cpu) {
+  for (const ScheduleRow& a : cpu.rows)
+    for (const ScheduleRow& b : cpu.rows)
+      if (a.task != b.task && a.work.rtpu == b.work.rtpu && a.work.time.count > 0 && b.work.time.count > 0 &&
+          report.dispatch[a.work.rtpu] == Dispatch::kExecutive)
+        return true;
+  return false;
+}
 
 std::string paths_text(const Words& words, const SetSchedule& set) {
   if (set.paths.empty()) return "";
@@ -209,7 +244,9 @@ std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, c
       draw::Gantt picture;
       picture.title = configuration.subsystem() + ", CPU " + std::to_string(cpu.verdict.cpu) + ": worst window";
       picture.note =
-          "load " + number("%.3f", cpu.verdict.utilisation) + "; all released at once, each as long as stated";
+          "load " + number("%.3f", cpu.verdict.utilisation) + "; all released at once" +
+          (has_blocker(report, cpu) ? ", the longest job of an executive just begun; " : ", ") +
+          "each as long as stated";
       picture.length = cpu.window.length;
       for (const ScheduleRow& row : cpu.rows) {
         draw::GanttRow drawn;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kNames = 190, kWidth = 720, kRow = 30, kBar = 16, kHead = 58, kFoot = 40, kMargin = 20;
 constexpr double kLeft = kMargin + kNames;
-constexpr std::size_t kMostMarks = 200;  // releases drawn in a row
+constexpr double kLeastApart = 6;        // releases closer together are not drawn
+constexpr std::size_t kMostLetters = 24;  // of a name
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -23,6 +24,14 @@ std::string format(const char* pattern, Values... values) {
 
 std::string label(double x, double y, const std::string& text, const char* style) {
   return format("<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, style) + escaped(text) + "</text>\n";
+}
+
+/// The whole name is what a viewer shows when it is pointed at.
+std::string name_label(double x, double y, const std::string& name) {
+  constexpr const char* kStyle = "font-size=\"13\"";
+  if (name.size() <= kMostLetters) return label(x, y, name, kStyle);
+  return "<g><title>" + escaped(name) + "</title>" + label(x, y, name.substr(0, kMostLetters - 3) + "...", kStyle) +
+         "</g>\n";
 }
 
 double height_of(const Gantt& picture) { return kHead + kRow * static_cast<double>(picture.rows.size()) + kFoot; }
@@ -58,18 +67,20 @@ class Page {
       said_ += line(at, top_ + kHead - 4, at, foot, "#ddd");
       said_ += label(at, foot + 16, format("%g", mark), "font-size=\"11\" text-anchor=\"middle\" fill=\"#555\"");
     }
+    said_ += label(kMargin, foot + 32, "arrow: released; dashed: due; red bar: its deadline is not guaranteed",
+                   "font-size=\"10\" fill=\"#555\"");
     said_ += label(kLeft + kWidth, foot + 32, "ms", "font-size=\"11\" text-anchor=\"end\" fill=\"#555\"");
   }
 
   void row(const GanttRow& row, double y) {
     const char* colour = row.is_late ? "#c0392b" : "#2874a6";
-    said_ += label(kMargin, y + 12, row.name, "font-size=\"13\"");
+    said_ += name_label(kMargin, y + 12, row.name);
     said_ += label(kMargin, y + 25, row.note, "font-size=\"10\" fill=\"#555\"");
     said_ += line(kLeft, y + kBar + 4, kLeft + kWidth, y + kBar + 4, "#bbb");
     for (const auto& [from, to] : row.runs)
       said_ += format("<rect x=\"%.2f\" y=\"%.1f\" width=\"%.2f\" height=\"%.0f\" fill=\"%s\"/>\n", x(from), y + 4,
                       std::max(x(to) - x(from), 0.5), kBar, colour);
-    if (row.period.count <= 0 || picture_.length / row.period > static_cast<std::int64_t>(kMostMarks)) return;
+    if (row.period.count <= 0 || x(row.period) - kLeft < kLeastApart) return;
     for (Nanoseconds at; at <= picture_.length; at += row.period) {
       constexpr const char* kArrow = "<path d=\"M%.1f %.1fv-22m-3 5l3 -5l3 5\" fill=\"none\" stroke=\"#333\"/>\n";
       constexpr const char* kDue = "<path d=\"M%.1f %.1fv-18\" stroke=\"#c0392b\" stroke-dasharray=\"3 2\"/>\n";

@@ -26,6 +26,21 @@ TEST(Gantt, DrawsRunsReleasesAndDeadlinesOfEachRow) {
   EXPECT_EQ(count(drawn, "stroke-dasharray=\"3 2\""), 3u);  // due at 4, 9 and 9
 }
 
+TEST(Gantt, ALongNameStaysBesideThePictureAndCanBePointedAt) {
+  Gantt picture{"t", "", milliseconds(10), {}};
+  picture.rows.push_back({"controller_of_the_left_arm_and_hand", "", milliseconds(5), milliseconds(5), false, {}});
+  const std::string drawn = svg({picture});
+  EXPECT_NE(drawn.find("<title>controller_of_the_left_arm_and_hand</title>"), std::string::npos) << drawn;
+  EXPECT_NE(drawn.find(">controller_of_the_lef...</text>"), std::string::npos) << drawn;
+}
+
+TEST(Gantt, ReleasesTooCloseToBeToldApartAreNotDrawn) {
+  Gantt picture{"t", "", milliseconds(1000), {}};
+  picture.rows.push_back({"a", "", milliseconds(1), milliseconds(1), false, {}});
+  picture.rows.push_back({"b", "", milliseconds(500), milliseconds(500), false, {}});
+  EXPECT_EQ(count(svg({picture}), "stroke=\"#333\""), 3u);  // of b
+}
+
 TEST(Gantt, AnEmptyPictureIsAPictureToo) {
   EXPECT_NE(svg({}).find("</svg>"), std::string::npos);
   EXPECT_NE(svg({Gantt{}}).find("</svg>"), std::string::npos);
