@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "bench/bench.h"
+#include "chimera/base/hosted/tree_path.h"
 #include "library/kinematics/arm_rig.h"
 
 namespace chimera::bench {
@@ -25,12 +25,6 @@ struct ComponentCase {
   std::uint64_t limit = 0;                             // cycles a turn; 0: as many as one likes
   Goal goal = {};
 };
-
-/// Where files of the checkout stand.
-inline std::string source_file(const char* path) {
-  const char* root = std::getenv("CHIMERA_SOURCE");
-  return std::string(root != nullptr ? root : ".") + "/" + path;
-}
 
 /// `n` cycles of 1 ms; true when the last of them was well.
 inline bool cycles(library::ArmRig& rig, std::uint64_t n) { return rig.repeat(n, milliseconds(1)) == CHIMERA_OK; }

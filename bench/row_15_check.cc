@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/bench.h"
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/config/library.h"
 #include "chimera/config/verify.h"
 
@@ -16,8 +17,7 @@ using namespace chimera;
 constexpr std::size_t kTasks = 100;
 
 Library library() {
-  const char* source = std::getenv("CHIMERA_SOURCE");
-  const std::string units[] = {std::string(source != nullptr ? source : ".") + "/share/chimera/units.xml"};
+  const std::string units[] = {source_path("share/chimera/units.xml")};
   auto system = UnitSystem::load(units);
   if (!system) {
     std::fprintf(stderr, "%s\n", system.error().message.c_str());

@@ -35,7 +35,7 @@ void check(const Result<void>& made) {
 
 std::shared_ptr<SimulatedArm> puma() {
   const auto arm = std::make_shared<SimulatedArm>();
-  check(arm->load(source_file(kPumaFile).c_str()));
+  check(arm->load(source_path(kPumaFile).c_str()));
   check(arm->place(kUpright));
   return arm;
 }
@@ -50,7 +50,7 @@ std::shared_ptr<SimulatedArm> smooth_puma() {
 }
 
 std::shared_ptr<SimulatedArm> modular() {
-  const auto modules = library::ModuleStore::read(source_file(kStore).c_str());
+  const auto modules = library::ModuleStore::read(source_path(kStore).c_str());
   if (!modules) throw std::runtime_error(std::string(modules.error().message.view()));
   const std::string text = modules->mjcf();
   const std::unique_ptr<mjVFS> files(new mjVFS);
@@ -83,7 +83,7 @@ bench::Comparison::Body two_steps(const std::shared_ptr<SimulatedArm>& arm, bool
 void stand(ArmRig& rig) { rig.give("start_pose", kUpright); }
 void stand_of_file(ArmRig& rig) {
   stand(rig);
-  rig.resource("model", source_file(kPumaFile).c_str());
+  rig.resource("model", source_path(kPumaFile).c_str());
 }
 
 std::vector<ComponentCase> robots() {
@@ -99,12 +99,12 @@ std::vector<ComponentCase> robots() {
              stand(rig), rig.give("tau", kZero), rig.resource("model", "puma560.xml"); },
            two_steps(smooth_puma(), false)},
           {"rmms", "2 x mj_step", [](ArmRig& rig) {
-             rig.resource("store", source_file(kStore).c_str());
+             rig.resource("store", source_path(kStore).c_str());
              rig.give("q_ref", kZero); }, two_steps(modular(), true)}};
 }
 
 std::vector<ComponentCase> told_by_files() {
-  return {{"urdf_model", "an empty loop", [](ArmRig& rig) { rig.resource("model", source_file(kUrdf).c_str()); },
+  return {{"urdf_model", "an empty loop", [](ArmRig& rig) { rig.resource("model", source_path(kUrdf).c_str()); },
            [](std::uint64_t n) {
              for (; n > 0; --n) bench::keep(n);
            }}};

@@ -14,6 +14,7 @@
 #include <map>
 #include <random>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/task/rig.h"
 
 namespace chimera {
@@ -25,8 +26,7 @@ constexpr double kHostile[] = {NAN,    kUnbounded, -kUnbounded, 0,   -0.0, -1,  
 
 /// What each component with a resource works with.
 std::string sound_resource(const std::string& component, const std::string& port) {
-  const char* source = std::getenv("CHIMERA_SOURCE");
-  const std::string library = (source != nullptr ? source : "") + std::string("/library/");
+  const std::string library = source_path("library/");
   const std::map<std::string, std::string> kKnown{
       {"accel", "0:0 2:1"}, {"brake", "0:0 2:1"}, {"car", "0:0 200:0.06"}, {"electric_car", "0:0 200:0.06"},
       {"ccui", "0:0 2:100"}, {"camera_targets", "file:/dev/null"}, {"csv_log", "/dev/null"},

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/config/library.h"
 #include "chimera/config/verify.h"
 
@@ -23,12 +24,10 @@ void require(bool kept, const char* property) {
 /// The components of tests/verify: one of each kind of port.
 const Library& library() {
   static const Library kLibrary = [] {
-    const char* source = std::getenv("CHIMERA_SOURCE");
-    const std::string root = source != nullptr ? source : ".";
-    const std::string units[] = {root + "/share/chimera/units.xml"};
+    const std::string units[] = {source_path("share/chimera/units.xml")};
     auto system = UnitSystem::load(units);
     require(system.has_value(), "CHIMERA_SOURCE is the source tree");
-    const std::string folders[] = {root + "/tests/verify/components"};
+    const std::string folders[] = {source_path("tests/verify/components")};
     return Library::make(folders, *std::move(system));
   }();
   require(!kLibrary.entries().empty(), "there are components");

@@ -51,7 +51,7 @@ std::optional<Solved> solve(const UnitExpression& expression, const Unit& unit) 
 }
 
 std::string text(const UnitExpression& expression) {
-  const std::string rest = text(expression.rest);
+  std::string rest = text(expression.rest);
   std::string all;
   for (std::size_t i = 0; i < expression.variables.size(); ++i) {
     const int exponent = expression.variables[i];

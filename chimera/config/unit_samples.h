@@ -4,17 +4,16 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/config/unit_system.h"
 
 namespace chimera {
 
 inline const UnitSystem& our_units() {
   static const UnitSystem kUnits = [] {
-    const char* source = std::getenv("CHIMERA_SOURCE");
-    const std::string files[] = {std::string(source != nullptr ? source : ".") + "/share/chimera/units.xml"};
+    const std::string files[] = {source_path("share/chimera/units.xml")};
     auto loaded = UnitSystem::load(files);
     EXPECT_TRUE(loaded) << (loaded ? "" : loaded.error().message.c_str());
     return *std::move(loaded);

@@ -42,7 +42,9 @@ std::string plain(std::uint32_t type, const std::byte* at, std::uint32_t bytes, 
   return text;
 }
 
-std::string with_unit(std::string text, const std::string& unit) { return unit == "1" ? text : text + " " + unit; }
+std::string with_unit(const std::string& text, const std::string& unit) {
+  return unit == "1" ? text : text + " " + unit;
+}
 
 std::string field_text(const FieldDescriptor& field, const std::byte* at, bool json) {
   std::string text;

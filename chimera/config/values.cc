@@ -46,7 +46,7 @@ class ValueWriter {
   }
 
  private:
-  void refuse(std::string_view rule, Place at, std::string message, std::string found, std::string expected,
+  void refuse(std::string_view rule, Place at, const std::string& message, std::string found, std::string expected,
               std::string near = {}, std::string remedy = {}) {
     fine_ = false;
     model_.error(rule, at, target_.what + ": " + message, std::move(found), std::move(expected), std::move(near),

@@ -127,7 +127,7 @@ Answer check_parameters(const MethodRule& rule, const Json& parameters) {
     if (found == parameters.end()) {
       if (!parameter.is_required) continue;
       return bad(in_quotes(rule.name) + " needs " + in_quotes(parameter.name), parameter.name);
-    } else if (const Answer judged = check_value(parameter, *found); !judged.is_good()) {
+    } else if (Answer judged = check_value(parameter, *found); !judged.is_good()) {
       return judged;
     }
   }

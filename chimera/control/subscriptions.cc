@@ -18,7 +18,7 @@ Answer Subscriptions::open(std::uint64_t session, const Json& parameters, Nanose
   if (count_of(session) >= kMaxSubscriptions)
     return Answer::error(kBadParameters, "a connection may have 32 subscriptions", {{"where", "to"}});
   const std::uint64_t number = ++last_;
-  const Answer opened = subject_.open(number, parameters);
+  Answer opened = subject_.open(number, parameters);
   if (!opened.is_good()) return opened;
   const std::string to = parameters.at("to").get<std::string>();
   const bool skips = to == "status" || to == "values";

@@ -114,6 +114,7 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
   for (const auto& entry : fs::directory_iterator(*templates)) sources.push_back(entry.path());
   std::sort(sources.begin(), sources.end());
   std::vector<File> files;
+  files.reserve(sources.size());
   for (const fs::path& source : sources) files.push_back(fill_in(source, words));
 
   const fs::path folder = (fs::path(request.parent) / request.name).lexically_normal();

@@ -10,12 +10,14 @@
 #include <fstream>
 #include <sstream>
 
+#include "chimera/base/hosted/tree_path.h"
+
 namespace chimera::desk {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string build_tree() { return std::getenv("CHIMERA_BUILD"); }
+std::string build_tree() { return build_path("."); }
 
 class New : public ::testing::Test {
  protected:

@@ -4,24 +4,22 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "chimera/base/hosted/tree_path.h"
 
 namespace chimera::desk {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string build() { return std::getenv("CHIMERA_BUILD"); }
-std::string source() { return std::getenv("CHIMERA_SOURCE"); }
-
 class TestComponent : public ::testing::Test {
  protected:
   TestComponent() : folder_(fs::temp_directory_path() / ("chimera_trial_" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
-    workplace_.component_folders = {build() + "/components"};
-    workplace_.unit_files = {source() + "/share/chimera/units.xml"};
+    workplace_.component_folders = {build_path("components")};
+    workplace_.unit_files = {source_path("share/chimera/units.xml")};
     options_.components = {"t_misfit"};
     options_.cycles = 200;
   }
@@ -131,8 +129,8 @@ TEST_F(TestComponent, FindsOneThatCompletesNothingOrDoesNotStart) {
 }
 
 TEST_F(TestComponent, FindsAnObjectThatIsNotWhatItsDescriptorSays) {
-  fs::copy(build() + "/components/t_misfit.so", folder_ / "t_misfit.so");
-  std::ifstream stream(build() + "/components/t_misfit.component.json");
+  fs::copy(build_path("components/t_misfit.so"), folder_ / "t_misfit.so");
+  std::ifstream stream(build_path("components/t_misfit.component.json"));
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   text.replace(text.find("\"z\""), 3, "\"w\"");
   const std::size_t mark = text.find(",\n  \"fingerprint\"");
@@ -147,7 +145,7 @@ TEST_F(TestComponent, FindsAnObjectThatIsNotWhatItsDescriptorSays) {
 }
 
 TEST_F(TestComponent, TestsAnObjectWithoutSourceOrDescriptor) {
-  fs::copy(build() + "/components/t_misfit.so", folder_ / "alone.so");
+  fs::copy(build_path("components/t_misfit.so"), folder_ / "alone.so");
   options_.components = {(folder_ / "alone.so").string()};
   const Output output = run();
   EXPECT_EQ(output.code, kOk) << output.out << output.err;

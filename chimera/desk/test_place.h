@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/desk/application.h"
 #include "chimera/desk/workplace.h"
 
@@ -32,8 +33,7 @@ class TestFile {
 };
 
 inline Workplace test_place() {
-  return {{std::string(std::getenv("CHIMERA_BUILD")) + "/components"},
-          {std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml"}};
+  return {{build_path("components")}, {source_path("share/chimera/units.xml")}};
 }
 
 inline Library test_library() { return *test_place().library(); }

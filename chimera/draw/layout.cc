@@ -100,6 +100,7 @@ void order(std::vector<Placed*>& column, const Layout& layout, const Graph& grap
     return count == 0 ? 0 : sum / count;
   };
   std::vector<std::pair<int, Placed*>> pulled;
+  pulled.reserve(column.size());
   for (Placed* placed : column) pulled.emplace_back(pull(placed), placed);
   std::stable_sort(pulled.begin(), pulled.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::transform(pulled.begin(), pulled.end(), column.begin(), [](const auto& one) { return one.second; });

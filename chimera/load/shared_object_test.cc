@@ -9,15 +9,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/load/component_state.h"
 
 namespace chimera {
 namespace {
 
-std::string object(const std::string& name) {
-  const char* build = ::getenv("CHIMERA_BUILD");
-  return std::string(build == nullptr ? "build/debug" : build) + "/chimera/load/test_objects/" + name;
-}
+std::string object(const std::string& name) { return build_path("chimera/load/test_objects/" + name); }
 
 /// A file of its own that goes with the test.
 class TemporaryFile {

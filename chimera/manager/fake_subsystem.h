@@ -71,7 +71,7 @@ inline Bundle fake_bundle(const std::string& text = kFakeText) {
        test_component("law", {test_port("y", CHIMERA_IN_VAR, "rad"), test_port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"),
                               test_port("tau", CHIMERA_OUT_VAR, "N.m")}),
        lamp},
-      test_units());
+      our_units());
   return {"0.1.0", text.empty() ? "" : "fake.yaml", text, {}, {}, {}, std::move(library)};
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/control/client.h"
 #include "chimera/manager/fake_subsystem.h"
 
@@ -16,7 +17,7 @@ namespace {
 using control::Json;
 
 const char* program() {
-  static const std::string kProgram = std::string(std::getenv("CHIMERA_BUILD")) + "/bin/chimera-manager";
+  static const std::string kProgram = build_path("bin/chimera-manager");
   return kProgram.c_str();
 }
 

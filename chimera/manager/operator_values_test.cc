@@ -40,7 +40,7 @@ Library library() {
   pose.fields = {{"x", "m"}, {"a", "rad", CHIMERA_FLOAT64, 8}};
   d.ports.push_back(pose);
   EXPECT_TRUE(complete(d)) << complete(d).error().message.c_str();
-  return Library::of({d}, test_units());
+  return Library::of({d}, our_units());
 }
 
 constexpr const char* kText = R"(

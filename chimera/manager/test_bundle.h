@@ -4,23 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 
+#include "chimera/base/hosted/tree_path.h"
+#include "chimera/config/unit_samples.h"
 #include "chimera/manager/bundle.h"
 
 namespace chimera::manager {
 
-inline UnitSystem test_units() {
-  const std::string files[] = {std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml"};
-  auto loaded = UnitSystem::load(files);
-  EXPECT_TRUE(loaded) << loaded.error().message.c_str();
-  return *std::move(loaded);
-}
-
 inline Library test_library() {
-  const std::string folders[] = {std::string(std::getenv("CHIMERA_BUILD")) + "/components"};
-  return Library::make(folders, test_units());
+  const std::string folders[] = {build_path("components")};
+  return Library::make(folders, our_units());
 }
 
 inline Bundle test_bundle(const std::string& description) {

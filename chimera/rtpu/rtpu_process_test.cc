@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <string>
 #include <thread>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/load/descriptor.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/platform/channel.h"
@@ -25,13 +25,11 @@
 namespace chimera {
 namespace {
 
-std::string built(const std::string& name) { return std::string(std::getenv("CHIMERA_BUILD")) + "/" + name; }
-
 constexpr TaskId kCounter{0u};
 
 struct RtpuProcess : ::testing::Test {
   void SetUp() override {
-    const std::string object_file = built("components/t_counter.so");
+    const std::string object_file = build_path("components/t_counter.so");
     auto object = SharedObject::open(object_file);
     ASSERT_TRUE(object) << object.error().message.c_str();
     const chimera_component* component = *object->component("t_counter");
@@ -55,7 +53,7 @@ struct RtpuProcess : ::testing::Test {
   void start() {
     auto pair = Channel::pair();
     channel = std::move(pair->first);
-    const std::string parent = std::to_string(::getpid()), program = built("bin/chimera-rtpu");
+    const std::string parent = std::to_string(::getpid()), program = build_path("bin/chimera-rtpu");
     const char* arguments[] = {"chimera-rtpu", "--peer", "0", "--incarnation", "1", "--parent", parent.c_str()};
     const int descriptors[] = {pair->second.descriptor(), image.descriptor(), decision_pages.descriptor(),
                                keeper_pages.descriptor()};
@@ -194,7 +192,7 @@ TEST_F(RtpuWithAnotherComponent, SaysWhyItCannotStart) {
 }
 
 TEST(RtpuProgram, SaysThatItIsNotForPeople) {
-  const std::string program = built("bin/chimera-rtpu");
+  const std::string program = build_path("bin/chimera-rtpu");
   const char* arguments[] = {"chimera-rtpu"};
   auto process = Process::start(program.c_str(), arguments, {});
   ASSERT_TRUE(process);

@@ -3,19 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include "chimera/config/unit_samples.h"
 
 namespace chimera::shell {
 namespace {
 
-const UnitSystem& units() {
-  static const std::string file = std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml";
-  static const UnitSystem system = UnitSystem::load(std::span(&file, 1)).value();
-  return system;
-}
-
 std::string edited(const std::string& text, const std::map<std::string, std::string>& values) {
-  const auto result = with_operator_values(text, values, units());
+  const auto result = with_operator_values(text, values, our_units());
   return result ? result.value()
                 : std::string(result.error().where.view()) + ": " + std::string(result.error().message.view());
 }

@@ -4,19 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
+
+#include "chimera/config/unit_samples.h"
 
 namespace chimera::shell {
 namespace {
 
 using Json = nlohmann::json;
-
-const UnitSystem& units() {
-  static const std::string file = std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml";
-  static const UnitSystem system = UnitSystem::load(std::span(&file, 1)).value();
-  return system;
-}
 
 ScopeChannel channel(const std::string& name, const std::string& unit, bool is_scalar = true) {
   return {read_channel(name).value(), unit, is_scalar};
@@ -26,8 +21,8 @@ ScopeRequest request(const std::string& trigger, std::int64_t pre_ms, std::int64
   ScopeRequest asked;
   asked.channels = {channel("error", "rad"), channel("q", "rad", false)};
   if (!trigger.empty()) {
-    asked.trigger = Trigger::read(trigger, units()).value();
-    EXPECT_TRUE(asked.trigger->settle("rad", units()));
+    asked.trigger = Trigger::read(trigger, our_units()).value();
+    EXPECT_TRUE(asked.trigger->settle("rad", our_units()));
   }
   asked.pre = milliseconds(pre_ms);
   asked.duration = milliseconds(for_ms);

@@ -23,6 +23,7 @@
 #include <thread>
 #include <utility>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/control/door.h"
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/shell/carry_out.h"
@@ -143,7 +144,7 @@ struct ShellTest : ::testing::Test {
     std::filesystem::remove_all(folder);
   }
   Surroundings surroundings(const std::string& subsystem = "") const {
-    return {subsystem, {std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml"}};
+    return {subsystem, {source_path("share/chimera/units.xml")}};
   }
   /// Exit code, standard output and standard error of a command.
   std::string run(const std::vector<std::string>& words, const std::string& subsystem = "") {

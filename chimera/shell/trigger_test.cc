@@ -4,28 +4,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
+
+#include "chimera/config/unit_samples.h"
 
 namespace chimera::shell {
 namespace {
 
-const UnitSystem& units() {
-  static const std::string file = std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml";
-  static const UnitSystem system = UnitSystem::load(std::span(&file, 1)).value();
-  return system;
-}
-
 Trigger settled(const std::string& text, const std::string& unit) {
-  auto trigger = Trigger::read(text, units());
+  auto trigger = Trigger::read(text, our_units());
   EXPECT_TRUE(trigger) << text;
-  EXPECT_TRUE(trigger->settle(unit, units())) << text;
+  EXPECT_TRUE(trigger->settle(unit, our_units())) << text;
   return *trigger;
 }
 
 std::string refusal(const std::string& text, const std::string& unit = "rad") {
-  auto trigger = Trigger::read(text, units());
+  auto trigger = Trigger::read(text, our_units());
   if (!trigger) return std::string(trigger.error().message.view());
-  const auto level = trigger->settle(unit, units());
+  const auto level = trigger->settle(unit, our_units());
   return level ? "none" : std::string(level.error().message.view());
 }
 

@@ -72,9 +72,8 @@ bool spoil(const InputForm& form, std::size_t kind, std::span<std::byte> row) no
     double value = 0;
     if (kind == 0 && is_float) value = std::numeric_limits<double>::quiet_NaN();
     else if (kind == 1 && is_float) value = kInfinity;
-    else if (kind == 2 && is_float) value = -kInfinity;
+    else if ((kind == 2 && is_float) || (kind == 4 && is_whole)) value = -kInfinity;
     else if (kind == 3 && is_ranged) value = channel.high + 10 * (channel.high - channel.low) + 1;
-    else if (kind == 4 && is_whole) value = -kInfinity;
     else continue;
     form.put(channel, value, row);
     is_spoilt = true;

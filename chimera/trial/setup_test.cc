@@ -42,12 +42,12 @@ TEST(MadeUp, GivesEveryInputAndConstant) {
             "  in_0: 0.5\n"
             "  in_1: 0.5\n"
             "  w: [0.5 1/s, 0.5 1/s]\n");
-  const Verdict verdict = arrange({}, everything(), units());
+  const Verdict verdict = arrange({}, everything(), our_units());
   EXPECT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
 }
 
 TEST(Arrange, SettlesWhatIsOpenInOutputsThatNobodyReads) {
-  const Verdict verdict = arrange({}, component({port("y", CHIMERA_OUT_VAR, "U/s", "[n<=64]")}), units());
+  const Verdict verdict = arrange({}, component({port("y", CHIMERA_OUT_VAR, "U/s", "[n<=64]")}), our_units());
   ASSERT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
   EXPECT_EQ(verdict.configuration->spec().tasks[0].ports[0].max_count(), 1u);
 }
@@ -58,7 +58,7 @@ class ArrangeFrom : public ::testing::Test {
   ~ArrangeFrom() override { fs::remove(file_); }
   Verdict from(const std::string& text, const LibraryEntry& entry, const std::string& partner = "") {
     std::ofstream(file_) << text;
-    return arrange({file_, "", partner}, entry, units());
+    return arrange({file_, "", partner}, entry, our_units());
   }
   std::string file_;
 };
@@ -96,7 +96,7 @@ TEST_F(ArrangeFrom, RefusesWhatIsNoSetupOfThisComponent) {
   EXPECT_TRUE(from("subsystem: s\ntasks: {thing: {ratee: 1 Hz}}\n", entry).report.has("key-unknown"));
   EXPECT_TRUE(from("subsystem: [\n", entry).report.has("yaml-syntax"));
   fs::remove(file_);
-  EXPECT_TRUE(arrange({file_, "", ""}, entry, units()).report.has("file-unreadable"));
+  EXPECT_TRUE(arrange({file_, "", ""}, entry, our_units()).report.has("file-unreadable"));
 }
 
 }  // namespace

@@ -4,20 +4,15 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "chimera/config/unit_samples.h"
 #include "chimera/trial/inputs.h"
 #include "chimera/trial/setup.h"
 
 namespace chimera::trial {
-
-inline UnitSystem units() {
-  const std::string file = std::string(std::getenv("CHIMERA_SOURCE")) + "/share/chimera/units.xml";
-  return *UnitSystem::load(std::vector{file});
-}
 
 inline PortDescriptor port(const char* name, std::uint32_t kind, const char* unit, const char* shape = "") {
   PortDescriptor made;
@@ -49,7 +44,7 @@ inline LibraryEntry component(std::vector<PortDescriptor> ports) {
 
 /// The form of its inputs when everything is made up.
 inline InputForm form_of(const LibraryEntry& entry) {
-  const Verdict verdict = arrange({}, entry, units());
+  const Verdict verdict = arrange({}, entry, our_units());
   EXPECT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
   return InputForm::of(*verdict.configuration, entry.descriptor);
 }

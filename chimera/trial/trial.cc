@@ -144,7 +144,7 @@ Result<std::string> descriptor_text(const std::string& object_file, const TrialO
       if (!descriptor) return descriptor.error();
       return to_json(*descriptor);
     }();
-    if (said && said->size() < kBytes) std::memcpy(text, said->data(), said->size());
+    if (said && said->size() < kBytes) std::memcpy(text, said->c_str(), said->size() + 1);
     if (said) return;
     char (&refusal)[sizeof(Record::refusal)] = record.record().refusal;
     std::snprintf(refusal, sizeof refusal, "%s", std::string(said.error().message.view()).c_str());

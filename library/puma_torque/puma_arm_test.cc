@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <string>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/base/math.h"
 #include "library/mujoco/mujoco_guard.h"
 
@@ -196,9 +196,7 @@ TEST_F(PumaArmTest, RefusesPayloadShareAndPoseOutsideTheirRange) {
 }
 
 TEST_F(PumaArmTest, BuiltInModelIsTheFile) {
-  const char* source = std::getenv("CHIMERA_SOURCE");
-  ASSERT_NE(source, nullptr);
-  const std::string file = std::string(source) + "/library/puma_torque/puma560.xml";
+  const std::string file = source_path("library/puma_torque/puma560.xml");
   const Result<void> loaded = arm.load(file.c_str(), {});
   ASSERT_TRUE(loaded) << loaded.error().message.view();
   expect_gravity(kQs, {0, 46.0069, 8.7722, 0, .0283, 0});

@@ -3,10 +3,10 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/task/rig.h"
 #include "library/kinematics/dh_of_axes.h"
 #include "library/rmms/module_store.h"
@@ -14,10 +14,7 @@
 namespace chimera::library {
 namespace {
 
-std::string shipped(const char* file) {
-  const char* source = std::getenv("CHIMERA_SOURCE");
-  return std::string(source != nullptr ? source : ".") + "/library/rmms/" + file;
-}
+std::string shipped(const std::string& file) { return source_path("library/rmms/" + file); }
 
 struct StoreTest : testing::Test {
   std::string path = testing::TempDir() + "modules_" + std::to_string(::getpid()) + ".store";

@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <string>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/task/geometry.h"
 #include "chimera/task/rig.h"
 
@@ -29,8 +29,7 @@ struct TballTest : testing::Test {
     ::unlink(path.c_str());
   }
   static std::string shipped() {
-    const char* source = std::getenv("CHIMERA_SOURCE");
-    return std::string(source == nullptr ? "." : source) + "/library/tball/wave.events";
+    return source_path("library/tball/wave.events");
   }
   void recording(const std::string& text) { std::ofstream(path) << text; }
   RigAnswer init(const std::string& device) {

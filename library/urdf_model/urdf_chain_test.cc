@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/base/math.h"
 #include "chimera/task/rig.h"
 #include "library/mujoco/simulated_arm.h"
@@ -17,10 +17,7 @@
 namespace chimera::library {
 namespace {
 
-std::string shipped_urdf(const char* file) {
-  const char* source = std::getenv("CHIMERA_SOURCE");
-  return std::string(source != nullptr ? source : ".") + "/library/urdf_model/" + file;
-}
+std::string shipped_urdf(const std::string& file) { return source_path("library/urdf_model/" + file); }
 
 struct UrdfChainTest : testing::Test {
   std::string path = testing::TempDir() + "chain_" + std::to_string(::getpid()) + ".urdf";

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/config/library.h"
 #include "chimera/config/unit_samples.h"
 #include "chimera/config/verify.h"
@@ -16,17 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string place(const char* variable) {
-  const char* value = std::getenv(variable);
-  EXPECT_NE(value, nullptr) << variable << " is set by the test runner";
-  return value != nullptr ? value : "";
-}
-
 TEST(ImageOfTheLessons, EveryLegalDescriptionComesBackAsItWas) {
-  const std::string folders[] = {place("CHIMERA_BUILD") + "/components"};
+  const std::string folders[] = {build_path("components")};
   const Library library = Library::make(folders, our_units());
   int legal = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(place("CHIMERA_SOURCE") + "/examples")) {
+  for (const auto& entry : fs::recursive_directory_iterator(source_path("examples"))) {
     if (entry.path().extension() != ".yaml") continue;
     const Verdict verdict = verify(read_description_file(entry.path()), library);
     if (!verdict.configuration) continue;  // a lesson about what is refused

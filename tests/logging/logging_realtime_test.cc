@@ -8,12 +8,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <string>
 #include <thread>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"
@@ -29,7 +29,7 @@ struct Counter {
 };
 
 const chimera_component* csv_log() {
-  static auto object = SharedObject::open(std::string(std::getenv("CHIMERA_BUILD")) + "/components/csv_log.so");
+  static auto object = SharedObject::open(build_path("components/csv_log.so"));
   EXPECT_TRUE(object);
   return *object->component("csv_log");
 }

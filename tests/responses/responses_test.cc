@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/draw/plot.h"
 #include "chimera/task/geometry.h"
 #include "library/signals/signal_rig.h"
@@ -23,9 +24,7 @@ using draw::Curve;
 using draw::Plot;
 
 void compare(const std::string& component, const Plot& plot, const std::string& name = "response") {
-  const char* source = std::getenv("CHIMERA_SOURCE");
-  const std::string root = source != nullptr ? source : ".";
-  const std::string path = root + "/library/" + component + "/" + name + ".svg";
+  const std::string path = source_path("library/" + component + "/" + name + ".svg");
   const std::string drawn = draw::svg(plot);
   if (std::getenv("UPDATE") != nullptr) std::ofstream(path) << drawn;
   std::ostringstream committed;

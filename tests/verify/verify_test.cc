@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "chimera/base/hosted/tree_path.h"
 #include "chimera/config/library.h"
 #include "chimera/config/unit_samples.h"
 #include "chimera/config/schedule_report.h"
@@ -18,10 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path folder() {
-  const char* source = std::getenv("CHIMERA_SOURCE");
-  return fs::path(source != nullptr ? source : "../..") / "tests/verify";
-}
+fs::path folder() { return source_path("tests/verify"); }
 
 const Library& library() {
   static const Library kLibrary = [] {

@@ -29,16 +29,22 @@ using Kind = KeeperMessage::Kind;
 std::string me;
 volatile std::sig_atomic_t told_to_end = 0;
 
+std::string told(const char* variable) {
+  const char* value = std::getenv(variable);
+  if (value == nullptr) std::abort();
+  return value;
+}
+
 void log(const std::string& line) {
   const std::string text = me + " " + line + "\n";
-  const int fd = ::open(std::getenv("CHIMERA_TEST_LOG"), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
+  const int fd = ::open(told("CHIMERA_TEST_LOG").c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
   if (::write(fd, text.data(), text.size()) < 0) std::abort();
   ::close(fd);
 }
 
 // The next whole line of orders for `who`; "" when there is none yet.
 std::string next_order(const std::string& who, int& done) {
-  std::ifstream orders(std::string(std::getenv("CHIMERA_TEST_ORDERS")) + "/" + who);
+  std::ifstream orders(told("CHIMERA_TEST_ORDERS") + "/" + who);
   std::string line;
   for (int i = 0; std::getline(orders, line) && !orders.eof(); ++i)
     if (i == done) return ++done, line;
