@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string build_tree() { return build_path("."); }
+std::string build_tree() { return fs::path(build_path("")).parent_path(); }
 
 class New : public ::testing::Test {
  protected:

@@ -22,7 +22,7 @@ class TapFeed {
  public:
   /// `variables` empty: scheduling records; `from_oldest`: those that are still there, too, the rest of them counted
   /// as lost. Requires: not idle; `world` outlives it.
-  TapFeed(World& world, std::vector<VariableId> variables, bool from_oldest = false);
+  TapFeed(World& world, const std::vector<VariableId>& variables, bool from_oldest = false);
   ~TapFeed();
   TapFeed(const TapFeed&) = delete;
   TapFeed& operator=(const TapFeed&) = delete;

@@ -31,6 +31,25 @@ class TapFeedTest : public testing::Test {
       return n >= rows;
     });
   }
+  /// The unit `spare` stops, and its ring comes round once.
+  void overwrite_spare() {
+    Tap writer(const_cast<TapRing&>(fake_.rtpu(1).block().tap()));
+    fake_.rtpu(1).die();
+    for (std::size_t i = 0; i < kTapRecords + 10; ++i) writer.append(TapRecord{});
+  }
+  struct Seen {
+    std::uint64_t lost = 0, records = 0;
+  };
+  Seen seen_of_spare() const {
+    Seen seen;
+    for (const Json& message : messages_) {
+      if (message["rtpu"] != "spare") continue;
+      EXPECT_EQ(message["first"], seen.lost + seen.records);
+      seen.lost += message["lost"].get<std::uint64_t>();
+      seen.records += message["records"].size();
+    }
+    return seen;
+  }
   bool is_tapped(const char* task) { return world().own.block().view().is_tapped(fake_.task(task)); }
 
   FakeSubsystem fake_;
@@ -85,19 +104,11 @@ TEST_F(TapFeedTest, WithoutVariablesItGivesTheSchedulingRecords) {
 
 TEST_F(TapFeedTest, WhatWasOverwrittenIsCounted) {
   TapFeed feed(world(), {});
-  Tap writer(const_cast<TapRing&>(fake_.rtpu(1).block().tap()));
-  fake_.rtpu(1).die();
-  for (std::size_t i = 0; i < kTapRecords + 10; ++i) writer.append(TapRecord{});
+  overwrite_spare();
   pump(feed);
-  std::uint64_t lost = 0, records = 0;
-  for (const Json& message : messages_) {
-    if (message["rtpu"] != "spare") continue;
-    EXPECT_EQ(message["first"], lost + records);
-    lost += message["lost"].get<std::uint64_t>();
-    records += message["records"].size();
-  }
-  EXPECT_GE(lost, 10u);
-  EXPECT_GE(lost + records, kTapRecords + 10);
+  const Seen spare = seen_of_spare();
+  EXPECT_GE(spare.lost, 10u);
+  EXPECT_GE(spare.lost + spare.records, kTapRecords + 10);
   fake_.kill_rtpu(1, SIGKILL);
 }
 
@@ -115,21 +126,13 @@ TEST_F(TapFeedTest, FromTheOldestTheFirstRecordsComeToo) {
 }
 
 TEST_F(TapFeedTest, FromTheOldestWhatIsGoneByThenCountsAsLost) {
-  Tap writer(const_cast<TapRing&>(fake_.rtpu(1).block().tap()));
-  fake_.rtpu(1).die();
-  for (std::size_t i = 0; i < kTapRecords + 10; ++i) writer.append(TapRecord{});
+  overwrite_spare();
   const std::uint64_t written = fake_.rtpu(1).block().tap().head;
   TapFeed feed(world(), {}, true);
   pump(feed);
-  std::uint64_t lost = 0, records = 0;
-  for (const Json& message : messages_) {
-    if (message["rtpu"] != "spare") continue;
-    EXPECT_EQ(message["first"], lost + records);
-    lost += message["lost"].get<std::uint64_t>();
-    records += message["records"].size();
-  }
-  EXPECT_GE(lost, 10u);
-  EXPECT_EQ(lost + records, written);
+  const Seen spare = seen_of_spare();
+  EXPECT_GE(spare.lost, 10u);
+  EXPECT_EQ(spare.lost + spare.records, written);
   fake_.kill_rtpu(1, SIGKILL);
 }
 

@@ -31,7 +31,7 @@ std::string producer_text(const VariableFacts& facts) {
   return "its producer " + facts.producer + (facts.component == facts.producer ? "" : " (" + facts.component + ")");
 }
 
-std::string with_words(std::string text, const VariableFacts& facts) {
+std::string with_words(const std::string& text, const VariableFacts& facts) {
   return facts.last_words.empty() ? text : text + ": " + facts.last_words;
 }
 
@@ -60,9 +60,8 @@ std::string complaint(const WhyLink& link) {
 
 std::string praise(const std::vector<WhyLink>& chain) {
   const VariableFacts& f = chain[0].facts;
-  const std::string first = f.is_operators()
-                                ? f.variable + " is good: set by the operator"
-                                : f.variable + " is good: " + f.producer + " wrote it " + time_text(f.age) + " ago";
+  std::string first = f.variable + " is good: ";
+  first += f.is_operators() ? "set by the operator" : f.producer + " wrote it " + time_text(f.age) + " ago";
   if (chain.size() == 1) return first;
   return first + ", and " + (chain.size() == 2 ? "the variable" : "all " + std::to_string(chain.size() - 1)) +
          (chain.size() == 2 ? " it depends on is good too" : " variables it depends on are good too");

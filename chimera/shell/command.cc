@@ -57,7 +57,7 @@ std::vector<Command> table() {
 
 Error bad_call(const std::string& message) { return {ErrorCode::kBadInput, std::string_view(message), {}}; }
 
-std::string with_nearest(std::string message, const std::string& wrong, const std::vector<std::string>& names) {
+std::string with_nearest(const std::string& message, const std::string& wrong, const std::vector<std::string>& names) {
   const std::string near = nearest(wrong, names);
   return near.empty() ? message : message + "; did you mean '" + near + "'?";
 }

@@ -44,8 +44,9 @@ std::size_t offset_of(std::string_view text, Place at) {
 std::size_t quoted_end(std::string_view text, std::size_t at) {
   const char quote = text[at];
   for (std::size_t i = at + 1; i < text.size(); ++i) {
-    if (quote == '"' && text[i] == '\\') ++i;
-    else if (text[i] == quote && quote == '\'' && i + 1 < text.size() && text[i + 1] == quote) ++i;
+    const bool is_escape = quote == '"' && text[i] == '\\';
+    const bool is_doubled = quote == '\'' && text.substr(i, 2) == "''";
+    if (is_escape || is_doubled) ++i;
     else if (text[i] == quote) return i + 1;
   }
   return text.size();
@@ -220,7 +221,7 @@ Result<void> replace(const File& file, const std::string& text) {
 
 /// Where the keeper found the file: its name may be relative to the folder in which it was started.
 std::string file_of(const Json& hello) {
-  const std::string file = text_of(hello, "file");
+  std::string file = text_of(hello, "file");
   if (file.empty() || file[0] == '/') return file;
   return "/proc/" + std::to_string(whole_of(hello, "keeper_pid")) + "/cwd/" + file;
 }

@@ -39,7 +39,7 @@ Result<Session> Session::open(const Surroundings& surroundings) {
 control::Answer Session::ask(std::string_view method) { return ask(method, nlohmann::json::object()); }
 
 control::Answer Session::ask(std::string_view method, const nlohmann::json& parameters) {
-  const control::Answer answer = client_.call(method, parameters, kPatience);
+  control::Answer answer = client_.call(method, parameters, kPatience);
   if (answer.code != control::kNoConnection) return answer;
   // The manager died. Its successor answers at the same door; what may have been carried out is not asked for twice.
   const bool may_repeat = method != "signal" && method != "ring" && method != "end" && method != "unsubscribe";

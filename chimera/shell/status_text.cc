@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string or_dash(std::string text) { return text.empty() ? "-" : text; }
+std::string or_dash(const std::string& text) { return text.empty() ? "-" : text; }
 
 std::string count_of(const Json& object, std::string_view key) { return count_text(whole_of(object, key)); }
 
