@@ -193,7 +193,7 @@ class Preemptive(unittest.TestCase):
         for executor, policy in (("preemptive", "muf"), ("preemptive", "edf"), ("executive", "edf")):
             text = OVERRUNS.replace("POLICY", policy).replace("EXECUTOR", executor)
             with self.subTest(executor=executor, policy=policy), started(text) as system:
-                await_that(lambda: system.task("bad")["cycles"] > 400 * ROUNDS, 10 + ROUNDS, "cycles")
+                await_that(lambda: system.task("bad")["cycles"] > 400 * ROUNDS, 10 + 3 * ROUNDS, "cycles")
                 system.signal("off", "bad")
                 values = system.call("get", variables=["bursts", "unsaid", "over"])["values"]
                 seen = {name: reading["value"] for name, reading in values.items()}
