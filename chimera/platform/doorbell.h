@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A word on which one thread sleeps and anybody may wake it, across processes (futex).
+// A word on which one thread sleeps and anybody may wake it, across processes if need be (futex).
 //
 //   sleeper: seen = read() | look at everything | wait_until(seen, instant)
 //   others:  write something | ring()
@@ -14,11 +14,15 @@
 
 namespace chimera {
 
-/// Over a word in memory that outlives it. Plain value.
+/// Who rings. The threads of one process find the sleeper faster.
+enum class Ringers : std::uint8_t { kAnyProcess, kThisProcess };
+
+/// Over a word in memory that outlives it; all who use it name the same ringers. Plain value.
 class Doorbell {
  public:
   Doorbell() noexcept = default;
-  explicit Doorbell(std::atomic<std::uint32_t>& word) noexcept : word_(&word) {}
+  explicit Doorbell(std::atomic<std::uint32_t>& word, Ringers ringers = Ringers::kAnyProcess) noexcept
+      : word_(&word), ringers_(ringers) {}
 
   /// How often it rang. Context: cycle; wait-free.
   std::uint32_t read() const noexcept { return word_->load(std::memory_order_acquire); }  // pairs with ring()
@@ -30,6 +34,7 @@ class Doorbell {
 
  private:
   std::atomic<std::uint32_t>* word_ = nullptr;
+  Ringers ringers_ = Ringers::kAnyProcess;
 };
 
 }  // namespace chimera

@@ -29,19 +29,21 @@ TEST(Doorbell, ReachesTheInstantWhenNobodyRings) {
   EXPECT_GE(clock.now(), until);
 }
 
-TEST(Doorbell, NoWakeIsLostAndWhatWasWrittenBeforeIsSeen) {
+class DoorbellOf : public testing::TestWithParam<Ringers> {};
+
+TEST_P(DoorbellOf, NoWakeIsLostAndWhatWasWrittenBeforeIsSeen) {
   constexpr std::uint32_t kTurns = 20'000;
   std::atomic<std::uint32_t> there{0}, back{0};
   std::uint32_t sent = 0, answered = 0;  // plain on purpose: the bells alone order them
   std::thread answerer([&] {
-    const Doorbell mine(there), other(back);
+    const Doorbell mine(there, GetParam()), other(back, GetParam());
     for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
       while (mine.read() == turn) mine.wait_until(turn, kNever);
       answered = sent;
       other.ring();
     }
   });
-  const Doorbell mine(back), other(there);
+  const Doorbell mine(back, GetParam()), other(there, GetParam());
   std::uint32_t wrong = 0;
   for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
     sent = turn;
@@ -52,6 +54,8 @@ TEST(Doorbell, NoWakeIsLostAndWhatWasWrittenBeforeIsSeen) {
   answerer.join();
   EXPECT_EQ(wrong, 0u);
 }
+
+INSTANTIATE_TEST_SUITE_P(Ringers, DoorbellOf, testing::Values(Ringers::kAnyProcess, Ringers::kThisProcess));
 
 }  // namespace
 }  // namespace chimera

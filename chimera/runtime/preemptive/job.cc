@@ -17,7 +17,7 @@ void PreemptiveExecutor::follow_releases(JobThread& me) {
   ++n_ready_;
   enter();
   for (;;) {
-    const std::uint32_t heard = Doorbell(me.bell).read();  // before the look at everything: no ring is lost
+    const std::uint32_t heard = me.bell.read();  // before the look at everything: no ring is lost
     if (quits_) break;
     const Nanoseconds now = clock_.now();
     if (me.served) take_event(me, now);
@@ -30,7 +30,7 @@ void PreemptiveExecutor::follow_releases(JobThread& me) {
     const int descriptor = listens(me) ? task(me).descriptor : -1;
     leave();
     const bool has_come = descriptor >= 0 && me.served->bell.await(descriptor, kNever);
-    if (descriptor < 0) (void)Doorbell(me.bell).wait_until(heard, until);
+    if (descriptor < 0) (void)me.bell.wait_until(heard, until);
     enter();
     if (has_come && listens(me)) (void)set_.ring(me.task);
   }

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "chimera/platform/descriptor_bell.h"
+#include "chimera/platform/doorbell.h"
 #include "chimera/platform/halt.h"
 #include "chimera/schedule/ready_queue.h"
 #include "chimera/schedule/server_state.h"
@@ -46,7 +47,8 @@ struct Served {
 struct JobThread {
   TaskId task;
   std::thread thread;
-  std::atomic<std::uint32_t> bell{0};  ///< rung when the thread has something to look at
+  std::atomic<std::uint32_t> bell_word{0};
+  Doorbell bell{bell_word, Ringers::kThisProcess};  ///< rung when the thread has something to look at
   pid_t id = 0;                        ///< of the thread
   pid_t carrier = 0;                   ///< who runs at the label of the task: the thread, or that of the edges
   std::atomic<JobPhase> phase{JobPhase::kNone};

@@ -100,7 +100,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   bool is_idle() const noexcept;
   void ring_edge() noexcept { Doorbell(*bell_).ring(); }
   static void wake(JobThread& job) noexcept {
-    Doorbell(job.bell).ring();
+    job.bell.ring();
     if (job.served) job.served->bell.ring();
   }
 
