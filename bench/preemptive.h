@@ -15,6 +15,7 @@
 #include "bench/tasks.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/processor_level.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 
@@ -139,8 +140,9 @@ class RawAxis {
 /// The priority of task i where priorities are fixed.
 inline int fixed_priority(std::uint32_t i) { return kCeiling - 1 - static_cast<int>(i % 18); }
 
-/// A thread for each task at a fixed priority that sleeps to absolute instants.
-inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false) {
+/// A thread for each task that sleeps to absolute instants and runs its job at a fixed priority. `lowered`: it sleeps
+/// at the ceiling and takes its priority for the job only, the least that any order by urgency costs.
+inline Cost run_threads(const Load& load, Nanoseconds time, bool lowered, bool keep_late) {
   LinuxClock clock;
   const Nanoseconds origin = clock.now() + kLeadIn, end = origin + kLeadIn + time;
   std::atomic<std::uint64_t> jobs{0};
@@ -149,12 +151,14 @@ inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false
   for (std::uint32_t i = 0; i < load.n; ++i)
     threads.emplace_back([&, i] {
       late[i].reserve(keep_late ? static_cast<std::size_t>((end - origin) / load.period) + 1 : 0);
-      (void)enter_realtime({fixed_priority(i), bench_cpu(), false});
+      (void)enter_realtime({lowered ? kCeiling : fixed_priority(i), bench_cpu(), false});
       RawAxis axis;
       for (Nanoseconds next = origin + load.step() * i; next < end; next += load.period) {
         (void)clock.wait_until(next);
+        if (lowered) set_level(0, fixed_priority(i));
         if (keep_late) late[i].push_back(static_cast<double>((clock.now() - next).count));
         axis();
+        if (lowered) set_level(0, kCeiling);
         jobs.fetch_add(1, std::memory_order_relaxed);
       }
     });
@@ -163,6 +167,11 @@ inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false
   for (const auto& one : late) cost.late_ns.insert(cost.late_ns.end(), one.begin(), one.end());
   return cost;
 }
+
+inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false) {
+  return run_threads(load, time, false, keep_late);
+}
+inline Cost run_lowered(const Load& load, Nanoseconds time) { return run_threads(load, time, true, false); }
 
 /// One thread above the others that sleeps to each release and wakes the thread of the task, which reports its end.
 class Dispatched {

@@ -46,7 +46,7 @@ void PreemptiveExecutor::run_job(JobThread& me, Nanoseconds now) noexcept {
   lower(level);
   me.used_before.store(used_by_this_thread().count, std::memory_order_relaxed);
   if (begin(me)) {
-    now = run_body(me, clock_.now());
+    now = run_body(me);
     raise();
     enter();
     end(me, now);
@@ -115,17 +115,20 @@ bool PreemptiveExecutor::begin(JobThread& me) noexcept {
 }
 
 // Returns when it ended.
-Nanoseconds PreemptiveExecutor::run_body(JobThread& me, Nanoseconds start) noexcept {
+Nanoseconds PreemptiveExecutor::run_body(JobThread& me) noexcept {
   const Job job = me.job;
-  me.slice.store(start.count, std::memory_order_relaxed);
   const Nanoseconds before{me.used_before.load(std::memory_order_relaxed)};
+  if (sees_switches_) SwitchWatch::begin();
+  const Nanoseconds start = clock_.now();
+  me.slice.store(start.count, std::memory_order_relaxed);
   if (me.served) me.served->halt.open();
   Nanoseconds end = start;
   if (releases_.may_start(job, start)) {
     CycleTime time;
     const BodyEnd body = releases_.begin_job(job, time, me.illegal);
     end = clock_.now();
-    releases_.conclude_job(job, time, body, start, end, used_by_this_thread() - before);
+    const bool was_alone = sees_switches_ && SwitchWatch::end();
+    releases_.conclude_job(job, time, body, start, end, was_alone ? end - start : used_by_this_thread() - before);
   }
   if (me.served) me.served->halt.close();
   me.phase = JobPhase::kDone;
@@ -146,6 +149,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   t.is_busy = false;
   releases_.tap().flush(me.task);
   processor_goes_on(now);
+  put_off_alarm(now);
   me.is_shown = false;
   if (me.served || now - me.shown >= kShowEvery) show(me, now);  // another event may never come
   if (t.state != State::kOn) me.is_joined = false;  // the edge will say so too

@@ -19,6 +19,7 @@
 #include "chimera/platform/alarm.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/section.h"
+#include "chimera/platform/switch_watch.h"
 #include "chimera/runtime/preemptive/job_thread.h"
 #include "chimera/runtime/preemptive/label_list.h"
 #include "chimera/runtime/preemptive/thread_clock.h"
@@ -111,7 +112,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void prepare(JobThread& me, const Job& job) noexcept;
   int enter_label(JobThread& me, Nanoseconds now) noexcept;
   bool begin(JobThread& me) noexcept;
-  Nanoseconds run_body(JobThread& me, Nanoseconds start) noexcept;
+  Nanoseconds run_body(JobThread& me) noexcept;
   void end(JobThread& me, Nanoseconds now) noexcept;
   void record_slice(const JobThread& job, Nanoseconds now) noexcept;
   void processor_goes_on(Nanoseconds now) noexcept;
@@ -150,6 +151,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   int apply(std::span<const LevelChange> changes, const JobThread* own) noexcept;
   void watch(JobThread& job, Nanoseconds check, Nanoseconds now) noexcept;
   Nanoseconds alarm_for(Nanoseconds check, bool is_exact, Nanoseconds now) const noexcept;
+  void put_off_alarm(Nanoseconds now) noexcept;
   void arm(Nanoseconds instant) noexcept;
   Urgency urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept;
   Nanoseconds used(const JobThread& job) const noexcept;
@@ -191,6 +193,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   std::thread supervisor_;
   pid_t edge_thread_ = 0;
   JobThread* on_processor_ = nullptr;    // the most urgent job at the last change of the list
+  const bool sees_switches_ = SwitchWatch::can_tell();
   bool has_levels_ = false;              // else the system refused them, and threads run as it likes
   bool is_paused_ = true;                // no job is released
   Nanoseconds until_ = kNever;           // nor from here on

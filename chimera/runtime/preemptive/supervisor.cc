@@ -211,6 +211,15 @@ void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check, Nanoseconds no
   if (wanted < armed_) arm(wanted);
 }
 
+// Nobody is ready: what the alarm was set for is over, but for jobs that are demoted or halted. To move it costs less
+// than a look of the supervisor.
+void PreemptiveExecutor::put_off_alarm(Nanoseconds now) noexcept {
+  if (labels_.size() > 0 || armed_ > now + Nanoseconds{kNowAndThen.count / 2}) return;
+  Nanoseconds next = now + kNowAndThen;
+  for (const JobThread& job : threads_) next = std::min(next, job.check);
+  if (next > armed_) arm(next);
+}
+
 void PreemptiveExecutor::arm(Nanoseconds instant) noexcept {
   armed_ = instant;
   alarm_.set(instant);
