@@ -132,7 +132,16 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   Nanoseconds end_of_capacity(JobThread& job, Nanoseconds now) noexcept;
   Nanoseconds next_look_at_server(JobThread& job, Nanoseconds now) noexcept;
 
-  // Levels and supervision (supervisor.cc).
+  // Levels (levels.cc).
+  JobThread* running() noexcept;
+  int apply(std::span<const LevelChange> changes, const JobThread* own) noexcept;
+  Urgency urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept;
+  void check() noexcept;
+  void check_holder() noexcept;
+  void raise() noexcept;
+  void lower(int level) noexcept;
+
+  // Supervision (supervisor.cc).
   void supervise();
   void look_at_jobs(Nanoseconds now) noexcept;
   void look_at(JobThread& job, Nanoseconds now) noexcept;
@@ -147,13 +156,10 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void bury(JobThread& job, Nanoseconds now) noexcept;
   void demote(JobThread& job, Nanoseconds now) noexcept;
   void cancel(JobThread& job, Nanoseconds now) noexcept;
-  JobThread* running() noexcept;
-  int apply(std::span<const LevelChange> changes, const JobThread* own) noexcept;
   void watch(JobThread& job, Nanoseconds check, Nanoseconds now) noexcept;
   Nanoseconds alarm_for(Nanoseconds check, bool is_exact, Nanoseconds now) const noexcept;
   void put_off_alarm(Nanoseconds now) noexcept;
   void arm(Nanoseconds instant) noexcept;
-  Urgency urgency_of(const JobThread& job, Nanoseconds remaining) const noexcept;
   Nanoseconds used(const JobThread& job) const noexcept;
   /// Releases of this run come up to here: at its end and later there is none.
   Nanoseconds newest_instant(Nanoseconds now) const noexcept { return std::min(now, until_ - Nanoseconds{1}); }
@@ -168,10 +174,6 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
     if (place_.checks) check_holder();
     section_.leave();
   }
-  void check() noexcept;
-  void check_holder() noexcept;
-  void raise() noexcept;
-  void lower(int level) noexcept;
   const TaskSpec& spec(const JobThread& job) const noexcept { return *tasks_[job.task.index].spec; }
   Task& task(const JobThread& job) noexcept { return tasks_[job.task.index]; }
 
