@@ -52,13 +52,17 @@ void add_check(CLI::App& app, Words& words) {
 void add_schedule(CLI::App& app, Words& words) {
   CLI::App* s = app.add_subcommand("schedule", "Prove that every task keeps its deadlines, or tell what would help");
   s->add_option("FILE", words.schedule.file, "the description")->required();
-  s->add_option("--profile", words.schedule.profile, "execution times from this recorded profile, else from budgets");
-  s->add_option("--svg", words.schedule.svg, "draw the worst window of each CPU into this file");
+  add_file_option(*s, "--profile", words.schedule.profile,
+                  "execution times from this recorded profile, else from budgets");
+  add_file_option(*s, "--svg", words.schedule.svg, "draw the worst window of each CPU into this file");
   s->add_option("--dispatch", words.schedule.dispatch,
                 "judge all rtpus as 'preemptive' or 'executive'; else each as described")
       ->check(CLI::IsMember({"preemptive", "executive"}));
   s->add_flag("--json", words.json, "the analysis as one JSON object");
-  s->footer("Exit code 0: everything keeps its deadlines; 1: it does not.\n"
+  s->footer("Response: longest from release to end. Blocked: by a job that cannot be taken off. Copies: at each\n"
+            "cycle, from tables of other rtpus or the operator. `run` starts only when every task keeps its deadline\n"
+            "that does not say 'may miss'.\n"
+            "Exit code 0: everything keeps its deadlines; 1: it does not.\n"
             "Example: chimera schedule examples/01_puma_pid/puma_pid.yaml --svg window.svg");
 }
 

@@ -27,9 +27,9 @@ void add_face_options(CLI::App* command, RunWords& words) {
   command->add_option("--watch", words.run.watch, "print these state variables while it runs");
   command->add_option("--every", words.every, "how often --watch prints (1 s)");
   command->add_option("--expect", words.run.expect, "at the end must hold: 'error <= 2 mrad'; may be repeated");
-  command->add_option("--trace", words.trace, "write a Chrome trace to this file (ui.perfetto.dev opens it)");
-  command->add_option("--profile", words.run.profile,
-                      "at the end save the profile of every task into this file, for `chimera schedule --profile`");
+  add_file_option(*command, "--trace", words.trace, "write a Chrome trace to this file (ui.perfetto.dev opens it)");
+  add_file_option(*command, "--profile", words.run.profile,
+                  "at the end save the profile of every task into this file, for `chimera schedule --profile`");
   command->add_option("--timeline", words.timeline,
                       "at the end print one letter for each unit of time, such as '1 ms'");
 }
@@ -123,12 +123,19 @@ int with_records(const RunWords& words, Nanoseconds unit, Body body) {
 
 }  // namespace
 
+void add_file_option(CLI::App& app, const char* name, std::string& file, const char* help) {
+  const CLI::Validator has_name([](std::string& given) { return std::string(given.empty() ? "names no file" : ""); },
+                                "");
+  app.add_option(name, file, help)->type_name("FILE")->check(has_name);
+}
+
 void add_run(CLI::App& app, RunWords& words) {
   CLI::App* r = app.add_subcommand("run", "Run an application in real time, or in virtual time");
   r->add_option("FILE", words.run.file, "the description")->required();
   add_face_options(r, words);
   r->add_flag("--virtual", words.run.virtual_time, "in virtual time: as fast as it goes, the same result every time");
-  r->add_option("--svg", words.run.svg, "virtual time: draw what --watch names to this file instead of printing it");
+  add_file_option(*r, "--svg", words.run.svg,
+                  "virtual time: draw what --watch names to this file instead of printing it");
   r->add_flag("--preemptive", words.run.preemptive, "virtual time: schedule preemptively");
   r->add_option("--seed", words.seed, "virtual time: draw execution times from [min, budget]");
   r->add_option("--quantum", words.quantum, "virtual time, laxity policies: compare again this often (1 ms)");
@@ -142,7 +149,10 @@ void add_run(CLI::App& app, RunWords& words) {
   r->add_option("--operate-group", words.operate_group, "real time: they may also send signals and set values");
   r->add_option("--configure-group", words.configure_group, "real time: they may do everything");
   r->add_flag("--json", words.run.json, "the result as one JSON object");
-  r->footer("Exit code 0 only if the run came to its end and every --expect holds.\n"
+  r->footer("At the end, for each task: mean and max execution time of a cycle, the longest response (release to\n"
+            "end), jitter (latest start minus earliest, each after its release), deadlines missed, releases dropped,\n"
+            "faults.\n"
+            "Exit code 0 only if the run came to its end and every --expect holds.\n"
             "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
   CLI::App* i = app.add_subcommand("idle", "A subsystem with nothing loaded: serves check, schedule, library");
   i->add_option("--subsystem", words.idle_name, "its name (idle)");

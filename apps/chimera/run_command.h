@@ -10,7 +10,7 @@
 
 namespace CLI {
 class App;
-}
+}  // namespace CLI
 
 /// Everything the command line can say about a run.
 struct RunWords {
@@ -26,6 +26,8 @@ struct RunWords {
   std::vector<double> bounds;
 };
 
+/// An option that takes the name of a file; an empty one is a wrong call, not "no file".
+void add_file_option(CLI::App& app, const char* name, std::string& file, const char* help);
 /// The subcommands `run`, `idle` and `attend`.
 void add_run(CLI::App& app, RunWords& words);
 /// Carries out `run`: in this process, or as the keeper of others. Answers the exit code.

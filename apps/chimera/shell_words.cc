@@ -34,7 +34,8 @@ void add_command(CLI::App& app, const shell::Command& command, ShellWords& words
   }
   c->add_flag("--json", words.json, "the raw answer");
   c->add_option("--subsystem", words.subsystem, "which one, when several run")->type_name("NAME");
-  c->footer(std::string("Example: ") + command.example);
+  const std::string legend = command.legend;
+  c->footer(legend + (legend.empty() ? "" : "\n") + "Example: " + command.example);
 }
 
 }  // namespace

@@ -79,6 +79,7 @@ class Attendance {
   Nanoseconds started_ = kNever;
   std::uint64_t next_event_ = 0;
   bool task_stopped_ = false;
+  std::string stopped_by_;
 };
 
 Result<void> Attendance::begin() {
@@ -135,7 +136,9 @@ void Attendance::look_at_events() {
       failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
     else if (kind == "refused")
       refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
-    task_stopped_ = task_stopped_ || kind == "stop";
+    if (kind != "stop" || task_stopped_) continue;
+    task_stopped_ = true;
+    stopped_by_ = task;
   }
 }
 
@@ -208,7 +211,8 @@ RunEnd Attendance::attend() {
 int Attendance::report(RunEnd end) {
   const Nanoseconds now = clock_.now();
   std::vector<std::string> names = run_.watch;
-  RunReport report{.end = end, .ran = std::min(now - started_, run_.duration), .subsystem = names_.subsystem,
+  RunReport report{.end = end, .stopped_by = {}, .is_flag_up = false,
+                   .ran = std::min(now - started_, run_.duration), .subsystem = names_.subsystem,
                    .executor = grants_, .refused = {}, .profiles = {}, .origin = started_, .variables = {},
                    .expectations = {}};
   for (std::size_t i = 0; i < run_.expect.size(); ++i)
@@ -219,7 +223,9 @@ int Attendance::report(RunEnd end) {
   if (const auto profile = line_.ask("profile", Json::object()); profile && status)
     if (auto profiles = parse_profiles((*profile)["tasks"].dump(), instant((*status)["origin_ns"])); profiles)
       report.profiles = *std::move(profiles);
+  if (status) report.is_flag_up = status->value(Json::json_pointer("/flag/up"), false);
   look_at_events();
+  report.stopped_by = stopped_by_;
   report.refused = refused_;
   for (std::size_t i = 0; i < run_.expect.size(); ++i) {
     const auto expectation = Expectation::with_bound(run_.expect[i], request_.bounds[i]);

@@ -167,6 +167,7 @@ TEST_F(Attend, IsASuccessWhenEveryExpectationHolds) {
   EXPECT_EQ(attend(), kOk);
   const Json told = Json::parse(out_);
   EXPECT_EQ(told["ended"], "time");
+  EXPECT_EQ(told["flag"], false);
   EXPECT_EQ(told["ran_ns"], 60'000'000);
   EXPECT_EQ(told["executor"], "servo: real time: all granted; spare: real time: nothing asked for");
   EXPECT_EQ(told["variables"]["q"], (Json{{"unit", "rad"}, {"value", {1.5, -2.0}}}));
@@ -208,7 +209,7 @@ TEST_F(Attend, TheReactionStopOfATaskIsNoSuccess) {
                       {"text", "stopped by its reaction"}}};
   request_.run.duration = kNever;
   EXPECT_EQ(attend(), kRefused);
-  EXPECT_NE(out_.find(", ended by the reaction `stop` of a task\n"), std::string::npos) << out_;
+  EXPECT_NE(out_.find(", ended by the reaction `stop` of task 'pid'\n"), std::string::npos) << out_;
 }
 
 TEST_F(Attend, GoesOnWithTheNextManagerWhenOneDies) {

@@ -26,6 +26,7 @@ struct Seldom {
   std::uint64_t Profile::* count;
 };
 constexpr Seldom kSeldom[] = {{"over budget", &Profile::overrun},
+                              {"without time for 'min'", &Profile::min_refused},
                               {"held", &Profile::held},
                               {"aborted", &Profile::aborted},
                               {"partial", &Profile::partial},

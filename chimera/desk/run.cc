@@ -69,6 +69,15 @@ class ProgressLine {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// The first failure of time with the reaction `stop` ends the run.
+std::string who_stopped(const TaskSet& tasks) {
+  for (const Task& task : tasks.tasks())
+    if ((task.spec->on_miss == OnMiss::kStop && task.profile.missed > task.profile.tolerated) ||
+        (task.spec->on_overrun == OnMiss::kStop && task.profile.overrun > 0))
+      return std::string(task.spec->name);
+  return {};
+}
+
 /// One run with everything that is watched and expected of it.
 class Session {
  public:
@@ -173,7 +182,8 @@ RunEnd Session::run() {
 }
 
 int Session::report(RunEnd end) {
-  RunReport report{.end = end, .ran = ran_, .subsystem = plan_.configuration.subsystem(),
+  RunReport report{.end = end, .stopped_by = {}, .is_flag_up = application_.tasks().is_illegal(), .ran = ran_,
+                   .subsystem = plan_.configuration.subsystem(),
                    .executor = loop_->description(), .refused = {}, .profiles = {}, .origin = loop_->origin(),
                    .variables = {}, .expectations = {}};
   for (const Expectation& expectation : plan_.expectations)
@@ -183,6 +193,7 @@ int Session::report(RunEnd end) {
     report.variables.push_back(
         {probe.name, probe.form.unit, probe.read(value) ? value_json(probe.form, value) : "null"});
   const std::vector<State> states = states_of(application_.tasks());
+  if (end == RunEnd::kTaskStopped) report.stopped_by = who_stopped(application_.tasks());
   for (const RefusedSignal& r : loop_->refused())
     report.refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
   const Nanoseconds now = loop_->now();

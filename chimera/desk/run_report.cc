@@ -21,12 +21,14 @@ const char* word(RunEnd end) {
   return "?";
 }
 
-const char* sentence(RunEnd end) {
-  switch (end) {
+std::string sentence(const RunReport& report) {
+  switch (report.end) {
     case RunEnd::kTime: return "";
     case RunEnd::kStopped: return ", ended by the operator";
     case RunEnd::kNothingLeft: return ", ended because no task was ON any more";
-    case RunEnd::kTaskStopped: return ", ended by the reaction `stop` of a task";
+    case RunEnd::kTaskStopped:
+      return ", ended by the reaction `stop` of " +
+             (report.stopped_by.empty() ? "a task" : "task '" + report.stopped_by + "'");
   }
   return "";
 }
@@ -40,10 +42,11 @@ void print_json(const RunReport& report, std::FILE* out) {
     expectations += (expectations.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(e.text) +
                     ", \"holds\": " + (e.holds ? "true" : "false") + ", \"said\": " + json_string(e.said) + "}";
   std::fprintf(out,
-               "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"tasks\": %s, "
-               "\"variables\": {%s}, \"expectations\": [%s]}\n",
+               "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"flag\": %s, "
+               "\"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s]}\n",
                json_string(report.subsystem).c_str(), json_string(report.executor).c_str(),
                static_cast<long long>(report.ran.count), word(report.end),
+               report.is_flag_up ? "true" : "false",
                profile_json(report.profiles, report.origin).c_str(), variables.c_str(), expectations.c_str());
 }
 
@@ -73,7 +76,8 @@ void print(const RunReport& report, bool json, std::FILE* out) {
   std::string lines;
   for (const RunReport::Judged& e : report.expectations)
     lines += (e.holds ? "holds: " : "FAILS: ") + e.text + " (" + e.said + ")\n";
-  std::fprintf(out, "ran %.3f s%s\n%s%s%s", to_seconds(report.ran), sentence(report.end), report.refused.c_str(),
+  std::fprintf(out, "ran %.3f s%s\n%s%s%s%s", to_seconds(report.ran), sentence(report).c_str(),
+               report.is_flag_up ? "the illegal-configuration flag is up\n" : "", report.refused.c_str(),
                profile_table(report.profiles, report.ran, report.origin).c_str(), lines.c_str());
 }
 

@@ -24,6 +24,8 @@ struct RunReport {
   };
 
   RunEnd end = RunEnd::kTime;
+  std::string stopped_by;              ///< the task whose reaction `stop` ended it, where that is known
+  bool is_flag_up = false;             ///< the illegal-configuration flag at the end
   Nanoseconds ran;
   std::string subsystem;
   std::string executor;                ///< how it was run, for people

@@ -72,6 +72,34 @@ TEST(Run, CountsOneCycleForEachPeriod) {
   EXPECT_EQ(said.err, "");  // no progress where nobody looks
 }
 
+constexpr const char* kLate = R"(subsystem: late
+tasks:
+  a: {component: t_source, rate: 100 Hz, deadline: 4 ms, alias: {x: xa, expired: ea}, constants: {spend: 1000000 ns}}
+  b: {component: t_source, rate: 100 Hz, deadline: 5 ms, min: 4500 us, on_miss: REACTION, alias: {x: xb, expired: eb},
+      constants: {spend: 6000000 ns}}
+)";
+
+std::string late(const std::string& reaction) {
+  std::string text = kLate;
+  return text.replace(text.find("REACTION"), 8, reaction);
+}
+
+TEST(Run, TellsThatTheFlagIsUpAndWhoHadNoTime) {
+  RunRequest request = lasting(milliseconds(30));
+  const Said said = said_by(request, late("flag"));
+  EXPECT_NE(said.out.find("ran 0.030 s\nthe illegal-configuration flag is up\n"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("\nb: 3 without time for 'min'\n"), std::string::npos) << said.out;
+  request.json = true;
+  EXPECT_NE(said_by(request, late("flag")).out.find("\"flag\": true"), std::string::npos);
+  EXPECT_NE(said_by(request, late("continue")).out.find("\"flag\": false"), std::string::npos);
+}
+
+TEST(Run, NamesTheTaskWhoseReactionStoppedIt) {
+  const Said said = said_by(lasting(milliseconds(30)), late("stop"));
+  EXPECT_EQ(said.code, kRefused);
+  EXPECT_NE(said.out.find(", ended by the reaction `stop` of task 'b'\n"), std::string::npos) << said.out;
+}
+
 TEST(Run, AnExpectationThatFailsIsNoSuccess) {
   RunRequest request = lasting(milliseconds(10));
   request.expect = {"count < 10"};

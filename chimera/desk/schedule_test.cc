@@ -153,6 +153,16 @@ TEST(Schedule, ItsAdviceIsTrue) {
   for (const char* kind : {"rate_hz", "rtpu", "criticality", "lower"}) EXPECT_GT(tried[kind], 0) << kind;
 }
 
+TEST(Schedule, ASetAtTheVeryLimitFitsWithNoTimeToSpare) {
+  const std::string rtpus = "r: {policy: edf, executor: preemptive}";
+  const auto said = [&](int budget_us) {
+    return scheduled(description(rtpus, {{"a", "r", "low", "100", 4300}, {"b", "r", "low", "50", budget_us}}), "");
+  };
+  EXPECT_EQ(said(10000).code, kOk);  // 0.43 + 0.5 = 0.93
+  EXPECT_NE(said(10000).out.find("  fits: every task keeps its deadline, with no time to spare\n"), std::string::npos);
+  EXPECT_EQ(said(10001).code, kRefused);
+}
+
 TEST(Schedule, AMoreCriticalTaskIsNeverSaidToGiveWayToALessCriticalOne) {
   const std::vector<Line> lines = {{"a", "r", "high", "166.6666667", 2000}, {"b", "r", "high", "100", 2000},
                                    {"c", "r", "high", "83.33333333", 3000}, {"d", "r", "low", "66.66666667", 2000}};

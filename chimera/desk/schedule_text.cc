@@ -67,7 +67,10 @@ class Words {
     const char* who = cpu.verdict.unstated > 0 ? "every task with a time" : "every task";
     if (cpu.fits())
       return std::string("  fits: ") + who + " keeps its deadline" +
-             (cpu.scale > 0 ? ", also with all times " + scale_text(cpu.scale) : "") + "\n";
+             (cpu.scale >= 1.01  ? ", also with all times " + scale_text(cpu.scale)
+              : cpu.scale > 0 ? ", with no time to spare"
+                              : "") +
+             "\n";
     std::vector<std::string> kept, lost, giving;
     for (const ScheduleRow& row : cpu.rows) {
       if (row.verdict.guarantee == Guarantee::kYes) kept.push_back(name(row.task));
@@ -131,8 +134,9 @@ class Words {
     if (v.guarantee == Guarantee::kNotStated) response = "-";
     if (!row.is_hard && !is_server) promise += ", may miss";
     const std::string transfer = row.transfer.groups == 0 ? "-"
-                                 : std::to_string(row.transfer.bytes) + " B of " +
-                                       std::to_string(row.transfer.groups);
+                                 : std::to_string(row.transfer.bytes) + " B, " +
+                                       std::to_string(row.transfer.groups) +
+                                       (row.transfer.groups == 1 ? " group" : " groups");
     return {name(row.task), rtpu(row.work.rtpu), criticality_name(row.work.criticality),
             (row.source == TimeSource::kNone ? "" : time_text(row.work.time)) + source, time_text(row.work.period),
             time_text(row.work.deadline), response, v.blocking.count == 0 ? "-" : time_text(v.blocking), transfer,

@@ -29,7 +29,10 @@ std::vector<Command> table() {
       {"on", "TASK...", 1, kAny, "Put tasks, or those of a configuration, into service in one step", {},
        "chimera on pid arm"},
       {"profile", "", 0, 0, "What each task costs and how punctual it is",
-       {{"--save", "FILE", "write it into this file, for `chimera schedule --profile`"}}, "chimera profile"},
+       {{"--save", "FILE", "write it into this file, for `chimera schedule --profile`"}}, "chimera profile", false,
+       "mean, max: execution time of a cycle; load: its share of the time ON; response: longest, release to end;\n"
+       "jitter: latest start minus earliest, each after its release; groups, bytes: copied from other rtpus or the\n"
+       "operator"},
       {"quit", "", 0, 0, "Leave the shell; the subsystem goes on", {}, "quit", true},
       {"reinit", "TASK...", 1, kAny, "Have tasks read their constants anew", {}, "chimera reinit pid"},
       {"ring", "TASK...", 1, kAny, "Ring the doorbell of tasks behind a server: one event for each", {},
@@ -49,7 +52,9 @@ std::vector<Command> table() {
        "chimera set kp '[100 90] N.m/rad'"},
       {"spawn", "TASK...", 1, kAny, "Create and init tasks: OFF", {}, "chimera spawn pid"},
       {"status", "", 0, 0, "Real-time units, tasks, flag", {}, "chimera status"},
-      {"top", "", 0, 0, "The same live, on the whole screen: q ends it", {every}, "chimera top"},
+      {"top", "", 0, 0, "The same live, on the whole screen: q ends it", {every}, "chimera top", false,
+       "EXEC: mean execution time since the last look; MAX: longest so far; USED: MAX of BUDGET; INPUT: age of the\n"
+       "oldest input"},
       {"watch", "VAR...", 1, kAny, "Values live, with their recent course", {every}, "chimera watch q tau[2]"},
       {"why", "VAR", 1, 1, "Where a value comes from, and what is wrong with it", {}, "chimera why tau"},
   };
@@ -136,6 +141,9 @@ std::string help_text(std::string_view name) {
   for (const Option& option : command->options)
     text += "  " + fitted(std::string(option.name) + (option.value ? std::string(" ") + option.value : ""), 18) +
             option.help + "\n";
+  std::string legend = command->legend;
+  for (std::size_t at = 0; (at = legend.find('\n', at)) != std::string::npos; at += 3) legend.replace(at, 1, "\n  ");
+  if (!legend.empty()) text += "  " + legend + "\n";
   return text + "  Example: " + command->example + "\n";
 }
 

@@ -27,6 +27,7 @@ struct Command {
   std::vector<Option> options;  ///< besides --json and --subsystem
   const char* example;
   bool is_shells = false;       ///< understood inside `chimera shell` only
+  const char* legend = "";      ///< what the columns mean
 };
 
 /// In the order of the alphabet. Context of all: setup.

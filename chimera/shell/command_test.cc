@@ -47,6 +47,7 @@ TEST(Command, HelpTellsUsageOptionsAndAnExample) {
             "  --follow          go on with what happens, until Ctrl-C\n"
             "  Example: chimera events --follow\n");
   EXPECT_EQ(help_text("nonsense"), "");
+  EXPECT_NE(help_text("top").find("INPUT: age of the\n  oldest input\n  Example: chimera top\n"), std::string::npos);
   EXPECT_NE(help_text().find("why VAR           Where a value comes from, and what is wrong with it\n"),
             std::string::npos);
 }
