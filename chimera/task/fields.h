@@ -94,8 +94,9 @@ chimera_field describe_field(const char* name, const char* unit, std::size_t off
   made.unit = unit;
   made.type = element_type<Element>();
   made.offset = static_cast<std::uint32_t>(offset);
-  made.count = static_cast<std::uint32_t>(sizeof(Member) / sizeof(Element));
-  made.size = static_cast<std::uint32_t>(sizeof(Element));
+  constexpr std::size_t size = sizeof(Element);
+  made.count = static_cast<std::uint32_t>(sizeof(Member) / size);
+  made.size = static_cast<std::uint32_t>(size);
   return made;
 }
 

@@ -2,6 +2,9 @@
 // For tests: a car of either kind on a level road, nothing pressed.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <initializer_list>
 #include <string_view>
 
 #include "chimera/task/rig.h"
@@ -27,5 +30,20 @@ struct CarRig : Rig {
   /// m/s.
   double speed() { return get<double>("speed") / 3.6; }
 };
+
+/// A value of a constant that a car refuses, and with what sentence.
+struct WrongConstant {
+  const char* name;
+  double value;
+  const char* text;
+};
+
+inline void expect_refused(const char* component, std::initializer_list<WrongConstant> constants) {
+  for (const WrongConstant& wrong : constants) {
+    CarRig rig(component);
+    rig.set(wrong.name, wrong.value);
+    EXPECT_EQ(rig.init().text, wrong.text) << wrong.value;
+  }
+}
 
 }  // namespace chimera::library

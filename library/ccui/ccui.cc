@@ -13,9 +13,8 @@ struct Ccui {
   Resource buttons{"buttons", doc = "Script of seconds:km/h, each held until the next; \"0:0\" is never switched on."};
 
   Outcome init() {
-    if (const char* wrong = speed_.read(buttons.text())) return fault(wrong);
-    if (speed_.least() < 0 || speed_.greatest() > 250) return fault("a set speed is 0 to 250 km/h");
-    return ok();
+    const char* const wrong = speed_.read(buttons.text(), 0, 250, "a set speed is 0 to 250 km/h");
+    return wrong == nullptr ? ok() : fault(wrong);
   }
   Outcome reinit() { return init(); }
   void on() {

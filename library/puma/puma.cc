@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Puma 560 in position mode (2000 paper, figure 3), simulated; the arm is that of library/puma_torque.
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
-#include "chimera/task/component.h"
 #include "library/kinematics/puma560.h"
-#include "library/puma_torque/puma_arm.h"
+#include "library/puma_torque/puma_body.h"
 
 using namespace chimera;
 
 namespace {
 
-struct Puma {
+struct Puma : library::PumaBody {
   In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Position that the drives go to."};
-  Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
-  Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 100.0, range(1, 200),
@@ -34,35 +29,17 @@ struct Puma {
   }
   // Another payload or other drives, at rest in the same place.
   void reinit() {
-    library::PumaVector here;
-    std::ranges::copy(arm_.position(), here.begin());
-    load();
-    check(arm_.place(here));
+    restart([this] { load(); });
   }
-  void on() { publish(); }
   Outcome cycle(Cycle c) {
     const bool moved = c.illegal() ? arm_.step_locally_stable(c.dt())
                                    : arm_.step(library::ArmInterface::kPosition, Joints(q_ref.begin(), 6), c.dt());
-    if (!moved) return fault(arm_.fault());
-    publish();
-    return ok();
+    return after(moved);
   }
-  void off() {
-    arm_.brake();
-    publish();
-  }
-  bool error() {
-    off();
-    return false;
-  }
-  bool clear() { return true; }
 
  private:
   using Joints = library::PumaInput;
 
-  static void check(const Result<void>& result) {
-    if (!result) throw std::runtime_error(std::string(result.error().message.view()));
-  }
   void load() {
     arm_.set_drives({.bandwidth = *bandwidth, .speed_limit = *speed_limit, .acceleration_limit = 15});
     check(arm_.load(library::kPumaModel, {.payload_mass = *payload_mass, .coulomb_share = 0}));
@@ -71,12 +48,6 @@ struct Puma {
     std::ranges::copy(library::Puma560::kLow, q_min.begin());
     std::ranges::copy(library::Puma560::kHigh, q_max.begin());
   }
-  void publish() {
-    std::ranges::copy(arm_.position(), q.begin());
-    std::ranges::copy(arm_.velocity(), qd.begin());
-  }
-
-  library::PumaArm arm_;
 };
 
 CHIMERA_COMPONENT(Puma, "puma", "Position-mode Puma 560, simulated.", rate = 1000.0,

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The torque-mode robot interface of figure 4 (1994 paper), with a simulated Puma 560 behind it.
 #include <algorithm>
-#include <numbers>
-#include <stdexcept>
-#include <string>
 
-#include "chimera/task/component.h"
-#include "library/puma_torque/puma_arm.h"
+#include "library/puma_torque/puma_body.h"
 
 using namespace chimera;
 
 namespace {
 
-struct PumaTorque {
+struct PumaTorque : library::PumaBody {
   In<double[]> tau{"tau", "N.m", "[ndof<=10]", frame = "joint", doc = "Torque at each joint, base to wrist."};
-  Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
-  Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
   InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 10), doc = "Bolted to the flange."};
@@ -39,35 +33,16 @@ struct PumaTorque {
   }
   // Another payload, at rest in the same place.
   void reinit() {
-    library::PumaVector here;
-    std::ranges::copy(arm_.position(), here.begin());
-    load();
-    check(arm_.place(here));
+    restart([this] { load(); });
   }
-  void on() { publish(); }
   Outcome cycle(Cycle c) {
     const PumaInput torque(tau.begin(), library::kPumaJoints);
-    if (!(c.illegal() ? arm_.step_locally_stable(c.dt()) : arm_.step(torque, c.dt()))) return fault(arm_.fault());
-    publish();
-    return ok();
+    return after(c.illegal() ? arm_.step_locally_stable(c.dt()) : arm_.step(torque, c.dt()));
   }
-  void off() {
-    arm_.brake();
-    publish();
-  }
-  // The arm refused a step and stands as before it: with the brakes on it is in a sound state again.
-  bool error() {
-    off();
-    return false;
-  }
-  bool clear() { return true; }
 
  private:
   using PumaInput = library::PumaInput;
 
-  static void check(const Result<void>& result) {
-    if (!result) throw std::runtime_error(std::string(result.error().message.view()));
-  }
   void load() {
     check(arm_.load(model.c_str(), {.payload_mass = *payload_mass, .coulomb_share = *coulomb_share}));
     *ndof = static_cast<std::int32_t>(library::kPumaJoints);
@@ -79,12 +54,6 @@ struct PumaTorque {
     std::copy_n(arm_.upper_limit().begin(), library::kPumaJoints, q_max.begin());
     std::ranges::copy(arm_.torque_limit(), tau_max.begin());
   }
-  void publish() {
-    std::ranges::copy(arm_.position(), q.begin());
-    std::ranges::copy(arm_.velocity(), qd.begin());
-  }
-
-  library::PumaArm arm_;
 };
 
 CHIMERA_COMPONENT(PumaTorque, "puma_torque", "Torque-mode Puma 560, simulated.", rate = 1000.0,

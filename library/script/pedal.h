@@ -14,8 +14,7 @@ struct Pedal {
   Resource pedal{"pedal", doc = "Script of seconds:travel, 0 to 1, straight lines between; \"0:0\" is never touched."};
 
   Outcome init() {
-    if (const char* wrong = travel_.read(pedal.text())) return fault(wrong);
-    if (travel_.least() < 0 || travel_.greatest() > 1) return fault("the travel of a pedal is 0 to 1");
+    if (const char* wrong = travel_.read(pedal.text(), 0, 1, "the travel of a pedal is 0 to 1")) return fault(wrong);
     if (!(*full_force >= 0 && *full_force <= 20000)) return fault("full_force is 0 to 20000 N");
     return ok();
   }

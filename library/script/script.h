@@ -25,6 +25,16 @@ class Script {
     if (wrong != nullptr) points_.clear();
     return wrong;
   }
+  /// The same; `outside` is what is wrong when a value is not from `low` to `high`.
+  const char* read(std::string_view text, double low, double high, const char* outside) noexcept {
+    if (const char* wrong = read(text)) return wrong;
+    for (const Point& point : points_)
+      if (point.value < low || point.value > high) {
+        points_.clear();
+        return outside;
+      }
+    return nullptr;
+  }
 
   /// The value of the last point at or before `at`. 0 without points. Context: cycle; wait-free.
   double step(double at) const noexcept {
@@ -39,10 +49,6 @@ class Script {
     const Point &a = points_[n - 1], &b = points_[n];
     return a.value + (b.value - a.value) * (at - a.at) / (b.at - a.at);
   }
-
-  /// Least and greatest value; 0 and 0 without points. Context: setup.
-  double least() const noexcept { return extreme(-1); }
-  double greatest() const noexcept { return extreme(1); }
 
  private:
   struct Point {
@@ -76,14 +82,6 @@ class Script {
     std::size_t n = 0;
     while (n < points_.size() && points_[n].at <= at) ++n;
     return n;
-  }
-
-  double extreme(double sign) const noexcept {
-    if (points_.empty()) return 0;
-    double most = points_[0].value;
-    for (const Point& point : points_)
-      if (sign * point.value > sign * most) most = point.value;
-    return most;
   }
 
   FixedVector<Point, kMostPoints> points_;

@@ -16,8 +16,6 @@ TEST(Script, HoldsEachValueUntilTheNextPoint) {
   EXPECT_EQ(script.step(4.999), 1);
   EXPECT_EQ(script.step(5), 0.4);
   EXPECT_EQ(script.step(1e9), -2);
-  EXPECT_EQ(script.least(), -2);
-  EXPECT_EQ(script.greatest(), 1);
 }
 
 TEST(Script, DrawsStraightLinesBetweenPoints) {
@@ -27,6 +25,16 @@ TEST(Script, DrawsStraightLinesBetweenPoints) {
   EXPECT_DOUBLE_EQ(script.line(150), 0.02);
   EXPECT_EQ(script.line(200), 0.04);
   EXPECT_EQ(script.line(300), 0.04);
+}
+
+TEST(Script, HoldsItsValuesToARange) {
+  Script script;
+  EXPECT_EQ(script.read("0:1 5:-2", -2, 1, "too much"), nullptr);
+  EXPECT_EQ(script.step(5), -2);
+  EXPECT_STREQ(script.read("0:1 5:-2", -1.9, 1, "too much"), "too much");
+  EXPECT_EQ(script.step(0), 0);
+  EXPECT_STREQ(script.read("0:1.1 5:-2", -2, 1, "too much"), "too much");
+  EXPECT_STREQ(script.read("", -2, 1, "too much"), "the script is empty: write at:value at:value ...");
 }
 
 TEST(Script, SaysWhatIsWrong) {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the simulated cars have in common: everything but what drives them.
+#pragma once
+
+#include <cmath>
+
+#include "chimera/task/component.h"
+#include "library/car/car_model.h"
+#include "library/script/script.h"
+
+namespace chimera::library {
+
+/// The ports and methods of a car that a component derives from. It adds the in-vars of the driver and cycle().
+struct RollingCar {
+  Out<double> xw{"xw", "rad", doc = "Angle of a wheel since init, forward positive."};
+  Out<double> speed{"speed", "km/h", doc = "True speed, for judging; no module of the control reads it."};
+  Out<double> grade{"grade", "1", doc = "Rise over run where the car is."};
+  InConst<double> mass{"mass", "kg", initial = 1600.0, range(500, 40000), doc = "With load."};
+  InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Of the tyre under load."};
+  InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "At init."};
+  Resource road{"road", doc = "Script of metres:grade, straight lines between; \"0:0\" is level."};
+
+  Outcome init() {
+    if (!(*start_speed >= 0 && *start_speed <= 60)) return fault("start_speed is 0 to 60 m/s");
+    car_.place(*start_speed);
+    return reinit();
+  }
+  // Another load, other wheels or another road, where the car is and at its speed.
+  Outcome reinit() {
+    const char* const too_steep = "a grade of the road is outside -0.3 to 0.3";
+    if (const char* wrong = grade_.read(road.text(), -0.3, 0.3, too_steep)) return fault(wrong);
+    if (!(*mass >= 500 && *mass <= 40000)) return fault("mass is 500 to 40000 kg");
+    if (!(*wheel_radius >= 0.1 && *wheel_radius <= 1)) return fault("wheel_radius is 0.1 to 1 m");
+    car_.refit({.mass = *mass, .wheel_radius = *wheel_radius});
+    return ok();
+  }
+  void on() { publish(); }
+
+ protected:
+  /// For cycle: `dt` passes in steps of at most 5 ms. `drive` is asked for the force of each, given its length; `brake`
+  /// is as in CarModel::step.
+  template <class Drive>
+  void roll(double dt, double brake, Drive drive) {
+    const double n = std::ceil(dt / 5e-3), h = dt / n;
+    for (double i = 0; i < n; ++i) car_.step(drive(h), brake, grade_.line(car_.distance()), h);
+    publish();
+  }
+  /// m/s.
+  double present_speed() const { return car_.speed(); }
+
+ private:
+  void publish() {
+    *xw = car_.wheel_angle();
+    *speed = car_.speed() * 3.6;
+    *grade = grade_.line(car_.distance());
+  }
+
+  Script grade_;
+  CarModel car_;
+};
+
+}  // namespace chimera::library
