@@ -11,13 +11,9 @@ import tty
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "processes"))
-from system import BUILD, Refused, System, await_that  # noqa: E402
+from system import BUILD, UNITS, Refused, System, await_that  # noqa: E402
 
-APPLICATION = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
+APPLICATION = UNITS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
   driver: {component: COMPONENT, rtpu: second, rate: 100 Hz, MORE}

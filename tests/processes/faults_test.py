@@ -9,16 +9,12 @@ import sys
 import time
 import unittest
 
-from system import CHIMERA, Client, Refused, System, await_that
+from system import CHIMERA, UNITS, Client, Refused, System, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
 
 # `steady` and `reader` must never notice what happens to `victim`, which nobody needs.
-APPLICATION = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
+APPLICATION = UNITS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
   victim:
@@ -34,11 +30,7 @@ configurations:
 start: all
 """
 
-THROWER = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
+THROWER = UNITS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
   thrower:
@@ -60,11 +52,7 @@ def filled(text, **words):
 
 
 # The producer is in the middle of what it writes for half of the time.
-WHOLE = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
+WHOLE = UNITS + """
 tasks:
   whole: {component: t_whole, rtpu: second, rate: 1 kHz, constants: {spend: 500000 ns}}
   judge: {component: t_judge, rtpu: first, rate: 1 kHz}

@@ -11,7 +11,7 @@ import sys
 import time
 import unittest
 
-from system import BUILD, System, await_that
+from system import BUILD, UNITS, System, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
 SOURCE = pathlib.Path(os.environ.get("CHIMERA_SOURCE", BUILD.parents[1]))
@@ -22,11 +22,7 @@ BY_NUMBER_IN_PYTHON = r"\bos\.(?:kill|killpg)\s*\("
 # A declaration `kill(Cycle)` is no call; signal 0 is sent to nobody; a child that was not reaped keeps its number.
 NOT_MEANT = re.compile(r"kill\(Cycle\b|kill\([^,()]*(?:\([^()]*\))?, 0\)|(?://|#) still ours")
 
-APPLICATION = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
+APPLICATION = UNITS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
   victim: {component: t_source, rtpu: second, rate: 200 Hz}

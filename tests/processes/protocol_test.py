@@ -11,7 +11,7 @@ import unittest
 
 import jsonschema
 
-from system import Client, System, await_that
+from system import UNITS, Client, System, await_that
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests/install"))
@@ -48,11 +48,7 @@ start: all
 
 
 # One unit that can be held up in its cycle, one whose end takes a second.
-SLOW = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
+SLOW = UNITS + """
 tasks:
   steady: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: level}, constants: {slow: 1000000000 ns}}
   stuck:

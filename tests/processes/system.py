@@ -18,12 +18,16 @@ QUIET = "handle_segv=0:handle_abort=0:handle_sigbus=0:handle_sigfpe=0:handle_sig
 
 TOO_FAST = -32003
 
-# A task of its own in each of two units.
-TWO_UNITS = """
+# Two units, of which each test says what runs in them.
+UNITS = """
 subsystem: subject
 rtpus:
   first: {cpu: 0, policy: edf}
   second: {cpu: 1, policy: edf}
+"""
+
+# A task of its own in each of them.
+TWO_UNITS = UNITS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
   beside: {component: t_source, rtpu: second, rate: 100 Hz}
@@ -32,11 +36,7 @@ start: all
 """
 
 # A chain over two units: device -> a -> b -> c -> device, so that the order of the end is known.
-CHAIN = """
-subsystem: subject
-rtpus:
-  first: {cpu: 0, policy: edf}
-  second: {cpu: 1, policy: edf}
+CHAIN = UNITS + """
 tasks:
   a: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: x0, y: x1}, constants: {label: a}}
   b: {component: t_recorder, rtpu: second, rate: 100 Hz, alias: {x: x1, y: x2}, constants: {label: b}}
