@@ -88,14 +88,6 @@ struct Living {
 };
 CHIMERA_COMPONENT(Living, "living", "Counts its instances.");
 
-const chimera_component& component(const std::string& name) {
-  std::uint32_t count = 0;
-  const chimera_component* const* all = chimera_components(CHIMERA_ABI_VERSION, &count);
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (all[i]->name == name) return *all[i];
-  std::abort();
-}
-
 RigAnswer careless_cycle(int how) {
   Rig rig("careless");
   rig.set("how", how);
@@ -104,25 +96,25 @@ RigAnswer careless_cycle(int how) {
 
 TEST(Component, HasOnlyTheMethodsThatAreWritten) {
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m) {
-    EXPECT_EQ(component("minimal").methods[m] != nullptr, m == CHIMERA_CYCLE) << m;
-    EXPECT_NE(component("complete").methods[m], nullptr) << m;
+    EXPECT_EQ(linked_component("minimal").methods[m] != nullptr, m == CHIMERA_CYCLE) << m;
+    EXPECT_NE(linked_component("complete").methods[m], nullptr) << m;
   }
 }
 
 TEST(Component, SaysItsNameAndExtras) {
-  EXPECT_STREQ(component("minimal").doc, "Nothing but a cycle.");
-  EXPECT_STREQ(component("minimal").source, "");
-  EXPECT_EQ(component("minimal").default_rate_hz, 0);
-  EXPECT_STREQ(component("complete").source, "A book");
-  EXPECT_EQ(component("complete").default_rate_hz, 250);
-  EXPECT_EQ(component("complete").abi_version, CHIMERA_ABI_VERSION);
+  EXPECT_STREQ(linked_component("minimal").doc, "Nothing but a cycle.");
+  EXPECT_STREQ(linked_component("minimal").source, "");
+  EXPECT_EQ(linked_component("minimal").default_rate_hz, 0);
+  EXPECT_STREQ(linked_component("complete").source, "A book");
+  EXPECT_EQ(linked_component("complete").default_rate_hz, 250);
+  EXPECT_EQ(linked_component("complete").abi_version, CHIMERA_ABI_VERSION);
 }
 
 TEST(Component, SaysWhatHoldsBetweenItsConstants) {
-  EXPECT_EQ(component("minimal").n_orders, 0u);
-  ASSERT_EQ(component("ordered").n_orders, 1u);
-  EXPECT_STREQ(component("ordered").orders[0].lower, "low");
-  EXPECT_STREQ(component("ordered").orders[0].upper, "high");
+  EXPECT_EQ(linked_component("minimal").n_orders, 0u);
+  ASSERT_EQ(linked_component("ordered").n_orders, 1u);
+  EXPECT_STREQ(linked_component("ordered").orders[0].lower, "low");
+  EXPECT_STREQ(linked_component("ordered").orders[0].upper, "high");
 }
 
 TEST(Component, AnotherAbiVersionGetsNothing) {
@@ -181,12 +173,12 @@ TEST(Component, CycleTellsWhatTheCallSays) {
 TEST(Component, AConstructorThatThrowsIsAnAnswer) {
   chimera_fault fault{};
   alignas(Unmakeable) std::byte state[sizeof(Unmakeable)];
-  EXPECT_EQ(component("unmakeable").construct(state, &fault), CHIMERA_FAULT);
+  EXPECT_EQ(linked_component("unmakeable").construct(state, &fault), CHIMERA_FAULT);
   EXPECT_STREQ(fault.text, "the constructor failed: the licence has run out");
 }
 
 TEST(Component, IsDestroyedOnceForEachConstruction) {
-  EXPECT_EQ(component("living").n_ports, 0u);  // declared by now: the sample is gone
+  EXPECT_EQ(linked_component("living").n_ports, 0u);  // declared by now: the sample is gone
   EXPECT_EQ(living, 0);
   {
     Rig one("living"), two("living");

@@ -44,23 +44,15 @@ struct Declared {
 };
 CHIMERA_COMPONENT(Declared, "declared", "Ports of all sorts.");
 
-const chimera_component& component(const std::string& name) {
-  std::uint32_t count = 0;
-  const chimera_component* const* all = chimera_components(CHIMERA_ABI_VERSION, &count);
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (all[i]->name == name) return *all[i];
-  std::abort();
-}
-
 const chimera_port_decl& port(const std::string& name) {
-  const chimera_component& all = component("declared");
+  const chimera_component& all = linked_component("declared");
   for (std::uint32_t i = 0; i < all.n_ports; ++i)
     if (all.ports[i].name == name) return all.ports[i];
   std::abort();
 }
 
 TEST(Port, DeclaresKindTypeUnitAndShape) {
-  EXPECT_EQ(component("declared").n_ports, 14u);
+  EXPECT_EQ(linked_component("declared").n_ports, 14u);
   EXPECT_EQ(port("scalar").kind, std::uint32_t{CHIMERA_IN_VAR});
   EXPECT_EQ(port("scalar").type, std::uint32_t{CHIMERA_FLOAT64});
   EXPECT_STREQ(port("scalar").unit, "U");
@@ -206,11 +198,11 @@ CHIMERA_COMPONENT(Partly, "partly", "A struct port with a member left out.");
 TEST(Port, WhatCannotBeDeclaredIsRefusedAtConstruction) {
   alignas(64) std::byte state[4096] = {};
   chimera_fault fault{};
-  EXPECT_EQ(component("twice").construct(state, &fault), CHIMERA_FAULT);
+  EXPECT_EQ(linked_component("twice").construct(state, &fault), CHIMERA_FAULT);
   EXPECT_STREQ(fault.text, "port same is declared twice");
-  EXPECT_EQ(component("elsewhere").construct(state, &fault), CHIMERA_FAULT);
+  EXPECT_EQ(linked_component("elsewhere").construct(state, &fault), CHIMERA_FAULT);
   EXPECT_STREQ(fault.text, "port away must be a member of the component, not on the heap or static");
-  EXPECT_EQ(component("partly").construct(state, &fault), CHIMERA_FAULT);
+  EXPECT_EQ(linked_component("partly").construct(state, &fault), CHIMERA_FAULT);
   EXPECT_STREQ(fault.text, "port x carries a struct with a member that its Fields do not name");
 }
 

@@ -7,13 +7,7 @@
 namespace chimera {
 namespace {
 
-const chimera_component& ball() {
-  std::uint32_t count = 0;
-  const chimera_component* const* all = chimera_components(CHIMERA_ABI_VERSION, &count);
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (std::string(all[i]->name) == "t_ball") return *all[i];
-  std::abort();
-}
+const chimera_component& ball() { return linked_component("t_ball"); }
 
 const chimera_port_decl& port(const char* name) {
   for (std::uint32_t i = 0; i < ball().n_ports; ++i)

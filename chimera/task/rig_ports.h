@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// Half of the test bench for one component (chimera/task/rig.h): the component itself and the values behind its ports.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "chimera/task/abi.h"
+#include "chimera/task/registry.h"
+
+namespace chimera {
+
+/// The component of that name in this program; throws std::invalid_argument where there is none. Context: setup.
+inline const chimera_component& linked_component(const std::string& name) {
+  std::uint32_t count = 0;
+  const chimera_component* const* all = chimera_components(CHIMERA_ABI_VERSION, &count);
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (all[i]->name == name) return *all[i];
+  throw std::invalid_argument("no component " + name + " is linked into this test");
+}
+
+/// A constructed component. A port that does not exist, or a value of the wrong size, throws std::invalid_argument: the
+/// test is wrong then. Context: setup.
+class RigPorts {
+ public:
+  /// How many instances a repeated port has; its maximum until said. Call it before init().
+  void instances(const char* port, std::uint32_t count) {
+    const chimera_port_decl& decl = declaration(port);
+    if (count > decl.max_instances) throw std::invalid_argument(std::string(port) + " has fewer instances at most");
+    std::memcpy(state_.get() + decl.instances_offset, &count, sizeof count);
+  }
+  /// Fixes an extent that no constant of the component gives; its maximum until said.
+  void extent(const char* symbol, std::uint32_t size) {
+    fixed_.push_back({symbol, size, 1});
+    fix_extents();
+  }
+  /// Fixes a shape that nothing of the component gives to a matrix.
+  void shape(const char* symbol, std::uint32_t rows, std::uint32_t columns) {
+    fixed_.push_back({symbol, rows, columns});
+    fix_extents();
+  }
+  /// The text of a resource port.
+  void resource(const char* port, const char* text) {
+    Cell& cell = cell_of(port, 0);
+    cell.memory = std::make_unique<std::byte[]>(std::strlen(text) + 1);
+    std::memcpy(cell.memory.get(), text, std::strlen(text) + 1);
+    cell.live->value = cell.memory.get();
+  }
+
+  /// Publishes a value to an in-var, or gives a constant: element `i` of instance `instance`.
+  template <class T>
+  void set(const char* port, const T& value, std::size_t i = 0, std::size_t instance = 0) {
+    Cell& cell = cell_of(port, instance);
+    at<T>(cell, i) = value;
+    cell.live->value = cell.memory.get();
+    cell.slot.sequence += 1;
+    cell.slot.valid = ~std::uint64_t{0};
+    cell.slot.published_ns = *now_ns_;
+    fix_extents();
+  }
+  /// Element `i` of instance `instance` as it stands.
+  template <class T>
+  T get(const char* port, std::size_t i = 0, std::size_t instance = 0) {
+    return at<T>(cell_of(port, instance), i);
+  }
+  /// Elements in use.
+  std::uint32_t size(const char* port) { return cell_of(port, 0).live->count; }
+
+ protected:
+  /// Throws when the constructor fails. The ports take their age from `now_ns`.
+  RigPorts(const char* component, const std::int64_t* now_ns)
+      : component_(linked_component(component)), state_(make_state(component_), {&component_}), now_ns_(now_ns) {
+    for (std::uint32_t i = 0; i < component_.n_ports; ++i) add_port(component_.ports[i]);
+  }
+  RigPorts(const RigPorts&) = delete;
+  RigPorts& operator=(const RigPorts&) = delete;
+  ~RigPorts() = default;
+
+  const chimera_component& component() const { return component_; }
+  std::byte* state() const { return state_.get(); }
+  /// What there is to be read has been read: it is no longer fresh.
+  void see_all() {
+    for (auto& cell : cells_) cell->live->seen = cell->slot.sequence;
+  }
+  /// Gives every port its shape, from the constants as they are now.
+  void fix_extents() {
+    for (auto& cell : cells_) {
+      chimera_port& live = *cell->live;
+      for (int d = 0; d < 2; ++d) live.extent[d] = extent_of(*cell->decl, d, false);
+      live.count = live.extent[0] * live.extent[1];
+    }
+  }
+
+ private:
+  struct Cell {
+    const chimera_port_decl* decl;
+    chimera_port* live;
+    std::size_t instance;
+    chimera_slot slot{};
+    std::unique_ptr<std::byte[]> memory;
+  };
+  struct Fixed {
+    std::string symbol;
+    std::uint32_t size, columns;
+  };
+  struct Destroy {
+    const chimera_component* component;
+    void operator()(std::byte* state) const {
+      component->destroy(state);
+      ::operator delete(state, std::align_val_t{64});
+    }
+  };
+
+  static std::byte* make_state(const chimera_component& component) {
+    auto* state = static_cast<std::byte*>(::operator new(component.state_size + 1u, std::align_val_t{64}));
+    std::memset(state, 0, component.state_size);
+    chimera_fault fault{};
+    if (component.construct(state, &fault) == CHIMERA_OK) return state;
+    ::operator delete(state, std::align_val_t{64});
+    throw std::runtime_error(fault.text);
+  }
+
+  void add_port(const chimera_port_decl& decl) {
+    if ((decl.flags & CHIMERA_PORT_REPEATED) != 0) instances(decl.name, decl.max_instances);
+    auto* live = reinterpret_cast<chimera_port*>(state_.get() + decl.live_offset);
+    for (std::size_t i = 0; i < decl.max_instances; ++i) {
+      cells_.push_back(std::make_unique<Cell>());
+      Cell& cell = *cells_.back();
+      cell.decl = &decl;
+      cell.live = live + i;
+      cell.instance = i;
+      cell.live->type = decl.type == CHIMERA_ANY ? std::uint32_t{CHIMERA_FLOAT64} : decl.type;
+      cell.live->element_size = decl.element_size;
+      cell.live->now_ns = now_ns_;
+      if (decl.kind == CHIMERA_IN_VAR) cell.live->slot = &cell.slot;
+      if (decl.kind != CHIMERA_RESOURCE) fill(cell);
+    }
+    fix_extents();
+  }
+
+  /// As a task finds it at spawn: the initial value, else NaN for floating numbers and zero for the rest.
+  void fill(Cell& cell) {
+    const chimera_port_decl& decl = *cell.decl;
+    const std::size_t count = extent_of(decl, 0, true) * extent_of(decl, 1, true);
+    cell.memory = std::make_unique<std::byte[]>(count * decl.element_size);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::byte* to = cell.memory.get() + i * decl.element_size;
+      if ((decl.flags & CHIMERA_PORT_HAS_INITIAL) != 0) {
+        const std::size_t from = decl.initial_count == 1 ? 0 : i;
+        std::memcpy(to, static_cast<const std::byte*>(decl.initial) + from * decl.element_size, decl.element_size);
+      } else if (cell.live->type == CHIMERA_FLOAT64) {
+        const double nan = std::nan("");
+        std::memcpy(to, &nan, sizeof nan);
+      } else if (cell.live->type == CHIMERA_FLOAT32) {
+        const float nan = std::nanf("");
+        std::memcpy(to, &nan, sizeof nan);
+      }
+    }
+    const bool is_given = decl.kind != CHIMERA_IN_CONST || (decl.flags & CHIMERA_PORT_HAS_INITIAL) != 0;
+    if (is_given) cell.live->value = cell.memory.get();
+  }
+
+  /// Extent `dimension` of a shape: literal, a constant's value, what extent() or shape() said, or the maximum; 1
+  /// beyond the last.
+  std::uint32_t extent_of(const chimera_port_decl& decl, int dimension, bool maximum) {
+    const char* at = decl.shape;
+    const bool is_shape = std::strstr(at, "...<=") != nullptr;
+    for (int d = dimension; d > 0 && *at != '\0' && !is_shape; --d) at = std::strchr(at, ']') + 1;
+    if (*at == '\0') return 1;
+    const char* bound = std::strstr(at, "<=");
+    const char* end = std::strchr(at, ']');
+    if (bound == nullptr || bound > end) return static_cast<std::uint32_t>(std::atoi(at + 1));
+    const std::uint32_t most = is_shape && dimension > 0 ? 1 : static_cast<std::uint32_t>(std::atoi(bound + 2));
+    const std::string symbol(at + 1, is_shape ? bound - 3 : bound);
+    return maximum ? most : symbol_value(symbol, most, is_shape ? dimension : 0);
+  }
+  std::uint32_t symbol_value(const std::string& symbol, std::uint32_t most, int dimension) {
+    for (const auto& cell : cells_) {
+      if (symbol != cell->decl->name || cell->live->value == nullptr) continue;
+      const bool is_small = cell->decl->type == CHIMERA_INT32;
+      const std::int64_t value = is_small ? at<std::int32_t>(*cell, 0) : at<std::int64_t>(*cell, 0);
+      return value >= 1 && value <= most ? static_cast<std::uint32_t>(value) : most;
+    }
+    for (const Fixed& fixed : fixed_)
+      if (fixed.symbol == symbol) return dimension == 0 ? fixed.size : fixed.columns;
+    return most;
+  }
+  const chimera_port_decl& declaration(const char* port) const {
+    for (std::uint32_t i = 0; i < component_.n_ports; ++i)
+      if (std::strcmp(component_.ports[i].name, port) == 0) return component_.ports[i];
+    throw std::invalid_argument(std::string(component_.name) + " has no port " + port);
+  }
+  Cell& cell_of(const char* port, std::size_t instance) {
+    const chimera_port_decl& decl = declaration(port);
+    for (auto& cell : cells_)
+      if (cell->decl == &decl && cell->instance == instance) return *cell;
+    throw std::invalid_argument(std::string(port) + " has fewer instances");
+  }
+  template <class T>
+  T& at(Cell& cell, std::size_t i) {
+    if (sizeof(T) != cell.decl->element_size)
+      throw std::invalid_argument(std::string(cell.decl->name) + " has elements of another size");
+    if (i >= std::size_t{extent_of(*cell.decl, 0, true)} * extent_of(*cell.decl, 1, true))
+      throw std::invalid_argument(std::string(cell.decl->name) + " has fewer elements");
+    return *reinterpret_cast<T*>(cell.memory.get() + i * sizeof(T));
+  }
+
+  const chimera_component& component_;
+  std::unique_ptr<std::byte, Destroy> state_;
+  const std::int64_t* now_ns_;
+  std::vector<std::unique_ptr<Cell>> cells_;
+  std::vector<Fixed> fixed_;
+};
+
+}  // namespace chimera
