@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 
+#include "chimera/base/hosted/property.h"
 #include "chimera/base/hosted/tree_path.h"
 #include "chimera/config/library.h"
 #include "chimera/config/verify.h"
@@ -14,12 +13,6 @@
 namespace {
 
 using namespace chimera;
-
-void require(bool kept, const char* property) {
-  if (kept) return;
-  std::fprintf(stderr, "property broken: %s\n", property);
-  std::abort();
-}
 
 /// The components of tests/verify: one of each kind of port.
 const Library& library() {

@@ -2,18 +2,11 @@
 // Any bytes as a descriptor file: refused or read, never a crash; and what was read is written and read back equal.
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 
+#include "chimera/base/hosted/property.h"
 #include "chimera/config/descriptor_json.h"
 
 namespace {
-
-void require(bool kept, const char* property) {
-  if (kept) return;
-  std::fprintf(stderr, "property broken: %s\n", property);
-  std::abort();
-}
 
 #ifdef CHIMERA_PLANTED_DEFECT
 /// A defect to prove that the fuzzer finds one: beyond the end for a refusal of more than 200 bytes.
@@ -28,7 +21,7 @@ void planted(const chimera::Error& refusal) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const auto read = chimera::parse_descriptor({reinterpret_cast<const char*>(bytes), size});
   if (!read) {
-    require(!read.error().message.empty(), "a refusal says why");
+    chimera::require(!read.error().message.empty(), "a refusal says why");
 #ifdef CHIMERA_PLANTED_DEFECT
     planted(read.error());
 #endif
@@ -37,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const std::string text = chimera::to_json(read.value());
   if (text.size() > chimera::kMaxDescriptorBytes) return 0;  // indentation may make a legal file too long
   const auto again = chimera::parse_descriptor(text);
-  require(again.has_value(), "what was written can be read");
-  require(again.value() == read.value(), "reading gives back what was written");
+  chimera::require(again.has_value(), "what was written can be read");
+  chimera::require(again.value() == read.value(), "reading gives back what was written");
   return 0;
 }

@@ -2,22 +2,15 @@
 // Any bytes as an image: refused with a reason, or an application that holds together and is written back as it was.
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <vector>
 
+#include "chimera/base/hosted/property.h"
 #include "chimera/runtime/application_image.h"
 
 namespace {
 
 using namespace chimera;
-
-void require(bool kept, const char* property) {
-  if (kept) return;
-  std::fprintf(stderr, "property broken: %s\n", property);
-  std::abort();
-}
 
 /// The bytes behind a header that is right: otherwise the hash would refuse nearly everything.
 std::vector<std::byte> with_header(const std::uint8_t* bytes, std::size_t size) {
