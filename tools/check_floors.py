@@ -11,7 +11,7 @@ FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtim
          "rtpu": 6, "keeper": 7, "trial": 7, "control": 7, "subsystem": 7, "draw": 7, "desk": 8, "manager": 8,
          "record": 8, "shell": 8, "web": 8, "link": 8}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
-                       "chimera/task/pbo.h", "chimera/task/rig.h")
+                       "chimera/task/number_at.h", "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")
 # Slow to compile: one .cc of an upper floor pays for each, never a header, never the real-time floors.
 HEAVY = re.compile(r"^(CLI/|yaml-cpp/|nlohmann/|fmt/|mujoco/|gmock/)")

@@ -9,6 +9,7 @@
 #include "chimera/config/rules.h"
 #include "chimera/config/solve.h"
 #include "chimera/config/values.h"
+#include "chimera/task/number_at.h"
 
 namespace chimera {
 namespace {

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "chimera/config/json_text.h"
+#include "chimera/task/number_at.h"
 
 namespace chimera {
 namespace {
@@ -14,16 +15,6 @@ T read(const std::byte* at) {
   T value;
   std::memcpy(&value, at, sizeof value);
   return value;
-}
-
-double number(std::uint32_t type, const std::byte* at) {
-  switch (type) {
-    case CHIMERA_BOOL: return read<std::uint8_t>(at);
-    case CHIMERA_INT32: return read<std::int32_t>(at);
-    case CHIMERA_INT64: return static_cast<double>(read<std::int64_t>(at));
-    case CHIMERA_FLOAT32: return static_cast<double>(read<float>(at));
-    default: return read<double>(at);
-  }
 }
 
 std::string text_of(const std::byte* at, std::uint32_t bytes) {
@@ -36,9 +27,9 @@ std::string plain(std::uint32_t type, const std::byte* at, std::uint32_t bytes, 
   if (type == CHIMERA_BOOL) return read<std::uint8_t>(at) != 0 ? "true" : "false";
   if (type == CHIMERA_INT32) return std::to_string(read<std::int32_t>(at));
   if (type == CHIMERA_INT64) return std::to_string(read<std::int64_t>(at));
-  if (json) return json_number(number(type, at));
+  if (json) return json_number(number_at(type, at));
   char text[40];
-  std::snprintf(text, sizeof text, "%.6g", number(type, at));
+  std::snprintf(text, sizeof text, "%.6g", number_at(type, at));
   return text;
 }
 
@@ -86,9 +77,9 @@ std::vector<double> numbers(const ValueForm& form, std::span<const std::byte> by
     if (form.type == CHIMERA_STRUCT) {
       for (const FieldDescriptor& field : form.fields)
         for (std::uint32_t k = 0; k < field.count && field.type != CHIMERA_STRING; ++k)
-          all.push_back(number(field.type, at + field.offset + k * field.size));
+          all.push_back(number_at(field.type, at + field.offset + k * field.size));
     } else if (form.type != CHIMERA_STRING) {
-      all.push_back(number(form.type, at));
+      all.push_back(number_at(form.type, at));
     }
   }
   return all;

@@ -290,21 +290,6 @@ std::vector<std::byte> declared_bytes(const LinkedPort& port) {
   return out;
 }
 
-double number_at(std::uint32_t type, const std::byte* bytes) {
-  const auto as = [bytes]<class T>(T value) {
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-  };
-  switch (type) {
-    case CHIMERA_BOOL: return as(std::uint8_t{});
-    case CHIMERA_INT32: return as(std::int32_t{});
-    case CHIMERA_INT64: return as(std::int64_t{});
-    case CHIMERA_FLOAT32: return as(float{});
-    case CHIMERA_FLOAT64: return as(double{});
-    default: return 0;
-  }
-}
-
 std::uint32_t element_count(std::span<const SolvedExtent> extents) {
   std::uint32_t count = 1;
   for (const SolvedExtent& extent : extents) count *= extent.max;

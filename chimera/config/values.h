@@ -31,9 +31,6 @@ std::vector<std::byte> declared_bytes(const LinkedPort& port);
 /// Whether the port's type, unit and shape are all known. Context: setup.
 bool is_solved(const LinkedPort& port);
 
-/// The number that `bytes` hold as an element of `type`; 0 for strings and structs. Context: setup.
-double number_at(std::uint32_t type, const std::byte* bytes);
-
 /// Elements at the maxima. Context: setup.
 std::uint32_t element_count(std::span<const SolvedExtent> extents);
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "chimera/task/number_at.h"
 #include "chimera/trial/inputs.h"
 
 namespace chimera::trial {
@@ -85,18 +86,7 @@ InputForm InputForm::of(const Configuration& configuration, const Descriptor& co
 }
 
 double InputForm::get(const Channel& channel, std::span<const std::byte> row) const noexcept {
-  const std::byte* from = row.data() + channel.offset;
-  const auto as = [from]<class T>(T value) {
-    std::memcpy(&value, from, sizeof value);
-    return static_cast<double>(value);
-  };
-  switch (channel.type) {
-    case CHIMERA_BOOL: return as(std::uint8_t{});
-    case CHIMERA_INT32: return as(std::int32_t{});
-    case CHIMERA_INT64: return as(std::int64_t{});
-    case CHIMERA_FLOAT32: return as(float{});
-    default: return as(double{});
-  }
+  return number_at(channel.type, row.data() + channel.offset);
 }
 
 void InputForm::put(const Channel& channel, double value, std::span<std::byte> row) const noexcept {

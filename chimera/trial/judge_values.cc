@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "chimera/config/values.h"
+#include "chimera/task/number_at.h"
 #include "chimera/trial/record.h"
 
 namespace chimera::trial {

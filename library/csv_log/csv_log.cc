@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "chimera/task/component.h"
-#include "library/signals/number_at.h"
+#include "chimera/task/number_at.h"
 
 using namespace chimera;
 
@@ -67,7 +67,7 @@ struct CsvLog {
     for (const auto& port : in) {
       const std::span<const std::byte> bytes = port.bytes();
       for (std::size_t i = 0; i < port.size(); ++i) {
-        const double value = library::number_at(bytes.data() + i * port.element_size(), port.element_type());
+        const double value = number_at(port.element_type(), bytes.data() + i * port.element_size());
         *row++ = port.valid() ? value : std::nan("");
       }
     }

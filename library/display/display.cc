@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "chimera/task/component.h"
-#include "library/signals/number_at.h"
+#include "chimera/task/number_at.h"
 #include "library/signals/row_ring.h"
 
 using namespace chimera;
@@ -49,7 +49,7 @@ struct Display {
     for (const auto& port : in) {
       const std::span<const std::byte> bytes = port.bytes();
       for (std::size_t i = 0; i < port.size(); ++i) {
-        const double value = library::number_at(bytes.data() + i * port.element_size(), port.element_type());
+        const double value = number_at(port.element_type(), bytes.data() + i * port.element_size());
         *row++ = port.valid() ? value : std::nan("");
       }
     }

@@ -2,15 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "chimera/task/abi.h"
 
-namespace chimera::library {
+namespace chimera {
 
-/// An element of an Any port as a double: CHIMERA_BOOL to CHIMERA_FLOAT64; an int64 beyond 2^53 is rounded.
-/// Context: cycle; wait-free.
-inline double number_at(const std::byte* at, std::uint32_t type) noexcept {
+/// An element of a port as a double, for whoever learns its type from the description (`In<Any>`): CHIMERA_BOOL to
+/// CHIMERA_FLOAT64; an int64 beyond 2^53 is rounded, everything else is 0. Context: cycle; wait-free.
+inline double number_at(std::uint32_t type, const std::byte* at) noexcept {
   const auto as = [at]<class T>(T value) {
     std::memcpy(&value, at, sizeof value);
     return static_cast<double>(value);
@@ -20,8 +21,9 @@ inline double number_at(const std::byte* at, std::uint32_t type) noexcept {
     case CHIMERA_INT32: return as(std::int32_t{});
     case CHIMERA_INT64: return as(std::int64_t{});
     case CHIMERA_FLOAT32: return as(float{});
-    default: return as(double{});
+    case CHIMERA_FLOAT64: return as(double{});
+    default: return 0;
   }
 }
 
-}  // namespace chimera::library
+}  // namespace chimera
