@@ -61,8 +61,10 @@ class Pages {
   }
 
   Json remedy(const Remedy& remedy) const {
+    if (remedy.kind == Remedy::Kind::kExecutor) return {{"rtpu", rtpu_name(remedy.rtpu)}, {"executor", "preemptive"}};
     Json said = {{"task", name(remedy.task)}};
     switch (remedy.kind) {
+      case Remedy::Kind::kExecutor: break;
       case Remedy::Kind::kRate: said["rate_hz"] = remedy.hz; break;
       case Remedy::Kind::kProcessor: said["rtpu"] = rtpu_name(remedy.rtpu); break;
       case Remedy::Kind::kNewProcessor: said["rtpu"] = Json(); break;

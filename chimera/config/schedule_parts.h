@@ -17,6 +17,7 @@ struct SetWorks {
   std::vector<Work> works;
   std::vector<ProcessorUse> uses;
   std::vector<Outside> outside;  ///< of each of `uses`
+  bool may_preempt = true;       ///< an rtpu may become preemptive: they are not all one loop
 };
 
 /// Context of all: setup.

@@ -72,7 +72,7 @@ class Search {
 
   std::vector<Remedy> all() {
     std::vector<Remedy> found;
-    for (const auto& remedy : {rate(), processor(), criticality()})
+    for (const auto& remedy : {executor(), rate(), processor(), criticality()})
       if (remedy) found.push_back(*remedy);
     return found;
   }
@@ -138,6 +138,16 @@ class Search {
       time.count = std::max<std::int64_t>(std::llround(static_cast<double>(time.count) * factor), 1);
     }
     return fits_now(scaled, cpu_);
+  }
+
+  std::optional<Remedy> executor() {
+    for (std::uint32_t r = 0; r < set_.uses.size(); ++r) {
+      if (!set_.may_preempt || set_.uses[r].cpu != cpu_ || set_.uses[r].dispatch == Dispatch::kPreemptive) continue;
+      SetWorks changed = set_;
+      changed.uses[r].dispatch = Dispatch::kPreemptive;
+      if (fits_now(changed, cpu_)) return Remedy{.kind = Remedy::Kind::kExecutor, .rtpu = r};
+    }
+    return std::nullopt;
   }
 
   std::optional<Remedy> rate() {

@@ -123,7 +123,8 @@ class ReportWriter {
   SetSchedule set(std::size_t index) {
     const ConfiguredSet& configured = configuration_.sets()[index];
     SetSchedule made{.name = configured.name, .is_start = index == configuration_.start(), .cpus = {}, .paths = {}};
-    SetWorks works{.tasks = {}, .works = {}, .uses = uses(), .outside = {}};
+    SetWorks works{.tasks = {}, .works = {}, .uses = uses(), .outside = {},
+                   .may_preempt = !options_.one_rtpu};
     for (const TaskId id : configured.order) works.tasks.push_back(id.index);
     std::sort(works.tasks.begin(), works.tasks.end());  // ties go by the order of the description
     works.outside = outside(works.tasks);

@@ -39,11 +39,11 @@ struct ScheduleRow {
 
 /// One change after which a CPU fits.
 struct Remedy {
-  enum class Kind : std::uint8_t { kRate, kProcessor, kNewProcessor, kCriticality };
+  enum class Kind : std::uint8_t { kExecutor, kRate, kProcessor, kNewProcessor, kCriticality };
   Kind kind = Kind::kRate;
   std::size_t task = 0;
   double hz = 0;                 ///< kRate: at most this
-  std::size_t rtpu = 0;          ///< kProcessor: move it there
+  std::size_t rtpu = 0;          ///< kProcessor: move it there; kExecutor: that rtpu preemptive (and no task)
   std::uint32_t criticality = 0; ///< kCriticality
   bool is_for_others = false;    ///< kCriticality: all others are promised then, this one may not be
 };

@@ -26,9 +26,11 @@ std::string time_text(Nanoseconds time) {
 
 std::string remedy_text(const Configuration& configuration, const Remedy& remedy) {
   const std::string task = "task '" + configuration.tasks()[remedy.task].name + "'";
+  const std::string rtpu(configuration.rtpus()[remedy.rtpu].name);
   switch (remedy.kind) {
+    case Remedy::Kind::kExecutor: return "rtpu '" + rtpu + "' with executor: preemptive";
     case Remedy::Kind::kRate: return task + " at rate: " + number("%g", remedy.hz) + " Hz";
-    case Remedy::Kind::kProcessor: return task + " on rtpu: " + std::string(configuration.rtpus()[remedy.rtpu].name);
+    case Remedy::Kind::kProcessor: return task + " on rtpu: " + rtpu;
     case Remedy::Kind::kNewProcessor: return task + " on an rtpu of another CPU";
     case Remedy::Kind::kCriticality: break;
   }
