@@ -18,7 +18,6 @@ namespace chimera {
 namespace {
 
 using bench::ComponentCase;
-using bench::source_file;
 using library::ArmRig;
 using library::kBent;
 using library::Puma560;
