@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/shell/save_file.h"
+#include "chimera/shell/operator_text.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ constexpr const char* kText =
     "  pose: {x: 1 m, y: 2 m}\n"
     "configurations:\n  run: [a]";
 
-TEST(SaveFile, OnlyTheValuesThatDifferChangeAndNothingElse) {
+TEST(OperatorText, OnlyTheValuesThatDifferChangeAndNothingElse) {
   EXPECT_EQ(edited(kText, {{"goal", "1.5 rad"}, {"name", "\"new\""}, {"pose", "{x: 1 m, y: 3 m}"},
                            {"kp", "[100 N.m/rad, 80 N.m/rad]"}}),
             "# the arm\nsubsystem: s\ntasks:\n  a:   {component: c}   # kp: 3\n\n"
@@ -35,7 +35,7 @@ TEST(SaveFile, OnlyTheValuesThatDifferChangeAndNothingElse) {
             "configurations:\n  run: [a]");
 }
 
-TEST(SaveFile, AValueThatSaysTheSameStaysAsItIsWritten) {
+TEST(OperatorText, AValueThatSaysTheSameStaysAsItIsWritten) {
   EXPECT_EQ(edited(kText, {{"goal", "3.141592653589793 rad"}, {"kp", "[100 N.m/rad, 90 N.m/rad]"},
                            {"name", "\"it's # here\""}, {"pose", "{y: 2 m, x: 1 m}"}}),
             kText);
@@ -45,7 +45,7 @@ TEST(SaveFile, AValueThatSaysTheSameStaysAsItIsWritten) {
             "subsystem: s\ntasks: {a: }\noperator: {kp: [2 m, 3 m], ki: 4}\n");
 }
 
-TEST(SaveFile, ReplacesValuesThatHaveLinesOfTheirOwnOneByOne) {
+TEST(OperatorText, ReplacesValuesThatHaveLinesOfTheirOwnOneByOne) {
   const std::string head = "subsystem: s\ntasks: {a: }\noperator:\n";
   EXPECT_EQ(edited(head + "  kp:\n    - 1 m  # near\n    # far\n    - 2 m\n  ki: 3\n",
                    {{"kp", "[1 m, 7 m]"}, {"ki", "4"}}),
@@ -56,7 +56,7 @@ TEST(SaveFile, ReplacesValuesThatHaveLinesOfTheirOwnOneByOne) {
             head + "  pose:\n    x: 1 m\n    y: 3 m\n");
 }
 
-TEST(SaveFile, RefusesWhatItCannotPlace) {
+TEST(OperatorText, RefusesWhatItCannotPlace) {
   EXPECT_EQ(edited(kText, {{"kd", "1"}}), "kd: is not under `operator:`");
   EXPECT_EQ(edited("subsystem: s\ntasks: {a: }\noperator:\n  kp:\n    - 1\n    - 2\n", {{"kp", "[1, 3, 4]"}}),
             "kp: is written over several lines and has another number of them now");
