@@ -11,10 +11,10 @@
 #   Without EXCEPTIONS the floor is built with -fno-exceptions -fno-rtti (floors 0 to 5).
 #   TEXT: a floor of JSON and other texts, slow to compile and without memory of its own making. Its files are compiled
 #   eight at a time (./dev lint looks at each alone) and without the sanitizers' checks of null and alignment.
-# chimera_tests(NAME LIBS lib... [DEPENDS target...] [MEMORY]) does the test half alone, for folders without a library.
-#   DEPENDS: targets the tests run (programs, components). MEMORY: the tests of a floor that makes memory of its own
-#   (0 to 5) have every check of the sanitizers;
-#   others are compiled without those of null and alignment, a fifth faster.
+# chimera_tests(NAME LIBS lib... [DEPENDS target...] [MEMORY])
+#   The test half alone, for folders without a library. DEPENDS: targets the tests run (programs, components).
+#   MEMORY: with every check of the sanitizers, for floors that make memory of their own (0 to 5). Others are compiled
+#   without those of null and alignment, a fifth faster.
 # chimera_script_test(NAME LABEL label [TREES tree...] [DEPENDS target...] COMMAND command...)
 #   A test that is a command. Exit 77 = skipped, the last line of its output is the reason.
 #   Labels: unit process realtime size symbol model (and page firmware). TREES: debug (default) tsan release.

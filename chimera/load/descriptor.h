@@ -89,9 +89,9 @@ bool is_identifier(std::string_view text) noexcept;
 
 /// Checks a declaration and copies it. Refuses, with the component and port named: illegal or repeated names,
 /// sizes that do not fit the type, a shape that does not parse, an extent named after a port that is no whole-number
-/// scalar constant, more than CHIMERA_MAX_PORTS instances, an unordered range, an order between
-/// ports that are no in-consts of one type, unit and shape, a safety port that is no floating
-/// out-var, an initial value of a wrong count, not a number or outside the range.
+/// scalar constant, more than CHIMERA_MAX_PORTS instances, an unordered range, an order between ports that are no
+/// in-consts of one type, unit and shape, a safety port that is no floating out-var, an initial value of a wrong
+/// count, not a number or outside the range.
 /// Context: setup; may block.
 Result<Descriptor> describe(const chimera_component& component);
 

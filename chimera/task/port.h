@@ -52,7 +52,7 @@ class TypedPort : public View<T, Kind == CHIMERA_IN_VAR || Kind == CHIMERA_IN_CO
 
 }  // namespace face
 
-/// An in-var: the latest published value, copied before the method. Read-only.
+/// An in-var: the latest value published before the method began; it stands still until the method returns.
 template <class T>
 class In : public face::TypedPort<T, CHIMERA_IN_VAR> {
  public:
