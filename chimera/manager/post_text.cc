@@ -22,12 +22,15 @@ std::string refusal(const Post& post, const std::string& fault) {
   return "another task of the same list refused";
 }
 
-std::string flag_text(std::uint64_t word) {
+std::string flag_text(const ApplicationSpec& spec, const Post& post) {
+  const std::uint64_t word = post.detail;
   if (word == 0) return "the illegal-configuration flag is down";
   std::string text = "the illegal-configuration flag is up";
   if ((word & 1u) != 0) text += ": the tasks ON are no legal set";
-  if ((word & 2u) != 0) text += ": raised by a task";
-  return text;
+  if ((word & 2u) == 0) return text;
+  if (post.from.index >= spec.tasks.size()) return text + ": raised by a task";
+  text += ": raised by task '";
+  return text + std::string(spec.tasks[post.from.index].name) + "'";
 }
 
 std::string milliseconds_text(std::uint64_t ns) {
@@ -71,7 +74,7 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
     case Happening::kRefused:
       return std::string(signal_name(post.signal)) + sender(spec, post) + ": " + refusal(post, fault);
     case Happening::kSignalled: return signal_name(post.signal) + sender(spec, post);
-    case Happening::kFlag: return flag_text(post.detail);
+    case Happening::kFlag: return flag_text(spec, post);
     case Happening::kMissed: return missed_text(spec, post);
     case Happening::kHang:
       if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";

@@ -213,7 +213,7 @@ void Edge::wake_supervisor() noexcept {
 }
 
 void Edge::stop_all(Releases& releases, Nanoseconds now) noexcept {
-  others_.tell(Happening::kStop, TaskId(), 0, now);
+  others_.tell(Happening::kStop, releases.stopped_by(), 0, now);
   for (const TaskId id : ending_order_)
     if (tasks_.is_mine(id) && tasks_.tasks()[id.index].state == State::kOn)
       (void)releases.signal({&id, 1}, Signal::kOff, now);

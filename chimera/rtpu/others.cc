@@ -98,7 +98,13 @@ void Others::changed() noexcept {
   const std::uint32_t flag = flag_word();
   if (block_.head().flag.load(std::memory_order_relaxed) != flag) {
     block_.head().flag.store(flag, std::memory_order_release);
-    tell(Happening::kFlag, TaskId(), flag, LinuxClock().now());
+    Post post;
+    post.at = LinuxClock().now();
+    post.from = tasks_->raised_by();
+    post.kind = PostKind::kEvent;
+    post.happening = Happening::kFlag;
+    post.detail = flag;
+    tell(post);
     any = true;
   }
   watch_flags();

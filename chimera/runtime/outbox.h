@@ -28,7 +28,7 @@ enum class Happening : std::uint8_t {
   kFault,     ///< method `detail` of the task failed; its text stands in the task's fault group
   kRefused,   ///< signal from task `from` refused, `why`
   kSignalled, ///< signal from task `from` carried out
-  kFlag,      ///< this rtpu's flag word went to `detail`
+  kFlag,      ///< this rtpu's flag word went to `detail`; `from` raised it, if a task did
   kStop,      ///< reaction `stop` of the task: the rtpu turned all its tasks OFF
   kMissed,    ///< the task missed its deadline; `from` used the processor most, for `detail` ns: more than its budget
               ///< when somebody did. Invalid `from`: for so long nobody here had the processor

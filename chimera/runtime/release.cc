@@ -165,8 +165,11 @@ void Releases::join(Task& task, Nanoseconds now) noexcept {
 
 void Releases::settle_job(TaskId id, Nanoseconds now) noexcept {
   const std::uint8_t wants = of_[id.index].wants.exchange(0, std::memory_order_relaxed);
-  if (wants & kRaiseFlag) raise_flag(now);
-  if (wants & kStop) task_stopped_ = true;
+  if (wants & kRaiseFlag) raise_flag(id, now);
+  if ((wants & kStop) && !task_stopped_) {
+    task_stopped_ = true;
+    stopped_by_ = id;
+  }
   if (wants & kBlame) tell_blame(id, now);
   settle(tasks_[id.index], now);
 }
@@ -181,9 +184,11 @@ void Releases::settle(Task& task, Nanoseconds now) noexcept {
   refresh(task, now);
 }
 
-void Releases::raise_flag(Nanoseconds at) noexcept {
+void Releases::raise_flag(TaskId by, Nanoseconds at) noexcept {
+  if (set_.is_flag_raised()) return;
   if (!set_.is_illegal()) tap_.record(TapKind::kFlag, at, TaskId(), 1);
-  set_.raise_flag(true);
+  set_.raise_flag(true, by);
+  set_.on_set_changed();  // the set has not, but other contexts are to see the flag at once
 }
 
 }  // namespace chimera

@@ -101,6 +101,8 @@ class Releases {
     return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
   }
   bool task_stopped() const noexcept { return task_stopped_; }
+  /// The first task whose reaction was `stop`. Requires: task_stopped().
+  TaskId stopped_by() const noexcept { return stopped_by_; }
   /// The reaction `stop` has been answered: the loop may go on. Context: edge.
   void forget_stop() noexcept { task_stopped_ = false; }
 
@@ -227,7 +229,7 @@ class Releases {
   void leave(Task& task) noexcept;
   void record_faults(Task& task) noexcept;
   void settle(Task& task, Nanoseconds now) noexcept;
-  void raise_flag(Nanoseconds at) noexcept;
+  void raise_flag(TaskId by, Nanoseconds at) noexcept;
   void want(const Task& task, Wants what) noexcept {
     of_[task.id.index].wants.fetch_or(what, std::memory_order_relaxed);
   }
@@ -248,6 +250,7 @@ class Releases {
   ReadyQueue queue_;
   std::uint32_t n_on_ = 0;
   bool task_stopped_ = false;
+  TaskId stopped_by_;
   FixedVector<RefusedSignal, kRefusedKept> refused_;
   bool patience_lost_ = false;  ///< by a dropped release: somebody may have missed too many
 };

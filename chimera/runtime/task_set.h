@@ -159,7 +159,12 @@ class TaskSet {
   bool is_on_set_legal() const noexcept { return on_set_legal_; }
   bool is_flag_raised() const noexcept { return flag_raised_; }
   /// Raises or lowers the part of the flag that does not follow from the ON set. Context: edge.
-  void raise_flag(bool up) noexcept { flag_raised_ = up; }
+  void raise_flag(bool up, TaskId by = TaskId()) noexcept {
+    flag_raised_ = up;
+    raised_by_ = by;
+  }
+  /// The task whose reaction raised it first; invalid: no task did.
+  TaskId raised_by() const noexcept { return raised_by_; }
   /// To be told by the executor when a cycle left the ON state by itself. Context: edge.
   void on_set_changed() noexcept;
   /// To be told by the executor when it saw a new fault of the task. Context: edge.
@@ -260,6 +265,7 @@ class TaskSet {
   std::uint32_t n_pending_ = 0;
   std::uint64_t taken_over_valid_ = 0;
   bool flag_raised_ = false;
+  TaskId raised_by_;
   bool on_set_legal_ = true;
 };
 

@@ -25,6 +25,15 @@ def counter(task, rtpu):
 TWO = ("subsystem: subject\nrtpus: {first: {cpu: 0}, second: {cpu: 0}}\ntasks:\n" +
        counter("one", "first") + counter("two", "second"))
 
+LATE = """
+subsystem: subject
+tasks:
+  calm: {component: t_source, rate: 100 Hz, alias: {x: xc, expired: ec}}
+  late: {component: t_source, rate: 100 Hz, deadline: 5 ms, on_miss: REACTION, alias: {x: xl, expired: el},
+         constants: {spend: 7000000 ns}}
+configurations: {all: [calm, late]}
+"""
+
 
 def run(text, *arguments, **more):
     """What a run that ends by itself said, and its exit code."""
@@ -90,6 +99,17 @@ class Run(unittest.TestCase):
             done = chimera("run", str(budgets), "--virtual", "--for", "1 s", "--profile", "/nowhere/p.json")
             self.assertEqual((done.returncode, done.stdout, done.stderr),
                              (1, "", "/nowhere/p.json: cannot be written: No such file or directory\n"))
+
+    def test_names_the_task_whose_reaction_it_was(self):
+        code, said = run(LATE.replace("REACTION", "stop"), "--for", "5 s")
+        self.assertEqual(code, 1, said)
+        self.assertIn(", ended by the reaction `stop` of task 'late'\n", said)
+        for executor in ("executive", "preemptive"):
+            rtpu = f"rtpus: {{main: {{executor: {executor}}}}}\ntasks:"
+            text = LATE.replace("REACTION", "flag").replace("tasks:", rtpu)
+            with self.subTest(executor), System(text, ("--priority", "0")) as system:
+                await_that(lambda: any("raised by task 'late'" in e["text"] for e in system.events()), 10, "a name")
+                self.assertTrue(system.call("status")["flag"]["up"])
 
     def test_acts_at_stated_times(self):
         code, said = run(TWO, "--for", "0.3 s", "--at", "0.1 s: off one", "--at", "0.2 s: off one")
