@@ -3,19 +3,15 @@
 #pragma once
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
-#include "chimera/task/component.h"
+#include "library/mujoco/arm_body.h"
 #include "library/mujoco/simulated_arm.h"
 
 namespace chimera::library {
 
 /// The ports and methods of an arm that a component derives from. It adds the in-var of the command and cycle(), and
 /// init() and reinit() with where the arm comes from.
-struct RobotBody {
-  Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
-  Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
+struct RobotBody : ArmBody<SimulatedArm> {
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
   InConst<double[]> torque_limit{"torque_limit", "N.m", "[ndof<=10]", initial = 0.0, range(0, 1e6), frame = "joint",
@@ -28,18 +24,6 @@ struct RobotBody {
   OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits; 1e6 for none."};
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
                              doc = "What the drives can give, either way; 1e6 where nobody states a limit."};
-
-  void on() { publish(); }
-  void off() {
-    arm_.brake();
-    publish();
-  }
-  // The arm refused a step and stands as before it: with the brakes on it is in a sound state again.
-  bool error() {
-    off();
-    return false;
-  }
-  bool clear() { return true; }
 
  protected:
   /// For init: `load` reads the arm and answers a Result<void>. Throws what it, or place(), refuses.
@@ -62,17 +46,10 @@ struct RobotBody {
   Outcome move(ArmInterface interface, const In<double[]>& command, Cycle c) {
     const bool moved = c.illegal() ? arm_.step_locally_stable(c.dt())
                                    : arm_.step(interface, {command.begin(), command.size()}, c.dt());
-    if (!moved) return fault(arm_.fault());
-    publish();
-    return ok();
+    return after(moved);
   }
-
-  SimulatedArm arm_;
 
  private:
-  static void check(const Result<void>& result) {
-    if (!result) throw std::runtime_error(std::string(result.error().message.view()));
-  }
   void tell() {
     const ArmModel& arm = arm_.arm();
     *ndof = static_cast<std::int32_t>(arm.ndof);
@@ -83,10 +60,6 @@ struct RobotBody {
     std::copy_n(arm.low.begin(), arm.ndof, q_min.begin());
     std::copy_n(arm.high.begin(), arm.ndof, q_max.begin());
     std::copy_n(arm.torque_limit.begin(), arm.ndof, tau_max.begin());
-  }
-  void publish() {
-    std::ranges::copy(arm_.position(), q.begin());
-    std::ranges::copy(arm_.velocity(), qd.begin());
   }
 };
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every interface of a simulated arm has: where the arm is, and how it stops.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "chimera/base/result.h"
+#include "chimera/task/component.h"
+
+namespace chimera::library {
+
+/// The ports and methods of an arm that a component derives from. `Arm` has position(), velocity(), brake() and
+/// fault(). What derives from it adds the in-var of the command and cycle(), and init() and reinit() with where the arm
+/// comes from.
+template <class Arm>
+struct ArmBody {
+  Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
+  Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
+
+  void on() { publish(); }
+  void off() {
+    arm_.brake();
+    publish();
+  }
+  // The arm refused a step and stands as before it: with the brakes on it is in a sound state again.
+  bool error() {
+    off();
+    return false;
+  }
+  bool clear() { return true; }
+
+ protected:
+  /// For init and reinit: throws what `result` refuses.
+  static void check(const Result<void>& result) {
+    if (!result) throw std::runtime_error(std::string(result.error().message.view()));
+  }
+  /// For cycle: what becomes of a step that has `moved` the arm, or has not.
+  Outcome after(bool moved) {
+    if (!moved) return fault(arm_.fault());
+    publish();
+    return ok();
+  }
+
+  Arm arm_;
+
+ private:
+  void publish() {
+    std::ranges::copy(arm_.position(), q.begin());
+    std::ranges::copy(arm_.velocity(), qd.begin());
+  }
+};
+
+}  // namespace chimera::library
