@@ -185,10 +185,9 @@ void Releases::settle(Task& task, Nanoseconds now) noexcept {
 }
 
 void Releases::raise_flag(TaskId by, Nanoseconds at) noexcept {
-  if (set_.is_flag_raised()) return;
+  if (set_.raises_flag(by)) return;
   if (!set_.is_illegal()) tap_.record(TapKind::kFlag, at, TaskId(), 1);
-  set_.raise_flag(true, by);
-  set_.on_set_changed();  // the set has not, but other contexts are to see the flag at once
+  set_.raise_flag_for(by);
 }
 
 }  // namespace chimera

@@ -41,6 +41,7 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
   contexts_.resize(n);
   serving_.resize(n);
   on_.assign(n, false);
+  raises_.assign(n, false);
   wanted_.assign(n, false);
   for (std::size_t t = 0; t < n; ++t) prepare_task(t);
   for (std::size_t t = 0; t < n; ++t) tasks_[t].component = components[t];
@@ -221,10 +222,20 @@ bool TaskSet::take_pending(Task& task, Signal& signal) noexcept {
   return true;
 }
 
+// What tasks raised that are no longer ON, or all did.
+void TaskSet::lower_flags(bool of_all) noexcept {
+  raised_by_ = TaskId();
+  for (const Task& task : tasks_) {
+    raises_[task.id.index] = raises_[task.id.index] && task.state == State::kOn && !of_all;
+    if (raises_[task.id.index]) raised_by_ = task.id;
+  }
+}
+
 void TaskSet::on_set_changed() noexcept {
   for (const Task& task : tasks_)
     on_[task.id.index] = (is_mine(task.id) ? task.state : place_.others->state(task.id)) == State::kOn;
   on_set_legal_ = variables_->is_legal(on_);
+  if (raised_by_.is_valid()) lower_flags(false);
   if (place_.others != nullptr) place_.others->changed();
 }
 

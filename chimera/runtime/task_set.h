@@ -150,20 +150,28 @@ class TaskSet {
 
   /// The illegal-configuration flag: raised by somebody, or because the ON set is not legal. Context: cycle.
   bool is_illegal() const noexcept {
-    if (flag_raised_ || !on_set_legal_) return true;
+    if (is_flag_raised() || !on_set_legal_) return true;
     for (const std::atomic<std::uint32_t>* flag : foreign_flags_)
       if (flag->load(std::memory_order_relaxed) != 0) return true;
     return false;
   }
   /// The ON set over all contexts obeys the two set equations, as far as this context has looked. Context: cycle.
   bool is_on_set_legal() const noexcept { return on_set_legal_; }
-  bool is_flag_raised() const noexcept { return flag_raised_; }
+  bool is_flag_raised() const noexcept { return flag_raised_ || raised_by_.is_valid(); }
   /// Raises or lowers the part of the flag that does not follow from the ON set. Context: edge.
-  void raise_flag(bool up, TaskId by = TaskId()) noexcept {
+  /// Lowered, it is also for the tasks that hold it up.
+  void raise_flag(bool up) noexcept {
     flag_raised_ = up;
-    raised_by_ = by;
+    if (!up) lower_flags(true);
   }
-  /// The task whose reaction raised it first; invalid: no task did.
+  /// The reaction of a task of this context raises it until that task is no longer ON. Context: edge.
+  void raise_flag_for(TaskId task) noexcept {
+    raised_by_ = task;
+    raises_[task.index] = true;
+    on_set_changed();  // the set has not, but other contexts are to see the flag at once
+  }
+  bool raises_flag(TaskId task) const noexcept { return raises_[task.index]; }
+  /// The task whose reaction raised it last; invalid: no task does.
   TaskId raised_by() const noexcept { return raised_by_; }
   /// To be told by the executor when a cycle left the ON state by itself. Context: edge.
   void on_set_changed() noexcept;
@@ -235,6 +243,7 @@ class TaskSet {
   bool would_be_legal(std::span<const TaskId> tasks) noexcept;
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
 
+  void lower_flags(bool of_all) noexcept;
   static std::int32_t host_expired(void* context);
   static std::int32_t host_signal(void* context, std::uint32_t signal, const char* task);
   static void host_spend(void* context, std::int64_t ns);
@@ -265,7 +274,8 @@ class TaskSet {
   std::uint32_t n_pending_ = 0;
   std::uint64_t taken_over_valid_ = 0;
   bool flag_raised_ = false;
-  TaskId raised_by_;
+  std::vector<bool> raises_;  // whose reaction holds the flag up
+  TaskId raised_by_;          // one of them
   bool on_set_legal_ = true;
 };
 

@@ -110,6 +110,8 @@ class Run(unittest.TestCase):
             with self.subTest(executor), System(text, ("--priority", "0")) as system:
                 await_that(lambda: any("raised by task 'late'" in e["text"] for e in system.events()), 10, "a name")
                 self.assertTrue(system.call("status")["flag"]["up"])
+                system.signal("off", "late")
+                await_that(lambda: not system.call("status")["flag"]["up"], 10, "a flag that goes with its task")
 
     def test_acts_at_stated_times(self):
         code, said = run(TWO, "--for", "0.3 s", "--at", "0.1 s: off one", "--at", "0.2 s: off one")
