@@ -62,6 +62,7 @@ const char* event_kind(Happening happening) noexcept {
     case Happening::kFlag: return "flag";
     case Happening::kMissed: return "blame";
     case Happening::kHang: return "hang";
+    case Happening::kGaveWay: return "demoted";
     case Happening::kStop: break;
   }
   return "stop";
@@ -79,6 +80,9 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
     case Happening::kHang:
       if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";
       return "a cycle used " + milliseconds_text(post.detail) + " and does not end: this real-time unit ends";
+    case Happening::kGaveWay:
+      return "goes on below all others: the tasks of its real-time unit used " + milliseconds_text(post.detail) +
+             " lately, nearly all that the kernel leaves to real-time threads";
     case Happening::kStop: break;
   }
   return "stopped by its reaction: all tasks of this real-time unit go OFF";

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "chimera/base/fixed.h"
+#include "chimera/base/time.h"
 
 namespace chimera {
 
@@ -35,6 +36,8 @@ RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept;
 /// The share of a CPU that the kernel lets real-time threads have (sched_rt_runtime_us of sched_rt_period_us); 1: all.
 /// Context: setup.
 double realtime_share() noexcept;
+/// The time of which that is a share (sched_rt_period_us). Context: setup.
+Nanoseconds realtime_period() noexcept;
 
 /// True when the system grants SCHED_FIFO at `priority` to this user. The calling thread is left as it was.
 /// Context: setup.

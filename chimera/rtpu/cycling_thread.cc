@@ -9,6 +9,8 @@
 
 #include "chimera/platform/realtime.h"
 #include "chimera/schedule/bands.h"
+#include "chimera/schedule/shares.h"
+#include "chimera/schedule/utilisation.h"
 
 namespace chimera {
 namespace {
@@ -21,6 +23,18 @@ std::int32_t priority_of(const ApplicationSpec& spec, std::uint32_t me, std::int
     member.criticality = std::max(member.criticality, task.criticality);
   }
   return band_top(members, me, top);
+}
+
+// What the jobs of this unit may use of its CPU: a little less than what the kernel lets it have.
+Nanoseconds share(const ApplicationSpec& spec, std::uint32_t me, Nanoseconds window) {
+  std::vector<ShareMember> members;
+  for (const RtpuSpec& rtpu : spec.rtpus) members.push_back({rtpu.cpu, 0});
+  for (const TaskSpec& task : spec.tasks) {
+    const Nanoseconds time = task.server ? task.server->capacity : task.budget;
+    members[task.rtpu.index].load += static_cast<double>(time.count) / static_cast<double>(task.period.count);
+  }
+  const double share = share_of(members, me, realtime_share() - kShareMargin);
+  return {static_cast<std::int64_t>(share * static_cast<double>(window.count))};
 }
 
 }  // namespace
@@ -87,6 +101,10 @@ void CyclingThread::make_threads(int ceiling) {
   processor.ceiling = ceiling;
   processor.base = ceiling - kBandWidth + 1;
   processor.bell = &place_.bell;
+  if (ceiling > 0 && realtime_share() < 1) {
+    processor.window = realtime_period();
+    processor.share = share(place_.spec, place_.me, processor.window);
+  }
   preemptive_ = std::make_unique<PreemptiveExecutor>(place_.tasks, options(), processor);
 }
 

@@ -199,6 +199,10 @@ void Edge::missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now
   others_.tell(post);
 }
 
+void Edge::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
+  others_.tell(Happening::kGaveWay, task, static_cast<std::uint64_t>(used.count), now);
+}
+
 void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
   others_.tell(Happening::kHang, task, static_cast<std::uint64_t>(used.count), now);
   hangs_[task.index] = true;

@@ -31,6 +31,9 @@ class EdgeGuest {
   virtual void missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now) noexcept = 0;
   /// A job of the task has used `used` and does not end by itself. Context: edge.
   virtual void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
+  /// Jobs here used `used` of the time that the kernel looks back to, about all it lets real-time threads have: one of
+  /// the task went on below all others. Context: edge.
+  virtual void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
   /// A job of the task is over, or its state changed, and its numbers may be shown. Context: edge.
   virtual void show(const Task& task) noexcept = 0;
 

@@ -33,8 +33,10 @@ enum class Happening : std::uint8_t {
   kMissed,    ///< the task missed its deadline; `from` used the processor most, for `detail` ns: more than its budget
               ///< when somebody did. Invalid `from`: for so long nobody here had the processor
   kHang,      ///< a job of the task does not end: it used `detail` ns by now. The rtpu ends
+  kGaveWay,   ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns lately, nearly all
+              ///< that the kernel lets real-time threads have
 };
-inline constexpr auto kLastHappening = Happening::kHang;
+inline constexpr auto kLastHappening = Happening::kGaveWay;
 
 /// 64 bytes; what is not used is 0 (ids: invalid).
 struct Post {

@@ -176,7 +176,7 @@ TEST_F(Outboxes, WhatNoSenderWritesIsPassedOver) {
 TEST_F(Outboxes, EveryHappeningArrives) {
   Inbox inbox(*ring, progress, 1);
   Outbox outbox(*ring, &progress, 1);
-  constexpr int kHappenings = static_cast<int>(Happening::kHang) + 1;
+  constexpr int kHappenings = static_cast<int>(kLastHappening) + 1;
   for (int i = 0; i < kHappenings; ++i) {
     Post told = numbered(0);
     told.kind = PostKind::kEvent;

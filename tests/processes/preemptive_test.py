@@ -62,6 +62,9 @@ tasks:
 """
 AWAY = re.compile(r"^missed its deadline: for ([0-9.]+) ms nobody here had the processor")
 
+GAVE_WAY = re.compile(r"^goes on below all others: the tasks of its real-time unit used [0-9.]+ ms lately, nearly all "
+                      r"that the kernel leaves to real-time threads$")
+
 # Every task but the guarded ones is an endless loop, and all begin at once, on all processors.
 LOOPS = """
 subsystem: subject
@@ -83,6 +86,21 @@ for n in range(N_LOOPS):
               "resources: {armed: ARMED}}\n")
 LOOPS += ("configurations: {all: [guarded_a, guarded_b, " + ", ".join(f"loop_{n}" for n in range(N_LOOPS)) +
           "]}\nstart: all\n")
+
+
+# Half as much again as there is: `a` and `b` are honest and critical, the others say that they take a tenth.
+OVERLOAD = """
+subsystem: subject
+rtpus:
+  only: {cpu: 1, policy: POLICY, executor: preemptive}
+tasks:
+  a: {component: t_source, rate: 160 Hz, budget: 1.3 ms, criticality: high, constants: {spend: 1200000 ns},
+      alias: {x: x0, expired: e0}}
+  b: {component: t_source, rate: 50 Hz, budget: 8 ms, criticality: high, constants: {spend: 7500000 ns},
+      alias: {x: x1, expired: e1}}
+  c: {component: t_source, rate: 40 Hz, budget: 2 ms, constants: {spend: 13000000 ns}, alias: {x: x2, expired: e2}}
+  d: {component: t_source, rate: 25 Hz, budget: 2 ms, constants: {spend: 16000000 ns}, alias: {x: x3, expired: e3}}
+"""
 
 
 def started(text):
@@ -202,8 +220,12 @@ class Preemptive(unittest.TestCase):
                 self.assertGreater(seen["over"], bad["cycles"] // 2)
                 blamed = [e for e in system.events() if e["kind"] == "blame" and e["task"] == "patient"]
                 self.assertTrue(blamed)
+                # With many thousand jobs somebody outside takes the processor now and then: that is told too.
+                away = [e for e in blamed if AWAY.search(e["text"])]
+                self.assertLessEqual(len(away), len(blamed) // 50)
                 for event in blamed:
-                    self.assertIn("missed its deadline: bad used ", event["text"])
+                    if event not in away:
+                        self.assertIn("missed its deadline: bad used ", event["text"])
                 self.count("row 4 cycles", bad["cycles"])
                 self.count("row 4 overruns", bad["overrun"])
                 self.count("bad jobs", bad["overrun"])
@@ -223,6 +245,28 @@ class Preemptive(unittest.TestCase):
                 away = max(await_that(once, 10, "what was taken away"))
                 self.assertGreater(away, 50)
                 self.assertLess(away, 1000)
+
+    def test_row_18_overload_costs_the_critical_tasks_nothing(self):
+        """Long enough that the kernel would take the processor from all of them (0.95 s of each second), twice."""
+        def once():
+            with started(OVERLOAD.replace("POLICY", "muf")) as system:
+                if not self.is_judged(system):
+                    return None
+                await_that(lambda: system.task("a")["cycles"] > 400, 10, "two and a half seconds")
+                tasks = {t["task"]: t for t in system.call("status")["tasks"]}
+                told = [e for e in system.events() if e["kind"] == "demoted"]
+            self.count("row 18 critical jobs under overload", tasks["a"]["cycles"] + tasks["b"]["cycles"])
+            self.assertGreater(tasks["c"]["missed"] + tasks["d"]["missed"], 50, "there is an overload")
+            self.assertGreater(tasks["c"]["demoted"] + tasks["d"]["demoted"], 0)
+            self.assertEqual(tasks["a"]["demoted"] + tasks["b"]["demoted"], 0)
+            self.assertTrue(told)
+            for event in told:
+                self.assertIn(event["task"], ("c", "d"))
+                self.assertRegex(event["text"], GAVE_WAY)
+            lost = {task: tasks[task]["missed"] + tasks[task]["dropped"] for task in ("a", "b")}
+            return {task: n for task, n in lost.items() if n}
+        for _ in range(ROUNDS):
+            self.undisturbed(once)
 
     def test_row_18_endless_loops_in_every_task_but_the_guarded_ones(self):
         def once():

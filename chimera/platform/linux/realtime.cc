@@ -119,6 +119,10 @@ double realtime_share() noexcept {
   return static_cast<double>(runtime) / static_cast<double>(period);
 }
 
+Nanoseconds realtime_period() noexcept {
+  return microseconds(std::strtol(FileStart("/proc/sys/kernel/sched_rt_period_us").bytes, nullptr, 10));
+}
+
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
   RealtimeGrant grant;
   Message parts;

@@ -23,7 +23,8 @@ PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, 
       releases_(set, with_threads(options, this)),
       labels_(options.policy, set.tasks().size(), place.ceiling > 0 ? place.base : 0,
               place.ceiling > 0 ? place.ceiling : 20),
-      of_task_(set.tasks().size()), bell_(place.bell != nullptr ? place.bell : &own_bell_) {
+      of_task_(set.tasks().size()), bell_(place.bell != nullptr ? place.bell : &own_bell_), use_(place.window),
+      use_by_less_(place.window) {
   set.attach(clock_);
   set.attach(static_cast<MethodGate&>(*this));
   has_levels_ = place.ceiling > 0 && may_be_realtime(place.ceiling);
@@ -34,6 +35,7 @@ PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, 
     if (task.spec->server) thread.served.emplace(*task.spec->server);
     of_task_[task.id.index] = &thread;
   }
+  find_less_important();
   for (JobThread& thread : threads_) {
     const ThreadStack stack(spec(thread).stack_bytes);
     thread.thread = std::thread([this, &thread] { follow_releases(thread); });
@@ -104,6 +106,8 @@ bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
     job.is_hanging = false;
     guest_->hangs(job.task, used(job), now);
   }
+  if (gave_way_.is_valid() && guest_ != nullptr) guest_->gave_way(gave_way_, use_.used(now), now);
+  gave_way_ = TaskId();
   if (releases_.has_lost_patience()) releases_.give_up_starved(now);
   if (releases_.edge_is_due(now)) releases_.take_edge(now);
   for (JobThread& job : threads_)  // events are counted also while no job is run

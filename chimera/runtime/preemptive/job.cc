@@ -79,7 +79,7 @@ bool PreemptiveExecutor::release(JobThread& me, Nanoseconds now) noexcept {
 void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
   me.job = job;
   me.illegal = releases_.is_illegal();
-  me.is_overrun = false;
+  me.is_overrun = me.is_demoted = false;
   me.seen_at = job.release;
   me.slept = {};
   task(me).give_up.store(false, std::memory_order_relaxed);
@@ -101,6 +101,7 @@ int PreemptiveExecutor::enter_label(JobThread& me, Nanoseconds now) noexcept {
   if (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) check = std::min(check, now + s.budget);
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) check = std::min(check, next_quantum(now));
   watch(me, check, now);
+  keep_share(now, &me);
   return level;
 }
 
@@ -164,6 +165,8 @@ void PreemptiveExecutor::record_slice(const JobThread& job, Nanoseconds now) noe
 // After every change of the list: whoever is the most urgent now has the processor. One that begins says so himself.
 void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
   JobThread* top = labels_.size() == 0 ? nullptr : of_task_[labels_.jobs().back().task.index];
+  use_.set(top != nullptr, now);
+  use_by_less_.set(top != nullptr && top->is_less_important, now);
   if (top == on_processor_) return;
   if (on_processor_ != nullptr && on_processor_->phase == JobPhase::kBegun && !on_processor_->is_demoted) {
     record_slice(*on_processor_, now);

@@ -55,6 +55,7 @@ struct JobThread {
 
   Nanoseconds next = kNever;   ///< release to come; kNever: the task is not ON, or no event has come
   bool is_joined = false;      ///< is ON as far as the thread was told
+  bool is_less_important = false;  ///< than others by what never changes: gives way before they do
   bool is_held = false;        ///< no job begins
   bool illegal = false;        ///< the flag, for the present job
 

@@ -24,6 +24,7 @@
 #include "chimera/runtime/preemptive/label_list.h"
 #include "chimera/runtime/preemptive/thread_clock.h"
 #include "chimera/runtime/release.h"
+#include "chimera/schedule/recent_use.h"
 
 namespace chimera {
 
@@ -33,6 +34,9 @@ struct ProcessorPlace {
   int ceiling = 0;    ///< SCHED_FIFO level of the section; 0: no real-time levels at all
   int base = 0;       ///< of jobs that found no level of their own; labels lie between; ceiling - base >= 2
   Nanoseconds quantum = microseconds(500);  ///< of the laxity policy
+  /// Of each `window` jobs may use so much; then some go on below all others, before the kernel takes the processor
+  /// from all of them (sched_rt_runtime_us). kNever: no limit.
+  Nanoseconds share = kNever, window = seconds(1);
   bool checks = false;  ///< looks up every level in the kernel at every entry to the section: for tests, costs
   /// Rung when an edge is due; run() sleeps on it. Null: one of its own.
   std::atomic<std::uint32_t>* bell = nullptr;
@@ -141,6 +145,12 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void raise() noexcept;
   void lower(int level) noexcept;
 
+  // The share of the processor (share.cc).
+  void find_less_important();
+  void keep_share(Nanoseconds now, const JobThread* own) noexcept;
+  JobThread* who_gives_way(bool anybody, const JobThread* own) noexcept;
+  void give_way(JobThread& job, Nanoseconds now) noexcept;
+
   // Supervision (supervisor.cc).
   void supervise();
   void look_at_jobs(Nanoseconds now) noexcept;
@@ -196,6 +206,10 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   pid_t edge_thread_ = 0;
   JobThread* on_processor_ = nullptr;    // the most urgent job at the last change of the list
   const bool sees_switches_ = SwitchWatch::can_tell();
+  RecentUse use_, use_by_less_;          // of the processor, by jobs; by those of less important tasks
+  Nanoseconds kept_for_important_;       // of the share
+  TaskId gave_way_;                      // that is to be told: for the sake of the share
+  Nanoseconds told_;                     // when it was told last
   bool has_levels_ = false;              // else the system refused them, and threads run as it likes
   bool is_paused_ = true;                // no job is released
   Nanoseconds until_ = kNever;           // nor from here on

@@ -103,7 +103,7 @@ void PreemptiveExecutor::hang(JobThread& job, Nanoseconds spent, Nanoseconds now
 
 void PreemptiveExecutor::demote(JobThread& job, Nanoseconds now) noexcept {
   if (job.is_demoted) return;
-  record_slice(job, now);
+  if (job.phase == JobPhase::kBegun) record_slice(job, now);
   job.is_demoted = true;
   if (job.served && job.served->is_halted) job.served->halt.lift();
   ++task(job).profile.demoted;
@@ -177,10 +177,10 @@ void PreemptiveExecutor::look_at_jobs(Nanoseconds now) noexcept {
     next = std::min(next, job.check);
   }
   is_lax_ = false;
-  if (next == kNever) return arm(kNever);
-  next = std::max(next, now + kSoonest);
+  if (next != kNever) next = std::max(next, now + kSoonest);
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) next = std::min(next, next_quantum(now));
   arm(next);
+  keep_share(now, nullptr);
 }
 
 void PreemptiveExecutor::look_at(JobThread& job, Nanoseconds now) noexcept {
