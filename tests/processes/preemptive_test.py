@@ -62,6 +62,8 @@ tasks:
 """
 AWAY = re.compile(r"^missed its deadline: for ([0-9.]+) ms nobody here had the processor")
 
+WHOSE = re.compile(r"^missed its deadline: (bad used |it used [0-9.]+ ms \(budget 0.3 ms\)|"
+                   r"for [0-9.]+ ms nobody here )")
 GAVE_WAY = re.compile(r"^goes on below all others: the tasks of its real-time unit used [0-9.]+ ms lately, nearly all "
                       r"that the kernel leaves to real-time threads$")
 
@@ -220,16 +222,16 @@ class Preemptive(unittest.TestCase):
                 self.assertGreater(seen["over"], bad["cycles"] // 2)
                 blamed = [e for e in system.events() if e["kind"] == "blame" and e["task"] == "patient"]
                 self.assertTrue(blamed)
-                # With many thousand jobs somebody outside takes the processor now and then: that is told too.
-                away = [e for e in blamed if AWAY.search(e["text"])]
-                self.assertLessEqual(len(away), len(blamed) // 50)
+                # Of many thousand jobs the machine delays some: then it is named, or whoever it kept from ending.
+                named = [e for e in blamed if "missed its deadline: bad used " in e["text"]]
+                self.assertLessEqual(len(blamed) - len(named), len(blamed) // 50)
                 for event in blamed:
-                    if event not in away:
-                        self.assertIn("missed its deadline: bad used ", event["text"])
+                    self.assertRegex(event["text"], WHOSE)
                 self.count("row 4 cycles", bad["cycles"])
                 self.count("row 4 overruns", bad["overrun"])
                 self.count("bad jobs", bad["overrun"])
-                self.count("row 4 culprits named", len(blamed))
+                self.count("row 4 culprits named", len(named))
+                self.count("row 4 delays by the machine told", len(blamed) - len(named))
 
     def test_row_18_a_processor_that_is_taken_away_is_told(self):
         for executor in ("executive", "preemptive"):
