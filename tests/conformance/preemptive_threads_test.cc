@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "chimera/runtime/preemptive/preemptive_executor.h"
+#include "tests/conformance/runner.h"
 #include "tests/conformance/toy.h"
 
 namespace chimera::toy {
@@ -87,6 +88,27 @@ TEST(PreemptiveThreads, AFaultLeadsToErrorAndTheOthersGoOn) {
   EXPECT_EQ(app.task("bad").state, chimera::State::kError);
   EXPECT_EQ(app.task("bad").profile.cycles, 1u);
   EXPECT_GT(app.task("good").profile.cycles, 25u);
+}
+
+// Also where nobody looks at a job that is alone before it ends.
+TEST(PreemptiveThreads, EveryJobOverItsBudgetIsRecordedOnce) {
+  Application app;
+  app.add("over", milliseconds(10), milliseconds(2)).budget = milliseconds(1);
+  app.add("within", milliseconds(20)).budget = milliseconds(20);
+  Listened listened;
+  RunOptions options;
+  options.tap = listened.tap();
+  PreemptiveExecutor executor(app.build_preemptive(), options, {});
+  ASSERT_TRUE(executor.start());
+  EXPECT_EQ(executor.run(milliseconds(200)), RunEnd::kTime);
+  std::uint64_t over = 0, within = 0;
+  for (const TapRecord& record : listened.records()) {
+    if (record.kind != TapKind::kOverrun) continue;
+    ++(record.task == app.task("over").id ? over : within);
+  }
+  EXPECT_GT(over, 0u);
+  EXPECT_EQ(over, app.task("over").profile.overrun);
+  EXPECT_EQ(within, 0u);
 }
 
 TEST(PreemptiveThreads, EndWhenNothingIsLeft) {

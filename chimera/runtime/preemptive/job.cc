@@ -79,7 +79,8 @@ bool PreemptiveExecutor::release(JobThread& me, Nanoseconds now) noexcept {
 void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
   me.job = job;
   me.illegal = releases_.is_illegal();
-  me.is_overrun = me.is_demoted = false;
+  me.is_demoted = false;
+  me.is_overrun.store(false, std::memory_order_relaxed);
   me.seen_at = job.release;
   me.slept = {};
   task(me).give_up.store(false, std::memory_order_relaxed);
@@ -129,11 +130,20 @@ Nanoseconds PreemptiveExecutor::run_body(JobThread& me) noexcept {
     const BodyEnd body = releases_.begin_job(job, time, me.illegal);
     end = clock_.now();
     const bool was_alone = sees_switches_ && SwitchWatch::end();
-    releases_.conclude_job(job, time, body, start, end, was_alone ? end - start : used_by_this_thread() - before);
+    const Nanoseconds used = was_alone ? end - start : used_by_this_thread() - before;
+    tell_unseen_overrun(me, used, end);
+    releases_.conclude_job(job, time, body, start, end, used);
   }
   if (me.served) me.served->halt.close();
   me.phase = JobPhase::kDone;
   return end;
+}
+
+// Nobody had looked at the job when it was over its budget.
+void PreemptiveExecutor::tell_unseen_overrun(JobThread& me, Nanoseconds used, Nanoseconds end) noexcept {
+  const Nanoseconds budget = spec(me).budget;
+  if (budget == Nanoseconds{} || used <= budget || me.is_overrun.exchange(true, std::memory_order_relaxed)) return;
+  releases_.tap().record(TapKind::kOverrun, end, me.task, task(me).call.cycle, used.count);
 }
 
 void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {

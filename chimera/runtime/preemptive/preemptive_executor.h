@@ -117,6 +117,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   int enter_label(JobThread& me, Nanoseconds now) noexcept;
   bool begin(JobThread& me) noexcept;
   Nanoseconds run_body(JobThread& me) noexcept;
+  void tell_unseen_overrun(JobThread& me, Nanoseconds used, Nanoseconds end) noexcept;
   void end(JobThread& me, Nanoseconds now) noexcept;
   void record_slice(const JobThread& job, Nanoseconds now) noexcept;
   void processor_goes_on(Nanoseconds now) noexcept;

@@ -58,7 +58,7 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
 
 // Seen while the job still runs: what can be done at once is done at once; the rest at its end.
 void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
-  job.is_overrun = true;
+  if (job.is_overrun.exchange(true, std::memory_order_relaxed)) return;
   const OnMiss reaction = spec(job).on_overrun;
   releases_.tap().record_now(TapKind::kOverrun, now, job.task, task(job).call.cycle, used(job).count);
   if (reaction == OnMiss::kDemote) demote(job, now);
