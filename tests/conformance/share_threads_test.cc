@@ -44,14 +44,14 @@ TEST_F(Share, NobodyGivesWayWhileThereIsSomeLeft) {
 
 TEST_F(Share, NobodyGivesWayWithoutALimit) {
   add("important", 10, 1, 2, 2);
-  add("other", 20, 19, 2);
+  add("other", 20, 19, 6);
   run(Policy::kMuf, kNever);
   EXPECT_EQ(demoted("other"), 0u);
 }
 
 TEST_F(Share, TheLessCriticalTaskGivesWay) {
   add("important", 10, 1, 2, 2);
-  add("other", 20, 18, 2);
+  add("other", 20, 18, 6);
   run(Policy::kMuf, milliseconds(60));
   EXPECT_EQ(demoted("important"), 0u);
   EXPECT_GE(demoted("other"), 1u);
@@ -59,7 +59,7 @@ TEST_F(Share, TheLessCriticalTaskGivesWay) {
 
 TEST_F(Share, UnderRateMonotonicTheLongestPeriodGivesWay) {
   add("fast", 10, 1, 2);
-  add("slow", 20, 18, 2);
+  add("slow", 20, 18, 6);
   run(Policy::kRm, milliseconds(60));
   EXPECT_EQ(demoted("fast"), 0u);
   EXPECT_GE(demoted("slow"), 1u);
@@ -67,7 +67,7 @@ TEST_F(Share, UnderRateMonotonicTheLongestPeriodGivesWay) {
 
 TEST_F(Share, AmongEqualsWhoeverIsOverItsBudget) {
   add("honest", 50, 1, 2);
-  add("liar", 20, 18, 2);
+  add("liar", 20, 18, 6);
   run(Policy::kEdf, milliseconds(60));
   EXPECT_GE(demoted("liar"), 1u);
 }
