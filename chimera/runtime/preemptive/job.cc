@@ -78,6 +78,7 @@ bool PreemptiveExecutor::release(JobThread& me, Nanoseconds now) noexcept {
 
 void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
   me.job = job;
+  me.cycle = task(me).call.cycle;
   me.illegal = releases_.is_illegal();
   me.is_demoted = false;
   me.is_overrun.store(false, std::memory_order_relaxed);

@@ -60,6 +60,7 @@ struct JobThread {
   bool illegal = false;        ///< the flag, for the present job
 
   Job job;                     ///< the present one; by its own thread read when it begins
+  std::uint64_t cycle = 0;     ///< its number, as it was released
   Nanoseconds check = kNever;  ///< the supervisor looks at the job then
   bool is_demoted = false;
   bool is_given_up = false;    ///< it does not end by itself

@@ -60,7 +60,7 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
 void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
   if (job.is_overrun.exchange(true, std::memory_order_relaxed)) return;
   const OnMiss reaction = spec(job).on_overrun;
-  releases_.tap().record_now(TapKind::kOverrun, now, job.task, task(job).call.cycle, used(job).count);
+  releases_.tap().record_now(TapKind::kOverrun, now, job.task, job.cycle, used(job).count);
   if (reaction == OnMiss::kDemote) demote(job, now);
   if (reaction == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
   if (reaction == OnMiss::kFlag || reaction == OnMiss::kStop) {
@@ -88,7 +88,7 @@ void PreemptiveExecutor::bury(JobThread& job, Nanoseconds now) noexcept {
   task(job).is_busy = false;
   (void)apply(labels_.remove(job.task), nullptr);
   processor_goes_on(now);
-  releases_.tap().record_now(TapKind::kHang, now, job.task, task(job).call.cycle);
+  releases_.tap().record_now(TapKind::kHang, now, job.task, job.cycle);
   ring_edge();
 }
 
@@ -97,7 +97,7 @@ void PreemptiveExecutor::hang(JobThread& job, Nanoseconds spent, Nanoseconds now
   if (job.is_given_up) return;
   job.is_given_up = job.is_hanging = true;
   demote(job, now);
-  releases_.tap().record_now(TapKind::kHang, now, job.task, task(job).call.cycle, spent.count);
+  releases_.tap().record_now(TapKind::kHang, now, job.task, job.cycle, spent.count);
   ring_edge();
 }
 
