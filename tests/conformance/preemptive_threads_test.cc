@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "chimera/platform/linux/linux_clock.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 #include "tests/conformance/runner.h"
 #include "tests/conformance/toy.h"
@@ -88,6 +89,34 @@ TEST(PreemptiveThreads, AFaultLeadsToErrorAndTheOthersGoOn) {
   EXPECT_EQ(app.task("bad").state, chimera::State::kError);
   EXPECT_EQ(app.task("bad").profile.cycles, 1u);
   EXPECT_GT(app.task("good").profile.cycles, 25u);
+}
+
+TEST(PreemptiveThreads, AJobThatSleepsIsChargedForWhatItComputed) {
+  Application app;
+  app.add("sleeper", milliseconds(20)).budget = milliseconds(2);
+  app.toy("sleeper").during = [](const chimera_call&) {
+    (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(5));
+    return CHIMERA_OK;
+  };
+  PreemptiveExecutor executor(app.build_preemptive(), {}, {});
+  ASSERT_TRUE(executor.start());
+  EXPECT_EQ(executor.run(milliseconds(200)), RunEnd::kTime);
+  const Profile& p = app.task("sleeper").profile;
+  EXPECT_GT(p.cycles, 2u);
+  EXPECT_GE(p.response.min, milliseconds(5));
+  EXPECT_LT(p.execution[CHIMERA_CYCLE].mean(), milliseconds(2));
+  EXPECT_LT(p.overrun, p.cycles);
+}
+
+// Two jobs at once set the alarm to their deadline, 20 times; by then both have long ended.
+TEST(PreemptiveThreads, TheSupervisorIsNotWokenForJobsThatHaveEnded) {
+  Application app;
+  app.add("one", milliseconds(20), milliseconds(2));
+  app.add("two", milliseconds(20), milliseconds(2));
+  PreemptiveExecutor executor(app.build_preemptive(), {}, {});
+  ASSERT_TRUE(executor.start());
+  EXPECT_EQ(executor.run(milliseconds(400)), RunEnd::kTime);
+  EXPECT_LT(executor.counts().supervised, 10u);
 }
 
 // Also where nobody looks at a job that is alone before it ends.

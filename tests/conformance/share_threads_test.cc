@@ -57,6 +57,15 @@ TEST_F(Share, TheLessCriticalTaskGivesWay) {
   EXPECT_GE(demoted("other"), 1u);
 }
 
+// Long before the share is used up: the budget of the important one is kept for it, used or not.
+TEST_F(Share, LessCriticalTasksHaveWhatTheOthersMayNeed) {
+  add("important", 10, 1, 8, 2);
+  add("other", 20, 8, 10);
+  run(Policy::kMuf, milliseconds(95));
+  EXPECT_EQ(demoted("important"), 0u);
+  EXPECT_GE(demoted("other"), 1u);
+}
+
 TEST_F(Share, UnderRateMonotonicTheLongestPeriodGivesWay) {
   add("fast", 10, 1, 2);
   add("slow", 20, 18, 6);

@@ -207,7 +207,8 @@ class Preemptive(unittest.TestCase):
             trigger = system.armed.with_name(f"{system.armed.name}-blocks")
             for _ in range(ROUNDS):
                 self.undisturbed(once)
-            self.assertEqual(system.task("blocks")["demoted"], 0, "execution time is judged, not elapsed time")
+            blocks = system.task("blocks")
+            self.assertLess(blocks["overrun"], blocks["cycles"] // 4, "execution time is judged, not elapsed time")
 
     def test_row_4_overruns_make_no_burst_and_every_miss_has_its_culprit(self):
         for executor, policy in (("preemptive", "muf"), ("preemptive", "edf"), ("executive", "edf")):

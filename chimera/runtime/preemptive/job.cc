@@ -130,8 +130,8 @@ Nanoseconds PreemptiveExecutor::run_body(JobThread& me) noexcept {
     CycleTime time;
     const BodyEnd body = releases_.begin_job(job, time, me.illegal);
     end = clock_.now();
-    const bool was_alone = sees_switches_ && SwitchWatch::end();
-    const Nanoseconds used = was_alone ? end - start : used_by_this_thread() - before;
+    const bool kept_processor = sees_switches_ && SwitchWatch::end();
+    const Nanoseconds used = kept_processor ? end - start : used_by_this_thread() - before;
     tell_unseen_overrun(me, used, end);
     releases_.conclude_job(job, time, body, start, end, used);
   }
