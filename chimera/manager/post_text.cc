@@ -60,7 +60,8 @@ const char* event_kind(Happening happening) noexcept {
     case Happening::kRefused: return "refused";
     case Happening::kSignalled: return "signal";
     case Happening::kFlag: return "flag";
-    case Happening::kMissed: return "blame";
+    case Happening::kMissed:
+    case Happening::kBlocked: return "blame";
     case Happening::kHang: return "hang";
     case Happening::kGaveWay: return "demoted";
     case Happening::kStop: break;
@@ -77,6 +78,8 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
     case Happening::kSignalled: return signal_name(post.signal) + sender(spec, post);
     case Happening::kFlag: return flag_text(spec, post);
     case Happening::kMissed: return missed_text(spec, post);
+    case Happening::kBlocked:
+      return "missed its deadline: it waits in a system call (it used " + milliseconds_text(post.detail) + ")";
     case Happening::kHang:
       if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";
       return "a cycle used " + milliseconds_text(post.detail) + " and does not end: this real-time unit ends";

@@ -5,6 +5,7 @@
 
 #include "chimera/config/nearest.h"
 #include "chimera/manager/operator_values.h"
+#include "chimera/manager/subject_status.h"
 #include "chimera/manager/subject_values.h"
 
 namespace chimera::manager {
@@ -114,7 +115,7 @@ Answer set_flag(World& world, bool up) {
     world.tell("flag", TaskId{}, RtpuId{}, words, now());
     world.announce();
   }
-  return Answer::good({{"up", up}});
+  return Answer::good(flag_json(world));
 }
 
 Answer saved_values(const World& world) {

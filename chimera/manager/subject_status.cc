@@ -66,17 +66,6 @@ Json rtpu_json(const World& world, RtpuId rtpu) {
   return json;
 }
 
-Json flag_json(const World& world) {
-  Json by = Json::array();
-  for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) {
-    const PeerSegment& segment = world.peers[RtpuId(r)];
-    if (segment.is_there() && segment.block().head().flag.load(std::memory_order_acquire) != 0)
-      by.push_back(world.name(RtpuId(r)));
-  }
-  if (world.own.block().head().flag.load(std::memory_order_acquire) != 0) by.push_back("operator");
-  return {{"up", !by.empty()}, {"by", std::move(by)}};
-}
-
 Json inputs_json(const World& world, TaskId task, Nanoseconds at) {
   Json inputs = Json::array();
   for (const ConfiguredPort& port : world.configuration->tasks()[task.index].ports) {
@@ -188,6 +177,17 @@ Json described_variable(const Configuration& configuration, const ConfiguredVari
 }
 
 }  // namespace
+
+Json flag_json(const World& world) {
+  Json by = Json::array();
+  for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) {
+    const PeerSegment& segment = world.peers[RtpuId(r)];
+    if (segment.is_there() && segment.block().head().flag.load(std::memory_order_acquire) != 0)
+      by.push_back(world.name(RtpuId(r)));
+  }
+  if (world.own.block().head().flag.load(std::memory_order_acquire) != 0) by.push_back("operator");
+  return {{"up", !by.empty()}, {"by", std::move(by)}};
+}
 
 std::string fault_text(const World& world, TaskId task) {
   const FaultRecord fault = world.peers.fault(task);

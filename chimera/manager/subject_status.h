@@ -11,6 +11,8 @@ namespace chimera::manager {
 
 /// Context of all: setup; may block for the time of a copy.
 nlohmann::json status_json(const World& world, Nanoseconds at);
+/// Whether the illegal-configuration flag is up, and by whom.
+nlohmann::json flag_json(const World& world);
 nlohmann::json describe_json(const World& world);
 nlohmann::json profile_json(const World& world, Nanoseconds at);
 nlohmann::json event_json(const World& world, const LoggedEvent& event);

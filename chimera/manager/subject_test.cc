@@ -162,10 +162,10 @@ TEST_F(SubjectTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescription) {
 }
 
 TEST_F(SubjectTest, TheOperatorsFlagStaysUntilItIsLowered) {
-  EXPECT_EQ(good("flag", {{"up", true}}), (Json{{"up", true}}));
+  EXPECT_EQ(good("flag", {{"up", true}}), (Json{{"up", true}, {"by", {"operator"}}}));
   EXPECT_EQ(good("status")["flag"], (Json{{"up", true}, {"by", {"operator"}}}));
   EXPECT_EQ(world().own.block().head().flag, 4u);
-  EXPECT_EQ(good("flag", {{"up", false}}), (Json{{"up", false}}));
+  EXPECT_EQ(good("flag", {{"up", false}}), (Json{{"up", false}, {"by", Json::array()}}));
   EXPECT_EQ(good("status")["flag"]["up"], false);
   EXPECT_EQ(fake_.told("flag"), "the operator raised the flag\nthe operator lowered the flag\n");
 }

@@ -188,14 +188,14 @@ void Edge::told(const SignalReport& done, Nanoseconds now) noexcept {
   others_.tell(post);
 }
 
-void Edge::missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now) noexcept {
+void Edge::missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept {
   Post post;
   post.at = now;
   post.task = task;
-  post.from = culprit;
+  post.from = verdict.culprit;
   post.kind = PostKind::kEvent;
-  post.happening = Happening::kMissed;
-  post.detail = static_cast<std::uint64_t>(used.count);
+  post.happening = verdict.is_blocked ? Happening::kBlocked : Happening::kMissed;
+  post.detail = static_cast<std::uint64_t>(verdict.used.count);
   others_.tell(post);
 }
 
@@ -218,9 +218,12 @@ void Edge::wake_supervisor() noexcept {
 
 void Edge::stop_all(Releases& releases, Nanoseconds now) noexcept {
   others_.tell(Happening::kStop, releases.stopped_by(), 0, now);
-  for (const TaskId id : ending_order_)
-    if (tasks_.is_mine(id) && tasks_.tasks()[id.index].state == State::kOn)
-      (void)releases.signal({&id, 1}, Signal::kOff, now);
+  for (const TaskId id : ending_order_) {
+    Task& task = tasks_.tasks()[id.index];
+    if (!tasks_.is_mine(id) || task.state != State::kOn) continue;
+    if (releases.may_touch(id)) (void)releases.signal({&id, 1}, Signal::kOff, now);
+    else tasks_.defer(task, Signal::kOff);  // its job is late, and is not waited for
+  }
 }
 
 void Edge::show_profiles() noexcept {

@@ -25,7 +25,7 @@ class Edge final : public EdgeGuest {
   void take(Releases& releases, Nanoseconds now) noexcept override;
   void told(const SignalReport& report, Nanoseconds now) noexcept override;
   void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
-  void missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now) noexcept override;
+  void missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept override;
   void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
   void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
   /// An event descriptor that is written to when a job hangs and when all is over. Setup.

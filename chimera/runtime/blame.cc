@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/runtime/blame.h"
 
-#include <utility>
-
 namespace chimera {
 
 Nanoseconds Blame::Recent::most_since(Nanoseconds since) const noexcept {
@@ -26,7 +24,7 @@ Nanoseconds Blame::Recent::sum_since(Nanoseconds since) const noexcept {
 
 Blame::Blame(std::span<const Task> tasks, JobThreads* threads)
     : tasks_(tasks), threads_(threads), recent_(tasks.size()), judged_(tasks.size(), Nanoseconds{INT64_MIN / 2}),
-      waits_(tasks.size(), kNever) {}
+      waits_(tasks.size()) {}
 
 // For how long nobody of this context can have had the processor although somebody wanted it. At least so much; 0: not
 // known.
@@ -40,9 +38,18 @@ Nanoseconds Blame::taken_away(Nanoseconds since, Nanoseconds now) const noexcept
   return std::max(left, Nanoseconds{});
 }
 
+// Its job is under way and needs nobody else to be late.
+std::optional<Blame::Verdict> Blame::by_itself(TaskId missed, Nanoseconds since, Nanoseconds now) const noexcept {
+  const Nanoseconds used = used_by_job(missed);
+  if (threads_ != nullptr && threads_->is_blocked(missed)) return Verdict{missed, used, true};
+  const bool has_budget = tasks_[missed.index].spec->budget > Nanoseconds{};
+  if (!has_budget && used * 2 > now - since) return Verdict{missed, used};
+  return std::nullopt;
+}
+
 std::optional<Blame::Verdict> Blame::judge(TaskId missed, Nanoseconds now) noexcept {
   constexpr Nanoseconds kSeldom = milliseconds(100), kAway = milliseconds(1);
-  const Nanoseconds waited_since = std::exchange(waits_[missed.index], kNever);
+  const Nanoseconds waited_since{waits_[missed.index].since.exchange(kNever.count, std::memory_order_relaxed)};
   if (now - judged_[missed.index] < kSeldom) return std::nullopt;
   judged_[missed.index] = now;
   const TaskSpec& spec = *tasks_[missed.index].spec;
@@ -57,6 +64,7 @@ std::optional<Blame::Verdict> Blame::judge(TaskId missed, Nanoseconds now) noexc
     worst = {task.id, used};
   }
   if (worst_excess > Nanoseconds{} || waited_since == kNever) return worst;
+  if (const auto verdict = by_itself(missed, waited_since, now)) return verdict;
   const Nanoseconds away = taken_away(waited_since, now);
   return away >= kAway ? Verdict{TaskId(), away} : worst;
 }

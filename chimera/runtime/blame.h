@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who is to blame for a missed deadline, by the execution time that jobs of a context used: the task that went furthest
-// beyond its budget (one without: its period) since the release before the one that was missed. If none went beyond and
+// beyond its budget (one without: its period) since the release before the one that was missed. If none went beyond,
+// it is the task itself when its job waits in a system call, or has no budget and used more than all others. Else, if
 // the processor was away for 1 ms and more, it is nobody: real-time threads were throttled, or the kernel or another
 // process had it. Else it is whoever came nearest.
 #pragma once
@@ -22,6 +23,7 @@ class Blame {
   struct Verdict {
     TaskId culprit;    ///< invalid: nobody of this context
     Nanoseconds used;  ///< by it; by nobody: for so long, at least, the processor was away
+    bool is_blocked = false;  ///< the culprit is the task itself, which waits in a system call
   };
 
   /// `threads` null: jobs run where the edges do. Both outlive this. Context: setup.
@@ -31,7 +33,8 @@ class Blame {
   void ended(TaskId task, Nanoseconds used, Nanoseconds end) noexcept { recent_[task.index].add(used, end); }
   /// The task missed the deadline of this release. Context: cycle, on the task's own thread, or edge; wait-free.
   void missed(TaskId task, Nanoseconds release) noexcept {
-    waits_[task.index] = std::min(waits_[task.index], release);
+    std::atomic<std::int64_t>& waits = waits_[task.index].since;  // two at once: one of them is forgotten
+    if (release.count < waits.load(std::memory_order_relaxed)) waits.store(release.count, std::memory_order_relaxed);
   }
   /// Who is to blame for what the task missed since the last verdict; nothing when that was less than 100 ms ago.
   /// Context: edge; wait-free; O(tasks).
@@ -56,9 +59,15 @@ class Blame {
     std::uint32_t next_ = 0;                                  // by the task's own thread
   };
 
+  // The first release that was missed since the last verdict; kNever: none.
+  struct Waits {
+    std::atomic<std::int64_t> since{kNever.count};
+  };
+
   Nanoseconds used_by_job(TaskId task) const noexcept {
     return threads_ == nullptr ? Nanoseconds{} : threads_->used_by_job(task);
   }
+  std::optional<Verdict> by_itself(TaskId missed, Nanoseconds since, Nanoseconds now) const noexcept;
   Nanoseconds taken_away(Nanoseconds since, Nanoseconds now) const noexcept;
 
   std::span<const Task> tasks_;
@@ -66,7 +75,7 @@ class Blame {
   // By task.
   std::vector<Recent> recent_;
   std::vector<Nanoseconds> judged_;  // when, last
-  std::vector<Nanoseconds> waits_;   // the first release that was missed since then; kNever: none
+  std::vector<Waits> waits_;
 };
 
 }  // namespace chimera

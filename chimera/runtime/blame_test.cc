@@ -19,7 +19,9 @@ class UnderWay final : public JobThreads {
     const auto found = used.find(task.index);
     return found == used.end() ? Nanoseconds{} : found->second;
   }
+  bool is_blocked(TaskId task) noexcept override { return task == blocked; }
   std::map<std::uint32_t, Nanoseconds> used;
+  TaskId blocked;
 };
 
 /// Three tasks of 10 ms: the first and the second with a budget of 2 ms, the third with none.
@@ -131,6 +133,38 @@ TEST_F(BlameTest, JudgesATaskTenTimesASecondAtMostAndForgetsWhatCameBetween) {
   EXPECT_TRUE(blame.judge(kSecond, milliseconds(119))) << "another task";
   blame.missed(kFirst, milliseconds(110));
   EXPECT_EQ(judged(kFirst, 120).used, milliseconds(10));
+}
+
+TEST_F(BlameTest, SaysThatAJobWaitsInASystemCall) {
+  under_way.blocked = kFirst;
+  under_way.used[kFirst.index] = microseconds(300);
+  blame.ended(kSecond, milliseconds(2), milliseconds(15));
+  blame.missed(kFirst, milliseconds(10));
+  const Blame::Verdict verdict = judged(kFirst, 20);
+  EXPECT_EQ(verdict.culprit, kFirst);
+  EXPECT_EQ(verdict.used, microseconds(300));
+  EXPECT_TRUE(verdict.is_blocked);
+  blame.missed(kSecond, milliseconds(110));
+  EXPECT_FALSE(judged(kSecond, 120).is_blocked) << "it is another one that waits";
+}
+
+TEST_F(BlameTest, BlamesWhoeverUsedTooMuchEvenWhenTheJobWaitsByNow) {
+  under_way.blocked = kFirst;
+  blame.ended(kSecond, milliseconds(3), milliseconds(15));
+  blame.missed(kFirst, milliseconds(10));
+  const Blame::Verdict verdict = judged(kFirst, 20);
+  EXPECT_EQ(verdict.culprit, kSecond);
+  EXPECT_FALSE(verdict.is_blocked);
+}
+
+// Seen at its deadline, an endless loop has not used more than its period yet.
+TEST_F(BlameTest, BlamesAJobWithoutABudgetForItsOwnLateness) {
+  blame.ended(kFirst, microseconds(1990), milliseconds(12));
+  under_way.used[kThird.index] = milliseconds(6);
+  blame.missed(kThird, milliseconds(10));
+  const Blame::Verdict verdict = judged(kThird, 20);
+  EXPECT_EQ(verdict.culprit, kThird) << "the first one came nearer to what it may use";
+  EXPECT_EQ(verdict.used, milliseconds(6));
 }
 
 TEST_F(BlameTest, WorksWithoutThreads) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "chimera/runtime/blame.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
@@ -26,9 +27,8 @@ class EdgeGuest {
   virtual void take(Releases& releases, Nanoseconds now) noexcept = 0;
   /// A signal that a task of this context sent to one of this context was carried out or refused. Context: edge.
   virtual void told(const SignalReport& report, Nanoseconds now) noexcept = 0;
-  /// The task missed a deadline; `culprit` used the processor most meanwhile, for `used`. Nobody (an invalid id): for
-  /// so long the processor was somebody else's. Context: edge.
-  virtual void missed(TaskId task, TaskId culprit, Nanoseconds used, Nanoseconds now) noexcept = 0;
+  /// The task missed a deadline, maybe with a job that is under way; the verdict says by whose fault. Context: edge.
+  virtual void missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept = 0;
   /// A job of the task has used `used` and does not end by itself. Context: edge.
   virtual void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
   /// Jobs here used `used` of the time that the kernel looks back to, about all it lets real-time threads have: one of

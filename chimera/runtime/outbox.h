@@ -35,8 +35,9 @@ enum class Happening : std::uint8_t {
   kHang,      ///< a job of the task does not end: it used `detail` ns by now. The rtpu ends
   kGaveWay,   ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns lately, nearly all
               ///< that the kernel lets real-time threads have
+  kBlocked,   ///< the task missed its deadline with a job that waits in a system call, having used `detail` ns
 };
-inline constexpr auto kLastHappening = Happening::kGaveWay;
+inline constexpr auto kLastHappening = Happening::kBlocked;
 
 /// 64 bytes; what is not used is 0 (ids: invalid).
 struct Post {

@@ -164,14 +164,19 @@ void Releases::join(Task& task, Nanoseconds now) noexcept {
 }
 
 void Releases::settle_job(TaskId id, Nanoseconds now) noexcept {
-  const std::uint8_t wants = of_[id.index].wants.exchange(0, std::memory_order_relaxed);
+  settle_at_once(id, now);
+  of_[id.index].wants.store(0, std::memory_order_relaxed);
+  settle(tasks_[id.index], now);
+}
+
+void Releases::settle_at_once(TaskId id, Nanoseconds now) noexcept {
+  const std::uint8_t wants = of_[id.index].wants.fetch_and(kSettle, std::memory_order_relaxed);
   if (wants & kRaiseFlag) raise_flag(id, now);
   if ((wants & kStop) && !task_stopped_) {
     task_stopped_ = true;
     stopped_by_ = id;
   }
   if (wants & kBlame) tell_blame(id, now);
-  settle(tasks_[id.index], now);
 }
 
 // After methods of the task ran outside an edge: what they left behind.

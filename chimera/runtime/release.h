@@ -138,6 +138,7 @@ class Releases {
   BodyEnd begin_job(const Job& job, CycleTime& time, bool illegal) noexcept {
     Task& task = tasks_[job.task.index];
     if (options_.threads == nullptr) task.is_busy = true;  // else whoever released the job has said so
+    if (options_.threads == nullptr) forget_told(job.task);
     // Field by field: a copy of a fresh aggregate loads wider than it was stored, and waits for the store buffer.
     time.release = job.release;
     time.deadline = job.deadline;
@@ -156,11 +157,17 @@ class Releases {
   /// Context: cycle, on the task's own thread.
   void conclude_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
                     Nanoseconds used) noexcept;
-  /// What jobs of the task left for the others: the flag, signals sent, its state. Context: edge.
+  /// What jobs of the task left for the others: the flag, signals sent, its state. Requires: none is under way.
+  /// Context: edge.
   void settle_job(TaskId id, Nanoseconds now) noexcept;
+  /// That part of it which does not wait for the end of a job: the flag, stop, who is to blame. Context: edge.
+  void settle_at_once(TaskId id, Nanoseconds now) noexcept;
   bool is_unsettled(TaskId id) const noexcept { return of_[id.index].wants.load(std::memory_order_relaxed) != 0; }
   /// The job began and is abandoned at its deadline (reaction abort): counts the miss; end_job follows.
-  void abandon(const Job& job) noexcept { count_miss(tasks_[job.task.index], job.deadline, {}); }
+  void abandon(const Job& job) noexcept {
+    want_blame(tasks_[job.task.index], job.release);
+    count_miss(tasks_[job.task.index], job.deadline, {});
+  }
   /// The job never started and its deadline has come (reaction abort).
   void expire_waiting(const Job& job) noexcept;
 
@@ -169,10 +176,18 @@ class Releases {
 
   /// What happens is recorded here.
   ContextTap& tap() noexcept { return tap_; }
-  /// flag or stop, at the moment at which a job is seen to have used more than its budget. Context: edge.
-  void act_on_overrun(TaskId task, OnMiss reaction) noexcept {
-    want(tasks_[task.index], reaction == OnMiss::kStop ? kStop : kRaiseFlag);
-  }
+
+  /// A job of the task is released, of which nothing was told. Context: cycle, before anybody else knows of the job.
+  void forget_told(TaskId task) noexcept { of_[task.index].told.store(0, std::memory_order_relaxed); }
+  /// The deadline of the job has come and it is not over. Who is to blame is told, and where it has begun `flag` and
+  /// `stop` act, unless the miss is tolerated; its end counts the miss. Once a job. Context: edge.
+  void tell_late(const Job& job, bool has_begun) noexcept;
+  /// The job of the task that is under way, its `cycle`-th, has used more than its budget: `flag` and `stop` act. False
+  /// when that was told before. Context: edge.
+  bool tell_overrun(TaskId task, std::uint64_t cycle, Nanoseconds used, Nanoseconds now) noexcept;
+  bool is_told_late(TaskId task) const noexcept { return was_told(task, kLate); }
+  bool is_told_overrun(TaskId task) const noexcept { return was_told(task, kOverrun); }
+
   /// A dropped release made some task's misses too many. Context: edge.
   bool has_lost_patience() const noexcept { return patience_lost_; }
   /// Ends those tasks: nobody else would, when others never let them start. Context: edge.
@@ -189,10 +204,12 @@ class Releases {
     std::uint32_t dropped = 0;  // since the last completed cycle
     bool skip_next = false;
     bool is_on = false;
-    std::atomic<std::uint8_t> wants{0};  // of the others, once its job is over
-    std::uint64_t history = 0;  // of the last cycles, one bit each: 1 missed
+    std::atomic<std::uint8_t> wants{0};  // of the others
+    std::atomic<std::uint8_t> told{0};   // of the present job
+    std::atomic<std::uint64_t> history{0};  // of the last cycles, one bit each: 1 missed
   };
   enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4, kBlame = 8 };
+  enum Told : std::uint8_t { kLate = 1, kOverrun = 2, kWaitsLate = 4, kEnded = 8 };  // kWaitsLate: before it began
 
   static std::int64_t time_to_deadline(const Job& job) noexcept {
     return job.deadline == kNever ? 0 : (job.deadline - job.release).count;
@@ -203,6 +220,14 @@ class Releases {
     return limit > 0 && task.profile.missed_in_a_row >= limit;
   }
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
+  bool was_told(TaskId task, Told what) const noexcept {
+    return (of_[task.index].told.load(std::memory_order_relaxed) & what) != 0;
+  }
+  bool tell(TaskId task, Told what) noexcept {
+    return (of_[task.index].told.fetch_or(what, std::memory_order_acq_rel) & (what | kEnded)) == 0;
+  }
+  std::uint8_t end_telling(TaskId task) noexcept;
+  void want_at_once(const Task& task, OnMiss reaction) noexcept;
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
   void want_blame(const Task& task, Nanoseconds release) noexcept {
     if (!blame_) return;
@@ -210,8 +235,9 @@ class Releases {
     want(task, kBlame);
   }
   void tell_blame(TaskId missed, Nanoseconds now) noexcept;
-  bool is_tolerated(Task& task, bool missed) noexcept;
-  bool judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept;
+  bool is_tolerated(const Task& task, std::uint64_t history) const noexcept;
+  bool remember(Task& task, bool missed) noexcept;
+  bool judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used, std::uint8_t told) noexcept;
   bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
   void give_up(Task& task, Nanoseconds at) noexcept;
   void act(const ScriptAct& act, Nanoseconds now) noexcept;

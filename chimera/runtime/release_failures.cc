@@ -5,6 +5,15 @@
 #include "chimera/runtime/release.h"
 
 namespace chimera {
+namespace {
+
+// What remains to be done at the end of a job whose failure was told while it was under way.
+OnMiss left_of(OnMiss reaction, bool was_told) noexcept {
+  const bool is_done = was_told && (reaction == OnMiss::kFlag || reaction == OnMiss::kStop);
+  return is_done ? OnMiss::kContinue : reaction;
+}
+
+}  // namespace
 
 bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
   OfTask& t = of_[job.task.index];
@@ -39,14 +48,16 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
   bool failed = false;
   if (body.answer != Answer::kNoEvent) {
     Profile& p = task.profile;
+    const std::uint8_t told = end_telling(job.task);
+    if (told & kLate) end = std::max(end, job.deadline + Nanoseconds{1});  // it could not say so before
     if (blame_) blame_->ended(job.task, used, end);
     p.execution[CHIMERA_CYCLE].add(used);
     p.response.add(end - job.release);
     p.start_delay.add(start - job.release);
     failed = end > job.deadline || used > t.budget;
-    if (failed) may_publish = judge(task, job, body, end, used);
+    if (failed) may_publish = judge(task, job, body, end, used, told);
     else p.missed_in_a_row = 0;
-    if (!failed && task.spec->tolerated_of > 0) (void)is_tolerated(task, false);
+    if (!failed && task.spec->tolerated_of > 0) (void)remember(task, false);
   }
   const std::uint64_t cycles = task.profile.cycles;
   const State state = end_cycle(task, body, time, end, may_publish);
@@ -58,37 +69,72 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
   else if (task.is_tapped && options_.threads == nullptr) tap_.append_row(task);
 }
 
-// m-in-n: were there at most so many misses in the last cycles, this one included?
-bool Releases::is_tolerated(Task& task, bool missed) noexcept {
-  OfTask& t = of_[task.id.index];
+// m-in-n: were there at most so many misses in the last cycles?
+bool Releases::is_tolerated(const Task& task, std::uint64_t history) const noexcept {
   const TaskSpec& s = *task.spec;
   const std::uint64_t window = s.tolerated_of >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << s.tolerated_of) - 1;
-  t.history = t.history << 1 | (missed ? 1u : 0u);
-  return static_cast<std::uint32_t>(std::popcount(t.history & window)) <= s.tolerated_misses;
+  return s.tolerated_of > 0 && static_cast<std::uint32_t>(std::popcount(history & window)) <= s.tolerated_misses;
+}
+
+// This cycle included.
+bool Releases::remember(Task& task, bool missed) noexcept {
+  std::atomic<std::uint64_t>& history = of_[task.id.index].history;
+  const std::uint64_t now = history.load(std::memory_order_relaxed) << 1 | (missed ? 1u : 0u);
+  history.store(now, std::memory_order_relaxed);
+  return is_tolerated(task, now);
+}
+
+// From here on nobody tells anything of the job; what was told of it.
+std::uint8_t Releases::end_telling(TaskId task) noexcept {
+  std::atomic<std::uint8_t>& told = of_[task.index].told;
+  if (options_.threads == nullptr) return told.load(std::memory_order_relaxed);
+  return told.fetch_or(kEnded, std::memory_order_acq_rel);
+}
+
+void Releases::want_at_once(const Task& task, OnMiss reaction) noexcept {
+  if (reaction == OnMiss::kFlag) want(task, kRaiseFlag);
+  if (reaction == OnMiss::kStop) want(task, kStop);
+}
+
+void Releases::tell_late(const Job& job, bool has_begun) noexcept {
+  const Task& task = tasks_[job.task.index];
+  // Before the job is told: its end adds to the history.
+  const bool tolerated = is_tolerated(task, of_[job.task.index].history.load(std::memory_order_relaxed) << 1 | 1u);
+  if (!tell(job.task, has_begun ? kLate : kWaitsLate)) return;
+  want_blame(task, job.release);
+  if (has_begun && !tolerated) want_at_once(task, task.spec->on_miss);
+}
+
+bool Releases::tell_overrun(TaskId id, std::uint64_t cycle, Nanoseconds used, Nanoseconds now) noexcept {
+  if (!tell(id, kOverrun)) return false;
+  tap_.record_now(TapKind::kOverrun, now, id, cycle, used.count);
+  want_at_once(tasks_[id.index], tasks_[id.index].spec->on_overrun);
+  return true;
 }
 
 // A failure of time was seen: counts it and says whether the result may still be published.
-bool Releases::judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used) noexcept {
+bool Releases::judge(Task& task, const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used,
+                     std::uint8_t told) noexcept {
   bool may_publish = true;
   if (used > of_[job.task.index].budget) {
     ++task.profile.overrun;
-    // Jobs with threads, and those that were demoted for it, were seen to use too much while they ran.
-    if (options_.threads == nullptr && task.spec->on_overrun != OnMiss::kDemote)
-      tap_.record(TapKind::kOverrun, end, task.id, task.call.cycle, used.count);
-    may_publish = react(task.spec->on_overrun, task, body, "used more execution time than its budget", end);
+    if (!(told & kOverrun)) tap_.record(TapKind::kOverrun, end, task.id, task.call.cycle, used.count);
+    const OnMiss reaction = left_of(task.spec->on_overrun, told & kOverrun);
+    may_publish = react(reaction, task, body, "used more execution time than its budget", end);
   }
   const bool is_late = end > job.deadline;
-  const bool tolerated = task.spec->tolerated_of > 0 && is_tolerated(task, is_late) && is_late;
+  const bool tolerated = task.spec->tolerated_of > 0 && remember(task, is_late) && is_late;
   if (!is_late) {
     task.profile.missed_in_a_row = 0;
     return may_publish;
   }
+  if (!(told & (kLate | kWaitsLate))) want_blame(task, job.release);
   count_miss(task, end, end - job.deadline);
   if (tolerated) {
     ++task.profile.tolerated;
     return may_publish;
   }
-  return react(task.spec->on_miss, task, body, "missed its deadline", end) && may_publish;
+  return react(left_of(task.spec->on_miss, told & kLate), task, body, "missed its deadline", end) && may_publish;
 }
 
 bool Releases::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept {
@@ -129,7 +175,6 @@ void Releases::give_up(Task& task, Nanoseconds at) noexcept {
 }
 
 void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept {
-  want_blame(task, at - lateness - task.spec->deadline);
   ++task.profile.missed;
   ++task.profile.missed_in_a_row;
   tap_.record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);
@@ -169,7 +214,7 @@ void Releases::give_up_starved(Nanoseconds now) noexcept {
 
 void Releases::tell_blame(TaskId missed, Nanoseconds now) noexcept {
   if (const auto verdict = blame_->judge(missed, now))
-    options_.guest->missed(missed, verdict->culprit, verdict->used, now);
+    options_.guest->missed(missed, *verdict, now);
 }
 
 }  // namespace chimera

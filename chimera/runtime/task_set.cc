@@ -207,10 +207,14 @@ void TaskSet::deliver(Task& task) noexcept {
       if (!is_sent && sent.signal == Signal::kWakeup) ++task.profile.events_lost;
       continue;
     }
-    if (target.pending.try_push(sent.signal)) ++n_pending_;
-    else if (sent.signal == Signal::kKill) target.pending[target.pending.size() - 1] = Signal::kKill;
+    defer(target, sent.signal);
   }
   task.outbox.clear();
+}
+
+void TaskSet::defer(Task& task, Signal signal) noexcept {
+  if (task.pending.try_push(signal)) ++n_pending_;
+  else if (signal == Signal::kKill) task.pending[task.pending.size() - 1] = Signal::kKill;
 }
 
 bool TaskSet::take_pending(Task& task, Signal& signal) noexcept {

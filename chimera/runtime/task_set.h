@@ -143,6 +143,8 @@ class TaskSet {
   bool ring(TaskId task) noexcept;
   /// Hands the signals that `task` sent during its last method to their targets. Context: edge.
   void deliver(Task& task) noexcept;
+  /// The signal waits for the present method of the task to end. Context: edge.
+  void defer(Task& task, Signal signal) noexcept;
   /// True when some task has signals waiting. Context: cycle; wait-free.
   bool has_pending() const noexcept { return n_pending_ != 0; }
   /// Takes the oldest waiting signal of `task`; false when there is none. Context: edge.

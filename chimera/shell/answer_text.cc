@@ -10,6 +10,7 @@
 #include "chimera/shell/columns.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/figures.h"
+#include "chimera/shell/status_text.h"
 
 namespace chimera::shell {
 namespace {
@@ -118,7 +119,7 @@ std::string ring_text(const Json& answer) {
   return text;
 }
 
-std::string flag_text(const Json& answer) { return truth_of(answer, "up") ? "flag up\n" : "flag down\n"; }
+std::string flag_text(const Json& answer) { return flag_words(answer) + "\n"; }
 
 std::string why_text(const Json& answer, std::size_t height) {
   const Json& chain = field(answer, "chain");

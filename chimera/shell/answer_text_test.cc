@@ -44,6 +44,11 @@ TEST(AnswerText, EventsAreNumberedAndTimedAndSayWhatIsGone) {
   EXPECT_EQ(events_text(Json::parse(R"({"first": 1, "last": 0, "events": []})"), 0), "");
 }
 
+TEST(AnswerText, TheFlagSaysWhoKeepsItUp) {
+  EXPECT_EQ(flag_text(Json::parse(R"({"up": true, "by": ["servo", "operator"]})")), "flag UP by servo, operator\n");
+  EXPECT_EQ(flag_text(Json::parse(R"({"up": false, "by": []})")), "flag down\n");
+}
+
 TEST(AnswerText, SaveSpeaksTheWordsOfADescription) {
   EXPECT_EQ(save_text(Json::parse(R"({"operator": {"kp": "[100 N.m/rad, 90 N.m/rad]", "name": "\"x\""}})")),
             "operator:\n  kp: [100 N.m/rad, 90 N.m/rad]\n  name: \"x\"\n");

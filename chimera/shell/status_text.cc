@@ -181,11 +181,13 @@ std::string headline(const Json& status) {
   line += configuration.empty() ? "no configuration" : configuration;
   const auto started = whole_or_none(status, "started_ns");
   line += started ? ", up " + duration_text(whole_of(status, "now_ns") - *started) : ", starting";
-  const Json& flag = field(status, "flag");
-  line += truth_of(flag, "up") ? ", flag UP" : ", flag down";
+  return line + ", " + flag_words(field(status, "flag")) + (truth_of(status, "ending") ? ", ENDING" : "");
+}
+
+std::string flag_words(const Json& flag) {
   std::string by;
   for (const std::string& who : texts_of(flag, "by")) by += (by.empty() ? " by " : ", ") + who;
-  return line + by + (truth_of(status, "ending") ? ", ENDING" : "");
+  return (truth_of(flag, "up") ? "flag UP" : "flag down") + by;
 }
 
 double share_of_server(const Json& server, double load) {

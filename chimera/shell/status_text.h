@@ -9,6 +9,8 @@ namespace chimera::shell {
 
 /// "puma_pid: run, up 12.5 min, flag down": what is true of the whole subsystem. Context of all: setup.
 std::string headline(const nlohmann::json& status);
+/// "flag down", or "flag UP by servo, operator".
+std::string flag_words(const nlohmann::json& flag);
 /// How much of the capacity of its server (an object as in docs/formats/run.md) a task with this load uses.
 double share_of_server(const nlohmann::json& server, double load);
 /// "servo serving, restarted 2 times, running pid.cycle, FLAG; last end: ...".

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 #include "chimera/task/component.h"
 
@@ -17,7 +18,8 @@ using namespace chimera;
 struct Crash {
   InConst<Text<16>> where{"where", initial = "cycle", doc = "the method that does it"};
   InConst<Text<16>> how{"how", initial = "segv",
-                        doc = "segv abort bus fpe ill stack exit kill hang block sleep vanish nan scribble"};
+                        doc = "segv abort bus fpe ill stack exit kill hang block doze linger sleep vanish nan "
+                              "scribble"};
   Resource armed{"armed", doc = "the file whose existence lets it happen"};
   Out<double> y{"y", "1", initial = 0.0, safety};
 
@@ -42,10 +44,23 @@ struct Crash {
     if (is("exit")) ::_exit(42);
     if (is("nan")) *y = std::nan("");
     if (is("block")) ::usleep(2'000);
+    if (is("doze") || is("sleep") || is("hang")) note_begin();
+    if (is("doze")) ::usleep(20'000);
+    while (is("linger") && ::access(armed.c_str(), F_OK) == 0) ::usleep(1'000);
     while (is("sleep")) ::pause();
     if (is("vanish")) ::syscall(SYS_exit, 0);  // the thread and nothing else
     if (is("scribble")) scribble();
     while (is("hang")) ::access(armed.c_str(), F_OK);
+  }
+  // Into the file that lets it happen, the first time.
+  void note_begin() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    std::FILE* file = std::fopen(armed.c_str(), "r+");
+    if (file == nullptr) return;
+    if (std::fgetc(file) == EOF)
+      std::fprintf(file, "%lld\n", static_cast<long long>(now.tv_sec) * 1'000'000'000 + now.tv_nsec);
+    std::fclose(file);
   }
   // As deep as a stack that is locked can be and deeper.
   double overflow(int depth) {

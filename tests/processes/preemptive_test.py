@@ -31,12 +31,14 @@ tasks:
              constants: {where: cycle, how: vanish}, resources: {armed: ARMED-vanishes}}
   sleeps: {component: t_crash, rtpu: third, rate: 200 Hz, budget: 100 us, alias: {y: y2},
            constants: {where: cycle, how: sleep}, resources: {armed: ARMED-sleeps}}
+  dozes: {component: t_crash, rtpu: third, rate: 200 Hz, alias: {y: y4}, constants: {where: cycle, how: doze},
+          resources: {armed: ARMED-dozes}}
   blocks: {component: t_crash, rtpu: second, rate: 100 Hz, budget: 500 us, criticality: medium, alias: {y: y3},
            constants: {where: cycle, how: block}, resources: {armed: ARMED-blocks}}
   beside: {component: t_source, rtpu: second, rate: 50 Hz, alias: {x: x2, expired: e2}}
   below: {component: t_source, rtpu: below, rate: 50 Hz, alias: {x: x3, expired: e3}}
 configurations:
-  all: [steady, watch, loops, vanishes, sleeps, blocks, beside, below]
+  all: [steady, watch, loops, vanishes, sleeps, dozes, blocks, beside, below]
 start: all
 """
 
@@ -52,6 +54,17 @@ configurations: {all: [bad, patient]}
 start: all
 """
 
+# A job that waits while it is told to, in a unit that others are in.
+WAITS = """
+subsystem: subject
+rtpus:
+  only: {cpu: 1, policy: edf, executor: preemptive}
+tasks:
+  waits: {component: t_crash, rate: 200 Hz, on_miss: REACTION, alias: {y: y0}, constants: {where: cycle, how: linger},
+          resources: {armed: ARMED}}
+  beside: {component: t_source, rate: 100 Hz}
+"""
+
 # Nothing of its own takes long.
 TAKEN = """
 subsystem: subject
@@ -61,6 +74,9 @@ tasks:
   brief: {component: t_source, rate: 100 Hz, budget: 1 ms}
 """
 AWAY = re.compile(r"^missed its deadline: for ([0-9.]+) ms nobody here had the processor")
+
+BLOCKED = re.compile(r"^missed its deadline: it waits in a system call \(it used [0-9.]+ ms\)$")
+PERIOD_MS = 5  # of those that do not end in time
 
 WHOSE = re.compile(r"^missed its deadline: (bad used |it used [0-9.]+ ms \(budget 0.3 ms\)|"
                    r"for [0-9.]+ ms nobody here )")
@@ -163,13 +179,14 @@ class Preemptive(unittest.TestCase):
 
     def recovers(self, system, unit, task, mates):
         """One fault of `task`, until everything of its unit is ON again; what was lost meanwhile."""
-        others = ["steady", "watch", "below"] + [t for t in ("beside", "loops", "blocks", "vanishes", "sleeps")
-                                                 if t not in (task, *mates)]
+        units = ("beside", "loops", "blocks", "vanishes", "sleeps", "dozes")
+        others = ["steady", "watch", "below"] + [t for t in units if t not in (task, *mates)]
         before, since = self.lost(system, others), system.events()[-1]["number"] + 1
         was, armed = system.rtpu(unit), time.monotonic_ns()
         trigger = system.armed.with_name(f"{system.armed.name}-{task}")
         trigger.write_text("")
         seen = await_that(lambda: [e for e in system.events(since) if e["kind"] == "hang"], 10, f"{task} is seen")
+        begun = trigger.read_text()
         trigger.unlink()
         await_that(lambda: system.rtpu(unit)["incarnation"] > was["incarnation"], 5, "a new incarnation")
         for one in (task, *mates):
@@ -182,12 +199,64 @@ class Preemptive(unittest.TestCase):
         self.took(f"{task}: seen after", seen[0]["at_ns"] - armed)
         self.took(f"{task}: ON again after", back - seen[0]["at_ns"])
         lost = self.grown(system, before)
+        if begun:
+            lost.update(self.told_late(task, begun, system.events(since)))
         return None if "watch" in lost or not self.is_judged(system) else lost
+
+    def told_late(self, task, begun, events):
+        """Nothing when whoever waits for its task was told of it within a period and a millisecond."""
+        told = min(e["at_ns"] for e in events if e.get("task") == task and e["kind"] in ("blame", "hang"))
+        self.took(f"{task}: told after its begin", told - int(begun))
+        after_ms = (told - int(begun)) / 1e6
+        return {} if after_ms <= PERIOD_MS + 1 else {f"{task} told after": after_ms}
+
+    def test_row_3_a_call_that_blocks_is_told_within_a_period_and_a_millisecond(self):
+        def once():
+            others = ("steady", "watch", "below", "beside", "loops", "blocks", "vanishes", "sleeps")
+            before, late = self.lost(system, others), {}
+            for _ in range(20):
+                since = system.events()[-1]["number"] + 1
+                trigger.write_text("")
+                told = await_that(lambda: [e for e in system.events(since)
+                                           if (e.get("task"), e["kind"]) == ("dozes", "blame")], 10, "it is told")
+                begun = trigger.read_text()
+                trigger.unlink()
+                late.update(self.told_late("dozes", begun, told))
+                self.assertRegex(told[0]["text"], BLOCKED)
+                self.count("row 3 dozes")
+                self.count("bad jobs")
+                time.sleep(0.1)  # one is told every 100 ms at most
+            lost = self.grown(system, before)
+            return None if "watch" in lost or not self.is_judged(system) else {**lost, **late}
+        with started(APPLICATION) as system:
+            trigger = system.armed.with_name(f"{system.armed.name}-dozes")
+            for _ in range(ROUNDS):
+                self.undisturbed(once)
+
+    def test_reactions_act_while_the_job_still_waits(self):
+        for reaction in ("flag", "stop"):
+            with self.subTest(reaction=reaction), System(WAITS.replace("REACTION", reaction)) as system:
+                since = system.events()[-1]["number"] + 1
+                system.arm()
+                if reaction == "flag":
+                    await_that(lambda: system.call("status")["flag"] == {"up": True, "by": ["only"]}, 10, "the flag")
+                else:
+                    system.await_state("beside", "OFF")
+                kinds = [e["kind"] for e in system.events(since)]
+                self.assertEqual(system.task("waits")["state"], "ON")
+                self.assertIn(reaction, kinds)
+                self.assertIn("blame", kinds)
+                self.assertNotIn("hang", kinds, "it is seen to hang after 2 s")
+                system.disarm()
+                if reaction == "stop":
+                    system.await_state("waits", "OFF")
+                    self.assertEqual([e["kind"] for e in system.events(since)].count("stop"), 1)
 
     def test_row_3_a_job_that_never_ends_costs_its_own_unit_a_restart_and_others_nothing(self):
         for _ in range(ROUNDS):
-            for task, unit, mates in (("loops", "second", ("beside", "blocks")), ("vanishes", "third", ("sleeps",)),
-                                      ("sleeps", "third", ("vanishes",))):
+            for task, unit, mates in (("loops", "second", ("beside", "blocks")),
+                                      ("vanishes", "third", ("sleeps", "dozes")),
+                                      ("sleeps", "third", ("vanishes", "dozes"))):
                 def once():
                     with started(APPLICATION) as system:
                         return self.recovers(system, unit, task, mates)

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/platform/processor_level.h"
 
+#include <fcntl.h>
 #include <sched.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <ctime>
+#include <string_view>
+
+#include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera {
 namespace {
@@ -46,6 +51,19 @@ int level_of(pid_t thread) noexcept {
 Nanoseconds used_by(pid_t thread) noexcept { return read(cpu_clock_of(thread)); }
 
 Nanoseconds used_by_this_thread() noexcept { return read(CLOCK_THREAD_CPUTIME_ID); }
+
+bool is_asleep(pid_t thread) noexcept {
+  char path[48], text[128];
+  std::snprintf(path, sizeof path, "/proc/self/task/%d/stat", thread);
+  const OwnedDescriptor file{::open(path, O_RDONLY | O_CLOEXEC)};
+  if (file.fd < 0) return false;
+  const ssize_t n = ::read(file.fd, text, sizeof text);
+  const std::string_view all(text, n > 0 ? static_cast<std::size_t>(n) : 0);
+  const std::size_t name_end = all.rfind(')');  // a name may hold anything; it has at most 15 characters
+  if (name_end == all.npos || name_end + 2 >= all.size()) return false;
+  const char state = all[name_end + 2];
+  return state == 'S' || state == 'D';
+}
 
 std::uint64_t sleeps_of_this_thread() noexcept {
   rusage usage{};

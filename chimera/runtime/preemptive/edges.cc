@@ -33,6 +33,7 @@ PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, 
     JobThread& thread = threads_.emplace_back();
     thread.task = task.id;
     if (task.spec->server) thread.served.emplace(*task.spec->server);
+    else shortest_ = std::min(shortest_, task.spec->deadline);
     of_task_[task.id.index] = &thread;
   }
   find_less_important();
@@ -89,7 +90,7 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
     const Nanoseconds next = std::min(releases_.next_edge(), until);
     leave();
     if (is_over) {
-      stop_jobs();
+      stop_jobs(end);
       return end;
     }
     (void)Doorbell(*bell_).wait_until(heard, next);
@@ -99,8 +100,10 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
 // True when the run is over.
 bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
   const Nanoseconds now = clock_.now();
-  for (JobThread& job : threads_)
+  for (JobThread& job : threads_) {
+    if (releases_.is_unsettled(job.task)) releases_.settle_at_once(job.task, now);
     if (releases_.is_unsettled(job.task) && claim(job.task)) releases_.settle_job(job.task, now);
+  }
   for (JobThread& job : threads_) {
     if (!job.is_hanging || guest_ == nullptr) continue;
     job.is_hanging = false;
@@ -139,8 +142,12 @@ bool PreemptiveExecutor::is_idle() const noexcept {
                      [](const JobThread& job) { return job.phase == JobPhase::kNone; });
 }
 
-// No job is released from here on; those under way end.
-void PreemptiveExecutor::stop_jobs() noexcept {
+// No job is released from here on; those under way end. The reaction `stop` does not wait for one that is late: it may
+// never end.
+void PreemptiveExecutor::stop_jobs(RunEnd end) noexcept {
+  const auto is_over = [this, end](const JobThread& job) {
+    return job.phase == JobPhase::kNone || (end == RunEnd::kTaskStopped && releases_.is_told_late(job.task));
+  };
   enter();
   is_paused_ = true;
   for (JobThread& job : threads_) (void)claim(job.task);
@@ -148,10 +155,10 @@ void PreemptiveExecutor::stop_jobs() noexcept {
     for (JobThread& job : threads_)
       if (job.phase == JobPhase::kNone && releases_.is_unsettled(job.task))
         releases_.settle_job(job.task, clock_.now());
-    const bool is_over = is_idle();
+    const bool all_are = std::all_of(threads_.begin(), threads_.end(), is_over);
     const std::uint32_t heard = Doorbell(*bell_).read();
     leave();
-    if (is_over) return;
+    if (all_are) return;
     (void)Doorbell(*bell_).wait_until(heard, clock_.now() + milliseconds(1));
     enter();
   }
@@ -171,6 +178,15 @@ bool PreemptiveExecutor::claim(TaskId id) noexcept {
 Nanoseconds PreemptiveExecutor::used_by_job(TaskId id) noexcept {
   const JobThread* job = of_task_[id.index];
   return job != nullptr && job->phase == JobPhase::kBegun ? used(*job) : Nanoseconds{};
+}
+
+bool PreemptiveExecutor::is_blocked(TaskId id) noexcept {
+  const JobThread* job = of_task_[id.index];
+  if (job == nullptr || job->phase != JobPhase::kBegun) return false;
+  leave();  // to look takes long
+  const bool asleep = is_asleep(job->id);
+  enter();
+  return asleep;
 }
 
 void PreemptiveExecutor::open(TaskId id) noexcept {

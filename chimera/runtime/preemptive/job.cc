@@ -81,7 +81,7 @@ void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
   me.cycle = task(me).call.cycle;
   me.illegal = releases_.is_illegal();
   me.is_demoted = false;
-  me.is_overrun.store(false, std::memory_order_relaxed);
+  releases_.forget_told(me.task);
   me.seen_at = job.release;
   me.slept = {};
   task(me).give_up.store(false, std::memory_order_relaxed);
@@ -102,7 +102,7 @@ int PreemptiveExecutor::enter_label(JobThread& me, Nanoseconds now) noexcept {
   Nanoseconds check = me.served ? next_look_at_server(me, now) : std::min(me.next, me.job.deadline);
   if (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) check = std::min(check, now + s.budget);
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) check = std::min(check, next_quantum(now));
-  watch(me, check, now);
+  watch(me, check);
   keep_share(now, &me);
   return level;
 }
@@ -132,19 +132,11 @@ Nanoseconds PreemptiveExecutor::run_body(JobThread& me) noexcept {
     end = clock_.now();
     const bool kept_processor = sees_switches_ && SwitchWatch::end();
     const Nanoseconds used = kept_processor ? end - start : used_by_this_thread() - before;
-    tell_unseen_overrun(me, used, end);
     releases_.conclude_job(job, time, body, start, end, used);
   }
   if (me.served) me.served->halt.close();
   me.phase = JobPhase::kDone;
   return end;
-}
-
-// Nobody had looked at the job when it was over its budget.
-void PreemptiveExecutor::tell_unseen_overrun(JobThread& me, Nanoseconds used, Nanoseconds end) noexcept {
-  const Nanoseconds budget = spec(me).budget;
-  if (budget == Nanoseconds{} || used <= budget || me.is_overrun.exchange(true, std::memory_order_relaxed)) return;
-  releases_.tap().record(TapKind::kOverrun, end, me.task, task(me).call.cycle, used.count);
 }
 
 void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
@@ -196,7 +188,7 @@ void PreemptiveExecutor::processor_goes_on(Nanoseconds now) noexcept {
   if (goes_on || (top != nullptr && top->served && top->phase == JobPhase::kWaiting)) {
     const Nanoseconds budget = goes_on ? end_of_budget(*top, now) : kNever;
     const Nanoseconds check = std::min(budget, end_of_capacity(*top, now));
-    if (check < top->check) watch(*top, check, now);
+    if (check < top->check) watch(*top, check);
   }
   show_running();
 }

@@ -65,7 +65,6 @@ struct JobThread {
   bool is_demoted = false;
   bool is_given_up = false;    ///< it does not end by itself
   bool is_hanging = false;     ///< that is to be told
-  std::atomic<bool> is_overrun{false};  ///< was seen to have used more than its budget; also by the thread itself
   std::atomic<std::int64_t> used_before{0};  ///< of the thread's execution time, by earlier jobs; by the thread itself
   Nanoseconds charged;         ///< what it had used when it was last looked at
   Nanoseconds seen_used, seen_at;  ///< the same, of every look

@@ -97,11 +97,12 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   // Edges (edges.cc).
   bool claim(TaskId task) noexcept override;
   Nanoseconds used_by_job(TaskId task) noexcept override;
+  bool is_blocked(TaskId task) noexcept override;
   void open(TaskId task) noexcept override;
   void close(TaskId task) noexcept override;
   bool take_edge(RunEnd& end, Nanoseconds until) noexcept;
   void tell_threads(bool all) noexcept;
-  void stop_jobs() noexcept;
+  void stop_jobs(RunEnd end) noexcept;
   bool is_idle() const noexcept;
   void ring_edge() noexcept { Doorbell(*bell_).ring(); }
   static void wake(JobThread& job) noexcept {
@@ -117,7 +118,6 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   int enter_label(JobThread& me, Nanoseconds now) noexcept;
   bool begin(JobThread& me) noexcept;
   Nanoseconds run_body(JobThread& me) noexcept;
-  void tell_unseen_overrun(JobThread& me, Nanoseconds used, Nanoseconds end) noexcept;
   void end(JobThread& me, Nanoseconds now) noexcept;
   void record_slice(const JobThread& job, Nanoseconds now) noexcept;
   void processor_goes_on(Nanoseconds now) noexcept;
@@ -162,13 +162,15 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void charge_running(Nanoseconds now) noexcept;
   void charge(JobThread& job, Nanoseconds now) noexcept;
   void overrun(JobThread& job, Nanoseconds now) noexcept;
+  void tell_late(const JobThread& job, bool has_begun) noexcept;
   bool sleeps_for_ever(JobThread& job, Nanoseconds spent, Nanoseconds now) noexcept;
   void hang(JobThread& job, Nanoseconds spent, Nanoseconds now) noexcept;
   void bury(JobThread& job, Nanoseconds now) noexcept;
   void demote(JobThread& job, Nanoseconds now) noexcept;
   void cancel(JobThread& job, Nanoseconds now) noexcept;
-  void watch(JobThread& job, Nanoseconds check, Nanoseconds now) noexcept;
-  Nanoseconds alarm_for(Nanoseconds check, bool is_exact, Nanoseconds now) const noexcept;
+  void watch(JobThread& job, Nanoseconds check) noexcept;
+  Nanoseconds alarm_for(Nanoseconds check, bool is_exact) const noexcept;
+  Nanoseconds next_late(Nanoseconds now) const noexcept;
   void put_off_alarm(Nanoseconds now) noexcept;
   void arm(Nanoseconds instant) noexcept;
   Nanoseconds used(const JobThread& job) const noexcept;
@@ -209,6 +211,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   const bool sees_switches_ = SwitchWatch::can_tell();
   RecentUse use_, use_by_less_;          // of the processor, by jobs; by those of less important tasks
   Nanoseconds kept_for_important_;       // of the share
+  Nanoseconds shortest_ = kNever;        // of the deadlines, from the release on
   TaskId gave_way_;                      // that is to be told: for the sake of the share
   Nanoseconds told_;                     // when it was told last
   bool has_levels_ = false;              // else the system refused them, and threads run as it likes

@@ -13,7 +13,9 @@ constexpr std::int64_t kHangsAfter = 10;
 // Nor does one that sleeps in system calls for so long, and for so many periods.
 constexpr Nanoseconds kSleepsAtMost = seconds(2);
 // The supervisor never comes again at once: at the ceiling it would keep everybody else from running.
-constexpr Nanoseconds kSoonest = microseconds(5), kSeldom = microseconds(25), kNowAndThen = milliseconds(50);
+constexpr Nanoseconds kSoonest = microseconds(5), kSeldom = microseconds(25);
+// A job that is late may be seen so much later, where nobody waits for it; the alarm is put off a little before that.
+constexpr Nanoseconds kLax = microseconds(750), kMargin = microseconds(200);
 
 }  // namespace
 
@@ -50,7 +52,7 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
   const Nanoseconds spent = all - Nanoseconds{job.used_before.load(std::memory_order_relaxed)};
   const Nanoseconds allowed = s.budget > Nanoseconds{} ? s.budget : s.period;
   if (spent > allowed * kHangsAfter || sleeps_for_ever(job, spent, now)) return hang(job, spent, now);
-  if (s.budget > Nanoseconds{} && spent > s.budget && !job.is_overrun) return overrun(job, now);
+  if (s.budget > Nanoseconds{} && spent > s.budget && !releases_.is_told_overrun(job.task)) return overrun(job, now);
   if (!by_laxity || job.is_demoted) return;
   (void)apply(labels_.rekey(job.task, urgency_of(job, std::max(s.budget - spent, Nanoseconds{}))), nullptr);
   processor_goes_on(now);
@@ -58,15 +60,17 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
 
 // Seen while the job still runs: what can be done at once is done at once; the rest at its end.
 void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
-  if (job.is_overrun.exchange(true, std::memory_order_relaxed)) return;
+  if (!releases_.tell_overrun(job.task, job.cycle, used(job), now)) return;
   const OnMiss reaction = spec(job).on_overrun;
-  releases_.tap().record_now(TapKind::kOverrun, now, job.task, job.cycle, used(job).count);
   if (reaction == OnMiss::kDemote) demote(job, now);
   if (reaction == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
-  if (reaction == OnMiss::kFlag || reaction == OnMiss::kStop) {
-    releases_.act_on_overrun(job.task, reaction);
-    ring_edge();
-  }
+  if (releases_.is_unsettled(job.task)) ring_edge();
+}
+
+// Its deadline has come; how late it is, is for its end to say.
+void PreemptiveExecutor::tell_late(const JobThread& job, bool has_begun) noexcept {
+  releases_.tell_late(job.job, has_begun);
+  if (releases_.is_unsettled(job.task)) ring_edge();
 }
 
 // It used nothing since the last look, and nobody more urgent had the processor.
@@ -122,13 +126,13 @@ void PreemptiveExecutor::cancel(JobThread& job, Nanoseconds now) noexcept {
   if (has_levels_) set_level(job.carrier, place_.ceiling);
 }
 
-// A job that is alone is looked at now and then only: to set an alarm for each would cost more than the rest of its
-// release (it becomes the first timer of the CPU), and nobody waits for it.
-Nanoseconds PreemptiveExecutor::alarm_for(Nanoseconds check, bool is_exact, Nanoseconds now) const noexcept {
-  return is_exact || labels_.size() > 1 ? check : std::max(check, now + kNowAndThen);
+// A job that is alone is looked at a little late: then one alarm does for several jobs. To set one for each would cost
+// more than the rest of its release (it becomes the first timer of the CPU), and nobody waits for it.
+Nanoseconds PreemptiveExecutor::alarm_for(Nanoseconds check, bool is_exact) const noexcept {
+  return is_exact || labels_.size() > 1 ? check : check + kLax;
 }
 
-void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check, Nanoseconds now) noexcept {
+void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check) noexcept {
   job.check = check;
   const TaskSpec& s = spec(job);
   const bool is_exact = (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) || s.on_miss == OnMiss::kDemote ||
@@ -138,16 +142,17 @@ void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check, Nanoseconds no
     for (const LabelledJob& other : labels_.jobs()) check = std::min(check, of_task_[other.task.index]->check);
     is_lax_ = false;
   }
-  const Nanoseconds wanted = alarm_for(check, is_exact, now);
+  const Nanoseconds wanted = alarm_for(check, is_exact);
   is_lax_ = is_lax_ || wanted > check;
   if (wanted < armed_) arm(wanted);
 }
 
-// Nobody is ready: what the alarm was set for is over, but for jobs that are demoted or halted. To move it costs less
-// than a look of the supervisor.
+// Nobody is ready: what the alarm was set for is over, but for jobs that are demoted or halted. No other job can be
+// late before the shortest deadline has passed. To move the alarm here costs less than a look of the supervisor, and
+// less than to set it at the next release, where somebody waits.
 void PreemptiveExecutor::put_off_alarm(Nanoseconds now) noexcept {
-  if (labels_.size() > 0 || armed_ > now + Nanoseconds{kNowAndThen.count / 2}) return;
-  Nanoseconds next = now + kNowAndThen;
+  if (labels_.size() > 0 || shortest_ == kNever || armed_ > now + shortest_ + kMargin) return;
+  Nanoseconds next = now + shortest_ + kLax;
   for (const JobThread& job : threads_) next = std::min(next, job.check);
   if (next > armed_) arm(next);
 }
@@ -177,10 +182,22 @@ void PreemptiveExecutor::look_at_jobs(Nanoseconds now) noexcept {
     next = std::min(next, job.check);
   }
   is_lax_ = false;
+  if (labels_.size() == 0) next = std::min(next, next_late(now));
   if (next != kNever) next = std::max(next, now + kSoonest);
   if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) next = std::min(next, next_quantum(now));
   arm(next);
   keep_share(now, nullptr);
+}
+
+// When a job that is to come would be seen to be late, if it were alone.
+Nanoseconds PreemptiveExecutor::next_late(Nanoseconds now) const noexcept {
+  Nanoseconds next = kNever;
+  for (const JobThread& job : threads_) {
+    const bool comes = job.is_joined && !job.served && job.phase == JobPhase::kNone && job.next < until_;
+    const Nanoseconds late = comes ? job.next + spec(job).deadline + kLax : kNever;
+    if (late > now) next = std::min(next, late);  // else something keeps it from being released
+  }
+  return next;
 }
 
 void PreemptiveExecutor::look_at(JobThread& job, Nanoseconds now) noexcept {
@@ -198,6 +215,7 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
     job.phase = JobPhase::kWaiting;
     return;
   }
+  if (now >= job.job.deadline) tell_late(job, false);
   if (s.on_miss == OnMiss::kAbort && now >= job.job.deadline) {
     releases_.expire_waiting(job.job);
     cancel(job, now);
@@ -224,9 +242,11 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
 void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(job);
   charge(job, now);
-  if (now >= job.job.deadline && s.on_miss == OnMiss::kDemote) demote(job, now);
-  if (now >= job.job.deadline && s.on_miss == OnMiss::kAbort)
-    task(job).give_up.store(true, std::memory_order_relaxed);
+  if (job.phase != JobPhase::kBegun) return;  // its thread is gone
+  const bool is_late = now >= job.job.deadline;
+  if (is_late) tell_late(job, true);
+  if (is_late && s.on_miss == OnMiss::kDemote) demote(job, now);
+  if (is_late && s.on_miss == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
   if (job.served && !job.is_demoted) return follow_server(job, now);
   job.check = now < job.job.deadline && !job.served ? job.job.deadline : now + s.period;
   if (&job == on_processor_) job.check = std::min(job.check, end_of_budget(job, now));
@@ -236,7 +256,7 @@ void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept
 // used nothing since the last look sleeps in a system call: nobody waits for that at every instant.
 Nanoseconds PreemptiveExecutor::end_of_budget(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(job);
-  if (!acts_at_once(s.on_overrun) || s.budget == Nanoseconds{} || job.is_overrun) return kNever;
+  if (!acts_at_once(s.on_overrun) || s.budget == Nanoseconds{} || releases_.is_told_overrun(job.task)) return kNever;
   const Nanoseconds spent = used(job), last = job.charged;
   job.charged = spent;
   return now + std::max(s.budget - spent, spent == last ? kSeldom : kSoonest);

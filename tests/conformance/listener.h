@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A guest of the edges that writes down what it is told.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/runtime/edge_guest.h"
+
+namespace chimera::toy {
+
+class Listener final : public EdgeGuest {
+ public:
+  struct Miss {
+    TaskId task, culprit;
+    bool is_blocked = false;
+    Nanoseconds told;
+  };
+
+  explicit Listener(const std::atomic<std::uint32_t>& bell) : EdgeGuest(bell) {}
+
+  std::vector<Miss> of(TaskId task) const {
+    std::vector<Miss> found;
+    for (const Miss& miss : misses)
+      if (miss.task == task) found.push_back(miss);
+    return found;
+  }
+
+  void take(Releases&, Nanoseconds) noexcept override { listen(); }
+  void told(const SignalReport&, Nanoseconds) noexcept override {}
+  void missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept override {
+    misses.push_back({task, verdict.culprit, verdict.is_blocked, now});
+    if (on_miss) on_miss(task, verdict);
+  }
+  void hangs(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
+  void gave_way(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
+  void show(const Task&) noexcept override {}
+
+  std::vector<Miss> misses;
+  std::function<void(TaskId, const Blame::Verdict&)> on_miss;
+};
+
+}  // namespace chimera::toy
