@@ -2,6 +2,8 @@
 // Jobs that go on below all others, in preemptive virtual time, to the instant.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/conformance/runner.h"
 
 namespace chimera::toy {
@@ -34,6 +36,10 @@ class Demote : public testing::Test {
     }
     return text;
   }
+  std::int64_t overruns_recorded() {
+    const auto records = runner->records();
+    return std::count_if(records.begin(), records.end(), [](const auto& r) { return r.kind == TapKind::kOverrun; });
+  }
   const Profile& profile(const char* name = "bad") { return app.task(name).profile; }
 };
 
@@ -56,6 +62,13 @@ TEST_F(Demote, AJobThatEndsWithItsBudgetIsNotDemoted) {
   EXPECT_EQ(profile().demoted, 0u);
   EXPECT_EQ(profile().overrun, 0u);
   EXPECT_EQ(profile().cycles, 4u);
+}
+
+TEST_F(Demote, AnOverrunIsRecordedOnceWhenItHappens) {
+  add_bad(40, 6, 2).on_overrun = OnMiss::kDemote;
+  run(80);
+  EXPECT_EQ(profile().overrun, 2u);
+  EXPECT_EQ(overruns_recorded(), 2);
 }
 
 TEST_F(Demote, AfterItsDeadlineAJobRunsWhenNobodyElseDoes) {

@@ -150,7 +150,7 @@ void Preemptive::expire(TaskId task) noexcept {
 void Preemptive::demote_due(Nanoseconds now) noexcept {
   if (running_.is_valid() && budget_left(running_) == Nanoseconds{}) {
     const Active& a = active_[running_.index];
-    releases_.tap().record(TapKind::kOverrun, now, running_, releases_.task(running_).call.cycle, a.used.count);
+    (void)releases_.tell_overrun(running_, releases_.task(running_).call.cycle, a.used, now);
     demote(running_);
   }
   for (const std::uint32_t i : demoters_) {
