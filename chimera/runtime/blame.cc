@@ -63,8 +63,9 @@ std::optional<Blame::Verdict> Blame::judge(TaskId missed, Nanoseconds now) noexc
     worst_excess = used - allowed;
     worst = {task.id, used};
   }
-  if (worst_excess > Nanoseconds{} || waited_since == kNever) return worst;
+  if (waited_since == kNever || worst_excess > Nanoseconds{(now - waited_since).count / 2}) return worst;
   if (const auto verdict = by_itself(missed, waited_since, now)) return verdict;
+  if (worst_excess > Nanoseconds{}) return worst;
   const Nanoseconds away = taken_away(waited_since, now);
   return away >= kAway ? Verdict{TaskId(), away} : worst;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who is to blame for a missed deadline, by the execution time that jobs of a context used: the task that went furthest
-// beyond its budget (one without: its period) since the release before the one that was missed. If none went beyond,
-// it is the task itself when its job waits in a system call, or has no budget and used more than all others. Else, if
-// the processor was away for 1 ms and more, it is nobody: real-time threads were throttled, or the kernel or another
-// process had it. Else it is whoever came nearest.
+// beyond its budget (one without: its period) since the release before the one that was missed. Before one who took
+// less than half of the time since then comes the task itself, when its job waits in a system call, or has no budget
+// and used more than all others. If none went beyond and the processor was away for 1 ms and more, it is nobody:
+// real-time threads were throttled, or the kernel or another process had it. Else it is whoever came nearest.
 #pragma once
 
 #include <algorithm>

@@ -148,13 +148,24 @@ TEST_F(BlameTest, SaysThatAJobWaitsInASystemCall) {
   EXPECT_FALSE(judged(kSecond, 120).is_blocked) << "it is another one that waits";
 }
 
-TEST_F(BlameTest, BlamesWhoeverUsedTooMuchEvenWhenTheJobWaitsByNow) {
+TEST_F(BlameTest, BlamesWhoeverTookHalfOfTheTimeEvenWhenTheJobWaitsByNow) {
   under_way.blocked = kFirst;
-  blame.ended(kSecond, milliseconds(3), milliseconds(15));
+  blame.ended(kSecond, microseconds(7001), milliseconds(15));
   blame.missed(kFirst, milliseconds(10));
   const Blame::Verdict verdict = judged(kFirst, 20);
   EXPECT_EQ(verdict.culprit, kSecond);
   EXPECT_FALSE(verdict.is_blocked);
+}
+
+TEST_F(BlameTest, DoesNotBlameALittleTooMuchForAJobThatWaits) {
+  under_way.blocked = kFirst;
+  blame.ended(kSecond, milliseconds(7), milliseconds(15));
+  blame.missed(kFirst, milliseconds(10));
+  EXPECT_TRUE(judged(kFirst, 20).is_blocked);
+  blame.ended(kSecond, microseconds(2001), milliseconds(115));
+  under_way.used[kThird.index] = milliseconds(6);
+  blame.missed(kThird, milliseconds(110));
+  EXPECT_EQ(judged(kThird, 120).culprit, kThird) << "nor for one that uses all there is";
 }
 
 // Seen at its deadline, an endless loop has not used more than its period yet.
