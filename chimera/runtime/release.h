@@ -7,7 +7,7 @@
 //   may_start: last chance to say no      -> begin: inputs and body -> end: failures, publication, profile
 //
 // The three failures of time (Stewart & Khosla; docs/decisions/0003-releases-and-late-jobs.md) and what they see:
-//   missed deadline    the job ended after its deadline                                      on_miss
+//   missed deadline    the job was not over at its deadline                                  on_miss
 //   budget exceeded    it used more execution time than its budget                           on_overrun
 //   minimum refused    at its start less than `min` was left before the deadline             on_miss
 // Reactions: continue (a late result is published), hold (not published), skip (published; the next release is
@@ -16,6 +16,10 @@
 // illegal-configuration flag goes up and stays up until it is lowered), stop (published; the executor stops), demote
 // (from then on the job runs below all others; published).
 // A refused minimum: continue and flag run the job all the same, the others do not start it.
+//
+// A job with a thread of its own is looked at when its deadline comes, and when its budget is used up: who is to blame
+// is told then, and flag and stop act then. Else the job's end does that, as it does the rest in any case
+// (docs/decisions/0017-late-jobs-are-told.md).
 //
 // A release that is dropped because jobs took too long is a missed deadline as well, in Profile::missed and towards
 // max_consecutive; one that a reaction drops on purpose is not.

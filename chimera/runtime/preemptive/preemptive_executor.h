@@ -211,7 +211,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   const bool sees_switches_ = SwitchWatch::can_tell();
   RecentUse use_, use_by_less_;          // of the processor, by jobs; by those of less important tasks
   Nanoseconds kept_for_important_;       // of the share
-  Nanoseconds shortest_ = kNever;        // of the deadlines, from the release on
+  Nanoseconds shortest_ = seconds(1);    // of the deadlines, from the release on; at most
   TaskId gave_way_;                      // that is to be told: for the sake of the share
   Nanoseconds told_;                     // when it was told last
   bool has_levels_ = false;              // else the system refused them, and threads run as it likes

@@ -151,7 +151,7 @@ void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check) noexcept {
 // late before the shortest deadline has passed. To move the alarm here costs less than a look of the supervisor, and
 // less than to set it at the next release, where somebody waits.
 void PreemptiveExecutor::put_off_alarm(Nanoseconds now) noexcept {
-  if (labels_.size() > 0 || shortest_ == kNever || armed_ > now + shortest_ + kMargin) return;
+  if (labels_.size() > 0 || armed_ > now + shortest_ + kMargin) return;
   Nanoseconds next = now + shortest_ + kLax;
   for (const JobThread& job : threads_) next = std::min(next, job.check);
   if (next > armed_) arm(next);
