@@ -347,8 +347,7 @@ class Preemptive(unittest.TestCase):
             tasks = {t["task"]: t for t in system.call("status")["tasks"]}
             told = [e for e in system.events() if e["kind"] == "demoted"]
         self.count("row 18 critical jobs under overload", sum(tasks[task]["cycles"] for task in critical))
-        self.assertGreater(tasks["c"]["missed"] + tasks["d"]["missed"], 10, "there is an overload")
-        self.assertGreater(tasks["c"]["demoted"] + tasks["d"]["demoted"], 0)
+        self.assertGreater(tasks["c"]["demoted"] + tasks["d"]["demoted"], 0, "there is an overload")
         self.assertEqual(sum(tasks[task]["demoted"] for task in critical), 0)
         self.assertTrue(told)
         for event in told:
