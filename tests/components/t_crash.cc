@@ -50,7 +50,7 @@ struct Crash {
     while (is("sleep")) ::pause();
     if (is("vanish")) ::syscall(SYS_exit, 0);  // the thread and nothing else
     if (is("scribble")) scribble();
-    while (is("hang")) ::access(armed.c_str(), F_OK);
+    while (is("hang")) (void)::access(armed.c_str(), F_OK);
   }
   // Into the file that lets it happen, the first time.
   void note_begin() {
