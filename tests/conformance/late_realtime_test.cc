@@ -15,9 +15,8 @@ namespace chimera::toy {
 namespace {
 
 constexpr Nanoseconds kSoon = milliseconds(1);
-constexpr Nanoseconds kGap = microseconds(200);
-constexpr Nanoseconds kRun = milliseconds(300);
-constexpr int kBadCycle = 20;
+constexpr Nanoseconds kRun = milliseconds(100);
+constexpr int kBadCycle = 10;
 
 struct Seen {
   Nanoseconds deadline;  // of the bad job
@@ -85,6 +84,8 @@ class LateSoon : public testing::TestWithParam<int> {
     EXPECT_LE(seen.delay(), kSoon) << "seen " << seen.delay().count / 1000 << " us after the deadline";
     EXPECT_EQ(seen.wrong_levels, 0u);
   }
+  // A job that is alone may be seen 0.75 ms late without anybody's doing.
+  static Nanoseconds gap() { return GetParam() == 0 ? microseconds(200) : microseconds(700); }
 };
 
 INSTANTIATE_TEST_SUITE_P(Beside, LateSoon, testing::Values(0, 3), [](const auto& one) {
@@ -92,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Beside, LateSoon, testing::Values(0, 3), [](const auto&
 });
 
 TEST_P(LateSoon, AJobThatComputes) {
-  const auto seen = judged(kGap, [] { return run_bad(computes, GetParam()); });
+  const auto seen = judged(gap(), [] { return run_bad(computes, GetParam()); });
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   expect_soon(*seen);
   EXPECT_EQ(seen->misses[0].culprit, seen->bad);
@@ -100,7 +101,7 @@ TEST_P(LateSoon, AJobThatComputes) {
 }
 
 TEST_P(LateSoon, AJobThatWaitsInASystemCall) {
-  const auto seen = judged(kGap, [] { return run_bad(waits, GetParam()); });
+  const auto seen = judged(gap(), [] { return run_bad(waits, GetParam()); });
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   expect_soon(*seen);
   EXPECT_EQ(seen->misses[0].culprit, seen->bad);
@@ -123,7 +124,7 @@ TEST_P(LateSoon, AJobThatNeverGotTheProcessor) {
     };
     return run(app, "starves", deadline);
   };
-  const auto seen = judged(kGap, starve);
+  const auto seen = judged(gap(), starve);
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   expect_soon(*seen);
 }
