@@ -79,6 +79,17 @@ TEST_F(Late, IsToldOnceAndBlamedForWaiting) {
   EXPECT_EQ(profile().missed, 1u);
 }
 
+// Nor are the releases that it was in the way of told as misses of their own.
+TEST_F(Late, IsToldOnceAlsoWhenItDropsReleases) {
+  wait = [this] {
+    (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(450));
+    has_seen = true;
+  };
+  run(650);
+  EXPECT_GE(profile().dropped, 2u);
+  EXPECT_EQ(listener.of(app.id("late")).size(), 1u);
+}
+
 TEST_F(Late, RaisesTheFlagWhileItIsUnderWay) {
   spec->on_miss = OnMiss::kFlag;
   run();

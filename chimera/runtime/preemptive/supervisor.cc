@@ -224,6 +224,7 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
     const Nanoseconds release = job.next + s.period * passed;
     releases_.drop({job.task, release - s.period, static_cast<std::uint32_t>(passed + 1)});
     job.job = {job.task, release, release + s.deadline};
+    releases_.forget_told(job.task);
     job.next = release + s.period;
     (void)apply(labels_.rekey(job.task, urgency_of(job, s.budget)), nullptr);
     processor_goes_on(now);
