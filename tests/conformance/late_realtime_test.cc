@@ -84,7 +84,7 @@ class LateSoon : public testing::TestWithParam<int> {
     EXPECT_LE(seen.delay(), kSoon) << "seen " << seen.delay().count / 1000 << " us after the deadline";
     EXPECT_EQ(seen.wrong_levels, 0u);
   }
-  // A job that is alone may be seen 0.75 ms late without anybody's doing.
+  // A job that is alone may be seen 0.6 ms late without anybody's doing.
   static Nanoseconds gap() { return GetParam() == 0 ? microseconds(200) : microseconds(700); }
 };
 

@@ -15,7 +15,7 @@ constexpr Nanoseconds kSleepsAtMost = seconds(2);
 // The supervisor never comes again at once: at the ceiling it would keep everybody else from running.
 constexpr Nanoseconds kSoonest = microseconds(5), kSeldom = microseconds(25);
 // A job that is late may be seen so much later, where nobody waits for it; the alarm is put off a little before that.
-constexpr Nanoseconds kLax = microseconds(750), kMargin = microseconds(200);
+constexpr Nanoseconds kLax = microseconds(600), kMargin = microseconds(150);
 
 }  // namespace
 
