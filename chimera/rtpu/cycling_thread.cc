@@ -29,12 +29,9 @@ std::int32_t priority_of(const ApplicationSpec& spec, std::uint32_t me, std::int
 Nanoseconds share(const ApplicationSpec& spec, std::uint32_t me, Nanoseconds window) {
   std::vector<ShareMember> members;
   for (const RtpuSpec& rtpu : spec.rtpus) members.push_back({rtpu.cpu, 0});
-  for (const TaskSpec& task : spec.tasks) {
-    const Nanoseconds time = task.server ? task.server->capacity : task.budget;
-    members[task.rtpu.index].load += static_cast<double>(time.count) / static_cast<double>(task.period.count);
-  }
-  const double share = share_of(members, me, realtime_share() - kShareMargin);
-  return {static_cast<std::int64_t>(share * static_cast<double>(window.count))};
+  for (const TaskSpec& task : spec.tasks) members[task.rtpu.index].load += load_of(task);
+  const double mine = share_of(members, me, realtime_share() - kShareMargin);
+  return {static_cast<std::int64_t>(mine * static_cast<double>(window.count))};
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ class Blame {
     if (release.count < waits.load(std::memory_order_relaxed)) waits.store(release.count, std::memory_order_relaxed);
   }
   /// Who is to blame for what the task missed since the last verdict; nothing when that was less than 100 ms ago.
-  /// Context: edge; wait-free; O(tasks).
+  /// Asks JobThreads::is_blocked, with what that means for the caller. Context: edge; O(tasks).
   std::optional<Verdict> judge(TaskId task, Nanoseconds now) noexcept;
 
  private:

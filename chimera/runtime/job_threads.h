@@ -15,8 +15,8 @@ class JobThreads {
   virtual bool claim(TaskId task) noexcept = 0;
   /// Execution time of the job of the task that is under way; 0 without one. Context: edge; wait-free.
   virtual Nanoseconds used_by_job(TaskId task) noexcept = 0;
-  /// True while a job of the task that is under way waits for something in a system call. Context: edge; one look into
-  /// the kernel's files.
+  /// True while a job of the task that is under way waits for something in a system call. A look into the kernel's
+  /// files, meanwhile others may act: what the caller knows of jobs may be over. Context: edge; some microseconds.
   virtual bool is_blocked(TaskId task) noexcept = 0;
 
  protected:

@@ -164,7 +164,8 @@ class Releases {
   /// What jobs of the task left for the others: the flag, signals sent, its state. Requires: none is under way.
   /// Context: edge.
   void settle_job(TaskId id, Nanoseconds now) noexcept;
-  /// That part of it which does not wait for the end of a job: the flag, stop, who is to blame. Context: edge.
+  /// That part of it which does not wait for the end of a job: the flag, stop, who is to blame. Others may act
+  /// meanwhile (Blame::judge): look at the task anew afterwards. Context: edge.
   void settle_at_once(TaskId id, Nanoseconds now) noexcept;
   bool is_unsettled(TaskId id) const noexcept { return of_[id.index].wants.load(std::memory_order_relaxed) != 0; }
   /// The job began and is abandoned at its deadline (reaction abort): counts the miss; end_job follows.
@@ -213,7 +214,7 @@ class Releases {
     std::atomic<std::uint64_t> history{0};  // of the last cycles, one bit each: 1 missed
   };
   enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4, kBlame = 8 };
-  enum Told : std::uint8_t { kLate = 1, kOverrun = 2, kWaitsLate = 4, kEnded = 8 };  // kWaitsLate: before it began
+  enum Told : std::uint8_t { kLate = 1, kWaitsLate = 2, kOverrun = 4, kEnded = 8 };  // kWaitsLate: before it began
 
   static std::int64_t time_to_deadline(const Job& job) noexcept {
     return job.deadline == kNever ? 0 : (job.deadline - job.release).count;
@@ -224,7 +225,7 @@ class Releases {
     return limit > 0 && task.profile.missed_in_a_row >= limit;
   }
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
-  bool was_told(TaskId task, Told what) const noexcept {
+  bool was_told(TaskId task, int what) const noexcept {
     return (of_[task.index].told.load(std::memory_order_relaxed) & what) != 0;
   }
   bool tell(TaskId task, Told what) noexcept {

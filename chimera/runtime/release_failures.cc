@@ -197,8 +197,8 @@ void Releases::drop(const DroppedRelease& dropped) noexcept {
   Task& task = tasks_[dropped.task.index];
   task.profile.missed += dropped.count;
   task.profile.missed_in_a_row += dropped.count;
-  const bool was_told_of = was_told(dropped.task, kLate) || was_told(dropped.task, kWaitsLate);  // what was in its way
-  if (!was_told_of) want_blame(task, dropped.last - task.spec->period * (std::int64_t{dropped.count} - 1));
+  const bool is_known = was_told(dropped.task, kLate | kWaitsLate);  // of the job that was in its way
+  if (!is_known) want_blame(task, dropped.last - task.spec->period * (std::int64_t{dropped.count} - 1));
   if (is_out_of_patience(task)) patience_lost_ = true;
 }
 

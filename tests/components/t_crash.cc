@@ -44,7 +44,7 @@ struct Crash {
     if (is("exit")) ::_exit(42);
     if (is("nan")) *y = std::nan("");
     if (is("block")) ::usleep(2'000);
-    if (is("doze") || is("sleep") || is("hang")) note_begin();
+    if (is("doze") || is("sleep") || is("hang") || is("vanish")) note_begin();
     if (is("doze")) ::usleep(20'000);
     while (is("linger") && ::access(armed.c_str(), F_OK) == 0) ::usleep(1'000);
     while (is("sleep")) ::pause();

@@ -214,8 +214,7 @@ class Preemptive(unittest.TestCase):
         self.took(f"{task}: seen after", seen[0]["at_ns"] - armed)
         self.took(f"{task}: ON again after", back - seen[0]["at_ns"])
         lost = self.grown(system, before)
-        if begun:
-            lost.update(self.told_late(task, begun, system.events(since)))
+        lost.update(self.told_late(task, begun, system.events(since)))
         return None if "watch" in lost or not self.is_judged(system) else lost
 
     def told_late(self, task, begun, events):

@@ -183,7 +183,7 @@ Nanoseconds PreemptiveExecutor::used_by_job(TaskId id) noexcept {
 bool PreemptiveExecutor::is_blocked(TaskId id) noexcept {
   const JobThread* job = of_task_[id.index];
   if (job == nullptr || job->phase != JobPhase::kBegun) return false;
-  leave();  // to look takes long
+  leave();  // to look takes some microseconds, and the kernel may let us wait
   const bool asleep = is_asleep(job->id);
   enter();
   return asleep;

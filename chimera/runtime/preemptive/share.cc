@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/runtime/preemptive/preemptive_executor.h"
+#include "chimera/schedule/utilisation.h"
 
 namespace chimera {
 namespace {
@@ -33,8 +34,7 @@ void PreemptiveExecutor::find_less_important() {
     const bool is_slowest = s.period == longest && longest > shortest;
     if (is_by_criticality(labels_.policy())) job.is_less_important = s.criticality < highest;
     if (labels_.policy() == Policy::kRm) job.is_less_important = is_slowest;
-    const Nanoseconds time = s.server ? s.server->capacity : s.budget;
-    if (!job.is_less_important) load += static_cast<double>(time.count) / static_cast<double>(s.period.count);
+    if (!job.is_less_important) load += load_of(s);
   }
   kept_for_important_ = {static_cast<std::int64_t>(load * static_cast<double>(place_.window.count))};
 }
