@@ -144,6 +144,29 @@ TEST_F(Late, StopsTheRunWhileItIsUnderWay) {
   EXPECT_GE(profile().missed, 1u);
 }
 
+// Each job is late, and the next is due when it ends: an edge that came for the task gets its turn in between.
+TEST_F(Late, TakesSignalsAlsoWhenItAlwaysIs) {
+  spec->period = spec->deadline = milliseconds(10);
+  std::atomic<bool> wants_off{false};
+  app.toy("late").during = [&, n = 0](const chimera_call&) mutable {
+    if (++n == 5) {
+      wants_off = true;
+      Doorbell(bell).ring();
+    }
+    (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(25));
+    return CHIMERA_OK;
+  };
+  listener.on_take = [&](Releases& releases, Nanoseconds now) {
+    const TaskId late = app.id("late");
+    if (!wants_off || !releases.may_touch(late)) return;
+    wants_off = false;
+    EXPECT_TRUE(releases.signal({&late, 1}, Signal::kOff, now).is_accepted);
+  };
+  run(1'000);
+  EXPECT_EQ(app.task("late").state, chimera::State::kOff);
+  EXPECT_EQ(profile().cycles, 5u);
+}
+
 TEST_F(Late, IsNobodyWhoEndsInTime) {
   has_seen = true;
   run();

@@ -7,6 +7,7 @@
 
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/runtime/edge_guest.h"
+#include "chimera/runtime/release.h"
 
 namespace chimera::toy {
 
@@ -27,7 +28,10 @@ class Listener final : public EdgeGuest {
     return found;
   }
 
-  void take(Releases&, Nanoseconds) noexcept override { listen(); }
+  void take(Releases& releases, Nanoseconds now) noexcept override {
+    listen();
+    if (on_take) on_take(releases, now);
+  }
   void told(const SignalReport&, Nanoseconds) noexcept override {}
   void missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept override {
     misses.push_back({task, verdict.culprit, verdict.is_blocked, now});
@@ -39,6 +43,7 @@ class Listener final : public EdgeGuest {
 
   std::vector<Miss> misses;
   std::function<void(TaskId, const Blame::Verdict&)> on_miss;
+  std::function<void(Releases&, Nanoseconds)> on_take;
 };
 
 }  // namespace chimera::toy

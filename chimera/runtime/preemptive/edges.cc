@@ -172,7 +172,9 @@ bool PreemptiveExecutor::claim(TaskId id) noexcept {
     cancel(*job, clock_.now());
     return true;
   }
-  return phase == JobPhase::kNone || phase == JobPhase::kCancelled;
+  const bool is_free = phase == JobPhase::kNone || phase == JobPhase::kCancelled;
+  job->is_awaited = !is_free;
+  return is_free;
 }
 
 Nanoseconds PreemptiveExecutor::used_by_job(TaskId id) noexcept {

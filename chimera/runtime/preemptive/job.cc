@@ -157,7 +157,9 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   me.is_shown = false;
   if (me.served || now - me.shown >= kShowEvery) show(me, now);  // another event may never come
   if (t.state != State::kOn) me.is_joined = false;  // the edge will say so too
-  if (releases_.is_unsettled(me.task) || !t.pending.empty() || is_paused_) ring_edge();
+  if (me.is_awaited) me.is_held = true;  // until the edge has looked: the next job may be due already
+  if (me.is_awaited || releases_.is_unsettled(me.task) || !t.pending.empty() || is_paused_) ring_edge();
+  me.is_awaited = false;
 }
 
 void PreemptiveExecutor::record_slice(const JobThread& job, Nanoseconds now) noexcept {

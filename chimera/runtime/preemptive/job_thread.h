@@ -57,6 +57,7 @@ struct JobThread {
   bool is_joined = false;      ///< is ON as far as the thread was told
   bool is_less_important = false;  ///< than others by what never changes: gives way before they do
   bool is_held = false;        ///< no job begins
+  bool is_awaited = false;     ///< an edge came for the task and found a job under way
   bool illegal = false;        ///< the flag, for the present job
 
   Job job;                     ///< the present one; by its own thread read when it begins
