@@ -123,6 +123,8 @@ class Comparison {
   }
   /// Never more than `most` pieces of work in a turn: as many as a ring has room for. Before run().
   void limit(std::uint64_t most) { most_ = most; }
+  /// Never less than `least`: as many as one round of a candidate takes. Before run().
+  void at_least(std::uint64_t least) { batch_ = least; }
 
   /// Measures all; ratios are to `baseline`, which is measured twice per repetition (A/A). Once per comparison.
   void run(std::size_t baseline) {
@@ -163,7 +165,6 @@ class Comparison {
   /// As much work as the slowest does in 200 us: long beside a clock read, short beside a scheduler's tick.
   std::uint64_t calibrate() {
     constexpr double kBatchNs = 200e3;
-    batch_ = 1;
     while (batch_ < most_) {
       double slowest = 0;
       for (auto& candidate : candidates_) {

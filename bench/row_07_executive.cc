@@ -38,11 +38,11 @@ class Candidate {
     if (!executive_.start()) std::exit(1);
     clock_.pause();
   }
-  // Runs about `jobs` jobs of tasks at 1 kHz.
+  // Runs about `jobs` jobs of tasks at 1 kHz, whatever the clock shows after a stall of the machine.
   void run(std::uint64_t jobs) {
-    until_ += milliseconds(periods_.of(jobs));
     clock_.resume();
-    executive_.run(until_);
+    const Nanoseconds begun = milliseconds((clock_.now() - executive_.origin()) / milliseconds(1));
+    executive_.run(begun + milliseconds(periods_.of(jobs)) + microseconds(500));
     clock_.pause();
   }
   // The bodies alone, with the clock reads that the executive needs: one at each wake, one at the end of each job.
@@ -84,7 +84,6 @@ class Candidate {
   ComputingClock job_clock_;
   Executive executive_;
   Periods periods_;
-  Nanoseconds until_;
 };
 
 Nanoseconds at_1_khz(std::uint32_t) { return milliseconds(1); }
@@ -171,6 +170,7 @@ int main(int argc, char** argv) {
   TapReader reader(*ring);
   Candidate tapped(10, at_1_khz, &tap);
   Comparison c(repetitions(argc, argv));
+  c.at_least(10'000);  // ten rounds of a thousand
   const auto bare_10 = c.add("bodies of 10", [&](std::uint64_t n) { ten.run_bare(n, 10); });
   const auto bare_1000 = c.add("bodies of 1000", [&](std::uint64_t n) { thousand.run_bare(n, 1000); });
   const auto bare_mixed = c.add("bodies of 10 rates", [&](std::uint64_t n) { mixed.run_bare(n, 1); });
@@ -188,7 +188,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   beyond(c, run_10, bare_10, "executive, per job beyond its body and its clock read, 10 tasks", figure_at_most(25));
-  beyond(c, run_1000, bare_1000, "the same, 1000 tasks", {});
+  beyond(c, run_1000, bare_1000, "the same, 1000 tasks", figure_at_most(35));
   beyond(c, run_mixed, bare_mixed, "the same, 10 tasks of 10 rates, a wake for each job", {});
   beyond(c, run_tapped, bare_10, "the same, 10 tasks with the tap on", {});
   Figure growth{.row = 7, .what = "executive, whole job, 1000 tasks against 10", .goal = ratio_at_most(2)};

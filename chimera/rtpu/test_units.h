@@ -77,7 +77,7 @@ struct Unit {
   State state(TaskId task) const { return segment.block.view().status(task).state; }
   double output(TaskId task) const {
     double value = 0;
-    std::memcpy(&value, tasks->tasks()[task.index].group.staging(), sizeof value);
+    std::memcpy(&value, tasks->tasks()[task.index].group.published() + 1, sizeof value);
     return value;
   }
 

@@ -17,15 +17,19 @@ namespace chimera {
 template <class Time>
 RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
   ReadyQueue& queue = releases.queue();
+  releases.look_again();
   for (Nanoseconds now = time.now();;) {
-    if (releases.stop_requested()) return RunEnd::kStopped;
-    if (releases.task_stopped()) return RunEnd::kTaskStopped;
-    if (now >= until) return RunEnd::kTime;
-    if (releases.edge_is_due(now)) {
-      releases.take_edge(now);
-      now = time.now();  // methods took their time
+    if (releases.must_look(now)) {
+      if (releases.stop_requested()) return RunEnd::kStopped;
+      if (releases.task_stopped()) return RunEnd::kTaskStopped;
+      if (now >= until) return RunEnd::kTime;
+      if (releases.edge_is_due(now)) {
+        releases.take_edge(now);
+        now = time.now();  // methods took their time
+      }
+      releases.release_due(now);
+      releases.rest(until);
     }
-    releases.release_due(now);
     if (queue.is_empty()) {
       if (!releases.anything_left()) return RunEnd::kNothingLeft;
       const Nanoseconds next = releases.next_event();
@@ -38,7 +42,7 @@ RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
     CycleTime cycle;
     const BodyEnd body = releases.begin_job(job, cycle, releases.is_illegal());
     const Nanoseconds end = time.end_of(job, body, now);
-    releases.tap().record(TapKind::kRun, now, job.task, CHIMERA_CYCLE, (end - now).count);
+    if (releases.tap().is_on()) releases.tap().record(TapKind::kRun, now, job.task, CHIMERA_CYCLE, (end - now).count);
     releases.end_job(job, cycle, body, now, end, end - now);
     now = time.after(end);
   }

@@ -3,18 +3,15 @@
 
 #include <cstring>
 
+#include "chimera/runtime/cycle_step.h"
 #include "chimera/runtime/safety.h"
 
 namespace chimera {
 namespace {
 
-std::uint64_t all_valid(const Task& task) noexcept {
-  const std::size_t n = task.outputs.size();
-  return n >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1;
-}
-
 void note_fault(Task& task, Method method, Nanoseconds at) noexcept {
   ++task.faults.count;
+  task.has_news = true;
   task.faults.at = at;
   task.faults.method = method;
   if (task.faults.last.text[0] == '\0') std::strcpy(task.faults.last.text, "answered with a fault and gave no text");
@@ -31,34 +28,12 @@ Answer default_answer(Method method) noexcept { return method == Method::kError 
 
 }  // namespace
 
-// The halves below are put in place by force: at the length of a short cycle the calls themselves would show.
-[[gnu::always_inline]] static inline void read_input(Input& input) noexcept {
-  (void)input.group.latch();
-  chimera_port& port = *input.port;
-  port.slot = input.group.slot();
-  port.bit = input.bit;
-  port.value = const_cast<std::byte*>(input.group.values()) + input.offset;
-}
-
-// Groups produced elsewhere: once each, however many inputs look at them.
-[[gnu::always_inline]] static inline void refresh_copies(Task& task) noexcept {
-  for (LocalGroup* copy : task.copies)
-    if (!copy->refresh()) ++task.profile.stale;
-}
-
-[[gnu::always_inline]] static inline void tell_running(Task& task, std::uint32_t method) noexcept {
-  task.running->store((task.id.index + 1) << 8 | method, std::memory_order_relaxed);
-}
-
 void read_inputs(Task& task) noexcept {
-  refresh_copies(task);
-  for (Input& input : task.inputs) read_input(input);
+  cycle_step::refresh_copies(task);
+  for (Input& input : task.inputs) cycle_step::read_input(input);
 }
 
-void aim_outputs(Task& task) noexcept {
-  std::byte* staging = task.group.staging();
-  for (Output& output : task.outputs) output.port->value = staging + output.offset;
-}
+void stage_outputs(Task& task) noexcept { cycle_step::stage(task); }
 
 void record_fault(Task& task, Method method, const char* text, Nanoseconds at) noexcept {
   task.faults.last.code = 0;
@@ -78,7 +53,7 @@ void run_background(Task& task, Method method, Nanoseconds at) noexcept {
 Answer call_method(Task& task, Method method, Nanoseconds at) noexcept {
   const chimera_method body = task.component->methods[static_cast<int>(method)];
   if (body == nullptr) return default_answer(method);
-  tell_running(task, static_cast<std::uint32_t>(method));
+  cycle_step::show_running(task, static_cast<std::uint32_t>(method));
   task.said.text[0] = '\0';
   task.said.code = 0;
   const Answer answer = answer_of(method, body(task.instance, &task.call));
@@ -93,91 +68,71 @@ static bool refuses_unsafe(Task& task, Method method, Nanoseconds now) noexcept 
   if (is_safe(task, text)) return false;
   ++task.profile.rejected;
   record_fault(task, method, text, now);
-  task.group.prefill();
   return true;
 }
 
-[[gnu::always_inline]] static inline Answer publish_in_place(Task& task, Method method, std::uint64_t valid,
-                                                             Nanoseconds now) noexcept {
+Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) noexcept {
   if (task.has_safety && refuses_unsafe(task, method, now)) return Answer::kFault;
   task.valid = valid;
   task.group.publish(now, valid);
-  task.group.prefill();
-  std::byte* staging = task.group.staging();
-  for (Output& output : task.outputs) output.port->value = staging + output.offset;
   return Answer::kOk;
 }
 
-Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) noexcept {
-  return publish_in_place(task, method, valid, now);
-}
-
-State follow_error(Task& task, Next at, Nanoseconds now) noexcept {
+State follow_error(Task& task, Next at, Nanoseconds now, JobClock* clock) noexcept {
   while (at.kind == Next::Kind::kStep) {
     const StepRule& step = rule(at.step);
+    const Nanoseconds began = clock == nullptr ? now : clock->now();
     if (step.before & kReadIn) read_inputs(task);
+    stage_outputs(task);
     Answer answer = call_method(task, step.method, now);
     if (answer == Answer::kOk && (step.after_ok & kWriteOut)) answer = publish(task, step.method, task.valid, now);
-    if (answer != Answer::kOk) task.group.prefill();
+    const Nanoseconds ended = clock == nullptr ? now : clock->now();
+    task.profile.execution[static_cast<int>(step.method)].add(ended - began);
     at = step.next[static_cast<int>(answer)];
   }
   task.state = at.state;
   return at.state;
 }
 
-// call_method for the one method that every component has and that runs all the time.
-[[gnu::always_inline]] static inline BodyEnd call_cycle(Task& task, Nanoseconds at) noexcept {
-  const chimera_method body = task.component->methods[CHIMERA_CYCLE];
-  if (body == nullptr) return {};
-  tell_running(task, CHIMERA_CYCLE);
-  task.said.text[0] = '\0';
-  task.said.code = 0;
-  const std::int32_t value = body(task.instance, &task.call);
-  if (value == CHIMERA_OK) [[likely]] return {};
-  if (value == CHIMERA_PARTIAL) return {Answer::kOk, Method::kCycle, true};
-  const Answer answer = answer_of(Method::kCycle, value);
-  if (answer == Answer::kFault) take_fault(task, Method::kCycle, at);
-  return {answer, Method::kCycle};
+BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept { return cycle_step::begin(task, time); }
+
+Answer cycle_step::ask_sync(Task& task, Nanoseconds at) noexcept { return call_method(task, Method::kSync, at); }
+
+BodyEnd cycle_step::judge_body(Task& task, std::int32_t value, Nanoseconds at) noexcept {
+  BodyEnd body;
+  body.is_partial = value == CHIMERA_PARTIAL;
+  if (value != CHIMERA_OK && !body.is_partial) body.answer = answer_of(Method::kCycle, value);
+  if (body.answer == Answer::kFault) take_fault(task, Method::kCycle, at);
+  if (body.answer == Answer::kOk && task.has_safety && refuses_unsafe(task, Method::kCycle, at))
+    body.answer = Answer::kFault;
+  return body;
 }
 
-BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept {
-  chimera_call& call = task.call;
-  call.now_ns = time.release.count;
-  call.dt_ns = (time.release - task.last_release).count;
-  call.deadline_ns = time.deadline.count;
-  call.dropped = time.dropped;
-  call.illegal = time.illegal ? 1u : 0u;
-  if (task.spec->aperiodic) {
-    const Answer answer = call_method(task, Method::kSync, time.release);
-    if (answer != Answer::kOk) return {answer, Method::kSync};
-  }
-  refresh_copies(task);
-  for (Input& input : task.inputs) {
-    read_input(input);
-    input.port->seen = input.sequence;
-    input.sequence = input.group.slot()->sequence;
-  }
-  return call_cycle(task, time.release);
+void publish_cycle(Task& task, const CycleTime& time, Nanoseconds end) noexcept {
+  cycle_step::publish(task, time, end);
 }
 
-State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end, bool may_publish) noexcept {
-  const Step step = body.method == Method::kSync ? Step::kSync : Step::kCycle;
-  Answer answer = body.answer;
-  if (answer == Answer::kOk && may_publish) answer = publish_in_place(task, Method::kCycle, all_valid(task), end);
-  else if (answer != Answer::kNoEvent) task.group.prefill();
-  if (answer == Answer::kOk || answer == Answer::kAborted) {
-    if (answer == Answer::kAborted) ++task.profile.aborted;
-    else if (!may_publish) ++task.profile.held;
-    if (answer == Answer::kOk && may_publish) {
+State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end, bool may_publish,
+                JobClock* clock) noexcept {
+  switch (body.answer) {
+    case Answer::kNoEvent:
+      return State::kOn;
+    case Answer::kAborted:
+      ++task.profile.aborted;
+      return State::kOn;
+    case Answer::kOk:
+      if (!may_publish) {
+        ++task.profile.held;
+        return State::kOn;
+      }
       if (body.is_partial) ++task.profile.partial;
-      ++task.profile.cycles;
-      ++task.call.cycle;
-      task.last_release = time.release;
-    }
-    return State::kOn;
+      publish_cycle(task, time, end);
+      return State::kOn;
+    case Answer::kFault:
+      break;
   }
-  if (answer == Answer::kNoEvent) return State::kOn;
-  return follow_error(task, rule(step).next[static_cast<int>(answer)], end);
+  const Step step = body.method == Method::kSync ? Step::kSync : Step::kCycle;
+  return follow_error(task, rule(step).next[static_cast<int>(Answer::kFault)], end, clock);
 }
 
 }  // namespace chimera

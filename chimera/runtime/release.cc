@@ -31,8 +31,11 @@ Releases::Releases(TaskSet& set, const RunOptions& options)
     const bool can = options_.can_demote || !set.is_mine(tasks_[i].id);
     CHIMERA_ASSERT(is_built(spec.on_miss, can) && is_built(spec.on_overrun, can));
     of_[i].start_margin = start_margin(spec);
+    of_[i].task = &tasks_[i];
+    of_[i].is_plain = options.threads == nullptr && spec.tolerated_of == 0;
     of_[i].budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
+  if (options_.stop == nullptr) options_.stop = &kNoStop;
   if (options_.guest != nullptr) blame_.emplace(tasks_, options_.threads);
 }
 
@@ -68,6 +71,11 @@ void Releases::take_edge(Nanoseconds now) noexcept {
   refresh_members(now);
 }
 
+void Releases::record_release(const Job& job) noexcept {
+  const std::int64_t left = job.deadline == kNever ? 0 : (job.deadline - job.release).count;
+  tap_.record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, left);
+}
+
 void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
@@ -78,8 +86,9 @@ void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
   Task& task = tasks_[act.task.index];
   if (act.signal == Signal::kWakeup) return ring(task, now);
   // A busy task takes it like a signal it sent itself: after its job and the error handling of that.
-  if (may_touch(act.task)) carry_out(task, act.signal, now);
-  else if (!task.outbox.try_push({act.signal, act.task})) tap_.record(TapKind::kSignal, now, task.id, 0, 0);
+  if (may_touch(act.task)) return carry_out(task, act.signal, now);
+  task.has_news = true;
+  if (!task.outbox.try_push({act.signal, act.task})) tap_.record(TapKind::kSignal, now, task.id, 0, 0);
 }
 
 void Releases::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
@@ -170,6 +179,7 @@ void Releases::settle_job(TaskId id, Nanoseconds now) noexcept {
 }
 
 void Releases::settle_at_once(TaskId id, Nanoseconds now) noexcept {
+  look_again();
   const std::uint8_t wants = of_[id.index].wants.fetch_and(kSettle, std::memory_order_relaxed);
   if (wants & kRaiseFlag) raise_flag(id, now);
   if ((wants & kStop) && !task_stopped_) {
@@ -181,6 +191,7 @@ void Releases::settle_at_once(TaskId id, Nanoseconds now) noexcept {
 
 // After methods of the task ran outside an edge: what they left behind.
 void Releases::settle(Task& task, Nanoseconds now) noexcept {
+  look_again();
   record_faults(task);
   if (task.is_tapped) tap_.append_row(task);
   if (!task.outbox.empty()) set_.deliver(task);

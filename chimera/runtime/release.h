@@ -34,8 +34,8 @@
 #include "chimera/base/fixed.h"
 #include "chimera/runtime/blame.h"
 #include "chimera/runtime/context_tap.h"
+#include "chimera/runtime/cycle_step.h"
 #include "chimera/runtime/edge_guest.h"
-#include "chimera/runtime/job_step.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
 #include "chimera/runtime/tap_ring.h"
@@ -85,6 +85,18 @@ class Releases {
   void begin(Nanoseconds origin) noexcept;
   Nanoseconds origin() const noexcept { return origin_; }
 
+  /// True when something else than the next job may be due: an edge, a release, the end of the run. False for most
+  /// jobs of a row. Whoever gets true looks at all of them and then calls rest().
+  bool must_look(Nanoseconds now) const noexcept {
+    return now >= calm_until_ || stop_requested() || (options_.guest != nullptr && options_.guest->is_due(now));
+  }
+  /// Everything that is due by now was looked at; the run ends at `until`.
+  void rest(Nanoseconds until) noexcept {
+    const bool is_calm = !set_.has_pending() && !task_stopped_;
+    calm_until_ = is_calm ? std::min({queue_.next_release(), next_act_, until}) : kAtOnce;
+  }
+  /// The next must_look() is true.
+  void look_again() noexcept { calm_until_ = kAtOnce; }
   /// True when take_edge has something to do.
   bool edge_is_due(Nanoseconds now) const noexcept {
     return set_.has_pending() || next_act_ <= now || (options_.guest != nullptr && options_.guest->is_due(now));
@@ -102,7 +114,7 @@ class Releases {
     return n_on_ > 0 || set_.has_pending() || next_act_ != kNever || options_.guest != nullptr;
   }
   bool stop_requested() const noexcept {
-    return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
+    return options_.stop->load(std::memory_order_relaxed);
   }
   bool task_stopped() const noexcept { return task_stopped_; }
   /// The first task whose reaction was `stop`. Requires: task_stopped().
@@ -128,9 +140,9 @@ class Releases {
   }
 
   /// False when the job must not start: its release is then counted as dropped, with all that follows.
-  bool may_start(const Job& job, Nanoseconds now) noexcept {
+  [[gnu::always_inline]] bool may_start(const Job& job, Nanoseconds now) noexcept {
     const OfTask& t = of_[job.task.index];
-    tap_.record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
+    if (tap_.is_on()) record_release(job);
     if (!t.skip_next && now + t.start_margin <= job.deadline) return true;
     const bool starts = decide_start(job, now);
     if (options_.threads == nullptr && t.wants.load(std::memory_order_relaxed) != 0) settle_job(job.task, now);
@@ -139,23 +151,37 @@ class Releases {
   /// The illegal-configuration flag, to be read once for each job. Context: edge.
   bool is_illegal() const noexcept { return set_.is_illegal(); }
   /// Runs the body: inputs are read at this moment, nothing is published. `time` is for end().
-  BodyEnd begin_job(const Job& job, CycleTime& time, bool illegal) noexcept {
-    Task& task = tasks_[job.task.index];
-    if (options_.threads == nullptr) task.is_busy = true;  // else whoever released the job has said so
-    if (options_.threads == nullptr) forget_told(job.task);
+  [[gnu::always_inline]] BodyEnd begin_job(const Job& job, CycleTime& time, bool illegal) noexcept {
+    OfTask& t = of_[job.task.index];
+    Task& task = *t.task;
+    if (options_.threads == nullptr) {  // else whoever released the job has done so
+      task.is_busy = true;
+      t.told.store(0, std::memory_order_relaxed);
+    }
     // Field by field: a copy of a fresh aggregate loads wider than it was stored, and waits for the store buffer.
     time.release = job.release;
     time.deadline = job.deadline;
-    time.dropped = of_[job.task.index].dropped;
+    time.dropped = t.dropped;
     time.illegal = illegal;
-    return begin_cycle(task, time);
+    return cycle_step::begin(task, time);
   }
   /// The job ended at `end`, begun at `start`, having used `used` of execution time.
-  void end_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
-               Nanoseconds used) noexcept {
-    tasks_[job.task.index].is_busy = false;
-    conclude_job(job, time, body, start, end, used);
-    if (of_[job.task.index].wants.load(std::memory_order_relaxed) != 0) settle_job(job.task, end);
+  [[gnu::always_inline]] void end_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start,
+                                      Nanoseconds end, Nanoseconds used) noexcept {
+    OfTask& t = of_[job.task.index];
+    Task& task = *t.task;
+    task.is_busy = false;
+    const bool in_time = end <= job.deadline && used <= t.budget;
+    if (body.is_good() && in_time && t.is_plain && t.told.load(std::memory_order_relaxed) == 0) [[likely]] {
+      count_times(task, job, start, end, used);
+      task.profile.missed_in_a_row = 0;
+      cycle_step::publish(task, time, end);
+      t.dropped -= time.dropped;  // this cycle was told of those
+      if (task.has_news || task.is_tapped) [[unlikely]] look_after(task);
+    } else {
+      conclude_job(job, time, body, start, end, used);
+    }
+    if (t.wants.load(std::memory_order_relaxed) != 0) settle_job(job.task, end);
   }
   /// The first half of end_job, which touches nothing but the task: failures of time, publication, error handling.
   /// Context: cycle, on the task's own thread.
@@ -201,14 +227,19 @@ class Releases {
   void drop(const DroppedRelease& dropped) noexcept;
 
  private:
+  static constexpr Nanoseconds kAtOnce{INT64_MIN};
+  static constexpr std::atomic<bool> kNoStop{false};
+
   // Everything a job needs beside the Task, in one cache line.
   struct alignas(64) OfTask {
+    Task* task = nullptr;
     Nanoseconds start_margin;  // a job starts while now + start_margin <= deadline
     Nanoseconds budget;        // kNever: none
     std::uint64_t faults_seen = 0;
     std::uint32_t dropped = 0;  // since the last completed cycle
     bool skip_next = false;
     bool is_on = false;
+    bool is_plain = true;  // no threads, nothing tolerated: a good job in time needs no judgement
     std::atomic<std::uint8_t> wants{0};  // of the others
     std::atomic<std::uint8_t> told{0};   // of the present job
     std::atomic<std::uint64_t> history{0};  // of the last cycles, one bit each: 1 missed
@@ -216,9 +247,7 @@ class Releases {
   enum Wants : std::uint8_t { kSettle = 1, kRaiseFlag = 2, kStop = 4, kBlame = 8 };
   enum Told : std::uint8_t { kLate = 1, kWaitsLate = 2, kOverrun = 4, kEnded = 8 };  // kWaitsLate: before it began
 
-  static std::int64_t time_to_deadline(const Job& job) noexcept {
-    return job.deadline == kNever ? 0 : (job.deadline - job.release).count;
-  }
+  void record_release(const Job& job) noexcept;
   void drop_on_purpose(const DroppedRelease& dropped) noexcept;
   static bool is_out_of_patience(const Task& task) noexcept {
     const std::uint32_t limit = task.spec->max_consecutive;
@@ -232,6 +261,14 @@ class Releases {
     return (of_[task.index].told.fetch_or(what, std::memory_order_acq_rel) & (what | kEnded)) == 0;
   }
   std::uint8_t end_telling(TaskId task) noexcept;
+  void count_times(Task& task, const Job& job, Nanoseconds start, Nanoseconds end, Nanoseconds used) noexcept {
+    if (blame_) blame_->ended(job.task, used, end);
+    Profile& p = task.profile;
+    p.execution[CHIMERA_CYCLE].add(used);
+    p.response.add(end - job.release);
+    p.start_delay.add(start - job.release);
+  }
+  void look_after(Task& task) noexcept;
   void want_at_once(const Task& task, OnMiss reaction) noexcept;
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
   void want_blame(const Task& task, Nanoseconds release) noexcept {
@@ -270,6 +307,7 @@ class Releases {
   RunOptions options_;
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever;  ///< of the script, on the clock
+  Nanoseconds calm_until_ = kAtOnce;
   std::vector<OfTask> of_;
   ContextTap tap_;
   std::optional<Blame> blame_;  // with a guest

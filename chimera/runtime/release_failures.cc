@@ -33,7 +33,7 @@ bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
   if (reaction == OnMiss::kStop) want(task, kStop);
   if (reaction == OnMiss::kError) {
     record_fault(task, Method::kCycle, "its minimum time can no longer be granted", now);
-    follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], now);
+    follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], now, set_.clock());
   }
   if (is_out_of_patience(task) && task.state == State::kOn) give_up(task, now);
   want(task, kSettle);
@@ -50,21 +50,26 @@ void Releases::conclude_job(const Job& job, const CycleTime& time, BodyEnd body,
     Profile& p = task.profile;
     const std::uint8_t told = end_telling(job.task);
     if (told & kLate) end = std::max(end, job.deadline + Nanoseconds{1});  // it could not say so before
-    if (blame_) blame_->ended(job.task, used, end);
-    p.execution[CHIMERA_CYCLE].add(used);
-    p.response.add(end - job.release);
-    p.start_delay.add(start - job.release);
+    count_times(task, job, start, end, used);
     failed = end > job.deadline || used > t.budget;
     if (failed) may_publish = judge(task, job, body, end, used, told);
     else p.missed_in_a_row = 0;
     if (!failed && task.spec->tolerated_of > 0) (void)remember(task, false);
   }
   const std::uint64_t cycles = task.profile.cycles;
-  const State state = end_cycle(task, body, time, end, may_publish);
+  const State state = end_cycle(task, body, time, end, may_publish, set_.clock());
   if (task.profile.cycles != cycles) t.dropped -= time.dropped;  // this cycle was told of those
   if (failed && is_out_of_patience(task) && state == State::kOn) give_up(task, end);
+  look_after(task);
+}
+
+// What a job left for the others to see.
+void Releases::look_after(Task& task) noexcept {
+  OfTask& t = of_[task.id.index];
+  task.has_news = false;
   const bool listens = tap_.is_on() || options_.guest != nullptr;
-  const bool tells = listens && task.faults.count != t.faults_seen;
+  if (!listens) t.faults_seen = task.faults.count;
+  const bool tells = task.faults.count != t.faults_seen;
   if (task.state != State::kOn || !task.outbox.empty() || tells) want(task, kSettle);
   else if (task.is_tapped && options_.threads == nullptr) tap_.append_row(task);
 }
@@ -169,7 +174,7 @@ bool Releases::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why
 // max_consecutive: the component may degrade or shut down in error(), but the task ends in ERROR either way.
 void Releases::give_up(Task& task, Nanoseconds at) noexcept {
   record_fault(task, Method::kCycle, "missed as many deadlines in a row as max_consecutive allows", at);
-  follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], at);
+  follow_error(task, rule(Step::kCycle).next[static_cast<int>(Answer::kFault)], at, set_.clock());
   task.state = State::kError;
   task.profile.missed_in_a_row = 0;
 }
@@ -181,7 +186,7 @@ void Releases::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noex
 }
 
 void Releases::expire_waiting(const Job& job) noexcept {
-  tap_.record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, time_to_deadline(job));
+  record_release(job);
   tap_.record(TapKind::kMiss, job.deadline, job.task, tasks_[job.task.index].call.cycle);
   drop(DroppedRelease{job.task, job.release, 1});
 }

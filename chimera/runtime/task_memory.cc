@@ -144,7 +144,6 @@ Result<void> TaskMemory::construct(Task& task, Nanoseconds now) {
   task.group = GroupWriter(groups_[incarnation_ % 2], payload_bytes_);
   std::copy(fill_.begin(), fill_.end(), task.group.staging());
   task.group.publish(now, initial_valid_);
-  task.group.prefill();
   task.valid = initial_valid_;
   wire(task);
   return {};
@@ -187,7 +186,10 @@ void TaskMemory::wire(Task& task) noexcept {
   for (auto& [port, text] : resources_) live(*port)->value = text.data();
   task.inputs = inputs_;
   task.outputs = outputs_;
-  aim_outputs(task);
+  task.all_outputs = outputs_.size() >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << outputs_.size()) - 1;
+  task.cycle = component_->methods[CHIMERA_CYCLE];
+  task.asks_sync = spec_->aperiodic;
+  stage_outputs(task);
 }
 
 void TaskMemory::destroy(Task& task) noexcept {

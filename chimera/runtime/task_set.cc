@@ -240,6 +240,7 @@ void TaskSet::on_set_changed() noexcept {
     on_[task.id.index] = (is_mine(task.id) ? task.state : place_.others->state(task.id)) == State::kOn;
   on_set_legal_ = variables_->is_legal(on_);
   if (raised_by_.is_valid()) lower_flags(false);
+  judge_flag();
   if (place_.others != nullptr) place_.others->changed();
 }
 
@@ -256,6 +257,7 @@ std::int32_t TaskSet::host_signal(void* context, std::uint32_t signal, const cha
   if (!target.is_valid() || signal > CHIMERA_SIGNAL_WAKEUP) return CHIMERA_FAULT;
   // Only a task behind a server has a doorbell: others are woken by time.
   if (signal == CHIMERA_SIGNAL_WAKEUP && !host->set->spec_.tasks[target.index].server) return CHIMERA_FAULT;
+  host->task->has_news = true;
   return host->task->outbox.try_push({static_cast<Signal>(signal), target}) ? CHIMERA_OK : CHIMERA_FAULT;
 }
 

@@ -92,6 +92,8 @@ class TaskSet {
 
   /// The clock that methods see; by the executor, before anything is signalled. Context: setup.
   void attach(JobClock& clock) noexcept { clock_ = &clock; }
+  /// That clock; null before.
+  JobClock* clock() const noexcept { return clock_; }
   /// Whose threads run what components do beside their cycles; by the owner of the executor, before anything is
   /// signalled. Without one that is done before kill alone (and by executors of virtual time). It outlives the set.
   /// Context: setup.
@@ -152,7 +154,7 @@ class TaskSet {
 
   /// The illegal-configuration flag: raised by somebody, or because the ON set is not legal. Context: cycle.
   bool is_illegal() const noexcept {
-    if (is_flag_raised() || !on_set_legal_) return true;
+    if (is_illegal_here_) return true;
     for (const std::atomic<std::uint32_t>* flag : foreign_flags_)
       if (flag->load(std::memory_order_relaxed) != 0) return true;
     return false;
@@ -165,6 +167,7 @@ class TaskSet {
   void raise_flag(bool up) noexcept {
     flag_raised_ = up;
     if (!up) lower_flags(true);
+    judge_flag();
   }
   /// The reaction of a task of this context raises it until that task is no longer ON. Context: edge.
   void raise_flag_for(TaskId task) noexcept {
@@ -205,6 +208,8 @@ class TaskSet {
     Step step = Step::kInit;
     bool constructs = false;
     Answer answer = Answer::kOk;
+    Nanoseconds used;  // by the present step so far, transfers included
+    bool has_new_constants = false;
   };
   /// A constant of another context.
   struct ForeignConstant {
@@ -235,7 +240,10 @@ class TaskSet {
   bool begin_background(Task& task, Nanoseconds now);
   bool end_background(Task& task, Nanoseconds now);
   Answer run_method(Task& task, Method method, Nanoseconds now, JobClock* clock);
-  Next conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now);
+  Next conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began);
+  static Nanoseconds read(JobClock* clock, Nanoseconds otherwise) noexcept {
+    return clock == nullptr ? otherwise : clock->now();
+  }
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
   Answer after_ok(Task& task, const StepRule& step, Nanoseconds now);
   void take_over(Task& task) noexcept;
@@ -246,6 +254,7 @@ class TaskSet {
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
 
   void lower_flags(bool of_all) noexcept;
+  void judge_flag() noexcept { is_illegal_here_ = is_flag_raised() || !on_set_legal_; }
   static std::int32_t host_expired(void* context);
   static std::int32_t host_signal(void* context, std::uint32_t signal, const char* task);
   static void host_spend(void* context, std::int64_t ns);
@@ -279,6 +288,7 @@ class TaskSet {
   std::vector<bool> raises_;  // whose reaction holds the flag up
   TaskId raised_by_;          // one of them
   bool on_set_legal_ = true;
+  bool is_illegal_here_ = false;  // what these come to, for every job
 };
 
 }  // namespace chimera

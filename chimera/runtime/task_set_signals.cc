@@ -84,7 +84,8 @@ std::string TaskSet::explain(const SignalReport& report) const {
 SignalReport TaskSet::carry_out(TaskId id, Signal signal, Nanoseconds now) {
   Task& task = tasks_[id.index];
   Serving& serving = serving_[id.index];
-  serving = {{true, false, Refusal::kNone, signal, id, task.state, task.state}, Step::kInit, false, Answer::kOk};
+  serving = Serving{};
+  serving.report = {true, false, Refusal::kNone, signal, id, task.state, task.state};
   task.call.now_ns = now.count;
   task.call.illegal = is_illegal() ? 1u : 0u;
   if (signal == Signal::kSpawn) {
@@ -110,7 +111,7 @@ SignalReport TaskSet::served(TaskId id, Nanoseconds now) {
   Serving& serving = serving_[id.index];
   task.in_service = false;
   if (!serving.constructs) {
-    advance(task, conclude(task, rule(serving.step), serving.answer, now), now);
+    advance(task, conclude(task, rule(serving.step), serving.answer, now, read(clock_, now)), now);
   } else if (serving.constructs = false; serving.answer == Answer::kOk) {
     advance(task, next(State::kNotCreated, Signal::kSpawn, false), now);
   } else {
@@ -135,25 +136,34 @@ SignalReport TaskSet::advance(Task& task, Next at, Nanoseconds now) {
 bool TaskSet::follow(Task& task, Next at, Nanoseconds now) {
   while (at.kind == Next::Kind::kStep) {
     const StepRule& step = rule(at.step);
-    Answer answer = Answer::kFault;
-    if (before_step(task, step, now)) {
-      if (is_served(step.method)) return hand_over(task, at.step), false;
-      answer = run_method(task, step.method, now, clock_);
+    const Nanoseconds began = read(clock_, now);
+    serving_[task.id.index].used = {};
+    if (!before_step(task, step, now)) {
+      at = step.next[static_cast<int>(Answer::kFault)];
+      continue;
     }
-    at = conclude(task, step, answer, now);
+    if (is_served(step.method)) {
+      serving_[task.id.index].used = read(clock_, now) - began;
+      hand_over(task, at.step);
+      return false;
+    }
+    at = conclude(task, step, run_method(task, step.method, now, clock_), now, began);
   }
   task.state = at.state;
   return true;
 }
 
-Next TaskSet::conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now) {
+// The step `began` here, or here again after the service thread had it.
+Next TaskSet::conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began) {
+  Serving& serving = serving_[task.id.index];
+  serving.has_new_constants = false;
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
-  if (answer != Answer::kOk && task.state != State::kNotCreated) task.group.prefill();
+  task.profile.execution[static_cast<int>(step.method)].add(serving.used + (read(clock_, now) - began));
+  if (serving.has_new_constants) reinit_users(task.id, now);
   return step.next[static_cast<int>(answer)];
 }
 
 Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock* clock) {
-  const Nanoseconds began = clock == nullptr ? now : clock->now();
   if (method == Method::kKill) task.descriptor = -1;
   if (method == Method::kKill && !end_background(task, now)) return Answer::kFault;
   MethodGate* gate = clock == clock_ ? gate_ : nullptr;  // not on the service thread
@@ -163,8 +173,6 @@ Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock*
   if (method == Method::kInit && answer == Answer::kOk && !begin_background(task, now)) answer = Answer::kFault;
   const chimera_event_source source = event_source_of(*task.component);
   if (method == Method::kInit && answer == Answer::kOk && source != nullptr) task.descriptor = source(task.instance);
-  const Nanoseconds ended = clock == nullptr ? now : clock->now();
-  task.profile.execution[static_cast<int>(method)].add(ended - began);
   return answer;
 }
 
@@ -218,7 +226,9 @@ void TaskSet::serve(TaskId id, JobClock& clock) {
     serving.answer = construct(task, clock.now());
   } else {
     const Method method = rule(serving.step).method;
-    serving.answer = run_method(task, method, clock.now(), &clock);
+    const Nanoseconds began = clock.now();
+    serving.answer = run_method(task, method, began, &clock);
+    serving.used += clock.now() - began;
     if (method == Method::kKill) memories_[id.index].destroy(task);
   }
   place_.serving->store(0, std::memory_order_relaxed);
@@ -228,6 +238,7 @@ void TaskSet::serve(TaskId id, JobClock& clock) {
 
 bool TaskSet::before_step(Task& task, const StepRule& step, Nanoseconds now) {
   if (step.before & kReadIn) read_inputs(task);
+  stage_outputs(task);
   if (step.before & kReadOut) take_over(task);
   if (step.before & kReadConst) {
     read_foreign_constants();
@@ -250,7 +261,7 @@ Answer TaskSet::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
       return Answer::kFault;
     }
     if (place_.others != nullptr) publish_constants(task);
-    if (changed > 0) reinit_users(task.id, now);
+    serving_[task.id.index].has_new_constants = changed > 0;
   }
   if (step.after_ok & kWriteOut) {
     const bool turns_on = step.step == Step::kOn;

@@ -74,7 +74,7 @@ State run_cycle(TaskSet& set, std::size_t task, Nanoseconds at) {
   const CycleTime time{at, at + milliseconds(1), 0, set.is_illegal()};
   Task& t = set.tasks()[task];
   const BodyEnd body = begin_cycle(t, time);
-  const State state = end_cycle(t, body, time, at + microseconds(10), true);
+  const State state = end_cycle(t, body, time, at + microseconds(10), true, nullptr);
   set.deliver(t);
   return state;
 }

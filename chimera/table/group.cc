@@ -21,12 +21,9 @@ GroupWriter::GroupWriter(std::span<std::byte> memory, std::uint32_t payload_byte
   CHIMERA_ASSERT(memory.size() >= group_bytes(payload_bytes));
   CHIMERA_ASSERT(is_aligned(base_, kCacheLine));
   latest_ = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with publish() of a predecessor
+  last_ = slot_of(latest_);
+  next_ = slot_of(latest_ + 1);
   shared_copy::release_fence();  // as at the end of publish()
-}
-
-void GroupWriter::prefill() noexcept {
-  const std::byte* published = base_ + kCacheLine + latest_ % kSlots * stride_;
-  shared_copy::move_inside(staging(), published + sizeof(chimera_slot), payload_bytes_);
 }
 
 GroupReader::GroupReader(const std::byte* memory, std::uint32_t payload_bytes) noexcept

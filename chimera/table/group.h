@@ -37,7 +37,7 @@ class GroupWriter {
 
   /// Where the next publication's values go; 8-byte aligned. Changes with every publish(). What stands there is
   /// that of four publications ago until prefill(). Context: cycle; wait-free.
-  std::byte* staging() const noexcept { return next() + sizeof(chimera_slot); }
+  std::byte* staging() const noexcept { return next_ + sizeof(chimera_slot); }
   /// Makes the staged values the latest. Context: cycle; wait-free.
   void publish(Nanoseconds now, std::uint64_t valid) noexcept;
   /// Stages payload_bytes from `values` and publishes them: what a task with a local table does after a method.
@@ -48,17 +48,19 @@ class GroupWriter {
   void prefill() noexcept;
   /// The latest publication, its values behind the header; nobody changes it before the next but one.
   /// Context: cycle; wait-free.
-  const chimera_slot* published() const noexcept {
-    return reinterpret_cast<const chimera_slot*>(base_ + kCacheLine + latest_ % kSlots * stride_);
-  }
+  const chimera_slot* published() const noexcept { return reinterpret_cast<const chimera_slot*>(last_); }
   /// Publications so far. Context: cycle; wait-free.
   std::uint64_t sequence() const noexcept { return latest_; }
   std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
 
  private:
-  std::byte* next() const noexcept { return base_ + kCacheLine + (latest_ + 1) % kSlots * stride_; }
+  std::byte* slot_of(std::uint64_t publication) const noexcept {
+    return base_ + kCacheLine + publication % kSlots * stride_;
+  }
 
   std::byte* base_ = nullptr;
+  std::byte* last_ = nullptr;  // slot of the latest publication
+  std::byte* next_ = nullptr;  // the slot after it, which is being filled
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t stride_ = 0;
   std::uint64_t latest_ = 0;  // what the counter says; nobody else stores to it
@@ -124,12 +126,18 @@ class GroupReader {
 };
 
 inline void GroupWriter::publish(Nanoseconds now, std::uint64_t valid) noexcept {
-  shared_copy::store_header(next(), {now.count, latest_ + 1, valid, 0});
+  shared_copy::store_header(next_, {now.count, latest_ + 1, valid, 0});
   ++latest_;
   // Whoever loads this value sees the whole slot. pairs with the first load of try_read()
   shared_copy::word(base_).store(latest_, std::memory_order_release);
   // Whoever sees a byte of the next staging sees this counter. pairs with the fence of read_slot()
   shared_copy::release_fence();
+  last_ = next_;
+  next_ = slot_of(latest_ + 1);
+}
+
+inline void GroupWriter::prefill() noexcept {
+  shared_copy::move_inside(staging(), last_ + sizeof(chimera_slot), payload_bytes_);
 }
 
 inline void GroupWriter::write(const std::byte* values, Nanoseconds now, std::uint64_t valid) noexcept {

@@ -95,9 +95,15 @@ inline void opaque_copy(void* to, const void* from, std::size_t bytes) noexcept 
 inline void copy_out(void* to, const std::byte* from, std::size_t bytes) noexcept { opaque_copy(to, from, bytes); }
 /// From private memory into the register.
 inline void copy_in(std::byte* to, const void* from, std::size_t bytes) noexcept { opaque_copy(to, from, bytes); }
-/// Within the register, by its writer.
+/// Within the register, by its writer: from one slot to another, `bytes` behind the header. A slot is whole cache lines
+/// and its header 32 bytes, so blocks of 32 bytes stay inside it. A few of them cost less than a call of memcpy.
 inline void move_inside(std::byte* to, const std::byte* from, std::size_t bytes) noexcept {
-  opaque_copy(to, from, bytes);
+  constexpr std::size_t kBlock = 32, kCallBeyond = 256;
+  if (bytes > kCallBeyond) return opaque_copy(to, from, bytes);
+  for (const std::byte* end = from + bytes; from < end; from += kBlock, to += kBlock) {
+    std::memcpy(to, from, kBlock);
+    asm volatile("" : "+r"(from), "+r"(to));  // else the compiler makes a call of the loop
+  }
 }
 
 #endif

@@ -28,10 +28,13 @@ struct Spread {
 
 /// Everything counted about one task. Written by the job step and the executor of its context only.
 struct Profile {
-  Spread execution[CHIMERA_METHODS];  ///< time a method used, transfers included; virtual time: modelled
+  // What every job adds to comes first (Task).
   Spread response;                    ///< release to completion of a cycle
   Spread start_delay;                 ///< release to start of a cycle: its max minus min is the start jitter
   std::uint64_t cycles = 0;           ///< completed (published) cycles since spawn
+  std::uint32_t missed_in_a_row = 0;
+  /// Time that a method used, both its transfers included; virtual time: modelled.
+  Spread execution[CHIMERA_METHODS];
   std::uint64_t aborted = 0;          ///< cycles that gave up
   std::uint64_t partial = 0;          ///< published cycles that gave up with a result of use
   std::uint64_t tolerated = 0;        ///< missed deadlines that called no reaction, as `tolerate` allows
@@ -48,7 +51,6 @@ struct Profile {
   std::uint64_t events_lost = 0;      ///< behind a server: that came while it was not, or waited when it ceased to be;
                                       ///< of any task: that it sent and that found no room on the way to another rtpu
   std::uint64_t exhausted = 0;        ///< times its server ran out of capacity in the middle of a job
-  std::uint32_t missed_in_a_row = 0;
   Nanoseconds on_since = kNever;      ///< kNever: it is not ON
   Nanoseconds on_before;              ///< time that it was ON until then
 

@@ -66,7 +66,7 @@ RowRecord Solo::cycle() noexcept {
   const BodyEnd body = begin_cycle(task, time);
   RowRecord row;
   row.is_run = true;
-  row.state = static_cast<std::uint8_t>(end_cycle(task, body, time, now_, true));
+  row.state = static_cast<std::uint8_t>(end_cycle(task, body, time, now_, true, &clock_));
   row.answer = static_cast<std::uint8_t>(task.faults.count != faults ? Answer::kFault : body.answer);
   row.valid = task.valid;
   row.time_ns = shim_->cycle_time().count;

@@ -15,25 +15,30 @@ Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, Mode
     if (tasks[i].server) served_.push_back({.task = TaskId(i), .server = {}, .job = {}});
     else if (tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back(i);
     if (tasks[i].on_miss == OnMiss::kDemote) demoters_.push_back(i);
+    if (tasks[i].on_miss == OnMiss::kDemote || tasks[i].on_overrun == OnMiss::kDemote) has_demotion_ = true;
   }
 }
 
 RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
   open_servers();
+  releases_.look_again();
   for (;;) {
     use_processor(now);
     complete();
-    expire(now);
-    demote_due(now);
-    if (releases_.stop_requested()) return RunEnd::kStopped;
-    if (releases_.task_stopped()) return RunEnd::kTaskStopped;
-    if (now >= until) {
-      leave_processor();
-      return RunEnd::kTime;
+    if (!abandoners_.empty()) expire(now);
+    if (has_demotion_) demote_due(now);
+    if (releases_.must_look(now)) {
+      if (releases_.stop_requested()) return RunEnd::kStopped;
+      if (releases_.task_stopped()) return RunEnd::kTaskStopped;
+      if (now >= until) {
+        leave_processor();
+        return RunEnd::kTime;
+      }
+      if (releases_.edge_is_due(now)) take_edge(now);
+      releases_.release_due(now);
+      releases_.rest(until);
     }
-    if (releases_.edge_is_due(now)) take_edge(now);
-    releases_.release_due(now);
-    follow_servers(now);
+    if (!served_.empty()) follow_servers(now);
     if (dispatch(now)) continue;
     const bool idle = !running_.is_valid() && releases_.queue().is_empty();
     if (idle && !releases_.anything_left()) return RunEnd::kNothingLeft;
@@ -42,12 +47,18 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
 }
 
 Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
-  Nanoseconds next = std::min({releases_.next_event(), next_deadline(), next_demotion(now), next_server(now)});
+  Nanoseconds next = releases_.next_event();
+  if (has_exceptions()) next = std::min(next, next_exception(now));
   if (!running_.is_valid()) return next;
   next = std::min(next, now + active_[running_.index].remaining);
   if (!by_laxity_ || releases_.queue().is_empty()) return next;
   const Nanoseconds since = now - releases_.origin();
   return std::min(next, releases_.origin() + options_.quantum * (since / options_.quantum + 1));
+}
+
+// What only tasks with the reactions abort and demote and those behind servers have.
+Nanoseconds Preemptive::next_exception(Nanoseconds now) noexcept {
+  return std::min({next_deadline(), next_demotion(now), next_server(now)});
 }
 
 // Deadlines lie on the grid of releases, so they are known without looking at any job.
@@ -86,6 +97,10 @@ void Preemptive::use_processor(Nanoseconds until) noexcept {
   Active& a = active_[running_.index];
   a.used += until - mark_;
   a.remaining -= until - mark_;
+  if (served_.empty()) {
+    mark_ = until;
+    return;
+  }
   if (Served* s = served(running_); s != nullptr && !a.is_demoted) s->server.charge(until - mark_);
   mark_ = until;
 }
@@ -112,8 +127,8 @@ void Preemptive::end(Active& a, Nanoseconds now) noexcept {
   if (a.is_demoted) (void)std::remove(demoted_.begin(), demoted_.begin() + n_demoted_--, a.job.task);
   a.is_demoted = false;
   releases_.queue().finish(a.job.task);
-  forget(a.job.task);
-  releases_.end_job(without_server(a.job), a.time, a.body, a.first_start, now, a.used);
+  if (!served_.empty()) forget(a.job.task);
+  releases_.end_job(served_.empty() ? a.job : without_server(a.job), a.time, a.body, a.first_start, now, a.used);
 }
 
 void Preemptive::expire(Nanoseconds now) noexcept {
@@ -181,9 +196,14 @@ void Preemptive::take_edge(Nanoseconds& now) noexcept {
   mark_ = slice_start_ = now;
 }
 
-// Gives the processor to the most urgent job. True when that job needed no time: it has ended, and the instant is
-// not over, for it may have sent signals.
-bool Preemptive::dispatch(Nanoseconds now) noexcept {
+// Nothing can happen before `end`: a job that begins now and ends then needs no look in between.
+bool Preemptive::runs_through(Nanoseconds end) const noexcept {
+  return !by_laxity_ && !has_exceptions() && !releases_.must_look(end - Nanoseconds{1});
+}
+
+// Gives the processor to the most urgent job. True when that job has ended at `now`: it needed no time, or nothing
+// happened until its end. The instant is not over, for it may have sent signals.
+bool Preemptive::dispatch(Nanoseconds& now) noexcept {
   ReadyQueue& queue = releases_.queue();
   while (!queue.is_empty()) {
     if (running_.is_valid()) {
@@ -191,8 +211,13 @@ bool Preemptive::dispatch(Nanoseconds now) noexcept {
       preempt(now);
     }
     if (!take_processor(queue.pop(), now)) continue;
+    if (const Nanoseconds end = now + active_[running_.index].remaining; runs_through(end)) {
+      now = end;
+      use_processor(end);
+    }
     complete();
     if (!running_.is_valid()) return true;
+    if (!by_laxity_) return false;  // it was the most urgent one
   }
   if (!running_.is_valid() && n_demoted_ > 0) {
     running_ = demoted_[0];
@@ -223,7 +248,7 @@ bool Preemptive::must_yield() noexcept {
 bool Preemptive::take_processor(const Job& job, Nanoseconds now) noexcept {
   Active& a = active_[job.task.index];
   if (!a.has_begun) {
-    const Job own = without_server(job);
+    const Job own = served_.empty() ? job : without_server(job);
     if (!releases_.may_start(own, now)) {
       forget(job.task);
       return false;

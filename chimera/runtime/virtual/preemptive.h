@@ -59,6 +59,8 @@ class Preemptive {
   };
 
   Nanoseconds next_event(Nanoseconds now) noexcept;
+  Nanoseconds next_exception(Nanoseconds now) noexcept;
+  bool has_exceptions() const noexcept { return !abandoners_.empty() || has_demotion_ || !served_.empty(); }
   Nanoseconds next_deadline() noexcept;
   Nanoseconds next_demotion(Nanoseconds now) noexcept;
   Nanoseconds budget_left(TaskId task) const noexcept;
@@ -70,7 +72,8 @@ class Preemptive {
   void demote_due(Nanoseconds now) noexcept;
   void demote(TaskId task) noexcept;
   void take_edge(Nanoseconds& now) noexcept;
-  bool dispatch(Nanoseconds now) noexcept;
+  bool dispatch(Nanoseconds& now) noexcept;
+  bool runs_through(Nanoseconds end) const noexcept;
   bool must_yield() noexcept;
   void preempt(Nanoseconds now) noexcept;
   bool take_processor(const Job& job, Nanoseconds now) noexcept;
@@ -97,6 +100,7 @@ class Preemptive {
   TaskId running_;
   Nanoseconds slice_start_, mark_;  // of the running job: start of its slice, up to where its time is counted
   bool by_laxity_;
+  bool has_demotion_ = false;  // some task has it as a reaction
   bool has_begun_ = false;
 };
 

@@ -11,7 +11,6 @@ namespace {
 struct ModelledTime {
   Releases& releases;
   ModelledClock& clock;
-  std::span<const TaskSpec> tasks;
   const std::uint64_t* seed;  // null: none
   Nanoseconds origin;
   Nanoseconds& now_;
@@ -25,7 +24,7 @@ struct ModelledTime {
     const bool had_event = body.answer != Answer::kNoEvent;
     Task& task = releases.task(job.task);
     if (task.background != nullptr && had_event) run_background(task, Method::kCycle, start);
-    set(start + modelled_time(tasks[job.task.index], job.task, job.release - origin, clock.spent(), had_event, seed));
+    set(start + modelled_time(*task.spec, job.task, job.release - origin, clock.spent(), had_event, seed));
     return now_;
   }
   Nanoseconds after(Nanoseconds end) noexcept {
@@ -67,7 +66,7 @@ RunEnd VirtualExecutor::run(Nanoseconds duration) noexcept {
   const Nanoseconds until = duration == kNever ? kNever : origin() + duration;
   clock_.set(now_);
   if (how_.preemptive) return preemptive_.run(now_, until);
-  ModelledTime time{releases_, clock_, set_.spec().tasks, how_.seed ? &*how_.seed : nullptr, origin(), now_};
+  ModelledTime time{releases_, clock_, how_.seed ? &*how_.seed : nullptr, origin(), now_};
   return run_cycles(releases_, time, until);
 }
 
