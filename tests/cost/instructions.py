@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Counts the instructions of a job: a long run less a short one, under valgrind, divided by the jobs between them. The
-"""Counts the instructions of a job: a long run less a short one, under valgrind, divided by the jobs between them. The
 count repeats to the instruction whatever else the machine does. It is held to instructions.txt, and only falls: where
 it is smaller the file is to say so (--write), where it is larger the change needs a decision that names what it buys.
+
   instructions.py [--write] BUILD"""
 import os
 import pathlib
