@@ -21,8 +21,6 @@ GroupWriter::GroupWriter(std::span<std::byte> memory, std::uint32_t payload_byte
   CHIMERA_ASSERT(memory.size() >= group_bytes(payload_bytes));
   CHIMERA_ASSERT(is_aligned(base_, kCacheLine));
   latest_ = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with publish() of a predecessor
-  last_ = slot_of(latest_);
-  next_ = slot_of(latest_ + 1);
   shared_copy::release_fence();  // as at the end of publish()
 }
 
@@ -34,6 +32,12 @@ GroupReader::GroupReader(const std::byte* memory, std::uint32_t payload_bytes) n
 bool GroupReader::try_again(std::uint64_t n, chimera_slot& header, std::byte* values) const noexcept {
   for (std::uint32_t tries = 1; tries < kReadTries; ++tries)
     if (read_slot(n, header, values)) return true;
+  return false;
+}
+
+bool GroupReader::try_again(std::uint64_t n, chimera_slot* to) const noexcept {
+  for (std::uint32_t tries = 1; tries < kReadTries; ++tries)
+    if (read_slot(n, to)) return true;
   return false;
 }
 

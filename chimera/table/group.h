@@ -37,7 +37,7 @@ class GroupWriter {
 
   /// Where the next publication's values go; 8-byte aligned. Changes with every publish(). What stands there is
   /// that of four publications ago until prefill(). Context: cycle; wait-free.
-  std::byte* staging() const noexcept { return next_ + sizeof(chimera_slot); }
+  std::byte* staging() const noexcept { return slot_of(latest_ + 1) + sizeof(chimera_slot); }
   /// Makes the staged values the latest. Context: cycle; wait-free.
   void publish(Nanoseconds now, std::uint64_t valid) noexcept;
   /// Stages payload_bytes from `values` and publishes them: what a task with a local table does after a method.
@@ -48,7 +48,7 @@ class GroupWriter {
   void prefill() noexcept;
   /// The latest publication, its values behind the header; nobody changes it before the next but one.
   /// Context: cycle; wait-free.
-  const chimera_slot* published() const noexcept { return reinterpret_cast<const chimera_slot*>(last_); }
+  const chimera_slot* published() const noexcept { return reinterpret_cast<const chimera_slot*>(slot_of(latest_)); }
   /// Publications so far. Context: cycle; wait-free.
   std::uint64_t sequence() const noexcept { return latest_; }
   std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
@@ -59,8 +59,6 @@ class GroupWriter {
   }
 
   std::byte* base_ = nullptr;
-  std::byte* last_ = nullptr;  // slot of the latest publication
-  std::byte* next_ = nullptr;  // the slot after it, which is being filled
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t stride_ = 0;
   std::uint64_t latest_ = 0;  // what the counter says; nobody else stores to it
@@ -85,11 +83,7 @@ class GroupReader {
   /// Requires: sizeof(chimera_slot) + payload_bytes at `to`. Context: cycle; bounded; plain loads only.
   [[nodiscard]] bool try_read(chimera_slot* to) const noexcept {
     std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
-    for (std::uint32_t tries = 0; tries < kReadTries; ++tries) {
-      shared_copy::copy_out(to, slot(n), sizeof *to + payload_bytes_);
-      if (was_whole(n)) return true;
-    }
-    return false;
+    return read_slot(n, to) || try_again(n, to);
   }
   /// The latest published slot in place: its values follow the header. Only where writer and reader run
   /// in one context, so that nothing is published while the pointer is in use.
@@ -107,18 +101,24 @@ class GroupReader {
     const std::byte* from = slot(n);
     shared_copy::load_header(header, from);
     shared_copy::copy_out(values, from + sizeof header, payload_bytes_);
-    return was_whole(n);
+    return was_whole(base_, n);
+  }
+  bool read_slot(std::uint64_t& n, chimera_slot* to) const noexcept {
+    const std::byte* const base = base_;  // a copy may write anywhere, as the compiler sees it
+    shared_copy::copy_out(to, slot(n), sizeof *to + payload_bytes_);
+    return was_whole(base, n);
   }
   // After a copy of slot n: was it left alone? Then n becomes the latest.
-  bool was_whole(std::uint64_t& n) const noexcept {
+  static bool was_whole(const std::byte* base, std::uint64_t& n) noexcept {
     shared_copy::acquire_fence();  // pairs with the fence at the end of publish()
-    const std::uint64_t m = shared_copy::word(base_).load(std::memory_order_acquire);  // acquire: for the next try
+    const std::uint64_t m = shared_copy::word(base).load(std::memory_order_acquire);  // acquire: for the next try
     const bool is_whole = m - n <= kSlots - 2;  // n + kSlots is begun once the counter says n + kSlots - 1
     n = m;
     return is_whole;
   }
   // The tries after the first, seldom needed.
   bool try_again(std::uint64_t n, chimera_slot& header, std::byte* values) const noexcept;
+  bool try_again(std::uint64_t n, chimera_slot* to) const noexcept;
 
   const std::byte* base_ = nullptr;
   std::uint32_t payload_bytes_ = 0;
@@ -126,18 +126,19 @@ class GroupReader {
 };
 
 inline void GroupWriter::publish(Nanoseconds now, std::uint64_t valid) noexcept {
-  shared_copy::store_header(next_, {now.count, latest_ + 1, valid, 0});
-  ++latest_;
+  // All members are loaded first: a store to the group may change them, as the compiler sees it.
+  std::byte* const base = base_;
+  const std::uint64_t n = latest_ + 1;
+  shared_copy::store_header(slot_of(n), {now.count, n, valid, 0});
   // Whoever loads this value sees the whole slot. pairs with the first load of try_read()
-  shared_copy::word(base_).store(latest_, std::memory_order_release);
+  shared_copy::word(base).store(n, std::memory_order_release);
   // Whoever sees a byte of the next staging sees this counter. pairs with the fence of read_slot()
   shared_copy::release_fence();
-  last_ = next_;
-  next_ = slot_of(latest_ + 1);
+  latest_ = n;
 }
 
 inline void GroupWriter::prefill() noexcept {
-  shared_copy::move_inside(staging(), last_ + sizeof(chimera_slot), payload_bytes_);
+  shared_copy::move_inside(staging(), slot_of(latest_) + sizeof(chimera_slot), payload_bytes_);
 }
 
 inline void GroupWriter::write(const std::byte* values, Nanoseconds now, std::uint64_t valid) noexcept {
