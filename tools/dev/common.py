@@ -39,12 +39,12 @@ class Progress:
             print("\r\033[K", end="", flush=True)
 
 
-def run_logged(command, log, pattern, env=None):
+def run_logged(command, log, pattern, env=None, cwd=ROOT):
     """Runs `command` with its output in `log`; lines that match `pattern` are progress. Returns the exit code."""
     progress = Progress()
     log.parent.mkdir(parents=True, exist_ok=True)
     with open(log, "w", encoding="utf-8", errors="replace") as file:
-        process = subprocess.Popen(command, cwd=ROOT, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        process = subprocess.Popen(command, cwd=cwd, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, text=True, errors="replace")
         for line in process.stdout:
             file.write(line)
