@@ -44,8 +44,8 @@ class Other:
         if done.returncode != 0:
             if self._git("rev-parse", "--git-dir").returncode != 0:
                 raise Refused(f"--against {commit}: this folder is no git checkout, so there is no other commit in it")
-            raise Refused(f"--against {commit}: no such commit here; `git log --oneline` lists them, and after a shallow "
-                          "clone `git fetch --unshallow` brings the older ones", 2)
+            raise Refused(f"--against {commit}: no such commit here; `git log --oneline` lists them, and after a "
+                          "shallow clone `git fetch --unshallow` brings the older ones", 2)
         return done.stdout.decode().strip()[:10]
 
     def row_numbers(self):
