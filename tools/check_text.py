@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every tracked text: the licence line, no path of one machine, no word about a workplace, nothing left to do."""
+"""Every tracked file: a name that says what it is. Every tracked text: the licence line, no path of one machine, no
+word about a workplace, nothing left to do."""
 import pathlib
 import re
 import sys
@@ -9,7 +10,15 @@ import sources  # noqa: E402
 
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
 LICENSED = (".h", ".cc", ".c", ".py", ".sh", ".cmake", ".js", ".ts", ".css", ".pml")
-BINARY = (".png", ".jpg", ".gz", ".zip", ".woff2", ".ico")
+BINARY = (".png", ".jpg", ".gz", ".zip", ".woff2", ".ico", ".stl", ".dae")
+# What a program leaves behind in a folder has none of these endings, or a name that nobody would type.
+ENDINGS = LICENSED + BINARY + (
+    ".md", ".txt", ".html", ".svg", ".1",                        # to read
+    ".yaml", ".json", ".xml", ".csv", ".urdf", ".idl", ".obj",   # to be read by a program
+    ".expected", ".partner", ".store", ".events",                # what a test or an example is held against
+    ".in", ".bash", ".service", ".install", ".lintian-overrides")  # to install
+NAMES = ("dev", "LICENSE", ".ci/run", ".gitignore", ".gitattributes", ".clang-format", ".clang-tidy")
+PART = re.compile(r"[A-Za-z0-9_.][A-Za-z0-9_.@+-]{0,79}")
 # The words are put together here, so that this file does not complain about itself.
 FORBIDDEN = (
     ("a path of one machine", re.compile("|".join([
@@ -31,8 +40,18 @@ def needs_licence(name):
     return name.endswith(LICENSED) or name.split("/")[-1] in ("CMakeLists.txt", "dev") or name == ".ci/run"
 
 
+def is_known(name):
+    """Inputs of a corpus may have names without endings, and so may the files of a folder debian/."""
+    parts = name.split("/")
+    free = "debian" in parts[:-1] or any(part.endswith("_corpus") for part in parts[:-1])
+    return all(PART.fullmatch(part) for part in parts) and (free or name in NAMES or name.endswith(ENDINGS))
+
+
 def check(root):
     for name in sources.files(root):
+        if not is_known(name):
+            yield f"{name}: no name of a source, a text or data; tools/check_text.py lists the endings and names"
+            continue
         if name.endswith(BINARY) or "_corpus/" in name:
             continue
         content = sources.text(root, name)
@@ -48,6 +67,7 @@ def check(root):
 
 
 _HEAD = f"// {LICENCE}\n"
+_UNKNOWN = "{}: no name of a source, a text or data; tools/check_text.py lists the endings and names"
 PLANTED = (
     ({"a.cc": _HEAD + "int x;\n", "b.sh": "#!/bin/sh\n# " + LICENCE + "\n", "c.md": "text\n"}, None),
     ({"a.cc": "int x;\n"}, f"a.cc:1: the first line lacks '{LICENCE}'"),
@@ -56,6 +76,13 @@ PLANTED = (
     ({"c.md": "\nin /ho" + "me/ann/x\n"}, "c.md:2: a path of one machine: '/ho" + "me/a'"),
     ({"c.yaml": "from Py" + "PI.org\n"}, "c.yaml:1: a host of a package registry: 'Py" + "PI.org'"),
     ({"a.cc": _HEAD + "// iss" + "ue 12\n"}, "a.cc:2: a word about how the text came to be: 'iss" + "ue 1'"),
+    ({"dev": "# " + LICENCE + "\n", ".gitignore": "", "a/x_corpus/smallest": "", "debian/control": "",
+      "a@.service": ""}, None),
+    ({"library/tcp:127.0.0.1:99999": ""}, _UNKNOWN.format("library/tcp:127.0.0.1:99999")),
+    ({"library/" + 255 * "x": ""}, _UNKNOWN.format("library/" + 255 * "x")),
+    ({"library/" + 90 * "x" + ".cc": _HEAD}, _UNKNOWN.format("library/" + 90 * "x" + ".cc")),
+    ({"bench/core": ""}, _UNKNOWN.format("bench/core")),
+    ({"a b.txt": ""}, _UNKNOWN.format("a b.txt")),
     ({"a.cc": _HEAD + "// TO" + "DO\n"}, "a.cc:2: something left to do: 'TO" + "DO'"),
 )
 
