@@ -2,6 +2,7 @@
 """./dev bench --against COMMIT: the same rows of this checkout and of another commit, in turn, pair by pair."""
 import collections
 import pathlib
+import re
 import shutil
 import statistics
 import subprocess
@@ -107,17 +108,27 @@ def rows_of_both(other, wanted, known):
     return [row for row in sorted(known) if row in there]
 
 
+def measuring(root, numbers):
+    """Names under bench/ of the programs of these rows and of the headers of bench/ that they include."""
+    found, queue = set(), [path.name for path in rows.programs(rows.sources(root), [])
+                           if int(path.name.split("_")[1]) in numbers]
+    while queue:
+        name = queue.pop()
+        if name not in found and (root / "bench" / name).is_file():
+            found.add(name)
+            queue += re.findall(r'#include "bench/([^"]+)"', (root / "bench" / name).read_text(encoding="utf-8"))
+    return found
+
+
 def differing(here, there, numbers):
     """Names of the files that measure, where they are not the same in both trees."""
-    found = []
-    for name in sorted({path.name for root in (here, there) for row, paths in rows.sources(root).items()
-                        for path in paths if row in numbers} |
-                       {path.name for root in (here, there) for path in (root / "bench").glob("*.h")}):
-        texts = [path.read_bytes() if path.exists() else None
-                 for path in (here / "bench" / name, there / "bench" / name)]
-        if texts[0] != texts[1]:
-            found.append(name)
-    return found
+    ours, theirs = measuring(here, numbers), measuring(there, numbers)
+    return sorted(name for name in ours | theirs if name not in ours & theirs or
+                  (here / "bench" / name).read_bytes() != (there / "bench" / name).read_bytes())
+
+
+def duration(seconds):
+    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
 
 def keyed(figures):
@@ -135,7 +146,7 @@ def measure(here, there, numbers, pairs, run=rows.run):
     alternates. `here` and `there` are roots of trees."""
     measured, begin = [], time.monotonic()
     for pair in range(pairs):
-        left = f", about {(time.monotonic() - begin) / pair * (pairs - pair) / 60:.1f} min left" if pair else ""
+        left = f", about {duration((time.monotonic() - begin) / pair * (pairs - pair))} left" if pair else ""
         common.step(f"pair {pair + 1} of {pairs}{left}")
         sides = [(here, []), (there, [])]
         progress = common.Progress()

@@ -89,8 +89,12 @@ class OtherCommit(unittest.TestCase):
 
     def test_programs_that_differ_are_named(self):
         with checkout() as here, checkout(("row_07_a.cc", "row_07_b.py", "row_08_c.cc")) as there:
-            (there / "bench" / "row_07_a.cc").write_text("another\n")
-            self.assertEqual(against.differing(here, there, [7]), ["row_07_a.cc", "row_07_b.py"])
+            for root, text in ((here, "same"), (there, "other")):
+                (root / "bench" / "row_07_a.cc").write_text('#include "bench/used.h"\n')
+                (root / "bench" / "used.h").write_text('#include "bench/deep.h"\n')
+                (root / "bench" / "deep.h").write_text(text)
+                (root / "bench" / "unused.h").write_text(text)
+            self.assertEqual(against.differing(here, there, [7]), ["deep.h", "row_07_b.py"])
 
 
 class Rows(unittest.TestCase):
