@@ -17,7 +17,7 @@
 #   without those of null and alignment, a fifth faster.
 # chimera_script_test(NAME LABEL label [TREES tree...] [DEPENDS target...] COMMAND command...)
 #   A test that is a command. Exit 77 = skipped, the last line of its output is the reason.
-#   Labels: unit process realtime size symbol model (and page firmware). TREES: debug (default) tsan release.
+#   Labels: unit process model (debug), threads (tsan), symbol realtime (release). TREES: debug (default) tsan release.
 
 find_package(Threads REQUIRED)
 set(CHIMERA_PYTHON /usr/bin/python3 CACHE FILEPATH "Debian's: the one with python3-yaml and jsonschema")
@@ -61,6 +61,8 @@ set(CHIMERA_FEWER_CHECKS -fno-sanitize=null,alignment)
 
 # Everything `./dev test` runs in this tree; `all` in the debug tree, less in the others.
 add_custom_target(tests_needed)
+# Everything that the tests labelled "unit" of this tree run: ./dev test --quick.
+add_custom_target(tests_quick)
 
 # gtest precompiled once, reused by every test binary.
 if(CHIMERA_TESTS)
@@ -121,6 +123,9 @@ function(_chimera_test_binary target label sources libs depends)  # [compile opt
   add_test(NAME ${target} COMMAND ${target} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   _chimera_test_properties(${target} ${label})
   add_dependencies(tests_needed ${target} ${depends})
+  if(label STREQUAL "unit")
+    add_dependencies(tests_quick ${target} ${depends})
+  endif()
 endfunction()
 
 function(chimera_tests name)
@@ -167,6 +172,9 @@ function(chimera_script_test name)
   _chimera_test_properties(${name} ${arg_LABEL})
   if(arg_DEPENDS)
     add_dependencies(tests_needed ${arg_DEPENDS})
+    if(arg_LABEL STREQUAL "unit")
+      add_dependencies(tests_quick ${arg_DEPENDS})
+    endif()
   endif()
 endfunction()
 

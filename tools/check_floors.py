@@ -9,7 +9,7 @@ import sources  # noqa: E402
 
 FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "config": 6,
          "rtpu": 6, "keeper": 7, "trial": 7, "control": 7, "subsystem": 7, "draw": 7, "desk": 8, "manager": 8,
-         "record": 8, "shell": 8, "web": 8, "link": 8}
+         "record": 8, "shell": 8}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
                        "chimera/task/number_at.h", "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")
@@ -73,7 +73,36 @@ def heavy_refusal(name, path):
     return "slow to compile: include it in the one .cc that needs it" if name.endswith(".h") else None
 
 
+def told_floors(root):
+    """{folder: floor} as CONTRIBUTING.md draws the floors; none without that file."""
+    if not (root / "CONTRIBUTING.md").is_file():
+        return None
+    drawing = re.search(r"^## Floors\n\n((?: {4}.*\n)+)", sources.text(root, "CONTRIBUTING.md"), re.MULTILINE)
+    found, waiting = {}, []
+    for word in re.sub(r"\|[^|]*\|", "", drawing[1] if drawing else "").split():
+        if not word.isdigit():
+            waiting.append(word)
+            continue
+        found |= dict.fromkeys(waiting, int(word))
+        waiting = []
+    return found
+
+
+def drawing_complaints(root):
+    told = told_floors(root)
+    if told is None:
+        return
+    there = {name.split("/")[1] for name in sources.files(root) if re.match(r"chimera/\w+/", name)}
+    for folder in sorted(set(told) | there):
+        if folder not in there:
+            yield f"CONTRIBUTING.md: floor '{folder}' is no folder of chimera/"
+        elif told.get(folder) != FLOOR.get(folder):
+            yield (f"CONTRIBUTING.md: floor of '{folder}': {told.get(folder)}, but tools/check_floors.py says "
+                   f"{FLOOR.get(folder)}")
+
+
 def check(root):
+    yield from drawing_complaints(root)
     interface = interface_headers(root)
     for name in sources.files(root):
         if not name.endswith((".h", ".cc", ".c")):
@@ -88,13 +117,19 @@ def _tree(name, included):
     return {name: f"#include {included}\n"}
 
 
+_DRAWING = "## Floors\n\n    base 0 | the line |\n    load{} 5\n\nMore.\n"
 PLANTED = (
     (_tree("chimera/table/x.h", '"chimera/base/time.h"'), None),
     (_tree("chimera/table/x.h", '"chimera/table/y.h"'), None),
     (_tree("chimera/base/x.h", '"chimera/table/y.h"'),
      "chimera/base/x.h:1: includes chimera/table/y.h: base is floor 0, table is floor 2"),
-    (_tree("chimera/shell/x.cc", '"chimera/web/y.h"'),
-     "chimera/shell/x.cc:1: includes chimera/web/y.h: shell is floor 8, web is floor 8"),
+    (_tree("chimera/shell/x.cc", '"chimera/record/y.h"'),
+     "chimera/shell/x.cc:1: includes chimera/record/y.h: shell is floor 8, record is floor 8"),
+    ({"CONTRIBUTING.md": _DRAWING.format(""), "chimera/base/x.h": "", "chimera/load/x.h": ""}, None),
+    ({"CONTRIBUTING.md": _DRAWING.format(" web"), "chimera/base/x.h": "", "chimera/load/x.h": ""},
+     "CONTRIBUTING.md: floor 'web' is no folder of chimera/"),
+    ({"CONTRIBUTING.md": _DRAWING.format(""), "chimera/base/x.h": "", "chimera/load/x.h": "", "chimera/draw/x.h": ""},
+     "CONTRIBUTING.md: floor of 'draw': None, but tools/check_floors.py says 7"),
     (_tree("chimera/load/x_test.cc", '"chimera/runtime/y.h"'),
      "chimera/load/x_test.cc:1: includes chimera/runtime/y.h: load is floor 5, runtime is floor 5"),
     (_tree("chimera/oddity/x.cc", '"chimera/base/y.h"'),

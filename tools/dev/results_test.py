@@ -2,12 +2,14 @@
 """The counting frame on made-up results: nothing that went wrong may pass for passed."""
 import contextlib
 import io
+import json
 import os
 import pathlib
 import tempfile
 import unittest
 from unittest import mock
 
+import common
 import fuzz
 import results
 import stress
@@ -92,10 +94,47 @@ class Finish(unittest.TestCase):
         cases = [Case("a", PASSED), Case("S.b", SKIPPED)]
         self.assertEqual(finish(cases, ci=""), (0, "1 passed, 0 failed, 1 skipped"))
 
-    def test_a_share_over_its_limit_failed(self):
-        with contextlib.redirect_stdout(io.StringIO()):
-            self.assertEqual(frame.timed(frame.SHARES[0], 181, [])[0].outcome, FAILED)
-            self.assertEqual(frame.timed(frame.SHARES[0], 179, []), [])
+    def timed(self, seconds, ci):
+        """(cases, the line) of the first share after so many seconds."""
+        said = io.StringIO()
+        with mock.patch.dict(os.environ, {"CI": ci}), contextlib.redirect_stdout(said):
+            return frame.timed(frame.SHARES[0], seconds, []), said.getvalue()
+
+    def test_a_share_over_its_limit_failed_on_the_build_machine(self):
+        self.assertEqual([case.outcome for case in self.timed(181, "true")[0]], [FAILED])
+        self.assertEqual([case.outcome for case in self.timed(181, "1")[0]], [FAILED])
+        self.assertEqual(self.timed(179, "true")[0], [])
+
+    def test_elsewhere_it_is_a_remark(self):
+        cases, said = self.timed(181, "")
+        self.assertEqual(cases, [])
+        self.assertIn(" 3:01 of  3:00  0 tests  longer than its limit", said)
+        self.assertNotIn("longer", self.timed(179, "")[1])
+
+
+class Shares(unittest.TestCase):
+    def test_a_share_without_tests_failed(self):
+        with mock.patch.object(frame, "ctest", lambda *_, **__: []):
+            self.assertEqual([case.outcome for case in frame.run_share(frame.SHARES[0], ["debug"])], [FAILED])
+
+    def unlabelled(self, tree, label):
+        listing = {"tests": [{"name": "t", "properties": [{"name": "LABELS", "value": [label]}]}]}
+        with mock.patch.object(frame.subprocess, "run", lambda *_, **__: mock.Mock(stdout=json.dumps(listing))):
+            return [case.outcome for case in frame.unlabelled(tree)]
+
+    def test_a_label_that_no_share_runs_in_that_tree_failed(self):
+        self.assertEqual(self.unlabelled("debug", "unit"), [])
+        self.assertEqual(self.unlabelled("release", "unit"), [FAILED])
+        self.assertEqual(self.unlabelled("release", "symbol"), [])
+
+    def test_quick_says_what_it_leaves_out(self):
+        said = frame.left_out()
+        self.assertIn("process (debug)", said)
+        self.assertNotIn("unit (debug)", said)
+
+    def test_the_text_for_contributors_names_the_shares(self):
+        said = (common.ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+        self.assertIn("one share: " + ", ".join(share.name for share in frame.SHARES) + "\n", said)
 
 
 class Fuzz(unittest.TestCase):
