@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""The commands and options that `chimera --help` names, the manual and the completion are the same, each way.
+"""The commands and options that `chimera --help` names, the manual and the completion are the same, each way; README.md
+names the commands without --json.
 
 usage: words.py PROGRAM SOURCE
 """
@@ -68,6 +69,17 @@ def differences(what, said, wanted):
             yield f"chimera {command}: {word} is in the {what} only"
 
 
+def without_json(wanted, readme):
+    """README.md says "all but `a`, `b` and `c` have `--json`": of commands that have no commands of their own."""
+    found = {command.split()[0] for command, words in wanted.items() if command and "--json" not in words
+             and not any(other.startswith(command + " ") for other in wanted)}
+    sentence = re.search(r"all but ((?:`[a-z]+`(?:, | and )?)+) have `--json`", re.sub(r"\s+", " ", readme))
+    told = set(re.findall(r"`([a-z]+)`", sentence[1])) if sentence else set()
+    for command in sorted(found ^ told):
+        wrong = "does not name it as one" if command in found else "says so"
+        yield f"chimera {command} has {'no ' if command in found else ''}--json, README.md {wrong} without"
+
+
 def main():
     program, source = sys.argv[1], pathlib.Path(sys.argv[2])
     completion = source / "share/chimera/completion/chimera.bash"
@@ -83,6 +95,7 @@ def main():
                            (["test", "gai"], {"gain"})):
         if (got := complete(completion, program, words)) != offered:
             faults.append(f"completion of {words}: {sorted(got)}, expected {sorted(offered)}")
+    faults += without_json(wanted, (source / "README.md").read_text())
     for fault in faults:
         print(fault)
     print(f"{sum(map(len, wanted.values()))} words of {len(wanted)} commands, {len(faults)} faults")

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sentences of README.md and docs/ that name limits of the code, held against the code."""
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools" / "check"))
+import sources  # noqa: E402
+
+REFUSALS = "chimera/config/unsupported.cc"
+# What a refusal says in the code, and how the limits of README.md call it.
+CALLED = (
+    ("llf in real time", "`llf` in real time"),
+    ("budgets above 0.93 of a CPU in real time", "budgets above 0.93 of a CPU"),
+    ("budgets of all rtpus together above 0.93", "budgets above 0.93 of a CPU"),
+    ("on a second rtpu", "Virtual time runs one rtpu"),
+    (": switch' of task", "reaction `switch`"),
+    (": demote' of task", "`demote`"),
+    ("from a descriptor, in virtual time", "in virtual time events from a descriptor"),
+    ("'server' of task", "in an executive `server`"),
+    ("\"on_fault\", task", "`on_fault` other than `error`"),
+    ("\"stale_after\", task", "`stale_after`"),
+    ("\"standby_for\", task", "`standby_for`"),
+    ("\"max_step\", task", "`max_step`"),
+    ("'stack' of task", "`stack`"),
+    ("\"isolation: process\", task", "`isolation: process` of a task"),
+    ("with a producer in each of several configurations", "a constant with several producers"),
+)
+# Calls whose sentence stands in a variable: that of `what` in reaction(), which has two calls.
+ELSEWHERE = ("refuse(reaction->at, what,", "refuse(at, \"'\" + std::string(key)")
+
+
+def refusals(code):
+    """The text of every call of refuse() and refuse_key(), and of the sentence made for reaction()."""
+    for match in re.finditer(r"\b(refuse(?:_key)?\((?!Place).*?|const std::string what =.*?)\)?;\n", code, re.DOTALL):
+        if not match[1].startswith(ELSEWHERE):
+            yield re.sub(r"\s+", " ", match[1])
+
+
+def limits(readme):
+    section = re.search(r"^## Limits\n(.*?)(?=^## |\Z)", readme, re.MULTILINE | re.DOTALL)
+    return re.sub(r"\s+", " ", section[1]) if section else ""
+
+
+def refusal_complaints(root):
+    told = limits(sources.text(root, "README.md"))
+    for call in refusals(sources.text(root, REFUSALS)):
+        called = [phrase for sentence, phrase in CALLED if sentence in call]
+        if not called:
+            yield f"{REFUSALS}: no phrase is known here for the refusal {call}"
+        for phrase in called:
+            if phrase not in told:
+                yield f"README.md: the limits do not say \"{phrase}\", which run refuses"
+
+
+def table_complaints(root):
+    room = sources.text(root, "chimera/config/rule_room.cc")
+    most = re.search(r"kMaxTableBytes = (\d+) << 20;", room)
+    document = re.sub(r"\s+", " ", sources.text(root, "docs/formats/table.md"))
+    told = re.search(r"outputs take more than (\d+) MiB", document)
+    if not most or not told or most[1] != told[1]:
+        yield (f"docs/formats/table.md: says {told and told[1]} MiB for all outputs, the rule table-limit has "
+               f"{most and most[1]}")
+    used = [name for name in sources.files(root) if name.startswith("chimera/") and name.endswith((".h", ".cc"))
+            and not re.match(r"chimera/table/(group_pool|binding)", name)
+            and re.search(r'"chimera/table/(group_pool|binding)\.h"', sources.text(root, name))]
+    if ("No executor uses them yet" in document) == bool(used):
+        yield f"docs/formats/table.md: who uses GroupPool and BindingTable? The code: {', '.join(used) or 'nobody'}"
+
+
+def check(root):
+    yield from refusal_complaints(root)
+    yield from table_complaints(root)
+
+
+_README = "# A\n\n## Limits\n\n- Refused: `max_step`, `standby_for`.\n\n## More\n"
+_CODE = ('  void refuse_key(Place at, const char* key) {\n    refuse(at, "\'" + std::string(key) + "\' of");\n  }\n'
+         '  refuse_key(a, "max_step", task);\n')
+_ROOM = "  constexpr std::uint64_t kMaxTableBytes = 4 << 20;\n"
+_TABLE = "outputs take more than\n4 MiB. No executor uses them\nyet.\n"
+
+
+def _tree(**other):
+    files = {"README.md": _README, REFUSALS: _CODE, "chimera/config/rule_room.cc": _ROOM,
+             "docs/formats/table.md": _TABLE}
+    return files | {{"readme": "README.md", "code": REFUSALS, "table": "docs/formats/table.md",
+                     "user": "chimera/rtpu/x.cc"}[key]: text for key, text in other.items()}
+
+
+_MISSING = "README.md: the limits do not say \"`max_step`\", which run refuses"
+PLANTED = (
+    (_tree(), None),
+    (_tree(readme=_README.replace("`max_step`, ", "")), _MISSING),
+    (_tree(readme="# A\n\n`max_step`\n"), _MISSING),
+    (_tree(code=_CODE + '  refuse_key(a, "magic", task);\n'),
+     f'{REFUSALS}: no phrase is known here for the refusal refuse_key(a, "magic", task'),
+    (_tree(table=_TABLE.replace("4", "8")),
+     "docs/formats/table.md: says 8 MiB for all outputs, the rule table-limit has 4"),
+    (_tree(user='#include "chimera/table/group_pool.h"\n'),
+     "docs/formats/table.md: who uses GroupPool and BindingTable? The code: chimera/rtpu/x.cc"),
+)
+
+if __name__ == "__main__":
+    sources.run(check, PLANTED)
