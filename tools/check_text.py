@@ -32,6 +32,8 @@ FORBIDDEN = (
         r"\bL" + r"LM\b", r"\bA" + r"I (agent|model|assist|generated)",
         "as an A" + r"I\b", "iss" + r"ue #?\d", r"\bsandb" + "ox"]),
         re.IGNORECASE)),
+    ("a section that the 1994 paper does not have",
+     re.compile(r"1994 paper, section (?!(?:[12]|3(?:\.[1-5])?)(?![\d.]*\d))[\d.]*\d")),
     ("something left to do", re.compile(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X)\b")),
 )
 
@@ -83,6 +85,9 @@ PLANTED = (
     ({"library/" + 90 * "x" + ".cc": _HEAD}, _UNKNOWN.format("library/" + 90 * "x" + ".cc")),
     ({"bench/core": ""}, _UNKNOWN.format("bench/core")),
     ({"a b.txt": ""}, _UNKNOWN.format("a b.txt")),
+    ({"a.cc": _HEAD + "// 1994 paper, section 3.3. 1994 paper, section 2, figure 4\n"}, None),
+    ({"a.cc": _HEAD + "// 1994 paper, " + "section 4\n"},
+     "a.cc:2: a section that the 1994 paper does not have: '1994 paper, " + "section 4'"),
     ({"a.cc": _HEAD + "// TO" + "DO\n"}, "a.cc:2: something left to do: 'TO" + "DO'"),
 )
 

@@ -80,6 +80,12 @@ def body(lines, section):
     return [line for line in lines[section[1]:section[2]] if line.strip()]
 
 
+def uncited(descriptor, said):
+    """Authors and years of the `source` of the code that the sheet does not name."""
+    words = re.findall(r"\b[A-Z][a-z]+\b|\b\d{4}\b", descriptor.get("source", ""))
+    return [word for word in words if word.lower() not in said.lower()]
+
+
 def check(name, text, descriptor):
     """What is wrong with a sheet, as sentences."""
     lines = text.split("\n")
@@ -102,6 +108,8 @@ def check(name, text, descriptor):
         if section[0] == "Execution time" and not (TIME.search(" ".join(body(lines, section)))
                                                     and "chimera test" in " ".join(body(lines, section))):
             yield "section '## Execution time' states no time with its unit, or not the command `chimera test NAME`"
+        if section[0] == "Source" and (unknown := uncited(descriptor, " ".join(body(lines, section)))):
+            yield f"section '## Source' does not name {', '.join(unknown)}, which the code cites"
         if section[0] == "Ports" and body(lines, section) != table(descriptor):
             yield "the table of ports is not what the descriptor says: tools/data_sheets.py --write"
     for port in descriptor["ports"]:
@@ -189,6 +197,9 @@ PLANTED = (
     (SHEET.replace("Nothing.", ""), DESCRIPTOR, ["section '## Refused' is empty"]),
     (SHEET.replace("| m |", "| mm |"), DESCRIPTOR,
      ["the table of ports is not what the descriptor says: tools/data_sheets.py --write"]),
+    (SHEET.replace("Ours.", "Meier 1999."), DESCRIPTOR | {"source": "Meier 1999, table 1"}, []),
+    (SHEET, DESCRIPTOR | {"source": "Meier 1999, table 1"},
+     ["section '## Source' does not name Meier, 1999, which the code cites"]),
     (SHEET.replace("0.1 us", "fast"), DESCRIPTOR,
      ["section '## Execution time' states no time with its unit, or not the command `chimera test NAME`"]),
     (SHEET.replace("## Equation", "## Refused", 1).replace("Refused\n\nNothing", "Equation\n\nNothing"), DESCRIPTOR,

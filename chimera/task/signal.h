@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The signals that move a task between its states (1994 paper, section 4), and the nine methods.
+// The signals that move a task between its states (1994 paper, section 3.3), and the nine methods.
 #pragma once
 
 #include <cstdint>

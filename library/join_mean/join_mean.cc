@@ -28,4 +28,4 @@ struct JoinMean {
   }
 };
 CHIMERA_COMPONENT(JoinMean, "join_mean", "Joins several producers of one quantity by their weighted mean.",
-                  source = "Stewart and Khosla 1994, figure 3");
+                  source = "1994 paper, figure 3");

@@ -36,4 +36,4 @@ struct JoinPriority {
 };
 CHIMERA_COMPONENT(JoinPriority, "join_priority",
                   "Joins several producers of one quantity: the first that is alive counts.",
-                  source = "Stewart and Khosla 1994, figure 3");
+                  source = "1994 paper, figure 3");

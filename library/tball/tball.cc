@@ -121,6 +121,6 @@ struct TrackBall {
 };
 
 CHIMERA_COMPONENT(TrackBall, "tball", "A ball with six degrees of freedom moves a reference.", rate = 100.0,
-                  source = "Stewart, Schmitz, Khosla, CMU 1997, table 1");
+                  source = "2000 paper, table 1 and figure 9");
 
 }  // namespace
