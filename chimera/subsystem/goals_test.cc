@@ -51,6 +51,18 @@ TEST_F(GoalsTest, ACommandForATaskThatIsBroughtUpWaitsAndIsFulfilledByIt) {
             "goal arm 0\ngoal pid 0\nstarted: arm pid are ON\nanswer 1 yes arm OFF>ON pid OFF>ON\n");
 }
 
+// docs/formats/control.md, `signal`: only `on` is one transaction over all rtpus.
+TEST_F(GoalsTest, AListOfOffGoesOutRtpuByRtpuAndWhatWasDoneStaysDone) {
+  const std::string sent = command(Signal::kOff, {kArm, kTraj});
+  EXPECT_NE(sent.find("send servo: off arm\n"), std::string::npos) << sent;
+  EXPECT_NE(sent.find("send spare: off traj\n"), std::string::npos) << sent;
+  EXPECT_EQ(report(kTraj, State::kOff), "");
+  const std::string refused = refuse(kArm, Refusal::kFault, "the brake does not hold");
+  EXPECT_NE(refused.find("answer 1 no: arm: the brake does not hold"), std::string::npos) << refused;
+  EXPECT_EQ(refused.find("on traj"), std::string::npos) << refused;
+  EXPECT_EQ(states[kTraj.index], State::kOff);
+}
+
 TEST_F(GoalsTest, OffTakesTheGoalOnBackWhileTheProcessIsRestarted) {
   die(kServo);
   EXPECT_EQ(command(Signal::kOff, {kArm, kPid}),
