@@ -2,14 +2,17 @@
 """Comparing two commits: what is refused leaves nothing behind, and the numbers are those of the pairs."""
 import contextlib
 import io
+import json
 import pathlib
 import subprocess
+import sys
 import tempfile
 import types
 import unittest
 from unittest import mock
 
 import against
+import bench
 import common
 import rows
 
@@ -163,6 +166,36 @@ class Pairs(unittest.TestCase):
 
 
 class Lines(unittest.TestCase):
+    def said(self, *arguments):
+        """(exit code, what was printed) of ./dev bench when the comparison found one figure."""
+        both, here, there = against.compare([(against.keyed([figure(7, "a", 3.0), figure(7, "new", 1.0)]),
+                                              against.keyed([figure(7, "a", 2.0)]))])
+        found = {"against": "abc", "pairs": 1, "figures": both, "only_here": [key[:2] for key in here],
+                 "only_there": [key[:2] for key in there], "differing_sources": ["row_07_a.cc"]}
+        out = io.StringIO()
+        with mock.patch.object(against, "result", lambda *_: found), contextlib.redirect_stdout(out), \
+                mock.patch.object(sys, "argv", ["bench.py", "7", "--against", "abc", *arguments]):
+            return bench.main(), out.getvalue()
+
+    def test_json_is_one_object(self):
+        code, said = self.said("--json")
+        found = json.loads(said)
+        self.assertEqual((code, found["figures"][0]["ratio"], found["only_here"]), (0, 1.5, [[7, "new"]]))
+        self.assertIn("commit", found["machine"])
+
+    def test_the_table_says_what_is_not_in_it(self):
+        said = self.said()[1]
+        self.assertIn("7    a     3 ns  2 ns  1.500  1.500 to 1.500  1 of 1", said)
+        self.assertIn("only here: row 7, new\n", said)
+        self.assertIn("are not the same in both: bench/row_07_a.cc\n", said)
+
+    def test_a_refusal_is_one_sentence_and_its_code(self):
+        said = io.StringIO()
+        with mock.patch.object(against, "result", side_effect=against.Refused("no such commit", 2)), \
+                mock.patch.object(sys, "argv", ["bench.py", "7", "--against", "abc"]), contextlib.redirect_stderr(said):
+            self.assertEqual(bench.main(), 2)
+        self.assertEqual(said.getvalue(), "./dev: no such commit\n")
+
     def test_the_command_line_is_judged_before_anything_is_built(self):
         for arguments in (["7", "--pairs", "0", "--against", "HEAD"], ["7", "--pairs", "3"],
                           ["7", "--peers", "--against", "HEAD"], ["99", "--against", "HEAD"]):
