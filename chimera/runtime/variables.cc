@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/runtime/variables.h"
 
+#include <algorithm>
+
 namespace chimera {
 
 std::size_t Variables::find(std::string_view name) const noexcept {
@@ -72,22 +74,43 @@ std::string Variables::explain(const std::vector<bool>& on, std::span<const Task
   return text + (remedy.empty() ? "" : "; the smallest legal set is: " + remedy);
 }
 
-// Adds the only producer of each missing variable until nothing is missing; gives up where there is a choice.
+namespace {
+
+constexpr int kTries = 20'000;  // sets looked at: more than any application has needed, milliseconds at most
+
+}  // namespace
+
+// Adds a producer of each missing variable until nothing is missing, any of them where there are several: the
+// smallest of the sets found, the first in the order of the description among equals.
 std::string Variables::smallest_legal(std::vector<bool> on, std::span<const TaskSpec> tasks) const {
-  for (bool added = true; added;) {
-    added = false;
-    for (const Variable& variable : variables_) {
-      if (writers(variable, on) != 0 || !is_read(variable, on)) continue;
-      if (variable.producers.size() != 1) return {};
-      on[variable.producers[0].task.index] = true;
-      added = true;
-    }
-  }
-  if (!is_legal(on)) return {};
+  std::vector<bool> best;
+  int tries = kTries;
+  complete(on, best, tries);
   std::string names;
-  for (std::size_t t = 0; t < tasks.size(); ++t)
-    if (on[t]) names += (names.empty() ? "" : " ") + std::string(tasks[t].name);
+  for (std::size_t t = 0; t < best.size(); ++t)
+    if (best[t]) names += (names.empty() ? "" : " ") + std::string(tasks[t].name);
   return names;
+}
+
+// Leaves `on` as it was, and in `best` the smallest legal set that holds it; gives up after `tries`.
+void Variables::complete(std::vector<bool>& on, std::vector<bool>& best, int& tries) const {
+  const auto count = [](const std::vector<bool>& set) { return std::count(set.begin(), set.end(), true); };
+  if (--tries < 0 || (!best.empty() && count(on) >= count(best))) return;
+  const Variable* missing = nullptr;
+  for (const Variable& variable : variables_) {
+    const std::size_t n = writers(variable, on);
+    if (n > 1) return;
+    if (n == 0 && missing == nullptr && is_read(variable, on)) missing = &variable;
+  }
+  if (missing == nullptr) {
+    best = on;
+    return;
+  }
+  for (const PortOf& producer : missing->producers) {
+    on[producer.task.index] = true;
+    complete(on, best, tries);
+    on[producer.task.index] = false;
+  }
 }
 
 }  // namespace chimera

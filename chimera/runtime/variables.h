@@ -40,7 +40,8 @@ class Variables {
   /// True when every in-var of a task of `on` has exactly one producer in it (or the operator) and no variable has
   /// two. `on[t]` says whether task t is in the set. O(ports); allocates nothing.
   bool is_legal(const std::vector<bool>& on) const noexcept;
-  /// Says what is illegal and names the smallest set that would be legal. Empty when `on` is legal.
+  /// Says what is illegal and names the smallest legal set that holds `on`, where there is one. Empty when `on` is
+  /// legal.
   std::string explain(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const;
 
  private:
@@ -48,6 +49,7 @@ class Variables {
   std::size_t writers(const Variable& variable, const std::vector<bool>& on) const noexcept;
   bool is_read(const Variable& variable, const std::vector<bool>& on) const noexcept;
   std::string smallest_legal(std::vector<bool> on, std::span<const TaskSpec> tasks) const;
+  void complete(std::vector<bool>& on, std::vector<bool>& best, int& tries) const;
 
   std::vector<Variable> variables_;
   std::vector<std::vector<VariableId>> inputs_;
