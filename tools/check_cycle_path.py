@@ -28,7 +28,7 @@ ASSERTS = {r'chimera::assertion_failed\(': 'ends the program'}
 # on and off begin and end background methods, spawn runs init; for the others no_heap_test.cc counts
 SIGNALS = {r'chimera::Releases::carry_out\(': 'a signal at an edge'}
 SIGNALS_OF_OTHERS = {r'chimera::Releases::(signal|served)\(': 'the same'}
-# Vectors within the room reserved at setup, which cannot be seen here; no_heap_test.cc counts the first two.
+# Vectors within the room reserved at setup, which cannot be seen here; no_heap_test.cc and edge_no_heap_test.cc count.
 RESERVED = {r'(chimera::LabelList::set\(|std::vector<chimera::LabelledJob)': 'a place for every task of the context',
             r'chimera::Sources::collect_copies\(': 'a place for every variable that the task reads',
             r'chimera::Others::watch_flags\(': 'a place for every peer'}
