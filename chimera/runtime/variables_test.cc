@@ -89,8 +89,10 @@ TEST_F(SmallestLegalSet, IsFoundAmongManyAlternativesInBoundedTime) {
     for (int i = 0; i < kEach; ++i) {
       const char* const task = keep("t" + std::to_string(level) + "_" + std::to_string(i));
       const char* const out = keep("v" + std::to_string(level));
-      if (i == kEach - 1 && level == 2) origin(task, out);
-      else passing(task, keep("v" + std::to_string(level + 1)), out);
+      if (i == kEach - 1 && level == 2)
+        origin(task, out);
+      else
+        passing(task, keep("v" + std::to_string(level + 1)), out);
     }
   const std::string said = explain({"user"});
   EXPECT_EQ(said.find("v0 would have no producer"), 0u) << said;
