@@ -46,6 +46,8 @@ def row(port):
     spread = " to ".join(number(end) for end in port["range"]) if "range" in port else ""
     if "at_least" in port:
         spread += (", " if spread else "") + f"at least `{port['at_least']}`"
+    if "one_of" in port:
+        spread = " ".join(f"`{word}`" for word in port["one_of"])
     return (name, kind, type_name + port["shape"], port["unit"], port.get("frame", ""), spread, values(port),
             port.get("doc", ""))
 

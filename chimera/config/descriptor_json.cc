@@ -100,8 +100,9 @@ FieldDescriptor read_field(const JsonCursor& at) {
 }
 
 PortDescriptor read_port_frame(const JsonCursor& at) {
-  at.expect_keys({"name", "kind", "type", "element_size", "unit", "shape"},
-                 {"doc", "type_name", "frame", "safety", "max_instances", "range", "at_least", "fields", "initial"});
+  at.expect_keys(
+      {"name", "kind", "type", "element_size", "unit", "shape"},
+      {"doc", "type_name", "frame", "safety", "max_instances", "range", "at_least", "one_of", "fields", "initial"});
   PortDescriptor port;
   port.name = at.at("name").text();
   port.kind = word_at(at.at("kind"), "kind", words(CHIMERA_OUT_STREAM + 1, name_of_kind));
@@ -113,6 +114,10 @@ PortDescriptor read_port_frame(const JsonCursor& at) {
   port.type_name = optional_text(at, "type_name");
   port.frame = optional_text(at, "frame");
   port.at_least = optional_text(at, "at_least");
+  if (at.has("one_of")) {
+    const JsonCursor words = at.at("one_of");
+    for (std::size_t i = 0; i < words.size(64); ++i) port.one_of.push_back(words.at(i).text());
+  }
   port.safety = at.has("safety") && at.at("safety").truth();
   port.repeated = at.has("max_instances");
   if (port.repeated) port.max_instances = at.at("max_instances").whole();
@@ -161,7 +166,9 @@ Descriptor read_component(const JsonCursor& at) {
   descriptor.source = optional_text(at, "source");
   descriptor.abi_version = at.at("abi_version").whole();
   if (descriptor.abi_version != CHIMERA_ABI_VERSION) {
-    at.at("abi_version").refuse("this framework speaks " + std::to_string(CHIMERA_ABI_VERSION));
+    at.at("abi_version")
+        .refuse(descriptor.name + " was built for ABI " + std::to_string(descriptor.abi_version) +
+                ", and this chimera needs ABI " + std::to_string(CHIMERA_ABI_VERSION));
   }
   descriptor.default_rate_hz = at.at("default_rate_hz").number();
   descriptor.state_size = at.at("state_size").whole();
@@ -218,6 +225,7 @@ Json port_json(const PortDescriptor& port) {
   if (port.repeated) json["max_instances"] = port.max_instances;
   if (port.has_range) json["range"] = {number_json(port.min), number_json(port.max)};
   if (!port.at_least.empty()) json["at_least"] = port.at_least;
+  if (!port.one_of.empty()) json["one_of"] = port.one_of;
   for (const FieldDescriptor& field : port.fields) {
     json["fields"].push_back(Json{{"name", field.name},
                                   {"unit", field.unit},

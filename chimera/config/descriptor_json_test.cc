@@ -43,6 +43,9 @@ Descriptor rich() {
   narrow.initial = bytes<float>({0.1f});
   PortDescriptor label{.name = "label", .kind = CHIMERA_IN_CONST, .type = CHIMERA_STRING, .element_size = 8};
   label.initial = bytes<char>({'a', '"', '\\', 0, 0, 0, 0, 0});
+  PortDescriptor mode = label;
+  mode.name = "mode";
+  mode.one_of = {"a\"\\", "b"};
   PortDescriptor many{.name = "many", .unit = "U/s", .type_name = "T", .type = CHIMERA_ANY, .repeated = true};
   many.max_instances = 4;
   PortDescriptor pose{.name = "pose", .type_name = "P", .kind = CHIMERA_OUT_VAR, .type = CHIMERA_STRUCT};
@@ -51,7 +54,7 @@ Descriptor rich() {
   pose.initial = bytes<double>({0, -0.0, 1e-300});
   pose.initial[0] = std::byte{1};
   PortDescriptor file{.name = "file", .kind = CHIMERA_RESOURCE, .type = CHIMERA_STRING, .element_size = 256};
-  d.ports = {q, tau, ndof, big, bigger, narrow, label, many, pose, file};
+  d.ports = {q, tau, ndof, big, bigger, narrow, label, mode, many, pose, file};
   const auto sound = complete(d);
   EXPECT_TRUE(sound) << (sound ? "" : sound.error().message.c_str());
   return d;

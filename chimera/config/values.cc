@@ -22,6 +22,7 @@ struct Cell {
   const std::string& unit_text;
   bool has_range = false;
   double min = 0, max = 0;
+  std::span<const std::string> words{};  ///< what a text may be; empty: anything
 };
 
 template <class T>
@@ -117,8 +118,10 @@ class ValueWriter {
       return;
     }
     const PortDescriptor& declared = *port_.declared;
-    cell(node, {*port_.type, port_.element_bytes, *port_.unit, port_.unit_text, declared.has_range, declared.min,
-                declared.max}, to);
+    cell(node,
+         {*port_.type, port_.element_bytes, *port_.unit, port_.unit_text, declared.has_range, declared.min,
+          declared.max, declared.one_of},
+         to);
   }
 
   void fields(const Node& node, std::byte* to) {
@@ -182,6 +185,10 @@ class ValueWriter {
              "found a text of " + std::to_string(node.text.size()) + " bytes; expected at most " +
                  std::to_string(cell.size - 1),
              node.text, "at most " + std::to_string(cell.size - 1) + " bytes");
+    } else if (!cell.words.empty() && std::ranges::find(cell.words, node.text) == cell.words.end()) {
+      const std::string words = listed(std::vector<std::string>(cell.words.begin(), cell.words.end()));
+      refuse("word-unknown", node.at, "found " + written(node) + "; expected one of " + words, node.text, words,
+             nearest(node.text, cell.words));
     } else {
       std::memcpy(to, node.text.data(), node.text.size());
     }

@@ -40,6 +40,9 @@ std::string remarks(const PortDescriptor& port) {
   if (!port.frame.empty()) add("frame " + port.frame);
   if (port.has_range) add("from " + number_text(port.min) + " to " + number_text(port.max));
   if (!port.at_least.empty()) add("at least " + port.at_least);
+  std::string words;
+  for (const std::string& word : port.one_of) words += (words.empty() ? "one of " : " ") + word;
+  if (!words.empty()) add(words);
   if (port.safety) add("safety");
   if (port.repeated) add("repeated, at most " + std::to_string(port.max_instances));
   if (!port.initial.empty()) add(initial_text(port));

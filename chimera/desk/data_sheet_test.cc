@@ -36,12 +36,14 @@ TEST(DataSheet, ShowsDefaultsRangesAndFrames) {
   const double initial = 0.5;
   const auto* bytes = reinterpret_cast<const std::byte*>(&initial);
   port.initial.assign(bytes, bytes + sizeof initial);
-  entry.descriptor.ports = {port};
+  PortDescriptor wave{.name = "wave", .kind = CHIMERA_IN_CONST, .type = CHIMERA_STRING, .one_of = {"sine", "step"}};
+  entry.descriptor.ports = {port, wave};
   entry.descriptor_file = "/nowhere/g.component.json";
   entry.object_file = "/nowhere/g.so";
   EXPECT_EQ(data_sheet(entry),
             "g: Does.\nrate     stated by the description\nreleased by the timer\nmethods \nports\n"
             "  in-const   k     float64  m     The factor; frame base; from -1 to 2; at least low; default 0.5\n"
+            "  in-const   wave  string   1     one of sine step\n"
             "file     /nowhere/g.so\n");
 }
 

@@ -110,6 +110,28 @@ Verdict range_rule(const PortDescriptor& port) {
   return {};
 }
 
+Verdict words_rule(const PortDescriptor& port) {
+  if (port.one_of.empty()) return {};
+  if (port.type != CHIMERA_STRING || port.kind != CHIMERA_IN_CONST) {
+    return "one of some words: expected an in-const of text";
+  }
+  if (port.one_of.size() > 64) return std::to_string(port.one_of.size()) + " words, at most 64 are allowed";
+  for (std::size_t i = 0; i < port.one_of.size(); ++i) {
+    const std::string& word = port.one_of[i];
+    if (word.empty() || word.find(' ') != std::string::npos || !is_utf8(word)) {
+      return "the word \"" + (is_utf8(word) ? word : "?") + "\": expected text without a space";
+    }
+    if (word.size() >= port.element_size) {
+      return "the word \"" + word + "\" is longer than the port's " + std::to_string(port.element_size - 1) + " bytes";
+    }
+    if (std::find(port.one_of.begin(), port.one_of.begin() + static_cast<std::ptrdiff_t>(i), word) !=
+        port.one_of.begin() + static_cast<std::ptrdiff_t>(i)) {
+      return "the word \"" + word + "\" stands twice";
+    }
+  }
+  return {};
+}
+
 Verdict safety_rule(const PortDescriptor& port) {
   if (!port.safety) return {};
   if (port.kind != CHIMERA_OUT_VAR) return "safety is for out-vars, this is an " + std::string(kind_name(port.kind));
@@ -127,7 +149,12 @@ Verdict value_rule(std::uint32_t type, const std::byte* at, std::uint32_t size, 
     const char* text = reinterpret_cast<const char*>(at);
     const std::size_t length = ::strnlen(text, size);
     if (length == size) return "a string without an end";
-    return is_utf8({text, length}) ? Verdict() : "a text that is no UTF-8";
+    if (!is_utf8({text, length})) return "a text that is no UTF-8";
+    const bool is_free = ranged == nullptr || ranged->one_of.empty();
+    return is_free || std::find(ranged->one_of.begin(), ranged->one_of.end(), std::string_view(text, length)) !=
+                          ranged->one_of.end()
+               ? Verdict()
+               : "\"" + std::string(text, length) + "\" is none of its words";
   }
   if (type == CHIMERA_ANY) {
     const bool zero = std::all_of(at, at + size, [](std::byte b) { return b == std::byte{0}; });
@@ -198,7 +225,8 @@ Verdict text_rule(const PortDescriptor& port) {
 Verdict port_rules(const PortDescriptor& port) {
   if (!is_identifier(port.name)) return name_fault("port", port.name);
   if (port.unit.empty()) return "the unit is empty; write \"1\" for none";
-  for (const auto rule : {text_rule, kind_rule, type_name_rule, fields_rule, instances_rule, range_rule, safety_rule}) {
+  for (const auto rule :
+       {text_rule, kind_rule, type_name_rule, fields_rule, instances_rule, range_rule, words_rule, safety_rule}) {
     if (Verdict v = rule(port); !v.empty()) return v;
   }
   return {};

@@ -53,6 +53,38 @@ TEST(DeclarationRules, AnOrderStandsBetweenTwoConstantsOfOneKind) {
   EXPECT_EQ(sample.refusal(), "component tderiv: has more orders than ports");
 }
 
+TEST(DeclarationRules, WordsBelongToAConstantOfText) {
+  Sample sample;
+  sample.ports.push_back(port("wave", CHIMERA_IN_CONST));
+  sample.ports[2].type = CHIMERA_STRING;
+  sample.ports[2].element_size = 8;
+  chimera_choice choices[] = {{"wave", "sine square"}, {"wave", "step"}};
+  sample.component.choices = choices;
+  sample.component.n_choices = 1;
+  EXPECT_EQ(sample.described().value().port("wave")->one_of, (std::vector<std::string>{"sine", "square"}));
+  const char initial[8] = "step";
+  sample.set_initial(2, initial);
+  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: initial value 0: \"step\" is none of its words");
+  choices[0].words = "sine step";
+  EXPECT_EQ(sample.refusal(), "accepted");
+  choices[0].words = "sine  step";
+  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: the word \"\": expected text without a space");
+  choices[0].words = "step step";
+  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: the word \"step\" stands twice");
+  choices[0].words = "step sawtooth";
+  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: the word \"sawtooth\" is longer than the port's 7 bytes");
+  choices[0].words = "step";
+  sample.component.n_choices = 2;
+  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: says twice what words it may be");
+  sample.component.n_choices = 65;
+  EXPECT_EQ(sample.refusal(), "component tderiv: has more choices than ports");
+  sample.component.n_choices = 1;
+  choices[0].port = "wawe";
+  EXPECT_EQ(sample.refusal(), "component tderiv: no port \"wawe\" is there to be one of some words");
+  choices[0].port = "x";
+  EXPECT_EQ(sample.refusal(), "component tderiv: port x: one of some words: expected an in-const of text");
+}
+
 TEST(DeclarationRules, RefusesAnEventSourceWhoseEventsNobodyTakes) {
   Sample sample;
   sample.component.event_source = [](void*) -> std::int32_t { return 3; };

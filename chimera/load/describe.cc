@@ -7,6 +7,7 @@
 
 #include "chimera/load/descriptor.h"
 #include "chimera/task/background.h"
+#include "chimera/task/choices.h"
 #include "chimera/task/event_source.h"
 #include "chimera/task/orders.h"
 
@@ -88,6 +89,7 @@ PortDescriptor copy_port(const chimera_port_decl& port) {
                       .min = 0,
                       .max = 0,
                       .at_least = {},
+                      .one_of = {},
                       .extents = {},
                       .fields = {},
                       .initial = {}};
@@ -118,6 +120,7 @@ Result<void> check_component(const std::string& place, const chimera_component& 
     return refused(place, std::to_string(component.n_ports) + " ports, at most 64 are allowed");
   }
   if (orders_of(component).size() > CHIMERA_MAX_PORTS) return refused(place, "has more orders than ports");
+  if (choices_of(component).size() > CHIMERA_MAX_PORTS) return refused(place, "has more choices than ports");
   if (component.n_ports > 0 && component.ports == nullptr) return refused(place, "has ports but no list of them");
   return {};
 }
@@ -133,6 +136,27 @@ Result<void> copy_orders(const std::string& place, const chimera_component& comp
   return {};
 }
 
+std::vector<std::string> words_of(std::string_view text) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    words.emplace_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return words;
+}
+
+Result<void> copy_choices(const std::string& place, const chimera_component& component, Descriptor& to) {
+  for (const chimera_choice& choice : choices_of(component)) {
+    const std::string name = text_of(choice.port);
+    const auto port = std::find_if(to.ports.begin(), to.ports.end(), [&](const auto& p) { return p.name == name; });
+    if (port == to.ports.end()) return refused(place, "no port \"" + name + "\" is there to be one of some words");
+    if (!port->one_of.empty()) return refused(place + ": port " + name, "says twice what words it may be");
+    port->one_of = words_of(text_of(choice.words));
+  }
+  return {};
+}
+
 Result<void> check_version(const chimera_component& component) {
   if (component.abi_version != CHIMERA_ABI_VERSION) {
     return refused("component", "ABI version " + std::to_string(component.abi_version) + ", this framework speaks " +
@@ -140,6 +164,7 @@ Result<void> check_version(const chimera_component& component) {
   }
   // One that ends before a member was built before there was one.
   if (component.struct_size != sizeof(chimera_component) &&
+      component.struct_size != offsetof(chimera_component, n_choices) &&
       component.struct_size != offsetof(chimera_component, n_orders) &&
       component.struct_size != offsetof(chimera_component, event_source) &&
       component.struct_size != offsetof(chimera_component, background)) {
@@ -174,6 +199,7 @@ Result<Descriptor> describe(const chimera_component& component) {
     descriptor.ports.push_back(copy_port(port));
   }
   if (const auto copied = copy_orders(place, component, descriptor); !copied) return copied.error();
+  if (const auto copied = copy_choices(place, component, descriptor); !copied) return copied.error();
   if (const auto done = complete(descriptor); !done) return done.error();
   return descriptor;
 }

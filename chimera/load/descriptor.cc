@@ -31,9 +31,13 @@ std::string hex(const std::vector<std::byte>& bytes) {
   return text;
 }
 
+/// Everything that narrows the values. A port without the later of these says what it said before there were any, so
+/// that older fingerprints hold.
 std::string range_text(const PortDescriptor& port) {
-  const std::string range = port.has_range ? "[" + number(port.min) + ", " + number(port.max) + "]" : "none";
-  return port.at_least.empty() ? range : range + ", at least " + port.at_least;
+  std::string range = port.has_range ? "[" + number(port.min) + ", " + number(port.max) + "]" : "none";
+  if (!port.at_least.empty()) range += ", at least " + port.at_least;
+  for (const std::string& word : port.one_of) range += (&word == &port.one_of.front() ? ", one of " : " ") + word;
+  return range;
 }
 
 /// What one side says of one thing, in the order in which differences are named.

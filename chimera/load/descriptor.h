@@ -44,9 +44,10 @@ struct PortDescriptor {
   bool repeated = false;
   std::uint32_t max_instances = 1;
   bool has_range = false;
-  double min = 0, max = 0;           ///< in `unit`; count when has_range
-  std::string at_least{};            ///< in-const: the in-const that no element is below; "" for none
-  std::vector<Extent> extents{};       ///< `shape`, parsed
+  double min = 0, max = 0;            ///< in `unit`; count when has_range
+  std::string at_least{};             ///< in-const: the in-const that no element is below; "" for none
+  std::vector<std::string> one_of{};  ///< in-const of text: the words it may be; empty: any
+  std::vector<Extent> extents{};      ///< `shape`, parsed
   std::vector<FieldDescriptor> fields{};
   std::vector<std::byte> initial{};    ///< whole elements, padding zero: none, 1 (for all) or max_count()
 
@@ -90,9 +91,8 @@ bool is_identifier(std::string_view text) noexcept;
 /// Checks a declaration and copies it. Refuses, with the component and port named: illegal or repeated names,
 /// sizes that do not fit the type, a shape that does not parse, an extent named after a port that is no whole-number
 /// scalar constant, more than CHIMERA_MAX_PORTS instances, an unordered range, an order between ports that are no
-/// in-consts of one type, unit and shape, a safety port that is no floating out-var, an initial value of a wrong
-/// count, not a number or outside the range.
-/// Context: setup; may block.
+/// in-consts of one type, unit and shape, words of a port that is no in-const of text, a safety port that is no
+/// floating out-var, an initial value of a wrong count, not a number or outside the range. Context: setup; may block.
 Result<Descriptor> describe(const chimera_component& component);
 
 /// The same rules for a descriptor that came from elsewhere. Fills in the extents from the shapes.

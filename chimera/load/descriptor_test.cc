@@ -50,7 +50,13 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   sample.component.n_orders = 1;
   sample.component.struct_size = offsetof(chimera_component, n_orders);
   EXPECT_TRUE(sample.described().value().event_source);
+  const chimera_choice words{"x", "a b"};
+  sample.component.choices = &words;
+  sample.component.n_choices = 1;
   sample.component.n_orders = 0;
+  sample.component.struct_size = offsetof(chimera_component, n_choices);
+  EXPECT_TRUE(sample.described().value().ports[0].one_of.empty());
+  sample.component.n_choices = 0;
   const std::uint32_t size = sizeof(chimera_component);
   sample.component.struct_size = size;
   EXPECT_TRUE(sample.described().value().event_source);

@@ -192,11 +192,18 @@ typedef struct chimera_order {
   const char* upper;
 } chimera_order;
 
+/* The words that an in-const of text may be: separated by single spaces, each once. The checker holds written values
+ * against them; a value that another component tells is the business of init. */
+typedef struct chimera_choice {
+  const char* port;
+  const char* words;
+} chimera_choice;
+
 /* A component. Constant, lives as long as the shared object. */
 typedef struct chimera_component {
   uint32_t abi_version; /* CHIMERA_ABI_VERSION */
-  uint32_t struct_size; /* sizeof(chimera_component); an object that ends before `background`, `event_source` or
-                           `n_orders` has none, nor what comes behind it */
+  uint32_t struct_size; /* sizeof(chimera_component); an object that ends before `background`, `event_source`,
+                           `n_orders` or `n_choices` has none, nor what comes behind it */
   const char* name;
   const char* doc;
   const char* source;   /* paper or book behind it; "" for none */
@@ -213,6 +220,8 @@ typedef struct chimera_component {
   chimera_event_source event_source;       /* NULL: not written */
   uint32_t n_orders;
   const chimera_order* orders;
+  uint32_t n_choices;
+  const chimera_choice* choices;
 } chimera_component;
 
 /* The one symbol of a shared object. NULL when `abi_version` is not the one it was built with. */

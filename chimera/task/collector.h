@@ -17,6 +17,7 @@ struct Declaration {
   chimera_component component{};
   chimera_port_decl ports[CHIMERA_MAX_PORTS] = {};
   chimera_order orders[CHIMERA_MAX_PORTS] = {};
+  chimera_choice choices[CHIMERA_MAX_PORTS] = {};
   char error[CHIMERA_FAULT_TEXT] = {};  ///< why the component cannot be used; "" when it can
   std::size_t kept = 0;
   alignas(16) std::byte memory[8192] = {};  ///< initial values, and names without their '*'
@@ -49,6 +50,13 @@ class Collector {
     std::uint32_t& n = to_.component.n_orders;
     if (n == CHIMERA_MAX_PORTS) return refuse(upper, "is one too many with at_least");
     to_.orders[n++] = {lower, upper};
+  }
+
+  /// Notes the words that the constant `port` may be.
+  void add_choice(const char* port, const char* words) noexcept {
+    std::uint32_t& n = to_.component.n_choices;
+    if (n == CHIMERA_MAX_PORTS) return refuse(port, "is one too many with one_of");
+    to_.choices[n++] = {port, words};
   }
 
   /// A copy of `bytes` that lives as long as the declaration; null when there is no more room.

@@ -165,6 +165,7 @@ const chimera_component* declare() noexcept {
   collect_ports<T>(to);
   made.ports = to.ports;
   made.orders = to.orders;
+  made.choices = to.choices;
   made.construct = &construct<T>;
   made.destroy = [](void* state) { static_cast<T*>(state)->~T(); };
   made.methods[CHIMERA_INIT] = method_of<T, Name_init<T>, Method::kInit>();

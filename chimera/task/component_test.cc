@@ -70,6 +70,7 @@ CHIMERA_COMPONENT(Observer, "observer", "Shows its cycle.");
 struct Ordered {
   InConst<double> low{"low", "m", initial = 0.0};
   InConst<double> high{"high", "m", initial = 1.0, range(0, 9), at_least = "low"};
+  InConst<Text<8>> mode{"mode", initial = "free", one_of = "free held"};
   void cycle() {}
 };
 CHIMERA_COMPONENT(Ordered, "ordered", "Says what holds between its constants.");
@@ -115,6 +116,10 @@ TEST(Component, SaysWhatHoldsBetweenItsConstants) {
   ASSERT_EQ(linked_component("ordered").n_orders, 1u);
   EXPECT_STREQ(linked_component("ordered").orders[0].lower, "low");
   EXPECT_STREQ(linked_component("ordered").orders[0].upper, "high");
+  EXPECT_EQ(linked_component("minimal").n_choices, 0u);
+  ASSERT_EQ(linked_component("ordered").n_choices, 1u);
+  EXPECT_STREQ(linked_component("ordered").choices[0].port, "mode");
+  EXPECT_STREQ(linked_component("ordered").choices[0].words, "free held");
 }
 
 TEST(Component, AnotherAbiVersionGetsNothing) {

@@ -28,6 +28,8 @@ constexpr bool check_option() {
                 "safety goes with an out-var: it guards what is published");
   static_assert(!std::is_same_v<Option, AtLeastIs> || Kind == CHIMERA_IN_CONST,
                 "at_least goes with an in-const, and names another: it is checked before anything runs");
+  static_assert(!std::is_same_v<Option, OneOfIs> || Kind == CHIMERA_IN_CONST,
+                "one_of goes with an in-const of text: it is checked before anything runs");
   static_assert(!std::is_same_v<Option, RangeIs> || Kind != CHIMERA_RESOURCE, "a resource has no range");
   return true;
 }
@@ -79,7 +81,14 @@ void apply_option(chimera_port_decl& port, Collector& to, const AtLeastIs& optio
   to.add_order(option.port, port.name);
 }
 template <class E>
-void apply_option(chimera_port_decl& port, Collector&, const SafetyIs&) { port.flags |= CHIMERA_PORT_SAFETY; }
+void apply_option(chimera_port_decl& port, Collector& to, const OneOfIs& option) {
+  static_assert(element_type<E>() == CHIMERA_STRING, "one_of goes with text: numbers have a range");
+  to.add_choice(port.name, option.words);
+}
+template <class E>
+void apply_option(chimera_port_decl& port, Collector&, const SafetyIs&) {
+  port.flags |= CHIMERA_PORT_SAFETY;
+}
 template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const FrameIs& option) { port.frame = option.text; }
 template <class E>

@@ -125,8 +125,10 @@ template <class T>
 constexpr bool check_component() {
   static_assert(std::is_class_v<T>, "a component is a struct or a class");
   static_assert(!std::is_final_v<T>, "a component must not be final: its methods could not be checked");
-  static_assert(std::is_default_constructible_v<T>,
-                "a component is made without arguments: what it needs comes by in-const and resource ports");
+  // An aggregate has no constructor: when it cannot be made, a port of it is wrong and has been told already.
+  static_assert(std::is_default_constructible_v<T> || std::is_aggregate_v<T>,
+                "a component is made without arguments: what it needs comes by in-const and resource ports (if a port "
+                "is refused above, mend that first)");
   static_assert(check_spelling<T>());
   static_assert(check_signatures<T>());
   static_assert(Name_cycle<T>::kFound, "a component needs a method cycle(Cycle) or cycle()");

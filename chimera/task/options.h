@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The named extras of a port and of a component: `initial = 0.0`, `range(-1, 1)`, `safety`, `frame = "base"`,
-// `doc = "..."`, `type = "T"`, `at_least = "low"`; `rate = 1000.0`, `source = "..."`.
+// `doc = "..."`, `type = "T"`, `at_least = "low"`, `one_of = "sine square"`; `rate = 1000.0`, `source = "..."`.
 #pragma once
 
 #include <concepts>
@@ -20,7 +20,7 @@ struct Literal {
 
 /// [a-z][a-z0-9_]*, at most 64 letters, for the first `size` characters.
 consteval void check_name(const char* name, std::size_t size) {
-  if (size == 0 || size > 64 || *name < 'a' || *name > 'z') throw "a name begins with a small letter";
+  if (size == 0 || size > 64 || *name < 'a' || *name > 'z') throw "a name begins with a small letter: \"r\", not \"R\"";
   for (std::size_t i = 0; i < size; ++i) {
     const char c = name[i];
     if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9') && c != '_')
@@ -82,6 +82,10 @@ struct AtLeastIs : OptionBase {
   explicit constexpr AtLeastIs(const char* p) : port(p) {}
   const char* port;
 };
+struct OneOfIs : OptionBase {
+  explicit constexpr OneOfIs(const char* w) : words(w) {}
+  const char* words;
+};
 struct RateIs {
   double hertz;
 };
@@ -107,6 +111,9 @@ struct TypeName {
 struct AtLeastName {
   constexpr AtLeastIs operator=(PortName p) const { return AtLeastIs(p.text); }  // NOLINT
 };
+struct OneOfName {
+  constexpr OneOfIs operator=(Literal words) const { return OneOfIs(words.text); }  // NOLINT
+};
 struct RateName {
   constexpr RateIs operator=(double hertz) const { return {hertz}; }  // NOLINT
 };
@@ -123,8 +130,9 @@ inline constexpr FrameName frame{};      ///< reference frame of the values
 inline constexpr DocName doc{};          ///< one sentence for the data sheet
 inline constexpr TypeName type{};        ///< name of the type variable of an Any port ("T" if not given)
 inline constexpr AtLeastName at_least{};  ///< in-const: the in-const that no element of this one is below
-inline constexpr RateName rate{};        ///< CHIMERA_COMPONENT: default rate in Hz
-inline constexpr SourceName source{};    ///< CHIMERA_COMPONENT: the paper or book behind it
+inline constexpr OneOfName one_of{};      ///< in-const of text: the words it may be, with spaces between them
+inline constexpr RateName rate{};         ///< CHIMERA_COMPONENT: default rate in Hz
+inline constexpr SourceName source{};     ///< CHIMERA_COMPONENT: the paper or book behind it
 
 /// The values this port may take, in its unit, ends included.
 inline RangeIs range(double min, double max) { return RangeIs(min, max); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "chimera/task/abi.h"
@@ -10,7 +11,7 @@ namespace chimera {
 /// What holds between the component's constants; nothing, when it was built before there was such a thing.
 /// Context: any; wait-free.
 inline std::span<const chimera_order> orders_of(const chimera_component& component) noexcept {
-  if (component.struct_size < sizeof(chimera_component) || component.orders == nullptr) return {};
+  if (component.struct_size < offsetof(chimera_component, n_choices) || component.orders == nullptr) return {};
   return {component.orders, component.n_orders};
 }
 

@@ -69,6 +69,7 @@ typedef struct pboPort_t {
   const void* initial;
   uint32_t initial_bytes;
   const char* at_least;
+  const char* one_of;
   double min, max;
   int has_range;
   int safety;
@@ -80,6 +81,7 @@ typedef struct pboPort_t {
 #define PBO_RANGE(low, high) .has_range = 1, .min = low, .max = high
 #define PBO_SAFETY .safety = 1
 #define PBO_AT_LEAST(lower) .at_least = lower /* in_const of numbers: no element is below that of in_const `lower` */
+#define PBO_ONE_OF(words) .one_of = words /* in_const of text: "the words it may be", with spaces between them */
 #define PBO_INITIAL(type, ...) \
   .initial = (const PBO_TYPE_##type[]){__VA_ARGS__}, .initial_bytes = sizeof((const PBO_TYPE_##type[]){__VA_ARGS__})
 
@@ -257,6 +259,7 @@ static inline void pboDestroy(void* state) { (void)state; }
   PBO_EVENT_SOURCE(m)                                                                               \
   static chimera_port_decl m##Declared[sizeof m##PortList / sizeof m##PortList[0]];                 \
   static chimera_order m##Orders[sizeof m##PortList / sizeof m##PortList[0]];                       \
+  static chimera_choice m##Choices[sizeof m##PortList / sizeof m##PortList[0]];                     \
   static chimera_component m##Component = {.name = #m, __VA_ARGS__};                                \
   static const chimera_component* m##Declare(void) {                                                \
     uint32_t i;                                                                                     \
@@ -269,10 +272,14 @@ static inline void pboDestroy(void* state) { (void)state; }
     m##Component.n_ports = sizeof m##PortList / sizeof m##PortList[0];                              \
     for (i = 0; i < m##Component.n_ports; ++i) pboDeclarePort(&m##Declared[i], &m##PortList[i]);    \
     m##Component.ports = m##Declared;                                                               \
-    for (i = 0; i < m##Component.n_ports; ++i)                                                      \
+    for (i = 0; i < m##Component.n_ports; ++i) {                                                    \
       if (m##PortList[i].at_least != NULL)                                                          \
         m##Orders[m##Component.n_orders++] = (chimera_order){m##PortList[i].at_least, m##PortList[i].name}; \
+      if (m##PortList[i].one_of != NULL)                                                            \
+        m##Choices[m##Component.n_choices++] = (chimera_choice){m##PortList[i].name, m##PortList[i].one_of}; \
+    }                                                                                               \
     m##Component.orders = m##Orders;                                                                \
+    m##Component.choices = m##Choices;                                                              \
     m##Component.construct = pboConstruct;                                                          \
     m##Component.destroy = pboDestroy;                                                              \
     m##Component.methods[CHIMERA_CYCLE] = m##RunCycle;                                              \

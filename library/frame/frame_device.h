@@ -24,8 +24,8 @@ struct FrameDevice {
   Out<std::int64_t> wrong{"wrong", "1", initial = 0, doc = "Frames with a wrong CRC or a value that is not finite."};
   Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Commands that were not finite, or found the line full."};
   InConst<std::int32_t> fields{"fields", "1", initial = 1, range(1, 16), doc = "Values in a frame of the device."};
-  InConst<Text<8>> form{"form", initial = "float32",
-                        doc = "How a value stands in a frame: float32 or int16."};
+  InConst<Text<8>> form{"form", initial = "float32", one_of = "float32 int16",
+                        doc = "How a value stands in a frame."};
   InConst<double> command_resolution{"command_resolution", "U", initial = 1.0,
                                      doc = "Command that is a 1 in the frame."};
   InConst<double> state_resolution{"state_resolution", "X", initial = 1.0, doc = "State that is a 1 in the frame."};

@@ -25,7 +25,8 @@ struct JointTrajectory {
   InConst<double[]> goal{"goal", "rad", "[ndof<=10]", frame = "joint", doc = "Where it ends."};
   InConst<double> duration{"duration", "s", initial = 0.0, range(0, 3600),
                            doc = "From rest to rest; with limits the least time it takes."};
-  InConst<Text<16>> profile{"profile", "1", initial = "quintic", doc = "quintic, trapezoid or jerk."};
+  InConst<Text<16>> profile{"profile", "1", initial = "quintic", one_of = "quintic trapezoid jerk",
+                            doc = "How speed and acceleration go."};
   InConst<double[]> velocity_max{"velocity_max", "rad/s", "[ndof<=10]", range(0, 1e6), frame = "joint", initial = 1.0,
                                  doc = "Limit of trapezoid and jerk."};
   InConst<double[]> acceleration_max{"acceleration_max", "rad/s2", "[ndof<=10]", range(0, 1e6), frame = "joint",

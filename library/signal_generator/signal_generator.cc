@@ -12,7 +12,7 @@ namespace {
 
 struct SignalGenerator {
   InConst<Text<16>>     wave{"wave", "1", initial = "sine",
-                             doc = "sine, square, triangle, sawtooth, chirp, noise or step."};
+                             one_of = "sine square triangle sawtooth chirp noise step", doc = "The kind of signal."};
   InConst<double[]>     amplitude{"amplitude", "U", "[n...<=64]",
                                   doc = "From the middle to the peak; one for all elements, or one each."};
   InConst<double[]>     offset{"offset", "U", "[n...<=64]", initial = 0.0, doc = "The middle."};

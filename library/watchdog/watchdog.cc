@@ -14,7 +14,7 @@ enum class Action { kReport, kFault, kOff };
 struct Watchdog {
   Many<In<Any[]>>    in{"in*", "U", "[n...<=64]", type = "T", doc = "The values to watch, of one type and unit."};
   InConst<double>    max_age{"max_age", "s", range(1e-6, 86400), doc = "A value must be renewed at least this often."};
-  InConst<Text<16>>  action{"action", "1", initial = "report", doc = "What follows: report, fault, or off."};
+  InConst<Text<16>>  action{"action", "1", initial = "report", one_of = "report fault off", doc = "What follows."};
   InConst<Text<64>>  target{"target", "1", initial = "", doc = "The task that the action off turns off."};
   Out<bool>          alive{"alive", "1", initial = true, doc = "All of them are renewed in time."};
   Out<std::int32_t>  late{"late", "1", initial = 0, range(0, 16), doc = "How many are not."};

@@ -52,6 +52,12 @@ TEST(CFace, DeclaresThatAConstantIsAtLeastAnother) {
   EXPECT_STREQ(ball().orders[0].upper, "reach");
 }
 
+TEST(CFace, DeclaresTheWordsOfAConstant) {
+  ASSERT_EQ(ball().n_choices, 1u);
+  EXPECT_STREQ(ball().choices[0].port, "mode");
+  EXPECT_STREQ(ball().choices[0].words, "free held");
+}
+
 TEST(CFace, FindsTheMethodsThatAreWrittenAndTakesTermForKill) {
   for (const std::uint32_t m : {CHIMERA_INIT, CHIMERA_ON, CHIMERA_CYCLE, CHIMERA_OFF, CHIMERA_KILL})
     EXPECT_NE(ball().methods[m], nullptr) << m;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "chimera/task/abi.h"
+
+namespace chimera {
+
+/// The words that constants of the component may be; none, when it was built before there was such a thing.
+/// Context: any; wait-free.
+inline std::span<const chimera_choice> choices_of(const chimera_component& component) noexcept {
+  if (component.struct_size < sizeof(chimera_component) || component.choices == nullptr) return {};
+  return {component.choices, component.n_choices};
+}
+
+}  // namespace chimera
