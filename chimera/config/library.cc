@@ -38,6 +38,8 @@ Result<void> check_units(const LibraryEntry& entry, const UnitSystem& units) {
 Library Library::make(std::span<const std::string> folders, UnitSystem units) {
   Library library(std::move(units));
   for (const std::string& folder : folders) library.read_folder(folder);
+  for (std::string& folder : component_folders({}))
+    if (!std::filesystem::is_directory(folder)) library.missing_folders_.push_back(std::move(folder));
   return library;
 }
 

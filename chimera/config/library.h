@@ -40,6 +40,8 @@ class Library {
   std::string nearest_name(std::string_view name) const;
   /// What could not be read; `where` is the file.
   std::span<const Error> faults() const noexcept { return faults_; }
+  /// Folders that CHIMERA_PATH names and that do not exist: whoever misses a component wants to know.
+  std::span<const std::string> missing_folders() const noexcept { return missing_folders_; }
   const UnitSystem& units() const noexcept { return units_; }
 
  private:
@@ -51,6 +53,7 @@ class Library {
   UnitSystem units_;
   std::vector<LibraryEntry> entries_;
   std::vector<Error> faults_;
+  std::vector<std::string> missing_folders_;
 };
 
 /// The folders of CHIMERA_PATH (colons between them; empty parts are passed over), then `installed`.

@@ -10,6 +10,7 @@
 
 #include "chimera/config/descriptor_json.h"
 #include "chimera/config/unit_samples.h"
+#include "chimera/config/verify.h"
 
 namespace chimera {
 namespace {
@@ -79,6 +80,32 @@ TEST(Library, ThePathComesBeforeTheInstalledFolders) {
   EXPECT_EQ(component_folders(installed), (std::vector<std::string>{"/a", "/b", "/usr/lib/chimera"}));
   ::unsetenv("CHIMERA_PATH");
   EXPECT_EQ(component_folders(installed), (std::vector<std::string>{"/usr/lib/chimera"}));
+}
+
+TEST_F(Folders, NamesFoldersOfThePathThatAreNotThere) {
+  EXPECT_TRUE(make().missing_folders().empty());  // the second of its folders is nobody's wish
+  ::setenv("CHIMERA_PATH", (root + "one:/nowhere/at/all").c_str(), 1);
+  const Library library = make();
+  const Verdict verdict =
+      verify(read_description("subsystem: demo\ntasks: {motor: {rate: 1 kHz}}\n", "app.yaml"), library);
+  ::unsetenv("CHIMERA_PATH");
+  ASSERT_EQ(library.missing_folders().size(), 1u);
+  EXPECT_EQ(verdict.report.text(),
+            "app.yaml:2:9: error: task 'motor': the component 'motor' is not in the library [component-unknown]\n"
+            "  'chimera list' shows the library; CHIMERA_PATH adds folders to it; CHIMERA_PATH names /nowhere/at/all, "
+            "which is no folder\n");
+}
+
+TEST_F(Folders, AComponentThatCannotBeReadIsNotMissing) {
+  std::string text = to_json(component("motor"));
+  text.replace(text.find("\"abi_version\": 1"), 16, "\"abi_version\": 99");
+  write("one/motor.component.json", text);
+  const Verdict verdict =
+      verify(read_description("subsystem: demo\ntasks: {motor: {rate: 1 kHz}}\n", "app.yaml"), make());
+  EXPECT_EQ(verdict.report.text(),
+            "app.yaml:2:9: error: task 'motor': the component 'motor' cannot be used: " + root +
+                "one/motor.component.json: $.abi_version: motor was built for ABI 99, and this chimera needs ABI 1 "
+                "[component-unknown]\n  rebuild the component motor\n");
 }
 
 }  // namespace

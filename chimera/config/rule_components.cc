@@ -13,15 +13,31 @@ void refuse_streams(Model& model, const TaskModel& task) {
                   port.name, "a component without streams");
 }
 
-}  // namespace
-
-/// Why the file that should describe the component is not in the library; empty: there is none.
-std::string fault_of(const Model& model, const std::string& component) {
+/// Why the file that should describe the component is not in the library; nullptr: there is none.
+const Error* fault_of(const Model& model, const std::string& component) {
   for (const Error& fault : model.library.faults())
-    if (fault.where.view().ends_with("/" + component + ".component.json"))
-      return "; " + std::string(fault.where.view()) + ": " + std::string(fault.message.view());
-  return "";
+    if (fault.where.view().ends_with("/" + component + ".component.json")) return &fault;
+  return nullptr;
 }
+
+void refuse_unknown(Model& model, const DraftTask& task) {
+  const std::string& name = task.component.text;
+  const std::string component = "task '" + task.name.text + "': the component '" + name + "' ";
+  if (const Error* fault = fault_of(model, name)) {
+    const std::string why = std::string(fault->where.view()) + ": " + std::string(fault->message.view());
+    model.error("component-unknown", task.component.at, component + "cannot be used: " + why, name,
+                "a component whose descriptor can be read", {}, "rebuild the component " + name);
+    return;
+  }
+  const std::string near = model.library.nearest_name(name);
+  std::string remedy = "'chimera list' shows the library; CHIMERA_PATH adds folders to it";
+  for (const std::string& folder : model.library.missing_folders())
+    remedy += "; CHIMERA_PATH names " + folder + ", which is no folder";
+  model.error("component-unknown", task.component.at, component + "is not in the library", name,
+              "a component of the library", near, near.empty() ? remedy : "");
+}
+
+}  // namespace
 
 void find_components(Model& model) {
   for (const DraftTask& draft : model.draft.tasks) {
@@ -32,12 +48,7 @@ void find_components(Model& model) {
       task.component = &entry->descriptor;
       refuse_streams(model, task);
     } else if (!draft.component.empty()) {
-      const std::string near = model.library.nearest_name(draft.component.text);
-      model.error("component-unknown", draft.component.at,
-                  "task '" + task.name() + "': the component '" + draft.component.text + "' is not in the library" +
-                      fault_of(model, draft.component.text),
-                  draft.component.text, "a component of the library", near,
-                  near.empty() ? "'chimera list' shows the library; CHIMERA_PATH adds folders to it" : "");
+      refuse_unknown(model, draft);
     }
     model.tasks.push_back(std::move(task));
   }

@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 75> kRules = {
+inline constexpr std::array<std::string_view, 76> kRules = {
     // the text
     "file-unreadable", "text-size", "text-encoding", "text-tab", "text-entries", "text-nesting", "value-size",
     "yaml-syntax", "yaml-anchor", "yaml-alias", "yaml-tag", "yaml-documents", "yaml-block-scalar", "yaml-key",
@@ -16,8 +16,15 @@ inline constexpr std::array<std::string_view, 75> kRules = {
     "key-twice", "key-unknown", "key-missing", "value-kind", "name-illegal", "word-unknown", "number-bad",
     "quantity-bad", "version-unknown", "count-limit",
     // components and ports
-    "component-unknown", "port-unknown", "port-kind", "port-stream", "alias-list", "repeated-port",
-    "table-limit", "resource-missing",
+    "component-unknown",
+    "component-object",
+    "port-unknown",
+    "port-kind",
+    "port-stream",
+    "alias-list",
+    "repeated-port",
+    "table-limit",
+    "resource-missing",
     // links
     "input-unmet", "two-producers", "operator-produced", "variable-and-constant",
     // agreement of the ports of one variable

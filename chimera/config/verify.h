@@ -28,6 +28,10 @@ Verdict verify(const Draft& draft, const Library& library);
 /// Judges what was read, faults of the text included: the one call of `check`, `run` and `schedule`. Context: setup.
 Verdict verify(const Reading& reading, const Library& library, Overload overload = Overload::kRefused);
 
+/// The shared objects of its components that cannot be loaded, as far as can be seen without running code of them;
+/// empty: none. `library` is the one it was verified with. Context: setup; may block.
+Report faulty_objects(const Configuration& configuration, const Library& library);
+
 enum class Executor : std::uint8_t {
   kProcesses,
   kOneProcess,

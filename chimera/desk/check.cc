@@ -51,7 +51,8 @@ std::string verdict_text(const Configuration& configuration) {
 Output check(const CheckOptions& options, const Workplace& workplace) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), options.json);
-  const Verdict verdict = verify(read_description_file(options.file), *library);
+  Verdict verdict = verify(read_description_file(options.file), *library);
+  if (verdict.configuration) verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
   Output output;
   output.code = verdict.report.is_legal() ? kOk : kRefused;
   if (options.json) {
@@ -59,7 +60,7 @@ Output check(const CheckOptions& options, const Workplace& workplace) {
     return output;
   }
   output.err = verdict.report.text();
-  if (!verdict.configuration) {
+  if (!verdict.report.is_legal()) {
     output.err += count(verdict.report.errors(), "error", "errors") + "\n";
     return output;
   }

@@ -21,9 +21,14 @@ Output list(const Workplace& workplace, bool json) {
     rows += (rows.empty() ? "" : ", ") + std::string("{\"name\": ") + json_string(d.name) +
             ", \"doc\": " + json_string(d.doc) + ", \"file\": " + json_string(entry.object_file) + "}";
   }
-  if (json) output.out = "{\"components\": [" + rows + "]}\n";
-  else if (library->entries().empty()) output.err = "no components found; CHIMERA_PATH says where to look\n";
+  if (json)
+    output.out = "{\"components\": [" + rows + "]}\n";
+  else if (library->entries().empty())
+    output.err = "no components found; CHIMERA_PATH says where to look\n";
+  for (const std::string& folder : library->missing_folders())
+    output.err += "warning: CHIMERA_PATH names " + folder + ", which is no folder\n";
   for (const Error& fault : library->faults()) output.err += error_line(fault);
+  if (!library->faults().empty() && !json) output.err += "rebuild the components that cannot be read\n";
   if (!library->faults().empty()) output.code = kRefused;
   return output;
 }

@@ -101,6 +101,7 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& work
   Reading reading = read_description_file(request.file);
   Verdict verdict = verify(reading, *library);
   if (verdict.configuration) {
+    verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
     verdict.report.add_all(unsupported(*verdict.configuration, executor_of(request)));
     if (verdict.report.is_legal()) verdict.report.add_all(promises(request, *verdict.configuration));
   }

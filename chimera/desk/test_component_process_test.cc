@@ -152,7 +152,8 @@ TEST_F(TestComponent, TestsAnObjectWithoutSourceOrDescriptor) {
   write("text.so", "no object");
   options_.components = {(folder_ / "text.so").string()};
   EXPECT_EQ(run().err, (folder_ / "text.so").string() +
-                           ": error: is not a shared object: it does not begin with the ELF mark\n");
+                           ": error: text.so is not a shared object: it does not begin with the ELF mark. Rebuild the "
+                           "component.\n");
 }
 
 TEST_F(TestComponent, RefusesASetupThatIsNotLegal) {

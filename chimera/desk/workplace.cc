@@ -25,6 +25,9 @@ Result<Library> Workplace::library() const {
 }
 
 Error no_component(const std::string& name, const Library& library) {
+  for (const Error& fault : library.faults())
+    if (fault.where.view().ends_with("/" + name + ".component.json"))
+      return {fault.code, {std::string(fault.message.view()) + ". Rebuild the component."}, fault.where};
   const std::string nearest = library.nearest_name(name);
   std::string message = "no component '" + name + "' is installed";
   if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";

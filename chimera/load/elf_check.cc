@@ -5,19 +5,29 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <string>
+#include <vector>
+
+#include "chimera/task/abi.h"
 
 namespace chimera {
 namespace {
 
 #if defined(__x86_64__)
 constexpr std::uint16_t kMachine = EM_X86_64;
+constexpr std::string_view kMachineName = "x86-64";
 #elif defined(__aarch64__)
 constexpr std::uint16_t kMachine = EM_AARCH64;
+constexpr std::string_view kMachineName = "AArch64";
 #elif defined(__riscv)
 constexpr std::uint16_t kMachine = EM_RISCV;
+constexpr std::string_view kMachineName = "RISC-V";
 #endif
+
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // of a file that is looked through
 
 bool is_inside(std::uint64_t offset, std::uint64_t size, std::uint64_t whole) noexcept {
   return offset <= whole && size <= whole - offset;
@@ -34,20 +44,87 @@ bool is_whole(int file, const Elf64_Ehdr& head, std::uint64_t size) noexcept {
   return true;
 }
 
+/// The whole file; empty when it cannot be read.
+std::string contents(int file) {
+  struct stat status {};
+  if (::fstat(file, &status) != 0 || static_cast<std::uint64_t>(status.st_size) > kMostBytes) return {};
+  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t got = ::pread(file, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+    if (got <= 0) return {};
+    done += static_cast<std::size_t>(got);
+  }
+  return bytes;
+}
+
+/// The `index`th record of a table at `offset`; false where it lies outside the bytes.
+template <class Record>
+bool record_at(const std::string& bytes, std::uint64_t offset, std::uint64_t index, Record& to) {
+  if (index > kMostBytes || offset > kMostBytes) return false;
+  if (!is_inside(offset + index * sizeof(Record), sizeof(Record), bytes.size())) return false;
+  std::memcpy(&to, bytes.data() + offset + index * sizeof(Record), sizeof(Record));
+  return true;
+}
+
+bool text_is(const std::string& bytes, std::uint64_t at, std::string_view text) {
+  return is_inside(at, text.size() + 1, bytes.size()) &&
+         std::memcmp(bytes.data() + at, text.data(), text.size()) == 0 && bytes[at + text.size()] == '\0';
+}
+
+enum class Exported { kYes, kNo, kUnknown };
+
+/// Whether the file exports a symbol of that name; unknown without a table of sections, which programs may take away.
+Exported exports(const std::string& bytes, std::string_view symbol) {
+  Elf64_Ehdr head{};
+  Elf64_Shdr table{}, names{};
+  if (!record_at(bytes, 0, 0, head) || head.e_shentsize != sizeof table) return Exported::kUnknown;
+  for (std::uint16_t i = 0; i < head.e_shnum; ++i) {
+    if (!record_at(bytes, head.e_shoff, i, table)) return Exported::kUnknown;
+    if (table.sh_type != SHT_DYNSYM) continue;
+    if (!record_at(bytes, head.e_shoff, table.sh_link, names)) return Exported::kUnknown;
+    Elf64_Sym one{};
+    for (std::uint64_t s = 0; s < table.sh_size / sizeof one && record_at(bytes, table.sh_offset, s, one); ++s) {
+      if (one.st_shndx == SHN_UNDEF || names.sh_offset > kMostBytes) continue;
+      if (text_is(bytes, names.sh_offset + one.st_name, symbol)) return Exported::kYes;
+    }
+    return Exported::kNo;
+  }
+  return Exported::kUnknown;
+}
+
 }  // namespace
 
-std::string_view elf_fault(int file) noexcept {
+Message elf_fault(int file) noexcept {
   Elf64_Ehdr head{};
-  const ssize_t got = ::pread(file, &head, sizeof head, 0);
-  if (got < SELFMAG || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0)
-    return "is not a shared object: it does not begin with the ELF mark";
   struct stat status {};
-  if (::fstat(file, &status) != 0 || got != sizeof head) return "is cut short";
-  if (head.e_ident[EI_CLASS] != ELFCLASS64 || head.e_machine != kMachine) return "was built for another machine";
-  if (head.e_type != ET_DYN) return "is not a shared object: it is another kind of ELF file";
-  if (head.e_phentsize != sizeof(Elf64_Phdr)) return "has damaged headers";
-  if (!is_whole(file, head, static_cast<std::uint64_t>(status.st_size))) return "is cut short";
-  return "";
+  const ssize_t got = ::pread(file, &head, sizeof head, 0);
+  if (got < 0 || ::fstat(file, &status) != 0) return Message("cannot be read");
+  if (status.st_size == 0) return Message("is empty (0 bytes)");
+  if (got < SELFMAG || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0)
+    return Message("is not a shared object: it does not begin with the ELF mark");
+  Message cut;
+  cut << "is truncated (" << status.st_size << " bytes)";
+  if (got != sizeof head) return cut;
+  if (head.e_ident[EI_CLASS] != ELFCLASS64 || head.e_machine != kMachine)
+    return Message() << "was built for another kind of processor; this machine is " << kMachineName;
+  if (head.e_type != ET_DYN) return Message("is not a shared object: it is another kind of ELF file");
+  if (head.e_phentsize != sizeof(Elf64_Phdr)) return Message("has damaged headers");
+  if (!is_whole(file, head, static_cast<std::uint64_t>(status.st_size))) return cut;
+  return {};
+}
+
+Message elf_fault(int file, std::string_view component) {
+  if (Message why = elf_fault(file); !why.empty()) return why;
+  const std::string bytes = contents(file);
+  if (bytes.empty()) return Message("cannot be read");
+  if (exports(bytes, CHIMERA_COMPONENTS_SYMBOL) == Exported::kNo)
+    return Message("offers no components: it has no symbol " CHIMERA_COMPONENTS_SYMBOL);
+  // The name lies in the object as the text that the declaration points at: its closing zero is part of it.
+  std::string name(component);
+  name.push_back('\0');
+  if (bytes.find(name) == std::string::npos)
+    return Message() << "is not the object of " << component << ": that name does not stand in it";
+  return {};
 }
 
 }  // namespace chimera

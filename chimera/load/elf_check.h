@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a file is a whole shared object for this machine. The system's loader trusts the headers of a file: one that
-// was cut short kills the process instead of being refused.
+// Whether a file is a whole shared object for this machine, and of which component. The system's loader trusts the
+// headers of a file: one that was cut short kills the process instead of being refused.
 #pragma once
 
 #include <string_view>
 
+#include "chimera/base/message.h"
+
 namespace chimera {
 
-/// Reads the headers of the file behind the descriptor `file`. "" when it is whole, else why not, as a clause that
+/// Reads the headers of the file behind the descriptor `file`. Empty when it is whole, else why not, as a clause that
 /// goes after the file's name. Context: setup; may block.
-std::string_view elf_fault(int file) noexcept;
+Message elf_fault(int file) noexcept;
+
+/// The same, and whether the file offers components, and one of that name, as far as can be told without running code
+/// of it: the symbol is exported, and the name stands in the file. Context: setup; may block.
+Message elf_fault(int file, std::string_view component);
 
 }  // namespace chimera

@@ -39,6 +39,12 @@ Error system_error(std::string_view what, const std::string& path) {
   return (Message() << what << ": " << ::strerror(errno)).error(code, path);
 }
 
+/// "gain.so is empty (0 bytes). Rebuild the component."
+Error unfit(const std::string& path, std::string_view clause, ErrorCode code = ErrorCode::kBadInput) {
+  const std::string_view name = std::string_view(path).substr(path.rfind('/') + 1);
+  return (Message() << name << " " << clause << ". Rebuild the component.").error(code, path);
+}
+
 Result<void> copy_all(int from, int to, const std::string& path) {
   char block[65536];
   for (;;) {
@@ -62,8 +68,7 @@ Result<int> sealed_copy(const std::string& path) {
   OpenFile copy(::memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (copy.number() < 0) return system_error("no memory for a copy", path);
   if (const auto copied = copy_all(file.number(), copy.number(), path); !copied) return copied.error();
-  if (const auto why = elf_fault(copy.number()); !why.empty())
-    return (Message() << why).error(ErrorCode::kBadInput, path);
+  if (const auto why = elf_fault(copy.number()); !why.empty()) return unfit(path, why.view());
   if (::fcntl(copy.number(), F_ADD_SEALS, kSeals) != 0) return system_error("the copy cannot be sealed", path);
   return copy.take();
 }
@@ -78,19 +83,18 @@ std::string_view reason(const char* text) {
 Result<std::span<const chimera_component* const>> components_of(void* handle, const std::string& path) {
   void* symbol = ::dlsym(handle, CHIMERA_COMPONENTS_SYMBOL);
   if (symbol == nullptr) {
-    return (Message() << "has no symbol " CHIMERA_COMPONENTS_SYMBOL
-                         ": no CHIMERA_COMPONENT or PBO_MODULE was built into it")
-        .error(ErrorCode::kBadInput, path);
+    return unfit(path, "offers no components: it has no symbol " CHIMERA_COMPONENTS_SYMBOL
+                       ", so no CHIMERA_COMPONENT or PBO_MODULE was built into it");
   }
   const auto components = reinterpret_cast<chimera_components_fn>(symbol);
   std::uint32_t count = 0;
   const chimera_component* const* list = components(CHIMERA_ABI_VERSION, &count);
   if (list == nullptr) {
-    return (Message() << "was built for another version of the component interface than " << CHIMERA_ABI_VERSION
-                      << ", which this framework speaks: build it again")
-        .error(ErrorCode::kUnsupported, path);
+    return unfit(path,
+                 (Message() << "was built for another ABI; this chimera needs ABI " << CHIMERA_ABI_VERSION).view(),
+                 ErrorCode::kUnsupported);
   }
-  if (count == 0) return (Message() << "offers no component").error(ErrorCode::kBadInput, path);
+  if (count == 0) return unfit(path, "offers no component");
   return std::span(list, count);
 }
 
@@ -110,6 +114,14 @@ Result<SharedObject> SharedObject::open(const std::string& path) {
   const auto components = components_of(handle, path);
   if (!components) return components.error();
   return SharedObject(path, *components);
+}
+
+Result<void> SharedObject::inspect(const std::string& path, std::string_view component) {
+  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.number() < 0 && errno == ENOENT) return unfit(path, "is missing", ErrorCode::kNotFound);
+  if (file.number() < 0) return system_error("cannot be opened", path);
+  if (const auto why = elf_fault(file.number(), component); !why.empty()) return unfit(path, why.view());
+  return {};
 }
 
 Result<const chimera_component*> SharedObject::component(std::string_view name) const {

@@ -28,6 +28,10 @@ class SharedObject {
   /// Context: setup; may block.
   static Result<SharedObject> open(const std::string& path);
 
+  /// Refuses what open() and component() would refuse, as far as that can be seen without running code of the file:
+  /// for whoever checks and does not load. Context: setup; may block.
+  static Result<void> inspect(const std::string& path, std::string_view component);
+
   const std::string& path() const noexcept { return path_; }
   std::span<const chimera_component* const> components() const noexcept { return components_; }
 

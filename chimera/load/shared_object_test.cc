@@ -2,10 +2,12 @@
 // Objects good and bad: chimera/load/test_objects.
 #include "chimera/load/shared_object.h"
 
+#include <elf.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -47,6 +49,16 @@ std::string refusal(const std::string& path) {
   return std::string(opened.error().message.view());
 }
 
+/// What check says of the file, which runs nothing of it.
+std::string inspection(const std::string& path, const std::string& component = "counter") {
+  const auto sound = SharedObject::inspect(path, component);
+  return sound ? "sound" : std::string(sound.error().message.view());
+}
+
+std::string rebuild(const std::string& path, const std::string& clause) {
+  return path.substr(path.rfind('/') + 1) + " " + clause + ". Rebuild the component.";
+}
+
 /// One cycle of counter.so; what its object has counted.
 std::int32_t count_once(const chimera_component& component, ComponentState& instance) {
   std::int32_t count = 0;
@@ -73,26 +85,31 @@ TEST(SharedObject, RefusesAFileThatIsNotThere) {
 }
 
 TEST(SharedObject, RefusesWhatIsNoObject) {
-  const std::string sentence = "is not a shared object: it does not begin with the ELF mark";
   const TemporaryFile text("subsystem: puma\n"), empty("");
-  EXPECT_EQ(refusal(text.path()), sentence);
-  EXPECT_EQ(refusal(empty.path()), sentence);
+  EXPECT_EQ(refusal(text.path()), rebuild(text.path(), "is not a shared object: it does not begin with the ELF mark"));
+  EXPECT_EQ(refusal(empty.path()), rebuild(empty.path(), "is empty (0 bytes)"));
   EXPECT_EQ(refusal("/tmp"), "cannot be read: Is a directory");
 }
 
 TEST(SharedObject, RefusesAnObjectCutShortAtAnyPlace) {
   const std::string whole = contents(object("counter.so"));
-  for (std::size_t size = 4; size < whole.size(); size += 97)
-    ASSERT_EQ(refusal(TemporaryFile(whole.substr(0, size)).path()), "is cut short") << size;
+  for (std::size_t size = 4; size < whole.size(); size += 97) {
+    const TemporaryFile cut(whole.substr(0, size));
+    ASSERT_EQ(refusal(cut.path()), rebuild(cut.path(), "is truncated (" + std::to_string(size) + " bytes)"));
+    ASSERT_EQ(inspection(cut.path()), refusal(cut.path()));
+  }
 }
 
 TEST(SharedObject, RefusesAnObjectForAnotherMachine) {
   std::string other = contents(object("counter.so"));
   other[18] = '\x03';  // e_machine: 80386
-  EXPECT_EQ(refusal(TemporaryFile(other).path()), "was built for another machine");
+  const TemporaryFile machine(other);
+  EXPECT_EQ(refusal(machine.path()),
+            rebuild(machine.path(), "was built for another kind of processor; this machine is x86-64"));
   other = contents(object("counter.so"));
   other[16] = '\x01';  // e_type: relocatable
-  EXPECT_EQ(refusal(TemporaryFile(other).path()), "is not a shared object: it is another kind of ELF file");
+  const TemporaryFile kind(other);
+  EXPECT_EQ(refusal(kind.path()), rebuild(kind.path(), "is not a shared object: it is another kind of ELF file"));
 }
 
 TEST(SharedObject, RefusesAnObjectThatCannotBeLinked) {
@@ -101,14 +118,48 @@ TEST(SharedObject, RefusesAnObjectThatCannotBeLinked) {
 
 TEST(SharedObject, RefusesAnObjectWithoutComponents) {
   EXPECT_EQ(refusal(object("no_symbol.so")),
-            "has no symbol chimera_components: no CHIMERA_COMPONENT or PBO_MODULE was built into it");
-  EXPECT_EQ(refusal(object("nothing_offered.so")), "offers no component");
+            "no_symbol.so offers no components: it has no symbol chimera_components, so no CHIMERA_COMPONENT or "
+            "PBO_MODULE was built into it. Rebuild the component.");
+  EXPECT_EQ(refusal(object("nothing_offered.so")), "nothing_offered.so offers no component. Rebuild the component.");
 }
 
 TEST(SharedObject, RefusesAnotherVersionOfTheInterface) {
   EXPECT_EQ(refusal(object("other_abi.so")),
-            "was built for another version of the component interface than 1, which this framework speaks: build it "
-            "again");
+            "other_abi.so was built for another ABI; this chimera needs ABI 1. Rebuild the component.");
+}
+
+TEST(SharedObject, IsInspectedWithoutBeingRun) {
+  EXPECT_EQ(inspection(object("counter.so")), "sound");
+  EXPECT_EQ(inspection(object("counter.so"), "kounter"),
+            "counter.so is not the object of kounter: that name does not stand in it. Rebuild the component.");
+  EXPECT_EQ(inspection(object("no_symbol.so"), "no_symbol"),
+            "no_symbol.so offers no components: it has no symbol chimera_components. Rebuild the component.");
+  EXPECT_EQ(inspection("/nowhere/at/all.so"), "all.so is missing. Rebuild the component.");
+  const TemporaryFile empty("");
+  EXPECT_EQ(inspection(empty.path()), rebuild(empty.path(), "is empty (0 bytes)"));
+  EXPECT_EQ(inspection("/tmp"), "tmp cannot be read. Rebuild the component.");
+}
+
+TEST(SharedObject, InspectionStandsAnyDamage) {
+  const std::string whole = contents(object("counter.so"));
+  std::string damaged = whole;
+  TemporaryFile file(whole);
+  for (std::size_t at = 0; at < 64; ++at) {  // the header, byte by byte
+    for (const char byte : {'\0', '\x7f', '\xff'}) {
+      damaged[at] = byte;
+      file.write(damaged);
+      EXPECT_FALSE(inspection(file.path()).empty());
+    }
+    damaged[at] = whole[at];
+  }
+  Elf64_Ehdr head{};
+  std::memcpy(&head, whole.data(), sizeof head);
+  for (std::size_t at = head.e_shoff; at < whole.size(); ++at) {  // the table of sections
+    damaged[at] = '\xff';
+    file.write(damaged);
+    EXPECT_FALSE(inspection(file.path()).empty());
+    damaged[at] = whole[at];
+  }
 }
 
 TEST(SharedObject, NamesWhatItOffersInsteadOfAnUnknownComponent) {

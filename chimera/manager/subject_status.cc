@@ -286,7 +286,9 @@ Json library_json(const World& world) {
 }
 
 Json check_json(const World& world, const std::string& text, const std::string& file) {
-  return Json::parse(chimera::verify(read_description(text, file), world.bundle.library).report.json());
+  Verdict verdict = chimera::verify(read_description(text, file), world.bundle.library);
+  if (verdict.configuration) verdict.report.add_all(faulty_objects(*verdict.configuration, world.bundle.library));
+  return Json::parse(verdict.report.json());
 }
 
 Json schedule_json(const World& world, const std::string& text, const std::string& file) {
