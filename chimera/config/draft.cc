@@ -117,7 +117,15 @@ Reading unreadable(const std::string& path, std::string_view rule, std::string m
 Reading read_description(std::string_view text, std::string_view file) {
   Reading reading{std::nullopt, Report(std::string(file)), std::string(text)};
   const std::optional<Node> root = read_yaml(text, reading.report);
-  if (root && expect(*root, Node::Kind::kMap, "the file", reading.report))
+  if (root && root->is_none())
+    reading.report.add({.rule = "value-kind",
+                        .at = {},
+                        .message = "the file is empty; a description starts with 'subsystem: NAME'",
+                        .found = {},
+                        .expected = "a map",
+                        .nearest = {},
+                        .remedy = "'chimera new app NAME' writes one"});
+  else if (root && expect(*root, Node::Kind::kMap, "the file", reading.report))
     reading.draft = read_root(*root, file, reading.report);
   reading.report.sort();
   return reading;
@@ -131,7 +139,7 @@ Reading read_description_file(const std::string& path) {
   if (stream.bad() || (stream.fail() && !stream.eof()))
     return unreadable(path, "file-unreadable", "the file cannot be read", "a description is a plain file");
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > kMaxTextBytes)
+  if (text.size() > kMaxTextBytes && text.find('\0') == std::string::npos)
     return unreadable(path, "text-size", "the file has more than " + std::to_string(kMaxTextBytes) + " bytes",
                       "split the application into subsystems");
   return read_description(text, path);

@@ -100,8 +100,9 @@ std::optional<Located<Rate>> read_rate(const Node& node, const std::string& what
   if (!expect_plain(node, "a frequency, as 100 Hz", what, report)) return std::nullopt;
   const Result<Rate> rate = parse_rate(node.text);
   if (rate) return Located<Rate>{*rate, node.at};
+  const bool is_form = rate.error().code == ErrorCode::kBadInput;
   add(report, "quantity-bad", node, what + ": " + std::string(rate.error().message.view()), "a frequency", {},
-      "write a number, a space and Hz: 100 Hz");
+      is_form ? "write a number, a space and Hz: 100 Hz" : "write a rate from 1 MHz down to one per hour");
   return std::nullopt;
 }
 
@@ -109,8 +110,10 @@ std::optional<Located<Nanoseconds>> read_duration(const Node& node, const std::s
   if (!expect_plain(node, "a duration, as 40 us", what, report)) return std::nullopt;
   const Result<Nanoseconds> duration = parse_duration(node.text);
   if (duration) return Located<Nanoseconds>{*duration, node.at};
+  const bool is_form = duration.error().code == ErrorCode::kBadInput;
   add(report, "quantity-bad", node, what + ": " + std::string(duration.error().message.view()), "a duration", {},
-      "write a number, a space and ns, us, ms or s: 40 us");
+      is_form ? "write a number, a space and ns, us, ms or s: 40 us"
+              : "write a time from 0 to 292 years, in whole nanoseconds: 40 us");
   return std::nullopt;
 }
 

@@ -10,9 +10,10 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-Error refused(std::string_view text, std::string_view why) {
+/// kBadInput: the text has not the form; kRefused: it has, and the number is not one of those that are taken.
+Error refused(std::string_view text, std::string_view why, ErrorCode code = ErrorCode::kBadInput) {
   const std::string whole = "\"" + std::string(text.substr(0, 100)) + "\" " + std::string(why);
-  return {ErrorCode::kBadInput, std::string_view(whole), {}};
+  return {code, std::string_view(whole), {}};
 }
 
 /// What follows the number, without the one space that may stand between.
@@ -101,10 +102,11 @@ Result<Nanoseconds> parse_duration(std::string_view text) {
   const std::int64_t scale = scale_of(kDurations, unit);
   if (unit.empty()) return refused(text, "has no unit; expected ns, us, ms, s, min or h");
   if (scale == 0) return refused(text, "is no duration: expected ns, us, ms, s, min or h");
-  if (number->value.negative && number->value.digits != 0) return refused(text, "is negative");
-  if (number->nearest * static_cast<double>(scale) > 9.2e18) return refused(text, "is longer than 292 years");
+  if (number->value.negative && number->value.digits != 0) return refused(text, "is negative", ErrorCode::kRefused);
+  if (number->nearest * static_cast<double>(scale) > 9.2e18)
+    return refused(text, "is longer than 292 years", ErrorCode::kRefused);
   const auto whole = number->is_exact ? number->value.whole(scale) : std::nullopt;
-  if (!whole) return refused(text, "is no whole number of nanoseconds");
+  if (!whole) return refused(text, "is no whole number of nanoseconds", ErrorCode::kRefused);
   return Nanoseconds{*whole};
 }
 
@@ -115,10 +117,11 @@ Result<Rate> parse_rate(std::string_view text) {
   const std::int64_t millihertz = scale_of(kRates, unit);
   if (unit.empty()) return refused(text, "has no unit; expected Hz, kHz, MHz, mHz or 1/s");
   if (millihertz == 0) return refused(text, "is no rate: expected Hz, kHz, MHz, mHz or 1/s");
-  if (number->value.digits == 0 || number->value.negative) return refused(text, "is not above zero");
+  if (number->value.digits == 0 || number->value.negative)
+    return refused(text, "is not above zero", ErrorCode::kRefused);
   const Nanoseconds period{period_of(number->value, millihertz)};
   if (period < kShortestPeriod || period > kLongestPeriod) {
-    return refused(text, "has a period outside 1 us to 1 h");
+    return refused(text, "has a period outside 1 us to 1 h", ErrorCode::kRefused);
   }
   const double scale = static_cast<double>(millihertz) / 1000;  // 1/1000 rounds, the others are whole
   return Rate{millihertz == 1 ? number->nearest / 1000 : number->nearest * scale, period};

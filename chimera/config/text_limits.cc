@@ -28,14 +28,17 @@ bool is_control(unsigned char byte) {
   return (byte < 0x20 && byte != '\n' && byte != '\r' && byte != '\t') || byte == 0x7F;
 }
 
-void add_bad_byte(unsigned char byte, Place at, Report& report) {
+void add_bad_byte(unsigned char byte, bool is_binary, Place at, Report& report) {
   char found[8];
   std::snprintf(found, sizeof found, "0x%02X", static_cast<unsigned>(byte));
   const bool control = is_control(byte);
   report.add({.rule = "text-encoding", .at = at,
               .message = std::string("byte ") + found + (control ? " is a control character" : " is not valid UTF-8"),
-              .found = found, .expected = "text in UTF-8", .nearest = {},
-              .remedy = "save the file as plain UTF-8 text"});
+              .found = found,
+              .expected = "text in UTF-8",
+              .nearest = {},
+              .remedy = is_binary ? "this is a binary file; a description is YAML text"
+                                  : "save the file as plain UTF-8 text"});
 }
 
 /// A line that is indented with a tab before anything but a comment.
@@ -46,13 +49,15 @@ bool has_tab_indent(std::string_view line, std::size_t& column) {
   return column != std::string_view::npos;
 }
 
+bool has_zero(std::string_view text) { return text.find('\0') != std::string_view::npos; }
+
 bool check_bytes(std::string_view text, Report& report) {
   Place at{1, 1};
   for (std::size_t i = 0; i < text.size();) {
     const auto byte = static_cast<unsigned char>(text[i]);
     const std::size_t length = is_control(byte) ? 0 : utf8_length(text, i);
     if (length == 0) {
-      add_bad_byte(byte, at, report);
+      add_bad_byte(byte, has_zero(text), at, report);
       return false;
     }
     i += length;
@@ -93,6 +98,7 @@ std::size_t count_entries(std::string_view text) {
 }  // namespace
 
 bool check_text_limits(std::string_view text, Report& report) {
+  if (text.size() > kMaxTextBytes && has_zero(text)) return check_bytes(text, report);  // no text at all
   if (text.size() > kMaxTextBytes) {
     report.add({.rule = "text-size", .at = {},
                 .message = "the file has more than " + std::to_string(kMaxTextBytes) + " bytes",

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "chimera/config/text_limits.h"
+#include "chimera/config/yaml_fault.h"
 
 namespace chimera {
 namespace {
@@ -204,10 +205,16 @@ bool parse(std::string_view text, TreeBuilder& builder, Report& report) {
     return false;
   } catch (const YAML::Exception& fault) {
     const bool alias = fault.msg.find("anchor is not defined") != std::string::npos;
-    report.add({.rule = alias ? "yaml-alias" : "yaml-syntax", .at = place(fault.mark),
-                .message = alias ? "an alias (*) is not accepted" : "not YAML: " + fault.msg, .found = {},
-                .expected = {}, .nearest = {},
-                .remedy = alias ? "write the value out where it is used" : ""});
+    if (!alias)
+      report.add(yaml_fault(text, place(fault.mark), fault.msg));
+    else
+      report.add({.rule = "yaml-alias",
+                  .at = place(fault.mark),
+                  .message = "an alias (*) is not accepted",
+                  .found = {},
+                  .expected = {},
+                  .nearest = {},
+                  .remedy = "write the value out where it is used"});
     return false;
   }
 }
