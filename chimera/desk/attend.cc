@@ -111,14 +111,28 @@ Result<void> Attendance::know_tasks(const Json& status) {
   return records_->subscribe(RecordLine::From::kOldest);
 }
 
+/// The lines of a warning behind each other.
+std::string in_one_line(const std::string& grant) {
+  std::string line;
+  for (std::size_t at = 0; at < grant.size(); ++at) {
+    const bool is_break = grant.compare(at, 3, "\n  ") == 0;
+    line += is_break ? std::string("; ") : std::string(1, grant[at]);
+    if (is_break) at += 2;
+  }
+  return line;
+}
+
 void Attendance::print_grants(const Json& status) {
   const Json& rtpus = status["rtpus"];
   for (const Json& rtpu : rtpus) {
     const std::string grant = rtpu.value("grant", "");
-    grants_ += (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : rtpu.value("name", "") + ": ") + grant;
+    grants_ +=
+        (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : rtpu.value("name", "") + ": ") + in_one_line(grant);
     if (run_.json) continue;
     std::fprintf(out_, "%s%s\n", rtpus.size() == 1 ? "" : (rtpu.value("name", "") + ": ").c_str(), grant.c_str());
   }
+  if (!run_.json && run_.duration == kNever)
+    std::fputs("running until Ctrl-C; `chimera top` in another terminal shows the tasks\n", out_);
   std::fflush(out_);
 }
 

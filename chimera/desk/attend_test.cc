@@ -59,9 +59,12 @@ class MadeUp final : public control::Subject {
  private:
   Json status() const {
     const Json rtpu = {{"name", "servo"}, {"grant", "real time: all granted"}};
-    const Json spare = {{"name", "spare"}, {"grant", "real time: nothing asked for"}};
-    return {{"subsystem", "arm"}, {"origin_ns", 5}, {"started_ns", started_ns},
-            {"tasks", Json::array({{{"task", "pid"}}})}, {"rtpus", Json::array({rtpu, spare})}};
+    const Json spare = {{"name", "spare"}, {"grant", "WARNING: not real time\n  priority 0\n  granted: memory"}};
+    return {{"subsystem", "arm"},
+            {"origin_ns", 5},
+            {"started_ns", started_ns},
+            {"tasks", Json::array({{{"task", "pid"}}})},
+            {"rtpus", Json::array({rtpu, spare})}};
   }
   Json news(std::uint64_t since) const {
     Json some = Json::array();
@@ -148,7 +151,7 @@ TEST_F(Attend, TellsWhatWasGrantedWhatItSeesAndHowItWent) {
   request_.bounds = {3, 0};
   EXPECT_EQ(attend(), kRefused);
   EXPECT_EQ(out_,
-            "servo: real time: all granted\nspare: real time: nothing asked for\n"
+            "servo: real time: all granted\nspare: WARNING: not real time\n  priority 0\n  granted: memory\n"
             "t 0.025 s  q [1.5 -2] rad  x not written yet\nt 0.050 s  q [1.5 -2] rad  x not written yet\n"
             "ran 0.060 s\n"
             "task  state          cycles        mean        max      load    response      jitter  missed dropped "
@@ -169,7 +172,8 @@ TEST_F(Attend, IsASuccessWhenEveryExpectationHolds) {
   EXPECT_EQ(told["ended"], "time");
   EXPECT_EQ(told["flag"], false);
   EXPECT_EQ(told["ran_ns"], 60'000'000);
-  EXPECT_EQ(told["executor"], "servo: real time: all granted; spare: real time: nothing asked for");
+  EXPECT_EQ(told["executor"],
+            "servo: real time: all granted; spare: WARNING: not real time; priority 0; granted: memory");
   EXPECT_EQ(told["variables"]["q"], (Json{{"unit", "rad"}, {"value", {1.5, -2.0}}}));
   EXPECT_EQ(told["tasks"][0]["cycles"], 100);
   EXPECT_EQ(told["expectations"][0]["holds"], true);

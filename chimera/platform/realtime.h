@@ -23,7 +23,8 @@ struct RealtimeGrant {
   bool memory = false;
   /// Of each period the kernel lets real-time threads run this share: 0.95 by default, 1 when not throttled.
   double throttle_share = 1;
-  /// One line: what was granted, and for each thing that was not, what to set.
+  /// What was granted, in one line; or a line that begins with "WARNING" and below it, each in a line that begins
+  /// with two spaces, what is missing with what to set, and what was granted.
   FixedString<400> report;
 
   bool is_complete() const noexcept { return priority && cpu && memory; }

@@ -33,7 +33,7 @@ class Trace(unittest.TestCase):
             if "is in use by another real-time subsystem" in system.said():
                 self.skipTest("not judged: somebody else has the CPU")
             self.assertEqual(code, 0, system.said())
-            self.has_levels = "--virtual" in arguments or "FIFO priority" in system.said()
+            self.has_levels = "--virtual" in arguments or "Real-time OK" in system.said()
             trace = json.loads((system.place / "trace.json").read_text())
             tasks = {t["task"]: t for t in json.loads(system.said())["tasks"]}
         self.assertEqual(trace["otherData"]["lost_records"], 0)

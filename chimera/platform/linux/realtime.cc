@@ -26,25 +26,34 @@ bool has_priority(int priority) noexcept {
          param.sched_priority == priority;
 }
 
-void set_priority(const RealtimeRequest& request, RealtimeGrant& grant, Message& report) noexcept {
+/// What the report is made of: what is in force, and a line for each thing that is not.
+struct Parts {
+  Message granted;
+  Message missing;
+
+  Message& grant() noexcept { return granted << (granted.empty() ? "" : ", "); }
+  Message& miss() noexcept { return missing << "\n  "; }
+};
+
+void set_priority(const RealtimeRequest& request, RealtimeGrant& grant, Parts& report) noexcept {
   if (request.priority == 0) {
     grant.priority = true;
+    report.miss() << "ordinary scheduling was asked for (priority 0): any job may come late";
     return;
   }
   sched_param param{};
   param.sched_priority = request.priority;
   const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param);
   grant.priority = error == 0 && has_priority(request.priority);
-  report << "; FIFO priority " << request.priority;
   if (grant.priority) {
-    report << " granted";
+    report.grant() << "SCHED_FIFO " << request.priority;
     return;
   }
   rlimit limit{};
   ::getrlimit(RLIMIT_RTPRIO, &limit);
-  report << " refused (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")
-         << "): set RLIMIT_RTPRIO to " << request.priority << " or more (is " << limit.rlim_cur
-         << "; 'ulimit -r', LimitRTPRIO=) or give CAP_SYS_NICE";
+  report.miss() << "SCHED_FIFO " << request.priority << " refused ("
+                << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards") << "): set RLIMIT_RTPRIO to "
+                << request.priority << " (is " << limit.rlim_cur << "; ulimit -r, LimitRTPRIO=) or give CAP_SYS_NICE";
 }
 
 bool runs_only_on(int cpu) noexcept {
@@ -54,7 +63,7 @@ bool runs_only_on(int cpu) noexcept {
   return CPU_COUNT(&set) == 1 && CPU_ISSET(static_cast<std::size_t>(cpu), &set) && ::sched_getcpu() == cpu;
 }
 
-void set_cpu(const RealtimeRequest& request, RealtimeGrant& grant, Message& report) noexcept {
+void set_cpu(const RealtimeRequest& request, RealtimeGrant& grant, Parts& report) noexcept {
   if (request.cpu < 0) {
     grant.cpu = true;
     return;
@@ -67,13 +76,17 @@ void set_cpu(const RealtimeRequest& request, RealtimeGrant& grant, Message& repo
     error = ::pthread_setaffinity_np(::pthread_self(), sizeof set, &set);
   }
   grant.cpu = error == 0 && runs_only_on(request.cpu);
-  report << "; CPU " << request.cpu;
   if (grant.cpu) {
-    report << " granted";
+    report.grant() << "pinned to CPU " << request.cpu;
     return;
   }
-  report << " refused (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")
-         << "): this machine has CPU 0 to " << ::sysconf(_SC_NPROCESSORS_ONLN) - 1;
+  const long last = ::sysconf(_SC_NPROCESSORS_ONLN) - 1;
+  report.miss() << "CPU " << request.cpu << " refused";
+  if (request.cpu > last)
+    report.missing << ": this machine has CPU 0 to " << last;
+  else
+    report.missing << " (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards") << ")";
+  report.missing << ", runs unpinned";
 }
 
 // The start of a small file, zero-terminated; "" when it cannot be read.
@@ -95,7 +108,7 @@ bool has_locked_memory() noexcept {
   return line != nullptr && std::strtol(line + sizeof "\nVmLck:" - 1, nullptr, 10) > 0;
 }
 
-void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Message& report) noexcept {
+void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Parts& report) noexcept {
   if (!request.lock_memory) {
     grant.memory = true;
     return;
@@ -103,11 +116,25 @@ void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Message& 
   const int error = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
   grant.memory = error == 0 && has_locked_memory();
   if (grant.memory) {
-    report << "; memory locked";
+    report.grant() << "memory locked";
     return;
   }
-  report << "; memory not locked (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")
-         << "): set RLIMIT_MEMLOCK to unlimited ('ulimit -l', LimitMEMLOCK=) or give CAP_IPC_LOCK";
+  report.miss() << "memory not locked (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")
+                << "): set RLIMIT_MEMLOCK to unlimited (ulimit -l, LimitMEMLOCK=) or give CAP_IPC_LOCK";
+}
+
+void write_report(const Parts& parts, RealtimeGrant& grant) noexcept {
+  Message report;
+  if (!parts.missing.empty()) {
+    report << "WARNING: not real time" << parts.missing.view();
+    if (!parts.granted.empty()) report << "\n  granted: " << parts.granted.view();
+  } else {
+    report << "Real-time OK: " << parts.granted.view() << ".";
+    if (grant.throttle_share < 1)
+      report << " Kernel limit for RT threads: " << std::lround(grant.throttle_share * 100) << " % of each "
+             << realtime_period().count / 1'000'000 << " ms.";
+  }
+  grant.report.assign(report.view());
 }
 
 }  // namespace
@@ -125,19 +152,13 @@ Nanoseconds realtime_period() noexcept {
 
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
   RealtimeGrant grant;
-  Message parts;
-  ::prctl(PR_SET_TIMERSLACK, 1);  // 50 us by default for a thread that gets no FIFO priority
+  Parts parts;
+  ::prctl(PR_SET_TIMERSLACK, 1);       // 50 us by default for a thread that gets no FIFO priority
   lock_memory(request, grant, parts);  // first: its page faults are no longer at real-time priority
   set_cpu(request, grant, parts);
   set_priority(request, grant, parts);
-  if (request.priority > 0) {
-    grant.throttle_share = realtime_share();
-    if (grant.throttle_share < 1)
-      parts << "; throttled to " << std::lround(grant.throttle_share * 100) << " % of a CPU";
-  }
-  Message report;
-  report << "real time: " << (parts.empty() ? "nothing asked for" : parts.view().substr(2));
-  grant.report.assign(report.view());
+  if (request.priority > 0) grant.throttle_share = realtime_share();
+  write_report(parts, grant);
   return grant;
 }
 
