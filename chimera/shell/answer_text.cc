@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -23,16 +22,6 @@ std::string origin_text(const Json& reading) {
   if (!state.empty() && state != "ON") text += " is " + state;
   if (whole_of(reading, "sequence") > 0)
     if (const auto age = whole_or_none(reading, "age_ns")) text += ", " + duration_text(*age) + " ago";
-  return text;
-}
-
-std::string clock_text(std::int64_t wall_ns) {
-  const std::time_t seconds = wall_ns / 1'000'000'000;
-  std::tm parts{};
-  localtime_r(&seconds, &parts);
-  char text[48];
-  std::snprintf(text, sizeof text, "%02d:%02d:%02d.%03d", parts.tm_hour, parts.tm_min, parts.tm_sec,
-                static_cast<int>(wall_ns / 1'000'000 % 1000));
   return text;
 }
 
@@ -80,27 +69,6 @@ std::string signal_text(const Json& answer) {
     const std::string before = text_of(task, "before"), after = text_of(task, "after");
     text += text_of(task, "task") + ": " + (before == after ? after : before + " -> " + after) + "\n";
   }
-  return text;
-}
-
-std::string event_line(const Json& event) {
-  std::string who = text_of(event, "task");
-  if (who.empty()) who = text_of(event, "rtpu");
-  char number[32];
-  std::snprintf(number, sizeof number, "%6lld", static_cast<long long>(whole_of(event, "number")));
-  std::string line = std::string(number) + "  " + clock_text(whole_of(event, "wall_ns")) + "  " +
-                     fitted(text_of(event, "kind"), 15) + "  ";
-  if (!who.empty()) line += who + ": ";
-  return line + text_of(event, "text") + "\n";
-}
-
-std::string events_text(const Json& answer, std::int64_t since) {
-  std::string text;
-  const Json& events = field(answer, "events");
-  const std::int64_t first = whole_of(answer, "first");
-  if (since > 0 && first > since && whole_of(answer, "last") >= since)
-    text = "(" + std::to_string(first - since) + " older events are gone)\n";
-  for (const Json& event : events) text += event_line(event);
   return text;
 }
 

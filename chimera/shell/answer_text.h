@@ -12,10 +12,6 @@ namespace chimera::shell {
 std::string readings_text(const nlohmann::json& answer);
 /// `signal`: "pid: ON -> OFF", one line a task.
 std::string signal_text(const nlohmann::json& answer);
-/// One event: "17  14:03:22.123  state   pid  ON -> OFF"; the time of day is local.
-std::string event_line(const nlohmann::json& event);
-/// `events`, and how many are gone when it does not begin at `since`.
-std::string events_text(const nlohmann::json& answer, std::int64_t since);
 /// `save`: lines for the section `operator:` of a description.
 std::string save_text(const nlohmann::json& answer);
 /// `ring`: "lamp: rung" for each.

@@ -2,8 +2,6 @@
 #include "chimera/shell/answer_text.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
-#include <time.h>
 
 #include <nlohmann/json.hpp>
 
@@ -28,20 +26,6 @@ TEST(AnswerText, SignalsTellWhatBecameOfEachTask) {
   EXPECT_EQ(signal_text(Json::parse(R"({"tasks": [{"task": "pid", "before": "ON", "after": "OFF"},
                                                   {"task": "arm", "before": "OFF", "after": "OFF"}]})")),
             "pid: ON -> OFF\narm: OFF\n");
-}
-
-TEST(AnswerText, EventsAreNumberedAndTimedAndSayWhatIsGone) {
-  setenv("TZ", "UTC", 1);
-  tzset();
-  EXPECT_EQ(events_text(Json::parse(R"({"first": 17, "last": 18, "events": [
-              {"number": 17, "at_ns": 5, "wall_ns": 1700000002123456789, "kind": "state", "task": "pid",
-               "rtpu": "servo", "text": "ON -> OFF"},
-              {"number": 18, "at_ns": 6, "wall_ns": 1700000003000000000, "kind": "rtpu-restarted", "rtpu": "spare",
-               "text": "for the first time\u001b[2J"}]})"), 5),
-            "(12 older events are gone)\n"
-            "    17  22:13:22.123  state            pid: ON -> OFF\n"
-            "    18  22:13:23.000  rtpu-restarted   spare: for the first time [2J\n");
-  EXPECT_EQ(events_text(Json::parse(R"({"first": 1, "last": 0, "events": []})"), 0), "");
 }
 
 TEST(AnswerText, TheFlagSaysWhoKeepsItUp) {

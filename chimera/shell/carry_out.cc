@@ -12,7 +12,10 @@
 namespace chimera::shell {
 
 int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
-  if (std::string_view(call.command->name) == "scope") return print(scope(session, call), out, err);
+  if (std::string_view(call.command->name) == "scope") {
+    const std::size_t width = is_terminal(STDOUT_FILENO) ? screen_size(STDOUT_FILENO).width : 0;
+    return print(scope(session, call, width), out, err);
+  }
   if (call.has("--write")) return print(save_to_file(session, call), out, err);
   if (is_live(call)) return live(session, call, out, err);
   return print(one_shot(session, call, {.height = screen_size(STDOUT_FILENO).height}), out, err);

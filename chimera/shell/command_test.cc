@@ -41,9 +41,11 @@ TEST(Command, TheTableIsInOrderAndComplete) {
 
 TEST(Command, HelpTellsUsageOptionsAndAnExample) {
   EXPECT_EQ(help_text("events"),
-            "events [--since N] [--follow]\n"
+            "events [--since N] [--kind KIND,...] [--each] [--follow]\n"
             "  What happened, numbered without a gap\n"
             "  --since N         from this number on\n"
+            "  --kind KIND,...   only these, such as 'set,fault'\n"
+            "  --each            a line for every event; else misses within 100 ms of each other are one\n"
             "  --follow          go on with what happens, until Ctrl-C\n"
             "  Example: chimera events --follow\n");
   EXPECT_EQ(help_text("nonsense"), "");

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "chimera/config/quantity.h"
-#include "chimera/shell/answer_text.h"
+#include "chimera/shell/event_lines.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/one_shot.h"
 #include "chimera/shell/sparkline.h"
@@ -70,6 +70,7 @@ std::string printed(const Json& status) {
 /// Moves the view as a key asks; false when it asks for the end.
 bool obey(int key, TopView& view, const Json& status) {
   if (key == 'q' || key == 'Q' || key == kKeyEnd) return false;
+  if (key == 'h' || key == '?') view.is_help = !view.is_help;
   if (const auto order = order_of_key(key)) view.order = *order, view.skipped = 0;
   const std::size_t page = view.height / 2;
   if (key == kKeyUp || key == kKeyPageUp) view.skipped -= std::min(view.skipped, key == kKeyUp ? 1 : page);
@@ -88,7 +89,7 @@ std::optional<Error> top_on_screen(Session& session, const Json& first, const Js
     const ScreenSize size = screen_size(STDOUT_FILENO);
     view.width = size.width;
     view.height = size.height;
-    screen.show(drawn(top_lines(now, before, view)));
+    screen.show(drawn(view.is_help ? help_lines(view) : top_lines(now, before, view)));
     Woken woken = attention.wait(&session.client(), seconds(60));
     if (woken.by == By::kStop || (woken.by == By::kKey && !obey(woken.key, view, now))) return std::nullopt;
     if (woken.by == By::kLost && !(session.reopen() && session.ask("subscribe", subscription).is_good()))
@@ -175,6 +176,8 @@ int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
 }
 
 int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
+  const auto kinds = read_kinds(call.value("--kind"));
+  if (!kinds) return print(refused(kinds.error(), call.json, kUsage), out, err);
   Call once = call;
   once.options.erase("--follow");
   const Said said = one_shot(session, once, {});
@@ -182,12 +185,14 @@ int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE*
   const std::string since = call.value("--since");
   Json wanted = {{"to", "events"}};
   wanted["since"] = since.empty() ? 0 : std::stoll(since);
+  EventLines lines(kinds.value(), call.has("--each"));
   return follow(session, call, wanted, out, err, [&](const control::Note& note, Json& next) {
     for (const Json& event : field(*note.parameters, "events")) next["since"] = whole_of(event, "number") + 1;
     if (call.json) return;
     if (const std::int64_t gone = whole_of(*note.parameters, "lost"); gone > 0)
       std::fprintf(out, "(%lld older events are gone)\n", static_cast<long long>(gone));
-    for (const Json& event : field(*note.parameters, "events")) std::fputs(event_line(event).c_str(), out);
+    for (const Json& event : field(*note.parameters, "events")) std::fputs(lines.take(event).c_str(), out);
+    std::fputs(lines.end().c_str(), out);
   });
 }
 

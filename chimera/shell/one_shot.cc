@@ -7,6 +7,7 @@
 
 #include "chimera/config/recorded_profile.h"
 #include "chimera/shell/answer_text.h"
+#include "chimera/shell/event_lines.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/status_text.h"
 #include "chimera/shell/words.h"
@@ -74,14 +75,24 @@ Said profile(Session& session, const Call& call) {
   return {call.json ? Json{{"file", file}}.dump() + "\n" : file + ": written\n", "", kOk};
 }
 
+Json only(const EventLines& lines, Json answer) {
+  std::erase_if(answer["events"].get_ref<Json::array_t&>(), [&](const Json& e) { return !lines.is_wanted(e); });
+  return answer;
+}
+
 Said events(Session& session, const Call& call) {
   std::int64_t since = 0;
   const std::string text = call.value("--since");
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), since);
   if (call.has("--since") && (error != std::errc() || end != text.data() + text.size() || since < 0))
     return wrong("--since: '" + text + "' is no number of an event", call.json);
-  return tell(session.ask("events", {{"since", since}}), call.json,
-              [&](const Json& answer) { return events_text(answer, since); });
+  const auto kinds = read_kinds(call.value("--kind"));
+  if (!kinds) return refused(kinds.error(), call.json, kUsage);
+  control::Answer answer = session.ask("events", {{"since", since}});
+  const EventLines lines(kinds.value(), call.has("--each"));
+  if (call.json && answer.is_good() && !kinds->empty())
+    answer = control::Answer::good(only(lines, *answer.result));
+  return tell(answer, call.json, [&](const Json& told) { return events_text(told, since, lines); });
 }
 
 Said flag(Session& session, const Call& call) {

@@ -5,8 +5,8 @@ namespace chimera::shell {
 
 int print(const Said& said, std::FILE* out, std::FILE* err) {
   std::fputs(said.out.c_str(), out);
+  std::fflush(out);  // in a file that takes both, what came first stands first
   std::fputs(said.err.c_str(), err);
-  std::fflush(out);
   return said.code;
 }
 

@@ -9,10 +9,13 @@
 
 #include "chimera/config/nearest.h"
 #include "chimera/config/quantity.h"
+#include "chimera/config/recorded_profile.h"
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/figures.h"
 #include "chimera/shell/scope.h"
+#include "chimera/shell/sketch.h"
+#include "chimera/shell/sparkline.h"
 #include "chimera/shell/terminal.h"
 
 namespace chimera::shell {
@@ -48,7 +51,8 @@ Result<Known> known(const Json& described, const std::string& name) {
     return Known{text_of(variable, "unit"), text_of(variable, "shape").empty()};
   }
   const std::string near = nearest(name, names);
-  return wrong("no state variable '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
+  return Error{ErrorCode::kNotFound, {"no state variable '" + name + "'" + hint}, {}};
 }
 
 struct Asked {
@@ -138,7 +142,7 @@ Result<void> write(const std::string& path, const std::string& text) {
   return Error{ErrorCode::kSystem, {std::string("cannot be written: ") + std::strerror(why)}, std::string_view(path)};
 }
 
-Said tell(const Scope& scope, const Call& call, const std::string& subsystem) {
+Said tell(const Scope& scope, const Call& call, const std::string& subsystem, std::size_t width) {
   const std::string note = (call.has("--trigger") ? "trigger " + call.value("--trigger") + "; " : "") + scope.summary();
   for (const auto& [option, text] : {std::pair{"--csv", scope.csv()}, {"--svg", svg(scope.plot(subsystem, note))}})
     if (call.has(option))
@@ -148,16 +152,22 @@ Said tell(const Scope& scope, const Call& call, const std::string& subsystem) {
                  {"lost", scope.lost_rows()}, {"csv", call.value("--csv")}, {"svg", call.value("--svg")}}.dump() + "\n",
             "", kOk};
   const bool is_plain = !call.has("--csv") && !call.has("--svg");
+  if (is_plain && width > 0)
+    return {sketch(scope.plot(subsystem, note), width, writes_unicode()),
+            scope.summary() + "; --csv FILE writes them, --svg FILE draws them\n", kOk};
   return {is_plain ? scope.csv() : "", scope.summary() + "\n", kOk};
 }
 
 }  // namespace
 
-Said scope(Session& session, const Call& call) {
+Said scope(Session& session, const Call& call, std::size_t width) {
   const control::Answer described = session.ask("describe");
   if (!described.is_good()) return refused(described, call.json);
   const auto asked = read(call, *described.result, session.surroundings());
-  if (!asked) return refused(asked.error(), call.json, kUsage);
+  if (!asked) return refused(asked.error(), call.json, asked.error().code == ErrorCode::kNotFound ? kRefused : kUsage);
+  for (const char* option : {"--csv", "--svg"})
+    if (call.has(option))
+      if (const auto may = may_write_recorded_profile(call.value(option)); !may) return refused(may.error(), call.json);
   const control::Answer hello = session.ask("hello");
   const control::Answer subscribed = session.ask("subscribe", {{"to", "tap"}, {"variables", asked.value().variables}});
   if (!subscribed.is_good()) return refused(subscribed, call.json);
@@ -171,7 +181,7 @@ Said scope(Session& session, const Call& call) {
                                                        : "nothing was published" + within),
                    call.json);
   }
-  Said said = tell(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "");
+  Said said = tell(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "", width);
   if (end && said.code == kOk) {  // what was recorded is kept; what came after is not known to anybody
     said.err += "ended before its time: " + std::string(end->message.view()) + "\n";
     said.code = kRefused;

@@ -7,9 +7,10 @@
 
 namespace chimera::shell {
 
-/// Subscribes, waits for the trigger, records, writes the files that were asked for; without --csv and --svg the table
-/// is what it says. Refuses: a variable that is none, a trigger that cannot be (kUsage), one that did not come in time,
+/// Subscribes, waits for the trigger, records, writes the files that were asked for; without --csv and
+/// --svg it says the table, or, on a terminal of `width` columns (0: it is none), a line for each channel. Refuses: a
+/// variable that is none, a trigger that cannot be (kUsage), one that did not come in time,
 /// nothing published, a file that cannot be written. Context: setup; blocks at most --wait + --for and 2 s.
-Said scope(Session& session, const Call& call);
+Said scope(Session& session, const Call& call, std::size_t width);
 
 }  // namespace chimera::shell

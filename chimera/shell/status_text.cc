@@ -222,7 +222,8 @@ std::string status_text(const Json& status) {
   if (const Columns rtpus = rtpu_table(status); !rtpus.empty()) text += "\n" + rtpus.text();
   for (const Json& rtpu : field(status, "rtpus"))
     if (const std::string end = text_of(rtpu, "last_end"); !end.empty())
-      text += text_of(rtpu, "name") + ": last end: " + end + "\n";
+      text += text_of(rtpu, "name") + ": last end: " + end +
+              (whole_of(rtpu, "restarts") > 0 ? "; its tasks count from their restart" : "") + "\n";
   if (const Columns tasks = task_table(status); !tasks.empty()) text += "\n" + tasks.text();
   for (const Json& task : field(status, "tasks"))
     if (const std::string fault = text_of(task, "fault"); !fault.empty())

@@ -26,7 +26,7 @@ TEST(StatusText, TellsTheWholeTheUnitsAndTheTasks) {
             "rtpu   cpu  policy  phase     pid  restarts  running    flag\n"
             "servo    1  muf     serving  4711         0  pid.cycle  -\n"
             "spare    0  edf     ended    4712         2  -          UP\n"
-            "spare: last end: signal 11 in trajectory.cycle\n"
+            "spare: last end: signal 11 in trajectory.cycle; its tasks count from their restart\n"
             "\n"
             "task        state        rtpu     rate  cycles     mean      max   budget   jitter  missed  faults"
             "  oldest input\n"

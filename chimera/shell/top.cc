@@ -123,10 +123,18 @@ std::size_t name_width(std::size_t width) {
   return 12 + (width > kNarrow ? std::min<std::size_t>((width - kNarrow) / 3, 20) : 0);
 }
 
+/// What a narrow screen leaves out first: the columns that others follow from, never the missed deadlines.
+bool is_left_out(std::size_t column, std::size_t width) {
+  constexpr std::size_t kBudget = 5, kJitter = 7, kRate = 2, kMean = 3;
+  return (column == kBudget && width < kNarrow) || (column == kJitter && width < kNarrow - 8) ||
+         (column == kRate && width < kNarrow - 16) || (column == kMean && width < kNarrow - 24);
+}
+
 std::string cells(const std::vector<std::string>& cell, std::size_t width) {
   constexpr std::size_t kWidths[] = {0, 5, 7, 7, 7, 7, 4, 7, 6};
   std::string line = fitted(cell[0], name_width(width));
-  for (std::size_t i = 1; i < 9; ++i) line += " " + fitted(cell[i], kWidths[i], i > 1);
+  for (std::size_t i = 1; i < 9; ++i)
+    if (!is_left_out(i, width)) line += " " + fitted(cell[i], kWidths[i], i > 1);
   return fitted(line + "  " + cell[9], width);
 }
 
@@ -174,6 +182,26 @@ std::size_t most_skipped(const Json& status, const TopView& view) {
   return tasks > room ? tasks - room : 0;
 }
 
+std::vector<TopLine> help_lines(const TopView& view) {
+  constexpr const char* kHelp[] = {
+      "RATE    cycles in each second since the last look",
+      "EXEC    mean execution time of a cycle since the last look; MAX: the longest so far",
+      "USED    MAX as a part of BUDGET; above 100 % the stated budget is wrong",
+      "JITTER  latest start minus earliest, each after its release",
+      "MISSED  deadlines missed since the task was made, or its real-time unit restarted",
+      "INPUT   age of the oldest input; never: nobody has written it",
+      "red     in ERROR, or more missed since the last look; faint: not ON",
+      "keys    q quits, h leaves this page; o n e b j m a sort; up and down move",
+      "narrow  a screen below 80 columns leaves out BUDGET, then JITTER, RATE, EXEC"};
+  std::vector<TopLine> lines;
+  for (const char* text : kHelp) lines.push_back({fitted(text, view.width)});
+  if (view.height == 0) return {};
+  lines.resize(std::min(lines.size(), view.height - 1));
+  while (lines.size() + 1 < view.height) lines.push_back({std::string(view.width, ' ')});
+  lines.push_back({fitted("h back  q quit", view.width), LineLook::kFaint});
+  return lines;
+}
+
 std::vector<TopLine> top_lines(const Json& status, const Json& previous, const TopView& view) {
   std::vector<TopLine> lines;
   const bool is_alarm = truth_of(field(status, "flag"), "up") || truth_of(status, "ending");
@@ -192,8 +220,8 @@ std::vector<TopLine> top_lines(const Json& status, const Json& previous, const T
   lines.resize(std::min(lines.size(), view.height - 1));
   while (lines.size() + 1 < view.height) lines.push_back({std::string(view.width, ' ')});
   const std::size_t hidden = rows.size() - std::min(room, rows.size());
-  std::string keys = "q quit  sort: o order  n name  e exec  b used  j jitter  m missed  a input age";
-  if (hidden > 0) keys = std::to_string(hidden) + " more: up, down  q quit  sort: o order n name e exec b used j m a";
+  std::string keys = "q quit  h help  sort: o order  n name  e exec  b used  j jitter  m missed  a age";
+  if (hidden > 0) keys = std::to_string(hidden) + " more: up, down  q quit  h help  sort: o n e b j m a";
   lines.push_back({fitted(keys, view.width), LineLook::kFaint});
   return lines;
 }

@@ -19,6 +19,7 @@ struct TopView {
   std::size_t width = 80, height = 24;
   TopOrder order = TopOrder::kFile;
   std::size_t skipped = 0;  ///< tasks scrolled out at the top
+  bool is_help = false;     ///< what the columns mean instead of the tasks
 };
 
 struct TopLine {
@@ -33,8 +34,11 @@ std::optional<TopOrder> order_of_key(int key);
 /// Exactly `height` lines: the headline, a line for each rtpu, the tasks, the keys. Rate and execution time are those
 /// since `previous` (an earlier `status` of the same subsystem, or null: since the start). A task in ERROR, or that
 /// missed a deadline since `previous`, is an alarm; so is an rtpu that is dead. What does not fit is counted.
-/// Context: setup.
+/// Below 80 columns the budget is left out, then jitter, rate and execution time. Context: setup.
 std::vector<TopLine> top_lines(const nlohmann::json& status, const nlohmann::json& previous, const TopView& view);
+
+/// What the columns and keys mean: exactly `height` lines. Context: setup.
+std::vector<TopLine> help_lines(const TopView& view);
 
 /// How far one can scroll: the largest `skipped` that still shows a task on every line.
 std::size_t most_skipped(const nlohmann::json& status, const TopView& view);

@@ -42,7 +42,25 @@ TEST(Top, AScreenOf80By24ToTheLetter) {
       "|arm          ON      1 kHz 98.7 us  149 us  150 us  99%       -     12  530 us  |\n"
       "|pid_spare    none    1 kHz       -       -       -    -       -      0  never   |\n" +
       empty_lines(14) +
-      "|q quit  sort: o order  n name  e exec  b used  j jitter  m missed  a input age  |\n");
+      "|q quit  h help  sort: o order  n name  e exec  b used  j jitter  m missed  a age|\n");
+}
+
+TEST(Top, ANarrowScreenKeepsTheMissedDeadlinesWhole) {
+  Json many = status();
+  many["tasks"][2]["missed"] = 2231;
+  for (const std::size_t width : {79u, 71u, 63u, 55u}) {
+    const std::vector<TopLine> lines = top_lines(many, nullptr, {.width = width, .height = 12});
+    EXPECT_NE(lines[4].text.find(" MISSED"), std::string::npos) << lines[4].text;
+    EXPECT_NE(lines[7].text.find(" 2231"), std::string::npos) << lines[7].text;
+  }
+}
+
+TEST(Top, TheHelpSaysWhatEveryColumnMeans) {
+  std::string text;
+  for (const TopLine& line : help_lines({})) text += line.text + "\n";
+  for (const char* column : {"RATE", "EXEC", "MAX", "BUDGET", "USED", "JITTER", "MISSED", "INPUT"})
+    EXPECT_NE(text.find(column), std::string::npos) << column;
+  EXPECT_EQ(help_lines({}).size(), 24u);
 }
 
 Json later() {

@@ -17,7 +17,7 @@ _chimera_words() {
     test) echo '--help --all --setup --inputs --names --seed --cycles --json' ;;
     clear | end | flag | kill | off | on | reinit | ring | set | spawn | status | why)
       echo '--help --json --subsystem' ;;
-    events) echo '--help --json --subsystem --since --follow' ;;
+    events) echo '--help --json --subsystem --since --kind --each --follow' ;;
     get) echo '--help --json --subsystem --every' ;;
     profile) echo '--help --json --subsystem --save' ;;
     save) echo '--help --json --subsystem --write' ;;
@@ -57,7 +57,7 @@ _chimera() {
     --trace | --csv | --svg | --profile | --save | --setup | --inputs)
       mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --names | --cycles | --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | \
-      --since | --trigger | --pre | --wait | --subsystem) return ;;
+      --since | --kind | --trigger | --pre | --wait | --subsystem) return ;;
   esac
   if [[ $word == -* || -z $command || $command == new ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_words "$command")" -- "$word")
