@@ -133,8 +133,9 @@ int keep_idle(const std::string& subsystem, const desk::Workplace& workplace) {
 }
 
 int keep(const KeepRequest& request, const desk::Workplace& workplace) {
-  const auto plan = desk::plan_run(request.run, workplace, stdout, stderr);
-  if (!plan) return desk::kRefused;
+  int wrong = desk::kRefused;
+  const auto plan = desk::plan_run(request.run, workplace, stdout, stderr, &wrong);
+  if (!plan) return wrong;
   const auto code = keep(request, *plan);
   return code ? *code : desk::refuse_run(request.run, code.error(), stdout, stderr);
 }

@@ -10,6 +10,7 @@
 #include "apps/chimera/keep.h"
 #include "apps/chimera/run_command.h"
 #include "apps/chimera/shell_words.h"
+#include "apps/chimera/wrong_usage.h"
 #include "chimera/config/nearest.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
@@ -36,6 +37,7 @@ struct Words {
 
 int print(const desk::Output& output) {
   std::fputs(output.out.c_str(), stdout);
+  std::fflush(stdout);  // in a file that takes both, what came first stands first
   std::fputs(output.err.c_str(), stderr);
   return output.code;
 }
@@ -169,7 +171,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? desk::kOk : desk::kUsage;
+    return tell_wrong_usage(app, e, argc, argv);
   }
   return carry_out(app, words);
 }

@@ -152,7 +152,7 @@ void add_run(CLI::App& app, RunWords& words) {
   r->footer("At the end, for each task: mean and max execution time of a cycle, the longest response (release to\n"
             "end), jitter (latest start minus earliest, each after its release), deadlines missed, releases dropped,\n"
             "faults.\n"
-            "Exit code 0 only if the run came to its end and every --expect holds.\n"
+            "Exit code 0 only if the run came to its end and every --expect holds; 2: wrong usage.\n"
             "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
   CLI::App* i = app.add_subcommand("idle", "A subsystem with nothing loaded: serves check, schedule, library");
   i->add_option("--subsystem", words.idle_name, "its name (idle)");
@@ -173,7 +173,7 @@ int carry_out_run(RunWords& words, const desk::Workplace& workplace) {
       !read_group(words.operate_group, "--operate-group", kept.operate_group) ||
       !read_group(words.configure_group, "--configure-group", kept.configure_group))
     return desk::kUsage;
-  if (!may_save(words.run.profile)) return desk::kRefused;
+  if (!may_save(words.run.profile) || !may_save(words.run.svg)) return desk::kRefused;
   if (!words.run.virtual_time && !words.run.one_process) {
     kept.run = words.run;
     kept.face = words_for_face(words);

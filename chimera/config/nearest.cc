@@ -52,7 +52,11 @@ std::string nearest(std::string_view wrong, std::span<const std::string> names) 
       found = name;
     }
   }
-  return std::string(found);
+  if (!found.empty() || wrong.size() < 3) return std::string(found);
+  const auto longer = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+    return name.size() > wrong.size() && name.starts_with(wrong);
+  });
+  return longer == names.end() ? "" : *longer;
 }
 
 }  // namespace chimera

@@ -29,6 +29,12 @@ TEST(Nearest, PrefersAnotherCaseToAnotherLetter) {
   EXPECT_EQ(nearest("RPM", units), "rpm");
 }
 
+TEST(Nearest, GivesAnUnfinishedNameItsEnd) {
+  const std::vector<std::string> names{"speed", "error_now", "error_before"};
+  EXPECT_EQ(nearest("err", names), "error_now");
+  EXPECT_EQ(nearest("er", names), "");
+}
+
 TEST(Nearest, GivesNothingWhenNothingIsNear) {
   const std::vector<std::string> names{"puma_torque"};
   EXPECT_EQ(nearest("gain", names), "");

@@ -118,7 +118,12 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
   for (const fs::path& source : sources) files.push_back(fill_in(source, words));
 
   const fs::path folder = (fs::path(request.parent) / request.name).lexically_normal();
-  fs::create_directory(folder);
+  std::error_code failed;
+  if (!fs::create_directory(folder, failed)) {
+    const std::string why = failed.message(), parent = fs::absolute(request.parent).lexically_normal().string();
+    return (Message() << "cannot be made in " << parent << ": " << why << ". Go to a folder that you may write in.")
+        .error(ErrorCode::kSystem, folder.string());
+  }
   for (const File& file : files) {
     std::ofstream out(folder / file.path, std::ios::binary);
     out << file.text;

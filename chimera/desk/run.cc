@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <fstream>
 
 #include "chimera/desk/profile_report.h"
@@ -155,7 +157,7 @@ bool Session::write_plot() const {
   std::ofstream file(request_.svg, std::ios::binary);
   file << draw::svg(plot_.plot(plan_.configuration.subsystem()));
   if (file.flush()) return true;
-  std::fprintf(err_, "%s: cannot be written\n", request_.svg.c_str());
+  std::fprintf(err_, "%s: cannot be written: %s\n", request_.svg.c_str(), std::strerror(errno));
   return false;
 }
 
@@ -215,8 +217,9 @@ void request_stop() noexcept { stop_requested = true; }
 bool stop_is_requested() noexcept { return stop_requested; }
 
 int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err) {
-  const auto plan = plan_run(request, workplace, out, err);
-  if (!plan) return kRefused;
+  int code = kRefused;
+  const auto plan = plan_run(request, workplace, out, err, &code);
+  if (!plan) return code;
   auto application = Application::load(plan->configuration, plan->library);
   if (!application) return refuse_run(request, application.error(), out, err);
   Session session(request, *plan, *std::move(application), sink, out, err);

@@ -84,15 +84,17 @@ Result<void> admit_below(const Configuration& configuration, double share) {
   return {};
 }
 
-int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err) {
-  const Output output = refused(error, request.json);
+int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code) {
+  const Output output = refused(error, request.json, code);
   std::fputs(output.out.c_str(), out);
+  std::fflush(out);  // in a file that takes both, what came first stands first
   std::fputs(output.err.c_str(), err);
   return output.code;
 }
 
 std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out,
-                                std::FILE* err) {
+                                std::FILE* err, int* code) {
+  if (code != nullptr) *code = kRefused;
   auto library = workplace.library();
   if (!library) {
     refuse_run(request, library.error(), out, err);
@@ -112,9 +114,12 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& work
   }
   if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
   RunPlan plan{*std::move(library), std::move(reading.text), *std::move(verdict.configuration), {}, {}};
-  auto judged = judge_words(request, plan);
-  if (judged) judged = judge_throttling(request, plan.configuration);
-  if (!judged) {
+  if (const auto judged = judge_words(request, plan); !judged) {
+    const int usage = refuse_run(request, judged.error(), out, err, kUsage);
+    if (code != nullptr) *code = usage;
+    return std::nullopt;
+  }
+  if (const auto judged = judge_throttling(request, plan.configuration); !judged) {
     refuse_run(request, judged.error(), out, err);
     return std::nullopt;
   }

@@ -27,15 +27,16 @@ struct RunPlan {
   std::vector<Expectation> expectations;
 };
 
-/// Prints the report and the verdict; nothing when the run is refused, which has been said then. Context: setup; may
-/// block.
-std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err);
+/// Prints the report and the verdict; nothing when the run is refused, which has been said then, and `code` (if there is
+/// one) is kUsage for words of the command line that fit no description, else kRefused. Context: setup; may block.
+std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err,
+                                int* code = nullptr);
 
 /// Refuses a start set whose budgets take more of a CPU than may be promised when the kernel leaves `share` of it to
 /// real-time threads: 0.02 less. Context: setup.
 Result<void> admit_below(const Configuration& configuration, double share);
 
-/// Prints a refusal as the request wants it, and answers kRefused.
-int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err);
+/// Prints a refusal as the request wants it, and answers `code`.
+int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code = 1);
 
 }  // namespace chimera::desk

@@ -51,6 +51,22 @@ TEST(RunPlan, RunsThemWhenToldSoByName) {
   EXPECT_EQ(refusal(kTight, missing({"a", "b", "see"})), "error: --may-miss: no task 'see'\n");
 }
 
+TEST(RunPlan, AWordThatFitsNoDescriptionIsWrongUsage) {
+  const TestFile file(kCounterText);
+  RunRequest request;
+  request.file = file.path();
+  request.virtual_time = true;
+  request.expect = {"coun > 3"};
+  std::FILE* out = std::tmpfile();
+  int code = kOk;
+  EXPECT_FALSE(plan_run(request, test_place(), out, out, &code));
+  EXPECT_EQ(code, kUsage);
+  request.file = "/nowhere/at/all.yaml";
+  EXPECT_FALSE(plan_run(request, test_place(), out, out, &code));
+  EXPECT_EQ(code, kRefused);
+  std::fclose(out);
+}
+
 TEST(RunPlan, RunsInVirtualTimeWhateverMayBeMissed) {
   RunRequest request;
   request.virtual_time = true;

@@ -129,7 +129,7 @@ TEST(Run, NamesAreJudgedBeforeAnythingRuns) {
   RunRequest request = lasting(milliseconds(10));
   request.watch = {"cont"};
   const Said watched = said_by(request, kCounterText);
-  EXPECT_EQ(watched.code, kRefused);
+  EXPECT_EQ(watched.code, kUsage);
   EXPECT_NE(watched.err.find("error: no state variable 'cont'; did you mean 'count'?\n"), std::string::npos);
   request.watch.clear();
   request.at = {"1 ms: offf counter"};

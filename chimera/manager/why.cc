@@ -60,7 +60,8 @@ std::string complaint(const WhyLink& link) {
 
 std::string praise(const std::vector<WhyLink>& chain) {
   const VariableFacts& f = chain[0].facts;
-  std::string first = f.variable + " is good: ";
+  std::string first = f.variable + " is good";
+  first += f.timing.empty() ? ": " : " now, not always in time (" + f.timing + "): ";
   first += f.is_operators() ? "set by the operator" : f.producer + " wrote it " + time_text(f.age) + " ago";
   if (chain.size() == 1) return first;
   return first + ", and " + (chain.size() == 2 ? "the variable" : "all " + std::to_string(chain.size() - 1)) +

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/chimera/wrong_usage.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "chimera/config/nearest.h"
+#include "chimera/desk/output.h"
+
+using namespace chimera;  // NOLINT: a part of a main()
+
+namespace {
+
+/// The command that the words have reached.
+const CLI::App& innermost(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  return parsed.empty() ? app : innermost(*parsed.back());
+}
+
+/// "chimera new app".
+std::string name_of(const CLI::App& app) {
+  return app.get_parent() == nullptr ? "chimera" : name_of(*app.get_parent()) + " " + app.get_name();
+}
+
+std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// The line "Example: ..." of the help.
+std::string example_of(const CLI::App& command) {
+  const std::string footer = command.get_footer();
+  const std::size_t at = footer.find("Example: ");
+  return at == std::string::npos ? "" : footer.substr(at, footer.find('\n', at) - at) + "\n";
+}
+
+std::string about_option(const std::string& word, const CLI::App& command) {
+  const std::string near = nearest(word.substr(0, word.find('=')), options_of(command));
+  return name_of(command) + " has no option '" + word + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+         "\n";
+}
+
+/// A word too many: behind the value of an option it is most often the unit that lost its quotes.
+std::string about_word(const std::string& word, int argc, char** argv) {
+  for (int i = 3; i < argc; ++i) {
+    const std::string option = argv[i - 2], value = argv[i - 1];
+    if (word != argv[i] || !option.starts_with("--") || value.find_first_not_of("+-.0123456789e") != std::string::npos)
+      continue;
+    return "'" + word + "' is one word too many: quote the value, " + option + " '" + value + " " + word +
+           "', or write " + option + " " + value + word + "\n";
+  }
+  return "'" + word + "' is one word too many\n";
+}
+
+/// `set kp=0.3` where two words are wanted.
+std::string about_operands(const CLI::ParseError& fault, const CLI::App& command, int argc, char** argv) {
+  const std::string last = argc > 2 ? argv[argc - 1] : "";
+  const std::size_t sign = last.find('=');
+  if (command.get_name() == "set" && sign != std::string::npos && sign > 0)
+    return "set takes a name and a value, two words: chimera set " + last.substr(0, sign) + " '" +
+           last.substr(sign + 1) + "'\n";
+  return std::string(fault.what()) + "\n";
+}
+
+}  // namespace
+
+int tell_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv) {
+  if (fault.get_exit_code() == 0) return app.exit(fault);
+  const CLI::App& command = innermost(app);
+  const std::vector<std::string> extras = app.remaining(true);
+  std::string text;
+  if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr && !extras.empty()) {
+    const std::string& word = extras.front();
+    text = word.starts_with("-") ? about_option(word, command) : about_word(word, argc, argv);
+  } else {
+    text = about_operands(fault, command, argc, argv);
+  }
+  text += example_of(command) + "`" + name_of(command) + " --help` tells more\n";
+  std::fputs(text.c_str(), stderr);
+  return desk::kUsage;
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said about a command line that cannot be read: the nearest option, a quote that is missing, an example.
+#pragma once
+
+namespace CLI {
+class App;
+class ParseError;
+}  // namespace CLI
+
+/// Prints the fault and what to write instead; `argv` is the command line that `app` refused with `fault`. The exit
+/// code: 0 after --help and --version. Context: setup.
+int tell_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv);
