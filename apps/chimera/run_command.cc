@@ -154,7 +154,7 @@ void add_run(CLI::App& app, RunWords& words) {
             "faults.\n"
             "Exit code 0 only if the run came to its end and every --expect holds; 2: wrong usage.\n"
             "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
-  CLI::App* i = app.add_subcommand("idle", "A subsystem with nothing loaded: serves check, schedule, library");
+  CLI::App* i = app.add_subcommand("idle", "Start an empty server for editors and tools");
   i->add_option("--subsystem", words.idle_name, "its name (idle)");
   i->footer("Ends by Ctrl-C or `chimera end`.\nExample: chimera idle &");
   CLI::App* a = app.add_subcommand("attend", "The face of a run; started by it");

@@ -12,8 +12,8 @@ namespace chimera {
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The name nearest to `wrong` (the first of equals), or "" when none is within a third of its length
-/// (at least 1 letter, at most 3); then the first that begins with `wrong`, of 3 letters or more. A name that differs in
-/// case alone is near. Context: setup; may block.
+/// (at least 1 letter, at most 3); then the first that begins with `wrong`, of 3 letters or more. A name that differs
+/// in case alone is near. Context: setup; may block.
 std::string nearest(std::string_view wrong, std::span<const std::string> names);
 
 }  // namespace chimera

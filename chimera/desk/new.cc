@@ -19,7 +19,7 @@ constexpr std::size_t kLongestName = 40;
 
 /// What the templates call @NAME@ and so on.
 struct Filling {
-  std::string name, type, package, program;
+  std::string name, type, package, program, schema;
 };
 
 struct File {
@@ -70,6 +70,14 @@ Result<fs::path> template_folder(const fs::path& prefix, NewKind kind) {
   return (Message() << "there are no templates: no " << place.string()).error(ErrorCode::kNotFound, prefix.string());
 }
 
+/// The file by which editors complete and check a description, or "": none is installed.
+std::string schema(const fs::path& prefix) {
+  for (const fs::path& file : {prefix / "share/chimera/schema/description.schema.json",
+                               prefix.parent_path().parent_path() / "docs/formats/description.schema.json"})
+    if (fs::exists(file)) return file.string();
+  return "";
+}
+
 File fill_in(const fs::path& file, const Filling& words) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();
@@ -79,6 +87,9 @@ File fill_in(const fs::path& file, const Filling& words) {
   replace(made.text, "@TYPE@", words.type);
   replace(made.text, "@PACKAGE@", words.package);
   replace(made.text, "@PROGRAM@", words.program);
+  if (words.schema.empty() && made.text.starts_with("# yaml-language-server"))
+    made.text.erase(0, made.text.find('\n') + 1);
+  replace(made.text, "@SCHEMA@", words.schema);
   return made;
 }
 
@@ -109,7 +120,7 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
   const auto templates = template_folder(prefix, request.kind);
   if (!templates) return templates.error();
   const Filling words{request.name, type_of(request.name), (prefix / "lib/cmake/chimera").string(),
-                    fs::absolute(program).string()};
+                    fs::absolute(program).string(), schema(prefix)};
   std::vector<fs::path> sources;
   for (const auto& entry : fs::directory_iterator(*templates)) sources.push_back(entry.path());
   std::sort(sources.begin(), sources.end());

@@ -64,7 +64,8 @@ TEST_F(New, ComponentInCAndApplicationBuildAndPassAgainstAnInstallation) {
   ASSERT_EQ(run("cmake --install " + build_tree() + " --component sdk --prefix " + prefix), 0) << log();
   build_and_test(make(NewKind::kComponentInC, "low_pass_c", prefix), "low_pass_c");
   build_and_test(make(NewKind::kApplication, "demo", prefix), "demo");
-  EXPECT_TRUE(fs::exists(folder_ + "/demo/build/components/demo_wave.component.json"));
+  EXPECT_TRUE(fs::exists(folder_ + "/demo/build/components/demo_control.component.json"));
+  EXPECT_TRUE(text("demo/demo.yaml").starts_with("subsystem: demo\n"));  // no schema is installed with the sdk
 }
 
 TEST_F(New, DriverOfADeviceBuildsAndPassesOnAPseudoTerminal) {
@@ -77,6 +78,19 @@ TEST_F(New, WritesAProjectWithoutOurLicence) {
   EXPECT_EQ(text("x9_y/x9_y.cc").find("SPDX"), std::string::npos);
   EXPECT_NE(text("x9_y/x9_y.cc").find("struct X9YComponent {"), std::string::npos);
   EXPECT_EQ(text("x9_y/CMakeLists.txt").find('@'), std::string::npos);
+}
+
+TEST_F(New, ADescriptionNamesTheSchemaForEditors) {
+  ASSERT_EQ(make(NewKind::kApplication, "loop").code, kOk);
+  const std::string head = "# yaml-language-server: $schema=", line = text("loop/loop.yaml");
+  ASSERT_TRUE(line.starts_with(head)) << line;
+  EXPECT_TRUE(fs::exists(line.substr(head.size(), line.find('\n') - head.size()))) << line;
+}
+
+TEST_F(New, NamesTheFolderThatCannotBeWritten) {
+  const Output made = new_project({NewKind::kComponent, "mine", "/proc"}, build_tree() + "/bin/chimera");
+  EXPECT_TRUE(made.err.starts_with("/proc/mine: error: cannot be made in /proc: ")) << made.err;
+  EXPECT_TRUE(made.err.ends_with(". Go to a folder that you may write in.\n")) << made.err;
 }
 
 TEST_F(New, OverwritesNothing) {

@@ -27,8 +27,8 @@ struct RunPlan {
   std::vector<Expectation> expectations;
 };
 
-/// Prints the report and the verdict; nothing when the run is refused, which has been said then, and `code` (if there is
-/// one) is kUsage for words of the command line that fit no description, else kRefused. Context: setup; may block.
+/// Prints the report and the verdict; nothing when the run is refused, which has been said then. `code`, where there is
+/// one, is then kUsage for words of the command line that fit no description, else kRefused. Context: setup; may block.
 std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err,
                                 int* code = nullptr);
 

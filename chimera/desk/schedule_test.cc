@@ -32,7 +32,8 @@ TEST(Schedule, TellsThatEverythingFits) {
   EXPECT_EQ(output.code, kOk) << output.err;
   EXPECT_EQ(output.out,
             "two: configuration 'all' (start), preemptive\n"
-            "CPU 0: rtpu fast, rm; load 0.380 of at most 0.93; rate monotonic bound 0.828, hyperbolic 1.416 of 2\n"
+            "CPU 0: rtpu fast, rm; load 0.380 of at most 0.93; rate monotonic bound 0.828, "
+            "product of (1 + load) 1.416, enough up to 2\n"
             "  task  rtpu  crit.  time         period  deadline  response  blocked  copies  deadline is\n"
             "  a     fast  low    2 ms budget  10 ms   10 ms     2 ms      -        -       kept\n"
             "  b     fast  low    9 ms budget  50 ms   50 ms     13 ms     -        -       kept\n"
@@ -219,7 +220,7 @@ TEST(Schedule, TellsWhatAProfileSaysOfTheBudgets) {
 TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
   const Output output = scheduled("subsystem: s\ntasks:\n  a: {component: t_counter}\n", "");
   EXPECT_EQ(output.code, kOk);
-  EXPECT_NE(output.out.find("  without a time, counted as nothing: a; write 'budget:', or record one: "
+  EXPECT_NE(output.out.find("  no budget given for a: ignored in this proof; write 'budget:', or record one: "
                             "chimera profile --save FILE, then --profile FILE\n"),
             std::string::npos)
       << output.out;
@@ -230,7 +231,7 @@ TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {
   const std::string text = description("r: {policy: rm, executor: preemptive}",
                                        {{"a", "r", "low", "1000", 10}, {"b", "r", "low", "1", 300000}});
   const Output output = scheduled(text, "");
-  EXPECT_NE(output.out.find("\n          B = b\n          . = nobody\n          in no letter the longest: a\n"),
+  EXPECT_NE(output.out.find("\n          B = b\n          . = nobody\n          too short to be seen here: a\n"),
             std::string::npos)
       << output.out;
 }

@@ -58,7 +58,7 @@ class Words {
     std::string text = "CPU " + std::to_string(cpu.verdict.cpu) + ": " + policies(cpu) + "; load " +
                        number("%.3f", cpu.verdict.utilisation) + " of at most " + number("%.2f", kMaxUtilisation) +
                        "; rate monotonic bound " + number("%.3f", cpu.verdict.rate_monotonic_bound) +
-                       ", hyperbolic " + number("%.3f", cpu.verdict.hyperbolic) + " of 2\n";
+                       ", product of (1 + load) " + number("%.3f", cpu.verdict.hyperbolic) + ", enough up to 2\n";
     return text + table(cpu) + verdict(cpu) + unstated(cpu) + remedies(cpu) + window(cpu);
   }
 
@@ -165,8 +165,9 @@ class Words {
     for (const ScheduleRow& row : cpu.rows)
       if (row.source == TimeSource::kNone) names.push_back(name(row.task));
     if (names.empty()) return "";
-    return "  without a time, counted as nothing: " + list(names) +
-           "; write 'budget:', or record one: chimera profile --save FILE, then --profile FILE\n";
+    return "  no budget given for " + list(names) +
+           ": ignored in this proof; write 'budget:', or record one: "
+           "chimera profile --save FILE, then --profile FILE\n";
   }
 
   std::string window(const CpuSchedule& cpu) const {
@@ -201,7 +202,7 @@ class Words {
     if (unseen.empty()) return text;
     const std::size_t more = unseen.size() > kMostUnseen ? unseen.size() - kMostUnseen : 0;
     unseen.resize(unseen.size() - more);
-    return text + "          in no letter the longest: " + list(unseen) +
+    return text + "          too short to be seen here: " + list(unseen) +
            (more > 0 ? " and " + std::to_string(more) + " more" : "") + "\n";
   }
 

@@ -42,8 +42,8 @@ std::string milliseconds_text(std::uint64_t ns) {
 std::string missed_text(const ApplicationSpec& spec, const Post& post) {
   std::string text = "missed its deadline";
   if (post.from.index >= spec.tasks.size())
-    return text + ": for " + milliseconds_text(post.detail) +
-           " nobody here had the processor (real-time threads throttled, the kernel, another process)";
+    return text + ": none of our tasks ran for " + milliseconds_text(post.detail) +
+           ": the CPU was taken by the kernel, RT throttling or another process";
   const TaskSpec& culprit = spec.tasks[post.from.index];
   text += post.from == post.task ? ": it used " : ": " + std::string(culprit.name) + " used ";
   text += milliseconds_text(post.detail);

@@ -73,7 +73,7 @@ rtpus:
 tasks:
   brief: {component: t_source, rate: 100 Hz, budget: 1 ms}
 """
-AWAY = re.compile(r"^missed its deadline: for ([0-9.]+) ms nobody here had the processor")
+AWAY = re.compile(r"^missed its deadline: none of our tasks ran for ([0-9.]+) ms: the CPU was taken")
 
 BLOCKED = re.compile(r"^missed its deadline: it waits in a system call \(it used [0-9.]+ ms\)$")
 PERIOD_MS = 5  # of those that do not end in time
