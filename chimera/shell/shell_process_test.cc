@@ -235,7 +235,7 @@ TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
 
 TEST_F(ShellTest, AScopeRefusesWhatCannotBe) {
   serve();
-  EXPECT_EQ(run({"scope", "eror"}), "2||no state variable 'eror'; did you mean 'error'?\n");
+  EXPECT_EQ(run({"scope", "eror"}), "1||no state variable 'eror'; did you mean 'error'?\n");
   EXPECT_EQ(run({"scope", "ndof"}), "2||'ndof' is a constant: nobody publishes it\n");
   EXPECT_EQ(run({"scope", "error", "--pre", "1 s"}), "2||--pre belongs to --trigger\n");
   EXPECT_EQ(run({"scope", "error", "--trigger", "q > 1 rad"}),
