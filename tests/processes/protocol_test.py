@@ -277,7 +277,7 @@ class Protocol(unittest.TestCase):
             client, other = Judged(system.socket), Judged(system.socket)
             self.addCleanup(client.close)
             self.addCleanup(other.close)
-            await_that(lambda: "second: real time" in system.said(), 5, "the face of the run")
+            await_that(lambda: "second: WARNING: not real time" in system.said(), 5, "the face of the run")
             self.assertEqual(client.exchange("end"), {})
             await_that(lambda: other.exchange("status")["ending"], 5, "the end")
             self.assertIsNone(other.exchange("signal", signal="on", tasks=["steady"]))
