@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/config/nearest.h"
+#include "chimera/control/home.h"
 #include "chimera/control/methods.h"
 #include "chimera/control/request.h"
 #include "chimera/control/running.h"
@@ -22,6 +23,7 @@ namespace chimera::control {
 namespace {
 
 constexpr const char* kLost = "the connection to the subsystem was lost";
+constexpr Nanoseconds kWhoIsIt = milliseconds(500);  // for one of several to say where it was started
 constexpr std::size_t kMaxInput = std::size_t{64} << 20;  // of one line: whoever sends more is no subsystem of ours
 
 Nanoseconds now() { return LinuxClock().now(); }
@@ -63,6 +65,18 @@ Result<OwnedDescriptor> connected(const std::string& path) {
   return refusal(is_closed ? "you may not talk to this subsystem" : "no subsystem listens here", path);
 }
 
+/// Those of `names` that were started from this terminal or folder.
+std::vector<std::string> those_here(const std::string& folder, const std::vector<std::string>& names) {
+  std::vector<std::string> here;
+  for (const std::string& name : names) {
+    auto client = Client::connect_to(socket_path(folder, name));
+    if (!client) continue;
+    const Answer hello = client->call("hello", Json::object(), kWhoIsIt);
+    if (hello.is_good() && is_here(home_of(*hello.result))) here.push_back(name);
+  }
+  return here;
+}
+
 /// A message of the other end, whatever it is: never more than an answer or a note.
 Answer answer_of(const Json& message) {
   const auto error = message.find("error");
@@ -96,13 +110,16 @@ Result<Client> Client::connect(const std::string& subsystem) {
   const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
   const std::string name = !subsystem.empty() || chosen == nullptr ? subsystem : chosen;
   if (name.find('/') != std::string::npos) return connect_to(name);
-  const auto running = running_subsystems(folder);
+  auto running = running_subsystems(folder);
   if (running.empty() && name.empty())
     return Message("no subsystem runs; start one with `chimera run FILE`").error(ErrorCode::kNotFound, folder);
   if (!running.empty() && !is_safe_folder(folder.c_str()))
     return refusal("others may write to the folder of the sockets", folder);
-  if (name.empty() && running.size() > 1)
-    return refusal("several subsystems run: " + listed(running) + "; say --subsystem NAME");
+  if (name.empty() && running.size() > 1) {
+    const auto here = those_here(folder, running);
+    if (here.size() != 1) return refusal("several subsystems run: " + listed(running) + "; say --subsystem NAME");
+    running = here;
+  }
   const std::string wanted = name.empty() ? running[0] : name;
   if (std::find(running.begin(), running.end(), wanted) != running.end())
     return connect_to(socket_path(folder, wanted));

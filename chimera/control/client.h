@@ -25,8 +25,9 @@ struct Note {
 /// One connection. Move-only. Context: setup; every call blocks, never longer than its limit.
 class Client {
  public:
-  /// To the subsystem of that name; "" takes CHIMERA_SUBSYSTEM, else the one that runs. A name with a '/' is the path
-  /// of a socket: another user's subsystem. Refuses, saying what runs, when there is none or the choice is not clear.
+  /// To the subsystem of that name; "" takes CHIMERA_SUBSYSTEM, else the one that runs, of several the one of this
+  /// terminal or folder (control/home.h). A name with a '/' is the path of a socket: another user's subsystem. Refuses,
+  /// saying what runs, when there is none or the choice is not clear.
   static Result<Client> connect(const std::string& subsystem);
   /// To the socket at `path`.
   static Result<Client> connect_to(const std::string& path);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "chimera/config/nearest.h"
@@ -30,6 +31,11 @@ std::vector<std::string> texts(const Json& parameters, const char* key) {
 std::uint64_t number(const Json& parameters, const char* key, std::uint64_t otherwise) {
   const auto found = parameters.find(key);
   return found == parameters.end() ? otherwise : found->get<std::uint64_t>();
+}
+
+std::string working_folder() {
+  std::error_code error;
+  return std::filesystem::current_path(error).string();
 }
 
 std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Json>(std::move(json)); }
@@ -71,6 +77,8 @@ Answer Subject::hello(control::Role role) const {
                        {"role", control::role_name(role)},
                        {"file", world().bundle.file},
                        {"keeper_pid", world().keeper_pid},
+                       {"session", ::getsid(0)},  // the keeper's, as is the folder: both are inherited
+                       {"folder", working_folder()},
                        {"manager", {{"pid", ::getpid()}, {"starts", world().own.incarnation()}}}});
 }
 

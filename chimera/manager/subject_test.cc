@@ -2,7 +2,9 @@
 #include "chimera/manager/subject.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -60,6 +62,8 @@ TEST_F(SubjectTest, HelloSaysWhoSpeaks) {
   EXPECT_EQ(hello["role"], "configure");
   EXPECT_EQ(hello["file"], "fake.yaml");
   EXPECT_EQ(hello["keeper_pid"], ::getpid());
+  EXPECT_EQ(hello["session"], ::getsid(0));
+  EXPECT_EQ(hello["folder"], std::filesystem::current_path().string());
   EXPECT_EQ(hello["manager"]["starts"], 1);
 }
 

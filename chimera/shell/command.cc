@@ -55,7 +55,9 @@ std::vector<Command> table() {
       {"set", "VAR VALUE", 2, kAny, "Give an operator variable a value with its unit", {},
        "chimera set kp '[100 90] N.m/rad'"},
       {"spawn", "TASK...", 1, kAny, "Create and init tasks: OFF", {}, "chimera spawn pid"},
-      {"status", "", 0, 0, "Real-time units, tasks, flag", {}, "chimera status"},
+      {"status", "", 0, 0, "Real-time units, tasks, flag",
+       {{"--pid", "RTPU", "only the number of the process of this real-time unit ('keeper', 'manager': of theirs)"}},
+       "chimera status"},
       {"top", "", 0, 0, "The same live, on the whole screen: q ends it", {every}, "chimera top", false,
        "EXEC: mean execution time since the last look; MAX: longest so far; USED: MAX of BUDGET; INPUT: age of the\n"
        "oldest input"},
@@ -94,6 +96,15 @@ Result<void> read_option(Call& call, const std::vector<std::string>& words, std:
   return bad_call(with_nearest(std::string(call.command->name) + " has no option '" + words[i] + "'", words[i], names));
 }
 
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,@%-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 }  // namespace
 
 const std::vector<Command>& commands() {
@@ -105,6 +116,12 @@ const Command* command_named(std::string_view name) {
   for (const Command& command : commands())
     if (name == command.name) return &command;
   return nullptr;
+}
+
+bool Call::is_act() const {
+  constexpr std::string_view kActs[] = {"clear", "end", "flag", "kill", "off", "on", "reinit", "ring", "set", "spawn"};
+  const bool is_named = std::find(std::begin(kActs), std::end(kActs), command->name) != std::end(kActs);
+  return is_named || has("--write") || has("--pid");
 }
 
 std::string Call::value(std::string_view option) const {
@@ -130,6 +147,13 @@ Result<Call> read_call(const std::vector<std::string>& words) {
   if (call.operands.size() < call.command->least || call.operands.size() > call.command->most)
     return bad_call("usage: " + usage(*call.command));
   return call;
+}
+
+std::string command_line(const Call& call) {
+  std::string text = std::string("chimera ") + call.command->name;
+  for (const std::string& operand : call.operands) text += " " + quoted(operand);
+  for (const auto& [option, value] : call.options) text += " " + option + (value.empty() ? "" : " " + quoted(value));
+  return text + (call.json ? " --json" : "");
 }
 
 std::string help_text(std::string_view name) {

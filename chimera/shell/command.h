@@ -43,6 +43,9 @@ struct Call {
   bool json = false;
 
   bool has(std::string_view option) const { return options.find(option) != options.end(); }
+  /// Changes something, or names a process to somebody who will: not to be done to a subsystem that only happens to be
+  /// the one that runs.
+  bool is_act() const;
   /// The value of an option, or "".
   std::string value(std::string_view option) const;
 };
@@ -50,6 +53,9 @@ struct Call {
 /// Reads the words of a line of the shell. Refuses, saying what is wrong and the nearest name: an unknown command or
 /// option, an option without its value, too few or too many operands. Requires: at least one word.
 Result<Call> read_call(const std::vector<std::string>& words);
+
+/// `call` as it is typed at a command line: "chimera set kp '[100 90] N.m/rad'".
+std::string command_line(const Call& call);
 
 /// What `help` prints: a line for each command, or more of one; "" when there is none of that name.
 std::string help_text(std::string_view command = {});

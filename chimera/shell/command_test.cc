@@ -26,8 +26,24 @@ TEST(Command, RefusesWithTheNearestName) {
   EXPECT_EQ(refusal({"events", "--sinc", "3"}), "events has no option '--sinc'; did you mean '--since'?");
   EXPECT_EQ(refusal({"events", "--since"}), "--since needs a value: N");
   EXPECT_EQ(refusal({"why"}), "usage: why VAR");
-  EXPECT_EQ(refusal({"status", "x"}), "usage: status");
+  EXPECT_EQ(refusal({"status", "x"}), "usage: status [--pid RTPU]");
   EXPECT_EQ(refusal({"get"}), "none");
+}
+
+TEST(Command, IsTypedAgainAsItWasGiven) {
+  const auto call = read_call({"scope", "q[0]", "--for", "1 s", "--json", "--csv", "a.csv"});
+  EXPECT_EQ(command_line(*call), "chimera scope 'q[0]' --csv a.csv --for '1 s' --json");
+  EXPECT_EQ(command_line(*read_call({"set", "kp", "it's"})), "chimera set kp 'it'\\''s'");
+}
+
+TEST(Command, WhatChangesSomethingIsAnAct) {
+  EXPECT_TRUE(read_call({"off", "pid"})->is_act());
+  EXPECT_TRUE(read_call({"end"})->is_act());
+  EXPECT_TRUE(read_call({"save", "--write"})->is_act());
+  EXPECT_TRUE(read_call({"status", "--pid", "servo"})->is_act()) << "whoever asks for it means to signal it";
+  EXPECT_FALSE(read_call({"save"})->is_act());
+  EXPECT_FALSE(read_call({"status"})->is_act());
+  EXPECT_FALSE(read_call({"get", "q"})->is_act());
 }
 
 TEST(Command, TheTableIsInOrderAndComplete) {

@@ -171,7 +171,9 @@ int interactive(const Surroundings& surroundings, const std::string& script, boo
     const Error error{ErrorCode::kNotFound, std::string_view(why), std::string_view(script)};
     return print(refused(error, false), stdout, stderr);
   }
-  auto session = Session::open(surroundings);
+  Surroundings known = surroundings;
+  known.command = "chimera shell" + (script.empty() ? "" : " " + script) + (keeps_going ? " --keep-going" : "");
+  auto session = Session::open(known);
   if (!session) return print(refused(session.error(), false), stdout, stderr);
   if (is_file) return run_script(*session, file, script, keeps_going, stdout, stderr);
   if (script == "-" || !is_terminal(STDIN_FILENO))

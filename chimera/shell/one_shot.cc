@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "chimera/config/nearest.h"
 #include "chimera/config/recorded_profile.h"
 #include "chimera/shell/answer_text.h"
 #include "chimera/shell/event_lines.h"
@@ -53,6 +55,29 @@ Said signal(Session& session, const Call& call) {
   if (std::string_view(call.command->name) == "on") tasks = with_configuration(session, std::move(tasks));
   if (tasks.empty()) return {call.json ? "{\"tasks\":[]}\n" : "all of its tasks are ON\n", "", kOk};
   return tell(session.ask("signal", {{"signal", call.command->name}, {"tasks", tasks}}), call.json, signal_text);
+}
+
+/// The number of one process, and nothing else: for `kill`.
+Said pid(Session& session, const Call& call) {
+  const std::string name = call.value("--pid");
+  const control::Answer hello = session.ask("hello"), status = session.ask("status");
+  for (const control::Answer* asked : {&hello, &status})
+    if (!asked->is_good()) return refused(*asked, call.json);
+  std::map<std::string, std::int64_t> pids = {{"keeper", whole_of(*hello.result, "keeper_pid")},
+                                              {"manager", whole_of(field(*hello.result, "manager"), "pid")}};
+  for (const Json& rtpu : field(*status.result, "rtpus"))
+    pids[text_of(rtpu, "name")] = truth_of(rtpu, "alive") ? whole_of(rtpu, "pid") : 0;
+  const auto found = pids.find(name);
+  if (found != pids.end() && found->second > 0)
+    return {call.json ? Json{{"name", name}, {"pid", found->second}}.dump() + "\n"
+                      : std::to_string(found->second) + "\n", "", kOk};
+  std::vector<std::string> names;
+  for (const auto& [one, number] : pids) names.push_back(one);
+  const std::string near = nearest(name, names);
+  const std::string why = found != pids.end() ? "--pid: the process of '" + name + "' is dead"
+                                              : "--pid: no real-time unit '" + name + "'" +
+                                                    (near.empty() ? "" : "; did you mean '" + near + "'?");
+  return refused(Error{ErrorCode::kNotFound, std::string_view(why), {}}, call.json);
 }
 
 Said set(Session& session, const Call& call) {
@@ -105,6 +130,7 @@ Said flag(Session& session, const Call& call) {
 
 Said one_shot(Session& session, const Call& call, const Look& look) {
   const std::string_view name = call.command->name;
+  if (name == "status" && call.has("--pid")) return pid(session, call);
   if (name == "status") return tell(session.ask("status"), call.json, status_text);
   if (name == "profile") return profile(session, call);
   if (name == "save") return tell(session.ask("save"), call.json, save_text);

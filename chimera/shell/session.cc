@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/shell/session.h"
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "chimera/shell/answer_text.h"
@@ -33,7 +34,31 @@ Said refused(const Error& error, bool json, int code) {
 Result<Session> Session::open(const Surroundings& surroundings) {
   auto client = control::Client::connect(surroundings.subsystem);
   if (!client) return client.error();
-  return Session(std::move(client).value(), surroundings);
+  const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
+  Session session(std::move(client).value(), surroundings);
+  session.is_named_ = !surroundings.subsystem.empty() || (chosen != nullptr && *chosen != '\0');
+  return session;
+}
+
+const control::Home& Session::home() {
+  if (!home_.subsystem.empty()) return home_;
+  const control::Answer hello = ask("hello");
+  if (hello.is_good()) home_ = control::home_of(*hello.result);
+  return home_;
+}
+
+const std::string& Session::subsystem() { return home().subsystem; }
+
+Result<void> Session::may_act() {
+  if (is_named_ || control::is_here(home())) return {};
+  const std::string name = home().subsystem;
+  if (name.empty()) return Error{ErrorCode::kRefused, {"the subsystem does not say which it is"}, {}};
+  const std::string folder = home().folder.empty() ? "elsewhere" : "in " + plain_line(home().folder);
+  const std::string message = "'" + name + "' was started " + folder + " (process " +
+                              std::to_string(home().keeper_pid) +
+                              "), not from this terminal or folder; if you mean it, type: " + surroundings_.command +
+                              " --subsystem " + name;
+  return Error{ErrorCode::kRefused, std::string_view(message), {}};
 }
 
 control::Answer Session::ask(std::string_view method) { return ask(method, nlohmann::json::object()); }

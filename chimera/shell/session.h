@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chimera/control/client.h"
+#include "chimera/control/home.h"
 #include "chimera/shell/said.h"
 
 namespace chimera::shell {
@@ -16,6 +17,7 @@ namespace chimera::shell {
 struct Surroundings {
   std::string subsystem;                ///< as asked for; "" when the choice is clear
   std::vector<std::string> unit_files;  ///< in the order in which they are tried
+  std::string command = {};             ///< what was typed, to be typed again: "chimera off pid"
 };
 
 /// A refusal as a command says it: the words on standard error, or {"error": {...}} on standard output.
@@ -31,6 +33,12 @@ class Session {
 
   control::Client& client() noexcept { return client_; }
   const Surroundings& surroundings() const noexcept { return surroundings_; }
+  /// Did somebody name the subsystem, by option or by CHIMERA_SUBSYSTEM?
+  bool is_named() const noexcept { return is_named_; }
+  /// Its name, as it says itself; "" when it does not answer.
+  const std::string& subsystem();
+  /// May an act go to it? Named, or of this terminal or folder: else refused, with what is to be typed.
+  Result<void> may_act();
   /// A new connection to the same subsystem, whose manager may have been restarted; false when nobody answers at its
   /// door within 3 s. Subscriptions have to be made again.
   bool reopen();
@@ -40,9 +48,12 @@ class Session {
  private:
   Session(control::Client client, Surroundings surroundings)
       : client_(std::move(client)), surroundings_(std::move(surroundings)) {}
+  const control::Home& home();
 
   control::Client client_;
   Surroundings surroundings_;
+  bool is_named_ = false;
+  control::Home home_;
 };
 
 }  // namespace chimera::shell

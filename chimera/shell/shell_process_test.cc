@@ -47,7 +47,9 @@ struct FakeSubject final : control::Subject {
       return reply(Answer::good(status));
     }
     if (name == "describe") return reply(Answer::good(Json::parse(test::kDescribed)));
-    if (name == "hello") return reply(Answer::good({{"subsystem", "puma_pid"}, {"file", file}, {"keeper_pid", 1}}));
+    if (name == "hello")
+      return reply(Answer::good({{"subsystem", "puma_pid"}, {"file", file}, {"keeper_pid", 1}, {"session", session},
+                                 {"folder", "/srv/bo"}, {"manager", {{"pid", 12}, {"starts", 1}}}}));
     if (name == "save") return reply(Answer::good({{"operator", {{"kp", "[1 N.m/rad, 2 N.m/rad]"}}}}));
     if (name == "check") return reply(Answer::good({{"legal", is_legal}, {"faults", Json::array()}}));
     if (name == "signal") return signal(parameters, reply);
@@ -86,6 +88,7 @@ struct FakeSubject final : control::Subject {
   }
 
   std::string calls, file;
+  std::int64_t session = ::getsid(0);  ///< of this terminal
   std::map<std::uint64_t, std::string> to;
   std::int64_t row = 0;
   Nanoseconds begun;   ///< when the first row was asked for
@@ -183,26 +186,62 @@ TEST_F(ShellTest, AnAnswerIsTextOrRaw) {
   serve();
   EXPECT_EQ(run({"status"}).substr(0, 56), "0|puma_pid: run, up 12.5 min, flag UP by spare, operator");
   EXPECT_EQ(run({"status", "--json"}), "0|" + Json::parse(test::kStatus).dump() + "\n|");
-  EXPECT_EQ(run({"get", "error"}), "0|error = 0.5 rad  (pid, 1.00 us ago)\n|");
+  EXPECT_EQ(run({"get", "error"}), "0|error = 0.5 rad  (pid, 1.00 us ago)\n|[puma_pid]\n");
 }
 
 TEST_F(ShellTest, ARefusalHasTheServersWordsAndTheNearestName) {
   serve();
-  EXPECT_EQ(run({"off", "pdi"}), "1||no task 'pdi'; did you mean 'pid'?\n");
-  EXPECT_EQ(run({"set", "kp", "[100", "90]", "N.m/rad"}), "1||kp: not now; off first\n");
+  EXPECT_EQ(run({"off", "pdi"}), "1||[puma_pid] no task 'pdi'; did you mean 'pid'?\n");
+  EXPECT_EQ(run({"set", "kp", "[100", "90]", "N.m/rad"}), "1||[puma_pid] kp: not now; off first\n");
   EXPECT_NE(subject.calls.find(R"(set {"values":{"kp":"[100 90] N.m/rad"}})"), std::string::npos) << subject.calls;
   const std::string raw = run({"off", "pdi", "--json"});
   const Json error = Json::parse(raw.substr(2, raw.size() - 3));
   EXPECT_EQ(error["error"]["code"], control::kUnknown);
   EXPECT_EQ(error["error"]["nearest"], "pid");
-  EXPECT_EQ(run({"flag", "sideways"}), "2||flag: found 'sideways', expected up or down\n");
-  EXPECT_EQ(run({"events", "--since", "x"}), "2||--since: 'x' is no number of an event\n");
+  EXPECT_EQ(run({"flag", "sideways"}), "2||[puma_pid] flag: found 'sideways', expected up or down\n");
+  EXPECT_EQ(run({"events", "--since", "x"}), "2||[puma_pid]\n--since: 'x' is no number of an event\n");
+}
+
+TEST_F(ShellTest, AnActOnASubsystemOfAnotherTerminalAndFolderWantsItsName) {
+  subject.session = ::getsid(0) + 1;
+  serve();
+  EXPECT_EQ(run({"off", "pid"}),
+            "1||'puma_pid' was started in /srv/bo (process 1), not from this terminal or folder; if you mean it, "
+            "type: chimera off pid --subsystem puma_pid\n");
+  EXPECT_EQ(run({"set", "kp", "[1 2] N.m/rad", "--json"}).substr(0, 20), "1|{\"error\":{\"message");
+  EXPECT_EQ(run({"save", "--write"}).substr(0, 23), "1||'puma_pid' was start");
+  EXPECT_EQ(run({"status", "--pid", "servo"}).substr(0, 23), "1||'puma_pid' was start");
+  EXPECT_EQ(subject.calls.find("signal"), std::string::npos) << subject.calls;
+  EXPECT_EQ(subject.calls.find("set"), std::string::npos) << subject.calls;
+  EXPECT_EQ(run({"get", "error"}).substr(0, 2), "0|") << "a question is no act";
+  EXPECT_EQ(run({"on", "pid"}, "puma_pid"), "0|[puma_pid] pid: OFF -> ON\n|");
+  EXPECT_EQ(run({"on", "pid"}, folder + "/chimera/puma_pid.sock"), "0|[puma_pid] pid: OFF -> ON\n|");
+  ::setenv("CHIMERA_SUBSYSTEM", "puma_pid", 1);
+  EXPECT_EQ(run({"on", "pid"}), "0|[puma_pid] pid: OFF -> ON\n|");
+  ::unsetenv("CHIMERA_SUBSYSTEM");
+}
+
+TEST_F(ShellTest, AnswersOfProgramsNameTheirSubsystem) {
+  serve();
+  EXPECT_EQ(run({"on", "pid", "--json"}),
+            "0|{\"subsystem\":\"puma_pid\",\"tasks\":[{\"after\":\"ON\",\"before\":\"OFF\",\"task\":\"pid\"}]}\n|");
+  const std::string raw = run({"off", "pdi", "--json"});
+  EXPECT_EQ(Json::parse(raw.substr(2, raw.size() - 3))["subsystem"], "puma_pid");
+}
+
+TEST_F(ShellTest, TheProcessOfAUnitIsANumberForKill) {
+  serve();
+  EXPECT_EQ(run({"status", "--pid", "servo"}), "0|4711\n|");
+  EXPECT_EQ(run({"status", "--pid", "keeper"}), "0|1\n|");
+  EXPECT_EQ(run({"status", "--pid", "manager"}), "0|12\n|");
+  EXPECT_EQ(run({"status", "--pid", "sevro"}), "1||--pid: no real-time unit 'sevro'; did you mean 'servo'?\n");
+  EXPECT_EQ(run({"status", "--pid", "spare"}), "1||--pid: the process of 'spare' is dead\n");
 }
 
 TEST_F(ShellTest, AConfigurationStandsForItsTasks) {
   serve();
-  EXPECT_EQ(run({"on", "run"}), "0|trajectory: OFF -> ON\n|") << "the others are ON";
-  EXPECT_EQ(run({"on", "hand"}), "0|all of its tasks are ON\n|");
+  EXPECT_EQ(run({"on", "run"}), "0|[puma_pid] trajectory: OFF -> ON\n|") << "the others are ON";
+  EXPECT_EQ(run({"on", "hand"}), "0|[puma_pid] all of its tasks are ON\n|");
 }
 
 TEST_F(ShellTest, AScriptStopsAtTheFirstRefusalAndNamesItsLine) {
@@ -213,8 +252,9 @@ TEST_F(ShellTest, AScriptStopsAtTheFirstRefusalAndNamesItsLine) {
     std::istringstream script("# take it\non pid\n\noff pdi   # a slip\nstatsu\noff arm\nquit\non arm\n");
     std::FILE *out = std::tmpfile(), *err = std::tmpfile();
     EXPECT_EQ(run_script(*session, script, "a.txt", keeps_going, out, err), kRefused);
-    EXPECT_EQ(text(out), keeps_going ? "pid: OFF -> ON\narm: OFF -> ON\n" : "pid: OFF -> ON\n");
-    const std::string first = "no task 'pdi'; did you mean 'pid'?\na.txt:4: refused: off pdi   # a slip\n";
+    EXPECT_EQ(text(out), keeps_going ? "[puma_pid] pid: OFF -> ON\n[puma_pid] arm: OFF -> ON\n"
+                                     : "[puma_pid] pid: OFF -> ON\n");
+    const std::string first = "[puma_pid] no task 'pdi'; did you mean 'pid'?\na.txt:4: refused: off pdi   # a slip\n";
     const std::string second = "no command 'statsu'; did you mean 'status'?; `help` lists them\n"
                                "a.txt:5: refused: statsu\n";
     EXPECT_EQ(text(err), keeps_going ? first + second : first);
@@ -225,7 +265,7 @@ TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
   serve();
   const std::string said = run({"scope", "error", "--trigger", "error > 9.5 mrad", "--pre", "1 s", "--for", "5 ms",
                                 "--csv", path("a.csv"), "--svg", path("a.svg"), "--wait", "10 s"});
-  EXPECT_EQ(said.substr(0, 3), "0||") << said;
+  EXPECT_EQ(said.substr(0, 14), "0||[puma_pid]\n") << said;
   EXPECT_NE(said.find("; 1 gap, 3 rows lost\n"), std::string::npos) << said;
   const std::string csv = content(path("a.csv"));
   EXPECT_EQ(csv.rfind("t [s],error [rad],lost\n", 0), 0u) << csv;
@@ -235,13 +275,13 @@ TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
 
 TEST_F(ShellTest, AScopeRefusesWhatCannotBe) {
   serve();
-  EXPECT_EQ(run({"scope", "eror"}), "1||no state variable 'eror'; did you mean 'error'?\n");
-  EXPECT_EQ(run({"scope", "ndof"}), "2||'ndof' is a constant: nobody publishes it\n");
-  EXPECT_EQ(run({"scope", "error", "--pre", "1 s"}), "2||--pre belongs to --trigger\n");
+  EXPECT_EQ(run({"scope", "eror"}), "1||[puma_pid]\nno state variable 'eror'; did you mean 'error'?\n");
+  EXPECT_EQ(run({"scope", "ndof"}), "2||[puma_pid]\n'ndof' is a constant: nobody publishes it\n");
+  EXPECT_EQ(run({"scope", "error", "--pre", "1 s"}), "2||[puma_pid]\n--pre belongs to --trigger\n");
   EXPECT_EQ(run({"scope", "error", "--trigger", "q > 1 rad"}),
-            "2||trigger 'q > 1 rad': say which element, such as q[0]\n");
+            "2||[puma_pid]\ntrigger 'q > 1 rad': say which element, such as q[0]\n");
   EXPECT_EQ(run({"scope", "error", "--trigger", "error > 9 rad", "--wait", "300 ms"}),
-            "1||no trigger 'error > 9 rad' within 300 ms\n");
+            "1||[puma_pid]\nno trigger 'error > 9 rad' within 300 ms\n");
 }
 
 TEST_F(ShellTest, WatchGoesOnUntilCtrlC) {
@@ -265,21 +305,22 @@ TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyWhenItIsAsItWas) {
   const std::string before = "subsystem: puma_pid\ntasks: {a: }\noperator:\n  kp: [3 N.m/rad, 2 N.m/rad]  # gains\n";
   std::ofstream(subject.file) << before;
   serve();
-  EXPECT_EQ(run({"save"}), "0|operator:\n  kp: [1 N.m/rad, 2 N.m/rad]\n|");
+  EXPECT_EQ(run({"save"}), "0|operator:\n  kp: [1 N.m/rad, 2 N.m/rad]\n|[puma_pid]\n");
   const std::string refusal =
-      "1||" + subject.file + ": has changed since the subsystem was started from it; nothing was written\n";
+      "1||[puma_pid] " + subject.file + ": has changed since the subsystem was started from it; nothing was written\n";
   EXPECT_EQ(run({"save", "--write"}), refusal) << "it started when the machine did, before the file was written";
   EXPECT_EQ(content(subject.file), before);
   subject.origin = LinuxClock().now();
   subject.is_legal = false;
   EXPECT_EQ(run({"save", "--write"}),
-            "1||" + subject.file + ": with these values the description is not legal: not legal\n");
+            "1||[puma_pid] " + subject.file + ": with these values the description is not legal: not legal\n");
   EXPECT_EQ(content(subject.file), before);
   subject.is_legal = true;
-  EXPECT_EQ(run({"save", "--write"}), "0|" + subject.file + ": written\n|");
+  EXPECT_EQ(run({"save", "--write"}), "0|[puma_pid] " + subject.file + ": written\n|");
   const std::string after = "subsystem: puma_pid\ntasks: {a: }\noperator:\n  kp: [1 N.m/rad, 2 N.m/rad]  # gains\n";
   EXPECT_EQ(content(subject.file), after);
-  EXPECT_EQ(run({"save", "--write"}), "0|" + subject.file + ": says so already\n|") << "its own writing is no change";
+  EXPECT_EQ(run({"save", "--write"}), "0|[puma_pid] " + subject.file + ": says so already\n|")
+      << "its own writing is no change";
   std::ofstream(subject.file, std::ios::app) << "# by hand\n";
   EXPECT_EQ(run({"save", "--write"}), refusal);
   EXPECT_EQ(content(subject.file), after + "# by hand\n");
@@ -417,11 +458,11 @@ TEST_F(ShellTest, WhatGoesOnOutlivesARestartOfTheManager) {
 }
 
 TEST_F(ShellTest, TheShellCompletesRemembersAndGoesOnAfterCtrlC) {
-  OnTerminal terminal([this] { return interactive(surroundings(), "", false); });
+  OnTerminal terminal([this] { return interactive(surroundings("puma_pid"), "", false); });  // a session of its own
   serve();
   EXPECT_TRUE(terminal.prompts());
   terminal.type("of\tpi\t\r");
-  EXPECT_TRUE(terminal.shows("pid: OFF -> ON"));
+  EXPECT_TRUE(terminal.shows("[puma_pid] pid: OFF -> ON"));
   terminal.type("watch error\r");
   EXPECT_TRUE(terminal.shows("0.0 rad"));
   terminal.type("\x03");

@@ -22,7 +22,7 @@ class Lesson(unittest.TestCase):
         with System((LESSON / "processes.yaml").read_text(), name="processes") as system:
             said = {}
             for command in others:
-                if command == "kill -KILL PID":
+                if command == 'kill -KILL "$(chimera status --pid plan)"':
                     self.kill_the_plan(system)
                     continue
                 words = command.split()[1:]
@@ -37,7 +37,10 @@ class Lesson(unittest.TestCase):
 
     def kill_the_plan(self, system):
         before, unit = system.task("arm"), system.rtpu("plan")
-        self.assertTrue(system.kill(unit["pid"]))
+        pid = subprocess.run([str(CHIMERA), "status", "--pid", "plan"], env=system.environment, capture_output=True,
+                             text=True, timeout=30, check=True).stdout
+        self.assertEqual(pid, f"{unit['pid']}\n")
+        self.assertTrue(system.kill(int(pid)))
         await_that(lambda: system.rtpu("plan")["incarnation"] > unit["incarnation"], 10, "a restart")
         system.await_state("trajectory", "ON")
         after = await_that(lambda: (t := system.task("arm"))["cycles"] > before["cycles"] + 10 and t, 5, "cycles")

@@ -15,8 +15,9 @@ _chimera_words() {
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
     test) echo '--help --all --setup --inputs --names --seed --cycles --json' ;;
-    clear | end | flag | kill | off | on | reinit | ring | set | spawn | status | why)
+    clear | end | flag | kill | off | on | reinit | ring | set | spawn | why)
       echo '--help --json --subsystem' ;;
+    status) echo '--help --json --subsystem --pid' ;;
     events) echo '--help --json --subsystem --since --kind --each --follow' ;;
     get) echo '--help --json --subsystem --every' ;;
     profile) echo '--help --json --subsystem --save' ;;

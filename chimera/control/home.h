@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a subsystem was started: from which session (all that one terminal started) and in which folder.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "chimera/control/answer.h"
+
+namespace chimera::control {
+
+/// As `hello` tells (docs/formats/control.md). Plain value.
+struct Home {
+  std::string subsystem;
+  std::int64_t keeper_pid = 0;
+  std::int64_t session = 0;  ///< number of the session of its keeper; 0: not known
+  std::string folder;        ///< in which `chimera run` was typed
+  std::string file;          ///< the description, as it was named there
+};
+
+/// Reads the answer of `hello`; what it does not tell stays empty. Context of all: setup; may block.
+Home home_of(const Json& hello);
+/// Is it a subsystem of the caller's terminal (the same session), or was it started in the caller's working folder, or
+/// from a description that lies there?
+bool is_here(const Home& home);
+
+}  // namespace chimera::control
