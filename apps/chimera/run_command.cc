@@ -30,6 +30,8 @@ void add_face_options(CLI::App* command, RunWords& words) {
   add_file_option(*command, "--trace", words.trace, "write a Chrome trace to this file (ui.perfetto.dev opens it)");
   add_file_option(*command, "--profile", words.run.profile,
                   "at the end save the profile of every task into this file, for `chimera schedule --profile`");
+  command->add_flag("--strict", words.run.strict,
+                    "a missed deadline, dropped release, fault, restart or the flag up at the end is exit code 1");
   command->add_option("--timeline", words.timeline,
                       "at the end print one letter for each unit of time, such as '1 ms'");
 }
@@ -105,6 +107,7 @@ std::vector<std::string> words_for_face(const RunWords& words) {
   for (const std::string& name : words.run.watch) add("--watch", name);
   for (const std::string& text : words.run.expect) add("--expect", text);
   if (words.run.json) made.push_back("--json");
+  if (words.run.strict) made.push_back("--strict");
   return made;
 }
 
@@ -149,11 +152,15 @@ void add_run(CLI::App& app, RunWords& words) {
   r->add_option("--operate-group", words.operate_group, "real time: they may also send signals and set values");
   r->add_option("--configure-group", words.configure_group, "real time: they may do everything");
   r->add_flag("--json", words.run.json, "the result as one JSON object");
-  r->footer("At the end, for each task: mean and max execution time of a cycle, the longest response (release to\n"
-            "end), jitter (latest start minus earliest, each after its release), deadlines missed, releases dropped,\n"
-            "faults.\n"
-            "Exit code 0 only if the run came to its end and every --expect holds; 2: wrong usage.\n"
-            "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
+  r->footer(
+      "At the end, for each task: mean and max execution time of a cycle, the longest response (release to\n"
+      "end), jitter (latest start minus earliest, each after its release), deadlines missed, releases dropped,\n"
+      "faults.\n"
+      "The last lines say whether it was clean, and what was not.\n"
+      "Exit code 0 only if the run came to its end, every --expect holds, no task was in ERROR at the end, no\n"
+      "`off` or `kill` failed then, no real-time unit was given up; with --strict only if all was clean; 2: wrong "
+      "usage.\n"
+      "Example: chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz");
   CLI::App* i = app.add_subcommand("idle", "Start an empty server for editors and tools");
   i->add_option("--subsystem", words.idle_name, "its name (idle)");
   i->footer("Ends by Ctrl-C or `chimera end`.\nExample: chimera idle &");
@@ -193,6 +200,6 @@ int carry_out_attend(RunWords& words) {
   if (!read_times(words, unit) || words.bounds.size() != words.run.expect.size()) return desk::kUsage;
   if (!follow_parent(words.parent, SIGTERM)) return desk::kRefused;
   return with_records(words, unit, [&](desk::RecordSink* sink) {
-    return desk::attend({words.socket, words.run, words.bounds}, sink, stdout, stderr);
+    return desk::attend({words.socket, words.run, words.bounds, words.parent}, sink, stdout, stderr);
   });
 }

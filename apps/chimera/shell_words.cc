@@ -21,6 +21,8 @@ struct ShellWords {
 
 namespace {
 
+constexpr const char* kWhichOne = "which one: needed to act on one of another terminal and folder";
+
 void add_command(CLI::App& app, const shell::Command& command, ShellWords& words) {
   CLI::App* c = app.add_subcommand(command.name, command.help);
   if (command.most > 0) {
@@ -33,7 +35,7 @@ void add_command(CLI::App& app, const shell::Command& command, ShellWords& words
     else c->add_option(option.name, words.values[option.name], option.help)->type_name(option.value);
   }
   c->add_flag("--json", words.json, "the raw answer");
-  c->add_option("--subsystem", words.subsystem, "which one: needed to act on one of another terminal and folder")->type_name("NAME");
+  c->add_option("--subsystem", words.subsystem, kWhichOne)->type_name("NAME");
   const std::string legend = command.legend;
   c->footer(legend + (legend.empty() ? "" : "\n") + "Example: " + command.example);
 }
@@ -47,7 +49,7 @@ std::shared_ptr<ShellWords> add_shell_commands(CLI::App& app) {
   CLI::App* s = app.add_subcommand("shell", "Type these commands one after the other, or take them from a file");
   s->add_option("FILE", words->script, "a script: one command a line, # begins a comment; - is standard input");
   s->add_flag("-k,--keep-going", words->keeps_going, "a script: go on after a refusal");
-  s->add_option("--subsystem", words->subsystem, "which one: needed to act on one of another terminal and folder")->type_name("NAME");
+  s->add_option("--subsystem", words->subsystem, kWhichOne)->type_name("NAME");
   s->footer("Example: chimera shell --subsystem puma_pid");
   return words;
 }

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/attend.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <csignal>
 #include <limits>
-#include <optional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "chimera/config/json_text.h"
 #include "chimera/config/task_profile.h"
@@ -24,6 +28,7 @@ using Json = nlohmann::json;
 
 constexpr Nanoseconds kLookEvery = milliseconds(100);  // for what has happened, and whether to stop
 constexpr Nanoseconds kStartLook = milliseconds(5);
+constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends whoever takes too long: that is not judged here
 
 Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.get<std::int64_t>()} : kNever; }
 
@@ -62,6 +67,9 @@ class Attendance {
   void act(const ScriptAct& act);
   void watch_line(Nanoseconds at);
   Json readings(std::vector<std::string> names);
+  std::vector<UnitFate> units_of(const Json& status) const;
+  std::vector<TaskProfile> profiles(const Json& origin);
+  void judge_end(RunReport& report, const Json& status);
   std::string since_start(Nanoseconds at) const;
 
   const AttendRequest& request_;
@@ -80,6 +88,7 @@ class Attendance {
   std::uint64_t next_event_ = 0;
   bool task_stopped_ = false;
   std::string stopped_by_;
+  std::map<std::string, Nanoseconds> restarted_;  // by rtpu, the last time
 };
 
 Result<void> Attendance::begin() {
@@ -150,6 +159,8 @@ void Attendance::look_at_events() {
       failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
     else if (kind == "refused")
       refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
+    if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())
+      restarted_[event["rtpu"].get<std::string>()] = instant(event["at_ns"]) - started_;
     if (kind != "stop" || task_stopped_) continue;
     task_stopped_ = true;
     stopped_by_ = task;
@@ -222,21 +233,78 @@ RunEnd Attendance::attend() {
   }
 }
 
+std::vector<UnitFate> Attendance::units_of(const Json& status) const {
+  std::vector<UnitFate> units;
+  for (const Json& rtpu : status.value("rtpus", Json::array())) {
+    UnitFate unit{
+        rtpu.value("name", ""), rtpu.value("restarts", std::uint64_t{0}), kNever, rtpu.value("given_up", false), {}};
+    if (const auto at = restarted_.find(unit.name); at != restarted_.end()) unit.restarted = at->second;
+    units.push_back(std::move(unit));
+  }
+  return units;
+}
+
+std::vector<TaskProfile> Attendance::profiles(const Json& origin) {
+  const auto answer = line_.ask("profile", Json::object());
+  if (!answer) return {};
+  const auto parsed = parse_profiles((*answer)["tasks"].dump(), instant(origin));
+  return parsed ? *parsed : std::vector<TaskProfile>();
+}
+
+bool any_lives(const Json& status) {
+  const Json rtpus = status.value("rtpus", Json::array());
+  return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return rtpu.value("alive", false); });
+}
+
+/// Has the tasks turned off and killed, and takes what they count then: that fails, too, and belongs to the run.
+void Attendance::judge_end(RunReport& report, const Json& before) {
+  std::vector<UnitFate> units = units_of(before);
+  std::vector<std::uint64_t> faults;
+  for (const TaskProfile& task : report.profiles) faults.push_back(task.faults.count);
+  if (request_.keeper > 0 && ::getppid() == request_.keeper) ::kill(request_.keeper, SIGUSR1);
+  auto after = line_.ask("status", Json::object());
+  for (const Nanoseconds until = clock_.now() + kEndLimit; after && any_lives(*after) && clock_.now() < until;) {
+    clock_.wait_until(clock_.now() + kStartLook);
+    after = line_.ask("status", Json::object());
+  }
+  const auto ended = after ? profiles(before["origin_ns"]) : std::vector<TaskProfile>();
+  for (std::size_t t = 0; t < std::min(ended.size(), report.profiles.size()); ++t) {
+    const State state = report.profiles[t].state;
+    report.profiles[t] = ended[t];
+    report.profiles[t].state = state;
+  }
+  for (std::size_t r = 0; after && r < units.size(); ++r) {
+    const Json& was = before["rtpus"][r];
+    const Json end = (*after)["rtpus"][r].value("last_end", Json());
+    const bool is_new = was.value("alive", false) && end.is_string() && end != was.value("last_end", Json());
+    if (is_new && end != "ended with status 0") units[r].bad_end = end.get<std::string>();
+  }
+  report.verdict = judge_run({report.profiles, faults, units, report.is_flag_up, run_.strict});
+  if (ended.empty() && !names_.tasks.empty())
+    report.verdict.failures.emplace_back("nobody answered at the end: how the tasks ended is not known");
+}
+
 int Attendance::report(RunEnd end) {
   const Nanoseconds now = clock_.now();
   std::vector<std::string> names = run_.watch;
-  RunReport report{.end = end, .stopped_by = {}, .is_flag_up = false,
-                   .ran = std::min(now - started_, run_.duration), .subsystem = names_.subsystem,
-                   .executor = grants_, .refused = {}, .profiles = {}, .origin = started_, .variables = {},
-                   .expectations = {}};
+  RunReport report{.end = end,
+                   .stopped_by = {},
+                   .is_flag_up = false,
+                   .ran = std::min(now - started_, run_.duration),
+                   .subsystem = names_.subsystem,
+                   .executor = grants_,
+                   .refused = {},
+                   .profiles = {},
+                   .origin = started_,
+                   .variables = {},
+                   .expectations = {},
+                   .verdict = {}};
   for (std::size_t i = 0; i < run_.expect.size(); ++i)
     if (auto expectation = Expectation::with_bound(run_.expect[i], request_.bounds[i]); expectation)
       names.push_back(expectation->variable());
   const Json values = readings(names);
   const auto status = line_.ask("status", Json::object());
-  if (const auto profile = line_.ask("profile", Json::object()); profile && status)
-    if (auto profiles = parse_profiles((*profile)["tasks"].dump(), instant((*status)["origin_ns"])); profiles)
-      report.profiles = *std::move(profiles);
+  if (status) report.profiles = profiles((*status)["origin_ns"]);
   if (status) report.is_flag_up = status->value(Json::json_pointer("/flag/up"), false);
   look_at_events();
   report.stopped_by = stopped_by_;
@@ -251,6 +319,7 @@ int Attendance::report(RunEnd end) {
     report.variables.push_back({name, reading.value("unit", "1"), reading.value("value", Json()).dump()});
   }
   if (records_) records_->finish(*sink_);
+  judge_end(report, status ? *status : Json::object());
   print(report, run_.json, out_);
   return save_profile(report, run_.profile, err_) ? report.code() : kRefused;
 }

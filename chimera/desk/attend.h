@@ -15,6 +15,7 @@ struct AttendRequest {
   std::string socket;          ///< path of the subsystem's
   RunRequest run;              ///< of these: duration, every, watch, at, expect, json
   std::vector<double> bounds;  ///< of run.expect, each in the unit of its variable
+  int keeper = 0;              ///< process that ends the tasks when it is told so by SIGUSR1; 0: nobody
 };
 
 /// Waits for the start, attends until the end of the duration or request_stop(), reports; answers the exit code of the

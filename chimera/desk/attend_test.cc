@@ -55,24 +55,34 @@ class MadeUp final : public control::Subject {
   Json events = Json::array();
   Json values = Json::object();
   Json records = Json::array();  // a notification each
+  std::string fault_at_end;      // of `kill`
+  Json servo = {{"name", "servo"}, {"grant", "real time: all granted"}};
 
  private:
   Json status() const {
-    const Json rtpu = {{"name", "servo"}, {"grant", "real time: all granted"}};
     const Json spare = {{"name", "spare"}, {"grant", "WARNING: not real time\n  priority 0\n  granted: memory"}};
     return {{"subsystem", "arm"},
             {"origin_ns", 5},
             {"started_ns", started_ns},
             {"tasks", Json::array({{{"task", "pid"}}})},
-            {"rtpus", Json::array({rtpu, spare})}};
+            {"rtpus", Json::array({servo, spare})}};
   }
+  int profiles_told = 0;
   Json news(std::uint64_t since) const {
     Json some = Json::array();
     for (const Json& event : events)
       if (event["number"].get<std::uint64_t>() >= since) some.push_back(event);
     return {{"events", some}, {"first", 1}, {"last", events.size()}};
   }
-  static Json profile() {
+  /// The first time it is asked for; after that how the end went.
+  Json profile() {
+    Json told = plain_profile();
+    if (profiles_told++ == 0 || fault_at_end.empty()) return told;
+    told["faults"] = 1;
+    told["last_fault"] = {{"method", "kill"}, {"at_ns", 100}, {"code", 3}, {"text", fault_at_end}};
+    return told;
+  }
+  static Json plain_profile() {
     return {{"task", "pid"}, {"component", "pid_joint"}, {"rtpu", "servo"}, {"state", "ON"},
             {"period_ns", 1000000}, {"server", nullptr}, {"on_ns", 100000000}, {"cycles", 100},
             {"execution_ns", Json::object()}, {"response_ns", {{"count", 0}}}, {"start_delay_ns", {{"count", 0}}},
@@ -158,7 +168,8 @@ TEST_F(Attend, TellsWhatWasGrantedWhatItSeesAndHowItWent) {
             "faults\n"
             "pid   ON                100           -          -    0.00 %           -           -       0      0   "
             "   0\n"
-            "holds: |q| < 3 rad (q is [1.5 -2] rad)\nFAILS: x > 0 m (x was never written)\n");
+            "holds: |q| < 3 rad (q is [1.5 -2] rad)\nFAILS: x > 0 m (x was never written)\n"
+            "clean: no deadline missed, no release dropped, no fault, no restart\n");
   EXPECT_EQ(err_, "");
 }
 
@@ -214,6 +225,39 @@ TEST_F(Attend, TheReactionStopOfATaskIsNoSuccess) {
   request_.run.duration = kNever;
   EXPECT_EQ(attend(), kRefused);
   EXPECT_NE(out_.find(", ended by the reaction `stop` of task 'pid'\n"), std::string::npos) << out_;
+}
+
+TEST_F(Attend, WhatFailsWhenAllIsTurnedOffIsToldAndIsNoSuccess) {
+  subject_.fault_at_end = "884 rows were not written";
+  EXPECT_EQ(attend(), kRefused);
+  EXPECT_NE(out_.find("\npid: last fault in kill at "), std::string::npos) << out_;
+  EXPECT_NE(out_.find("not clean: 1 fault (pid 1)\nFAILED: pid failed at the end: kill: 884 rows were not written\n"),
+            std::string::npos)
+      << out_;
+}
+
+TEST_F(Attend, ARestartIsToldAndFailsAStrictRunOnly) {
+  subject_.servo["restarts"] = 1;
+  subject_.events = {{{"number", 1},
+                      {"at_ns", subject_.started_ns.get<std::int64_t>() + 30'000'000},
+                      {"kind", "rtpu-restarted"},
+                      {"rtpu", "servo"},
+                      {"text", "servo is restarted"}}};
+  EXPECT_EQ(attend(), kOk);
+  EXPECT_NE(out_.find("servo: what its tasks count is since its restart at 0.030 s\n"
+                      "not clean: 1 restart of servo\n"),
+            std::string::npos)
+      << out_;
+  request_.run.strict = true;
+  EXPECT_EQ(attend(), kRefused);
+  EXPECT_NE(out_.find("FAILED: not clean, and --strict asks for that\n"), std::string::npos) << out_;
+}
+
+TEST_F(Attend, AUnitThatWasGivenUpIsNoSuccess) {
+  subject_.servo["restarts"] = 3;
+  subject_.servo["given_up"] = true;
+  EXPECT_EQ(attend(), kRefused);
+  EXPECT_NE(out_.find("FAILED: servo was given up"), std::string::npos) << out_;
 }
 
 TEST_F(Attend, GoesOnWithTheNextManagerWhenOneDies) {

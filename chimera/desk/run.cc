@@ -184,10 +184,18 @@ RunEnd Session::run() {
 }
 
 int Session::report(RunEnd end) {
-  RunReport report{.end = end, .stopped_by = {}, .is_flag_up = application_.tasks().is_illegal(), .ran = ran_,
+  RunReport report{.end = end,
+                   .stopped_by = {},
+                   .is_flag_up = application_.tasks().is_illegal(),
+                   .ran = ran_,
                    .subsystem = plan_.configuration.subsystem(),
-                   .executor = loop_->description(), .refused = {}, .profiles = {}, .origin = loop_->origin(),
-                   .variables = {}, .expectations = {}};
+                   .executor = loop_->description(),
+                   .refused = {},
+                   .profiles = {},
+                   .origin = loop_->origin(),
+                   .variables = {},
+                   .expectations = {},
+                   .verdict = {}};
   for (const Expectation& expectation : plan_.expectations)
     report.judge(expectation, application_.probe(expectation.variable())->look());
   std::vector<std::byte> value;
@@ -199,9 +207,12 @@ int Session::report(RunEnd end) {
   for (const RefusedSignal& r : loop_->refused())
     report.refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
   const Nanoseconds now = loop_->now();
+  std::vector<std::uint64_t> faults_before;
+  for (const Task& task : application_.tasks().tasks()) faults_before.push_back(task.faults.count);
   loop_->shut_down();
   // What `off` and `kill` cost, and their faults, too.
   report.profiles = profiles_of(application_.tasks(), states, application_.configuration(), now);
+  report.verdict = judge_run({report.profiles, faults_before, {}, report.is_flag_up, request_.strict});
   if (sink_ != nullptr) {
     drain();
     sink_->end(reader_.lost(), 0);

@@ -32,6 +32,7 @@ struct RunRequest {
   std::string svg;                      ///< draw them to this file instead; virtual time or one process only
   std::string profile;                  ///< save the profile into this file at the end; "": not
   bool json = false;
+  bool strict = false;  ///< a run that was not clean (run_verdict.h) is no success
 };
 
 /// Takes the tap's records in order while the run goes on. Context: setup thread.

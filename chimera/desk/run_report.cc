@@ -43,11 +43,11 @@ void print_json(const RunReport& report, std::FILE* out) {
                     ", \"holds\": " + (e.holds ? "true" : "false") + ", \"said\": " + json_string(e.said) + "}";
   std::fprintf(out,
                "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"flag\": %s, "
-               "\"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s]}\n",
+               "\"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s], \"verdict\": %s}\n",
                json_string(report.subsystem).c_str(), json_string(report.executor).c_str(),
-               static_cast<long long>(report.ran.count), word(report.end),
-               report.is_flag_up ? "true" : "false",
-               profile_json(report.profiles, report.origin).c_str(), variables.c_str(), expectations.c_str());
+               static_cast<long long>(report.ran.count), word(report.end), report.is_flag_up ? "true" : "false",
+               profile_json(report.profiles, report.origin).c_str(), variables.c_str(), expectations.c_str(),
+               report.verdict.json().c_str());
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ void RunReport::judge(const Expectation& expectation, const Seen& seen) {
 int RunReport::code() const {
   const bool all_hold =
       std::all_of(expectations.begin(), expectations.end(), [](const Judged& judged) { return judged.holds; });
-  return all_hold && end != RunEnd::kTaskStopped ? kOk : kRefused;
+  return all_hold && end != RunEnd::kTaskStopped && !verdict.is_failure() ? kOk : kRefused;
 }
 
 bool save_profile(const RunReport& report, const std::string& path, std::FILE* err) {
@@ -76,9 +76,10 @@ void print(const RunReport& report, bool json, std::FILE* out) {
   std::string lines;
   for (const RunReport::Judged& e : report.expectations)
     lines += (e.holds ? "holds: " : "FAILS: ") + e.text + " (" + e.said + ")\n";
-  std::fprintf(out, "ran %.3f s%s\n%s%s%s%s", to_seconds(report.ran), sentence(report).c_str(),
+  std::fprintf(out, "ran %.3f s%s\n%s%s%s%s%s", to_seconds(report.ran), sentence(report).c_str(),
                report.is_flag_up ? "the illegal-configuration flag is up\n" : "", report.refused.c_str(),
-               profile_table(report.profiles, report.ran, report.origin).c_str(), lines.c_str());
+               profile_table(report.profiles, report.ran, report.origin).c_str(), lines.c_str(),
+               report.verdict.text().c_str());
 }
 
 }  // namespace chimera::desk

@@ -8,6 +8,7 @@
 
 #include "chimera/config/task_profile.h"
 #include "chimera/desk/expectation.h"
+#include "chimera/desk/run_verdict.h"
 #include "chimera/runtime/release.h"
 
 namespace chimera::desk {
@@ -34,9 +35,10 @@ struct RunReport {
   Nanoseconds origin;                  ///< of `ran`; faults are timed from it
   std::vector<Watched> variables;
   std::vector<Judged> expectations;
+  RunVerdict verdict;
 
   void judge(const Expectation& expectation, const Seen& seen);
-  /// kOk when it came to its end and every expectation holds.
+  /// kOk when it came to its end, every expectation holds and the verdict is no failure.
   int code() const;
 };
 

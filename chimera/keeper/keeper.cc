@@ -29,7 +29,7 @@ Keeper::~Keeper() {
 Result<void> Keeper::start() {
   sigset_t mask;
   ::sigemptyset(&mask);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGPIPE}) ::sigaddset(&mask, number);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGCHLD, SIGPIPE}) ::sigaddset(&mask, number);
   ::pthread_sigmask(SIG_BLOCK, &mask, &mask_before_);
   ::sigdelset(&mask, SIGPIPE);
   signals_ = OwnedDescriptor(::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK));
@@ -70,8 +70,14 @@ void Keeper::wait() {
 /// Takes everything that has happened.
 void Keeper::look() {
   signalfd_siginfo taken;
-  while (::read(signals_.fd, &taken, sizeof taken) == sizeof taken)
-    if (taken.ssi_signo != SIGCHLD) end_asked_ = true;
+  while (::read(signals_.fd, &taken, sizeof taken) == sizeof taken) {
+    const bool is_of_face = face_.is_held() && taken.ssi_pid == static_cast<std::uint32_t>(face_.pid());
+    if (taken.ssi_signo == SIGUSR1)
+      face_has_looked_ = face_has_looked_ || is_of_face;
+    else if (taken.ssi_signo != SIGCHLD)
+      end_asked_ = true;
+  }
+  end_asked_ = end_asked_ || face_has_looked_;
   std::vector<KeeperMessage> wishes;
   for (std::uint32_t index = 0; index < peers_.size(); ++index) {
     peers_.take_messages(index, wishes);
@@ -136,14 +142,16 @@ bool Keeper::advance() {
     if (phase_ < Phase::kRtpusFinish && !peers_.lives(manager)) manager_due_ = now + kLongestPause;
   } else if (phase_ == Phase::kRunning && end_asked_) {
     face_.signal(SIGTERM);
-    enter(Phase::kFaceFinishes, plan_.face_limit);
-  } else if (phase_ == Phase::kFaceFinishes && (!face_.is_held() || is_late)) {
+    enter(Phase::kFaceLooks, plan_.face_limit);
+  } else if (phase_ == Phase::kFaceLooks && (!face_.is_held() || face_has_looked_ || is_late)) {
     peers_.finish_rtpus();
     enter(Phase::kRtpusFinish, plan_.ending_limit);
   } else if (phase_ == Phase::kRtpusFinish && (!peers_.any_rtpu_lives() || is_late)) {
     for (std::uint32_t index = 0; index < manager; ++index) peers_.signal(index, SIGKILL);
     enter(Phase::kRtpusDie, kLastLimit);
   } else if (phase_ == Phase::kRtpusDie && (!peers_.any_rtpu_lives() || is_late)) {
+    enter(Phase::kFaceFinishes, plan_.face_limit);
+  } else if (phase_ == Phase::kFaceFinishes && (!face_.is_held() || is_late)) {
     peers_.signal(manager, SIGTERM);
     enter(Phase::kManagerFinishes, kLastLimit);
   } else if (phase_ == Phase::kManagerFinishes && (!peers_.lives(manager) || is_late)) {

@@ -14,7 +14,7 @@ namespace chimera {
 struct KeeperPlan {
   PeerPlan peers;
   std::vector<std::string> face;          ///< program and arguments of the face of this run; empty: none
-  Nanoseconds face_limit = seconds(2);    ///< to finish when told to
+  Nanoseconds face_limit = seconds(2);    ///< to take its last values when told to; and to finish after the rtpus
   Nanoseconds ending_limit = seconds(2);  ///< for `off` and `kill` of all tasks
 };
 
@@ -30,12 +30,21 @@ class Keeper {
   /// Starts everybody; refuses when one cannot be. SIGINT, SIGTERM and SIGHUP are blocked from here on: run() takes
   /// them.
   Result<void> start();
-  /// Keeps until the face exits, the manager says so, or a signal does; then ends everybody. The exit code: the
-  /// manager's if it gave one above 0, else that of the face, 0 without one.
+  /// Keeps until the face exits or says SIGUSR1, the manager says so, or a signal does; then ends everybody: the face
+  /// has taken its last values by then, and sees how the tasks end. The exit code: the manager's if it gave one above
+  /// 0, else that of the face, 0 without one.
   int run();
 
  private:
-  enum class Phase : std::uint8_t { kRunning, kFaceFinishes, kRtpusFinish, kRtpusDie, kManagerFinishes, kDone };
+  enum class Phase : std::uint8_t {
+    kRunning,
+    kFaceLooks,
+    kRtpusFinish,
+    kRtpusDie,
+    kFaceFinishes,
+    kManagerFinishes,
+    kDone
+  };
 
   void wait();
   bool bury_orphans();
@@ -57,6 +66,7 @@ class Keeper {
   Nanoseconds manager_pause_;
   int manager_refusals_ = 0;  // in a row from the start on; negative once one has lived
   bool end_asked_ = false;
+  bool face_has_looked_ = false;  // and says so by SIGUSR1: from there on it only waits for the ends
   int end_code_ = 0, face_code_ = 0;
 };
 

@@ -196,6 +196,30 @@ TEST_F(KeeperProcess, SignalsEndEverythingWithTheCodeOfTheFace) {
   }
 }
 
+TEST_F(KeeperProcess, AFaceThatHasLookedSeesHowTheOthersEnd) {
+  start(1);
+  ASSERT_TRUE(wait_for("face begin"));
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+  order("face", "look");
+  EXPECT_TRUE(wait_for("1.1 ended 0 1")) << "the rtpu has ended, the manager and the face have not";
+  EXPECT_FALSE(has("1.1 terminated"));
+  order("face", "exit 4");
+  EXPECT_EQ(code_of_keeper(), 4);
+  EXPECT_TRUE(has("1.1 terminated"));
+  EXPECT_TRUE(nobody_is_left());
+}
+
+TEST_F(KeeperProcess, SomebodyElsesSignalIsNotTheFaces) {
+  start(1);
+  ASSERT_TRUE(wait_for("face begin"));
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+  ::kill(keeper_, SIGUSR1);  // still ours
+  order("1", "kill 0");
+  EXPECT_TRUE(wait_for("1.1 ended 0 1 signal 9")) << "it still keeps";
+  ::kill(keeper_, SIGTERM);  // still ours
+  EXPECT_EQ(code_of_keeper(), 5);
+}
+
 TEST_F(KeeperProcess, EndsWithoutAFaceToo) {
   start(1, false);
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));

@@ -9,7 +9,7 @@ _chimera_words() {
       'profile reinit ring save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --graph' ;;
     schedule) echo '--help --profile --svg --dispatch --json' ;;
-    run) echo '--help --for --at --watch --every --svg --expect --trace --profile --timeline --virtual --preemptive' \
+    run) echo '--help --for --at --watch --every --svg --expect --strict --trace --profile --timeline --virtual --preemptive' \
       '--seed --quantum --priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
     idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
