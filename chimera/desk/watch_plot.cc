@@ -36,7 +36,7 @@ void WatchPlot::take(Nanoseconds at, std::span<const Probe> probes) {
       first_.push_back(curves_.size());
       const auto units = units_of(probe);
       std::size_t n = 0;
-      for (const std::string& name : names_of(probe)) curves_.push_back({name, units[n++ % units.size()], {}});
+      for (const std::string& name : names_of(probe)) curves_.push_back({name, units[n++ % units.size()], {}, 0, true});
     }
     first_.push_back(curves_.size());
   }

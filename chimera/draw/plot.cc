@@ -205,7 +205,10 @@ class Page {
   bool draw(const Panel& panel, const Curve& curve, std::size_t index) {
     std::string path;
     bool is_down = false, is_drawn = false;
+    double held_y = 0;
     const auto to = [&](double px, double py) {
+      if (curve.is_held && is_down && py != held_y) path += " L" + number(px) + "," + number(held_y);
+      held_y = py;
       path += (is_down ? " L" : " M") + number(px) + "," + number(py);
       is_drawn = is_down = true;
     };

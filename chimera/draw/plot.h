@@ -20,6 +20,7 @@ struct Curve {
   std::string unit = "1";
   std::vector<PlotPoint> points;  ///< in order of time
   int panel = 0;                  ///< curves of one unit stand in one panel where this is the same
+  bool is_held = false;  ///< a value holds until the next one: drawn as steps, not as a line from one to the next
 };
 
 /// A time from which something is missing: hatched over the whole height, with its text.

@@ -78,6 +78,15 @@ TEST(Plot, ALineEndsWhereAValueIsMissing) {
   EXPECT_EQ(count(first_path(svg(plot)), "L"), 2u);
 }
 
+TEST(Plot, AHeldValueIsDrawnAsSteps) {
+  Plot plot = plot_of({{"a", "1", {{0, 0}, {1, 0}, {2, 1}, {4, 0}}}});
+  EXPECT_EQ(first_path(svg(plot)), "M78,276.75 L293,276.75 L508,89.25 L938,276.75") << "a ramp from one to the next";
+  plot.curves[0].is_held = true;
+  EXPECT_EQ(first_path(svg(plot)), "M78,276.75 L293,276.75 L508,276.75 L508,89.25 L938,89.25 L938,276.75");
+  plot.curves[0].points = {{0, 0}, {1, 1}, {2, kNothing}, {3, 0}, {4, 1}};
+  EXPECT_EQ(count(first_path(svg(plot)), "M"), 2u) << "nothing is held over what is missing";
+}
+
 TEST(Plot, GapsAreHatchedAndSayHowMuchIsMissing) {
   Plot plot = plot_of({wave("a", "1", 9), wave("b", "m", 9)});
   plot.gaps = {{0.002, 0.004, "12 rows of pid lost"}};

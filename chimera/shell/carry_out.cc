@@ -52,9 +52,9 @@ int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err
   (void)session.subsystem();  // known before the act: after an `end` nobody can be asked
   if (is_live(call)) return live(session, call, out, err);
   const std::size_t width = is_terminal(STDOUT_FILENO) ? screen_size(STDOUT_FILENO).width : 0;
-  Said said = std::string_view(call.command->name) == "scope" ? scope(session, call, width)
+  Said said = std::string_view(call.command->name) == "scope" ? scope(session, call, width, err)
               : call.has("--write")                           ? save_to_file(session, call)
-              : one_shot(session, call, {.height = screen_size(STDOUT_FILENO).height});
+                                    : one_shot(session, call, {.height = screen_size(STDOUT_FILENO).height});
   return print(named(std::move(said), session, call), out, err);
 }
 

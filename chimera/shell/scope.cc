@@ -15,6 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr Nanoseconds kForTheRest = seconds(1);
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 double seconds_between(Nanoseconds from, Nanoseconds to) { return static_cast<double>((to - from).count) * 1e-9; }
@@ -60,7 +61,29 @@ void Scope::look_at_trigger(const Json& row, const std::vector<std::string>& var
   if (std::find(variables.begin(), variables.end(), channel.variable) == variables.end()) return;
   const auto numbers = numbers_in_row(row, variables, channel, request_.trigger_is_scalar);
   trigger_seen_ = at;
-  if (request_.trigger->fires(numbers.empty() ? kNothing : numbers[0].value)) begin_ = at;
+  if (!request_.trigger->fires(numbers.empty() ? kNothing : numbers[0].value)) return;
+  if (is_armed(at))
+    begin_ = at;
+  else
+    ++early_edges_;
+}
+
+bool Scope::has_every_channel() const {
+  std::vector<bool> seen(request_.channels.size());
+  for (const Stream& stream : streams_)
+    for (const Column& column : stream.columns) seen[column.channel] = true;
+  return std::all_of(seen.begin(), seen.end(), [](bool was) { return was; });
+}
+
+// A task that has published nothing for a while longer than the pre-trigger is not waited for: it may be OFF.
+bool Scope::is_armed(Nanoseconds at) const {
+  if (request_.pre.count == 0) return true;
+  Nanoseconds first = at;
+  for (const Stream& stream : streams_) {
+    if (!stream.oldest || *stream.oldest > at - request_.pre) return false;
+    first = std::min(first, *stream.oldest);
+  }
+  return has_every_channel() || at - first >= request_.pre + kForTheRest;
 }
 
 void Scope::add_row(Stream& stream, const Json& row, const std::vector<std::string>& variables, std::uint64_t lost) {
@@ -72,6 +95,7 @@ void Scope::add_row(Stream& stream, const Json& row, const std::vector<std::stri
   }
   stream.sequence = kept.sequence;
   stream.newest = kept.at;
+  if (!stream.oldest) stream.oldest = kept.at;
   look_at_trigger(row, variables, kept.at);
   kept.values.assign(stream.columns.size(), kNothing);
   for (std::size_t c = 0; c < request_.channels.size(); ++c) {
@@ -85,7 +109,10 @@ void Scope::add_row(Stream& stream, const Json& row, const std::vector<std::stri
       kept.values[index] = number.value;
     }
   }
-  if (begin_ && kept.at > *begin_ + request_.duration) return;
+  if (begin_ && kept.at > *begin_ + request_.duration) {
+    if (!stream.is_past) stream.lost_after_window = kept.lost, stream.is_past = true;
+    return;
+  }
   stream.rows.push_back(std::move(kept));
   if (stream.rows.size() > kScopeRows) stream.rows.pop_front(), is_full_ = begin_.has_value();
 }
@@ -93,7 +120,7 @@ void Scope::add_row(Stream& stream, const Json& row, const std::vector<std::stri
 void Scope::prune() {
   const Nanoseconds oldest = begin_ ? *begin_ - request_.pre : trigger_seen_ - request_.pre;
   for (Stream& stream : streams_)
-    while (!stream.rows.empty() && stream.rows.front().at < oldest) stream.rows.pop_front();
+    while (stream.rows.size() > 1 && stream.rows[1].at < oldest) stream.rows.pop_front();
 }
 
 void Scope::take(const Json& params) {
@@ -116,12 +143,8 @@ void Scope::take(const Json& params) {
 bool Scope::is_complete() const {
   if (is_full_) return true;
   if (!begin_) return false;
-  std::vector<bool> seen(request_.channels.size());
-  for (const Stream& stream : streams_) {
-    if (stream.newest < *begin_ + request_.duration) return false;
-    for (const Column& column : stream.columns) seen[column.channel] = true;
-  }
-  return std::all_of(seen.begin(), seen.end(), [](bool was) { return was; });
+  const auto is_behind = [this](const Stream& stream) { return stream.newest < *begin_ + request_.duration; };
+  return std::none_of(streams_.begin(), streams_.end(), is_behind) && has_every_channel();
 }
 
 std::size_t Scope::rows() const {
@@ -149,6 +172,7 @@ std::string Scope::summary() const {
   std::string text = plural(rows(), "row");
   text += gaps() == 0 ? ", no gap" : "; " + plural(gaps(), "gap") + ", " + plural(lost_rows(), "row") + " lost";
   if (is_full_) text += "; cut at " + std::to_string(kScopeRows) + " rows";
+  if (early_edges_ > 0) text += "; " + plural(early_edges_, "edge") + " before the pre-trigger was full passed over";
   return text;
 }
 
@@ -199,6 +223,24 @@ std::string Scope::csv() const {
   return text;
 }
 
+// What was published before the window, and what was published last in it, hold to its edges.
+std::vector<draw::PlotPoint> Scope::points_of(const Stream& stream, std::size_t column) const {
+  std::vector<draw::PlotPoint> points;
+  const double left = seconds_between({}, {-request_.pre.count}), right = seconds_between({}, request_.duration);
+  for (const Row& row : stream.rows) {
+    const double value = column < row.values.size() ? row.values[column] : kNothing;
+    const bool is_before = row.at < *begin_ - request_.pre;
+    if (!is_before && !is_in_window(row.at)) continue;
+    const double at = is_before ? left : seconds_between(*begin_, row.at);
+    if (is_before) points.clear();
+    if (row.is_break && !points.empty()) points.push_back({at, kNothing});
+    points.push_back({at, value});
+  }
+  const bool holds_on = stream.newest >= *begin_ + request_.duration && stream.lost_after_window == 0;
+  if (!points.empty() && holds_on && points.back().at < right) points.push_back({right, points.back().value});
+  return points;
+}
+
 draw::Plot Scope::plot(const std::string& title, const std::string& note) const {
   draw::Plot plot;
   plot.title = title;
@@ -209,13 +251,7 @@ draw::Plot Scope::plot(const std::string& title, const std::string& note) const 
     for (const Stream& stream : streams_)
       for (std::size_t k = 0; k < stream.columns.size(); ++k) {
         if (stream.columns[k].channel != c) continue;
-        draw::Curve curve{column_name(stream.columns[k]), request_.channels[c].unit, {}};
-        for (const Row& row : stream.rows) {
-          if (!is_in_window(row.at)) continue;
-          const double at = seconds_between(*begin_, row.at);
-          if (row.is_break && !curve.points.empty()) curve.points.push_back({at, kNothing});
-          curve.points.push_back({at, k < row.values.size() ? row.values[k] : kNothing});
-        }
+        draw::Curve curve{column_name(stream.columns[k]), request_.channels[c].unit, points_of(stream, k), 0, true};
         if (request_.trigger && request_.trigger->channel().variable == request_.channels[c].name.variable)
           plot.level = request_.trigger->level(), plot.level_unit = curve.unit;
         plot.curves.push_back(std::move(curve));

@@ -30,7 +30,9 @@ struct ScopeRequest {
   Nanoseconds duration;            ///< from the trigger on
 };
 
-/// Context: setup; may allocate. Keeps what lies in the window, and at most kScopeRows rows of a task.
+/// Context: setup; may allocate. Keeps what lies in the window and the row before it, which holds until the first of
+/// the window; at most kScopeRows rows of a task. It is armed once every task has told of the whole pre-trigger: an
+/// edge before that is counted and does not begin it.
 class Scope {
  public:
   static constexpr std::size_t kScopeRows = 1'000'000;
@@ -40,6 +42,8 @@ class Scope {
   /// Takes the parameters of a `tap` notification (docs/formats/control.md); others are passed over.
   void take(const nlohmann::json& params);
   bool is_triggered() const noexcept { return begin_.has_value(); }
+  /// Edges of the trigger that came before there was a whole pre-trigger, and so did not begin it.
+  std::uint64_t early_edges() const noexcept { return early_edges_; }
   /// Every channel has been seen up to the end of the window, or a task has more rows than are kept.
   bool is_complete() const;
   bool is_full() const noexcept { return is_full_; }
@@ -78,20 +82,27 @@ class Scope {
     std::optional<std::uint64_t> next;  ///< number of the row that should come
     std::uint64_t sequence = 0;         ///< of the row that came last
     Nanoseconds newest;
+    std::optional<Nanoseconds> oldest = {};  ///< row that came first
+    bool is_past = false;                    ///< a row behind the window has come
+    std::uint64_t lost_after_window = 0;     ///< rows missing just before the first of these
   };
 
   Stream& stream(const std::string& rtpu, const std::string& task);
   void add_row(Stream& stream, const nlohmann::json& row, const std::vector<std::string>& variables,
                std::uint64_t lost);
   void look_at_trigger(const nlohmann::json& row, const std::vector<std::string>& variables, Nanoseconds at);
+  bool is_armed(Nanoseconds at) const;
+  bool has_every_channel() const;
   void prune();
   bool is_in_window(Nanoseconds at) const noexcept;
   std::string column_name(const Column& column) const;
+  std::vector<draw::PlotPoint> points_of(const Stream& stream, std::size_t column) const;
 
   ScopeRequest request_;
   std::deque<Stream> streams_;
   std::optional<Nanoseconds> begin_;
   Nanoseconds trigger_seen_;  ///< time of the newest value that the trigger has looked at
+  std::uint64_t early_edges_ = 0;
   bool is_full_ = false;
 };
 

@@ -118,7 +118,7 @@ Result<Asked> read(const Call& call, const Json& described, const Surroundings& 
 std::optional<Error> record(Session& session, Scope& scope, const Asked& asked) {
   LinuxClock clock;
   Attention attention(false);
-  Nanoseconds until = clock.now() + asked.wait;
+  Nanoseconds until = clock.now() + asked.request.pre + asked.wait;  // nothing is waited for before it can begin
   bool was_triggered = false;
   while (!scope.is_complete() && clock.now() < until) {
     const Woken woken = attention.wait(&session.client(), until - clock.now());
@@ -148,8 +148,15 @@ Said tell(const Scope& scope, const Call& call, const std::string& subsystem, st
     if (call.has(option))
       if (const auto written = write(call.value(option), text); !written) return refused(written.error(), call.json);
   if (call.json)
-    return {Json{{"began_ns", scope.begin().count}, {"rows", scope.rows()}, {"gaps", scope.gaps()},
-                 {"lost", scope.lost_rows()}, {"csv", call.value("--csv")}, {"svg", call.value("--svg")}}.dump() + "\n",
+    return {Json{{"began_ns", scope.begin().count},
+                 {"rows", scope.rows()},
+                 {"gaps", scope.gaps()},
+                 {"lost", scope.lost_rows()},
+                 {"early_edges", scope.early_edges()},
+                 {"csv", call.value("--csv")},
+                 {"svg", call.value("--svg")}}
+                    .dump() +
+                "\n",
             "", kOk};
   const bool is_plain = !call.has("--csv") && !call.has("--svg");
   if (is_plain && width > 0)
@@ -160,7 +167,7 @@ Said tell(const Scope& scope, const Call& call, const std::string& subsystem, st
 
 }  // namespace
 
-Said scope(Session& session, const Call& call, std::size_t width) {
+Said scope(Session& session, const Call& call, std::size_t width, std::FILE* err) {
   const control::Answer described = session.ask("describe");
   if (!described.is_good()) return refused(described, call.json);
   const auto asked = read(call, *described.result, session.surroundings());
@@ -172,11 +179,19 @@ Said scope(Session& session, const Call& call, std::size_t width) {
   const control::Answer subscribed = session.ask("subscribe", {{"to", "tap"}, {"variables", asked.value().variables}});
   if (!subscribed.is_good()) return refused(subscribed, call.json);
   Scope scope(asked.value().request);
+  if (asked->request.pre.count > 0 && !call.json) {
+    std::fprintf(err, "the pre-trigger of %s fills first; then the trigger is looked at\n",
+                 duration_text(asked->request.pre.count).c_str());
+    std::fflush(err);
+  }
   const auto end = record(session, scope, asked.value());
   session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
   if (end && !scope.is_triggered()) return refused(*end, call.json);
   if (!scope.is_triggered()) {
-    const std::string within = " within " + duration_text(asked.value().wait.count);
+    const std::string early = scope.early_edges() == 0
+                                  ? ""
+                                  : " of a full pre-trigger (" + std::to_string(scope.early_edges()) + " came before)";
+    const std::string within = " within " + duration_text(asked.value().wait.count) + early;
     return refused(wrong(asked.value().request.trigger ? "no trigger '" + call.value("--trigger") + "'" + within
                                                        : "nothing was published" + within),
                    call.json);

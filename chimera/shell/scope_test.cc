@@ -64,6 +64,58 @@ TEST(Scope, KeepsWhatWasBeforeTheTriggerAndEndsAfterIt) {
   EXPECT_EQ(scope.summary(), "6 rows, no gap");
 }
 
+TEST(Scope, IsNotArmedBeforeThePreTriggerIsFull) {
+  Scope scope(request("error > 2 mrad", 5, 1));
+  scope.take(arm(0, 1, 7));
+  scope.take(pid(0, {{1, 1, 0}, {2, 2, 0.003}, {3, 3, 0}, {5.5, 4, 0.003}, {5.7, 5, 0}}));
+  EXPECT_FALSE(scope.is_triggered()) << "an edge 4.5 ms after the first row has no 5 ms before it";
+  EXPECT_EQ(scope.early_edges(), 2u);
+  scope.take(pid(5, {{6, 6, 0.003}, {8, 7, 0}}));
+  ASSERT_TRUE(scope.is_triggered());
+  EXPECT_EQ(scope.begin(), milliseconds(6));
+  EXPECT_EQ(scope.csv().substr(0, 80).find("-0.005000000,0,7,7"), scope.csv().find('\n') + 1) << scope.csv();
+  EXPECT_NE(scope.summary().find("; 2 edges before the pre-trigger was full passed over"), std::string::npos)
+      << scope.summary();
+}
+
+TEST(Scope, WaitsForEveryTaskButNotForOneThatIsOff) {
+  Scope slow(request("error > 2 mrad", 2, 1));
+  slow.take(pid(0, {{1, 1, 0}, {9, 2, 0.003}, {10, 3, 0}}));
+  EXPECT_FALSE(slow.is_triggered()) << "arm has told nothing so far";
+  slow.take(arm(0, 10, 7));
+  slow.take(pid(3, {{11, 4, 0.003}, {11.5, 5, 0}}));
+  EXPECT_FALSE(slow.is_triggered()) << "arm has told of 1 ms only";
+  slow.take(pid(5, {{12, 6, 0.003}}));
+  EXPECT_TRUE(slow.is_triggered());
+  Scope alone(request("error > 2 mrad", 2, 1));
+  alone.take(pid(0, {{1, 1, 0}, {1002, 2, 0.003}, {1002.5, 3, 0}}));
+  EXPECT_FALSE(alone.is_triggered());
+  alone.take(pid(3, {{1003, 4, 0.003}}));
+  EXPECT_TRUE(alone.is_triggered()) << "a second longer than the pre-trigger is enough";
+}
+
+TEST(Scope, AValueHoldsUntilTheNextOneAndToTheEdgesOfThePicture) {
+  Scope scope(request("error > 2 mrad", 4, 4));
+  scope.take(arm(0, 1, 7));
+  scope.take(arm(1, 4, 8));
+  scope.take(pid(0, {{1, 1, 0}, {6, 2, 0}, {7, 3, 0.003}, {12, 4, 0}}));
+  scope.take(arm(2, 9, 9));
+  scope.take(arm(3, 13, 7));
+  ASSERT_TRUE(scope.is_complete());
+  const draw::Plot plot = scope.plot("t", "");
+  const draw::Curve& q = plot.curves[1];
+  EXPECT_EQ(q.name, "q[0]");
+  EXPECT_TRUE(q.is_held);
+  ASSERT_EQ(q.points.size(), 4u);
+  EXPECT_DOUBLE_EQ(q.points[0].at, -0.004) << "what was published at 1 ms holds at the left edge, 3 ms";
+  EXPECT_DOUBLE_EQ(q.points[0].value, 7);
+  EXPECT_DOUBLE_EQ(q.points[1].at, -0.003);
+  EXPECT_DOUBLE_EQ(q.points[2].at, 0.002);
+  EXPECT_DOUBLE_EQ(q.points[3].at, 0.004) << "and the last one at the right edge";
+  EXPECT_DOUBLE_EQ(q.points[3].value, 9);
+  EXPECT_EQ(scope.rows(), 4u) << "what only holds is no row of the window";
+}
+
 TEST(Scope, WithoutATriggerItBeginsWithTheFirstRow) {
   ScopeRequest asked = request("", 0, 2);
   asked.channels.pop_back();
@@ -107,7 +159,9 @@ TEST(Scope, ATaskThatWasMadeAnewBreaksTheLineButLosesNothing) {
 }
 
 TEST(Scope, ThePictureHasTheTriggerAndItsLevel) {
-  Scope scope(request("error > 2 mrad", 5, 5));
+  ScopeRequest asked = request("error > 2 mrad", 1, 5);
+  asked.channels.pop_back();
+  Scope scope(asked);
   scope.take(pid(0, {{1, 1, 0}, {2, 2, 0.003}}));
   const draw::Plot plot = scope.plot("arm", "note");
   EXPECT_EQ(plot.mark, 0);
@@ -117,7 +171,9 @@ TEST(Scope, ThePictureHasTheTriggerAndItsLevel) {
 }
 
 TEST(Scope, MemoryIsBoundedWhileItWaits) {
-  Scope scope(request("error > 2 mrad", 3, 1));
+  ScopeRequest asked = request("error > 2 mrad", 3, 1);
+  asked.channels.pop_back();
+  Scope scope(asked);
   for (int i = 0; i < 1000; ++i) scope.take(pid(std::uint64_t(i), {{i * 1.0, i + 1.0, 0}}));
   scope.take(pid(1000, {{1000, 1001, 1}}));
   EXPECT_EQ(scope.rows(), 4u);
