@@ -39,7 +39,7 @@ TEST(Driver, ARefusedCommandChangesNothing) {
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
   std::optional<subsystem::Answer> got;
-  fake.driver().command(Signal::kOn, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  fake.driver().command(Signal::kClear, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
   EXPECT_FALSE(got->accepted);
   EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOn);

@@ -118,8 +118,11 @@ void Fleet::take(const Post& post, RtpuId rtpu, Events& events) {
 void Fleet::log(const Post& post, RtpuId rtpu) {
   const bool has_task = post.task.index < seen_.size();
   const std::string words = has_task ? fault_text(world_, post.task) : "";
-  world_.tell(event_kind(post.happening), has_task ? post.task : TaskId{}, rtpu,
-              event_text(world_.spec(), post, words), post.at);
+  std::string text = event_text(world_.spec(), post, words);
+  const bool is_illegal_set = post.happening == Happening::kFlag && (post.detail & 1u) != 0;
+  if (const std::string missing = is_illegal_set ? world_.logic.missing() : ""; !missing.empty())
+    text += ": " + missing;
+  world_.tell(event_kind(post.happening), has_task ? post.task : TaskId{}, rtpu, std::move(text), post.at);
 }
 
 void Fleet::look_at_counters(Nanoseconds at) {

@@ -15,7 +15,8 @@ std::string sender(const ApplicationSpec& spec, const Post& post) {
 std::string refusal(const Post& post, const std::string& fault) {
   switch (static_cast<Refusal>(post.why)) {
     case Refusal::kState: return std::string("not legal in state ") + state_name(post.before);
-    case Refusal::kIllegalSet: return "the tasks ON would be no legal set";
+    case Refusal::kIllegalSet:
+      return "an input would have no running producer, or two";
     case Refusal::kFault: return fault;
     case Refusal::kNone: break;
   }
@@ -26,7 +27,7 @@ std::string flag_text(const ApplicationSpec& spec, const Post& post) {
   const std::uint64_t word = post.detail;
   if (word == 0) return "the illegal-configuration flag is down";
   std::string text = "the illegal-configuration flag is up";
-  if ((word & 1u) != 0) text += ": the tasks ON are no legal set";
+  if ((word & 1u) != 0) text += ": inputs without one running producer";
   if ((word & 2u) == 0) return text;
   if (post.from.index >= spec.tasks.size()) return text + ": raised by a task";
   text += ": raised by task '";

@@ -124,18 +124,21 @@ void Subject::signal(const Json& parameters, const control::Reply& reply) {
 Answer Subject::told(const subsystem::Answer& said) const {
   if (said.accepted) {
     Json tasks = Json::array();
-    for (const subsystem::Outcome& outcome : said.outcomes)
+    for (const subsystem::Outcome& outcome : said.outcomes) {
       tasks.push_back({{"task", world().name(outcome.task)},
                        {"before", state_name(outcome.before)},
                        {"after", state_name(outcome.after)}});
+      if (outcome.is_already) tasks.back()["already"] = true;
+    }
     return Answer::good({{"tasks", std::move(tasks)}});
   }
   const std::string where = said.at.is_valid() ? world().name(said.at) : "";
   if (said.at.is_valid() && said.text.starts_with("no answer from"))
     return no_answer(world().spec().tasks[said.at.index].rtpu, said.text);
   Json data = {{"where", where}};
-  if (const std::size_t remedy = said.text.find("the smallest legal set is"); remedy != std::string::npos)
-    data["remedy"] = said.text.substr(remedy);
+  for (const char* begins : {"the smallest legal set is", "type `chimera "})
+    if (const std::size_t remedy = said.text.find(begins); remedy != std::string::npos)
+      data["remedy"] = said.text.substr(remedy);
   return Answer::error(control::kRefused, said.text, data);
 }
 

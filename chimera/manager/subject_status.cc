@@ -35,6 +35,24 @@ std::string grant_of(const BlockHead& head) {
   return {head.grant, ::strnlen(head.grant, sizeof head.grant)};
 }
 
+bool is_ending(const World& world) { return world.keeper.ending.load(std::memory_order_acquire) != 0; }
+
+bool is_given_up(const World& world, RtpuId rtpu) {
+  return !world.rtpus[rtpu.index].is_alive && world.logic.is_given_up(rtpu) && !is_ending(world);
+}
+
+bool has_lost_tasks(const World& world, RtpuId rtpu) {
+  for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t)
+    if (world.spec().tasks[t].rtpu == rtpu && world.state(TaskId(t)) == State::kError) return true;
+  return false;
+}
+
+/// Nobody is left who could raise the flag for what its tasks do not produce any more.
+bool all_are_dead(const World& world) {
+  return !is_ending(world) &&
+         std::none_of(world.rtpus.begin(), world.rtpus.end(), [](const RtpuRecord& rtpu) { return rtpu.is_alive; });
+}
+
 Json rtpu_json(const World& world, RtpuId rtpu) {
   const RtpuSpec& spec = world.spec().rtpus[rtpu.index];
   const RtpuRecord& record = world.rtpus[rtpu.index];
@@ -55,6 +73,8 @@ Json rtpu_json(const World& world, RtpuId rtpu) {
                {"running", nullptr},
                {"restarts", record.restarts},
                {"last_end", or_null(record.last_end)},
+               {"given_up", is_given_up(world, rtpu)},
+               {"remedy", is_given_up(world, rtpu) ? or_null(world.logic.way_back(rtpu)) : Json()},
                {"lost_events", 0},
                {"flag", false}};
   if (!segment.is_there()) return json;
@@ -182,8 +202,8 @@ Json flag_json(const World& world) {
   Json by = Json::array();
   for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) {
     const PeerSegment& segment = world.peers[RtpuId(r)];
-    if (segment.is_there() && segment.block().head().flag.load(std::memory_order_acquire) != 0)
-      by.push_back(world.name(RtpuId(r)));
+    const bool raises = segment.is_there() && segment.block().head().flag.load(std::memory_order_acquire) != 0;
+    if (raises || (all_are_dead(world) && has_lost_tasks(world, RtpuId(r)))) by.push_back(world.name(RtpuId(r)));
   }
   if (world.own.block().head().flag.load(std::memory_order_acquire) != 0) by.push_back("operator");
   return {{"up", !by.empty()}, {"by", std::move(by)}};

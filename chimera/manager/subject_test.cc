@@ -140,9 +140,11 @@ TEST_F(SubjectTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
             "-32005 no task 'low'; did you mean 'law'? {\"nearest\":\"law\",\"where\":\"low\"}");
   EXPECT_EQ(refusal("signal", {{"signal", "on"}, {"tasks", Json::array()}}),
             "-32602 'tasks' must name at least one {\"where\":\"tasks\"}");
-  const std::string refused = refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}});
+  const std::string refused = refusal("signal", {{"signal", "clear"}, {"tasks", {"law"}}});
   EXPECT_TRUE(refused.starts_with("-32000 ")) << refused;
   EXPECT_NE(refused.find("\"where\":\"law\""), std::string::npos) << refused;
+  EXPECT_EQ(good("signal", {{"signal", "off"}, {"tasks", {"law"}}})["tasks"],
+            Json::array({Json{{"task", "law"}, {"before", "OFF"}, {"after", "OFF"}, {"already", true}}}));
   EXPECT_EQ(good("signal", {{"signal", "on"}, {"tasks", {"law"}}})["tasks"][0]["after"], "ON");
 }
 

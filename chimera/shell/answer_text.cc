@@ -67,7 +67,8 @@ std::string signal_text(const Json& answer) {
   std::string text;
   for (const Json& task : field(answer, "tasks")) {
     const std::string before = text_of(task, "before"), after = text_of(task, "after");
-    text += text_of(task, "task") + ": " + (before == after ? after : before + " -> " + after) + "\n";
+    text += text_of(task, "task") + ": " + (before == after ? after : before + " -> " + after) +
+            (truth_of(task, "already") ? " already\n" : "\n");
   }
   return text;
 }

@@ -196,7 +196,10 @@ double share_of_server(const Json& server, double load) {
 }
 
 std::string rtpu_remarks(const Json& rtpu) {
-  std::string line = text_of(rtpu, "name") + " " + (truth_of(rtpu, "alive") ? text_of(rtpu, "phase") : "DEAD");
+  std::string line = text_of(rtpu, "name") + " " +
+                     (truth_of(rtpu, "alive")      ? text_of(rtpu, "phase")
+                      : truth_of(rtpu, "given_up") ? "GIVEN UP"
+                                                   : "DEAD");
   if (const std::int64_t n = whole_of(rtpu, "restarts"); n > 0)
     line += ", restarted " + (n == 1 ? std::string("once") : std::to_string(n) + " times");
   if (const std::string running = text_of(rtpu, "running"); !running.empty()) line += ", running " + running;
@@ -222,8 +225,9 @@ std::string status_text(const Json& status) {
   if (const Columns rtpus = rtpu_table(status); !rtpus.empty()) text += "\n" + rtpus.text();
   for (const Json& rtpu : field(status, "rtpus"))
     if (const std::string end = text_of(rtpu, "last_end"); !end.empty())
-      text += text_of(rtpu, "name") + ": last end: " + end +
-              (whole_of(rtpu, "restarts") > 0 ? "; its tasks count from their restart" : "") + "\n";
+      text += text_of(rtpu, "name") + ": " + (truth_of(rtpu, "given_up") ? "GIVEN UP; " : "") + "last end: " + end +
+              (whole_of(rtpu, "restarts") > 0 ? "; its tasks count from their restart" : "") +
+              (text_of(rtpu, "remedy").empty() ? "" : "\n  to bring it back type " + text_of(rtpu, "remedy")) + "\n";
   if (const Columns tasks = task_table(status); !tasks.empty()) text += "\n" + tasks.text();
   for (const Json& task : field(status, "tasks"))
     if (const std::string fault = text_of(task, "fault"); !fault.empty())

@@ -34,7 +34,7 @@ bool Acts::try_begin(Act& act) {
   for (Part& part : act.parts) {
     const Verdict verdict = judge(act, part);
     if (verdict == Verdict::kIllegal)
-      fail(act, part.task, at_.illegal(act.signal, part.task, state_for(act, part.task)));
+      fail(act, part.task, at_.illegal(act.signal, part.task, state_for(act, part.task), tasks_of(act)));
     if (verdict == Verdict::kNoAnswer) fail(act, part.task, at_.no_answer(part.task));
     must_wait = must_wait || verdict == Verdict::kWait;
   }
@@ -56,6 +56,12 @@ State Acts::state_for(const Act& act, TaskId task) const noexcept {
 
 bool Acts::is_revival(const Act& act, const Part& part) const noexcept {
   return act.signal == Signal::kSpawn || (act.signal == Signal::kClear && at_.roster.is_lost(part.task));
+}
+
+std::vector<TaskId> Acts::tasks_of(const Act& act) {
+  std::vector<TaskId> tasks;
+  for (const Part& part : act.parts) tasks.push_back(part.task);
+  return tasks;
 }
 
 // Until when a process that does not serve us is waited for; kNever: there is nothing to wait for.
@@ -89,12 +95,15 @@ Acts::Verdict Acts::judge_taking_down(const Act& act, const Part& part, bool wai
   const bool is_spawning = at_.mail.is_awaited(part.task, Signal::kSpawn) || at_.roster.status(part.task).in_service;
   const bool can_be_taken_back = transaction_.has(part.task) || goals_.is_pursued(part.task) ||
                                  (act.signal == Signal::kKill && is_spawning);
-  if (!part.is_taken_back && !can_be_taken_back && !is_legal(state_for(act, part.task), act.signal))
-    return Verdict::kIllegal;
+  const State state = state_for(act, part.task);
+  // The wish is met, unless an `on` that nobody waits for any more may still be carried out.
+  const bool is_off =
+      act.signal == Signal::kOff && state == State::kOff && !at_.mail.is_possible(part.task, Signal::kOn);
+  if (!part.is_taken_back && !can_be_taken_back && !is_off && !is_legal(state, act.signal)) return Verdict::kIllegal;
   if (act.signal == Signal::kKill && is_spawning) return Verdict::kWait;
   const bool is_going_off = part.is_taken_back && at_.mail.is_awaited(part.task, Signal::kOff);
   if (is_going_off && act.signal == Signal::kOff) return Verdict::kWait;
-  return waits_for_rtpu && is_legal(state_for(act, part.task), act.signal) ? Verdict::kWait : Verdict::kGo;
+  return waits_for_rtpu && (is_off || is_legal(state, act.signal)) ? Verdict::kWait : Verdict::kGo;
 }
 
 void Acts::take_back(Act& act) {
@@ -118,7 +127,8 @@ void Acts::begin(Act& act) {
     } else if (!takes_down(act) && is_revival(act, part)) {
       revive(act, part);
     } else if (!is_legal(state, act.signal)) {
-      part.stage = Stage::kOver;  // nothing left to do: taken back
+      part.stage = Stage::kOver;  // nothing left to do: taken back, or OFF already
+      part.is_already = !part.is_taken_back;
     }
     part.after = at_.roster.state(part.task);
   }
@@ -136,6 +146,10 @@ void Acts::revive(Act& act, Part& part) {
   goals_.set(part.task, kGoalSpawn);
   const RtpuId rtpu = at_.roster.rtpu(part.task);
   if (at_.roster.life(rtpu) != Life::kDown) return;
+  // One that is cleared brings what was lost with it back, so that `on` of all of them finds them OFF.
+  for (const TaskId task : at_.order)
+    if (act.signal == Signal::kClear && at_.roster.rtpu(task) == rtpu && at_.roster.is_wanted_back(task))
+      goals_.set(task, kGoalSpawn);
   at_.roster.restarts(rtpu) = {};
   at_.act(RememberRestart{rtpu, {}});
   at_.roster.starting(rtpu, at_.now);
@@ -209,7 +223,7 @@ bool Acts::try_finish(Act& act) {
   Answer answer{act.id, !act.has_failed, act.why, act.failed_at, {}};
   if (act.has_failed && act.why.empty())
     answer.text = at_.name(act.failed_at) + ": " + signal_name(act.signal) + " failed";
-  for (const Part& part : act.parts) answer.outcomes.push_back({part.task, part.before, part.after});
+  for (const Part& part : act.parts) answer.outcomes.push_back({part.task, part.before, part.after, part.is_already});
   at_.act(std::move(answer));
   return true;
 }

@@ -36,6 +36,7 @@ class Acts {
     State after = State::kNotCreated;
     Stage stage = Stage::kOpen;
     bool is_taken_back = false;  // a goal, or a transaction, was
+    bool is_already = false;     // where it is wanted
     bool has_waited = false;     // for what brought the task where it is wanted
     std::uint64_t command = 0;
   };
@@ -52,6 +53,7 @@ class Acts {
   enum class Verdict : std::uint8_t { kGo, kWait, kIllegal, kNoAnswer };
 
   bool takes_down(const Act& act) const noexcept { return act.signal == Signal::kOff || act.signal == Signal::kKill; }
+  static std::vector<TaskId> tasks_of(const Act& act);
   bool is_revival(const Act& act, const Part& part) const noexcept;
   State state_for(const Act& act, TaskId task) const noexcept;
   Verdict judge(Act& act, Part& part) const;

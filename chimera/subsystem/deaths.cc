@@ -3,10 +3,17 @@
 
 #include <algorithm>
 
+#include "chimera/subsystem/remedy.h"
+
 namespace chimera::subsystem {
 
 Deaths::Deaths(Situation& situation, Goals& goals, Transaction& transaction, Acts& acts)
-    : at_(situation), goals_(goals), transaction_(transaction), acts_(acts), handled_(situation.spec.rtpus.size()) {}
+    : at_(situation),
+      goals_(goals),
+      transaction_(transaction),
+      acts_(acts),
+      handled_(situation.spec.rtpus.size()),
+      was_on_(situation.spec.tasks.size()) {}
 
 void Deaths::recall(const Begun& begun) {
   for (std::size_t r = 0; r < handled_.size(); ++r) {
@@ -25,9 +32,13 @@ bool Deaths::take(const RtpuDown& down) {
   transaction_.lose(down.rtpu, down.cause);
   std::vector<std::uint32_t> goals(at_.spec.tasks.size());
   for (std::size_t t = 0; t < goals.size(); ++t)
-    if (is_of(TaskId(t), down.rtpu)) goals[t] = goal_after(TaskId(t));
+    if (is_of(TaskId(t), down.rtpu)) was_on_[t] = ((goals[t] = goal_after(TaskId(t))) & kGoalOn) != 0;
   at_.roster.down(down.rtpu, down.incarnation);
-  if (down.incarnation <= handled_[down.rtpu.index]) {
+  const bool is_known =
+      down.incarnation <= handled_[down.rtpu.index];  // to an earlier manager, and what was asked of it
+  for (std::size_t t = 0; t < goals.size(); ++t)
+    if (is_of(TaskId(t), down.rtpu)) at_.roster.want_back(TaskId(t), goals[t] != 0 && !is_known);
+  if (is_known) {
     for (TaskId task : goals_.with(kGoalGone)) at_.roster.forget(task);
     start_for_goals(down.rtpu);
     return true;
@@ -73,13 +84,23 @@ void Deaths::restart(const RtpuDown& down, const std::vector<std::uint32_t>& goa
 
 void Deaths::give_up(const RtpuDown& down) {
   const std::string why = at_.name(down.rtpu) + " ended " + std::to_string(kRestartIntensity + 1) + " times in " +
-                          std::to_string(kRestartWindow / seconds(1)) +
-                          " s and is not restarted; spawn or clear of one of its tasks starts it";
+                          std::to_string(kRestartWindow / seconds(1)) + " s and is not restarted" +
+                          (way_back(down.rtpu).empty() ? "" : "; type " + way_back(down.rtpu));
   for (TaskId task : at_.order)
     if (is_of(task, down.rtpu) && goals_.is_pursued(task)) goals_.fail(task, "refused", why);
   at_.tell("rtpu-given-up", TaskId{}, down.rtpu, why);
   handled_[down.rtpu.index] = down.incarnation;
   at_.act(RememberHandled{down.rtpu, down.incarnation});
+}
+
+std::string Deaths::way_back(RtpuId rtpu) const {
+  std::vector<TaskId> lost, were_on;
+  for (const TaskId task : at_.order) {
+    if (!is_of(task, rtpu) || !at_.roster.is_lost(task)) continue;
+    lost.push_back(task);
+    if (was_on_[task.index]) were_on.push_back(task);
+  }
+  return subsystem::way_back(at_, lost, were_on);
 }
 
 void Deaths::start_for_goals(RtpuId rtpu) {

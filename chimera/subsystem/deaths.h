@@ -22,6 +22,8 @@ class Deaths {
   bool take(const RtpuDown& down);
   /// Asks for a dead rtpu that has goals, with what is left of its budget.
   void start_for_goals(RtpuId rtpu);
+  /// What to type so that what it had comes back; "": nothing was lost.
+  std::string way_back(RtpuId rtpu) const;
 
  private:
   bool is_of(TaskId task, RtpuId rtpu) const noexcept { return at_.roster.rtpu(task) == rtpu; }
@@ -35,6 +37,7 @@ class Deaths {
   Transaction& transaction_;
   Acts& acts_;
   std::vector<std::uint32_t> handled_;
+  std::vector<bool> was_on_;  // by task, when its process died
 };
 
 }  // namespace chimera::subsystem

@@ -33,6 +33,9 @@ class Roster {
   void starting(RtpuId rtpu, Nanoseconds now) noexcept;
   /// A lost task that nobody wants any more is NOT-CREATED.
   void forget(TaskId task) noexcept { tasks_[task.index].is_lost = false; }
+  /// When its process died somebody still wanted it: nobody had asked for its kill, its init did not end the process.
+  void want_back(TaskId task, bool wanted) noexcept { tasks_[task.index].is_wanted = wanted; }
+  bool is_wanted_back(TaskId task) const noexcept { return is_lost(task) && tasks_[task.index].is_wanted; }
 
   /// As people see it: a lost task is ERROR.
   State state(TaskId task) const noexcept;
@@ -55,6 +58,7 @@ class Roster {
   struct Task {
     TaskStatus status;
     bool is_lost = false;
+    bool is_wanted = false;
     bool is_seen = false;
   };
   struct Rtpu {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chimera/subsystem/order.h"
+#include "chimera/subsystem/remedy.h"
 
 namespace chimera::subsystem {
 
@@ -51,8 +52,27 @@ std::string Situation::judge_on(std::span<const TaskId> tasks) const {
   return variables.is_legal(on) ? std::string{} : variables.explain(on, spec.tasks);
 }
 
-std::string Situation::illegal(Signal signal, TaskId task, State state) const {
-  return std::string(signal_name(signal)) + " is not legal for " + name(task) + " in state " + state_name(state);
+std::string Situation::illegal(Signal signal, TaskId task, State state, std::span<const TaskId> tasks) const {
+  const std::string way = remedy(*this, signal, tasks);
+  return name(task) + " is in state " + state_name(state) + ", where " + signal_name(signal) + " is not legal" +
+         (way.empty() ? "" : "; type " + way);
+}
+
+std::string Situation::missing() const {
+  const auto is_on = [this](const PortOf& port) { return roster.state(port.task) == State::kOn; };
+  std::string text;
+  for (const Variable& variable : variables.all()) {
+    const auto writers = std::count_if(variable.producers.begin(), variable.producers.end(), is_on) +
+                         (variable.operator_index != UINT32_MAX ? 1 : 0);
+    const bool is_read = std::any_of(variable.consumers.begin(), variable.consumers.end(), is_on);
+    if (writers == 1 || (writers == 0 && !is_read)) continue;
+    std::string who;
+    for (const PortOf& port : variable.producers)
+      if (writers == 0 || is_on(port))
+        who += (who.empty() ? "" : ", ") + name(port.task) + " is " + state_name(roster.state(port.task));
+    text += (text.empty() ? "" : "; ") + std::string(variable.name) + (who.empty() ? "" : " (" + who + ")");
+  }
+  return text;
 }
 
 std::string Situation::sentence(const Reply& reply) const {

@@ -60,8 +60,12 @@ struct Situation {
   bool is_busy(TaskId task) const;
   /// Why the tasks that would be ON with `tasks` are no legal set; "" when they are.
   std::string judge_on(std::span<const TaskId> tasks) const;
-  /// "off is not legal for pid in state OFF".
-  std::string illegal(Signal signal, TaskId task, State state) const;
+  /// "pi is in state ERROR, where on is not legal; type `chimera clear pi`, then `chimera on pi motor`": of a signal
+  /// for `tasks`, one of them `task`.
+  std::string illegal(Signal signal, TaskId task, State state, std::span<const TaskId> tasks) const;
+  /// "u (pi is OFF)": what a task that is ON reads and nobody that is ON writes, and what two write; "" when all is
+  /// well.
+  std::string missing() const;
   /// Why a signal failed: "spawn: pid: no memory".
   std::string sentence(const Reply& reply) const;
   std::string no_answer(TaskId task) const { return "no answer from rtpu " + name(roster.rtpu(task)); }

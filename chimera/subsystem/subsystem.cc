@@ -117,7 +117,7 @@ void Subsystem::Parts::take(const Reported& report) {
     reply.is_fault = true;
     if (reply.why.empty()) reply.why = "a method failed";
   } else if (report.why == Refusal::kState) {
-    reply.why = at.illegal(report.signal, report.task, report.before);
+    reply.why = at.illegal(report.signal, report.task, report.before, {&report.task, 1});
   }
   give(reply);
 }
@@ -175,6 +175,12 @@ State Subsystem::state(TaskId task) const noexcept { return parts_->at.roster.st
 bool Subsystem::is_settled() const noexcept {
   return !parts_->goals.any(kGoalSpawn | kGoalOn) && !parts_->transaction.is_under_way();
 }
+
+bool Subsystem::is_given_up(RtpuId rtpu) const noexcept { return parts_->at.roster.life(rtpu) == Life::kDown; }
+
+std::string Subsystem::way_back(RtpuId rtpu) const { return parts_->deaths.way_back(rtpu); }
+
+std::string Subsystem::missing() const { return parts_->at.missing(); }
 
 std::string Subsystem::judge_on(std::span<const TaskId> tasks) const { return parts_->at.judge_on(tasks); }
 

@@ -82,6 +82,7 @@ struct RememberStarted {};
 struct Outcome {
   TaskId task;
   State before{}, after{};
+  bool is_already = false;  ///< there was nothing to do: `on` of a task that is ON, `off` of one that is OFF
 };
 struct Answer {
   std::uint64_t id = 0;
@@ -117,6 +118,12 @@ class Subsystem {
   State state(TaskId task) const noexcept;
   /// Is every goal met or given up?
   bool is_settled() const noexcept;
+  /// Is the rtpu dead, and nobody is to start it?
+  bool is_given_up(RtpuId rtpu) const noexcept;
+  /// What to type so that what it had comes back: "`chimera clear pi motor`, then `chimera on pi motor`"; "": nothing.
+  std::string way_back(RtpuId rtpu) const;
+  /// Why the flag is up: "u (pi is OFF)"; "" when the tasks ON are a legal set.
+  std::string missing() const;
   /// Why the tasks that would be ON with `tasks` are no legal set; "" when they are.
   std::string judge_on(std::span<const TaskId> tasks) const;
 

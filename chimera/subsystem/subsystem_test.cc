@@ -74,9 +74,42 @@ TEST_F(SubsystemTest, OffOfAListIsOneStepAgainstTheDataFlow) {
 }
 
 TEST_F(SubsystemTest, NothingOfAListIsSentWhenOneOfItIsIllegal) {
-  EXPECT_EQ(command(Signal::kOff, {kArm, kReserve}), "answer 1 no: off is not legal for reserve in state OFF\n");
-  EXPECT_EQ(command(Signal::kClear, {kArm}), "answer 2 no: clear is not legal for arm in state ON\n");
-  EXPECT_EQ(command(Signal::kSpawn, {kArm}), "answer 3 no: spawn is not legal for arm in state ON\n");
+  EXPECT_EQ(command(Signal::kClear, {kArm}), "answer 1 no: arm is in state ON, where clear is not legal\n");
+  EXPECT_EQ(command(Signal::kSpawn, {kArm}), "answer 2 no: arm is in state ON, where spawn is not legal\n");
+  command(Signal::kKill, {kReserve});
+  report(kReserve, State::kNotCreated);
+  EXPECT_EQ(command(Signal::kOff, {kArm, kReserve}),
+            "answer 4 no: reserve is in state NOT-CREATED, where off is not legal; type `chimera off arm`\n");
+}
+
+TEST_F(SubsystemTest, WhoIsWhereAPersonWantsItIsDoneAlready) {
+  EXPECT_EQ(command(Signal::kOn, {kArm, kPid}), "answer 1 yes arm ON>ON already pid ON>ON already\n");
+  EXPECT_EQ(command(Signal::kOff, {kReserve}), "answer 2 yes reserve OFF>OFF already\n");
+  EXPECT_EQ(command(Signal::kOff, {kPid, kReserve}), "send servo: off pid\n");
+  EXPECT_EQ(report(kPid, State::kOff), "answer 3 yes reserve OFF>OFF already pid ON>OFF\n");
+  EXPECT_EQ(command(Signal::kOn, {kPid, kArm}), "goal pid 2\nsend servo: on pid\n");
+  EXPECT_EQ(report(kPid, State::kOn), "goal pid 0\nanswer 4 yes pid OFF>ON arm ON>ON already\n");
+}
+
+TEST_F(SubsystemTest, AnOnThatFailsLeavesAloneWhatWasOnAlready) {
+  command(Signal::kOff, {kPid});
+  report(kPid, State::kOff);
+  EXPECT_EQ(command(Signal::kOn, {kPid, kArm}), "goal pid 2\nsend servo: on pid\n");
+  EXPECT_EQ(refuse(kPid, Refusal::kFault, "no sensor"), "goal pid 0\nanswer 2 no: pid: no sensor\n")
+      << "and no off is sent to arm";
+}
+
+TEST_F(SubsystemTest, ARefusalSaysWhatToTypeForTheWholeList) {
+  command(Signal::kKill, {kReserve});
+  report(kReserve, State::kNotCreated);
+  for (std::uint32_t i = 1; i <= 3; ++i) {
+    die(kServo, i);
+    step(RtpuUp{kServo, i + 1});
+  }
+  die(kServo, 4);
+  EXPECT_EQ(command(Signal::kOn, {kArm, kPid, kTraj, kReserve}),
+            "answer 2 no: arm is in state ERROR, where on is not legal; type `chimera spawn reserve`, "
+            "`chimera clear arm pid`, then `chimera on arm traj pid reserve`\n");
 }
 
 TEST_F(SubsystemTest, ASecondProducerIsRefused) {
@@ -178,13 +211,15 @@ TEST_F(SubsystemTest, AfterThreeRestartsInTenSecondsItGivesUpUntilAPersonStartsI
     step(RtpuUp{kSpare, i + 1});
   }
   const std::string why =
-      ": spare ended 4 times in 10 s and is not restarted; spawn or clear of one of its tasks starts it\n";
+      ": spare ended 4 times in 10 s and is not restarted; type `chimera clear traj reserve`, then `chimera on traj`\n";
   EXPECT_EQ(die(kSpare, 4),
             "rtpu-ended: spare ended by signal 11 (SIGSEGV) in pid.cycle\n"
             "refused" + why + "goal traj 0\nrefused" + why + "goal reserve 0\nrtpu-given-up" + why +
                 "handled spare 4\n");
   EXPECT_EQ(subsystem->state(kTraj), State::kError);
-  EXPECT_EQ(command(Signal::kOn, {kTraj}), "answer 1 no: on is not legal for traj in state ERROR\n");
+  EXPECT_EQ(command(Signal::kOn, {kTraj}),
+            "answer 1 no: traj is in state ERROR, where on is not legal; type `chimera clear traj`, then `chimera on "
+            "traj`\n");
   EXPECT_EQ(command(Signal::kKill, {kReserve}), "goal reserve 4\nanswer 2 yes reserve ERROR>NOT-CREATED\n");
   EXPECT_EQ(command(Signal::kClear, {kTraj}), "goal traj 1\nrestart spare\nstart spare\n");
   EXPECT_EQ(step(RtpuUp{kSpare, 5}), "goal reserve 0\nsend spare: spawn traj\n");
@@ -202,8 +237,7 @@ TEST_F(SubsystemTest, TheNextManagerGoesOnWithATransaction) {
   EXPECT_EQ(command(Signal::kOff, {kReserve}), "") << "a command waits for the inventory";
   step(RtpuUp{kServo, 1});
   step(RtpuUp{kSpare, 1});
-  EXPECT_EQ(step(InventoryComplete{}),
-            "answer 3 no: off is not legal for reserve in state OFF\nsend spare: on traj\n");
+  EXPECT_EQ(step(InventoryComplete{}), "answer 3 yes reserve OFF>OFF already\nsend spare: on traj\n");
   report(kTraj, State::kOn);
   EXPECT_EQ(report(kPid, State::kOn), "goal arm 0\ngoal traj 0\ngoal pid 0\nstarted: arm traj pid are ON\n");
 }

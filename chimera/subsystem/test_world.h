@@ -139,7 +139,8 @@ class TestWorld {
     } else if (const auto* answer = std::get_if<Answer>(&action)) {
       out << "answer " << answer->id << (answer->accepted ? " yes" : " no: ") << answer->text;
       for (const Outcome& outcome : answer->outcomes)
-        out << " " << name(outcome.task) << " " << state_name(outcome.before) << ">" << state_name(outcome.after);
+        out << " " << name(outcome.task) << " " << state_name(outcome.before) << ">" << state_name(outcome.after)
+            << (outcome.is_already ? " already" : "");
     } else if (const auto* tell = std::get_if<Tell>(&action)) {
       out << tell->kind << ": " << tell->text;
     }

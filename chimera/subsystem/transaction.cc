@@ -16,29 +16,37 @@ Transaction::Member* Transaction::find(TaskId task) noexcept {
   return is_under_way_ && found != members_.end() ? &*found : nullptr;
 }
 
-// Goals may find some of their tasks ON already: an earlier manager did not get to the end.
+// Goals may find some of their tasks ON already: an earlier manager did not get to the end. Where a person wants a task
+// that is ON, there is nothing to do.
 TaskId Transaction::first_wrong(const OnWish& wish) const {
   for (TaskId task : wish.tasks) {
     const State state = at_.roster.state(task);
-    if (!is_legal(state, Signal::kOn) && !(wish.is_goals && state == State::kOn)) return task;
+    const bool may_be_on = wish.is_goals || wish.id != 0;
+    if (!is_legal(state, Signal::kOn) && !(may_be_on && state == State::kOn)) return task;
   }
   return TaskId{};
 }
 
 void Transaction::begin(OnWish wish) {
   const TaskId wrong = first_wrong(wish);
-  if (wrong.is_valid()) return refuse(wish, wrong, at_.illegal(Signal::kOn, wrong, at_.roster.state(wrong)));
+  if (wrong.is_valid())
+    return refuse(wish, wrong, at_.illegal(Signal::kOn, wrong, at_.roster.state(wrong), wish.tasks));
   wish_ = std::move(wish);
   members_.clear();
+  already_.clear();
   for (TaskId task : at_.sorted(wish_.tasks)) {
     const State before = at_.roster.state(task);
+    if (before == State::kOn && !wish_.is_goals) {
+      already_.push_back(task);
+      continue;
+    }
     members_.push_back({task, before, before == State::kOn ? Stage::kOn : Stage::kOpen, false, 0});
   }
   is_under_way_ = true;
   has_failed_ = is_final_ = is_rolling_back_ = false;
   why_.clear();
   std::string why = at_.judge_on(wish_.tasks);
-  if (!why.empty()) fail(members_.front().task, std::move(why), true);
+  if (!why.empty()) fail(at_.sorted(wish_.tasks).front(), std::move(why), true);
   for (const Member& member : members_)
     if (!has_failed_) goals_.add(member.task, kGoalOn);
 }
@@ -129,7 +137,8 @@ void Transaction::finish() {
   if (keeps_goals) return;
   std::vector<Outcome> outcomes;
   for (const Member& member : members_)
-    outcomes.push_back({member.task, member.before, at_.roster.state(member.task)});
+    outcomes.push_back({member.task, member.before, at_.roster.state(member.task), false});
+  for (const TaskId task : already_) outcomes.push_back({task, State::kOn, State::kOn, true});
   // Before an answer, so that it cannot be undone by the next manager; but goals go with a word about them, not before.
   if (!wish_.is_goals || !has_failed_)
     for (const Member& member : members_) goals_.clear(member.task, kGoalOn);

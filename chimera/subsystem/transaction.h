@@ -68,6 +68,7 @@ class Transaction {
   Goals& goals_;
   OnWish wish_;
   std::vector<Member> members_;
+  std::vector<TaskId> already_;  // ON when a person wished for them: neither sent nor rolled back
   bool is_under_way_ = false;
   bool has_failed_ = false;
   bool is_final_ = false;  // the goals are given up with it

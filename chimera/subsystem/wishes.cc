@@ -37,7 +37,7 @@ bool Wishes::begin_goals() {
     const State state = at_.roster.state(task);
     if (at_.roster.life_of(task) != Life::kUp || at_.is_busy(task) || state == State::kOn || state == State::kOff)
       continue;
-    goals_.fail(task, "refused", at_.illegal(Signal::kOn, task, state));
+    goals_.fail(task, "refused", at_.illegal(Signal::kOn, task, state, {&task, 1}));
   }
   OnWish wish{0, goals_.with(kGoalOn), TaskId{}, true};
   if (wish.tasks.empty()) return true;
@@ -100,7 +100,7 @@ bool Wishes::are_all_on(const std::vector<TaskId>& tasks) const noexcept {
 void Wishes::accept(const Waiting& waiting) const {
   if (waiting.wish.id == 0) return;
   Answer answer{waiting.wish.id, true, {}, TaskId{}, {}};
-  for (TaskId task : waiting.wish.tasks) answer.outcomes.push_back({task, State::kOff, at_.roster.state(task)});
+  for (TaskId task : waiting.wish.tasks) answer.outcomes.push_back({task, State::kOff, at_.roster.state(task), false});
   at_.act(std::move(answer));
 }
 

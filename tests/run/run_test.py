@@ -56,7 +56,54 @@ class Run(unittest.TestCase):
         self.assertRegex(said, r"\nfirst: " + warning + "second: " + warning + r"t 0\.100 s  one_count \d+\n")
         self.assertRegex(said, r"\nt 0\.300 s  one_count \d+\nran 0\.300 s\ntask ")
         self.assertRegex(said, r"\none   ON  +\d+ .*\ntwo   ON  +\d+ .*\n"
-                               r"holds: two_count >= 10 \(two_count is \d+\)\n$")
+                               r"holds: two_count >= 10 \(two_count is \d+\)\n(not )?clean: .*\n$")
+
+    def test_a_restart_is_told_and_fails_a_strict_run(self):
+        for strict in (False, True):
+            with System(TWO, ("--strict",) if strict else ()) as system:
+                self.assertTrue(system.kill(system.rtpu("first")["pid"]))
+                await_that(lambda: system.rtpu("first")["restarts"] == 1 and system.state("one") == "ON", 10, "it")
+                system.process.send_signal(signal.SIGINT)
+                self.assertEqual(system.process.wait(30), 1 if strict else 0, system.said())
+                said = system.said()
+                self.assertRegex(said, r"\nfirst: what its tasks count is since its restart at \d+\.\d+ s\n"
+                                       r"not clean: .*1 restart of first")
+                self.assertEqual("FAILED: not clean, and --strict asks for that\n" in said, strict, said)
+
+    def test_a_unit_that_is_given_up_comes_back_by_what_status_says_and_is_no_success_before(self):
+        with System(TWO) as system:
+            def chimera(*words):
+                return subprocess.run([CHIMERA, *words], env=system.environment, capture_output=True, text=True,
+                                      timeout=60)
+
+            for death in range(4):
+                unit = await_that(lambda: (u := system.rtpu("first"))["alive"] and u["restarts"] == death and u)
+                self.assertTrue(system.kill(unit["pid"]))
+            await_that(lambda: system.rtpu("first")["given_up"], 10, "giving up")
+            refused = chimera("on", "one")
+            self.assertEqual((refused.returncode, refused.stderr),
+                             (1, "[subject] one is in state ERROR, where on is not legal; type `chimera clear one`, "
+                                 "then `chimera on one`\n"))
+            said = chimera("status").stdout
+            self.assertIn("first: GIVEN UP; last end: ended by signal 9 (SIGKILL)", said)
+            way = re.search(r"to bring it back type `chimera (.*?)`, then `chimera (.*?)`\n", said)
+            self.assertEqual(chimera("status", "--pid", "first").returncode, 1)
+            for command in way.groups():
+                done = chimera(*command.split())
+                self.assertEqual(done.returncode, 0, f"{command}: {done.stdout}{done.stderr}")
+            self.assertEqual(system.state("one"), "ON")
+            self.assertEqual(chimera("on", "one").stdout, "[subject] one: ON already\n")
+            for death in range(4, 9):
+                alive = await_that(lambda: (u := system.rtpu("first"))["given_up"]
+                                   or (u["alive"] and u["restarts"] == death) and u, 10, "it")
+                if alive is True:
+                    break
+                self.assertTrue(system.kill(alive["pid"]))
+            await_that(lambda: system.rtpu("first")["given_up"], 10, "giving up")
+            system.process.send_signal(signal.SIGINT)
+            self.assertEqual(system.process.wait(30), 1, system.said())
+            self.assertIn("\nFAILED: first was given up: ", system.said())
+            self.assertIn("\nFAILED: one was in ERROR at the end", system.said())
 
     def test_an_expectation_that_fails_is_no_success(self):
         code, said = run(TWO, "--for", "0.1 s", "--expect", "two_count < 0", "--json")
@@ -83,7 +130,7 @@ class Run(unittest.TestCase):
                 refused = subprocess.run([CHIMERA, "profile", "--save", "/nowhere/p.json"], env=system.environment,
                                          capture_output=True, text=True, timeout=60)
                 self.assertEqual((refused.returncode, refused.stdout, refused.stderr),
-                                 (1, "", "/nowhere/p.json: cannot be written: No such file or directory\n"))
+                                 (1, "", "[subject]\n/nowhere/p.json: cannot be written: No such file or directory\n"))
                 system.process.send_signal(signal.SIGINT)
                 self.assertEqual(system.process.wait(30), 0, system.said())
             for name in (saved, late):
@@ -115,10 +162,12 @@ class Run(unittest.TestCase):
                 await_that(lambda: not system.call("status")["flag"]["up"], 10, "a flag that goes with its task")
 
     def test_acts_at_stated_times(self):
-        code, said = run(TWO, "--for", "0.3 s", "--at", "0.1 s: off one", "--at", "0.2 s: off one")
+        code, said = run(TWO, "--for", "0.3 s", "--at", "0.1 s: off one", "--at", "0.2 s: clear one",
+                         "--at", "0.25 s: off one")
         self.assertEqual(code, 0, said)
         self.assertRegex(said, r"\none   OFF ")
-        self.assertRegex(said, r"\nrefused at 0\.\d+ s: off one: .*OFF")
+        self.assertRegex(said, r"\nrefused at 0\.\d+ s: clear one: .*OFF")
+        self.assertNotIn(": off one", said, "that it is OFF already is no refusal")
 
     def test_records_what_every_rtpu_does(self):
         words = ("--priority", "0", "--for", "0.2 s", "--trace", "trace.json", "--timeline", "10 ms")

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/subsystem/remedy.h"
+
+namespace chimera::subsystem {
+namespace {
+
+/// Adds a command for these tasks, if there are any.
+void add(std::vector<std::string>& commands, const Situation& situation, const char* word,
+         std::span<const TaskId> tasks) {
+  if (tasks.empty()) return;
+  std::string command = std::string("`chimera ") + word;
+  for (const TaskId task : tasks) command += " " + situation.name(task);
+  commands.push_back(command + "`");
+}
+
+std::string joined(const std::vector<std::string>& commands) {
+  std::string text;
+  for (std::size_t i = 0; i < commands.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == commands.size() ? ", then " : ", ") + commands[i];
+  return text;
+}
+
+/// The states from which the signal leads on, or in which nothing is left to do.
+bool takes(Signal signal, State state) noexcept {
+  const bool is_there =
+      (signal == Signal::kOn && state == State::kOn) || (signal == Signal::kOff && state == State::kOff);
+  return is_there || is_legal(state, signal);
+}
+
+}  // namespace
+
+std::string remedy(const Situation& situation, Signal signal, std::span<const TaskId> tasks) {
+  const bool needs_all = signal == Signal::kOn || signal == Signal::kReinit;
+  std::vector<TaskId> spawn, clear, rest;
+  for (const TaskId task : tasks) {
+    const State state = situation.roster.state(task);
+    const bool is_in_error = state == State::kError && signal != Signal::kKill;
+    if (is_in_error)
+      clear.push_back(task);
+    else if (state == State::kNotCreated && (needs_all || signal == Signal::kSpawn || signal == Signal::kClear))
+      spawn.push_back(task);
+    if (signal != Signal::kSpawn && signal != Signal::kClear && (needs_all || takes(signal, state)))
+      rest.push_back(task);
+  }
+  std::vector<std::string> commands;
+  add(commands, situation, "spawn", spawn);
+  add(commands, situation, "clear", clear);
+  add(commands, situation, signal_name(signal), rest);
+  return joined(commands);
+}
+
+std::string way_back(const Situation& situation, std::span<const TaskId> lost, std::span<const TaskId> were_on) {
+  std::vector<std::string> commands;
+  add(commands, situation, "clear", lost);
+  add(commands, situation, "on", were_on);
+  return joined(commands);
+}
+
+}  // namespace chimera::subsystem
