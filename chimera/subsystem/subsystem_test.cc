@@ -226,6 +226,29 @@ TEST_F(SubsystemTest, AfterThreeRestartsInTenSecondsItGivesUpUntilAPersonStartsI
   EXPECT_EQ(report(kTraj, State::kOff), "goal traj 0\nanswer 3 yes traj ERROR>OFF\n");
 }
 
+TEST_F(SubsystemTest, ClearOfOneTaskBringsBackWhatWasLostWithItButNotWhatWasKilled) {
+  command(Signal::kKill, {kReserve});
+  report(kReserve, State::kNotCreated);
+  for (std::uint32_t i = 1; i <= 4; ++i) {
+    seen(kArm, State::kOn);
+    seen(kPid, State::kOn);
+    die(kServo, i);
+    if (i < 4) step(RtpuUp{kServo, i + 1});
+  }
+  ASSERT_TRUE(subsystem->is_given_up(kServo));
+  EXPECT_EQ(subsystem->way_back(kServo), "`chimera clear arm pid`, then `chimera on arm pid`");
+  EXPECT_EQ(command(Signal::kClear, {kArm}), "goal arm 1\nrestart servo\nstart servo\ngoal pid 1\n");
+  EXPECT_FALSE(subsystem->is_given_up(kServo));
+  EXPECT_EQ(subsystem->state(kReserve), State::kNotCreated);
+}
+
+TEST_F(SubsystemTest, SaysWhichInputHasNoRunningProducer) {
+  EXPECT_EQ(subsystem->missing(), "");
+  command(Signal::kOff, {kTraj});
+  report(kTraj, State::kOff);
+  EXPECT_EQ(subsystem->missing(), "ref (traj is OFF)");
+}
+
 TEST_F(SubsystemTest, TheNextManagerGoesOnWithATransaction) {
   command(Signal::kOff, {kArm, kTraj, kPid});
   for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
