@@ -26,6 +26,8 @@ TEST(AnswerText, SignalsTellWhatBecameOfEachTask) {
   EXPECT_EQ(signal_text(Json::parse(R"({"tasks": [{"task": "pid", "before": "ON", "after": "OFF"},
                                                   {"task": "arm", "before": "OFF", "after": "OFF"}]})")),
             "pid: ON -> OFF\narm: OFF\n");
+  EXPECT_EQ(signal_text(Json::parse(R"({"tasks": [{"task": "arm", "before": "ON", "after": "ON", "already": true}]})")),
+            "arm: ON already\n");
 }
 
 TEST(AnswerText, TheFlagSaysWhoKeepsItUp) {

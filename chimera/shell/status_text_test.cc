@@ -19,6 +19,16 @@ TEST(OldestInput, IsNeverOneOfTheOperatorWhichHoldsUntilItIsSet) {
   EXPECT_EQ(oldest(R"({"inputs": [{"variable": "q", "age_ns": 7}, {"variable": "r", "age_ns": null}]})").age_ns, -1);
 }
 
+TEST(StatusText, OfAUnitThatWasGivenUpItSaysWhatToType) {
+  nlohmann::json status = chimera::shell::status();
+  status["rtpus"][1]["given_up"] = true;
+  status["rtpus"][1]["remedy"] = "`chimera clear trajectory`, then `chimera on trajectory`";
+  const char* lines = "spare: GIVEN UP; last end: signal 11 in trajectory.cycle\n"
+                      "  to bring it back type `chimera clear trajectory`, then `chimera on trajectory`\n";
+  EXPECT_NE(status_text(status).find(lines), std::string::npos) << status_text(status);
+  EXPECT_TRUE(rtpu_remarks(status["rtpus"][1]).starts_with("spare GIVEN UP, restarted 2 times"));
+}
+
 TEST(StatusText, TellsTheWholeTheUnitsAndTheTasks) {
   EXPECT_EQ(status_text(status()),
             "puma_pid: run, up 12.5 min, flag UP by spare, operator\n"

@@ -70,6 +70,18 @@ class Run(unittest.TestCase):
                                        r"not clean: .*1 restart of first")
                 self.assertEqual("FAILED: not clean, and --strict asks for that\n" in said, strict, said)
 
+    def test_with_every_unit_dead_the_flag_is_up(self):
+        one = "subject\nrtpus: {first: {cpu: 0}}\ntasks:\n" + counter("one", "first")
+        with System("subsystem: " + one) as system:
+            self.assertEqual(system.call("status")["flag"], {"up": False, "by": []})
+            for death in range(4):
+                unit = await_that(lambda: (u := system.rtpu("first"))["alive"] and u["restarts"] == death and u)
+                self.assertTrue(system.kill(unit["pid"]))
+            await_that(lambda: system.rtpu("first")["given_up"], 10, "giving up")
+            self.assertEqual(system.call("status")["flag"], {"up": True, "by": ["first"]})
+            self.assertEqual(system.signal("clear", "one")["tasks"][0]["after"], "OFF")
+            self.assertEqual(system.call("status")["flag"], {"up": False, "by": []})
+
     def test_a_unit_that_is_given_up_comes_back_by_what_status_says_and_is_no_success_before(self):
         with System(TWO) as system:
             def chimera(*words):
