@@ -237,7 +237,7 @@ TEST_F(SubsystemTest, ClearOfOneTaskBringsBackWhatWasLostWithItButNotWhatWasKill
   }
   ASSERT_TRUE(subsystem->is_given_up(kServo));
   EXPECT_EQ(subsystem->way_back(kServo), "`chimera clear arm pid`, then `chimera on arm pid`");
-  EXPECT_EQ(command(Signal::kClear, {kArm}), "goal arm 1\nrestart servo\nstart servo\ngoal pid 1\n");
+  EXPECT_EQ(command(Signal::kClear, {kArm}), "goal arm 1\ngoal pid 1\nrestart servo\nstart servo\n");
   EXPECT_FALSE(subsystem->is_given_up(kServo));
   EXPECT_EQ(subsystem->state(kReserve), State::kNotCreated);
 }
