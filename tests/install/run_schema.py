@@ -40,7 +40,7 @@ def outputs(source):
     for path in faulty[::12] + good[:1]:
         yield "check", None, ["check", path]
     yield "check", 1, ["run", faulty[0], "--virtual", "--for", "1 s"]
-    yield "run", 0, ["run", faults, "--virtual", "--for", "0.2 s", "--watch", "e_command", "--watch", "a_count",
+    yield "run", 1, ["run", faults, "--virtual", "--for", "0.2 s", "--watch", "e_command", "--watch", "a_count",
                      "--expect", "a_count >= 1"]
     yield "run", 1, ["run", faults, "--virtual", "--for", "0.2 s", "--seed", "7", "--expect", "a_count < 1"]
 
