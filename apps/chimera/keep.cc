@@ -35,7 +35,7 @@ Result<FrozenBytes> make_image(const desk::RunPlan& plan, const RunSettings& set
 Result<FrozenBytes> make_bundle(const KeepRequest& request, const desk::RunPlan& plan) {
   const manager::Bundle bundle{CHIMERA_VERSION,       request.run.file,      plan.description,
                                request.observe_group, request.operate_group, request.configure_group,
-                               plan.library};
+                               plan.library,          request.run.settings};
   const std::string text = encode(bundle);
   return FrozenBytes::create("chimera-bundle", std::as_bytes(std::span(text)));
 }

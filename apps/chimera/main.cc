@@ -27,6 +27,7 @@ struct Words {
   bool json = false;
   desk::CheckOptions check;
   desk::ScheduleRequest schedule;
+  SetWords set;
   std::string component;
   desk::TestOptions test;
   desk::NewRequest made;
@@ -46,6 +47,7 @@ void add_check(CLI::App& app, Words& words) {
   CLI::App* c = app.add_subcommand("check", "Prove a description legal, or name every fault with its place");
   c->add_option("FILE", words.check.file, "the description")->required();
   c->add_flag("--json", words.json, "the report as one JSON object");
+  add_set_option(*c, words.set);
   c->add_option("--graph", words.check.graph, "draw it instead: dot, svg or text")
       ->check(CLI::IsMember({"dot", "svg", "text"}));
   c->footer("Example: chimera check examples/01_puma_pid/puma_pid.yaml --graph svg > puma.svg");
@@ -54,6 +56,7 @@ void add_check(CLI::App& app, Words& words) {
 void add_schedule(CLI::App& app, Words& words) {
   CLI::App* s = app.add_subcommand("schedule", "Prove that every task keeps its deadlines, or tell what would help");
   s->add_option("FILE", words.schedule.file, "the description")->required();
+  add_set_option(*s, words.set);
   add_file_option(*s, "--profile", words.schedule.profile,
                   "execution times from this recorded profile, else from budgets");
   add_file_option(*s, "--svg", words.schedule.svg, "draw the worst window of each CPU into this file");
@@ -124,6 +127,7 @@ desk::Output make_new(const CLI::App& app, Words& words) {
 int carry_out(CLI::App& app, Words& words) {
   const desk::Workplace workplace = desk::Workplace::around(desk::program_path());
   words.check.json = words.schedule.json = words.json;
+  words.check.settings = words.schedule.settings = settings_of(words.set);
   if (app.got_subcommand("check")) return print(desk::check(words.check, workplace));
   if (app.got_subcommand("schedule")) return print(desk::schedule(words.schedule, workplace));
   if (app.got_subcommand("new")) return print(make_new(app, words));

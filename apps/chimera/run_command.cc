@@ -23,7 +23,7 @@ namespace {
 /// What the face of a run does, and so what both commands know.
 void add_face_options(CLI::App* command, RunWords& words) {
   command->add_option("--for", words.duration, "how long, such as '10 s'; without it until Ctrl-C");
-  command->add_option("--at", words.run.at, "a timed act: '2 s: off pid', '3 s: flag up'; may be repeated");
+  command->add_option("--at", words.run.at, "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad'; may be repeated");
   command->add_option("--watch", words.run.watch, "print these state variables while it runs");
   command->add_option("--every", words.every, "how often --watch prints (1 s)");
   command->add_option("--expect", words.run.expect, "at the end must hold: 'error <= 2 mrad'; may be repeated");
@@ -34,24 +34,6 @@ void add_face_options(CLI::App* command, RunWords& words) {
                     "a missed deadline, dropped release, fault, restart or the flag up at the end is exit code 1");
   command->add_option("--timeline", words.timeline,
                       "at the end print one letter for each unit of time, such as '1 ms'");
-}
-
-bool read_duration(const std::string& text, const char* option, Nanoseconds& to) {
-  if (text.empty()) return true;
-  const auto value = parse_duration(text);
-  if (value && value->count > 0) return to = *value, true;
-  std::fprintf(stderr, "%s: %s\n", option, value ? "must be longer than 0" : value.error().message.c_str());
-  return false;
-}
-
-bool read_seed(const std::string& text, std::optional<std::uint64_t>& to) {
-  if (text.empty()) return true;
-  char* end = nullptr;
-  errno = 0;
-  to = std::strtoull(text.c_str(), &end, 10);
-  if (*end == '\0' && errno == 0 && text[0] != '-') return true;
-  std::fprintf(stderr, "--seed: '%s' is not a whole number from 0 to 2^64-1\n", text.c_str());
-  return false;
 }
 
 bool read_group(const std::string& name, const char* option, std::optional<std::uint32_t>& to) {
@@ -126,15 +108,47 @@ int with_records(const RunWords& words, Nanoseconds unit, Body body) {
 
 }  // namespace
 
+bool read_duration(const std::string& text, const char* option, Nanoseconds& to) {
+  if (text.empty()) return true;
+  const auto value = parse_duration(text);
+  if (value && value->count > 0) return to = *value, true;
+  std::fprintf(stderr, "%s: %s\n", option, value ? "must be longer than 0" : value.error().message.c_str());
+  return false;
+}
+
+bool read_seed(const std::string& text, std::optional<std::uint64_t>& to) {
+  if (text.empty()) return true;
+  char* end = nullptr;
+  errno = 0;
+  to = std::strtoull(text.c_str(), &end, 10);
+  if (*end == '\0' && errno == 0 && text[0] != '-') return true;
+  std::fprintf(stderr, "--seed: '%s' is not a whole number from 0 to 2^64-1\n", text.c_str());
+  return false;
+}
+
 void add_file_option(CLI::App& app, const char* name, std::string& file, const char* help) {
   const CLI::Validator has_name([](std::string& given) { return std::string(given.empty() ? "names no file" : ""); },
                                 "");
   app.add_option(name, file, help)->type_name("FILE")->check(has_name);
 }
 
+void add_set_option(CLI::App& app, SetWords& words) {
+  app.add_option("--set", words, "this value instead of the file's; VAR is an operator variable, a constant, or "
+                                 "TASK.CONSTANT; may be repeated")
+      ->type_name("VAR VALUE")
+      ->allow_extra_args(false);
+}
+
+std::vector<Setting> settings_of(const SetWords& words) {
+  std::vector<Setting> settings;
+  for (const auto& [name, value] : words) settings.push_back({name, value, "--set " + name + " '" + value + "'"});
+  return settings;
+}
+
 void add_run(CLI::App& app, RunWords& words) {
   CLI::App* r = app.add_subcommand("run", "Run an application in real time, or in virtual time");
   r->add_option("FILE", words.run.file, "the description")->required();
+  add_set_option(*r, words.set);
   add_face_options(r, words);
   r->add_flag("--virtual", words.run.virtual_time, "in virtual time: as fast as it goes, the same result every time");
   add_file_option(*r, "--svg", words.run.svg,
@@ -181,6 +195,7 @@ int carry_out_run(RunWords& words, const desk::Workplace& workplace) {
       !read_group(words.configure_group, "--configure-group", kept.configure_group))
     return desk::kUsage;
   if (!may_save(words.run.profile) || !may_save(words.run.svg)) return desk::kRefused;
+  words.run.settings = settings_of(words.set);
   if (!words.run.virtual_time && !words.run.one_process) {
     kept.run = words.run;
     kept.face = words_for_face(words);

@@ -19,6 +19,11 @@ std::string remedy(const Fault& fault) {
 
 }  // namespace
 
+std::string sentence(const Fault& fault) {
+  const std::string help = remedy(fault);
+  return help.empty() ? fault.message : fault.message + " (" + help + ")";
+}
+
 void Report::add(Fault fault) {
   CHIMERA_ASSERT(is_rule(fault.rule));
   for (std::string* part : {&fault.message, &fault.found, &fault.expected, &fault.nearest, &fault.remedy})

@@ -34,6 +34,9 @@ struct Fault {
   Severity severity = Severity::kError;
 };
 
+/// The message with what to do behind it, in one line. Context: setup.
+std::string sentence(const Fault& fault);
+
 /// Every fault of one description. Context: setup; may block.
 class Report {
  public:

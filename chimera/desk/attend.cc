@@ -64,7 +64,7 @@ class Attendance {
   void look_at_events();
   /// Told to, or nobody reads what it prints.
   bool is_to_stop() const { return stop_is_requested() || std::ferror(out_) != 0; }
-  void act(const ScriptAct& act);
+  void act(const TimedAct& timed);
   void watch_line(Nanoseconds at);
   Json readings(std::vector<std::string> names);
   std::vector<UnitFate> units_of(const Json& status) const;
@@ -80,7 +80,7 @@ class Attendance {
   ControlLine line_;
   LinuxClock clock_;
   TaskNames names_;
-  std::vector<ScriptAct> acts_;
+  std::vector<TimedAct> acts_;
   std::optional<RecordLine> records_;
   std::string grants_, refused_;
   std::optional<Error> failure_;  // of the start
@@ -173,16 +173,21 @@ std::string Attendance::since_start(Nanoseconds at) const {
   return text;
 }
 
-void Attendance::act(const ScriptAct& act) {
+void Attendance::act(const TimedAct& timed) {
+  const ScriptAct& act = timed.act;
+  const bool is_set = act.kind == ScriptAct::Kind::kSet;
   const bool is_signal = act.kind == ScriptAct::Kind::kSignal;
   const std::string task = is_signal ? names_.tasks[act.task.index] : "";
   const bool is_ring = is_signal && act.signal == Signal::kWakeup;
   const auto answer =
       is_ring     ? line_.ask("ring", {{"tasks", {task}}})
       : is_signal ? line_.ask("signal", {{"signal", signal_name(act.signal)}, {"tasks", {task}}})
+      : is_set    ? line_.ask("set", {{"values", {{timed.variable, timed.value}}}})
                   : line_.ask("flag", {{"up", act.kind == ScriptAct::Kind::kRaiseFlag}});
   if (answer) return;
-  const std::string what = is_signal ? std::string(is_ring ? "ring" : signal_name(act.signal)) + " " + task : "flag";
+  const std::string what = is_signal ? std::string(is_ring ? "ring" : signal_name(act.signal)) + " " + task
+                           : is_set  ? "set " + timed.variable
+                                     : "flag";
   refused_ += "refused at " + since_start(clock_.now()) + ": " + what + ": " + answer.error().message.c_str() + "\n";
 }
 
@@ -209,7 +214,7 @@ RunEnd Attendance::attend() {
   Nanoseconds next_watch = run_.watch.empty() ? kNever : started_ + run_.every;
   Nanoseconds next_look = started_;
   for (std::size_t next_act = 0;;) {
-    const Nanoseconds act_at = next_act < acts_.size() ? started_ + acts_[next_act].at : kNever;
+    const Nanoseconds act_at = next_act < acts_.size() ? started_ + acts_[next_act].act.at : kNever;
     const Nanoseconds next = std::min({next_watch, next_look, act_at, end});
     while (clock_.now() < next && !is_to_stop()) {
       if (records_) records_->take(next, *sink_);

@@ -52,7 +52,12 @@ Output check(const CheckOptions& options, const Workplace& workplace) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), options.json);
   Verdict verdict = verify(read_description_file(options.file), *library);
-  if (verdict.configuration) verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
+  if (verdict.configuration) {
+    auto set = with_settings(*verdict.configuration, *library, options.settings);
+    if (!set) return refused(set.error(), options.json);
+    verdict.configuration = *std::move(set);
+    verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
+  }
   Output output;
   output.code = verdict.report.is_legal() ? kOk : kRefused;
   if (options.json) {

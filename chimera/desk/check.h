@@ -3,8 +3,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "chimera/config/configuration.h"
+#include "chimera/config/setting.h"
 #include "chimera/config/verify.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/workplace.h"
@@ -15,6 +17,7 @@ struct CheckOptions {
   std::string file;
   bool json = false;
   std::string graph;  ///< "", "dot", "svg" or "text"
+  std::vector<Setting> settings = {};  ///< values in the place of those of the file
 };
 
 /// Reads and verifies; code kRefused when the description has a fault. Context: setup; may block.

@@ -27,19 +27,6 @@ constexpr Nanoseconds kDrainEvery = milliseconds(10);
 constexpr Nanoseconds kWatchEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
 constexpr Nanoseconds kTellEvery = seconds(3);         // of wall time
 
-std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
-  const std::string name(task.spec->name);
-  std::string why = task.faults.last.text;
-  if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
-  const bool is_ring = refused.signal == Signal::kWakeup;
-  if (is_ring && !task.spec->server) why = "it is not behind a server";
-  if (refused.why == Refusal::kIllegalSet) why = "the tasks ON would not be a legal set";
-  char at[32];
-  std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
-  const std::string signal = is_ring ? "ring" : signal_name(refused.signal);
-  return std::string("refused at ") + at + ": " + signal + " " + name + ": " + why + "\n";
-}
-
 /// Lines of progress, each over the one before; silent unless somebody can see them.
 class ProgressLine {
  public:
@@ -70,15 +57,6 @@ class ProgressLine {
   bool has_written_ = false;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
-
-/// The first failure of time with the reaction `stop` ends the run.
-std::string who_stopped(const TaskSet& tasks) {
-  for (const Task& task : tasks.tasks())
-    if ((task.spec->on_miss == OnMiss::kStop && task.profile.missed > task.profile.tolerated) ||
-        (task.spec->on_overrun == OnMiss::kStop && task.profile.overrun > 0))
-      return std::string(task.spec->name);
-  return {};
-}
 
 /// One run with everything that is watched and expected of it.
 class Session {

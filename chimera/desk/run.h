@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/config/setting.h"
 #include "chimera/desk/application.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/workplace.h"
@@ -25,6 +26,7 @@ struct RunRequest {
   Nanoseconds quantum = milliseconds(1);
   int priority = 80;                    ///< SCHED_FIFO, real time only; 0: as an ordinary process
   std::vector<std::string> may_miss;    ///< real time: tasks that need not be guaranteed to keep their deadlines
+  std::vector<Setting> settings;        ///< values in the place of those of the file
   std::vector<std::string> at;          ///< timed acts, script_text.h
   std::vector<std::string> expect;      ///< expectation.h
   std::vector<std::string> watch;       ///< state variables to print while it runs

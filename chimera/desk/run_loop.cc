@@ -18,6 +18,27 @@ const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_t
   return configuration.rtpus()[virtual_time && has_tasks ? configuration.tasks()[0].rtpu : 0];
 }
 
+std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
+  const std::string name(task.spec->name);
+  std::string why = task.faults.last.text;
+  if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
+  const bool is_ring = refused.signal == Signal::kWakeup;
+  if (is_ring && !task.spec->server) why = "it is not behind a server";
+  if (refused.why == Refusal::kIllegalSet) why = "the tasks ON would not be a legal set";
+  char at[32];
+  std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
+  const std::string signal = is_ring ? "ring" : signal_name(refused.signal);
+  return std::string("refused at ") + at + ": " + signal + " " + name + ": " + why + "\n";
+}
+
+std::string who_stopped(const TaskSet& tasks) {
+  for (const Task& task : tasks.tasks())
+    if ((task.spec->on_miss == OnMiss::kStop && task.profile.missed > task.profile.tolerated) ||
+        (task.spec->on_overrun == OnMiss::kStop && task.profile.overrun > 0))
+      return std::string(task.spec->name);
+  return {};
+}
+
 namespace {
 
 class VirtualLoop final : public RunLoop {

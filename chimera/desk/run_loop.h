@@ -30,6 +30,11 @@ class RunLoop {
 /// Whose policy a run of one context follows: in virtual time that of the only rtpu with tasks, else the first.
 const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time);
 
+/// "refused at 0.200 s: off pid: ..." and a line end. Context: setup.
+std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin);
+/// The task whose reaction `stop` ended it: the first failure of time with that; "" when there is none.
+std::string who_stopped(const TaskSet& tasks);
+
 std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
                                            const RunOptions& options);
 std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,

@@ -5,6 +5,7 @@
 
 #include "chimera/config/nearest.h"
 #include "chimera/config/schedule_report.h"
+#include "chimera/config/setting.h"
 #include "chimera/config/verify.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/run.h"
@@ -49,6 +50,50 @@ Result<void> judge_throttling(const RunRequest& request, const Configuration& co
   return admit_below(configuration, realtime_share());
 }
 
+/// A list is as long as the one before it where its length is a constant that only `init` may know.
+bool is_as_long(const GivenSpec& now, const GivenSpec& before) {
+  for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d)
+    if (!now.extent[d].constant.empty() && now.listed[d] != 0 && now.listed[d] != before.listed[d]) return false;
+  return true;
+}
+
+/// The act with its bytes, judged by the rules of the description.
+Result<ScriptAct> settled(const TimedAct& timed, RunPlan& plan) {
+  const std::string said = "--at '" + timed.text + "'";
+  const ConfiguredVariable* constant = nullptr;
+  for (const ConfiguredVariable& known : plan.configuration.variables())
+    if (known.is_constant && known.name == timed.variable) constant = &known;
+  if (constant != nullptr || timed.variable.find('.') != std::string::npos)
+    return Error{ErrorCode::kRefused,
+                 {said + ": '" + timed.variable + "' is a constant, which nothing changes while tasks run; for the "
+                  "whole run: --set " + timed.variable + " VALUE"},
+                 {plan.configuration.file()}};
+  auto set = with_new_value(plan.configuration, plan.library, {timed.variable, timed.value, said});
+  if (!set) return set.error();
+  ScriptAct act = timed.act;
+  const auto operators = set->spec().operators;
+  while (operators[act.operator_index].name != timed.variable) ++act.operator_index;
+  act.value = operators[act.operator_index].value;
+  if (!is_as_long(operators[act.operator_index], plan.configuration.spec().operators[act.operator_index]))
+    return Error{ErrorCode::kBadInput,
+                 {said + ": the list is not as long as the one that '" + timed.variable + "' begins with"},
+                 {plan.configuration.file()}};
+  plan.set.push_back(*std::move(set));
+  return act;
+}
+
+Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
+  const auto acts = parse_script(request.at, plan.configuration.spec());
+  if (!acts) return acts.error();
+  for (const TimedAct& timed : *acts) {
+    const bool is_set = timed.act.kind == ScriptAct::Kind::kSet;
+    const auto act = is_set ? settled(timed, plan) : Result<ScriptAct>(timed.act);
+    if (!act) return act.error();
+    plan.acts.push_back(*act);
+  }
+  return {};
+}
+
 Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
   for (const std::string& name : request.watch)
     if (auto found = find_variable(plan.configuration, name); !found) return found.error();
@@ -58,10 +103,7 @@ Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
     plan.expectations.push_back(*std::move(expectation));
   }
   if (auto known = judge_task_names(request, plan.configuration); !known) return known.error();
-  auto acts = parse_script(request.at, plan.configuration.spec());
-  if (!acts) return acts.error();
-  plan.acts = *std::move(acts);
-  return {};
+  return judge_acts(request, plan);
 }
 
 }  // namespace
@@ -94,16 +136,28 @@ int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, st
 
 std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out,
                                 std::FILE* err, int* code) {
+  const auto library = workplace.library();
+  if (library) return plan_run(request, *library, out, err, code);
   if (code != nullptr) *code = kRefused;
-  auto library = workplace.library();
-  if (!library) {
-    refuse_run(request, library.error(), out, err);
-    return std::nullopt;
-  }
+  refuse_run(request, library.error(), out, err);
+  return std::nullopt;
+}
+
+std::optional<RunPlan> plan_run(const RunRequest& request, const Library& library, std::FILE* out, std::FILE* err,
+                                int* code) {
+  if (code != nullptr) *code = kRefused;
   Reading reading = read_description_file(request.file);
-  Verdict verdict = verify(reading, *library);
+  Verdict verdict = verify(reading, library);
   if (verdict.configuration) {
-    verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
+    auto set = with_settings(*verdict.configuration, library, request.settings);
+    if (!set) {
+      refuse_run(request, set.error(), out, err);
+      return std::nullopt;
+    }
+    verdict.configuration = *std::move(set);
+  }
+  if (verdict.configuration) {
+    verdict.report.add_all(faulty_objects(*verdict.configuration, library));
     verdict.report.add_all(unsupported(*verdict.configuration, executor_of(request)));
     if (verdict.report.is_legal()) verdict.report.add_all(promises(request, *verdict.configuration));
   }
@@ -113,7 +167,7 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& work
     return std::nullopt;
   }
   if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
-  RunPlan plan{*std::move(library), std::move(reading.text), *std::move(verdict.configuration), {}, {}};
+  RunPlan plan{library, std::move(reading.text), *std::move(verdict.configuration), {}, {}, {}};
   if (const auto judged = judge_words(request, plan); !judged) {
     const int usage = refuse_run(request, judged.error(), out, err, kUsage);
     if (code != nullptr) *code = usage;

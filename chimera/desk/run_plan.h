@@ -22,14 +22,19 @@ struct RunRequest;
 struct RunPlan {
   Library library;
   std::string description;  ///< the text of the file, as it was read
-  Configuration configuration;
+  Configuration configuration;      ///< with the settings of the request
   std::vector<ScriptAct> acts;
+  std::vector<Configuration> set;   ///< one for each act `set`, which has its value there
   std::vector<Expectation> expectations;
 };
 
 /// Prints the report and the verdict; nothing when the run is refused, which has been said then. `code`, where there is
 /// one, is then kUsage for words of the command line that fit no description, else kRefused. Context: setup; may block.
 std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err,
+                                int* code = nullptr);
+
+/// The same with a library that is there already.
+std::optional<RunPlan> plan_run(const RunRequest& request, const Library& library, std::FILE* out, std::FILE* err,
                                 int* code = nullptr);
 
 /// Refuses a start set whose budgets take more of a CPU than may be promised when the kernel leaves `share` of it to

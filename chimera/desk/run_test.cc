@@ -155,6 +155,59 @@ TEST(Run, WatchesAtTheStatedDistance) {
       << said.out;
 }
 
+constexpr const char* kGain = R"(subsystem: small
+constants: {k: 2 N.m/rad}
+tasks:
+  gain: {rate: 100 Hz}
+operator: {x: 1 rad}
+)";
+
+TEST(Run, AValueGivenBesideTheFileTakesTheRoomOfItsOwn) {
+  RunRequest request = lasting(milliseconds(20));
+  request.expect = {"y >= 1500 N.m", "y <= 1500 N.m"};
+  EXPECT_EQ(said_by(request, kGain).code, kRefused);
+  request.settings = {{"x", "300 rad", "--set x '300 rad'"}, {"k", "5 N.m/rad", "--set k '5 N.m/rad'"}};
+  const Said said = said_by(request, kGain);
+  EXPECT_EQ(said.code, kOk) << said.out << said.err;
+  request.settings = {{"xx", "1 rad", "--set xx '1 rad'"}};
+  EXPECT_NE(said_by(request, kGain).err.find("--set xx '1 rad': the file has no operator variable or constant 'xx'; "
+                                             "did you mean 'x'?\n"),
+            std::string::npos);
+}
+
+TEST(Run, AValueSetAtATimeCountsFromTheNextJobOn) {
+  RunRequest request = lasting(milliseconds(40));
+  request.watch = {"y"};
+  request.every = milliseconds(10);
+  request.at = {"15 ms: set x 180 deg", "30 ms: set x -1 rad"};
+  const Said said = said_by(request, kGain);
+  EXPECT_NE(said.out.find("t 0.010 s  y 2 m2.kg/s2\nt 0.020 s  y 2 m2.kg/s2\nt 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"),
+            std::string::npos)
+      << said.out << said.err;
+  EXPECT_EQ(said_by(request, kGain).out, said.out) << "the same bytes every time";
+  request.preemptive = true;
+  EXPECT_NE(said_by(request, kGain).out.find("t 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"), std::string::npos);
+}
+
+TEST(Run, AValueThatCannotBeSetIsRefusedBeforeAnythingRuns) {
+  const auto refusal = [](const char* act) {
+    RunRequest request = lasting(milliseconds(10));
+    request.at = {act};
+    const Said said = said_by(request, kGain);
+    EXPECT_EQ(said.code, kRefused) << act;
+    return said.err.substr(said.err.find("--at"));
+  };
+  EXPECT_EQ(refusal("1 ms: set k 3"),
+            "--at '1 ms: set k 3': 'k' is a constant, which nothing changes while tasks run; for the whole run: --set k "
+            "VALUE\n");
+  EXPECT_EQ(refusal("1 ms: set y 3"), "--at '1 ms: set y 3': 'y' is produced by task 'gain'; operator variables and "
+                                      "constants of the file can be set\n");
+  EXPECT_EQ(refusal("1 ms: set xy 3"),
+            "--at '1 ms: set xy 3': the file has no operator variable or constant 'xy'; did you mean 'x'?\n");
+  EXPECT_NE(refusal("1 ms: set x 3 m").find("expected a quantity in \"rad\", found one in \"m\""), std::string::npos)
+      << refusal("1 ms: set x 3 m");
+}
+
 TEST(Run, AnIllegalDescriptionIsReportedAndNotRun) {
   RunRequest request = lasting(milliseconds(1));
   const Said said = said_by(request, "");

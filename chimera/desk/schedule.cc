@@ -32,7 +32,12 @@ ScheduleOptions options_of(const ScheduleRequest& request, const std::optional<R
 Output schedule(const ScheduleRequest& request, const Workplace& workplace) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), request.json);
-  const Verdict verdict = verify(read_description_file(request.file), *library, Overload::kTold);
+  Verdict verdict = verify(read_description_file(request.file), *library, Overload::kTold);
+  if (verdict.configuration) {
+    auto set = with_settings(*verdict.configuration, *library, request.settings, Overload::kTold);
+    if (!set) return refused(set.error(), request.json);
+    verdict.configuration = *std::move(set);
+  }
   Output output;
   if (!request.json) output.err = verdict.report.text();
   if (!verdict.configuration) {

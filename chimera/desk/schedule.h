@@ -3,8 +3,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "chimera/config/schedule_report.h"
+#include "chimera/config/setting.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/workplace.h"
 
@@ -16,6 +18,7 @@ struct ScheduleRequest {
   std::string svg;       ///< draw the worst windows into this file; "": not
   std::string dispatch;  ///< "executive" or "preemptive"; "": each rtpu as described
   bool json = false;
+  std::vector<Setting> settings = {};  ///< values in the place of those of the file
 };
 
 /// Reads, verifies and analyses; kOk when all fits, kRefused when not, or when the description is not legal. Context:

@@ -27,9 +27,10 @@ Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, 
 
 Result<ScriptAct> parse_signal(const std::string& text, const std::string& word, const std::string& task, ScriptAct act,
                                const ApplicationSpec& spec) {
-  const std::vector<std::string> words = {"spawn", "on", "off", "kill", "clear", "reinit", "ring"};
-  const auto found = std::find(words.begin(), words.end(), word);
-  if (found == words.end()) return wrong_act(text, unknown("signal", word, words));
+  const std::vector<std::string> words = {"spawn", "on", "off", "kill", "clear", "reinit", "ring", "flag", "set"};
+  const auto signals = words.end() - 2;
+  const auto found = std::find(words.begin(), signals, word);
+  if (found == signals) return wrong_act(text, unknown("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
   static_assert(static_cast<int>(Signal::kWakeup) == 6);  // a ring is sent as wakeup
   std::vector<std::string> names;
@@ -39,31 +40,40 @@ Result<ScriptAct> parse_signal(const std::string& text, const std::string& word,
   return wrong_act(text, unknown("task", task, names));
 }
 
-Result<ScriptAct> parse(const std::string& text, const ApplicationSpec& spec) {
+Result<TimedAct> parse_set(const std::string& text, const std::string& object, ScriptAct act) {
+  const std::size_t blank = object.find(' ');
+  if (blank == std::string::npos) return wrong_act(text, "write 'set VARIABLE VALUE', such as 'set kp 100 N.m/rad'");
+  act.kind = ScriptAct::Kind::kSet;
+  return TimedAct{act, text, object.substr(0, blank), trimmed(object.substr(blank))};
+}
+
+Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return wrong_act(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
   const auto at = parse_duration(text.substr(0, colon));
   if (!at) return wrong_act(text, at.error().message.c_str());
   const std::string act_text = trimmed(text.substr(colon + 1));
   const std::size_t blank = act_text.find(' ');
-  if (blank == std::string::npos) return wrong_act(text, "after the time stand a signal and a task, or 'flag up'");
+  if (blank == std::string::npos) return wrong_act(text, "after the time stand a signal and a task, 'flag up', or 'set VARIABLE VALUE'");
   const std::string word = act_text.substr(0, blank);
   const std::string object = trimmed(act_text.substr(blank));
   ScriptAct act;
   act.at = *at;
-  return word == "flag" ? parse_flag(text, object, act) : parse_signal(text, word, object, act, spec);
+  if (word == "set") return parse_set(text, object, act);
+  const auto made = word == "flag" ? parse_flag(text, object, act) : parse_signal(text, word, object, act, spec);
+  return made ? Result<TimedAct>(TimedAct{*made, text, {}, {}}) : Result<TimedAct>(made.error());
 }
 
 }  // namespace
 
-Result<std::vector<ScriptAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec) {
-  std::vector<ScriptAct> acts;
+Result<std::vector<TimedAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec) {
+  std::vector<TimedAct> acts;
   for (const std::string& text : texts) {
     auto act = parse(text, spec);
     if (!act) return act.error();
-    acts.push_back(*act);
+    acts.push_back(*std::move(act));
   }
-  std::stable_sort(acts.begin(), acts.end(), [](const ScriptAct& a, const ScriptAct& b) { return a.at < b.at; });
+  std::stable_sort(acts.begin(), acts.end(), [](const TimedAct& a, const TimedAct& b) { return a.act.at < b.act.at; });
   return acts;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Timed acts as written on the command line: "2 s: off pid", "2.5 s: flag up".
+// Timed acts as written on the command line: "2 s: off pid", "2.5 s: flag up", "3 s: set kp 100 N.m/rad".
 #pragma once
 
 #include <span>
@@ -12,8 +12,16 @@
 
 namespace chimera::desk {
 
-/// The acts in order of time. Each text is `DURATION: SIGNAL TASK` with spawn, on, off, kill, clear, reinit or ring, or
-/// `DURATION: flag up|down`. Refuses with the text and what would be right. Context: setup.
-Result<std::vector<ScriptAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec);
+/// One act. Of `set`, `act` has the time only: what a value means is not known here.
+struct TimedAct {
+  ScriptAct act;
+  std::string text;             ///< as its user wrote it
+  std::string variable, value;  ///< of `set`
+};
+
+/// The acts in order of time. Each text is `DURATION: SIGNAL TASK` with spawn, on, off, kill, clear, reinit or ring,
+/// `DURATION: flag up|down`, or `DURATION: set VARIABLE VALUE`. Refuses with the text and what would be right.
+/// Context: setup.
+Result<std::vector<TimedAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec);
 
 }  // namespace chimera::desk

@@ -8,7 +8,7 @@ namespace {
 
 class ScriptText : public ::testing::Test {
  protected:
-  Result<std::vector<ScriptAct>> parse(const std::vector<std::string>& texts) {
+  Result<std::vector<TimedAct>> parse(const std::vector<std::string>& texts) {
     return parse_script(texts, application_.tasks().spec());
   }
   std::string refusal(const std::string& text) {
@@ -22,12 +22,12 @@ TEST_F(ScriptText, OrdersActsByTimeAndKeepsTheOrderOfOneInstant) {
   const auto acts = parse({"2 s: off counter", "500 ms: flag up", "2 s:   kill   counter", "0.6 s: flag down"});
   ASSERT_TRUE(acts);
   ASSERT_EQ(acts->size(), 4u);
-  EXPECT_EQ((*acts)[0].kind, ScriptAct::Kind::kRaiseFlag);
-  EXPECT_EQ((*acts)[0].at, milliseconds(500));
-  EXPECT_EQ((*acts)[1].kind, ScriptAct::Kind::kLowerFlag);
-  EXPECT_EQ((*acts)[2].signal, static_cast<Signal>(CHIMERA_SIGNAL_OFF));
-  EXPECT_EQ((*acts)[3].signal, static_cast<Signal>(CHIMERA_SIGNAL_KILL));
-  EXPECT_EQ((*acts)[3].task.index, 0u);
+  EXPECT_EQ((*acts)[0].act.kind, ScriptAct::Kind::kRaiseFlag);
+  EXPECT_EQ((*acts)[0].act.at, milliseconds(500));
+  EXPECT_EQ((*acts)[1].act.kind, ScriptAct::Kind::kLowerFlag);
+  EXPECT_EQ((*acts)[2].act.signal, static_cast<Signal>(CHIMERA_SIGNAL_OFF));
+  EXPECT_EQ((*acts)[3].act.signal, static_cast<Signal>(CHIMERA_SIGNAL_KILL));
+  EXPECT_EQ((*acts)[3].act.task.index, 0u);
 }
 
 TEST_F(ScriptText, KnowsEverySignal) {
@@ -38,13 +38,25 @@ TEST_F(ScriptText, KnowsEverySignal) {
   for (const auto& [word, signal] : words) {
     const auto acts = parse({std::string("1 s: ") + word + " counter"});
     ASSERT_TRUE(acts) << word;
-    EXPECT_EQ((*acts)[0].signal, static_cast<Signal>(signal)) << word;
+    EXPECT_EQ((*acts)[0].act.signal, static_cast<Signal>(signal)) << word;
   }
+}
+
+TEST_F(ScriptText, AValueIsEverythingBehindTheVariable) {
+  const auto acts = parse({"3 s: set  kp   [1 2] N.m/rad ", "1 s: set vref 30 m/s"});
+  ASSERT_TRUE(acts);
+  EXPECT_EQ((*acts)[0].act.kind, ScriptAct::Kind::kSet);
+  EXPECT_EQ((*acts)[0].act.at, seconds(1));
+  EXPECT_EQ((*acts)[1].variable, "kp");
+  EXPECT_EQ((*acts)[1].value, "[1 2] N.m/rad");
+  EXPECT_EQ((*acts)[1].text, "3 s: set  kp   [1 2] N.m/rad ");
+  EXPECT_EQ(refusal("1 s: set kp"), "--at '1 s: set kp': write 'set VARIABLE VALUE', such as 'set kp 100 N.m/rad'");
+  EXPECT_EQ(refusal("1 s: sett kp 2"), "--at '1 s: sett kp 2': no signal 'sett'; did you mean 'set'?");
 }
 
 TEST_F(ScriptText, RefusesWhatIsNoAct) {
   const char* form = "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'";
-  const char* object = "after the time stand a signal and a task, or 'flag up'";
+  const char* object = "after the time stand a signal and a task, 'flag up', or 'set VARIABLE VALUE'";
   EXPECT_EQ(refusal(""), std::string("--at '': ") + form);
   EXPECT_EQ(refusal("2 s off counter"), std::string("--at '2 s off counter': ") + form);
   EXPECT_EQ(refusal("2 s:"), std::string("--at '2 s:': ") + object);

@@ -64,9 +64,14 @@ Result<Bundle> read(const Json& json) {
   auto library = library_of(json);
   if (!library) return library.error();
   const Json& groups = json.at("groups");
+  std::vector<Setting> settings;
+  for (const Json& setting : json.at("settings")) {
+    const std::string name = text_of(setting.at("name"));
+    settings.push_back({name, text_of(setting.at("value")), name});
+  }
   return Bundle{text_of(json.at("program")), text_of(json.at("file")), text_of(json.at("description")),
                 group_of(groups, "observe"), group_of(groups, "operate"), group_of(groups, "configure"),
-                *std::move(library)};
+                *std::move(library), std::move(settings)};
 }
 
 }  // namespace
@@ -77,6 +82,9 @@ std::string encode(const Bundle& bundle) {
     components.push_back({{"descriptor", text_json(to_json(entry.descriptor))},
                           {"file", text_json(entry.descriptor_file)},
                           {"object", text_json(entry.object_file)}});
+  Json settings = Json::array();
+  for (const Setting& setting : bundle.settings)
+    settings.push_back({{"name", text_json(setting.name)}, {"value", text_json(setting.value)}});
   Json groups = Json::object();
   put_group(groups, "observe", bundle.observe_group);
   put_group(groups, "operate", bundle.operate_group);
@@ -86,6 +94,7 @@ std::string encode(const Bundle& bundle) {
               {"program", text_json(bundle.program)},
               {"file", text_json(bundle.file)},
               {"description", text_json(bundle.description)},
+              {"settings", std::move(settings)},
               {"groups", std::move(groups)},
               {"units", {{"file", text_json(units.file())}, {"text", text_json(units.text())}}},
               {"components", std::move(components)}}
@@ -102,7 +111,17 @@ Result<Bundle> decode_bundle(std::string_view text) {
 }
 
 Verdict verify(const Bundle& bundle) {
-  return chimera::verify(read_description(bundle.description, bundle.file), bundle.library);
+  Verdict verdict = chimera::verify(read_description(bundle.description, bundle.file), bundle.library);
+  if (!verdict.configuration) return verdict;
+  auto set = with_settings(*verdict.configuration, bundle.library, bundle.settings);
+  if (set) {
+    verdict.configuration = *std::move(set);
+    return verdict;
+  }
+  verdict.configuration.reset();
+  verdict.report.add({.rule = "quantity-bad", .at = {}, .message = std::string(set.error().message.view()),
+                      .found = {}, .expected = {}, .nearest = {}, .remedy = {}});
+  return verdict;
 }
 
 }  // namespace chimera::manager

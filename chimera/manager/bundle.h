@@ -7,9 +7,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "chimera/base/result.h"
 #include "chimera/config/library.h"
+#include "chimera/config/setting.h"
 #include "chimera/config/verify.h"
 
 namespace chimera::manager {
@@ -22,6 +24,7 @@ struct Bundle {
   /// Groups whose members get that role at the door; nobody beside root and the keeper's user when not given.
   std::optional<std::uint32_t> observe_group, operate_group, configure_group;
   Library library;          ///< all installed components and the units
+  std::vector<Setting> settings = {};  ///< values in the place of those of the text
 
   bool is_idle() const noexcept { return description.empty(); }
 };
@@ -33,7 +36,7 @@ std::string encode(const Bundle& bundle);
 /// bundle of this version, and a descriptor or unit text that their readers refuse. Context: setup; may block.
 Result<Bundle> decode_bundle(std::string_view text);
 
-/// Verifies the description of a bundle that is not idle: the same verdict wherever it is made. Context: setup.
+/// Verifies the description, with the settings, of a bundle that is not idle: the same verdict wherever it is made. Context: setup.
 Verdict verify(const Bundle& bundle);
 
 }  // namespace chimera::manager

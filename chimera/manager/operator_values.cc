@@ -7,8 +7,8 @@
 
 #include "chimera/config/descriptor_value.h"
 #include "chimera/config/json_text.h"
+#include "chimera/config/setting.h"
 #include "chimera/config/verify.h"
-#include "chimera/config/yaml_reader.h"
 
 namespace chimera::manager {
 namespace {
@@ -25,32 +25,6 @@ Node scalar(std::string text, bool quoted = false) {
 
 std::string with_unit(const std::string& text, const std::string& unit) {
   return unit == "1" ? text : text + " " + unit;
-}
-
-/// "[1 2] rad" as people are shown it becomes "[1 rad, 2 rad]".
-std::string spread_unit(const std::string& text) {
-  const std::size_t end = text.rfind(']');
-  if (text.empty() || text[0] != '[' || end == std::string::npos) return text;
-  const std::size_t unit = text.find_first_not_of(' ', end + 1);
-  if (unit == std::string::npos && text.find(',') != std::string::npos) return text;
-  std::string out = "[";
-  for (std::size_t at = 1; at < end;) {
-    const std::size_t next = std::min(text.find_first_of(" ,", at), end);
-    if (next > at) {
-      out += (out.size() == 1 ? "" : ", ") + text.substr(at, next - at);
-      if (unit != std::string::npos) out += " " + text.substr(unit);
-    }
-    at = next + 1;
-  }
-  return out + "]";
-}
-
-/// A text as the value of a key; what is no YAML stays a text, for the rules to refuse.
-Node written_node(const std::string& text) {
-  Report report;
-  const auto tree = read_yaml("value: " + spread_unit(text), report);
-  const Node* value = tree ? tree->find("value") : nullptr;
-  return value != nullptr && report.is_legal() ? *value : scalar(text);
 }
 
 Node node_of(const Json& json, const ValueForm& form, const std::string& unit, std::uint32_t type);
@@ -80,7 +54,7 @@ Node node_of(const Json& json, const ValueForm& form, const std::string& unit, s
   if (json.is_object()) return map_node(json, form);
   if (json.is_number()) return scalar(with_unit(json.dump(), unit));
   if (json.is_string() && type == CHIMERA_STRING) return scalar(json.get<std::string>(), true);
-  if (json.is_string()) return written_node(json.get<std::string>());
+  if (json.is_string()) return written_value(json.get<std::string>());
   return scalar(json.dump());
 }
 
@@ -114,13 +88,17 @@ Result<void> fits_extents(const GivenSpec& given, const ValueForm& form, const s
   return refused("found a list of " + std::to_string(listed) + "; expected " + std::to_string(form.count), name);
 }
 
+std::string unit_of(const Configuration& configuration, const std::string& name) {
+  for (const ConfiguredVariable& variable : configuration.variables())
+    if (variable.name == name) return variable.unit;
+  return {};
+}
+
 std::string words(const Report& report) {
   std::string text;
   for (const Fault& fault : report.faults()) {
     if (fault.severity != Severity::kError) continue;
-    text += (text.empty() ? "" : "; ") + fault.message;
-    if (!fault.remedy.empty()) text += " (" + fault.remedy + ")";
-    else if (!fault.nearest.empty()) text += " (did you mean '" + fault.nearest + "'?)";
+    text += (text.empty() ? "" : "; ") + sentence(fault);
   }
   return text;
 }
@@ -164,7 +142,8 @@ Result<OperatorBytes> operator_bytes(const Configuration& configuration, const L
     const ApplicationSpec& spec = configuration.spec();
     const Json rows = with_rows(value, spec.operators[operator_named(spec, name)], form);
     for (NamedNode& given : draft.operators)
-      if (given.name.text == name) given.value = node_of(rows, form, form.unit, form.type);
+      if (given.name.text == name)
+        given.value = in_unit(node_of(rows, form, form.unit, form.type), form.unit, library.units());
   }
   const Verdict verdict = chimera::verify(draft, library);
   if (!verdict.configuration)
@@ -173,7 +152,10 @@ Result<OperatorBytes> operator_bytes(const Configuration& configuration, const L
   for (const auto& [name, value] : values.items()) {
     const std::size_t index = operator_named(verdict.configuration->spec(), name);
     const GivenSpec& given = verdict.configuration->spec().operators[index];
-    if (const auto fits = fits_extents(given, forms.at(name), name); !fits) return fits.error();
+    const ValueForm& form = forms.at(name);
+    if (const std::string unit = unit_of(*verdict.configuration, name); unit != form.unit && form.fields.empty())
+      return refused("expected a quantity in \"" + form.unit + "\", found one in \"" + unit + "\"", name);
+    if (const auto fits = fits_extents(given, form, name); !fits) return fits.error();
     bytes[index].assign(given.value.begin(), given.value.end());
   }
   return bytes;

@@ -77,6 +77,7 @@ void Releases::record_release(const Job& job) noexcept {
 }
 
 void Releases::act(const ScriptAct& act, Nanoseconds now) noexcept {
+  if (act.kind == ScriptAct::Kind::kSet) return set_.set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
     set_.raise_flag(up);

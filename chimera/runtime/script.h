@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an operator would do, written down with times: signals and the illegal-configuration flag. Tests and
-// `run` hand one to an executor, which acts at the first cycle edge at or after each time.
+// What an operator would do, written down with times: signals, the illegal-configuration flag, values of operator
+// variables. Tests and `run` hand one to an executor, which acts at the first cycle edge at or after each time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -15,12 +16,14 @@ namespace chimera {
 
 /// One act. `at` counts from the start of the run.
 struct ScriptAct {
-  enum class Kind : std::uint8_t { kSignal, kRaiseFlag, kLowerFlag };
+  enum class Kind : std::uint8_t { kSignal, kRaiseFlag, kLowerFlag, kSet };
 
   Nanoseconds at;
   Kind kind = Kind::kSignal;
   Signal signal = Signal::kOn;  ///< kSignal only
   TaskId task;                  ///< kSignal only
+  std::size_t operator_index = 0;         ///< kSet only: in ApplicationSpec::operators
+  std::span<const std::byte> value = {};  ///< kSet only: as long as the value that the description gives
 };
 
 /// Acts in order of time, those of one instant in the given order. The memory outlives the script.

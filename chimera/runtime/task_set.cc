@@ -131,12 +131,17 @@ void TaskSet::place_operators() {
   if (place_.rtpu.is_valid()) return;  // they are the manager's
   for (std::size_t o = 0; o < spec_.operators.size(); ++o) {
     const GroupId group = layout_->operator_group(o);
-    GroupWriter writer(group_memory(group), layout_->place(group).payload_bytes);
-    const auto value = spec_.operators[o].value;
-    std::copy(value.begin(), value.end(), writer.staging());
-    writer.publish(Nanoseconds{}, 1);
+    set_operator(o, spec_.operators[o].value, Nanoseconds{});
     operators_.emplace_back(group_memory(group).data(), layout_->place(group).payload_bytes);
   }
+}
+
+void TaskSet::set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept {
+  CHIMERA_ASSERT(!place_.rtpu.is_valid() && value.size() == spec_.operators[index].value.size());
+  const GroupId group = layout_->operator_group(index);
+  GroupWriter writer(group_memory(group), layout_->place(group).payload_bytes);  // takes up where the last one stopped
+  std::copy(value.begin(), value.end(), writer.staging());
+  writer.publish(now, 1);
 }
 
 TaskId TaskSet::find(std::string_view name) const noexcept {

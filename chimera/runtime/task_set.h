@@ -143,6 +143,9 @@ class TaskSet {
   /// Rings the doorbell of a task behind a server: one job for each ring, none is lost. False, with nothing done, when
   /// it is not ON or has no server. Context: edge; wait-free.
   bool ring(TaskId task) noexcept;
+  /// Publishes a value of operator variable `index`. Requires: the context is alone; as many bytes as the description
+  /// gives. Context: edge.
+  void set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept;
   /// Hands the signals that `task` sent during its last method to their targets. Context: edge.
   void deliver(Task& task) noexcept;
   /// The signal waits for the present method of the task to end. Context: edge.

@@ -181,6 +181,27 @@ class Run(unittest.TestCase):
         self.assertRegex(said, r"\nrefused at 0\.\d+ s: clear one: .*OFF")
         self.assertNotIn(": off one", said, "that it is OFF already is no refusal")
 
+    def test_values_beside_those_of_the_file(self):
+        """From the start, and at a stated time; the manager knows them, too."""
+        text = ("subsystem: subject\nconstants: {k: 2 N.m/rad}\ntasks:\n  gain: {rate: 100 Hz}\n"
+                "operator: {x: 1 rad}\n")
+        words = ("--set", "x", "2 rad", "--set", "k", "3 N.m/rad", "--at", "0.4 s: set x 180 deg", "--watch", "y",
+                 "--every", "0.3 s")
+        for isolation in ("process", "none"):
+            with self.subTest(isolation):
+                code, said = run(text, *words, "--for", "0.7 s", "--isolation", isolation, "--expect", "y > 9.4 N.m")
+                self.assertEqual(code, 0, said)
+                self.assertIn("t 0.300 s  y 6 m2.kg/s2\nt 0.600 s  y 9.42478 m2.kg/s2\n", said)
+        with System(text, ("--priority", "0", *words)) as system:
+            self.assertEqual(system.call("get", variables=["x"])["values"]["x"]["value"], 2)
+            await_that(lambda: any(e["kind"] == "set" and e["text"] == "x = 3.14159 rad" for e in system.events()), 10,
+                       "the event")
+            self.assertEqual(system.call("save")["operator"], {"x": "3.141592653589793 rad"})
+        code, said = run(text, "--at", "1 s: set k 3 N.m/rad")
+        self.assertEqual(code, 1, said)
+        self.assertIn("'k' is a constant, which nothing changes while tasks run; for the whole run: --set k VALUE\n",
+                      said)
+
     def test_records_what_every_rtpu_does(self):
         words = ("--priority", "0", "--for", "0.2 s", "--trace", "trace.json", "--timeline", "10 ms")
         with System(TWO, words, wait=False) as system:

@@ -7,10 +7,10 @@ _chimera_words() {
   case $1 in
     '') echo '--help --version check schedule run idle list describe test new clear end events flag get kill off on' \
       'profile reinit ring save scope set spawn status top watch why shell' ;;
-    check) echo '--help --json --graph' ;;
-    schedule) echo '--help --profile --svg --dispatch --json' ;;
-    run) echo '--help --for --at --watch --every --svg --expect --strict --trace --profile --timeline --virtual --preemptive' \
-      '--seed --quantum --priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
+    check) echo '--help --json --set --graph' ;;
+    schedule) echo '--help --set --profile --svg --dispatch --json' ;;
+    run) echo '--help --for --set --at --watch --every --svg --expect --strict --trace --profile --timeline --virtual' \
+      '--preemptive --seed --quantum --priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
     idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
@@ -57,8 +57,8 @@ _chimera() {
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
     --trace | --csv | --svg | --profile | --save | --setup | --inputs)
       mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
-    --names | --cycles | --for | --seed | --quantum | --priority | --at | --watch | --every | --expect | --timeline | \
-      --since | --kind | --trigger | --pre | --wait | --subsystem) return ;;
+    --names | --cycles | --for | --seed | --quantum | --priority | --set | --at | --watch | --every | --expect | \
+      --timeline | --since | --kind | --trigger | --pre | --wait | --subsystem) return ;;
   esac
   if [[ $word == -* || -z $command || $command == new ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_words "$command")" -- "$word")
