@@ -10,6 +10,7 @@
 #include "apps/chimera/keep.h"
 #include "apps/chimera/run_command.h"
 #include "apps/chimera/shell_words.h"
+#include "apps/chimera/sweep_command.h"
 #include "apps/chimera/wrong_usage.h"
 #include "chimera/config/nearest.h"
 #include "chimera/desk/check.h"
@@ -33,6 +34,7 @@ struct Words {
   desk::NewRequest made;
   bool in_c = false, for_hardware = false;
   RunWords run;
+  SweepWords sweep;
   std::shared_ptr<ShellWords> shell;
 };
 
@@ -133,6 +135,7 @@ int carry_out(CLI::App& app, Words& words) {
   if (app.got_subcommand("new")) return print(make_new(app, words));
   if (app.got_subcommand("list")) return print(desk::list(workplace, words.json));
   if (app.got_subcommand("describe")) return print(desk::describe_component(words.component, workplace, words.json));
+  if (app.got_subcommand("sweep")) return carry_out_sweep(words.sweep, workplace);
   if (app.got_subcommand("test")) return print(run_tests(words, workplace));
   const int code = carry_out_shell_command(app, *words.shell, workplace.unit_files);
   if (code >= 0) return code;
@@ -165,6 +168,7 @@ int main(int argc, char** argv) {
   add_check(app, words);
   add_schedule(app, words);
   add_run(app, words.run);
+  add_sweep(app, words.sweep);
   add_list(app, words);
   add_test(app, words);
   add_new(app, words);

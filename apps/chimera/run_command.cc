@@ -23,7 +23,8 @@ namespace {
 /// What the face of a run does, and so what both commands know.
 void add_face_options(CLI::App* command, RunWords& words) {
   command->add_option("--for", words.duration, "how long, such as '10 s'; without it until Ctrl-C");
-  command->add_option("--at", words.run.at, "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad'; may be repeated");
+  command->add_option("--at", words.run.at,
+                      "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad'; may be repeated");
   command->add_option("--watch", words.run.watch, "print these state variables while it runs");
   command->add_option("--every", words.every, "how often --watch prints (1 s)");
   command->add_option("--expect", words.run.expect, "at the end must hold: 'error <= 2 mrad'; may be repeated");

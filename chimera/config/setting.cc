@@ -114,7 +114,8 @@ class Placement {
     const ConfiguredVariable* known = variable(setting.name);
     if (known == nullptr || known->type != "string" || !known->shape.empty()) {
       Node value = written_value(setting.value);
-      return known == nullptr || keeps_units_ == nullptr ? value : in_unit(std::move(value), known->unit, *keeps_units_);
+      return known == nullptr || keeps_units_ == nullptr ? value
+                                                         : in_unit(std::move(value), known->unit, *keeps_units_);
     }
     Node node;
     node.kind = Node::Kind::kScalar;
@@ -148,11 +149,12 @@ class Placement {
 
   Error no_such(const Setting& setting) const {
     if (const ConfiguredVariable* known = variable(setting.name); known != nullptr) {
-      const ConfiguredTask* task = known->producers.empty() ? nullptr
-                                                            : &configuration_.tasks()[known->producers[0].task];
-      return refuse(setting, "'" + setting.name + "' is produced by " +
-                                 (task == nullptr ? "a task" : "task '" + task->name + "'") +
-                                 "; operator variables and constants of the file can be set",
+      const ConfiguredTask* task =
+          known->producers.empty() ? nullptr : &configuration_.tasks()[known->producers[0].task];
+      return refuse(setting,
+                    "'" + setting.name + "' is produced by " +
+                        (task == nullptr ? "a task" : "task '" + task->name + "'") +
+                        "; operator variables and constants of the file can be set",
                     known->at);
     }
     std::vector<std::string> names;
@@ -225,8 +227,8 @@ Result<Configuration> with_new_value(const Configuration& configuration, const L
   for (const ConfiguredVariable& now : verdict.configuration->variables()) {
     if (now.name != setting.name || before == nullptr) continue;
     if (now.unit != before->unit)
-      return placement.refuse(setting, "expected a quantity in \"" + before->unit + "\", found one in \"" + now.unit + "\"",
-                              before->at);
+      return placement.refuse(
+          setting, "expected a quantity in \"" + before->unit + "\", found one in \"" + now.unit + "\"", before->at);
     if (now.type != before->type || now.shape != before->shape)
       return placement.refuse(setting, "expected " + before->type + before->shape + ", found " + now.type + now.shape,
                               before->at);

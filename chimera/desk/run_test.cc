@@ -181,12 +181,14 @@ TEST(Run, AValueSetAtATimeCountsFromTheNextJobOn) {
   request.every = milliseconds(10);
   request.at = {"15 ms: set x 180 deg", "30 ms: set x -1 rad"};
   const Said said = said_by(request, kGain);
-  EXPECT_NE(said.out.find("t 0.010 s  y 2 m2.kg/s2\nt 0.020 s  y 2 m2.kg/s2\nt 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"),
+  EXPECT_NE(said.out.find("t 0.010 s  y 2 m2.kg/s2\nt 0.020 s  y 2 m2.kg/s2\n"
+                          "t 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"),
             std::string::npos)
       << said.out << said.err;
   EXPECT_EQ(said_by(request, kGain).out, said.out) << "the same bytes every time";
   request.preemptive = true;
-  EXPECT_NE(said_by(request, kGain).out.find("t 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"), std::string::npos);
+  EXPECT_NE(said_by(request, kGain).out.find(
+                "t 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"), std::string::npos);
 }
 
 TEST(Run, AValueThatCannotBeSetIsRefusedBeforeAnythingRuns) {
@@ -198,8 +200,8 @@ TEST(Run, AValueThatCannotBeSetIsRefusedBeforeAnythingRuns) {
     return said.err.substr(said.err.find("--at"));
   };
   EXPECT_EQ(refusal("1 ms: set k 3"),
-            "--at '1 ms: set k 3': 'k' is a constant, which nothing changes while tasks run; for the whole run: --set k "
-            "VALUE\n");
+            "--at '1 ms: set k 3': 'k' is a constant, which nothing changes while tasks run; for the whole run: "
+            "--set k VALUE\n");
   EXPECT_EQ(refusal("1 ms: set y 3"), "--at '1 ms: set y 3': 'y' is produced by task 'gain'; operator variables and "
                                       "constants of the file can be set\n");
   EXPECT_EQ(refusal("1 ms: set xy 3"),

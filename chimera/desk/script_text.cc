@@ -54,7 +54,8 @@ Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   if (!at) return wrong_act(text, at.error().message.c_str());
   const std::string act_text = trimmed(text.substr(colon + 1));
   const std::size_t blank = act_text.find(' ');
-  if (blank == std::string::npos) return wrong_act(text, "after the time stand a signal and a task, 'flag up', or 'set VARIABLE VALUE'");
+  if (blank == std::string::npos)
+    return wrong_act(text, "after the time stand a signal and a task, 'flag up', or 'set VARIABLE VALUE'");
   const std::string word = act_text.substr(0, blank);
   const std::string object = trimmed(act_text.substr(blank));
   ScriptAct act;

@@ -146,6 +146,11 @@ class Page {
     if (!plot_.note.empty()) words(kLeft, 44, plot_.note, "note", "start");
   }
 
+  std::string across() const {
+    if (!plot_.across.empty()) return plot_.across;
+    return plot_.is_over_frequency ? "frequency [Hz]" : "time [s]";
+  }
+
   void legend(const Panel& panel) {
     double at = kLeft, row = panel.top - 8 - kLegendRow * static_cast<double>(panel.legend_rows - 1);
     for (std::size_t i = 0; i < panel.curves.size(); ++i) {
@@ -178,7 +183,7 @@ class Page {
       line(x(at), panel.top, x(at), bottom, "grid");
       if (with_times) words(x(at), bottom + 17, label(at), "mark", "middle");
     }
-    if (with_times) words(kLeft + kInner / 2, bottom + 36, is_log ? "frequency [Hz]" : "time [s]", "", "middle");
+    if (with_times) words(kLeft + kInner / 2, bottom + 36, across(), "", "middle");
     const std::string middle = number(panel.top + kPanel / 2);
     const std::string text = panel.unit == "1" ? "[1]" : "[" + panel.unit + "]";
     body_ += "<text x=\"18\" y=\"" + middle + "\" text-anchor=\"middle\" transform=\"rotate(-90 18 " + middle + ")\">" +

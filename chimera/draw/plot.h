@@ -39,6 +39,7 @@ struct Plot {
   double level = std::numeric_limits<double>::quiet_NaN();
   std::string level_unit;
   bool is_over_frequency = false;  ///< `at` is a frequency: its axis is logarithmic
+  std::string across = {};         ///< what `at` is, when it is neither time nor frequency: "kp [N.m/rad]"
 };
 
 /// Marks of an axis: round numbers (1, 2, 5 times a power of ten) that lie within [low, high], about `wanted` of them,

@@ -5,12 +5,14 @@
 # The options of each command, and at the top level the commands too.
 _chimera_words() {
   case $1 in
-    '') echo '--help --version check schedule run idle list describe test new clear end events flag get kill off on' \
+    '') echo '--help --version check schedule run sweep idle list describe test new clear end events flag get kill off on' \
       'profile reinit ring save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --set --graph' ;;
     schedule) echo '--help --set --profile --svg --dispatch --json' ;;
     run) echo '--help --for --set --at --watch --every --svg --expect --strict --trace --profile --timeline --virtual' \
       '--preemptive --seed --quantum --priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
+    sweep) echo '--help --over --for --measure --expect --set --at --every --jobs --limit --preemptive --seed' \
+      '--quantum --csv --svg --json' ;;
     idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
@@ -58,11 +60,12 @@ _chimera() {
     --trace | --csv | --svg | --profile | --save | --setup | --inputs)
       mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --names | --cycles | --for | --seed | --quantum | --priority | --set | --at | --watch | --every | --expect | \
-      --timeline | --since | --kind | --trigger | --pre | --wait | --subsystem) return ;;
+      --timeline | --over | --measure | --jobs | --limit | --case | --since | --kind | --trigger | --pre | --wait | \
+      --subsystem) return ;;
   esac
   if [[ $word == -* || -z $command || $command == new ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_words "$command")" -- "$word")
-  elif [[ $command == check || $command == schedule || $command == run ]]; then
+  elif [[ $command == check || $command == schedule || $command == run || $command == sweep ]]; then
     mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -- "$word")
   elif [[ " get set watch why scope " == *" $command "* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_names)" -- "$word")

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/output_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace chimera::desk {
+namespace {
+
+Error not_written(const std::string& path, int why) {
+  return {ErrorCode::kSystem, {std::string("cannot be written: ") + std::strerror(why)}, {path}};
+}
+
+}  // namespace
+
+Result<void> may_write(const std::string& path) {
+  if (path.empty()) return {};
+  const bool existed = ::access(path.c_str(), F_OK) == 0;
+  const bool may = static_cast<bool>(std::ofstream(path, std::ios::binary | std::ios::app));
+  if (!may) return not_written(path, errno);
+  if (!existed) ::unlink(path.c_str());
+  return {};
+}
+
+Result<void> write_whole(const std::string& path, const std::string& text) {
+  if (path.empty()) return {};
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (file.flush()) return {};
+  return not_written(path, errno);
+}
+
+}  // namespace chimera::desk
