@@ -10,7 +10,8 @@
 #   CHIMERA_COMPONENT_GROUP is set, into the group's one test binary.
 # chimera_application(NAME description)
 #   The tests check_NAME and run_NAME: the description is legal with the components built here and those installed,
-#   and runs for a second of virtual time.
+#   and runs for a second of virtual time. With a file of cases beside it (docs/formats/cases.md; NAME.cases.yaml beside
+#   NAME.yaml) the test cases_NAME, whose report for a build machine is cases_NAME.xml in the build folder.
 # chimera_component_tests(GROUP [file...])
 #   The test binary of all components made so far with CHIMERA_COMPONENT_GROUP set to GROUP, and of further test files.
 #
@@ -125,7 +126,13 @@ function(chimera_application name description)
   endif()
   add_test(NAME check_${name} COMMAND chimera::program check ${description})
   add_test(NAME run_${name} COMMAND chimera::program run ${description} --virtual --for "1 s")
-  set_tests_properties(check_${name} run_${name} PROPERTIES
+  set(tests check_${name} run_${name})
+  string(REGEX REPLACE "\\.yaml$" ".cases.yaml" cases ${description})
+  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${cases})
+    add_test(NAME cases_${name} COMMAND chimera::program test ./${cases} --junit ${CMAKE_BINARY_DIR}/cases_${name}.xml)
+    list(APPEND tests cases_${name})
+  endif()
+  set_tests_properties(${tests} PROPERTIES
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} ENVIRONMENT "CHIMERA_PATH=${path}")
 endfunction()
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The `chimera` command: words of the command line to the commands of chimera/desk.
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "chimera/desk/list.h"
 #include "chimera/desk/new.h"
 #include "chimera/desk/schedule.h"
+#include "chimera/desk/test_application.h"
 #include "chimera/desk/test_component.h"
 
 namespace {
@@ -31,6 +33,8 @@ struct Words {
   SetWords set;
   std::string component;
   desk::TestOptions test;
+  desk::CasesRequest cases;
+  std::string cases_limit;
   desk::NewRequest made;
   bool in_c = false, for_hardware = false;
   RunWords run;
@@ -84,8 +88,10 @@ void add_list(CLI::App& app, Words& words) {
 }
 
 void add_test(CLI::App& app, Words& words) {
-  CLI::App* t = app.add_subcommand("test", "Run components alone in virtual time and judge what they do");
-  auto* names = t->add_option("COMPONENT", words.test.components, "a component, or the path of a shared object");
+  CLI::App* t = app.add_subcommand("test", "Test components alone, or the applications of a folder, in virtual time");
+  auto* names = t->add_option("WHAT", words.test.components,
+                              "a component, the path of a shared object, a folder with NAME.cases.yaml, or such "
+                              "a file");
   t->add_flag("--all", words.test.all, "every installed component")->excludes(names);
   t->add_option("--setup", words.test.setup, "description of the task; left out: NAME.test.yaml beside the component");
   t->add_option("--inputs", words.test.inputs,
@@ -94,15 +100,53 @@ void add_test(CLI::App& app, Words& words) {
   t->add_option("--seed", words.test.seed, "of generated inputs; 1 when left out");
   t->add_option("--cycles", words.test.cycles, "of generated inputs; 1000 when left out")
       ->check(CLI::Range(20, 100000));
+  t->add_option("--case", words.cases.only, "a folder: only the cases of this name; may be repeated")
+      ->allow_extra_args(false);
+  add_file_option(*t, "--junit", words.cases.junit, "a folder: write the report for a build machine (JUnit XML)");
+  t->add_option("--jobs", words.cases.jobs, "a folder: cases at a time; else as many as there are processors")
+      ->check(CLI::Range(1, 1024));
+  t->add_option("--limit", words.cases_limit, "a folder: time on the wall for each case (10 min)");
   t->add_flag("--json", words.json, "the reports as one JSON object");
-  t->footer("Each runs three times in a process of its own; docs/formats/component-test.md has the setup.\n"
-            "Exit code 0: all pass, 1: one fails, 2: wrong usage.\nExample: chimera test pid_joint --inputs run.csv");
+  t->footer("A component runs three times in a process of its own; docs/formats/component-test.md has the setup.\n"
+            "A folder: every case of every NAME.cases.yaml in it and below; docs/formats/cases.md has the keys.\n"
+            "A bare word that is both a component and a folder is the component: write 'NAME/' for the folder.\n"
+            "Exit code 0: all pass, 1: one fails, or there is no test, 2: wrong usage.\n"
+            "Examples: chimera test pid_joint --inputs run.csv\n"
+            "          chimera test . --junit report.xml");
 }
 
-desk::Output run_tests(Words& words, const desk::Workplace& workplace) {
+int usage(const std::string& what) { return print({"", "chimera test: " + what + "\n", desk::kUsage}); }
+
+int run_cases(Words& words, const desk::Workplace& workplace) {
+  words.cases.places = words.test.components;
+  words.cases.json = words.json;
+  words.cases.limit = seconds(600);
+  if (!read_duration(words.cases_limit, "--limit", words.cases.limit)) return desk::kUsage;
+  std::signal(SIGINT, [](int) { desk::request_stop(); });
+  std::signal(SIGTERM, [](int) { desk::request_stop(); });
+  return desk::test_application(words.cases, workplace, stdout, stderr);
+}
+
+int run_tests(const CLI::App& app, Words& words, const desk::Workplace& workplace) {
+  const auto is_given = [&app](std::initializer_list<const char*> options) {
+    return std::any_of(options.begin(), options.end(), [&app](const char* o) { return app.count(o) > 0; });
+  };
   words.test.json = words.json;
-  if (words.test.all || !words.test.components.empty()) return desk::test_components(words.test, workplace);
-  return {"", "chimera test: name a component, or --all\n", desk::kUsage};
+  const auto& what = words.test.components;
+  if (!words.test.all && what.empty()) return usage("name a component, a folder with NAME.cases.yaml, or --all");
+  const auto library = workplace.library();
+  const auto places = library ? std::count_if(what.begin(), what.end(), [&](const std::string& word) {
+    return desk::is_place_of_cases(word, *library);
+  }) : 0;
+  if (places == 0) {
+    if (is_given({"--case", "--junit", "--jobs", "--limit"}))
+      return usage("--case, --junit, --jobs and --limit belong to a folder with NAME.cases.yaml");
+    return print(desk::test_components(words.test, workplace));
+  }
+  if (places != static_cast<std::ptrdiff_t>(what.size())) return usage("components and folders are two calls");
+  if (is_given({"--setup", "--inputs", "--names", "--seed", "--cycles"}))
+    return usage("--setup, --inputs, --names, --seed and --cycles belong to a component; a case has keys of its own");
+  return run_cases(words, workplace);
 }
 
 void add_new(CLI::App& app, Words& words) {
@@ -136,7 +180,7 @@ int carry_out(CLI::App& app, Words& words) {
   if (app.got_subcommand("list")) return print(desk::list(workplace, words.json));
   if (app.got_subcommand("describe")) return print(desk::describe_component(words.component, workplace, words.json));
   if (app.got_subcommand("sweep")) return carry_out_sweep(words.sweep, workplace);
-  if (app.got_subcommand("test")) return print(run_tests(words, workplace));
+  if (app.got_subcommand("test")) return run_tests(*app.get_subcommand("test"), words, workplace);
   const int code = carry_out_shell_command(app, *words.shell, workplace.unit_files);
   if (code >= 0) return code;
   if (app.got_subcommand("attend")) return carry_out_attend(words.run);

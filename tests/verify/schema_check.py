@@ -49,6 +49,20 @@ def main():
         faults += [f"{name}: {key} is not in description.md" for key in sorted(reader)
                    if f"| `{key}` |" not in document]
     good = sorted((ROOT / "tests/verify/good").glob("*.yaml")) + sorted((ROOT / "examples").glob("**/*.yaml"))
+    cases = json.loads((ROOT / "docs/formats/cases.schema.json").read_text())
+    jsonschema.Draft7Validator.check_schema(cases)
+    known = cases["definitions"]["case"]["properties"]
+    header = (ROOT / "chimera/desk/case_file.h").read_text()
+    for name, properties in (("kCaseFileKeys", cases["properties"]), ("kCaseKeys", known)):
+        faults += [f"{name}: {key} is in the reader or in the schema only"
+                   for key in sorted(set(array(header, name)) ^ set(properties))]
+    files = [path for path in good if path.name.endswith(".cases.yaml")]
+    good = [path for path in good if path not in files]
+    if not files:
+        faults.append("no example has a file of cases")
+    for path in files:
+        for error in jsonschema.Draft7Validator(cases).iter_errors(yaml.load(path.read_text(), Yaml12)):
+            faults.append(f"{path.relative_to(ROOT)}: {'/'.join(map(str, error.absolute_path))}: {error.message}")
     for path in good:
         for error in judge.iter_errors(yaml.load(path.read_text(), Yaml12)):
             faults.append(f"{path.relative_to(ROOT)}: {'/'.join(map(str, error.absolute_path))}: {error.message}")

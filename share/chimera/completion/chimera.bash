@@ -16,7 +16,7 @@ _chimera_words() {
     idle) echo '--help --subsystem' ;;
     list) echo '--help --json' ;;
     describe) echo '--help --json' ;;
-    test) echo '--help --all --setup --inputs --names --seed --cycles --json' ;;
+    test) echo '--help --all --setup --inputs --names --seed --cycles --case --junit --jobs --limit --json' ;;
     clear | end | flag | kill | off | on | reinit | ring | set | spawn | why)
       echo '--help --json --subsystem' ;;
     status) echo '--help --json --subsystem --pid' ;;
@@ -57,7 +57,7 @@ _chimera() {
       mapfile -t COMPREPLY < <(compgen -g -- "$word"); return ;;
     --dispatch) mapfile -t COMPREPLY < <(compgen -W 'preemptive executive' -- "$word"); return ;;
     --graph) mapfile -t COMPREPLY < <(compgen -W 'dot svg text' -- "$word"); return ;;
-    --trace | --csv | --svg | --profile | --save | --setup | --inputs)
+    --trace | --csv | --svg | --profile | --save | --setup | --inputs | --junit)
       mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     --names | --cycles | --for | --seed | --quantum | --priority | --set | --at | --watch | --every | --expect | \
       --timeline | --over | --measure | --jobs | --limit | --case | --since | --kind | --trigger | --pre | --wait | \
@@ -78,7 +78,7 @@ _chimera() {
   elif [[ $command == describe ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_chimera_components)" -- "$word")
   elif [[ $command == test ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$(_chimera_components)" -- "$word"; compgen -f -X '!*.so' -- "$word")
+    mapfile -t COMPREPLY < <(compgen -W "$(_chimera_components)" -- "$word"; compgen -f -X '!*.so' -- "$word"; compgen -d -- "$word")
   fi
 }
 complete -o filenames -F _chimera chimera
