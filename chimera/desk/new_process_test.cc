@@ -66,6 +66,8 @@ TEST_F(New, ComponentInCAndApplicationBuildAndPassAgainstAnInstallation) {
   build_and_test(make(NewKind::kApplication, "demo", prefix), "demo");
   EXPECT_TRUE(fs::exists(folder_ + "/demo/build/components/demo_control.component.json"));
   EXPECT_TRUE(text("demo/demo.yaml").starts_with("subsystem: demo\n"));  // no schema is installed with the sdk
+  EXPECT_NE(text("demo/build/cases_demo.xml").find("tests=\"2\" failures=\"0\" errors=\"0\""), std::string::npos)
+      << log();
 }
 
 TEST_F(New, DriverOfADeviceBuildsAndPassesOnAPseudoTerminal) {

@@ -63,7 +63,7 @@ class Sweep(Place):
                               r"k = 2 furlongs: ")
         code, out, _ = self.sweep("--over", "crash.how = nothing, hang", "--measure", "y", "--limit", "2 s")
         self.assertEqual(code, 1)
-        self.assertIn("hang         -  FAILED: did not end within 2 s", out)
+        self.assertRegex(out, r"\n +hang +-  FAILED: did not end within 2 s\n$")
 
     def test_elements_and_magnitudes_of_a_list(self):
         arm = pathlib.Path(os.environ["CHIMERA_SOURCE"]).resolve() / "examples/01_puma_pid/puma_pid.yaml"
@@ -76,7 +76,8 @@ class Sweep(Place):
             self.assertGreaterEqual(values["max |tau[1]|"], abs(values["min tau[1]"]))
         code, out, _ = self.chimera(*words, "--measure", "tau[6]")
         self.assertEqual(code, 1)
-        self.assertIn("'tau[6]': no element 'tau[6]': there are tau[0] to tau[5]", json.loads(out)["runs"][0]["failure"])
+        self.assertIn("'tau[6]': no element 'tau[6]': there are tau[0] to tau[5]",
+                      json.loads(out)["runs"][0]["failure"])
 
     def test_refuses_before_anything_runs(self):
         y = ("--measure", "y")
