@@ -42,7 +42,7 @@ void add_sweep(CLI::App& app, SweepWords& words) {
       "One row a run, the first list varying slowest. A run that is refused, crashes or hangs is a row that\n"
       "says so. Exit code 0: every run came to its end and every --expect holds.\n"
       "Example: chimera sweep examples/01_puma_pid/puma_pid.yaml --over 'kd = [10:10:60] N.m.s/rad' --for '2 s' "
-      "--measure 'max |error|'");
+      "--measure 'max error_now'");
 }
 
 int carry_out_sweep(SweepWords& words, const desk::Workplace& workplace) {
