@@ -58,6 +58,7 @@ PortSpec port_spec(Model& model, Parts& parts, const LinkedPort& port, const Con
   spec.instance = port.instance;
   spec.variable = configured.variable;
   if (!port.is(CHIMERA_RESOURCE)) {
+    spec.unit = configured.unit;
     spec.element_bytes = port.element_bytes;
     spec.type = *port.type;
     fill_extents(parts, port, spec.extent);

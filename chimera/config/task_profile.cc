@@ -73,6 +73,7 @@ std::string task_json(const TaskProfile& task, Nanoseconds origin) {
     text += ", " + json_string(counter.key) + ": " + number(p.*counter.count);
   text += ", \"faults\": " + number(task.faults.count);
   if (task.faults.count > 0) text += ", \"last_fault\": " + fault_json(task.faults, origin);
+  if (task.faults.notes > 0) text += std::string(", \"note\": ") + json_string(task.faults.note);
   return text + "}";
 }
 
@@ -98,14 +99,17 @@ Method method_of(const std::string& name) {
   throw std::invalid_argument("unknown method " + name);
 }
 
+void keep(const std::string& text, char (&to)[CHIMERA_FAULT_TEXT]) {
+  std::copy_n(text.begin(), std::min(text.size(), sizeof to - 1), to);
+}
+
 FaultRecord fault_of(const nlohmann::json& json, std::uint64_t count, Nanoseconds origin) {
   FaultRecord faults;
   faults.count = count;
   faults.method = method_of(json.at("method").get<std::string>());
   faults.at = origin + Nanoseconds{json.at("at_ns").get<std::int64_t>()};
   faults.last.code = json.at("code").get<std::int32_t>();
-  const std::string text = json.at("text").get<std::string>();
-  std::copy_n(text.begin(), std::min(text.size(), sizeof faults.last.text - 1), faults.last.text);
+  keep(json.at("text").get<std::string>(), faults.last.text);
   return faults;
 }
 
@@ -136,6 +140,10 @@ TaskProfile profile_of(const nlohmann::json& json, Nanoseconds origin) {
   for (const Counter& counter : kCounters) made.profile.*counter.count = json.at(counter.key).get<std::uint64_t>();
   const auto faults = json.at("faults").get<std::uint64_t>();
   if (faults > 0) made.faults = fault_of(json.at("last_fault"), faults, origin);
+  if (const auto note = json.find("note"); note != json.end()) {
+    made.faults.notes = 1;
+    keep(note->get<std::string>(), made.faults.note);
+  }
   return made;
 }
 

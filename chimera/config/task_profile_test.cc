@@ -38,6 +38,8 @@ TaskProfile sample() {
   made.faults.method = Method::kCycle;
   made.faults.last.code = 12;
   std::strcpy(made.faults.last.text, "too \"hot\"");
+  made.faults.notes = 3;
+  std::strcpy(made.faults.note, "without its fan");
   return made;
 }
 
@@ -53,7 +55,8 @@ TEST(TaskProfile, ReadsAsDocumented) {
             "\"missed\": 1, \"overrun\": 0, \"min_refused\": 0, \"dropped\": 0, \"held\": 0, \"aborted\": 0, "
             "\"partial\": 10, \"tolerated\": 11, \"stale\": 0, \"rejected\": 4, \"preempted\": 5, \"demoted\": 6, "
             "\"events\": 9, \"events_lost\": 8, \"exhausted\": 7, \"faults\": 1, \"last_fault\": "
-            "{\"method\": \"cycle\", \"at_ns\": 1000000000, \"code\": 12, \"text\": \"too \\\"hot\\\"\"}}]");
+            "{\"method\": \"cycle\", \"at_ns\": 1000000000, \"code\": 12, \"text\": \"too \\\"hot\\\"\"}, "
+            "\"note\": \"without its fan\"}]");
 }
 
 TEST(TaskProfile, ReadsBackTheSame) {

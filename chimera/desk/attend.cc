@@ -195,6 +195,7 @@ Json Attendance::readings(std::vector<std::string> names) {
   if (names.empty()) return Json::object();
   const auto answer = line_.ask("get", {{"variables", std::move(names)}});
   return answer ? answer->value("values", Json::object()) : Json::object();
+    if (kind == "note" && !run_.json) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
 }
 
 void Attendance::watch_line(Nanoseconds at) {

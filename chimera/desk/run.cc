@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/progress.h"
@@ -71,6 +72,7 @@ class Session {
 
  private:
   void drain();
+  void tell_notes();
   void watch_line(Nanoseconds at);
   bool write_plot() const;
 
@@ -86,6 +88,7 @@ class Session {
   std::unique_ptr<RunLoop> loop_;
   std::vector<Probe> watched_;
   WatchPlot plot_;
+  std::vector<std::uint64_t> notes_told_;  // by task
   Nanoseconds ran_;
 };
 
@@ -105,8 +108,19 @@ Result<void> Session::start() {
   // Now that extents are known.
   for (const std::string& name : request_.watch) watched_.push_back(*application_.probe(name));
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
+  if (request_.virtual_time) tell_notes();  // else the loop runs by now: they are told at the end
   if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin(), loop_->origin());
   return {};
+}
+
+// What components have to say beside their values, once each.
+void Session::tell_notes() {
+  const auto tasks = application_.tasks().tasks();
+  notes_told_.resize(tasks.size());
+  for (const Task& task : tasks) {
+    if (std::exchange(notes_told_[task.id.index], task.faults.notes) == task.faults.notes || request_.json) continue;
+    std::fprintf(out_, "%s\n", note_line(task.spec->name, task.faults.note).c_str());
+  }
 }
 
 void Session::drain() {
@@ -195,6 +209,7 @@ int Session::report(RunEnd end) {
     drain();
     sink_->end(reader_.lost(), 0);
   }
+  tell_notes();
   print(report, request_.json, out_);
   return write_plot() && save_profile(report, request_.profile, err_) ? report.code() : kRefused;
 }

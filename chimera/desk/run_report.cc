@@ -64,6 +64,10 @@ int RunReport::code() const {
   return all_hold && end != RunEnd::kTaskStopped && !verdict.is_failure() ? kOk : kRefused;
 }
 
+std::string note_line(std::string_view task, std::string_view note) {
+  return std::string(task) + ": note: " + std::string(note);
+}
+
 bool save_profile(const RunReport& report, const std::string& path, std::FILE* err) {
   if (path.empty()) return true;
   const auto written = write_recorded_profile(path, recorded(report.subsystem, report.profiles));

@@ -46,6 +46,9 @@ struct RunReport {
 /// nothing to do. Context: setup; may block.
 bool save_profile(const RunReport& report, const std::string& path, std::FILE* err);
 
+/// What a component has to say, as a line of a run. Context: setup.
+std::string note_line(std::string_view task, std::string_view note);
+
 /// As text or as one JSON object. Context: setup.
 void print(const RunReport& report, bool json, std::FILE* out);
 

@@ -164,6 +164,7 @@ Result<void> check_version(const chimera_component& component) {
   }
   // One that ends before a member was built before there was one.
   if (component.struct_size != sizeof(chimera_component) &&
+      component.struct_size != offsetof(chimera_component, host_size) &&
       component.struct_size != offsetof(chimera_component, n_choices) &&
       component.struct_size != offsetof(chimera_component, n_orders) &&
       component.struct_size != offsetof(chimera_component, event_source) &&
@@ -171,6 +172,9 @@ Result<void> check_version(const chimera_component& component) {
     return refused("component", "declaration of " + std::to_string(component.struct_size) + " bytes, expected " +
                                     std::to_string(sizeof(chimera_component)));
   }
+  const bool knows_host = component.struct_size == sizeof(chimera_component);
+  if (knows_host && component.host_size > sizeof(chimera_host))
+    return refused("component", "it asks for more than this framework has: it was built with a newer one");
   return {};
 }
 

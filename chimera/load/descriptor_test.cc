@@ -60,6 +60,13 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   const std::uint32_t size = sizeof(chimera_component);
   sample.component.struct_size = size;
   EXPECT_TRUE(sample.described().value().event_source);
+  sample.component.struct_size = offsetof(chimera_component, host_size);
+  sample.component.host_size = sizeof(chimera_host) + 8;
+  EXPECT_TRUE(sample.described());  // what stands there is none of its
+  sample.component.struct_size = size;
+  EXPECT_EQ(sample.refusal(), "component: it asks for more than this framework has: it was built with a newer one");
+  sample.component.host_size = sizeof(chimera_host);
+  EXPECT_TRUE(sample.described());
   sample.component.struct_size = size + 8;
   EXPECT_EQ(sample.refusal(), "component: declaration of " + std::to_string(size + 8) + " bytes, expected " +
                                   std::to_string(size));

@@ -118,6 +118,16 @@ TEST(Driver, TellsTheFaultOfATaskInItsWords) {
   EXPECT_TRUE(fake.until([&] { return fake.driver().world().state(fake.task("filter")) == State::kError; }));
 }
 
+TEST(Driver, TellsTheNoteOfATaskInItsWords) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.rtpu(0).leave_note(fake.task("filter"), "3 meshes left out");
+  ASSERT_TRUE(fake.until([&] { return !fake.told("note").empty(); }));
+  EXPECT_EQ(fake.told("note"), "filter: 3 meshes left out\n");
+  EXPECT_EQ(fake.told("fault"), "");
+}
+
 TEST(Driver, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
   FakeSubsystem fake;
   fake.start_manager();

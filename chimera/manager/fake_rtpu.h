@@ -77,6 +77,19 @@ class FakeRtpu {
     tell(post);
     enter(task, State::kError);
   }
+  /// As if a method of the task had left a note.
+  void leave_note(TaskId task, const char* text) {
+    const std::scoped_lock lock(mutex_);
+    FaultRecord record;
+    record.notes = 1;
+    std::strncpy(record.note, text, sizeof record.note - 1);
+    std::vector<std::byte> payload(layout_.place(layout_.fault(task)).payload_bytes);
+    std::memcpy(payload.data(), &record, sizeof record);
+    faults_[index(task)].write(payload.data(), clock_.now(), 1);
+    Post post = about(task, PostKind::kEvent);
+    post.happening = Happening::kNote;
+    tell(post);
+  }
   /// As if `from` had sent `on` to `task`.
   void request(TaskId task, TaskId from) {
     const std::scoped_lock lock(mutex_);

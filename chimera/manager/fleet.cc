@@ -117,7 +117,9 @@ void Fleet::take(const Post& post, RtpuId rtpu, Events& events) {
 
 void Fleet::log(const Post& post, RtpuId rtpu) {
   const bool has_task = post.task.index < seen_.size();
-  const std::string words = has_task ? fault_text(world_, post.task) : "";
+  std::string words;
+  if (has_task && post.happening == Happening::kNote) words = world_.peers.fault(post.task).note;
+  else if (has_task) words = fault_text(world_, post.task);
   std::string text = event_text(world_.spec(), post, words);
   const bool is_illegal_set = post.happening == Happening::kFlag && (post.detail & 1u) != 0;
   if (const std::string missing = is_illegal_set ? world_.logic.missing() : ""; !missing.empty())

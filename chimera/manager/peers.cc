@@ -66,6 +66,7 @@ FaultRecord Peers::fault(TaskId task) const noexcept {
   if (!reader.try_read(slot, payload.data()) || slot.sequence == 0) return record;
   std::memcpy(static_cast<void*>(&record), payload.data(), sizeof record);
   record.last.text[sizeof record.last.text - 1] = '\0';
+  record.note[sizeof record.note - 1] = '\0';
   if (static_cast<std::uint32_t>(record.method) >= CHIMERA_METHODS) record.method = Method::kError;
   return record;
 }

@@ -65,6 +65,7 @@ const char* event_kind(Happening happening) noexcept {
     case Happening::kBlocked: return "blame";
     case Happening::kHang: return "hang";
     case Happening::kGaveWay: return "demoted";
+    case Happening::kNote: return "note";
     case Happening::kStop: break;
   }
   return "stop";
@@ -73,7 +74,8 @@ const char* event_kind(Happening happening) noexcept {
 std::string event_text(const ApplicationSpec& spec, const Post& post, const std::string& fault) {
   switch (post.happening) {
     case Happening::kState: return std::string(state_name(post.before)) + " -> " + state_name(post.after);
-    case Happening::kFault: return fault;
+    case Happening::kFault:
+    case Happening::kNote: return fault;
     case Happening::kRefused:
       return std::string(signal_name(post.signal)) + sender(spec, post) + ": " + refusal(post, fault);
     case Happening::kSignalled: return signal_name(post.signal) + sender(spec, post);

@@ -31,12 +31,13 @@ struct Follower {
   Outcome cycle(Cycle c) {
     illegal = c.illegal();
     if (*x == fail_at) return fault("as told", 7);
+    if (*x == note_at) c.note("as asked");
     *y = *x * static_cast<double>(*scale);
     return ok();
   }
   static inline bool illegal = false;
   static inline int reinits = 0;
-  static inline double fail_at = -1;
+  static inline double fail_at = -1, note_at = -1;
 };
 
 struct Killer {  // kills the follower when told
@@ -70,6 +71,16 @@ struct EdgeTest : ::testing::Test {
   void all_on() { units->bring_up({kSource, kFollower, kKiller}); }
   testing::Unit& first() { return *units->units[0]; }
   testing::Unit& second() { return *units->units[1]; }
+  /// What its fault group shows to others.
+  FaultRecord shown_of_follower() {
+    const auto layout = PeerLayout::of(app.spec, 1);
+    const GroupPlace& place = layout->place(layout->fault(kFollower));
+    const std::byte* at = second().segment.region.bytes().data() + sizeof(SegmentHeader) + place.offset;
+    FaultRecord record;
+    chimera_slot slot;
+    EXPECT_TRUE(GroupReader(at, place.payload_bytes).try_read(slot, reinterpret_cast<std::byte*>(&record)));
+    return record;
+  }
 
   TestApplication app;
   std::unique_ptr<Units> units;
@@ -222,6 +233,20 @@ TEST_F(EdgeTest, AChangedConstantReinitialisesItsUsersInOtherUnitsAndOnlyThen) {
   EXPECT_NEAR(second().output(kFollower), 5 * first().output(kSource), 5.1);
 }
 
+TEST_F(EdgeTest, ANoteIsToldAtOnceAndTheTaskGoesOn) {
+  all_on();
+  units->take(PostKind::kEvent);
+  Follower::note_at = first().output(kSource) + 2;
+  units->run(milliseconds(5));
+  Follower::note_at = -1;
+  EXPECT_EQ(second().state(kFollower), State::kOn);
+  const auto events = units->take(PostKind::kEvent);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].happening, Happening::kNote);
+  EXPECT_EQ(events[0].task, kFollower);
+  EXPECT_STREQ(shown_of_follower().note, "as asked");
+}
+
 TEST_F(EdgeTest, AFaultIsToldWithItsTextInTheFaultGroup) {
   all_on();
   units->take(PostKind::kEvent);
@@ -234,12 +259,7 @@ TEST_F(EdgeTest, AFaultIsToldWithItsTextInTheFaultGroup) {
   EXPECT_EQ(events[0].happening, Happening::kFault);
   EXPECT_EQ(events[0].task, kFollower);
   EXPECT_EQ(events[0].detail, static_cast<std::uint64_t>(Method::kCycle));
-  const auto layout = PeerLayout::of(app.spec, 1);
-  const GroupPlace& place = layout->place(layout->fault(kFollower));
-  const std::byte* at = second().segment.region.bytes().data() + sizeof(SegmentHeader) + place.offset;
-  FaultRecord fault;
-  chimera_slot slot;
-  ASSERT_TRUE(GroupReader(at, place.payload_bytes).try_read(slot, reinterpret_cast<std::byte*>(&fault)));
+  const FaultRecord fault = shown_of_follower();
   EXPECT_STREQ(fault.last.text, "as told");
   EXPECT_EQ(fault.last.code, 7);
 }

@@ -2,6 +2,7 @@
 #include "chimera/rtpu/others.h"
 
 #include <cstring>
+#include <utility>
 
 #include "chimera/platform/linux/linux_clock.h"
 
@@ -15,7 +16,7 @@ constexpr std::uint32_t kFlagIllegalSet = 1, kFlagRaised = 2;
 Others::Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
                DecisionPage& decision, const KeeperPage& keeper, Peers& peers)
     : spec_(&spec), me_(me), segment_(segment), block_(block), decision_(&decision), keeper_(&keeper), peers_(&peers),
-      inboxes_(peers.count()), is_read_(peers.count()) {
+      faults_(spec.tasks.size()), notes_(spec.tasks.size()), inboxes_(peers.count()), is_read_(peers.count()) {
   for (std::uint32_t peer = 0; peer < peers.count(); ++peer)
     outboxes_.emplace_back(block_.outbox(peer), nullptr, block_.head().incarnation);
   flags_.reserve(peers.count());
@@ -124,14 +125,17 @@ void Others::watch_flags() noexcept {
   tasks_->watch_flags(flags_);
 }
 
-void Others::faulted(const Task& task) noexcept {
+void Others::told(const Task& task) noexcept {
   const PeerLayout& layout = peers_->layout(me_);
   const GroupPlace& place = layout.place(layout.fault(task.id));
   GroupWriter writer(segment_.subspan(sizeof(SegmentHeader) + place.offset, group_bytes(place.payload_bytes)),
                      place.payload_bytes);
   std::memcpy(writer.staging(), &task.faults, sizeof task.faults);
   writer.publish(task.faults.at, 1);
-  tell(Happening::kFault, task.id, static_cast<std::uint64_t>(task.faults.method), task.faults.at);
+  if (std::exchange(faults_[task.id.index], task.faults.count) != task.faults.count)
+    tell(Happening::kFault, task.id, static_cast<std::uint64_t>(task.faults.method), task.faults.at);
+  if (std::exchange(notes_[task.id.index], task.faults.notes) != task.faults.notes)
+    tell(Happening::kNote, task.id, 0, LinuxClock().now());
 }
 
 bool Others::adopt() noexcept {

@@ -30,7 +30,7 @@ class Others final : public Neighbours {
   GroupReader operator_variable(std::size_t index) const noexcept override;
   bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept override;
   void changed() noexcept override;
-  void faulted(const Task& task) noexcept override;
+  void told(const Task& task) noexcept override;
 
   /// Takes over segments that the main thread offered; true when there was one. One that follows another waits until
   /// no task reads that any more. Context: edge.
@@ -68,6 +68,7 @@ class Others final : public Neighbours {
   Peers* peers_;
   TaskSet* tasks_ = nullptr;
   bool is_dying_ = false;
+  std::vector<std::uint64_t> faults_, notes_;  // by task: of those that were told
   std::vector<Outbox> outboxes_;  // by peer
   std::vector<Inbox> inboxes_;    // by peer
   std::vector<bool> is_read_;     // by peer: a task may still read the segment before the present one

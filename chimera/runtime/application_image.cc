@@ -29,7 +29,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -76,6 +76,7 @@ void port_fields(Archive& archive, Port& port) {
   archive.number(port.kind);
   archive.number(port.instance);
   archive.text(port.variable);
+  archive.text(port.unit);
   archive.choice(port.safety, true);
   archive.choice(port.has_range, true);
   archive.number(port.min);

@@ -21,9 +21,9 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 // An application in which no field has its default and no two fields of a kind are alike.
 struct Sample {
   Sample() {
-    ports[0] = {3, CHIMERA_OUT_VAR, 2, "x", 8, {{1, "n"}, {2, "m"}}, true, -1.5, 2.5, true, CHIMERA_INT64,
+    ports[0] = {3, CHIMERA_OUT_VAR, 2, "x", "rad", 8, {{1, "n"}, {2, "m"}}, true, -1.5, 2.5, true, CHIMERA_INT64,
                 bytes_of("0123456789abcdef"), {1, 2}};
-    ports[1] = {4, CHIMERA_RESOURCE, 0, "", 0, {}, false, 0, 0, false, CHIMERA_STRING, bytes_of("arm.xml"), {}};
+    ports[1] = {4, CHIMERA_RESOURCE, 0, "", "", 0, {}, false, 0, 0, false, CHIMERA_STRING, bytes_of("arm.xml"), {}};
     tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
                 .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
                 .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kStop, .max_consecutive = 5,
@@ -94,7 +94,7 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
   bytes[kVersionAt] = std::byte{7};
-  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 1");
+  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 2");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +

@@ -11,6 +11,7 @@ namespace {
 
 void note_fault(Task& task, Method method, Nanoseconds at) noexcept {
   ++task.faults.count;
+  ++task.faults.told;
   task.has_news = true;
   task.faults.at = at;
   task.faults.method = method;

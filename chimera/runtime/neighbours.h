@@ -25,8 +25,8 @@ class Neighbours {
   virtual bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept = 0;
   /// The state of some task of this context, or its legality, changed. Context: edge; wait-free.
   virtual void changed() noexcept = 0;
-  /// A method of the task failed: its fault record is new. Context: edge; wait-free.
-  virtual void faulted(const Task& task) noexcept = 0;
+  /// A method of the task failed, or left a note: its fault record is new. Context: edge; wait-free.
+  virtual void told(const Task& task) noexcept = 0;
 
  protected:
   ~Neighbours() = default;

@@ -36,8 +36,9 @@ enum class Happening : std::uint8_t {
   kGaveWay,   ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns lately, nearly all
               ///< that the kernel lets real-time threads have
   kBlocked,   ///< the task missed its deadline with a job that waits in a system call, having used `detail` ns
+  kNote,      ///< the task left a note; its text stands in the task's fault group
 };
-inline constexpr auto kLastHappening = Happening::kBlocked;
+inline constexpr auto kLastHappening = Happening::kNote;
 
 /// 64 bytes; what is not used is 0 (ids: invalid).
 struct Post {

@@ -48,9 +48,11 @@ void Releases::begin(Nanoseconds origin) noexcept {
 
 void Releases::record_faults(Task& task) noexcept {
   OfTask& t = of_[task.id.index];
+  if (task.faults.told == t.told_seen) return;
+  t.told_seen = task.faults.told;
+  set_.told(task);
   if (task.faults.count == t.faults_seen) return;
   t.faults_seen = task.faults.count;
-  set_.faulted(task);
   tap_.record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
 }
 

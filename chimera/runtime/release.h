@@ -235,7 +235,7 @@ class Releases {
     Task* task = nullptr;
     Nanoseconds start_margin;  // a job starts while now + start_margin <= deadline
     Nanoseconds budget;        // kNever: none
-    std::uint64_t faults_seen = 0;
+    std::uint64_t told_seen = 0, faults_seen = 0;  // of what the task told, and of its faults
     std::uint32_t dropped = 0;  // since the last completed cycle
     bool skip_next = false;
     bool is_on = false;

@@ -68,8 +68,8 @@ void Releases::look_after(Task& task) noexcept {
   OfTask& t = of_[task.id.index];
   task.has_news = false;
   const bool listens = tap_.is_on() || options_.guest != nullptr;
-  if (!listens) t.faults_seen = task.faults.count;
-  const bool tells = task.faults.count != t.faults_seen;
+  if (!listens) t.told_seen = task.faults.told, t.faults_seen = task.faults.count;
+  const bool tells = task.faults.told != t.told_seen;
   if (task.state != State::kOn || !task.outbox.empty() || tells) want(task, kSettle);
   else if (task.is_tapped && options_.threads == nullptr) tap_.append_row(task);
 }

@@ -56,6 +56,7 @@ inline void compare_ports(SpecDifference& d, const PortSpec& a, const PortSpec& 
   d.compare(a.kind, b.kind, "kind");
   d.compare(a.instance, b.instance, "instance");
   d.compare(a.variable, b.variable, "variable");
+  d.compare(a.unit, b.unit, "unit");
   d.compare(a.safety, b.safety, "safety");
   d.compare(a.min, b.min, "min");
   d.compare(a.max, b.max, "max");

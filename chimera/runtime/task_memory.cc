@@ -114,6 +114,12 @@ chimera_port* TaskMemory::live(const PortSpec& port) const noexcept {
   return reinterpret_cast<chimera_port*>(state_.data() + decl.live_offset) + port.instance;
 }
 
+const PortSpec* TaskMemory::spec_of(const chimera_port* port) const noexcept {
+  for (const PortSpec& spec : spec_->ports)
+    if (live(spec) == port) return &spec;
+  return nullptr;
+}
+
 void TaskMemory::make_fill() {
   fill_.resize(payload_bytes_);
   for (const Output& output : outputs_) {

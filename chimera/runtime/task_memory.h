@@ -61,6 +61,8 @@ class TaskMemory {
   std::uint32_t output_offset(std::size_t i) const noexcept { return outputs_[i].offset; }
   const PortSpec* output_spec(std::size_t i) const noexcept { return outputs_[i].spec; }
   const chimera_port* output_port(std::size_t i) const noexcept { return is_constructed_ ? outputs_[i].port : nullptr; }
+  /// What was specified for the port with this live half; nullptr: there is none. Context: any; wait-free; O(ports).
+  const PortSpec* spec_of(const chimera_port* port) const noexcept;
   /// True when a constant that the component was initialised with has another value by now.
   bool uses_changed(const ConstantStore& store) const noexcept;
   /// True when the staged value of output `i` is still the never-written fill.

@@ -2,10 +2,12 @@
 #include "chimera/runtime/task_set.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace chimera {
 
-const chimera_host TaskSet::kHost = {&TaskSet::host_expired, &TaskSet::host_signal, &TaskSet::host_spend};
+const chimera_host TaskSet::kHost = {&TaskSet::host_expired, &TaskSet::host_signal,   &TaskSet::host_spend,
+                                     &TaskSet::host_note,    &TaskSet::host_variable, &TaskSet::host_unit};
 
 Result<std::unique_ptr<TaskSet>> TaskSet::create(const ApplicationSpec& spec,
                                                  std::span<const chimera_component* const> components,
@@ -269,6 +271,33 @@ std::int32_t TaskSet::host_signal(void* context, std::uint32_t signal, const cha
 void TaskSet::host_spend(void* context, std::int64_t ns) {
   const auto* host = static_cast<HostContext*>(context);
   (host->clock != nullptr ? *host->clock : *host->set->clock_).spend(Nanoseconds{ns});
+}
+
+// The executor sees it as it sees a fault: nobody else is told by a job.
+void TaskSet::host_note(void* context, const char* text) {
+  Task& task = *static_cast<HostContext*>(context)->task;
+  FaultRecord& record = task.faults;
+  task.has_news = true;
+  std::strncpy(record.note, text, sizeof record.note - 1);
+  ++record.notes;
+  ++record.told;
+}
+
+const PortSpec* TaskSet::joined(void* context, const chimera_port* port) noexcept {
+  const auto* host = static_cast<HostContext*>(context);
+  return host->set->memories_[host->task->id.index].spec_of(port);
+}
+
+chimera_text TaskSet::host_variable(void* context, const chimera_port* port) {
+  const PortSpec* spec = joined(context, port);
+  if (spec == nullptr) return {"", 0};
+  return {spec->variable.data(), static_cast<std::uint32_t>(spec->variable.size())};
+}
+
+chimera_text TaskSet::host_unit(void* context, const chimera_port* port) {
+  const PortSpec* spec = joined(context, port);
+  if (spec == nullptr) return {"", 0};
+  return {spec->unit.data(), static_cast<std::uint32_t>(spec->unit.size())};
 }
 
 }  // namespace chimera

@@ -184,8 +184,8 @@ class TaskSet {
   /// To be told by the executor when a cycle left the ON state by itself. Context: edge.
   void on_set_changed() noexcept;
   /// To be told by the executor when it saw a new fault of the task. Context: edge.
-  void faulted(const Task& task) noexcept {
-    if (place_.others != nullptr) place_.others->faulted(task);
+  void told(const Task& task) noexcept {
+    if (place_.others != nullptr) place_.others->told(task);
   }
 
   std::span<Task> tasks() noexcept { return tasks_; }
@@ -261,6 +261,10 @@ class TaskSet {
   static std::int32_t host_expired(void* context);
   static std::int32_t host_signal(void* context, std::uint32_t signal, const char* task);
   static void host_spend(void* context, std::int64_t ns);
+  static void host_note(void* context, const char* text);
+  static const PortSpec* joined(void* context, const chimera_port* port) noexcept;
+  static chimera_text host_variable(void* context, const chimera_port* port);
+  static chimera_text host_unit(void* context, const chimera_port* port);
   static const chimera_host kHost;
 
   const ApplicationSpec& spec_;

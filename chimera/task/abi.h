@@ -143,6 +143,12 @@ typedef struct chimera_port {
   uint32_t element_size;     /* bytes of one element, as solved */
 } chimera_port;
 
+/* A text that somebody else keeps: `size` bytes, without a zero behind them. */
+typedef struct chimera_text {
+  const char* at;
+  uint32_t size;
+} chimera_text;
+
 /* Where a method leaves the text of its fault. */
 typedef struct chimera_fault {
   int32_t code; /* the component's own number, 0 if it has none */
@@ -158,6 +164,13 @@ typedef struct chimera_host {
   int32_t (*signal)(void* context, uint32_t signal, const char* task);
   /* Uses `ns` of execution time: computes in real time, is added to the modelled time in virtual time. */
   void (*spend)(void* context, int64_t ns);
+  /* One line for whoever runs the application, at most CHIMERA_FAULT_TEXT - 1 bytes of it. Told once, as an event; the
+   * last one of a method counts. */
+  void (*note)(void* context, const char* text);
+  /* What the port is joined to: the name of the variable or constant and the unit of its values, as verified; "" where
+   * there is none. Good as long as the task. `port` lies in the component's state. */
+  chimera_text (*variable)(void* context, const chimera_port* port);
+  chimera_text (*unit)(void* context, const chimera_port* port);
 } chimera_host;
 
 /* Given to every method. */
@@ -203,7 +216,7 @@ typedef struct chimera_choice {
 typedef struct chimera_component {
   uint32_t abi_version; /* CHIMERA_ABI_VERSION */
   uint32_t struct_size; /* sizeof(chimera_component); an object that ends before `background`, `event_source`,
-                           `n_orders` or `n_choices` has none, nor what comes behind it */
+                           `n_orders`, `n_choices` or `host_size` has none, nor what comes behind it */
   const char* name;
   const char* doc;
   const char* source;   /* paper or book behind it; "" for none */
@@ -222,6 +235,7 @@ typedef struct chimera_component {
   const chimera_order* orders;
   uint32_t n_choices;
   const chimera_choice* choices;
+  uint32_t host_size; /* sizeof(chimera_host): the functions of the framework that it knows of */
 } chimera_component;
 
 /* The one symbol of a shared object. NULL when `abi_version` is not the one it was built with. */

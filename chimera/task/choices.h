@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "chimera/task/abi.h"
@@ -10,7 +11,7 @@ namespace chimera {
 /// The words that constants of the component may be; none, when it was built before there was such a thing.
 /// Context: any; wait-free.
 inline std::span<const chimera_choice> choices_of(const chimera_component& component) noexcept {
-  if (component.struct_size < sizeof(chimera_component) || component.choices == nullptr) return {};
+  if (component.struct_size < offsetof(chimera_component, host_size) || component.choices == nullptr) return {};
   return {component.choices, component.n_choices};
 }
 

@@ -160,6 +160,7 @@ const chimera_component* declare() noexcept {
   if (made.abi_version != 0) return &made;
   made.abi_version = CHIMERA_ABI_VERSION;
   made.struct_size = sizeof(chimera_component);
+  made.host_size = sizeof(chimera_host);
   made.state_size = sizeof(T);
   made.state_align = alignof(T);
   collect_ports<T>(to);

@@ -44,8 +44,23 @@ class Cycle {
   /// Uses `time` of execution time: computes in real time, is added to the modelled time in virtual time.
   /// Context: cycle; takes `time`.
   void spend(Nanoseconds time) const noexcept { call_->host->spend(call_->context, time.count); }
+  /// One line for whoever runs the application, at most 159 bytes of `text`: an event, and a line of the run. Of
+  /// several in one method the last counts. Context: any; wait-free.
+  void note(const char* text) const noexcept { call_->host->note(call_->context, text); }
+  /// The variable or constant that `port` is joined to; empty: none. Good as long as the task. Context: any; wait-free.
+  template <class Port>
+  std::string_view variable(const Port& port) const noexcept {
+    return view(call_->host->variable(call_->context, port.live()));
+  }
+  /// The unit of its values, as verified: "rad"; "1" for none, empty for a resource. Context: any; wait-free.
+  template <class Port>
+  std::string_view unit(const Port& port) const noexcept {
+    return view(call_->host->unit(call_->context, port.live()));
+  }
 
  private:
+  static std::string_view view(chimera_text text) noexcept { return {text.at, text.size}; }
+
   const chimera_call* call_;
 };
 

@@ -155,6 +155,7 @@ typedef struct pboPort_t {
 #define PBO_DT ((double)PBO_CALL->dt_ns * 1e-9) /* s since the last completed cycle */
 #define PBO_NOW (PBO_CALL->now_ns)              /* ns, release of this job */
 #define PBO_DROPPED (PBO_CALL->dropped)         /* releases dropped since the last completed cycle */
+#define PBO_NOTE(text) PBO_CALL->host->note(PBO_CALL->context, text) /* one line for whoever runs it */
 #define PBO_ILLEGAL (PBO_CALL->illegal)         /* the illegal-configuration flag */
 #define PBO_EXPIRED (PBO_CALL->host->expired(PBO_CALL->context))
 #define PBO_SIGNAL(which, task) (PBO_CALL->host->signal(PBO_CALL->context, which, task))
@@ -265,6 +266,7 @@ static inline void pboDestroy(void* state) { (void)state; }
     uint32_t i;                                                                                     \
     if (m##Component.abi_version != 0) return &m##Component;                                        \
     m##Component.abi_version = CHIMERA_ABI_VERSION;                                                 \
+    m##Component.host_size = sizeof(chimera_host);                                                  \
     if (m##Component.doc == NULL) m##Component.doc = "";                                            \
     if (m##Component.source == NULL) m##Component.source = "";                                      \
     m##Component.state_size = sizeof(m##State_t);                                                   \

@@ -37,6 +37,8 @@ class PortBase {
  public:
   PortBase(const PortBase&) = delete;
   PortBase& operator=(const PortBase&) = delete;
+  /// As the framework knows the port.
+  const chimera_port* live() const noexcept { return &live_; }
 
  protected:
   PortBase() noexcept = default;

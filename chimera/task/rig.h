@@ -98,6 +98,8 @@ class Rig : public RigPorts {
   Nanoseconds spent() const { return spent_; }
   /// The signals sent so far, as "off pid"; to itself "off".
   const std::vector<std::string>& signals() const { return signals_; }
+  /// The notes left so far.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   RigAnswer run(Method method) {
@@ -119,10 +121,21 @@ class Rig : public RigPorts {
     return CHIMERA_OK;
   }
   static void host_spend(void* rig, std::int64_t ns) { static_cast<Rig*>(rig)->spent_ += Nanoseconds{ns}; }
-  static constexpr chimera_host kHost{&host_expired, &host_signal, &host_spend};
+  static void host_note(void* rig, const char* text) { static_cast<Rig*>(rig)->notes_.emplace_back(text); }
+  static chimera_text host_variable(void* rig, const chimera_port* port) {
+    return text_of(static_cast<Rig*>(rig)->joined(port).variable);
+  }
+  static chimera_text host_unit(void* rig, const chimera_port* port) {
+    return text_of(static_cast<Rig*>(rig)->joined(port).unit);
+  }
+  static chimera_text text_of(const std::string& text) {
+    return {text.data(), static_cast<std::uint32_t>(text.size())};
+  }
+  static constexpr chimera_host kHost{&host_expired, &host_signal,   &host_spend,
+                                      &host_note,    &host_variable, &host_unit};
 
   chimera_call call_{};
-  std::vector<std::string> signals_;
+  std::vector<std::string> signals_, notes_;
   Nanoseconds spent_;
   bool expired_ = false;
 };

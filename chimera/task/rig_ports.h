@@ -55,6 +55,11 @@ class RigPorts {
     cell.live->value = cell.memory.get();
   }
 
+  /// What Cycle::variable() and unit() say of a port; by itself the port's own name and no unit.
+  void joined(const char* port, const char* variable, const char* unit, std::size_t instance = 0) {
+    cell_of(port, instance).joined = {variable, unit};
+  }
+
   /// Publishes a value to an in-var, or gives a constant: element `i` of instance `instance`.
   template <class T>
   void set(const char* port, const T& value, std::size_t i = 0, std::size_t instance = 0) {
@@ -86,6 +91,14 @@ class RigPorts {
 
   const chimera_component& component() const { return component_; }
   std::byte* state() const { return state_.get(); }
+  struct Joined {
+    std::string variable, unit;
+  };
+  const Joined& joined(const chimera_port* port) const {
+    for (const auto& cell : cells_)
+      if (cell->live == port) return cell->joined;
+    throw std::invalid_argument("a port of another component");
+  }
   /// What there is to be read has been read: it is no longer fresh.
   void see_all() {
     for (auto& cell : cells_) cell->live->seen = cell->slot.sequence;
@@ -106,6 +119,7 @@ class RigPorts {
     std::size_t instance;
     chimera_slot slot{};
     std::unique_ptr<std::byte[]> memory;
+    Joined joined{};
   };
   struct Fixed {
     std::string symbol;
@@ -137,6 +151,7 @@ class RigPorts {
       cell.decl = &decl;
       cell.live = live + i;
       cell.instance = i;
+      cell.joined = {decl.max_instances > 1 ? decl.name + ("[" + std::to_string(i) + "]") : decl.name, "1"};
       cell.live->type = decl.type == CHIMERA_ANY ? std::uint32_t{CHIMERA_FLOAT64} : decl.type;
       cell.live->element_size = decl.element_size;
       cell.live->now_ns = now_ns_;

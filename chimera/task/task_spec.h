@@ -28,6 +28,7 @@ struct PortSpec {
   std::uint32_t kind = CHIMERA_IN_VAR;  ///< as declared
   std::uint32_t instance = 0;   ///< of a repeated port; 0 otherwise
   std::string_view variable;    ///< name in the table after aliases; resource: "" ; unbound in-const: ""
+  std::string_view unit;        ///< of the values, as solved; "1" for none; resource: ""
   std::uint32_t element_bytes = 0;
   ExtentSpec extent[CHIMERA_MAX_EXTENTS];
   bool safety = false;
