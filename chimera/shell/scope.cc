@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "chimera/shell/fields.h"
@@ -120,7 +119,7 @@ void Scope::add_row(Stream& stream, const Json& row, const std::vector<std::stri
 void Scope::prune() {
   const Nanoseconds oldest = begin_ ? *begin_ - request_.pre : trigger_seen_ - request_.pre;
   for (Stream& stream : streams_)
-    while (stream.rows.size() > 1 && stream.rows[1].at < oldest) stream.rows.pop_front();
+    while (stream.rows.size() > 1 && stream.rows[1].at < oldest) stream.rows.pop_front();  // one holds into the window
 }
 
 void Scope::take(const Json& params) {
@@ -180,45 +179,51 @@ std::string Scope::column_name(const Column& column) const {
   return request_.channels[column.channel].name.variable + column.part;
 }
 
-std::string Scope::csv() const {
-  // All columns in the order in which the channels were asked for, whatever task they come from.
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> place;  // stream, column -> column of the file
-  std::vector<std::string> heading;
+// The columns of the file, in the order in which the channels were asked for, whatever task they come from; `heading`
+// gets their names.
+Scope::Places Scope::places(std::vector<std::string>& heading) const {
+  Places places;
   for (std::size_t c = 0; c < request_.channels.size(); ++c)
     for (std::size_t s = 0; s < streams_.size(); ++s)
-      for (std::size_t k = 0; k < streams_[s].columns.size(); ++k)
-        if (streams_[s].columns[k].channel == c) {
-          // Another task that produces the same variable, a successor, goes on in the same column.
-          const std::string name = column_name(streams_[s].columns[k]) + " [" + request_.channels[c].unit + "]";
-          const auto known = std::find(heading.begin(), heading.end(), name);
-          place[{s, k}] = static_cast<std::size_t>(known - heading.begin());
-          if (known == heading.end()) heading.push_back(name);
-        }
-  struct Line {
-    std::vector<double> values;
-    std::uint64_t lost = 0;
-  };
-  std::map<std::int64_t, Line> lines;
+      for (std::size_t k = 0; k < streams_[s].columns.size(); ++k) {
+        if (streams_[s].columns[k].channel != c) continue;
+        // Another task that produces the same variable, a successor, goes on in the same column.
+        const std::string& unit = request_.channels[c].unit;
+        const std::string name = column_name(streams_[s].columns[k]) + (unit == "1" ? "" : "(" + unit + ")");
+        const auto known = std::find(heading.begin(), heading.end(), name);
+        places[{s, k}] = static_cast<std::size_t>(known - heading.begin());
+        if (known == heading.end()) heading.push_back(name);
+      }
+  return places;
+}
+
+std::string Scope::csv() const {
+  std::vector<std::string> heading;
+  const Places places = this->places(heading);
+  std::map<std::int64_t, std::vector<std::pair<std::size_t, const Row*>>> instants;  // what streams published then
   for (std::size_t s = 0; s < streams_.size(); ++s)
-    for (const Row& row : streams_[s].rows) {
-      if (!is_in_window(row.at) || row.values.empty()) continue;
-      Line& line = lines[row.at.count];
-      line.values.resize(heading.size(), kNothing);
-      line.lost += row.lost;
-      for (std::size_t k = 0; k < row.values.size(); ++k) line.values[place[{s, k}]] = row.values[k];
-    }
-  std::string text = "t [s]";
+    for (const Row& row : streams_[s].rows)
+      if (!row.values.empty() && begin_ && row.at <= *begin_ + request_.duration)
+        instants[row.at.count].emplace_back(s, &row);
+  std::string text = "t(s)";
   for (const std::string& name : heading) text += "," + name;
   text += ",lost\n";
+  std::vector<double> held(heading.size(), kNothing);
   char number[40];
-  for (const auto& [at, line] : lines) {
+  for (const auto& [at, rows] : instants) {
+    std::uint64_t lost = 0;
+    for (const auto& [s, row] : rows) {
+      lost += row->lost;
+      for (std::size_t k = 0; k < row->values.size(); ++k) held[places.at({s, k})] = row->values[k];
+    }
+    if (!is_in_window(Nanoseconds{at})) continue;
     std::snprintf(number, sizeof number, "%.9f", static_cast<double>(at - begin_->count) * 1e-9);
     text += number;
-    for (const double value : line.values) {
+    for (const double value : held) {
       std::snprintf(number, sizeof number, "%.17g", value);
       text += std::isnan(value) ? std::string(",") : "," + std::string(number);
     }
-    text += "," + std::to_string(line.lost) + "\n";
+    text += "," + std::to_string(lost) + "\n";
   }
   return text;
 }

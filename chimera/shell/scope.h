@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chimera/base/time.h"
@@ -56,8 +58,9 @@ class Scope {
   /// "251 rows; 2 gaps, 57 rows lost": what there is and what is not.
   std::string summary() const;
 
-  /// A heading "t [s],q[0] [rad],...,lost" and a line for each instant at which a task published, from the trigger on
-  /// counted; a channel that was not published then is empty; `lost`: rows that are missing just before this one.
+  /// A heading "t(s),q[0](rad),...,lost" and a line for each instant at which a task published, from the trigger on
+  /// counted. What was not published then holds the value it had; a channel that nothing was seen of yet is empty;
+  /// `lost`: rows that are missing just before this one.
   std::string csv() const;
   /// The same as a picture; every gap is hatched.
   draw::Plot plot(const std::string& title, const std::string& note) const;
@@ -87,6 +90,9 @@ class Scope {
     std::uint64_t lost_after_window = 0;     ///< rows missing just before the first of these
   };
 
+  using Places = std::map<std::pair<std::size_t, std::size_t>, std::size_t>;  // stream, its column -> of the file
+
+  Places places(std::vector<std::string>& heading) const;
   Stream& stream(const std::string& rtpu, const std::string& task);
   void add_row(Stream& stream, const nlohmann::json& row, const std::vector<std::string>& variables,
                std::uint64_t lost);

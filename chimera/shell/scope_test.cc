@@ -56,10 +56,10 @@ TEST(Scope, KeepsWhatWasBeforeTheTriggerAndEndsAfterIt) {
   scope.take(arm(1, 1005, 8));
   EXPECT_TRUE(scope.is_complete());
   EXPECT_EQ(scope.csv(),
-            "t [s],error [rad],q[0] [rad],q[1] [rad],lost\n"
+            "t(s),error(rad),q[0](rad),q[1](rad),lost\n"
             "-0.002000000,0.001,7,7,0\n"
-            "-0.001000000,0.002,,,0\n"
-            "0.000000000,0.0030000000000000001,,,0\n"
+            "-0.001000000,0.002,7,7,0\n"
+            "0.000000000,0.0030000000000000001,7,7,0\n"
             "0.001000000,0.0040000000000000001,8,8,0\n");
   EXPECT_EQ(scope.summary(), "6 rows, no gap");
 }
@@ -116,6 +116,17 @@ TEST(Scope, AValueHoldsUntilTheNextOneAndToTheEdgesOfThePicture) {
   EXPECT_EQ(scope.rows(), 4u) << "what only holds is no row of the window";
 }
 
+TEST(Scope, WhatWasPublishedBeforeTheWindowHoldsIntoIt) {
+  Scope scope(request("error > 2 mrad", 1, 1));
+  scope.take(arm(0, 1000, 7));
+  scope.take(arm(1, 1001, 9));
+  scope.take(pid(0, {{1000, 1, 0}, {1005, 2, 0.003}, {1006, 3, 0.004}}));
+  EXPECT_EQ(scope.csv(), "t(s),error(rad),q[0](rad),q[1](rad),lost\n"
+                         "0.000000000,0.0030000000000000001,9,9,0\n"
+                         "0.001000000,0.0040000000000000001,9,9,0\n");
+  EXPECT_EQ(scope.rows(), 2u);
+}
+
 TEST(Scope, WithoutATriggerItBeginsWithTheFirstRow) {
   ScopeRequest asked = request("", 0, 2);
   asked.channels.pop_back();
@@ -136,7 +147,7 @@ TEST(Scope, RowsThatWereLostAreCountedAndShown) {
   scope.take(pid(5, {{6, 6, 3}, {7, 7, 4}, {9, 9, 5}}));  // three rows of the tap, then one publication
   EXPECT_EQ(scope.summary(), "5 rows; 2 gaps, 4 rows lost");
   EXPECT_EQ(scope.csv(),
-            "t [s],error [rad],lost\n0.000000000,1,0\n0.001000000,2,0\n0.005000000,3,3\n0.006000000,4,0\n"
+            "t(s),error(rad),lost\n0.000000000,1,0\n0.001000000,2,0\n0.005000000,3,3\n0.006000000,4,0\n"
             "0.008000000,5,1\n");
   const draw::Plot plot = scope.plot("t", "");
   ASSERT_EQ(plot.gaps.size(), 2u);
@@ -185,7 +196,7 @@ TEST(Scope, OddMessagesArePassedOver) {
                           R"({"variables": ["q"], "rows": [[1, 2]]})", R"({"variables": ["x"], "rows": [[1, 2, 3]]})"})
     scope.take(Json::parse(odd));
   EXPECT_EQ(scope.lost_rows(), 0u);
-  EXPECT_EQ(scope.csv().substr(0, 12), "t [s],lost\n");
+  EXPECT_EQ(scope.csv().substr(0, 10), "t(s),lost\n");
 }
 
 }  // namespace

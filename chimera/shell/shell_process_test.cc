@@ -269,7 +269,7 @@ TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
   EXPECT_NE(said.find("the pre-trigger of 5.00 ms fills first"), std::string::npos) << said;
   EXPECT_NE(said.find("; 1 gap, 3 rows lost\n"), std::string::npos) << said;
   const std::string csv = content(path("a.csv"));
-  EXPECT_EQ(csv.rfind("t [s],error [rad],lost\n", 0), 0u) << csv;
+  EXPECT_EQ(csv.rfind("t(s),error(rad),lost\n", 0), 0u) << csv;
   EXPECT_NE(csv.find("\n0.000000000,0.01,0\n"), std::string::npos) << csv;
   EXPECT_NE(content(path("a.svg")).find("3 rows of pid lost"), std::string::npos);
 }

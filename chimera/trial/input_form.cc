@@ -35,12 +35,17 @@ void set_limits(Channel& channel, const PortDescriptor& port) {
   }
 }
 
+std::string element(std::size_t i, std::size_t columns) {
+  if (columns == 1) return "[" + std::to_string(i) + "]";
+  return "[" + std::to_string(i / columns) + "][" + std::to_string(i % columns) + "]";
+}
+
 struct Maker {
   InputForm& form;
 
-  void add(std::string name, std::string port_name, std::size_t offset, std::uint32_t type,
+  void add(std::string name, std::string port_name, std::string unit, std::size_t offset, std::uint32_t type,
            const PortDescriptor& port) {
-    Channel channel{std::move(name), std::move(port_name), offset, type};
+    Channel channel{std::move(name), std::move(port_name), std::move(unit), offset, type};
     channel.base = form.get(channel, form.base);
     set_limits(channel, port);
     form.channels.push_back(std::move(channel));
@@ -51,7 +56,7 @@ struct Maker {
       if (port.type_name == "Pose" && field.name == "orientation") form.quaternions.push_back(at + field.offset);
       for (std::uint32_t i = 0; i < field.count; ++i) {
         const std::string tail = "." + field.name + (field.count == 1 ? "" : "[" + std::to_string(i) + "]");
-        add(name + tail, port_name + tail, at + field.offset + i * field.size, field.type, port);
+        add(name + tail, port_name + tail, field.unit, at + field.offset + i * field.size, field.type, port);
       }
     }
   }
@@ -75,11 +80,11 @@ InputForm InputForm::of(const Configuration& configuration, const Descriptor& co
     const PortDescriptor& port = component.ports[reader->declared];
     const std::size_t count = given.value.size() / given.element_bytes;
     for (std::size_t i = 0; i < count; ++i) {
-      const std::string tail = count == 1 ? "" : "[" + std::to_string(i) + "]";
+      const std::string tail = count == 1 ? "" : element(i, given.extent[1].max);
       const std::size_t at = form.offsets[o] + i * given.element_bytes;
       const std::string name = std::string(given.name) + tail, port_name = reader->name + tail;
       if (given.type == CHIMERA_STRUCT) maker.add_fields(name, port_name, at, port);
-      else if (is_number(given.type)) maker.add(name, port_name, at, given.type, port);
+      else if (is_number(given.type)) maker.add(name, port_name, reader->unit, at, given.type, port);
     }
   }
   return form;

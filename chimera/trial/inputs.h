@@ -24,6 +24,7 @@ inline constexpr std::size_t kMaxColumns = 256;
 struct Channel {
   std::string name;              ///< as a recording calls it: "q_ref[2]"
   std::string port_name;         ///< the same by the port, for a repeated one: "in[0][2]"
+  std::string unit;              ///< of its values
   std::size_t offset = 0;        ///< in the row
   std::uint32_t type = CHIMERA_FLOAT64;
   double base = 0;               ///< value in the setup

@@ -80,6 +80,9 @@ TEST(Recorded, HoldsEachRowUntilTheNext) {
   EXPECT_EQ(value(4, 2), 6);
   EXPECT_EQ(value(4, 0), 1);  // no column: as in the setup, the middle of the range
   EXPECT_EQ(read("t,v\n0,1\n", {}, 20)->rows(), 20u);
+  const auto with_units = read("t(s),v(m/s),q[0](rad)\n0,7,0.5\n");
+  ASSERT_TRUE(with_units) << with_units.error().message.c_str();
+  EXPECT_EQ(form.get(form.channels[2], with_units->row(0)), 7);
 }
 
 TEST(Recorded, TakesTheNamesOfALogFromTheUser) {
@@ -92,10 +95,11 @@ TEST(Recorded, TakesTheNamesOfALogFromTheUser) {
 
 TEST(Recorded, RefusesWhatIsNoRecording) {
   EXPECT_EQ(refusal(""), "run.csv:1:1: no row of values");
-  EXPECT_EQ(refusal("v,t\n"), "run.csv:1:1: the first column is 'v', expected 't', the time in s");
+  EXPECT_EQ(refusal("v,t\n"), "run.csv:1:1: the first column is 'v', expected 't(s)', the time in s");
   EXPECT_EQ(refusal("t,v\n"), "run.csv:2:1: no row of values");
   EXPECT_EQ(refusal("t,v,v\n0,1,1\n"), "run.csv:1:5: 'v' is there twice");
   EXPECT_EQ(refusal("t,q[2]\n0,1\n"), "run.csv:1:3: no in-var of the component is called 'q[2]'");
+  EXPECT_EQ(refusal("t(s),v(deg)\n0,1\n"), "run.csv:1:6: 'v' is in deg, and the port takes m/s");
   EXPECT_EQ(refusal("t,v\n0,one\n"), "run.csv:2:3: 'one' is no number");
   EXPECT_EQ(refusal("t,v\n0,1,2\n"), "run.csv:2:1: 3 fields, expected 2");
   EXPECT_EQ(refusal("t,v\n1,1\n1,1\n"), "run.csv:3:1: the time does not grow");

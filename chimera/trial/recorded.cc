@@ -41,6 +41,16 @@ std::string renamed(std::string_view word, std::span<const std::string> names) {
   return names[number] + std::string(end + 1, word.data() + word.size());
 }
 
+/// "q[0](rad)": a name and, where it says so, a unit.
+struct Heading {
+  std::string_view name, unit;
+};
+Heading heading_of(std::string_view word) {
+  const std::size_t open = word.find('(');
+  if (open == std::string_view::npos || !word.ends_with(')')) return {word, {}};
+  return {word.substr(0, open), word.substr(open + 1, word.size() - open - 2)};
+}
+
 const Channel* find(const InputForm& form, const std::string& name) {
   for (const Channel& channel : form.channels)
     if (channel.name == name || channel.port_name == name) return &channel;
@@ -50,16 +60,20 @@ const Channel* find(const InputForm& form, const std::string& name) {
 Result<std::vector<const Channel*>> read_head(const InputForm& form, std::string_view line,
                                               std::span<const std::string> names, Place place) {
   const auto words = split(line);
-  if (words.empty() || words[0] != "t")
-    return place.refuse(Message() << "the first column is '" << words[0] << "', expected 't', the time in s");
+  if (words[0] != "t(s)" && words[0] != "t")
+    return place.refuse(Message() << "the first column is '" << words[0] << "', expected 't(s)', the time in s");
   if (words.size() > kMaxColumns)
     return place.refuse(Message() << words.size() << " columns, at most " << kMaxColumns << " are read");
   std::vector<const Channel*> columns;
   for (std::size_t i = 1; i < words.size(); ++i) {
     place.column += words[i - 1].size() + 1;
-    const std::string name = renamed(words[i], names);
+    const Heading heading = heading_of(words[i]);
+    const std::string name = renamed(heading.name, names);
     const Channel* channel = find(form, name);
     if (channel == nullptr) return place.refuse(Message() << "no in-var of the component is called '" << name << "'");
+    if (!heading.unit.empty() && heading.unit != channel->unit)
+      return place.refuse(Message() << "'" << name << "' is in " << heading.unit << ", and the port takes "
+                                    << channel->unit);
     for (const Channel* other : columns)
       if (other == channel) return place.refuse(Message() << "'" << name << "' is there twice");
     columns.push_back(channel);

@@ -38,7 +38,7 @@ struct CsvLog {
                                    doc = "0: the disk takes what it is given; else the error number of its refusal."};
   Resource              file{"file", doc = "The file to write; what was in it is lost."};
 
-  void init() {
+  void init(Cycle c) {
     check_inputs();
     file_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (file_ < 0) throw std::runtime_error(file.c_str() + std::string(": ") + std::strerror(errno));
@@ -49,7 +49,7 @@ struct CsvLog {
     // Filled, not reserved: the first touch of a page is a fault of the memory, and that belongs here.
     ring_.assign(columns_ * capacity_, 0.0);
     text_.reserve(2 * kTextBytes);
-    text_ = header();
+    text_ = header(c);
   }
   void on(Cycle c) {
     if (put_.load(std::memory_order_relaxed) == 0) origin_ = c.now();
@@ -117,14 +117,24 @@ struct CsvLog {
                                " bytes: at most " + std::to_string(kMostBytes / row) +
                                " of them may wait, and capacity is " + std::to_string(capacity_));
   }
-  // A component does not know the names of the variables it is joined to; a matrix is told row by row.
-  std::string header() const {
-    std::string line = "t";
-    for (std::size_t p = 0; p < in.size(); ++p) {
-      const std::string name = ",in[" + std::to_string(p) + "]";
-      for (std::size_t i = 0; i < in[p].size(); ++i)
-        line += in[p].size() == 1 ? name : name + "[" + std::to_string(i) + "]";
-    }
+  // One word a column, "q[0](rad)": whoever guesses the separator finds more commas than blanks.
+  static std::string column(std::string_view variable, const std::string& element, std::string_view unit) {
+    std::string name = std::string(variable) + element;
+    if (!unit.empty() && unit != "1") name += "(" + std::string(unit) + ")";
+    for (char& c : name)
+      if (c == ' ' || c == ',') c = '.';
+    return name;
+  }
+  static std::string element(const chimera_port& port, std::size_t i) {
+    if (port.count == 1) return "";
+    if (port.extent[1] == 1) return "[" + std::to_string(i) + "]";
+    return "[" + std::to_string(i / port.extent[1]) + "][" + std::to_string(i % port.extent[1]) + "]";
+  }
+  std::string header(Cycle c) const {
+    std::string line = "t(s)";
+    for (const auto& port : in)
+      for (std::size_t i = 0; i < port.size(); ++i)
+        line += "," + column(c.variable(port), element(*port.live(), i), c.unit(port));
     return line + "\n";
   }
   void add_text(const double* row) {

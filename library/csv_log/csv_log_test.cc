@@ -68,11 +68,11 @@ TEST_F(CsvLogTest, WritesARowForEachCycleBesideTheCycles) {
   rig.set("in", 1e20, 1, 1);
   EXPECT_EQ(text(), "");  // nothing on its way to the disk in a cycle
   ASSERT_TRUE(rig.background());
-  EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,1.5,-2,,\n");
+  EXPECT_EQ(text(), "t(s),in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,1.5,-2,,\n");
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rows(), 2);
   ASSERT_TRUE(end());
-  EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n"
+  EXPECT_EQ(text(), "t(s),in[0][0],in[0][1],in[1][0],in[1][1]\n"
                     "0.001,1.5,-2,,\n"
                     "0.002,1.5,-2,0.1,1e+20\n");
 }
@@ -87,7 +87,7 @@ TEST_F(CsvLogTest, CountsTheRowsThatFindNoRoomAndGoesOnWhenThereIsSome) {
   EXPECT_EQ(rows(), 3);
   EXPECT_EQ(lost(), 3);
   ASSERT_TRUE(end());
-  EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n0.006,,,,\n");
+  EXPECT_EQ(text(), "t(s),in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n0.006,,,,\n");
 }
 
 TEST_F(CsvLogTest, TellsAScalarByItsNumberAndAMatrixRowByRow) {
@@ -101,8 +101,9 @@ TEST_F(CsvLogTest, TellsAScalarByItsNumberAndAMatrixRowByRow) {
     EXPECT_TRUE(log.init() && log.on() && log.cycle() && log.background() && log.kill());
     return text();
   };
-  EXPECT_EQ(written(1, 1), "t,in[0]\n0.001,10\n");
-  EXPECT_EQ(written(2, 3), "t,in[0][0],in[0][1],in[0][2],in[0][3],in[0][4],in[0][5]\n0.001,10,11,12,13,14,15\n");
+  EXPECT_EQ(written(1, 1), "t(s),in[0]\n0.001,10\n");
+  EXPECT_EQ(written(2, 3), "t(s),in[0][0][0],in[0][0][1],in[0][0][2],in[0][1][0],in[0][1][1],in[0][1][2]\n"
+                           "0.001,10,11,12,13,14,15\n");
 }
 
 TEST_F(CsvLogTest, RefusesRowsThatNoMemoryIsMeantFor) {
@@ -121,7 +122,7 @@ TEST_F(CsvLogTest, GoesOnInTheSameFileAfterItWasOff) {
   ASSERT_TRUE(rig.on());
   ASSERT_TRUE(rig.cycle());
   ASSERT_TRUE(end());
-  EXPECT_EQ(text(), "t,in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n");
+  EXPECT_EQ(text(), "t(s),in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n");
 }
 
 TEST_F(CsvLogTest, RefusesAFileThatCannotBeWrittenAndNothingToLog) {
@@ -147,6 +148,19 @@ TEST_F(CsvLogTest, AFullDiskCostsRowsAndNoCycleAndKillSaysHowMany) {
   EXPECT_EQ(killed.text, "10 rows were not written: No space left on device");
   EXPECT_EQ(killed.code, ENOSPC);
   path = "";
+}
+
+TEST_F(CsvLogTest, NamesItsColumnsByVariableElementAndUnit) {
+  Rig log("csv_log");
+  log.shape("n", 1, 2);
+  log.instances("in", 3);
+  log.joined("in", "q", "rad", 0);
+  log.joined("in", "speed", "m s-1", 1);
+  log.joined("in", "ratio", "1", 2);
+  log.set("capacity", std::int32_t{10});
+  log.resource("file", path.c_str());
+  ASSERT_TRUE(log.init() && log.background() && log.kill());
+  EXPECT_EQ(text(), "t(s),q[0][0](rad),q[0][1](rad),speed[0][0](m.s-1),speed[0][1](m.s-1),ratio[0][0],ratio[0][1]\n");
 }
 
 TEST_F(CsvLogTest, ADiskThatFailsIsTold) {
