@@ -53,13 +53,16 @@ struct CsvLog {
   }
   void on(Cycle c) {
     if (put_.load(std::memory_order_relaxed) == 0) origin_ = c.now();
+    has_told_refusal_ = has_told_loss_ = false;
   }
   void cycle(Cycle c) {
     *disk_error = error_.load(std::memory_order_relaxed);
+    if (*disk_error != 0) tell_refusal(c);
     const std::uint64_t put = put_.load(std::memory_order_relaxed);
     // SYNC: pairs with the release in background(): it is done with the rows it passed.
     if (put - taken_.load(std::memory_order_acquire) >= capacity_) {
-      *lost += 1;
+      *lost = static_cast<std::int64_t>(++n_lost_);
+      tell_loss(c);
       return;
     }
     double* row = ring_.data() + put % capacity_ * columns_;
@@ -94,10 +97,12 @@ struct CsvLog {
     const std::uint64_t left = rows_left();
     const int refusal = error_.load(std::memory_order_relaxed);
     const bool is_closed = ::close(std::exchange(file_, -1)) == 0;
+    const std::string lost_ones = std::to_string(n_lost_) + " rows found no room";
     if (left > 0) {
       const std::string text = std::to_string(left) + " rows were not written: " + std::strerror(refusal);
-      return fault(text.c_str(), refusal);
+      return fault(n_lost_ > 0 ? text + "; before them " + lost_ones : text, refusal);
     }
+    if (n_lost_ > 0) return fault("the file lacks rows: " + lost_ones + ", the disk did not take them in time");
     return is_closed ? ok() : fault("the file could not be closed");
   }
   ~CsvLog() {
@@ -116,6 +121,26 @@ struct CsvLog {
       throw std::runtime_error("rows of " + std::to_string(columns_) + " values are " + std::to_string(row) +
                                " bytes: at most " + std::to_string(kMostBytes / row) +
                                " of them may wait, and capacity is " + std::to_string(capacity_));
+  }
+  // Once after each `on`: a disk that is full now and then says so once, and `lost` counts on.
+  void tell_refusal(Cycle c) {
+    if (std::exchange(has_told_refusal_, true)) return;
+    char text[CHIMERA_FAULT_TEXT];
+    std::snprintf(text, sizeof text, "the disk refuses rows: %s; %llu may wait", reason(*disk_error),
+                  static_cast<unsigned long long>(capacity_));
+    c.note(text);
+  }
+  void tell_loss(Cycle c) {
+    if (std::exchange(has_told_loss_, true)) return;
+    char text[CHIMERA_FAULT_TEXT];
+    std::snprintf(text, sizeof text, "rows are lost from t = %.3f s on: %s", to_seconds(c.now() - origin_),
+                  *disk_error == 0 ? "the disk does not keep up" : reason(*disk_error));
+    c.note(text);
+  }
+  // strerror() looks for a translation, which no cycle has time for.
+  static const char* reason(int error) {
+    const char* text = ::strerrordesc_np(error);
+    return text != nullptr ? text : "it refuses";
   }
   // One word a column, "q[0](rad)": whoever guesses the separator finds more commas than blanks.
   static std::string column(std::string_view variable, const std::string& element, std::string_view unit) {
@@ -175,6 +200,8 @@ struct CsvLog {
   std::vector<double> ring_;  // row by row
   // Of cycle.
   Nanoseconds origin_;
+  std::uint64_t n_lost_ = 0;
+  bool has_told_refusal_ = false, has_told_loss_ = false;
   alignas(64) std::atomic<std::uint64_t> put_{0};  // rows, ever
   // Of background.
   alignas(64) std::atomic<std::uint64_t> taken_{0};

@@ -86,7 +86,7 @@ TEST_F(CsvLogTest, CountsTheRowsThatFindNoRoomAndGoesOnWhenThereIsSome) {
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rows(), 3);
   EXPECT_EQ(lost(), 3);
-  ASSERT_TRUE(end());
+  EXPECT_EQ(end().text, "the file lacks rows: 3 rows found no room, the disk did not take them in time");
   EXPECT_EQ(text(), "t(s),in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n0.006,,,,\n");
 }
 
@@ -145,8 +145,22 @@ TEST_F(CsvLogTest, AFullDiskCostsRowsAndNoCycleAndKillSaysHowMany) {
   EXPECT_EQ(rows(), 10);
   EXPECT_EQ(lost(), 14);
   const RigAnswer killed = end();
-  EXPECT_EQ(killed.text, "10 rows were not written: No space left on device");
+  EXPECT_EQ(killed.text, "10 rows were not written: No space left on device; before them 14 rows found no room");
   EXPECT_EQ(killed.code, ENOSPC);
+  path = "";
+}
+
+TEST_F(CsvLogTest, TellsAtOnceAndOnceThatTheDiskRefusesAndThatRowsAreLost) {
+  path = "/dev/full";
+  start(10);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(rig.cycle());
+  ASSERT_TRUE(rig.background());
+  EXPECT_TRUE(rig.notes().empty());
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(rig.notes(), (std::vector<std::string>{
+                             "the disk refuses rows: No space left on device; 10 may wait",
+                             "rows are lost from t = 0.011 s on: No space left on device"}));
+  (void)end();
   path = "";
 }
 
@@ -197,7 +211,8 @@ TEST_F(CsvLogTest, ADiskThatHasRoomAgainGetsEveryRowThatWasKeptWhole) {
   for (; cycles < 230; ++cycles) ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(disk_error(), 0);
   EXPECT_EQ(lost(), lost_by_then);
-  ASSERT_TRUE(end());
+  EXPECT_EQ(end().text, "the file lacks rows: " + std::to_string(lost()) +
+                            " rows found no room, the disk did not take them in time");
   EXPECT_EQ(rows_in_file(), rows());
   EXPECT_EQ(rows() + lost(), cycles);
 }
@@ -228,7 +243,7 @@ TEST_F(CsvLogTest, AStalledDiskHoldsUpNoCycleAndEveryRowIsWrittenOrCounted) {
   });
   ending = true;
   disk.join();
-  EXPECT_TRUE(end());
+  EXPECT_NE(end().text.find("the file lacks rows: "), std::string::npos);
   is_over = true;
   reader.join();
   ::close(reading);

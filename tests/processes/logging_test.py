@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Row 16 over real processes: a logger whose disk is full or stalls costs rows, which are counted, and no cycle. The
 stall lasts 2 s, CHIMERA_ROUNDS times as long. Misses are judged when a witness on the same CPU had none."""
+import json
 import os
+import pathlib
+import subprocess
+import tempfile
 import threading
 import time
 import unittest
 
-from system import System, await_that
+from system import CHIMERA, QUIET, System, await_that
 
 STALL = 2.0 * int(os.environ.get("CHIMERA_ROUNDS", "1"))
 ROOM, RATE = 50, 200
@@ -133,13 +137,66 @@ class Logging(unittest.TestCase):
                 rows = self.values(system)["rows"]
                 await_that(lambda: self.values(system)["rows"] > rows + 10, 10, "rows again")
                 values, said = self.end_of_logger(system)
-                self.assertEqual(said, "")
+                self.assertIn(f"the file lacks rows: {values['lost']} rows found no room", said)
         finally:
             pipe.finish()
             os.unlink(os.path.join(folder, "log"))
             os.rmdir(folder)
         self.assertEqual(pipe.lines, values["rows"] + 1)  # the first line names the columns
         return clean
+
+
+class LostRowsAreTold(unittest.TestCase):
+    """By `run`, while it goes on and at its end, however it is run."""
+
+    def setUp(self):
+        place = tempfile.TemporaryDirectory(prefix="chimera-log-")
+        self.addCleanup(place.cleanup)
+        self.place = pathlib.Path(place.name)
+
+    def run_with(self, log, *words):
+        file = self.place / "subject.yaml"
+        one_unit = APPLICATION.split("  watcher:")[0] + "configurations: {all: [counter, logger]}\nstart: all\n"
+        file.write_text(one_unit.replace("LOG", str(log)).replace("  witness: {cpu: 1, policy: edf}\n", ""))
+        environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.place), ASAN_OPTIONS=QUIET)
+        return subprocess.run([str(CHIMERA), "run", str(file), "--for", "1 s", *words], capture_output=True, text=True,
+                              timeout=60, env=environment, cwd=self.place)
+
+    def judge(self, *words):
+        full = self.run_with("/dev/full", *words)
+        self.assertEqual(full.returncode, 1, full.stdout + full.stderr)
+        self.assertIn("logger: note: rows are lost from t = ", full.stdout)
+        self.assertRegex(full.stdout, r"logger: last fault in kill at .*: \d+ rows were not written: No space left")
+        good = self.run_with(self.place / "log.csv", *words)
+        self.assertEqual(good.returncode, 0, good.stdout + good.stderr)
+        self.assertNotIn("note:", good.stdout)
+        self.assertNotIn("last fault", good.stdout)
+        head, *rows = (self.place / "log.csv").read_text().splitlines()
+        self.assertEqual(head, "t(s),count")
+        self.assertGreater(len(rows), RATE / 2)
+
+    def test_in_real_time(self):
+        self.judge("--priority", "0")
+
+    def test_in_one_process(self):
+        self.judge("--priority", "0", "--isolation", "none")
+
+    def test_in_virtual_time(self):
+        self.judge("--virtual")
+
+    def test_as_json(self):
+        full = self.run_with("/dev/full", "--priority", "0", "--json")
+        self.assertEqual(full.returncode, 1, full.stdout + full.stderr)
+        logger = next(task for task in json.loads(full.stdout)["tasks"] if task["task"] == "logger")
+        self.assertEqual((logger["state"], logger["last_fault"]["method"]), ("ON", "kill"))
+        self.assertTrue(logger["note"].startswith("rows are lost from t = "), logger["note"])
+
+    def test_the_first_refusal_is_an_event_at_once(self):
+        with System(APPLICATION.replace("LOG", "/dev/full")) as system:
+            told = lambda: [e["text"] for e in system.events() if e["kind"] == "note" and e["task"] == "logger"]
+            await_that(told, 5, "a note")
+            self.assertEqual(told()[0], f"the disk refuses rows: No space left on device; {ROOM} may wait")
+            self.assertEqual(system.state("logger"), "ON")
 
 
 if __name__ == "__main__":
