@@ -43,6 +43,10 @@ struct RobotBody : ArmBody<SimulatedArm> {
     tell();
     check(arm_.place({here.data(), joints}));
   }
+  /// What whoever named the file should know of it.
+  void tell_note(Cycle c) const {
+    if (!arm_.note().empty()) c.note(arm_.note().c_str());
+  }
   Outcome move(ArmInterface interface, const In<double[]>& command, Cycle c) {
     const bool moved = c.illegal() ? arm_.step_locally_stable(c.dt())
                                    : arm_.step(interface, {command.begin(), command.size()}, c.dt());
@@ -69,8 +73,9 @@ struct RobotFace : RobotBody {
                         doc = "Body or site that is the tool; empty: the link behind the most joints."};
   Resource model{"model", doc = "MJCF or URDF file."};
 
-  void init() {
+  void init(Cycle c) {
     start([this] { return arm_.load(model.c_str(), tip->c_str()); });
+    tell_note(c);
   }
   void reinit() {
     restart([this] { return arm_.load(model.c_str(), tip->c_str()); });

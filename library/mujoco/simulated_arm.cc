@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "library/mujoco/model_file.h"
 #include "library/mujoco/model_numbers.h"
 #include "library/mujoco/mujoco_guard.h"
 #include "library/mujoco/refusal.h"
@@ -19,16 +20,6 @@ namespace {
 // as much.
 constexpr double kLongestSubStep = 0.5e-3;
 constexpr double kHoldRate = 20;  // 1/s: how fast what moves is damped while the configuration is illegal
-
-/// One line of what MuJoCo says in several.
-void join_lines(char* text) {
-  char* to = text;
-  for (const char* from = text; *from != '\0'; ++from) {
-    if (*from != '\n') *to++ = *from;
-    else if (to != text && to[-1] != ' ' && from[1] != '\0') *to++ = ' ';
-  }
-  *to = '\0';
-}
 
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
@@ -45,11 +36,11 @@ Result<void> SimulatedArm::load(const char* path, const char* tip, const mjVFS_*
   if (files == nullptr) {
     if (Result<void> sound = check_model_numbers(path); !sound) return sound;
   }
-  char why[1000] = "";
+  std::string why;
   state_.reset();
-  model_.reset(mj_loadXML(path, files, why, sizeof why));
-  join_lines(why);
-  if (!model_) return refusal("%s: %.300s", path, why);
+  note_.clear();
+  model_.reset(files == nullptr ? load_model(path, why, note_) : load_model(path, *files, why));
+  if (!model_) return refusal("%s: %.300s", path, why.c_str());
   mjModel* m = model_.get();
   m->opt.disableflags |= mjDSBL_ACTUATION;
   longest_sub_step_ = m->opt.timestep > 0 ? std::min(m->opt.timestep, kLongestSubStep) : kLongestSubStep;

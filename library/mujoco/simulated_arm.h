@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
 #include "chimera/base/fixed.h"
 #include "chimera/base/result.h"
@@ -33,7 +34,9 @@ struct ArmDrives {
 class SimulatedArm {
  public:
   /// Reads an MJCF or URDF file, or one of `files`, and stands at zero. Motors of the model are not used but for their
-  /// limits. Refuses a missing or ill-formed file and what find_arm() refuses. Context: setup; may block.
+  /// limits. A collision mesh of a URDF file that cannot be used is left out: note() says so
+  /// (library/mujoco/urdf_meshes.h). Refuses a missing or ill-formed file and what find_arm() refuses. Context: setup;
+  /// may block.
   Result<void> load(const char* path, const char* tip = "", const mjVFS_* files = nullptr);
 
   /// Stands at rest in `q` (rad, one a joint). Refuses another number of joints, a position outside the joint limits or
@@ -67,6 +70,8 @@ class SimulatedArm {
   /// Limits and kinematic constants. Context: cycle; wait-free.
   const ArmModel& arm() const noexcept { return arm_; }
 
+  /// What whoever named the file should know of it, in one line; empty: nothing. Context: setup.
+  const std::string& note() const noexcept { return note_; }
   /// Why the last call that answered false did; empty before. Context: any.
   const char* fault() const noexcept { return fault_.c_str(); }
 
@@ -99,6 +104,7 @@ class SimulatedArm {
   ArmVector q_{}, qd_{}, hold_damping_{};
   double longest_sub_step_ = 0.5e-3;
   FixedString<120> fault_;
+  std::string note_;
 };
 
 }  // namespace chimera::library

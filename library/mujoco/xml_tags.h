@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The start tags of an XML text, one after the other: enough to look at attributes before a parser that says less.
+// The tags of an XML text, one after the other: enough to look at attributes before a parser that says less.
 #pragma once
 
 #include <cstddef>
@@ -9,34 +9,45 @@
 
 namespace chimera::library {
 
-/// A start tag. Views into the text that was read; values as they are written, entities and all.
+/// A tag. Views into the text that was read; values as they are written, entities and all.
 struct XmlTag {
   std::string_view element;
   std::vector<std::pair<std::string_view, std::string_view>> attributes;
   std::size_t line = 1;
+  std::size_t begin = 0, end = 0;  ///< of the tag in the text
+  bool is_end = false;             ///< </element>
+  bool is_empty = false;           ///< <element/>
 };
 
 /// Goes through a text. Comments, declarations and CDATA sections are passed over; at what is no XML it ends, because
 /// whoever parses the text says why. Context: setup.
 class XmlTags {
  public:
-  explicit XmlTags(std::string_view text) : rest_(text) {}
+  explicit XmlTags(std::string_view text) : text_(text), rest_(text) {}
 
-  /// False at the end.
+  /// The next start tag. False at the end.
   bool next(XmlTag& tag) {
+    while (next_of_all(tag))
+      if (!tag.is_end) return true;
+    return false;
+  }
+  /// The next start or end tag. False at the end.
+  bool next_of_all(XmlTag& tag) {
     for (;;) {
       if (!skip_past("<")) return false;
+      tag.begin = at() - 1;
       if (rest_.starts_with("!--")) skip_past("-->");
       else if (rest_.starts_with("![CDATA[")) skip_past("]]>");
-      else if (rest_.starts_with("!") || rest_.starts_with("/")) skip_past(">");
+      else if (rest_.starts_with("!")) skip_past(">");
       else if (rest_.starts_with("?")) skip_past("?>");
-      else return read(tag);
+      else return rest_.starts_with("/") ? read_end(tag) : read(tag);
     }
   }
 
  private:
   static constexpr std::string_view kSpace = " \t\r\n";
 
+  std::size_t at() const { return text_.size() - rest_.size(); }
   void drop(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) line_ += rest_[i] == '\n' ? 1 : 0;
     rest_.remove_prefix(count);
@@ -55,7 +66,18 @@ class XmlTags {
     drop(taken.size());
     return taken;
   }
+  bool read_end(XmlTag& tag) {
+    drop(1);
+    tag.line = line_;
+    tag.element = take(" \t\r\n>");
+    tag.attributes.clear();
+    tag.is_end = true;
+    const bool is_closed = skip_past(">");
+    tag.end = at();
+    return is_closed;
+  }
   bool read(XmlTag& tag) {
+    tag.is_end = false;
     tag.line = line_;
     tag.element = take(" \t\r\n/>");
     tag.attributes.clear();
@@ -72,10 +94,13 @@ class XmlTags {
       if (rest_.empty()) return false;
       drop(1);
     }
+    tag.is_empty = rest_.starts_with('/');
+    const std::size_t close = rest_.find('>');
+    tag.end = at() + (close == std::string_view::npos ? rest_.size() : close + 1);
     return !tag.element.empty();
   }
 
-  std::string_view rest_;
+  std::string_view text_, rest_;
   std::size_t line_ = 1;
 };
 

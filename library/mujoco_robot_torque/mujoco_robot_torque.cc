@@ -11,8 +11,9 @@ struct MujocoRobotTorque : library::RobotFace {
   In<double[]> tau{"tau", "N.m", "[ndof<=10]", frame = "joint", doc = "Torque at each joint; cut at tau_max."};
   OutConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive, a link a joint, base to tip."};
 
-  void init() {
+  void init(Cycle c) {
     start([this] { return load_with_links(); });
+    tell_note(c);
   }
   void reinit() {
     restart([this] { return load_with_links(); });

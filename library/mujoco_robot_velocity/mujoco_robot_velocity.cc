@@ -14,9 +14,9 @@ struct MujocoRobotVelocity : library::RobotFace {
   InConst<double> acceleration_limit{"acceleration_limit", "rad/s2", initial = 20.0, range(0.1, 1000),
                                      doc = "The most that the drives accelerate a joint."};
 
-  void init() {
+  void init(Cycle c) {
     set_drives();
-    RobotFace::init();
+    RobotFace::init(c);
   }
   void reinit() {
     set_drives();
