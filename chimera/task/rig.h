@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/fixed.h"
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/rig_ports.h"
@@ -98,8 +99,12 @@ class Rig : public RigPorts {
   Nanoseconds spent() const { return spent_; }
   /// The signals sent so far, as "off pid"; to itself "off".
   const std::vector<std::string>& signals() const { return signals_; }
-  /// The notes left so far.
-  const std::vector<std::string>& notes() const { return notes_; }
+  /// The notes left so far, the first 16 of them.
+  std::vector<std::string> notes() const {
+    std::vector<std::string> texts;
+    for (const FixedString<CHIMERA_FAULT_TEXT>& note : notes_) texts.emplace_back(note.view());
+    return texts;
+  }
 
  private:
   RigAnswer run(Method method) {
@@ -121,7 +126,7 @@ class Rig : public RigPorts {
     return CHIMERA_OK;
   }
   static void host_spend(void* rig, std::int64_t ns) { static_cast<Rig*>(rig)->spent_ += Nanoseconds{ns}; }
-  static void host_note(void* rig, const char* text) { static_cast<Rig*>(rig)->notes_.emplace_back(text); }
+  static void host_note(void* rig, const char* text) { (void)static_cast<Rig*>(rig)->notes_.try_push({text}); }
   static chimera_text host_variable(void* rig, const chimera_port* port) {
     return text_of(static_cast<Rig*>(rig)->joined(port).variable);
   }
@@ -135,7 +140,8 @@ class Rig : public RigPorts {
                                       &host_note,    &host_variable, &host_unit};
 
   chimera_call call_{};
-  std::vector<std::string> signals_, notes_;
+  std::vector<std::string> signals_;
+  FixedVector<FixedString<CHIMERA_FAULT_TEXT>, 16> notes_;  // a cycle that leaves one allocates nothing
   Nanoseconds spent_;
   bool expired_ = false;
 };
