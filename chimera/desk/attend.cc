@@ -48,33 +48,6 @@ Seen seen_of(const Json& reading) {
   return seen;
 }
 
-bool is_hardware(const Json& task) {
-  const Json ports = task.value("ports", Json::array());
-  return std::ranges::any_of(ports, [](const Json& port) { return port.value("kind", "") == "resource"; });
-}
-
-/// The tasks that there are, in the order in which real-time units end them: against the flow, hardware last.
-std::vector<std::string> ending_order(const Json& known, const Json& status) {
-  std::vector<std::string> order;
-  for (const Json& set : known.value("configurations", Json::array()))
-    if (set.value("name", "") == known.value("start", "")) order = set["tasks"].get<std::vector<std::string>>();
-  std::ranges::reverse(order);
-  const auto find = [&](const std::string& task) { return std::ranges::find(order, task); };
-  for (const Json& task : status.value("tasks", Json::array())) {
-    const auto at = find(task.value("task", ""));
-    const bool is_there = task.value("state", "NOT-CREATED") != "NOT-CREATED";
-    if (is_there && at == order.end()) order.push_back(task.value("task", ""));
-    if (!is_there && at != order.end()) order.erase(at);
-  }
-  std::vector<std::string> hardware;
-  for (const Json& task : known.value("tasks", Json::array()))
-    if (is_hardware(task)) hardware.push_back(task.value("task", ""));
-  std::ranges::stable_partition(order, [&](const std::string& task) {
-    return std::ranges::find(hardware, task) == hardware.end();
-  });
-  return order;
-}
-
 class Attendance {
  public:
   Attendance(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err)
@@ -88,7 +61,6 @@ class Attendance {
  private:
   Result<void> know_tasks(const Json& status);
   void print_grants(const Json& status);
-  void kill_tasks(RunReport& report);
   void look_at_events();
   /// Told to, or nobody reads what it prints.
   bool is_to_stop() const { return stop_is_requested() || std::ferror(out_) != 0; }

@@ -151,7 +151,7 @@ std::string UrdfMeshes::note() const {
   const auto out = static_cast<std::size_t>(std::ranges::count_if(meshes_, is_out));
   return std::to_string(out) + " of " + std::to_string(meshes_.size()) +
          " collision meshes left out, masses and joints as stated: " + short_name(first->called) + ": " + first->why +
-         (out > 1 ? "; ..." : "");
+         (out > 1 ? "; and " + std::to_string(out - 1) + " more" : "");
 }
 
 }  // namespace chimera::library

@@ -83,7 +83,7 @@ TEST_F(UrdfMeshesTest, AMeshThatIsNotThereIsLeftOutWithALineAndChangesNoNumber) 
   const std::string with = files.robot(files.mesh(kBase), files.mesh(kTool));
   EXPECT_EQ(numbers(with), numbers(files.robot("", "")));
   EXPECT_EQ(note(with), "2 of 2 collision meshes left out, masses and joints as stated: upper.stl: not found; "
-                        "CHIMERA_PACKAGE_PATH lists folders of packages; ...");
+                        "CHIMERA_PACKAGE_PATH lists folders of packages; and 1 more");
   files.put(files.package / "meshes" / "tool.obj", kTetrahedron);
   SimulatedArm arm;
   load(arm, with);
@@ -140,6 +140,15 @@ TEST_F(UrdfMeshesTest, LinesKeepTheirNumbersAndEverythingElseStays) {
   EXPECT_NE(made.find("<link name='b'><inertial/></link>"), std::string::npos);
   EXPECT_FALSE(UrdfMeshes::are_in("<robot><link name='a'/></robot>"));
   EXPECT_FALSE(UrdfMeshes::are_in("<mujoco><asset><mesh file='x.stl'/></asset></mujoco>"));
+}
+
+TEST_F(UrdfMeshesTest, ATextThatIsCutAnywhereKeepsItsLines) {
+  const std::string text = files.robot(files.mesh(kBase), files.mesh("x.dae") + files.mesh(kTool, "visual"));
+  for (std::size_t n = 0; n <= text.size(); ++n) {
+    const std::string cut = text.substr(0, n);
+    const std::string made = UrdfMeshes(cut, files.urdf).text();
+    ASSERT_EQ(std::ranges::count(made, '\n'), std::ranges::count(cut, '\n')) << cut;
+  }
 }
 
 TEST_F(UrdfMeshesTest, AMovingLinkThatOnlyAMeshWouldWeighIsRefusedWithTheRemedy) {
