@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define CHIMERA_MAX_COMPONENTS 64u /* of one object */
+#define CHIMERA_MAX_COMPONENTS 256u /* of one object */
 
 /* Makes the declaration at its first call, and returns the same one ever after. */
 typedef const chimera_component* (*chimera_declare_fn)(void);
