@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "chimera/task/abi.h"
+#include "chimera/task/fields.h"
 #include "chimera/task/registry.h"
 
 namespace chimera {
@@ -46,6 +47,15 @@ class RigPorts {
   void shape(const char* symbol, std::uint32_t rows, std::uint32_t columns) {
     fixed_.push_back({symbol, rows, columns});
     fix_extents();
+  }
+  /// What a port of any type carries: T = bool, std::int32_t, std::int64_t, float; double until said. Call it before
+  /// init() and set().
+  template <class T>
+  void type(const char* port, std::size_t instance = 0) {
+    Cell& cell = cell_of(port, instance);
+    if (cell.decl->type != CHIMERA_ANY) throw std::invalid_argument(std::string(port) + " has a type of its own");
+    cell.live->type = face::element_type<T>();
+    cell.live->element_size = sizeof(T);
   }
   /// The text of a resource port.
   void resource(const char* port, const char* text) {
@@ -221,7 +231,7 @@ class RigPorts {
   }
   template <class T>
   T& at(Cell& cell, std::size_t i) {
-    if (sizeof(T) != cell.decl->element_size)
+    if (sizeof(T) != cell.live->element_size)
       throw std::invalid_argument(std::string(cell.decl->name) + " has elements of another size");
     if (i >= std::size_t{extent_of(*cell.decl, 0, true)} * extent_of(*cell.decl, 1, true))
       throw std::invalid_argument(std::string(cell.decl->name) + " has fewer elements");
