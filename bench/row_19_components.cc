@@ -4,10 +4,12 @@
 // its ports, and the look for NaN.
 // Components: gain tderiv join_mean pid_joint joint_trajectory limit deadband rate_limit lowpass notch unit_convert
 // Components: join_priority select signal_generator csv_player watchdog
+// Components: pid sum offset lookup_table comparator logic edge counter encoder
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 
 #include "bench/component.h"
 #include "library/joint_trajectory/quintic.h"
@@ -134,6 +136,87 @@ std::vector<ComponentCase> other_cases() {
   };
 }
 
+/// `law(is, was)` for every element, n times: truth values that stand.
+template <class Law>
+std::function<void(std::uint64_t)> truths(Law law) {
+  return [law](std::uint64_t n) mutable {
+    static std::array<bool, kJoints> x{}, last{}, y{};
+    while (n--) {
+      bench::keep(x);
+      for (std::size_t i = 0; i < kJoints; ++i) y[i] = law(i, x[i], last[i]), last[i] = x[i];
+      bench::keep(y);
+    }
+  };
+}
+
+void give_truths(BenchRig& rig, std::initializer_list<const char*> ports) {
+  for (const char* port : ports)
+    for (std::size_t i = 0; i < kJoints; ++i) rig.set(port, false, i);
+}
+
+/// 16 points, and the piece found by halving.
+struct CurveLaw {
+  std::array<double, 16> at{}, value{};
+  CurveLaw() {
+    for (std::size_t k = 0; k < 16; ++k) at[k] = 0.1 * static_cast<double>(k), value[k] = at[k] * at[k];
+  }
+  double operator()(std::size_t, double x, double) const {
+    const auto k = static_cast<std::size_t>(std::upper_bound(at.begin() + 1, at.end() - 1, x) - at.begin());
+    return value[k - 1] + (x - at[k - 1]) * (value[k] - value[k - 1]) / (at[k] - at[k - 1]);
+  }
+};
+
+void give_curve(BenchRig& rig) {
+  fill(rig, "x", 0.5), rig.extent("points", 16);
+  for (std::size_t k = 0; k < 16; ++k)
+    rig.set("at", 0.1 * static_cast<double>(k), k), rig.set("value", static_cast<double>(k), k);
+}
+
+std::vector<ComponentCase> block_cases() {
+  return {
+      {"sum", "x + x + x", [](BenchRig& r) { give_inputs(r), r.instances("weight", 0); },
+       loop([](std::size_t, double x, double) { return x + x + x; })},
+      {"offset", "x + c", [](BenchRig& r) { fill(r, "x", 0.1), fill(r, "offset", 0.5); },
+       loop([](std::size_t, double x, double) { return x + 0.5; })},
+      {"lookup_table", "upper_bound, line", give_curve, loop(CurveLaw{})},
+      {"comparator", "two comparisons",
+       [](BenchRig& r) { fill(r, "x", 0.1), fill(r, "level", 0.3), fill(r, "hysteresis", 0.1); },
+       loop([](std::size_t, double x, double y) { return x > 0.35   ? 1
+                                                         : x < 0.25 ? 0
+                                                                    : y; })},
+      {"logic", "and of 18",
+       [](BenchRig& r) {
+         r.instances("in", 3), r.instances("inverted", 0);
+         for (std::size_t k = 0; k < 3; ++k)
+           for (std::size_t i = 0; i < kJoints; ++i) r.set("in", true, i, k);
+         r.set("function", Text<16>("and"));
+       },
+       [](std::uint64_t n) {
+         static std::array<bool, 3 * kJoints> x{};
+         bool y = false;
+         for (; n > 0; --n) bench::keep(x), y = std::ranges::all_of(x, std::identity{}), bench::keep(y);
+       }},
+      {"edge", "x and not last", [](BenchRig& r) { give_truths(r, {"x"}), r.set("duration", 0.0); },
+       truths([](std::size_t, bool is, bool was) { return is && !was; })},
+      {"counter", "count += x and not last",
+       [](BenchRig& r) {
+         give_truths(r, {"up", "down", "reset"});
+       },
+       truths([count = std::array<std::int64_t, kJoints>{}](std::size_t i, bool is, bool was) mutable {
+         return (count[i] += is && !was ? 1 : 0) > 100;
+       })},
+      {"encoder", "difference of counts",
+       [](BenchRig& r) {
+         r.instances("in", 1);
+         fill(r, "in", 7), fill(r, "span", 1), r.set("counts", std::int64_t{4096});
+       },
+       loop([last = Joints{}, total = Joints{}](std::size_t i, double x, double) mutable {
+         total[i] += x - last[i], last[i] = x;
+         return total[i] / 4096;
+       })},
+  };
+}
+
 void six_quintics(std::uint64_t n) {
   static library::Motion y[kJoints];
   library::Quintic path{0, 1, 3600};
@@ -162,6 +245,10 @@ std::vector<ComponentCase> joint_cases() {
          for (const char* p : {"q_ref", "qd_ref", "q", "qd", "kp", "ki", "kd", "tau_max"}) fill(r, p, 0.5);
          r.set("filter_time", 0.002); },
        loop(PidLaw{})},
+      {"pid", "6 PID, direct", [](BenchRig& r) {
+         for (const char* p : {"reference", "measured", "kp", "ki", "kd", "low", "high"}) fill(r, p, 0.5);
+         fill(r, "low", -1), r.set("filter_time", 0.002); },
+       loop(PidLaw{})},
       {"joint_trajectory", "6 quintics", [](BenchRig& r) { give_motion(r, "quintic"); },
        six_quintics},
       {"joint_trajectory", "jerk; 6 quintics", [](BenchRig& r) { give_motion(r, "jerk"); },
@@ -185,7 +272,7 @@ int main(int argc, char** argv) {
     for (int i = 0; i <= 1000; ++i) file << i * 1e-2 << ",1,2,3,4,5,6\n";
   }
   int worst = 0;
-  for (const auto& cases : {signal_cases(), other_cases(), joint_cases()})
+  for (const auto& cases : {signal_cases(), block_cases(), other_cases(), joint_cases()})
     worst = std::max(worst, bench::measure(19, cases, argc, argv));
   std::remove("row_19.csv");
   return worst;

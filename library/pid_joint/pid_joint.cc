@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "chimera/task/component.h"
-#include "library/pid_joint/pid.h"
+#include "library/pid/pid_axis.h"
 
 using namespace chimera;
 
@@ -48,7 +48,7 @@ struct PidJoint {
     }
     for (std::size_t i = 0; i < tau.size(); ++i) {
       const double torque =
-          axis_[i].step(gains(i), q_ref[i] - q[i], qd_ref[i] - qd[i], c.dt(), *filter_time, tau_max[i]);
+          axis_[i].step(gains(i), q_ref[i] - q[i], qd_ref[i] - qd[i], c.dt(), *filter_time, -tau_max[i], tau_max[i]);
       if (std::isnan(torque)) return fault("an input is not a number");
       tau[i] = torque;
     }

@@ -7,7 +7,7 @@
 
 #include "chimera/base/math.h"
 #include "library/joint_trajectory/quintic.h"
-#include "library/pid_joint/pid.h"
+#include "library/pid/pid_axis.h"
 #include "library/puma_torque/puma_arm.h"
 
 namespace chimera::library {
@@ -41,7 +41,7 @@ Figures run(double payload_mass) {
       const Motion reference = Quintic{kStart[j], kGoal[j], kMove}.at(t);
       const double error = reference.position - arm.position()[j];
       tau[j] = pid[j].step({kKp[j], kKi[j], kKd[j]}, error, reference.velocity - arm.velocity()[j], kDt, kFilter,
-                           arm.torque_limit()[j]);
+                           -arm.torque_limit()[j], arm.torque_limit()[j]);
       figures.furthest[j] = std::max(figures.furthest[j], std::abs(error));
       figures.peak[j] = std::max(figures.peak[j], std::abs(tau[j]));
       figures.last[j] = std::abs(error);

@@ -26,7 +26,13 @@ const Signal kSignals[] = {
     {"rate_limit", [](Rig& r, std::size_t n) { fill(r, "rise", 1, n), fill(r, "fall", 1, n); }, 3, 3},
     {"lowpass", [](Rig& r, std::size_t) { r.set("cutoff", 50.0); }, 2.999999, 3.000001},
     {"notch", [](Rig& r, std::size_t) { r.set("center", 50.0), r.set("width", 5.0); }, 2.999999, 3.000001},
-    {"unit_convert", [](Rig& r, std::size_t) { r.set("factor", 2.0); }, 6, 6}};
+    {"unit_convert", [](Rig& r, std::size_t) { r.set("factor", 2.0); }, 6, 6},
+    {"offset", [](Rig& r, std::size_t n) { fill(r, "offset", 1, n); }, 4, 4},
+    {"lookup_table",
+     [](Rig& r, std::size_t) {
+       r.extent("points", 2);
+       for (std::size_t k = 0; k < 2; ++k) r.set("at", k == 0 ? 0.0 : 6.0, k), r.set("value", k == 0 ? 1.0 : 0.0, k);
+     }, 0.5, 0.5}};
 
 struct AnyShape : testing::TestWithParam<Signal> {
   Rig rig{GetParam().component};

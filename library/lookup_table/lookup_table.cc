@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// A curve through given points, straight between them. README.md is the data sheet.
+#include <algorithm>
+#include <cstdio>
+
+#include "chimera/task/component.h"
+#include "library/signals/input.h"
+
+using namespace chimera;
+
+namespace {
+
+struct LookupTable {
+  In<double[]> x{"x", "U", "[n...<=64]", doc = "Any signal."};
+  InConst<double[]> at{"at", "U", "[points<=256]", doc = "The points of the curve: x, each above the one before."};
+  InConst<double[]> value{"value", "X", "[points<=256]", doc = "The points of the curve: y at each of them."};
+  InConst<Text<16>> outside{"outside", "1", initial = "hold",
+                            doc = "Before the first and behind the last point: hold, extend or fault."};
+  Out<double[]> y{"y", "X", "[n...<=64]", doc = "The curve at x."};
+
+  Outcome init() {
+    if (*outside == "hold")
+      outside_ = Outside::kHold;
+    else if (*outside == "extend")
+      outside_ = Outside::kExtend;
+    else if (*outside == "fault")
+      outside_ = Outside::kFault;
+    else
+      return fault("outside must be hold, extend or fault");
+    if (at.size() < 2) return fault("a table has two points or more");
+    if (!library::all_finite(at) || !library::all_finite(value)) return fault("at and value must be finite");
+    for (std::size_t k = 1; k < at.size(); ++k) {
+      if (at[k] > at[k - 1]) continue;
+      char text[120];
+      std::snprintf(text, sizeof text, "at[%zu] is %.9g, after %.9g: each point of at must be above the one before", k,
+                    at[k], at[k - 1]);
+      return fault(text);
+    }
+    return ok();
+  }
+  Outcome reinit() { return init(); }
+  void on() {
+    if (library::all_finite(x) && !first_outside()) look_up();
+  }
+  Outcome cycle() {
+    const Outcome input = library::judge(x, "x");
+    if (!library::is_ok(input)) return input;
+    if (const double* beyond = first_outside()) {
+      char text[120];
+      std::snprintf(text, sizeof text, "x is %.9g, and the table goes from %.9g to %.9g", *beyond, at[0],
+                    at[at.size() - 1]);
+      return fault(text);
+    }
+    look_up();
+    return ok();
+  }
+  bool error() { return true; }
+
+ private:
+  enum class Outside { kHold, kExtend, kFault };
+
+  const double* first_outside() const {
+    if (outside_ != Outside::kFault) return nullptr;
+    const double least = at.begin()[0], most = at.begin()[at.size() - 1];
+    const double* found = std::find_if(x.begin(), x.end(), [&](double v) { return v < least || v > most; });
+    return found == x.end() ? nullptr : found;
+  }
+  void look_up() {
+    const double* in = x.begin();
+    for (double& out : y) out = curve(*in++);
+  }
+  double curve(double x_now) const {
+    const double *first = at.begin(), *last = at.end() - 1;
+    if (outside_ == Outside::kHold) x_now = std::clamp(x_now, *first, *last);
+    // The piece whose end is the first inner point above x; the last piece where none is.
+    const double* end = std::upper_bound(first + 1, last, x_now);
+    const double *y_end = value.begin() + (end - first), x0 = end[-1], y0 = y_end[-1];
+    // As a mean of both ends, so that each point gives its value to the last bit.
+    const double share = (x_now - x0) / (*end - x0);
+    return y0 * (1 - share) + *y_end * share;
+  }
+
+  Outside outside_ = Outside::kHold;
+};
+
+CHIMERA_COMPONENT(LookupTable, "lookup_table", "A curve through given points, straight between them.");
+
+}  // namespace
