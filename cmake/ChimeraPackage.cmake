@@ -32,6 +32,42 @@ foreach(program chimera chimera-rtpu chimera-manager chimera-describe)
   install(PROGRAMS ${CMAKE_BINARY_DIR}/bin/${program} DESTINATION bin COMPONENT sdk)
 endforeach()
 install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk PATTERN completion EXCLUDE)
-# Without the test components, which are no library.
-install(DIRECTORY ${CMAKE_BINARY_DIR}/components/ DESTINATION lib/chimera/components COMPONENT sdk
-  USE_SOURCE_PERMISSIONS PATTERN "t_*" EXCLUDE)
+
+# The library without the test components. `product` is what `./dev install` and `./dev package` build.
+get_property(names GLOBAL PROPERTY chimera_component_names)
+get_property(absent GLOBAL PROPERTY chimera_components_without_library)
+list(FILTER names EXCLUDE REGEX "^t_")
+add_custom_target(product DEPENDS chimera chimera-describe chimera_base)
+foreach(name IN LISTS names)
+  if(TARGET component_${name}_files)
+    add_dependencies(product component_${name}_files)
+  endif()
+  get_property(files GLOBAL PROPERTY chimera_files_of_${name})
+  foreach(file IN LISTS files)
+    set(kind FILES)
+    if(file MATCHES "\\.partner$")
+      set(kind PROGRAMS)
+    endif()
+    install(${kind} ${file} DESTINATION lib/chimera/components COMPONENT sdk OPTIONAL)
+  endforeach()
+endforeach()
+# What this tree can build, for the message about what it has not built (chimera/config/library.h).
+list(JOIN names "\n" buildable)
+list(APPEND buildable ${absent})
+list(JOIN buildable "\n" buildable)
+file(WRITE ${CMAKE_BINARY_DIR}/components/buildable.txt "${buildable}\n")
+
+# What people read, in the folders of the checkout, so that its links hold: share/chimera/{docs,examples,library}.
+install(FILES share/chimera/completion/chimera.bash RENAME chimera
+  DESTINATION share/bash-completion/completions COMPONENT documents)
+install(FILES docs/man/chimera.1 DESTINATION share/man/man1 COMPONENT documents)
+install(DIRECTORY docs/formats/ DESTINATION share/chimera/schema COMPONENT documents
+  FILES_MATCHING PATTERN "*.schema.json")
+install(DIRECTORY examples docs DESTINATION share/chimera COMPONENT documents
+  PATTERN CMakeLists.txt EXCLUDE PATTERN man EXCLUDE)
+install(FILES README.md CONTRIBUTING.md DESTINATION share/chimera COMPONENT documents)
+file(GLOB sheets RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS library/README.md library/*/README.md)
+foreach(sheet IN LISTS sheets)
+  get_filename_component(folder ${sheet} DIRECTORY)
+  install(FILES ${sheet} DESTINATION share/chimera/${folder} COMPONENT documents)
+endforeach()

@@ -207,6 +207,8 @@ int no_command(const std::string& word, const std::vector<std::string>& names) {
 int main(int argc, char** argv) {
   CLI::App app{"Real-time control software assembled from components: check it, run it, look at it."};
   app.require_subcommand(1);
+  app.footer("`chimera COMMAND --help` has an example. Documents and examples: " +
+             desk::Workplace::around(desk::program_path()).documents);
   app.set_version_flag("--version", CHIMERA_VERSION);
   Words words;
   add_check(app, words);

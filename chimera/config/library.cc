@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "chimera/config/descriptor_json.h"
 #include "chimera/config/nearest.h"
@@ -62,6 +63,8 @@ void Library::read_folder(const std::string& folder) {
     const std::string path = it->path().string();
     if (path.ends_with(kSuffix)) files.push_back(path);
   }
+  std::ifstream buildable(folder + "/buildable.txt");
+  for (std::string name; std::getline(buildable, name);) buildable_.push_back(name);
   std::sort(files.begin(), files.end());  // the order of a folder is chance; faults must not be
   for (const std::string& file : files) read_file(file);
 }
@@ -99,6 +102,15 @@ const LibraryEntry* Library::find(std::string_view name) const noexcept {
     if (entry.descriptor.name == name) return &entry;
   }
   return nullptr;
+}
+
+bool Library::is_unbuilt(std::string_view name) const noexcept {
+  return find(name) == nullptr && std::find(buildable_.begin(), buildable_.end(), name) != buildable_.end();
+}
+
+std::size_t Library::n_unbuilt() const noexcept {
+  const auto is_missing = [this](const std::string& name) { return find(name) == nullptr; };
+  return static_cast<std::size_t>(std::count_if(buildable_.begin(), buildable_.end(), is_missing));
 }
 
 std::string Library::nearest_name(std::string_view name) const {

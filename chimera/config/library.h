@@ -24,7 +24,8 @@ struct LibraryEntry {
 class Library {
  public:
   /// Reads every NAME.component.json of `folders`, in order; of one name the first found counts. A folder that does
-  /// not exist is passed over. What cannot be read, or has a unit unknown to `units`, goes to faults().
+  /// not exist is passed over. What cannot be read, or has a unit unknown to `units`, goes to faults(). A file
+  /// `buildable.txt` in a folder names, one a line, what its build tree can build.
   static Library make(std::span<const std::string> folders, UnitSystem units);
 
   /// A library of the given descriptors, for tests and tools that have no files.
@@ -36,6 +37,9 @@ class Library {
   std::span<const LibraryEntry> entries() const noexcept { return entries_; }
   /// The component of that name, or nullptr.
   const LibraryEntry* find(std::string_view name) const noexcept;
+  /// True when the source of that component belongs to a build tree among the folders, and was not built there.
+  bool is_unbuilt(std::string_view name) const noexcept;
+  std::size_t n_unbuilt() const noexcept;
   /// The installed name nearest to `name`, or "".
   std::string nearest_name(std::string_view name) const;
   /// What could not be read; `where` is the file.
@@ -50,6 +54,7 @@ class Library {
   void read_file(const std::string& path);
   void add(LibraryEntry entry);
 
+  std::vector<std::string> buildable_;
   UnitSystem units_;
   std::vector<LibraryEntry> entries_;
   std::vector<Error> faults_;

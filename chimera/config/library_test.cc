@@ -68,6 +68,18 @@ TEST_F(Folders, ReportsBadFilesAndGoesOn) {
             "component torque: port x: \"Nm\" is no known unit; did you mean \"N.m\"?");
 }
 
+TEST_F(Folders, KnowsWhatItsBuildTreeHasNotBuilt) {
+  write("one/buildable.txt", "gain\nlimit\nadd\n");
+  write("one/gain.component.json", to_json(component("gain")));
+  write("two/add.component.json", to_json(component("add")));
+  const Library library = make();
+  EXPECT_TRUE(library.is_unbuilt("limit"));
+  EXPECT_FALSE(library.is_unbuilt("gain"));
+  EXPECT_FALSE(library.is_unbuilt("add"));  // another folder has it
+  EXPECT_FALSE(library.is_unbuilt("nothing"));
+  EXPECT_EQ(library.n_unbuilt(), 1u);
+}
+
 TEST(Library, TakesDescriptorsWithoutFiles) {
   const Library library = Library::of({component("b"), component("a")}, our_units());
   ASSERT_EQ(library.entries().size(), 2u);

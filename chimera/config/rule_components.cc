@@ -4,6 +4,14 @@
 namespace chimera {
 namespace {
 
+void refuse_unbuilt(Model& model, const DraftTask& task) {
+  const std::string& name = task.component.text;
+  model.error("component-unknown", task.component.at,
+              "task '" + task.name.text + "': the component '" + name + "' is not built: only its source is here", name,
+              "a component that is built", "",
+              "'./dev install' in the checkout builds and installs the whole library");
+}
+
 void refuse_streams(Model& model, const TaskModel& task) {
   for (const PortDescriptor& port : task.component->ports)
     if (port.kind == CHIMERA_IN_STREAM || port.kind == CHIMERA_OUT_STREAM)
@@ -47,6 +55,8 @@ void find_components(Model& model) {
     if (entry != nullptr) {
       task.component = &entry->descriptor;
       refuse_streams(model, task);
+    } else if (model.library.is_unbuilt(draft.component.text)) {
+      refuse_unbuilt(model, draft);
     } else if (!draft.component.empty()) {
       refuse_unknown(model, draft);
     }

@@ -106,14 +106,14 @@ Result<void> Client::reconnect() {
 }
 
 Result<Client> Client::connect(const std::string& subsystem) {
-  const std::string folder(socket_folder().view());
   const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
   const std::string name = !subsystem.empty() || chosen == nullptr ? subsystem : chosen;
+  const std::string folder = folder_with(name, std::string(socket_folder().view()), kServiceFolder);
   if (name.find('/') != std::string::npos) return connect_to(name);
   auto running = running_subsystems(folder);
   if (running.empty() && name.empty())
     return Message("no subsystem runs; start one with `chimera run FILE`").error(ErrorCode::kNotFound, folder);
-  if (!running.empty() && !is_safe_folder(folder.c_str()))
+  if (!running.empty() && folder != kServiceFolder && !is_safe_folder(folder.c_str()))
     return refusal("others may write to the folder of the sockets", folder);
   if (name.empty() && running.size() > 1) {
     const auto here = those_here(folder, running);

@@ -172,6 +172,17 @@ TEST_F(FindTest, TheOneThatRunsNeedsNoName) {
   EXPECT_EQ(said(folder + "/chimera/other.sock"), "no subsystem listens here");
 }
 
+TEST_F(FindTest, TheServicesOfTheMachineAreLookedAtWhenNoneOfOnesOwnFits) {
+  const std::string mine = folder + "/mine", services = folder + "/chimera";
+  std::filesystem::create_directory(mine);
+  EXPECT_EQ(folder_with("", mine, services), mine);
+  place("subject");
+  EXPECT_EQ(folder_with("", mine, services), services);
+  EXPECT_EQ(folder_with("subject", mine, services), services);
+  EXPECT_EQ(folder_with("arm", mine, services), mine);
+  EXPECT_EQ(folder_with("", services, mine), services);
+}
+
 TEST_F(FindTest, AmongSeveralOneMustBeNamed) {
   place("subject");
   listening = -1;

@@ -41,4 +41,11 @@ std::vector<std::string> running_subsystems(const std::string& folder) {
   return names;
 }
 
+std::string folder_with(const std::string& name, const std::string& own, const std::string& services) {
+  const auto has = [&name](const std::vector<std::string>& running) {
+    return name.empty() ? !running.empty() : std::find(running.begin(), running.end(), name) != running.end();
+  };
+  return !has(running_subsystems(own)) && has(running_subsystems(services)) ? services : own;
+}
+
 }  // namespace chimera::control

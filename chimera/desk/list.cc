@@ -30,6 +30,8 @@ Output list(const Workplace& workplace, bool json) {
   for (const Error& fault : library->faults()) output.err += error_line(fault);
   if (!library->faults().empty() && !json) output.err += "rebuild the components that cannot be read\n";
   if (!library->faults().empty()) output.code = kRefused;
+  if (const std::size_t n = library->n_unbuilt(); n > 0 && !json)
+    output.err += std::to_string(n) + " more have their source here and are not built: './dev install' builds all\n";
   return output;
 }
 

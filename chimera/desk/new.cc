@@ -2,9 +2,11 @@
 #include "chimera/desk/new.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "chimera/base/message.h"
@@ -52,6 +54,18 @@ std::string without_licence(const std::string& text) {
   return kept;
 }
 
+/// As a shell reads it back.
+std::string shell_word(const std::string& path) {
+  constexpr std::string_view kPlain = "_./+-";
+  const auto is_plain = [kPlain](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || kPlain.find(c) != std::string_view::npos;
+  };
+  if (std::all_of(path.begin(), path.end(), is_plain)) return path;
+  std::string word = path;
+  replace(word, "'", "'\\''");
+  return "'" + word + "'";
+}
+
 std::string template_name(NewKind kind) {
   switch (kind) {
     case NewKind::kComponent: return "component";
@@ -67,7 +81,8 @@ Result<fs::path> template_folder(const fs::path& prefix, NewKind kind) {
   const fs::path place = fs::path("share/chimera/templates") / template_name(kind);
   for (const fs::path& root : {prefix, prefix.parent_path().parent_path()})
     if (fs::is_directory(root / place)) return root / place;
-  return (Message() << "there are no templates: no " << place.string()).error(ErrorCode::kNotFound, prefix.string());
+  return (Message() << "there are no templates: no " << place.string() << "; the Debian package chimera-dev has them")
+      .error(ErrorCode::kNotFound, prefix.string());
 }
 
 /// The file by which editors complete and check a description, or "": none is installed.
@@ -108,10 +123,12 @@ Result<void> check(const NewRequest& request) {
 }
 
 std::string next_steps(const fs::path& folder, const std::string& package, const std::vector<File>& files) {
+  const bool has_script = std::any_of(files.begin(), files.end(), [](const File& file) { return file.is_program; });
   std::string text = "made " + folder.string() + ":";
   for (const File& file : files) text += " " + file.path;
   return text + "\nnext:\n  cd " + folder.string() + "\n  cmake -B build -Dchimera_DIR=" + package +
-         "\n  cmake --build build\n  ctest --test-dir build --output-on-failure\n";
+         "\n  cmake --build build\n  ctest --test-dir build --output-on-failure\n" +
+         (has_script ? "  ./run.sh --virtual\n" : "");
 }
 
 Result<std::string> make(const NewRequest& request, const fs::path& program) {
@@ -119,8 +136,8 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
   const fs::path prefix = fs::absolute(program).parent_path().parent_path();
   const auto templates = template_folder(prefix, request.kind);
   if (!templates) return templates.error();
-  const Filling words{request.name, type_of(request.name), (prefix / "lib/cmake/chimera").string(),
-                    fs::absolute(program).string(), schema(prefix)};
+  const Filling words{request.name, type_of(request.name), shell_word((prefix / "lib/cmake/chimera").string()),
+                      shell_word(fs::absolute(program).string()), schema(prefix)};
   std::vector<fs::path> sources;
   for (const auto& entry : fs::directory_iterator(*templates)) sources.push_back(entry.path());
   std::sort(sources.begin(), sources.end());

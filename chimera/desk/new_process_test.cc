@@ -60,8 +60,8 @@ TEST_F(New, ComponentBuildsAndPassesAgainstTheBuildTree) {
 }
 
 TEST_F(New, ComponentInCAndApplicationBuildAndPassAgainstAnInstallation) {
-  const std::string prefix = folder_ + "/prefix";
-  ASSERT_EQ(run("cmake --install " + build_tree() + " --component sdk --prefix " + prefix), 0) << log();
+  const std::string prefix = folder_ + "/its prefix";  // a shell must read it back
+  ASSERT_EQ(run("cmake --install " + build_tree() + " --component sdk --prefix \"" + prefix + "\""), 0) << log();
   build_and_test(make(NewKind::kComponentInC, "low_pass_c", prefix), "low_pass_c");
   build_and_test(make(NewKind::kApplication, "demo", prefix), "demo");
   EXPECT_TRUE(fs::exists(folder_ + "/demo/build/components/demo_control.component.json"));
@@ -117,7 +117,8 @@ TEST_F(New, RefusesAParentOrAnInstallationThatIsNotThere) {
   EXPECT_EQ(new_project({NewKind::kComponent, "x", folder_ + "/no"}, build_tree() + "/bin/chimera").err,
             folder_ + "/no: error: there is no such folder\n");
   EXPECT_EQ(make(NewKind::kComponent, "x", "/nowhere").err,
-            "/nowhere: error: there are no templates: no share/chimera/templates/component\n");
+            "/nowhere: error: there are no templates: no share/chimera/templates/component; the Debian package "
+            "chimera-dev has them\n");
 }
 
 }  // namespace

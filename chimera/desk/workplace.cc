@@ -2,6 +2,7 @@
 #include "chimera/desk/workplace.h"
 
 #include <climits>
+#include <filesystem>
 #include <unistd.h>
 
 #include "chimera/config/unit_system.h"
@@ -15,6 +16,9 @@ Workplace Workplace::around(const std::string& program) {
   Workplace made;
   made.component_folders = chimera::component_folders(installed);
   made.unit_files = {prefix + "/share/chimera/units.xml", prefix + "/../../share/chimera/units.xml"};
+  made.documents = prefix + "/share/chimera";
+  const std::filesystem::path checkout = std::filesystem::path(prefix).parent_path().parent_path();
+  if (std::filesystem::is_directory(checkout / "docs/formats")) made.documents = checkout.string();
   return made;
 }
 
@@ -30,7 +34,9 @@ Error no_component(const std::string& name, const Library& library) {
       return {fault.code, {std::string(fault.message.view()) + ". Rebuild the component."}, fault.where};
   const std::string nearest = library.nearest_name(name);
   std::string message = "no component '" + name + "' is installed";
-  if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";
+  if (library.is_unbuilt(name))
+    message = "the component '" + name + "' is not built: run './dev install' in the checkout";
+  else if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";
   else message += "; `chimera list` names those that are, CHIMERA_PATH says where to look";
   return {ErrorCode::kNotFound, {message}, {}};
 }

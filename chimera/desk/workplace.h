@@ -14,6 +14,7 @@ namespace chimera::desk {
 struct Workplace {
   std::vector<std::string> component_folders;
   std::vector<std::string> unit_files;
+  std::string documents{};  ///< where docs/ and examples/ are, which messages name
 
   /// What belongs to the program at `program` (its own path): CHIMERA_PATH first, then the tree that it was built
   /// or installed in (../components, ../lib/chimera/components; ../share/chimera/units.xml, or the source's).

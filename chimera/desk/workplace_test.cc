@@ -17,6 +17,13 @@ TEST(Workplace, LooksAlongThePathBeforeWhatBelongsToTheProgram) {
                                       "/opt/chimera/lib/chimera/components"}));
   EXPECT_EQ(place.unit_files, (std::vector<std::string>{"/opt/chimera/share/chimera/units.xml",
                                                         "/opt/chimera/../../share/chimera/units.xml"}));
+  EXPECT_EQ(place.documents, "/opt/chimera/share/chimera");
+}
+
+TEST(Workplace, KnowsTheDocumentsOfTheCheckoutAroundABuildTree) {
+  const std::string documents = Workplace::around(program_path().substr(0, program_path().find("/build/")) +
+                                                  "/build/any/bin/chimera").documents;
+  EXPECT_EQ(documents + "/build", program_path().substr(0, documents.size() + 6));
 }
 
 TEST(Workplace, WithoutAPathOnlyTheProgramsOwnFolders) {

@@ -31,7 +31,8 @@ Result<OwnedDescriptor> open_folder(const std::string& path, bool for_others) {
     return refusal("the folder of the sockets is another user's: set XDG_RUNTIME_DIR to a folder of yours", path);
   if ((status.st_mode & 022u) != 0)
     return refusal("others may write to the folder of the sockets: run 'chmod 0700 " + path + "'", path);
-  if (for_others && ::fchmod(folder.fd, 0711) != 0) return failed(path, "fchmod");
+  // A folder that others may also list, such as that of the machine's services, stays so.
+  if (for_others && (status.st_mode & 011u) != 011u && ::fchmod(folder.fd, 0711) != 0) return failed(path, "fchmod");
   return folder;
 }
 

@@ -106,6 +106,17 @@ TEST_F(SocketPlaceTest, RefusesAFolderThatIsNotSafe) {
   EXPECT_FALSE(is_safe_folder(folder_.c_str()));
 }
 
+TEST_F(SocketPlaceTest, OpensTheFolderForOthersAndLeavesOneAsItIsThatTheyMayList) {
+  const auto mode_after = [this](mode_t before) {
+    std::filesystem::create_directory(folder_);
+    ::chmod(folder_.c_str(), before);
+    EXPECT_TRUE(SocketPlace::open(folder_, "s", true));
+    return mode(folder_);
+  };
+  EXPECT_EQ(mode_after(0700), 0711u);
+  EXPECT_EQ(mode_after(0755), 0755u);
+}
+
 TEST_F(SocketPlaceTest, RefusesAPathTooLongForASocket) {
   EXPECT_EQ(refusal(std::string(120, 'x')),
             "the path of the socket is longer than 107 bytes: set XDG_RUNTIME_DIR to a shorter one, or give the "

@@ -3,6 +3,7 @@
 # usage: installed.sh BUILD_TREE: what `cmake --install` puts somewhere works from any folder, without that tree.
 set -eu
 tree=$1
+source=$(cd "$(dirname "$0")/../.." && pwd)
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 fail() { echo "installed: $*"; exit 1; }
@@ -14,10 +15,26 @@ for file in bin/chimera bin/chimera-rtpu bin/chimera-manager bin/chimera-describ
   lib/chimera/components/pid_joint.test.yaml share/chimera/units.xml \
   share/chimera/schema/description.schema.json share/chimera/schema/descriptor.schema.json \
   share/chimera/schema/run.schema.json share/chimera/templates/component/CMakeLists.txt \
-  share/bash-completion/completions/chimera share/man/man1/chimera.1 share/chimera/examples/README.md; do
+  share/bash-completion/completions/chimera share/man/man1/chimera.1 share/chimera/examples/README.md \
+  share/chimera/README.md share/chimera/docs/formats/component-test.md share/chimera/docs/howto/operate.md \
+  share/chimera/library/README.md share/chimera/library/gain/README.md; do
   [ -s "$file" ] || fail "$file is missing"
 done
 [ -z "$(find . -name 't_*.so')" ] || fail "test components are no library"
+
+while read -r component; do
+  [ -s "lib/chimera/components/$component.so" ] || [ ! -e "$tree/components/$component.so" ] ||
+    fail "the component $component was built and is not installed"
+done < "$tree/components/buildable.txt"
+[ "$(wc -l < "$tree/components/buildable.txt")" -ge 61 ] || fail "the library has fewer than 61 components"
+# A link within the documents leads to a file that is installed, or into the source.
+grep -ro '](\([^)#:]*\)' share/chimera --include='*.md' | sed 's/](//' | while IFS=: read -r file link; do
+  [ -n "$link" ] || continue
+  to=$(realpath -m --relative-to=share/chimera "$(dirname "$file")/$link")
+  case $to in chimera|chimera/*|tests/*|tools/*|bench/*|LICENSE) continue;; esac
+  case $to in library/*) [ -e "$source/${to%/README.md}/README.md" ] || continue;; esac
+  [ -e "share/chimera/$to" ] || fail "$file links to $link, which is not installed"
+done
 
 mkdir "$place/elsewhere"
 cd "$place/elsewhere"
@@ -37,6 +54,19 @@ mkdir -m 700 "$place/runtime"
 XDG_RUNTIME_DIR=$place/runtime "$chimera" run "$example" --priority 0 --for '50 ms' > out 2>&1 ||
   { cat out; fail "run $example by processes"; }
 grep -q '^ran 0.050 s' out || { cat out; fail "run $example by processes did not come to its end"; }
+"$chimera" --help | grep -q "examples: $place/prefix/share/chimera$" || fail "--help does not name the documents"
+mkdir "$place/tree"
+echo unbuilt > "$place/tree/buildable.txt"
+printf 'subsystem: s\ntasks: {unbuilt: }\n' > unbuilt.yaml
+! CHIMERA_PATH=$place/tree "$chimera" check unbuilt.yaml > out 2>&1 || fail "a component that is not built is legal"
+for words in "'unbuilt' is not built" "'./dev install'"; do
+  grep -qF "$words" out || { cat out; fail "check does not say how to build"; }
+done
+# The Debian packages have this version, and are built with the libraries that ./dev installs.
+grep -q "^chimera ($("$chimera" --version))" "$source/debian/changelog" || fail "debian/changelog has another version"
+for package in $(sed -n '/^demo_packages/,/^library_packages/p' "$source/dev" | grep -o '[a-z0-9-]*-dev'); do
+  grep -q "[ ,]$package\(,\|$\)" "$source/debian/control" || fail "debian/control does not name $package"
+done
 "$chimera" describe pid_joint > out || fail "describe"
 for words in '^Refused$' '^  out-var    tau ' 'Anti-windup is conditional'; do
   grep -q "$words" out || { cat out; fail "describe shows no '$words'"; }
