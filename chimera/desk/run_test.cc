@@ -196,7 +196,7 @@ TEST(Run, AValueThatCannotBeSetIsRefusedBeforeAnythingRuns) {
     RunRequest request = lasting(milliseconds(10));
     request.at = {act};
     const Said said = said_by(request, kGain);
-    EXPECT_EQ(said.code, kRefused) << act;
+    EXPECT_EQ(said.code, kUsage) << act;
     return said.err.substr(said.err.find("--at"));
   };
   EXPECT_EQ(refusal("1 ms: set k 3"),

@@ -23,7 +23,7 @@ TEST(StatusText, OfAUnitThatWasGivenUpItSaysWhatToType) {
   nlohmann::json status = chimera::shell::status();
   status["rtpus"][1]["given_up"] = true;
   status["rtpus"][1]["remedy"] = "`chimera clear trajectory`, then `chimera on trajectory`";
-  const char* lines = "spare: GIVEN UP; last end: signal 11 in trajectory.cycle\n"
+  const char* lines = "spare: GIVEN UP; last end: signal 11 in trajectory.cycle; its tasks count from their restart\n"
                       "  to bring it back type `chimera clear trajectory`, then `chimera on trajectory`\n";
   EXPECT_NE(status_text(status).find(lines), std::string::npos) << status_text(status);
   EXPECT_TRUE(rtpu_remarks(status["rtpus"][1]).starts_with("spare GIVEN UP, restarted 2 times"));

@@ -23,7 +23,7 @@ struct Ball : Rig {
 };
 
 TEST(CFace, DeclaresWhatPboPortsSays) {
-  EXPECT_EQ(ball().n_ports, 10u);
+  EXPECT_EQ(ball().n_ports, 11u);
   EXPECT_STREQ(ball().doc, "Trackball, written in C.");
   EXPECT_STREQ(ball().source, "Stewart 2000, figure 9");
   EXPECT_EQ(ball().default_rate_hz, 50);

@@ -129,7 +129,7 @@ struct Deaf final : Neighbours {
     return posts % 2 == 0;
   }
   void changed() noexcept override {}
-  void faulted(const Task&) noexcept override {}
+  void told(const Task&) noexcept override {}
   int posts = 0;
 };
 

@@ -40,7 +40,7 @@ def outputs(source):
     yield "schedule", 1, ["schedule", source / "examples/06_schedules/muf.yaml"]
     yield "check", 1, ["schedule", faulty[0]]
     yield "error", 1, ["schedule", examples[0], "--profile", source / "README.md"]
-    yield "error", 1, ["run", examples[0], "--virtual", "--for", "1 s", "--expect", "nothing at all"]
+    yield "error", 2, ["run", examples[0], "--virtual", "--for", "1 s", "--expect", "nothing at all"]
     for path in examples:
         yield "check", 0, ["check", path]
         yield "run", None, ["run", path, "--virtual", "--for", "20 ms"]
