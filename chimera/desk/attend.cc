@@ -20,6 +20,7 @@
 #include "chimera/desk/run_report.h"
 #include "chimera/desk/script_text.h"
 #include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/process.h"
 
 namespace chimera::desk {
 namespace {
@@ -262,12 +263,12 @@ bool any_lives(const Json& status) {
   return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return rtpu.value("alive", false); });
 }
 
-/// Has the tasks turned off and killed, and takes what they count then: that fails, too, and belongs to the run.
+/// Has the tasks turned off and killed, and takes what their last methods left: what fails there belongs to the run.
 void Attendance::judge_end(RunReport& report, const Json& before) {
   std::vector<UnitFate> units = units_of(before);
   std::vector<std::uint64_t> faults;
   for (const TaskProfile& task : report.profiles) faults.push_back(task.faults.count);
-  if (request_.keeper > 0 && ::getppid() == request_.keeper) ::kill(request_.keeper, SIGUSR1);
+  if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR1);
   auto after = line_.ask("status", Json::object());
   for (const Nanoseconds until = clock_.now() + kEndLimit; after && any_lives(*after) && clock_.now() < until;) {
     clock_.wait_until(clock_.now() + kStartLook);
@@ -275,9 +276,10 @@ void Attendance::judge_end(RunReport& report, const Json& before) {
   }
   const auto ended = after ? profiles(before["origin_ns"]) : std::vector<TaskProfile>();
   for (std::size_t t = 0; t < std::min(ended.size(), report.profiles.size()); ++t) {
-    const State state = report.profiles[t].state;
-    report.profiles[t] = ended[t];
-    report.profiles[t].state = state;
+    TaskProfile& task = report.profiles[t];  // cycles and misses are those up to the end of the run
+    task.faults = ended[t].faults;
+    for (const int method : {CHIMERA_OFF, CHIMERA_KILL, CHIMERA_ERROR})
+      task.profile.execution[method] = ended[t].profile.execution[method];
   }
   for (std::size_t r = 0; after && r < units.size(); ++r) {
     const Json& was = before["rtpus"][r];

@@ -112,7 +112,7 @@ class Crowd {
         take(i);
       else if (wall() - children_[i].began > plan_.limit && !children_[i].is_late) {
         children_[i].is_late = true;
-        ::kill(children_[i].pid, SIGKILL);
+        ::kill(children_[i].pid, SIGKILL);  // still ours: not reaped
       }
     }
   }
@@ -130,7 +130,7 @@ class Crowd {
 
   void finish(Child& child) {
     int status = 0;
-    while (::waitpid(child.pid, &status, 0) < 0 && errno == EINTR) {
+    while (::waitpid(child.pid, &status, 0) < 0 && errno == EINTR) {  // still ours: not reaped
     }
     char text[120] = "";
     if (child.is_late)
@@ -149,7 +149,7 @@ class Crowd {
   }
 
   std::vector<PieceEnd> stopped() {
-    for (const Child& child : children_) ::kill(child.pid, SIGKILL);
+    for (const Child& child : children_) ::kill(child.pid, SIGKILL);  // still ours: not reaped
     for (Child& child : children_) {
       finish(child);
       ends_[child.piece].failure = "ended by the operator";

@@ -62,4 +62,7 @@ bool reap_orphans(std::span<const pid_t> held) noexcept;
 /// the caller should end. Context: setup.
 bool follow_parent(pid_t parent, int signal) noexcept;
 
+/// By a child: sends `signal` to its parent, by pidfd. False when that is not `parent` (any more). Context: setup.
+bool signal_parent(pid_t parent, int signal) noexcept;
+
 }  // namespace chimera

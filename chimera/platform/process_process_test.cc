@@ -200,6 +200,8 @@ TEST(Process, OrphansAreAdoptedAndReapedButNotWhatSomebodyHolds) {
 
 TEST(Process, AChildSeesThatItsParentIsGoneAlready) {
   EXPECT_FALSE(follow_parent(::getpid(), SIGTERM)) << "no process is its own parent";
+  EXPECT_FALSE(signal_parent(::getpid(), SIGTERM)) << "nor is it signalled as that";
+  EXPECT_TRUE(signal_parent(::getppid(), 0));
   ::prctl(PR_SET_PDEATHSIG, 0);
 }
 

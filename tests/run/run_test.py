@@ -198,7 +198,7 @@ class Run(unittest.TestCase):
                        "the event")
             self.assertEqual(system.call("save")["operator"], {"x": "3.141592653589793 rad"})
         code, said = run(text, "--at", "1 s: set k 3 N.m/rad")
-        self.assertEqual(code, 1, said)
+        self.assertEqual(code, 2, said)
         self.assertIn("'k' is a constant, which nothing changes while tasks run; for the whole run: --set k VALUE\n",
                       said)
 

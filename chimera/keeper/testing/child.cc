@@ -14,6 +14,7 @@
 #include <string>
 
 #include "chimera/platform/channel.h"
+#include "chimera/platform/process.h"
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/memory_region.h"
 #include "chimera/platform/process.h"
@@ -84,7 +85,7 @@ int face() {
     const std::string order = next_order(me, done);
     if (order.starts_with("exit ")) return std::stoi(order.substr(5));
     if (order == "look") {
-      ::kill(::getppid(), SIGUSR1);
+      (void)signal_parent(::getppid(), SIGUSR1);
       log("looked");
       looked = true;
     }

@@ -157,4 +157,13 @@ bool follow_parent(pid_t parent, int signal) noexcept {
   return ::prctl(PR_SET_PDEATHSIG, signal) == 0 && ::getppid() == parent;
 }
 
+bool signal_parent(pid_t parent, int signal) noexcept {
+  const int pidfd = pidfd_open(parent);
+  if (pidfd < 0) return false;
+  // Still the parent now: then it was when the descriptor was made, and the number was its own.
+  const bool sent = ::getppid() == parent && pidfd_send_signal(pidfd, signal);
+  ::close(pidfd);
+  return sent;
+}
+
 }  // namespace chimera
