@@ -231,9 +231,10 @@ as_service='install -d -o chimera -g chimera -m 755 /run/chimera && cp drive/dri
   unit=/lib/systemd/system/chimera@.service && start=$(sed -n "s/^ExecStart=//p" $unit | sed "s/%i/drive/") &&
   export $(sed -n "s/^Environment=//p" $unit) && (runuser -u chimera -- bash -c "CHIMERA_OPTIONS=; exec $start" & ) &&
   sleep 5 && unset XDG_RUNTIME_DIR CHIMERA_PATH &&
-  runuser -u ann -- chimera status && runuser -u ann -- chimera set wanted "20 rad/s" &&
-  (! runuser -u nobody -- chimera status) && runuser -u ann -- chimera off control &&
-  runuser -u chimera -- env XDG_RUNTIME_DIR=/run chimera end && sleep 2 && [ ! -e /run/chimera/drive.sock ]'
+  runuser -u ann -- chimera status && runuser -u ann -- chimera set wanted "20 rad/s" --subsystem drive &&
+  (! runuser -u nobody -- chimera status) && runuser -u ann -- chimera off control --subsystem drive &&
+  runuser -u chimera -- env XDG_RUNTIME_DIR=/run chimera end --subsystem drive && sleep 2 &&
+  [ ! -e /run/chimera/drive.sock ]'
 
 # Boots the root with the service enabled, and looks at it as root and as an operator.
 boot() {
@@ -262,12 +263,12 @@ boot() {
 at_boot='sleep 5
 systemctl is-active chimera@drive
 journalctl -b -u chimera@drive --no-pager -o cat | grep "real time"
-runuser -u ann -- chimera set wanted "20 rad/s"
+runuser -u ann -- chimera set wanted "20 rad/s" --subsystem drive
 kill -9 "$(systemctl show chimera@drive -p MainPID --value)"
 sleep 6
 systemctl is-active chimera@drive
 runuser -u ann -- chimera status | grep "^drive: all"
-runuser -u chimera -- env XDG_RUNTIME_DIR=/run chimera end
+runuser -u chimera -- env XDG_RUNTIME_DIR=/run chimera end --subsystem drive
 sleep 4
 test "$(systemctl is-active chimera@drive)" = inactive
 systemctl show chimera@drive -p Result | grep success
