@@ -17,7 +17,8 @@
 #   without those of null and alignment, a fifth faster.
 # chimera_script_test(NAME LABEL label [TREES tree...] [DEPENDS target...] COMMAND command...)
 #   A test that is a command. Exit 77 = skipped, the last line of its output is the reason.
-#   Labels: unit process model (debug), threads (tsan), symbol cost realtime (release). TREES: debug (default) tsan release.
+#   Labels: unit process model (debug), threads (tsan), symbol cost realtime (release).
+#   TREES: debug (default) tsan release.
 
 find_package(Threads REQUIRED)
 set(CHIMERA_PYTHON /usr/bin/python3 CACHE FILEPATH "Debian's: the one with python3-yaml and jsonschema")
