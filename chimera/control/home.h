@@ -13,7 +13,7 @@ namespace chimera::control {
 struct Home {
   std::string subsystem;
   std::int64_t keeper_pid = 0;
-  std::int64_t session = 0;  ///< number of the session of its keeper; 0: not known
+  std::int64_t session = 0;  ///< number of the session of its keeper; 0: not known, as of one outside this container
   std::string folder;        ///< in which `chimera run` was typed
   std::string file;          ///< the description, as it was named there
 };
