@@ -29,11 +29,11 @@ class LocalGroup {
   /// Takes over the latest publication. False when the writer overtook every try: the previous copy stays and
   /// counts as stale. Context: cycle; bounded; O(payload).
   bool refresh() noexcept {
-    chimera_slot* const read = spare_;
-    if (!reader_.try_read(read)) [[unlikely]] {
+    if (!reader_.try_read(spare_)) {
       ++stale_;
       return false;
     }
+    chimera_slot* read = spare_;
     spare_ = used_;
     used_ = read;
     return true;
