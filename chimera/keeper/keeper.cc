@@ -13,6 +13,9 @@ namespace {
 constexpr Nanoseconds kQuickDeath = seconds(1), kLongestPause = milliseconds(500);
 constexpr int kMostRefusals = 10;  // of the manager, before anybody was served: within about two seconds
 constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to be carried out
+constexpr Nanoseconds kWatchEvery = milliseconds(250);
+constexpr Nanoseconds kManagerPatience = milliseconds(1500);  // it is replaced within 20 ms
+constexpr Nanoseconds kStartPatience = seconds(10);           // until it serves: it verifies the whole description
 constexpr Nanoseconds kUndertakersLimit = milliseconds(100);  // ten times what they wait
 
 }  // namespace
@@ -48,7 +51,9 @@ int Keeper::run() {
   while (phase_ != Phase::kDone) {
     wait();
     look();
-    while (advance()) {}
+    watch_manager();
+    while (advance()) {
+    }
   }
   for (const Nanoseconds until = clock_.now() + kUndertakersLimit; bury_orphans() && clock_.now() < until;)
     clock_.wait_until(clock_.now() + milliseconds(1));
@@ -61,10 +66,10 @@ void Keeper::wait() {
     events.push_back({peers_.channel(index), POLLIN, 0});
     events.push_back({peers_.pidfd(index), POLLIN, 0});
   }
-  const Nanoseconds due = std::min(phase_due_, manager_due_);
+  const Nanoseconds due = std::min({phase_due_, manager_due_, watch_due_});
   const Nanoseconds left = std::max(due - clock_.now(), Nanoseconds{0});
   const timespec patience{left.count / 1'000'000'000, left.count % 1'000'000'000};
-  ::ppoll(events.data(), events.size(), due == kNever ? nullptr : &patience, nullptr);
+  ::ppoll(events.data(), events.size(), &patience, nullptr);
 }
 
 /// Takes everything that has happened.
@@ -83,6 +88,8 @@ void Keeper::look() {
     peers_.take_messages(index, wishes);
     const Nanoseconds started = peers_.since(index);
     if (!peers_.has_ended(index, wishes) || index != peers_.manager()) continue;
+    manager_life_ = {};
+    manager_beats_ = 0;
     count_refusal(peers_.since(index) - started);
     if (peers_.since(index) - started >= kQuickDeath) manager_pause_ = {0};
     manager_due_ = peers_.since(index) + manager_pause_;
@@ -115,6 +122,7 @@ void Keeper::count_refusal(Nanoseconds lived) {
 }
 
 void Keeper::obey(const KeeperMessage& wish) {
+  if (wish.kind == KeeperMessage::Kind::kBeat) ++manager_beats_;
   if (wish.kind == KeeperMessage::Kind::kEnd) {
     end_asked_ = true;
     end_code_ = wish.code;
@@ -124,6 +132,38 @@ void Keeper::obey(const KeeperMessage& wish) {
   if (wish.kind == KeeperMessage::Kind::kEndChild && is_meant) peers_.signal(wish.index, SIGKILL);
   if (wish.kind == KeeperMessage::Kind::kStart && !peers_.lives(wish.index) && phase_ < Phase::kRtpusFinish)
     peers_.restart(wish.index);
+}
+
+/// The manager watches everybody else, and the keeper the manager: docs/formats/processes.md, "Who watches whom".
+void Keeper::watch_manager() {
+  const Nanoseconds now = clock_.now();
+  if (now < watch_due_) return;
+  watch_due_ = now + kWatchEvery;
+  peers_.beat();
+  if (!peers_.lives(peers_.manager()) || phase_ >= Phase::kRtpusFinish) return;
+  const ProcessState process = process_state(peers_.pid(peers_.manager()));
+  const bool is_slow_start = manager_beats_ == 0 && process.letter != 'T';
+  const Nanoseconds patience = is_slow_start ? kStartPatience : kManagerPatience;
+  const LifeVerdict verdict = manager_life_.look({now, manager_beats_, process}, {patience, patience});
+  if (verdict.life != Life::kRuns) {
+    hung_ = {.kind = KeeperMessage::Kind::kHung,
+             .index = peers_.manager(),
+             .incarnation = peers_.incarnation(peers_.manager()),
+             .code = static_cast<std::int32_t>(verdict.life),
+             .pid = verdict.tracer,
+             .silent = verdict.silent,
+             .letter = static_cast<std::uint32_t>(verdict.letter),
+             .was_ended = verdict.is_over};
+    if (verdict.is_over) peers_.signal(peers_.manager(), SIGKILL);
+  } else if (verdict.is_news) {
+    report_hang();
+  }
+}
+
+/// To the manager that runs now, be it another one.
+void Keeper::report_hang() {
+  if (hung_.kind == KeeperMessage::Kind::kHung) peers_.tell_manager(hung_);
+  hung_ = {};
 }
 
 void Keeper::enter(Phase phase, Nanoseconds limit) {
@@ -140,6 +180,7 @@ bool Keeper::advance() {
     manager_due_ = kNever;
     if (phase_ < Phase::kRtpusFinish) peers_.restart(manager);
     if (phase_ < Phase::kRtpusFinish && !peers_.lives(manager)) manager_due_ = now + kLongestPause;
+    if (peers_.lives(manager)) report_hang();
   } else if (phase_ == Phase::kRunning && end_asked_) {
     face_.signal(SIGTERM);
     enter(Phase::kFaceLooks, plan_.face_limit);

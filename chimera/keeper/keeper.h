@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chimera/keeper/kept_peers.h"
+#include "chimera/platform/life_watch.h"
 
 namespace chimera {
 
@@ -53,6 +54,8 @@ class Keeper {
   void obey(const KeeperMessage& wish);
   bool advance();
   void enter(Phase phase, Nanoseconds limit);
+  void watch_manager();
+  void report_hang();
 
   const KeeperPlan plan_;
   LinuxClock clock_;
@@ -62,6 +65,10 @@ class Keeper {
   sigset_t mask_before_{};
   Phase phase_ = Phase::kRunning;
   Nanoseconds phase_due_ = kNever;
+  Nanoseconds watch_due_ = {};
+  LifeWatch manager_life_;
+  std::uint64_t manager_beats_ = 0;   // of the present one; 0: it has not come to serve
+  KeeperMessage hung_;                // kHung: of the manager, to be told when one runs again
   Nanoseconds manager_due_ = kNever;  // when it is started again
   Nanoseconds manager_pause_;
   int manager_refusals_ = 0;  // in a row from the start on; negative once one has lived

@@ -9,8 +9,8 @@
 
 #include "chimera/base/result.h"
 #include "chimera/platform/channel.h"
-#include "chimera/platform/linux/owned_descriptor.h"
 #include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux/owned_descriptor.h"
 #include "chimera/platform/memory_region.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
@@ -43,6 +43,10 @@ class KeptPeers {
   void take_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes);
   /// True, once, when `index` has ended: then the others know.
   bool has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes);
+  /// Tells the manager; one that does not take its messages any more is ended.
+  void tell_manager(const KeeperMessage& message) { tell(manager(), message); }
+  /// Shows all that the keeper came round.
+  void beat() noexcept { page().beats.fetch_add(1, std::memory_order_release); }
   /// Tells every rtpu to end its tasks; from here on everybody sees that it ends.
   void finish_rtpus();
 

@@ -3,18 +3,24 @@
 
 #include <cstring>
 
+#include "chimera/platform/lost_descriptor.h"
+#include "chimera/runtime/under_way.h"
 #include "chimera/task/signal.h"
 
 namespace chimera::manager {
 
 std::string running_text(const ApplicationSpec& spec, std::uint32_t running) {
   const std::uint32_t task = (running >> 8) - 1, method = running & 255u;
-  if (running == 0 || task >= spec.tasks.size() || method >= CHIMERA_METHODS) return "";
+  if (running == 0 || task >= spec.tasks.size()) return "";
+  if (method == kOpening) return "the opening of the object of " + std::string(spec.tasks[task].name);
+  if (method == kInBackground) return std::string(spec.tasks[task].name) + ".background";
+  if (method >= CHIMERA_METHODS) return "";
   return std::string(spec.tasks[task].name) + "." + method_name(static_cast<Method>(method));
 }
 
 std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left) {
   std::string text = "ended with status " + std::to_string(ended.code);
+  if (ended.by_signal == 0 && ended.code == kDescriptorLost) text += " (its descriptors were closed)";
   if (ended.by_signal != 0) {
     const char* name = ::sigabbrev_np(ended.code);
     text = "ended by signal " + std::to_string(ended.code) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");

@@ -10,7 +10,8 @@
 
 namespace chimera::manager {
 
-/// "pid.cycle" for BlockHead::running; "" between jobs, and for a word that no rtpu would write. Context: setup.
+/// "pid.cycle" for BlockHead::running and the like; "" between jobs, and for a word that no rtpu would write. Context:
+/// setup.
 std::string running_text(const ApplicationSpec& spec, std::uint32_t running);
 
 /// "ended by signal 11 (SIGSEGV) in pid.cycle; core dumped". `left` is the block of the incarnation that ended; not

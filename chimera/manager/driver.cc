@@ -111,6 +111,7 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
                                    mapped_->decision_page(), mapped_->keeper_page());
   world_->keeper_pid = keeper_pid;
   fleet_ = std::make_unique<Fleet>(*world_);
+  watch_ = std::make_unique<UnitWatch>(*world_);
   auto bell = BellWatch::start(Doorbell(mapped_->decision_page().bells[world_->own.peer()].word));
   if (!bell) return bell.error();
   bell_ = *std::move(bell);
@@ -166,6 +167,8 @@ void Driver::take(const KeeperMessage& message, int passed) {
     fleet_->started(message);
   } else if (message.kind == Kind::kEnded) {
     fleet_->ended(message, events);
+  } else if (message.kind == Kind::kHung) {
+    watch_->told(message, now());
   }
   if (passed >= 0) ::close(passed);
   feed(events);
@@ -252,8 +255,24 @@ void Driver::look_at_keeper() {
   world_->tell("ending", TaskId{}, RtpuId{}, "everything ends", now());
 }
 
+/// Each beat of the keeper is answered by one of the manager's: never more of them than the keeper takes.
+void Driver::watch() {
+  KeeperMessage message;
+  message.kind = KeeperMessage::Kind::kBeat;
+  message.index = world_->own.peer();
+  const std::uint64_t beats = world_->keeper.beats.load(std::memory_order_acquire);
+  if (beats != keeper_beats_ && mapped_->channel.send(bytes_of(message))) keeper_beats_ = beats;
+  if (now() < watch_->due()) return;
+  for (const RtpuId rtpu : watch_->look(now())) {
+    message.kind = KeeperMessage::Kind::kEndChild;
+    message.index = rtpu.index;
+    message.incarnation = world_->rtpus[rtpu.index].incarnation;
+    [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: the keeper hangs itself
+  }
+}
+
 Nanoseconds Driver::next_due() const noexcept {
-  Nanoseconds due = std::min(world_->logic.next_due(), counters_due_);
+  Nanoseconds due = std::min({world_->logic.next_due(), counters_due_, watch_->due()});
   if (!is_ready_ || !fleet_->all_up()) due = std::min(due, now() + kLookEvery);
   return due;
 }
@@ -274,6 +293,7 @@ bool Driver::step(Nanoseconds at_most, int also) {
   if (!take_messages()) return false;
   look_at_keeper();
   look();
+  watch();
   if (now() >= counters_due_) {
     fleet_->look_at_counters(now());
     counters_due_ = now() + kCountersEvery;

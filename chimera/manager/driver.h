@@ -9,6 +9,7 @@
 
 #include "chimera/manager/bell_watch.h"
 #include "chimera/manager/fleet.h"
+#include "chimera/manager/unit_watch.h"
 #include "chimera/manager/world.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
@@ -72,12 +73,15 @@ class Driver {
   void carry_out(const subsystem::Action& action);
   void pass_end_on();
   void look_at_keeper();
+  void watch();
   Nanoseconds next_due() const noexcept;
   void wait(Nanoseconds until, int also);
 
   std::unique_ptr<Mapped> mapped_;
   std::unique_ptr<World> world_;
   std::unique_ptr<Fleet> fleet_;
+  std::unique_ptr<UnitWatch> watch_;
+  std::uint64_t keeper_beats_ = 0;  // that were answered
   std::unique_ptr<BellWatch> bell_;
   std::map<std::uint64_t, Answered> waiting_;
   std::uint64_t last_command_ = 0;

@@ -26,7 +26,9 @@ void Fleet::started(const KeeperMessage& message) {
   rtpu.incarnation = message.incarnation;
   rtpu.restarts = message.incarnation - 1;
   rtpu.is_alive = true;
-  rtpu.is_up = false;
+  rtpu.is_up = rtpu.is_away = false;
+  rtpu.hang.clear();
+  rtpu.ended_for.clear();
 }
 
 void Fleet::mapped(const KeeperMessage& message, int descriptor) {
@@ -63,8 +65,10 @@ void Fleet::ended(const KeeperMessage& message, Events& events) {
     take_posts(rtpu, events);
     for (const TaskId task : links_[rtpu.index].tasks) see(task, events, true);
   }
-  record.is_alive = record.is_up = false;
+  record.is_alive = record.is_up = record.is_away = false;
+  record.hang.clear();
   record.last_end = cause_text(world_.spec(), message, left_words ? world_.peers[rtpu].block() : BlockView());
+  if (!record.ended_for.empty()) record.last_end += ": " + std::exchange(record.ended_for, "");
   events.push_back(subsystem::RtpuDown{rtpu, message.incarnation, record.last_end});
 }
 

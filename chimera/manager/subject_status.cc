@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/task_profile.h"
 #include "chimera/config/schedule_report.h"
+#include "chimera/config/task_profile.h"
 #include "chimera/manager/cause.h"
 
 namespace chimera::manager {
@@ -67,10 +67,11 @@ Json rtpu_json(const World& world, RtpuId rtpu) {
                {"executor", spec.preemptive ? "preemptive" : "executive"},
                {"pid", record.pid},
                {"incarnation", record.incarnation},
-               {"alive", record.is_alive},
+               {"alive", record.is_alive && !record.is_away},
                {"phase", phase_text(phase)},
                {"grant", ""},
                {"running", nullptr},
+               {"hang", or_null(record.hang)},
                {"restarts", record.restarts},
                {"last_end", or_null(record.last_end)},
                {"given_up", is_given_up(world, rtpu)},
@@ -240,6 +241,7 @@ Json status_json(const World& world, Nanoseconds at) {
           {"started_ns", started == 0 ? Json() : Json(started)},
           {"ending", world.keeper.ending.load(std::memory_order_acquire) != 0},
           {"flag", flag_json(world)},
+          {"keeper", {{"pid", world.keeper_pid}, {"hang", or_null(world.keeper_hang)}}},
           {"rtpus", std::move(rtpus)},
           {"tasks", std::move(tasks)}};
 }

@@ -22,9 +22,12 @@ struct RtpuRecord {
   std::int32_t pid = 0;
   std::uint32_t incarnation = 0;  ///< that was started last
   bool is_alive = false;
-  bool is_up = false;             ///< serves this manager
-  std::uint32_t restarts = 0;     ///< starts beyond the first
-  std::string last_end;           ///< "ended by signal 9 (SIGKILL)"; "" when it never ended
+  bool is_up = false;          ///< serves this manager
+  std::uint32_t restarts = 0;  ///< starts beyond the first
+  std::string last_end;        ///< "ended by signal 9 (SIGKILL)"; "" when it never ended
+  bool is_away = false;        ///< alive, but does not run: nothing of what it shows is of now
+  std::string hang;            ///< what does not run or end: "log.init for 2.0 s"; "": nothing
+  std::string ended_for;       ///< why this manager had it ended; "": it had not
 };
 
 /// Owned by the driver; the rest reads, and acts through publish_operator(), raise_flag() and tap().
@@ -45,9 +48,15 @@ struct World {
   std::vector<RtpuRecord> rtpus;
   std::vector<std::uint32_t> tap_users;        ///< by task: subscriptions that want what it publishes
   std::int32_t keeper_pid = 0;
+  std::string keeper_hang;  ///< "" while it runs
 
   const ApplicationSpec& spec() const noexcept { return peers.spec(); }
-  State state(TaskId task) const noexcept { return logic.state(task); }
+  /// As people see it: a task of a unit that does not run is as little ON as one of a dead unit.
+  State state(TaskId task) const noexcept {
+    const State state = logic.state(task);
+    const bool is_away = rtpus[spec().tasks[task.index].rtpu.index].is_away;
+    return is_away && state != State::kNotCreated ? State::kError : state;
+  }
   std::string name(TaskId task) const { return std::string(spec().tasks[task.index].name); }
   std::string name(RtpuId rtpu) const { return std::string(spec().rtpus[rtpu.index].name); }
 

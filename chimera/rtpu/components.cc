@@ -6,6 +6,7 @@
 
 #include "chimera/load/descriptor.h"
 #include "chimera/load/shared_object.h"
+#include "chimera/runtime/under_way.h"
 
 namespace chimera {
 namespace {
@@ -24,13 +25,15 @@ Result<const chimera_component*> verified(const SharedObject& object, const Task
 
 }  // namespace
 
-Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image, RtpuId rtpu) {
+Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image, RtpuId rtpu,
+                                                              std::atomic<std::uint32_t>& serving) {
   const auto tasks = image.spec().tasks;
   std::vector<const chimera_component*> components(tasks.size());
   std::map<std::string_view, SharedObject> opened;
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     if (tasks[t].rtpu != rtpu) continue;
     const ComponentPlace& place = image.places()[t];
+    serving.store(under_way(TaskId(t), kOpening), std::memory_order_release);
     auto found = opened.find(place.object_file);
     if (found == opened.end()) {
       auto object = SharedObject::open(std::string(place.object_file));
@@ -41,6 +44,7 @@ Result<std::vector<const chimera_component*>> load_components(const ApplicationI
     if (!component) return component.error();
     components[t] = *component;
   }
+  serving.store(0, std::memory_order_release);
   return components;
 }
 

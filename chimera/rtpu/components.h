@@ -2,6 +2,8 @@
 // The code of a real-time unit's tasks: opens their shared objects and holds each against what verification saw.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <vector>
 
 #include "chimera/base/result.h"
@@ -11,8 +13,9 @@
 namespace chimera {
 
 /// The component of every task of `rtpu`; nullptr for those of others. Refuses, with the task in `where`: what
-/// SharedObject::open refuses, and a component that is no longer the one that was verified.
-/// Context: setup; may block.
-Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image, RtpuId rtpu);
+/// SharedObject::open refuses, and a component that is no longer the one that was verified. `serving` says meanwhile
+/// whose object is being opened, which runs code of its. Context: setup; may block.
+Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image, RtpuId rtpu,
+                                                              std::atomic<std::uint32_t>& serving);
 
 }  // namespace chimera

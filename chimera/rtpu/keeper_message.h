@@ -24,19 +24,24 @@ enum : int {
 struct KeeperMessage {
   enum class Kind : std::uint32_t {
     kSegment, kStart, kEndChild, kEnd,                        // to the keeper
-    kPeer, kStarted, kEnded, kComplete, kFinish               // from the keeper
+    kPeer, kStarted, kEnded, kComplete, kFinish,              // from the keeper
+    kBeat,                                                    // to the keeper: the manager goes round its loop
+    kHung                                                     // from the keeper: the manager did not
   };
 
   Kind kind = Kind::kSegment;
   std::uint32_t index = 0;        ///< the peer it is about
   std::uint32_t incarnation = 0;
-  std::int32_t code = 0;          ///< kEnded: exit status or signal; kEnd: exit code
+  std::int32_t code = 0;          ///< kEnded: exit status or signal; kEnd: exit code; kHung: Life
   std::uint32_t by_signal = 0;    ///< kEnded
   std::uint32_t core_dumped = 0;  ///< kEnded
-  std::int32_t pid = 0;           ///< kStarted: for people
+  std::int32_t pid = 0;           ///< kStarted: for people; kHung: of the debugger
   std::uint32_t reserved = 0;
-  Nanoseconds at = {};            ///< kStarted, kEnded: when, CLOCK_MONOTONIC
-  std::uint64_t unused[3] = {};
+  Nanoseconds at = {};          ///< kStarted, kEnded: when, CLOCK_MONOTONIC
+  Nanoseconds silent = {};      ///< kHung: for how long
+  std::uint32_t letter = 0;     ///< kHung: ProcessState::letter
+  std::uint32_t was_ended = 0;  ///< kHung: by the keeper for that; else it runs again
+  std::uint64_t unused = 0;
 };
 static_assert(sizeof(KeeperMessage) == 64 && std::is_trivially_copyable_v<KeeperMessage>);
 

@@ -15,6 +15,7 @@
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/lost_descriptor.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/platform/undertaker.h"
@@ -28,6 +29,7 @@ namespace chimera {
 namespace {
 
 constexpr int kCouldNotStart = 1, kMethodHangs = 3;
+constexpr Nanoseconds kLongBackground = seconds(1);  // what takes less is no news
 constexpr int kSuperviseEveryMs = 50;
 constexpr std::size_t kStackBytes = 256 * 1024;  // locked whole, and given back whole when it dies
 
@@ -54,6 +56,7 @@ class Rtpu {
   Result<void> make_tasks();
   void announce();
   void listen(int timeout_ms);
+  void attend();
   void take_messages();
   void take_peer(const KeeperMessage& message, int descriptor);
   void end();
@@ -104,9 +107,9 @@ Result<void> Rtpu::prepare() {
   if (over_.fd < 0) return Error{ErrorCode::kSystem, {"rtpu: eventfd failed"}, {}};
   if (auto mapped = map(); !mapped) return mapped;
   if (auto made = make_segment(); !made) return made;
+  announce();  // whoever watches sees from here on what it is at
   if (auto made = make_tasks(); !made) {
     say(block_.head(), made.error().message.view(), PeerPhase::kEnded);
-    announce();
     return made;
   }
   return {};
@@ -148,16 +151,16 @@ Result<void> Rtpu::make_segment() {
 
 Result<void> Rtpu::make_tasks() {
   const ApplicationSpec& spec = image_->spec();
-  auto components = load_components(*image_, RtpuId(start_.peer));
+  BlockHead& head = block_.head();
+  auto components = load_components(*image_, RtpuId(start_.peer), head.serving);
   if (!components) return components.error();
   components_ = *std::move(components);
-  BlockHead& head = block_.head();
   service_ = std::make_unique<ServiceThread>(spec.tasks.size(), Doorbell(bell()));
   others_ = std::make_unique<Others>(spec, start_.peer, segment_.writable(), block_, *decision_, *keeper_, *peers_);
   const ContextPlace place{RtpuId(start_.peer), segment_.writable().subspan(sizeof(SegmentHeader)),
                            others_.get(),       service_.get(),
                            &head.running,       &head.serving,
-                           self().preemptive};
+                           self().preemptive,   &head.at_edge};
   auto tasks = TaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);
@@ -182,10 +185,10 @@ void Rtpu::announce() {
 
 int Rtpu::run() {
   service_->start(*tasks_);
-  announce();
   cycling_->start();
   while (!cycling_->has_ended()) {
     listen(kSuperviseEveryMs);
+    attend();
     if (!is_ending_ && loop_hangs()) return kMethodHangs;  // nobody else takes edges
     if (!is_ending_ && edge_->has_hanging()) {
       is_giving_up_ = true;
@@ -199,9 +202,19 @@ int Rtpu::run() {
   return is_giving_up_ ? kMethodHangs : 0;
 }
 
+// For whoever watches this process: BlockHead.
+void Rtpu::attend() {
+  BlockHead& head = block_.head();
+  head.jobs.store(static_cast<std::uint32_t>(jobs_of((head.running >> 8) - 1)), std::memory_order_relaxed);
+  head.background.store(writer_.longest(kLongBackground), std::memory_order_relaxed);
+  head.attended.fetch_add(1, std::memory_order_release);
+}
+
 void Rtpu::listen(int timeout_ms) {
   pollfd fds[] = {{channel_.descriptor(), POLLIN, 0}, {over_.fd, POLLIN, 0}, {signals_, POLLIN, 0}};
   if (::poll(fds, 3, timeout_ms) <= 0) return peers_->clear();
+  for (const pollfd& one : fds)
+    if ((one.revents & POLLNVAL) != 0) end_without_descriptor();
   std::uint64_t times = 0;
   if (fds[1].revents != 0 && ::read(over_.fd, &times, sizeof times) < 0) return;
   if (fds[0].revents != 0) take_messages();

@@ -6,6 +6,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -15,12 +16,19 @@
 #include "chimera/base/assert.h"
 
 namespace chimera {
+namespace {
+
+std::int64_t steady_now() { return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1); }
+
+}  // namespace
 
 /// One instance and its thread.
 struct BackgroundWriter::Worker {
   void* instance = nullptr;
   chimera_background background = nullptr;
   Nanoseconds every;
+  std::uint32_t tag = 0;
+  std::atomic<std::int64_t> began{INT64_MAX};  // the call that is under way
 
   std::mutex mutex;
   std::condition_variable changed;
@@ -38,7 +46,9 @@ struct BackgroundWriter::Worker {
       if (failed) continue;
       chimera_fault said{};
       lock.unlock();
+      began = steady_now();
       const bool good = background(instance, &said) == CHIMERA_OK;
+      began = INT64_MAX;
       lock.lock();
       if (abandoned) return;
       if (good) continue;
@@ -84,11 +94,12 @@ BackgroundWriter::~BackgroundWriter() {
   for (const auto& worker : workers_) (void)end(*worker, unheard);
 }
 
-bool BackgroundWriter::add(void* instance, chimera_background background) {
+bool BackgroundWriter::add(void* instance, chimera_background background, std::uint32_t tag) {
   auto worker = std::make_shared<Worker>();
   worker->instance = instance;
   worker->background = background;
   worker->every = every_;
+  worker->tag = tag;
   pthread_attr_t attributes;
   if (pthread_attr_init(&attributes) != 0) return false;
   make_ordinary(attributes);
@@ -96,17 +107,29 @@ bool BackgroundWriter::add(void* instance, chimera_background background) {
   pthread_t thread;
   const bool made = pthread_create(&thread, &attributes, &run_worker<Worker>, shared) == 0;
   pthread_attr_destroy(&attributes);
+  if (!made) delete shared;
+  const std::lock_guard lock(mutex_);
   if (made) workers_.push_back(std::move(worker));
-  else delete shared;
   return made;
 }
 
+std::uint32_t BackgroundWriter::longest(Nanoseconds longer_than) const {
+  const std::lock_guard lock(mutex_);
+  const auto earlier = [](const auto& a, const auto& b) { return a->began < b->began; };
+  const auto at = std::min_element(workers_.begin(), workers_.end(), earlier);
+  return at != workers_.end() && (*at)->began < steady_now() - longer_than.count ? (*at)->tag : 0;
+}
+
 BackgroundWriter::End BackgroundWriter::remove(void* instance, chimera_fault& fault) {
-  const auto at = std::find_if(workers_.begin(), workers_.end(),
-                               [instance](const auto& worker) { return worker->instance == instance; });
-  CHIMERA_ASSERT(at != workers_.end());
-  const auto worker = *at;
-  workers_.erase(at);
+  std::shared_ptr<Worker> worker;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto at = std::find_if(workers_.begin(), workers_.end(),
+                                 [instance](const auto& other) { return other->instance == instance; });
+    CHIMERA_ASSERT(at != workers_.end());
+    worker = *at;
+    workers_.erase(at);
+  }
   return end(*worker, fault);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "chimera/base/time.h"
@@ -22,8 +23,12 @@ class BackgroundWriter {
   ~BackgroundWriter();
 
   /// From now on `background` is called with `instance`, until it answers with a fault. False when the system gives no
+  /// thread. `tag` is for longest().
+  [[nodiscard]] bool add(void* instance, chimera_background background, std::uint32_t tag = 0);
+
+  /// Tag of the one whose call has been under way longest, when that is longer than `longer_than`; 0: none is. Any
   /// thread.
-  [[nodiscard]] bool add(void* instance, chimera_background background);
+  std::uint32_t longest(Nanoseconds longer_than) const;
 
   enum class End {
     kDone,    ///< called once more, and never again
@@ -38,6 +43,7 @@ class BackgroundWriter {
   End end(Worker& worker, chimera_fault& fault) const;
 
   Nanoseconds every_, limit_;
+  mutable std::mutex mutex_;                      // of the list: whoever asks for the longest is another thread
   std::vector<std::shared_ptr<Worker>> workers_;  // shared with its thread, which may outlive us
 };
 

@@ -75,10 +75,13 @@ TEST_F(BackgroundWriters, DoNotWaitForAStalledOneNorLetItHoldUpOthers) {
   Disk other;
   static Disk stalled;  // must stay: its thread is in it
   stalled.is_stalled = true;
-  ASSERT_TRUE(writer.add(&stalled, write));
-  ASSERT_TRUE(writer.add(&other, write));
+  ASSERT_TRUE(writer.add(&stalled, write, 17));
+  ASSERT_TRUE(writer.add(&other, write, 18));
   await(stalled, 1);
   await(other, 5);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(writer.longest(milliseconds(10)), 17u);
+  EXPECT_EQ(writer.longest(seconds(60)), 0u) << "not for so long";
   EXPECT_EQ(writer.remove(&stalled, fault), BackgroundWriter::End::kStalled);
   EXPECT_STREQ(fault.text, "its background did not return within 0.2 s: what it holds is lost");
   const int calls = other.calls;

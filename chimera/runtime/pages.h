@@ -26,8 +26,8 @@ struct DecisionPage {
 
 /// Writable by the keeper alone.
 struct KeeperPage {
-  std::uint64_t reserved = 0;
-  Nanoseconds origin;              ///< of the grid of releases, CLOCK_MONOTONIC
+  std::atomic<std::uint64_t> beats{0};  ///< how often the keeper came round: four times a second, or it hangs
+  Nanoseconds origin;                   ///< of the grid of releases, CLOCK_MONOTONIC
   std::uint32_t n_rtpus = 0;
   std::atomic<std::uint32_t> ending{0};
   std::atomic<std::uint32_t> alive[kMaxPeers];  ///< incarnation of the peer that lives; 0: none

@@ -54,10 +54,13 @@ struct alignas(64) BlockHead {
   std::atomic<std::uint32_t> running{0};       ///< (task + 1) << 8 | method; 0: between jobs
   std::atomic<std::uint32_t> serving{0};       ///< the same for the service thread: init and kill
   std::atomic<std::uint32_t> seen_changes{0};
-  std::atomic<std::uint64_t> lost_posts{0};    ///< events that found no room in the manager's ring
-  std::atomic<std::uint64_t> beats{0};         ///< edges passed: one that does not grow is stuck in `running`
-  std::uint32_t reserved = 0;
-  char grant[448] = {};                        ///< one line about real-time rights, zero-terminated
+  std::atomic<std::uint64_t> lost_posts{0};  ///< events that found no room in the manager's ring
+  std::atomic<std::uint64_t> beats{0};       ///< edges passed: one that does not grow is stuck in `running`
+  std::atomic<std::uint32_t> attended{0};    ///< how often its main thread came round: every 50 ms, or it hangs
+  char grant[448] = {};                      ///< one line about real-time rights, zero-terminated
+  std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method that is called at an edge; 0: none
+  std::atomic<std::uint32_t> background{0};  ///< as `running`: the background that is under way longest; 0: none
+  std::atomic<std::uint32_t> jobs{0};        ///< cycles of the task in `running` that ended, as the main thread saw
 };
 inline constexpr std::uint64_t kBlockMagic = 0x314b4c42'4d494843;  // "CHIMBLK1" in memory
 

@@ -13,14 +13,14 @@
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/background_writer.h"
 #include "chimera/runtime/constant_store.h"
-#include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/job_clock.h"
 #include "chimera/runtime/job_step.h"
-#include "chimera/runtime/refusal.h"
 #include "chimera/runtime/neighbours.h"
 #include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/refusal.h"
 #include "chimera/runtime/service.h"
 #include "chimera/runtime/sources.h"
+#include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/variables.h"
 #include "chimera/task/task.h"
 
@@ -70,11 +70,13 @@ struct ContextPlace {
   RtpuId rtpu;                     ///< whose tasks are its own; invalid: all
   std::span<std::byte> table;      ///< zeroed bytes for PeerLayout::of(spec, rtpu); empty: memory of its own
   Neighbours* others = nullptr;
-  Service* service = nullptr;      ///< null: init and kill run where the signal is taken
-  /// Told which task and method runs, as BlockHead::running says, by the context and by the service thread.
+  Service* service = nullptr;  ///< null: init and kill run where the signal is taken
+  /// Told which task and method runs, as BlockHead::running says: by the context, and by the service thread.
   std::atomic<std::uint32_t>* running = &running_untold;
   std::atomic<std::uint32_t>* serving = &running_untold;
-  bool preemptive = false;         ///< tasks preempt each other: each reads through copies of its own
+  bool preemptive = false;  ///< tasks preempt each other: each reads through copies of its own
+  /// Told which method is called where a signal is taken; `running` goes on telling of jobs meanwhile.
+  std::atomic<std::uint32_t>* at_edge = &running_untold;
 };
 
 /// Everything about the tasks of one context but time. One thread at a time, but for serve().

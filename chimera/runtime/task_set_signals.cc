@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "chimera/runtime/task_set.h"
+#include "chimera/runtime/under_way.h"
 #include "chimera/task/background.h"
 #include "chimera/task/event_source.h"
 
@@ -167,9 +168,13 @@ Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock*
   if (method == Method::kKill) task.descriptor = -1;
   if (method == Method::kKill && !end_background(task, now)) return Answer::kFault;
   MethodGate* gate = clock == clock_ ? gate_ : nullptr;  // not on the service thread
+  const bool is_at_edge = task.running != place_.serving;
+  if (is_at_edge)
+    place_.at_edge->store(under_way(task.id, static_cast<std::uint32_t>(method)), std::memory_order_relaxed);
   if (gate != nullptr) gate->open(task.id);
   Answer answer = call_method(task, method, now);
   if (gate != nullptr) gate->close(task.id);
+  if (is_at_edge) place_.at_edge->store(0, std::memory_order_relaxed);
   if (method == Method::kInit && answer == Answer::kOk && !begin_background(task, now)) answer = Answer::kFault;
   const chimera_event_source source = event_source_of(*task.component);
   if (method == Method::kInit && answer == Answer::kOk && source != nullptr) task.descriptor = source(task.instance);
@@ -185,7 +190,9 @@ Answer TaskSet::construct(Task& task, Nanoseconds now) {
 
 bool TaskSet::begin_background(Task& task, Nanoseconds now) {
   task.background = background_of(*task.component);
-  if (task.background == nullptr || writer_ == nullptr || writer_->add(task.instance, task.background)) return true;
+  const std::uint32_t tag = under_way(task.id, kInBackground);
+  if (task.background == nullptr || writer_ == nullptr) return true;
+  if (writer_->add(task.instance, task.background, tag)) return true;
   task.background = nullptr;
   record_fault(task, Method::kInit, "there is no thread for its background", now);
   return false;
@@ -222,7 +229,7 @@ void TaskSet::serve(TaskId id, JobClock& clock) {
   contexts_[id.index].clock = &clock;
   task.running = place_.serving;
   if (serving.constructs) {
-    task.running->store((id.index + 1) << 8 | CHIMERA_INIT, std::memory_order_relaxed);
+    task.running->store(under_way(id, CHIMERA_INIT), std::memory_order_relaxed);
     serving.answer = construct(task, clock.now());
   } else {
     const Method method = rule(serving.step).method;

@@ -197,12 +197,13 @@ double share_of_server(const Json& server, double load) {
 
 std::string rtpu_remarks(const Json& rtpu) {
   std::string line = text_of(rtpu, "name") + " " +
-                     (truth_of(rtpu, "alive")      ? text_of(rtpu, "phase")
-                      : truth_of(rtpu, "given_up") ? "GIVEN UP"
-                                                   : "DEAD");
+                     (truth_of(rtpu, "alive") || !text_of(rtpu, "hang").empty() ? text_of(rtpu, "phase")
+                      : truth_of(rtpu, "given_up")                              ? "GIVEN UP"
+                                                                                : "DEAD");
   if (const std::int64_t n = whole_of(rtpu, "restarts"); n > 0)
     line += ", restarted " + (n == 1 ? std::string("once") : std::to_string(n) + " times");
   if (const std::string running = text_of(rtpu, "running"); !running.empty()) line += ", running " + running;
+  if (const std::string hang = text_of(rtpu, "hang"); !hang.empty()) line += ", HANGS: " + hang;
   if (truth_of(rtpu, "flag")) line += ", FLAG";
   if (const std::int64_t lost = whole_of(rtpu, "lost_events"); lost > 0)
     line += ", " + std::to_string(lost) + " events lost";
@@ -223,6 +224,11 @@ OldestInput oldest_input(const Json& task) {
 std::string status_text(const Json& status) {
   std::string text = headline(status) + "\n";
   if (const Columns rtpus = rtpu_table(status); !rtpus.empty()) text += "\n" + rtpus.text();
+  if (const std::string hang = text_of(field(status, "keeper"), "hang"); !hang.empty())
+    text += "keeper: HANGS: " + hang + "\n";
+  for (const Json& rtpu : field(status, "rtpus"))
+    if (const std::string hang = text_of(rtpu, "hang"); !hang.empty())
+      text += text_of(rtpu, "name") + ": HANGS: " + hang + "\n";
   for (const Json& rtpu : field(status, "rtpus"))
     if (const std::string end = text_of(rtpu, "last_end"); !end.empty())
       text += text_of(rtpu, "name") + ": " + (truth_of(rtpu, "given_up") ? "GIVEN UP; " : "") + "last end: " + end +

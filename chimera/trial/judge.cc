@@ -232,7 +232,9 @@ bool TrialReport::passes() const noexcept {
 std::string how_it_ended(const PlayEnd& end, const Record& record) {
   if (end.is_clean()) return record.refusal;
   const bool is_in_method = record.method < CHIMERA_METHODS;
-  std::string where = is_in_method ? std::string(" in ") + kMethodNames[record.method] : " while it was loaded";
+  std::string where = is_in_method ? std::string(" in ") + kMethodNames[record.method]
+                      : record.stage == Stage::kStart ? " in its constructor"
+                                                      : " while it was loaded";
   if (is_in_method && record.stage == Stage::kRows) where += " " + std::to_string(record.row);
   if (end.has_hung) return "nothing moved any more" + where;
   if (!end.process.by_signal) return "its process ended with code " + std::to_string(end.process.code) + where;

@@ -108,6 +108,7 @@ Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configur
   auto end = run([&] { play_inputs(play_of(trial.counted)); }, trial.counted.record(), options, true);
   if (!end) return end.error();
   trial.counted_end = *end;
+  if (end->has_hung && trial.counted.record().stage < Stage::kRows) return trial;  // so would the other plays
   end = run([&] { play_inputs(play_of(trial.timed)); }, trial.timed.record(), options, false);
   if (!end) return end.error();
   trial.timed_end = *end;

@@ -15,11 +15,17 @@
 
 using namespace chimera;
 
+// Opening its object never ends, when the environment says so.
+[[gnu::constructor]] static void hang_when_opened() {
+  while (::getenv("CHIMERA_TEST_OPENING_HANGS") != nullptr) ::pause();
+}
+
 struct Crash {
   InConst<Text<16>> where{"where", initial = "cycle", doc = "the method that does it"};
   InConst<Text<16>> how{"how", initial = "segv",
-                        doc = "segv abort bus fpe ill stack exit kill hang block doze linger sleep vanish nan "
-                              "scribble"};
+                        doc =
+                            "segv abort bus fpe ill stack exit kill hang block doze linger sleep vanish nan "
+                            "scribble unplug"};
   Resource armed{"armed", doc = "the file whose existence lets it happen"};
   Out<double> y{"y", "1", initial = 0.0, safety};
 
@@ -42,6 +48,7 @@ struct Crash {
       if (is(way)) ::raise(number), ::pause();
     if (is("stack")) *y = overflow(1);
     if (is("exit")) ::_exit(42);
+    if (is("unplug")) ::close_range(3, ~0U, 0);
     if (is("nan")) *y = std::nan("");
     if (is("block")) ::usleep(2'000);
     if (is("doze") || is("sleep") || is("hang") || is("vanish")) note_begin();

@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
+
+#include "chimera/platform/lost_descriptor.h"
 
 namespace chimera {
 
@@ -22,8 +25,8 @@ void Alarm::set(Nanoseconds instant) noexcept {
 
 void Alarm::wait() noexcept {
   std::uint64_t times = 0;
-  while (::read(timer_.fd, &times, sizeof times) < 0) {  // a signal handler ran
-  }
+  while (::read(timer_.fd, &times, sizeof times) < 0)
+    if (errno != EINTR) end_without_descriptor();  // else a signal handler ran
 }
 
 }  // namespace chimera

@@ -9,6 +9,7 @@
 #include <ctime>
 
 #include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/lost_descriptor.h"
 
 namespace chimera {
 
@@ -24,6 +25,7 @@ bool DescriptorBell::await(int descriptor, Nanoseconds instant) noexcept {
   const timespec t{left.count / 1'000'000'000, left.count % 1'000'000'000};
   pollfd both[] = {{descriptor, POLLIN, 0}, {event_.fd, POLLIN, 0}};
   if (::ppoll(both, 2, instant == kNever ? nullptr : &t, nullptr) <= 0) return false;
+  if ((both[1].revents & POLLNVAL) != 0) end_without_descriptor();
   std::uint64_t rings = 0;
   if (both[1].revents != 0 && ::read(event_.fd, &rings, sizeof rings) < 0) return false;
   return both[0].revents != 0;

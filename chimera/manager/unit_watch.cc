@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/unit_watch.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "chimera/manager/cause.h"
+
+namespace chimera::manager {
+namespace {
+
+constexpr Nanoseconds kWatchEvery = milliseconds(250);
+constexpr Nanoseconds kStartPatience = seconds(10);  // until a unit is at its first method or serves
+
+std::string seconds_text(Nanoseconds time) {
+  char text[32];
+  std::snprintf(text, sizeof text, time < seconds(10) ? "%.1f s" : "%.0f s", to_seconds(time));
+  return text;
+}
+
+const BlockHead* head_of(const World& world, RtpuId rtpu) {
+  const PeerSegment& segment = world.peers[rtpu];
+  const bool is_current = segment.is_there() && segment.incarnation() == world.rtpus[rtpu.index].incarnation;
+  return is_current ? &segment.block().head() : nullptr;
+}
+
+}  // namespace
+
+UnitWatch::UnitWatch(World& world) : world_(world) {
+  for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) units_.push_back(std::make_unique<Unit>());
+}
+
+std::vector<RtpuId> UnitWatch::look(Nanoseconds at) {
+  due_ = at + kWatchEvery;
+  look_at_keeper(at);
+  std::vector<RtpuId> over;
+  for (std::uint32_t r = 0; r < units_.size(); ++r) {
+    const RtpuId rtpu(r);
+    RtpuRecord& record = world_.rtpus[r];
+    if (units_[r]->incarnation != record.incarnation) {
+      units_[r] = std::make_unique<Unit>();
+      units_[r]->incarnation = record.incarnation;
+    }
+    record.hang.clear();
+    record.is_away = false;
+    if (!record.is_alive) continue;
+    if (look_at_life(rtpu, at)) over.push_back(rtpu);
+    if (!record.is_away) look_at_methods(rtpu, at);
+  }
+  return over;
+}
+
+/// True when there is no more patience with it.
+bool UnitWatch::look_at_life(RtpuId rtpu, Nanoseconds at) {
+  RtpuRecord& record = world_.rtpus[rtpu.index];
+  const BlockHead* head = head_of(world_, rtpu);
+  const std::uint32_t beats = head == nullptr ? 0 : head->attended.load(std::memory_order_acquire);
+  const ProcessState process = process_state(record.pid);
+  LifeLimits limits;
+  limits.spins = milliseconds(900);  // the second window, at the latest, is spun through whole
+  // What it is at before it serves is told by name, and may take its time.
+  const bool is_opening = head != nullptr && head->serving != 0;
+  if (beats == 0 && process.letter != 'T') limits = {is_opening ? kNever : kStartPatience, kNever, kNever};
+  const LifeVerdict verdict = units_[rtpu.index]->life.look({at, beats, process}, limits);
+  const bool runs = verdict.life == Life::kRuns, spins = verdict.life == Life::kSpins;
+  record.is_away = !runs && !spins;
+  if (spins) record.hang = "its main thread " + verdict.text();
+  if (record.is_away) record.hang = "does not run: " + verdict.text() + ", for " + seconds_text(verdict.silent);
+  std::string news = record.hang;
+  if (runs) news = verdict.silent < seconds(1) ? "waits again" : "runs again; it did not for ";
+  if (runs && verdict.silent >= seconds(1)) news += seconds_text(verdict.silent);
+  const std::string unit = "rtpu " + world_.name(rtpu) + (spins ? ": " : " ");
+  if (verdict.is_news) world_.tell("hang", TaskId{}, rtpu, unit + news, at);
+  const bool is_over = verdict.is_over && record.ended_for.empty();
+  if (is_over) record.ended_for = "it did not run for " + seconds_text(verdict.silent) + ": " + verdict.text();
+  return is_over;
+}
+
+void UnitWatch::look_at_methods(RtpuId rtpu, Nanoseconds at) {
+  const BlockHead* head = head_of(world_, rtpu);
+  if (head == nullptr) return;
+  Unit& unit = *units_[rtpu.index];
+  const auto look = [&](MethodWatch& watch, std::uint32_t word, std::uint64_t progress = 0) {
+    tell(rtpu, watch.look(word, progress, at), at);
+  };
+  look(unit.serving, head->serving.load(std::memory_order_relaxed));
+  look(unit.at_edge, head->at_edge.load(std::memory_order_relaxed));
+  look(unit.background, head->background.load(std::memory_order_relaxed));
+  // A preemptive unit tells of jobs that do not end by itself: it knows a wait from a loop.
+  if (world_.spec().rtpus[rtpu.index].preemptive) return;
+  const std::uint32_t running = head->running.load(std::memory_order_relaxed);
+  const bool is_cycle = (running & 255u) == CHIMERA_CYCLE;
+  look(unit.cycle, is_cycle ? running : 0, head->beats + head->jobs);
+}
+
+void UnitWatch::tell(RtpuId rtpu, const MethodVerdict& verdict, Nanoseconds at) {
+  const std::uint32_t word = verdict.word != 0 ? verdict.word : verdict.ended;
+  const std::string what = running_text(world_.spec(), word);
+  if (what.empty()) return;
+  std::string& hang = world_.rtpus[rtpu.index].hang;
+  const std::string text = what + (verdict.ended == 0 ? " for " : " ended after ") + seconds_text(verdict.since);
+  if (verdict.ended == 0) hang += (hang.empty() ? "" : "; ") + text;
+  if (verdict.is_news) world_.tell("hang", TaskId((word >> 8) - 1), rtpu, text, at);
+}
+
+void UnitWatch::look_at_keeper(Nanoseconds at) {
+  const std::uint64_t beats = world_.keeper.beats.load(std::memory_order_acquire);
+  const LifeVerdict verdict = keeper_.look({at, beats, process_state(world_.keeper_pid)}, {});
+  world_.keeper_hang =
+      verdict.life == Life::kRuns ? "" : "does not run: " + verdict.text() + ", for " + seconds_text(verdict.silent);
+  if (!verdict.is_news) return;
+  world_.tell("hang", TaskId{}, RtpuId{},
+              verdict.life == Life::kRuns ? "keeper runs again; it did not for " + seconds_text(verdict.silent)
+                                          : "keeper " + world_.keeper_hang,
+              at);
+}
+
+void UnitWatch::told(const KeeperMessage& hung, Nanoseconds at) {
+  LifeVerdict verdict;
+  verdict.life = static_cast<Life>(hung.code);
+  verdict.letter = static_cast<char>(hung.letter);
+  verdict.tracer = hung.pid;
+  world_.tell("hang", TaskId{}, RtpuId{},
+              "manager did not answer for " + seconds_text(hung.silent) + ": " + verdict.text() +
+                  (hung.was_ended != 0 ? "; it was replaced" : "; it runs again"),
+              at);
+}
+
+}  // namespace chimera::manager

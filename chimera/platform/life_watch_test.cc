@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/platform/life_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace chimera {
+namespace {
+
+constexpr Nanoseconds kEvery = milliseconds(250);
+
+/// A process and who watches it, in time that is stepped.
+struct Scene {
+  LifeSample sample{seconds(1000), 7, {'S', {}, 0}};
+  LifeWatch watch;
+  LifeLimits limits;
+
+  LifeVerdict look() { return watch.look(sample, limits); }
+  /// A sample each quarter of a second.
+  LifeVerdict after(Nanoseconds time, bool beats = false, double load = 0) {
+    LifeVerdict last;
+    for (Nanoseconds t; t < time; t = t + kEvery) {
+      sample.at = sample.at + kEvery;
+      sample.process.used = sample.process.used + Nanoseconds{static_cast<std::int64_t>(load * double(kEvery.count))};
+      if (beats) ++sample.beats;
+      last = look();
+      if (last.is_news) ++news;
+    }
+    return last;
+  }
+  int news = 0;
+};
+
+TEST(LifeWatch, SaysNothingOfOneThatComesRound) {
+  Scene scene;
+  scene.look();
+  EXPECT_EQ(scene.after(seconds(100), true).life, Life::kRuns);
+  EXPECT_EQ(scene.news, 0);
+}
+
+TEST(LifeWatch, TellsOnceWithinTwoSecondsWhyAndThenHasNoMorePatience) {
+  Scene scene;
+  scene.look();
+  scene.sample.process.letter = 'T';
+  EXPECT_EQ(scene.after(milliseconds(1250)).life, Life::kRuns);
+  const LifeVerdict told = scene.after(kEvery);
+  EXPECT_EQ(told.life, Life::kStopped);
+  EXPECT_TRUE(told.is_news);
+  EXPECT_FALSE(told.is_over);
+  EXPECT_EQ(told.text(), "stopped by a signal (state T)");
+  const LifeVerdict more = scene.after(milliseconds(1250));
+  EXPECT_FALSE(more.is_news);
+  EXPECT_FALSE(more.is_over);
+  EXPECT_TRUE(scene.after(kEvery).is_over);
+  EXPECT_EQ(scene.news, 1);
+}
+
+TEST(LifeWatch, TellsThatItRunsAgainAndForHowLongItDidNot) {
+  Scene scene;
+  scene.look();
+  scene.sample.process.letter = 'T';
+  scene.after(seconds(2));
+  scene.sample.process.letter = 'S';
+  const LifeVerdict again = scene.after(kEvery, true);
+  EXPECT_EQ(again.life, Life::kRuns);
+  EXPECT_TRUE(again.is_news);
+  EXPECT_EQ(again.silent, milliseconds(2250));
+  EXPECT_FALSE(scene.after(kEvery, true).is_news);
+  EXPECT_EQ(scene.after(seconds(1)).life, Life::kRuns) << "its time begins anew";
+}
+
+TEST(LifeWatch, WaitsForADebuggerAndRemindsOfIt) {
+  Scene scene;
+  scene.look();
+  scene.sample.process = {'t', {}, 4711};
+  const LifeVerdict held = scene.after(seconds(9));
+  EXPECT_EQ(held.life, Life::kTraced);
+  EXPECT_EQ(held.text(), "held by a debugger (pid 4711)");
+  EXPECT_EQ(scene.news, 1);
+  EXPECT_TRUE(scene.after(seconds(1)).is_news);
+  EXPECT_FALSE(scene.after(seconds(3600)).is_over);
+  EXPECT_EQ(scene.news, 3 + 6) << "after 1.5 s, 10 s, 60 s, and each ten minutes";
+}
+
+TEST(LifeWatch, KnowsALoopFromAWaitAndFromOneThatGetsNoProcessor) {
+  for (const auto& [letter, load, life, is_over] :
+       {std::tuple{'R', 1.0, Life::kLoops, true}, std::tuple{'S', 0.0, Life::kWaits, true},
+        std::tuple{'D', 0.0, Life::kWaits, true}, std::tuple{'R', 0.1, Life::kStarves, false}}) {
+    Scene scene;
+    scene.look();
+    scene.sample.process.letter = letter;
+    const LifeVerdict verdict = scene.after(seconds(4), false, load);
+    EXPECT_EQ(verdict.life, life) << letter << load;
+    EXPECT_EQ(verdict.is_over, is_over) << letter << load;
+  }
+}
+
+TEST(LifeWatch, TellsOfOneThatComesRoundAndNeverWaits) {
+  Scene scene;
+  scene.limits.spins = milliseconds(1500);
+  scene.look();
+  EXPECT_EQ(scene.after(seconds(10), true, 0.8).life, Life::kRuns);
+  EXPECT_EQ(scene.news, 0);
+  const LifeVerdict spins = scene.after(seconds(3), true, 1.0);  // a window that it fills, at the latest
+  EXPECT_EQ(spins.life, Life::kSpins);
+  EXPECT_EQ(spins.text(), "uses a whole processor");
+  EXPECT_FALSE(scene.after(seconds(10), true, 1.0).is_over);
+  EXPECT_EQ(scene.news, 1);
+  EXPECT_EQ(scene.after(seconds(3), true, 0.1).life, Life::kRuns);
+  EXPECT_EQ(scene.news, 2);
+}
+
+TEST(LifeWatch, TakesNobodyForHungWhenItWasAwayItself) {
+  Scene scene;
+  scene.look();
+  scene.after(seconds(1));
+  scene.sample.at = scene.sample.at + seconds(60);  // who watches was stopped, and all others with it
+  const LifeVerdict back = scene.look();
+  EXPECT_EQ(back.life, Life::kRuns);
+  EXPECT_FALSE(back.is_news);
+  EXPECT_EQ(scene.after(milliseconds(1250)).life, Life::kRuns);
+  EXPECT_EQ(scene.after(kEvery).life, Life::kWaits) << "but it goes on watching";
+}
+
+TEST(LifeWatch, ThatWasAwayForgetsNothingItTold) {
+  Scene scene;
+  scene.look();
+  scene.after(seconds(2));
+  scene.sample.at = scene.sample.at + seconds(60);
+  scene.look();
+  EXPECT_TRUE(scene.after(kEvery, true).is_news) << "it runs again";
+}
+
+}  // namespace
+}  // namespace chimera
