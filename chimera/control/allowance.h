@@ -13,7 +13,9 @@ namespace chimera::control {
 class Allowance {
  public:
   constexpr Allowance(std::int64_t per_second, std::int64_t burst) noexcept
-      : interval_{1'000'000'000 / per_second}, burst_(burst), left_(burst) {}
+      : Allowance(Nanoseconds{1'000'000'000 / per_second}, burst) {}
+  constexpr Allowance(Nanoseconds interval, std::int64_t burst) noexcept
+      : interval_(interval), burst_(burst), left_(burst) {}
 
   /// Takes `n`, at most the burst; takes nothing and is false when there are not so many left at `now`.
   constexpr bool take(Nanoseconds now, std::int64_t n = 1) noexcept {

@@ -25,6 +25,7 @@ enum : int {
   kUnknown = -32005,
   kNoAnswer = -32006,
   kEnding = -32007,
+  kClosed = -32008,
   kNoConnection = -1,  ///< never sent: the client lost the other end
 };
 

@@ -3,6 +3,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/un.h>
 
 #include <algorithm>
@@ -12,7 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/config/nearest.h"
+#include "chimera/config/time_text.h"
 #include "chimera/control/home.h"
+#include "chimera/control/listeners.h"
 #include "chimera/control/methods.h"
 #include "chimera/control/request.h"
 #include "chimera/control/running.h"
@@ -23,7 +26,8 @@ namespace chimera::control {
 namespace {
 
 constexpr const char* kLost = "the connection to the subsystem was lost";
-constexpr Nanoseconds kWhoIsIt = milliseconds(500);  // for one of several to say where it was started
+constexpr Nanoseconds kWhoIsIt = milliseconds(500);       // for one of several to say where it was started
+constexpr Nanoseconds kTryAgain = milliseconds(50);       // when there was no place
 constexpr std::size_t kMaxInput = std::size_t{64} << 20;  // of one line: whoever sends more is no subsystem of ours
 
 Nanoseconds now() { return LinuxClock().now(); }
@@ -53,14 +57,27 @@ bool acts(std::string_view method) {
   return rule == nullptr || (rule->is_act && rule->role > Role::kObserve);
 }
 
-Result<OwnedDescriptor> connected(const std::string& path) {
+/// Waits for a place in the queue of the socket, as whoever else waits does: in turn, not by trying again and again.
+bool connect_within(int socket, const sockaddr_un& address, Nanoseconds until) {
+  for (;;) {
+    const std::int64_t left_us = std::max<std::int64_t>((until - now()).count / 1000, 1);
+    const timeval limit{left_us / 1'000'000, left_us % 1'000'000};
+    if (::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) != 0) return false;
+    if (::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return true;
+    if (errno != EINTR || now() >= until) return false;
+  }
+}
+
+std::string silent(const std::string& path, Nanoseconds limit) { return silence_text(path, listeners_at(path), limit); }
+
+Result<OwnedDescriptor> connected(const std::string& path, Nanoseconds limit) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) return refusal("the path of the socket is too long", path);
   std::memcpy(address.sun_path, path.c_str(), path.size());
   OwnedDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (socket.fd >= 0 && ::connect(socket.fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0)
-    return socket;
+  if (socket.fd >= 0 && connect_within(socket.fd, address, now() + limit)) return socket;
+  if (errno == EAGAIN || errno == EINTR) return refusal(silent(path, limit));
   const bool is_closed = errno == EACCES || errno == EPERM;
   return refusal(is_closed ? "you may not talk to this subsystem" : "no subsystem listens here", path);
 }
@@ -69,7 +86,7 @@ Result<OwnedDescriptor> connected(const std::string& path) {
 std::vector<std::string> those_here(const std::string& folder, const std::vector<std::string>& names) {
   std::vector<std::string> here;
   for (const std::string& name : names) {
-    auto client = Client::connect_to(socket_path(folder, name));
+    auto client = Client::connect_to(socket_path(folder, name), kWhoIsIt);
     if (!client) continue;
     const Answer hello = client->call("hello", Json::object(), kWhoIsIt);
     if (hello.is_good() && is_here(home_of(*hello.result))) here.push_back(name);
@@ -90,14 +107,14 @@ Answer answer_of(const Json& message) {
 
 }  // namespace
 
-Result<Client> Client::connect_to(const std::string& path) {
-  auto socket = connected(path);
+Result<Client> Client::connect_to(const std::string& path, Nanoseconds limit) {
+  auto socket = connected(path, limit);
   if (!socket) return socket.error();
   return Client(*std::move(socket), path);
 }
 
-Result<void> Client::reconnect() {
-  auto socket = connected(path_);
+Result<void> Client::reconnect(Nanoseconds limit) {
+  auto socket = connected(path_, limit);
   if (!socket) return socket.error();
   socket_ = *std::move(socket);
   input_.clear();
@@ -105,11 +122,11 @@ Result<void> Client::reconnect() {
   return {};
 }
 
-Result<Client> Client::connect(const std::string& subsystem) {
+Result<Client> Client::connect(const std::string& subsystem, Nanoseconds limit) {
   const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
   const std::string name = !subsystem.empty() || chosen == nullptr ? subsystem : chosen;
   const std::string folder = folder_with(name, std::string(socket_folder().view()), kServiceFolder);
-  if (name.find('/') != std::string::npos) return connect_to(name);
+  if (name.find('/') != std::string::npos) return connect_to(name, limit);
   auto running = running_subsystems(folder);
   if (running.empty() && name.empty())
     return Message("no subsystem runs; start one with `chimera run FILE`").error(ErrorCode::kNotFound, folder);
@@ -122,7 +139,7 @@ Result<Client> Client::connect(const std::string& subsystem) {
   }
   const std::string wanted = name.empty() ? running[0] : name;
   if (std::find(running.begin(), running.end(), wanted) != running.end())
-    return connect_to(socket_path(folder, wanted));
+    return connect_to(socket_path(folder, wanted), limit);
   const std::string near = nearest(wanted, running);
   const std::string hint = !near.empty()     ? "; did you mean '" + near + "'?"
                            : running.empty() ? "; start one with `chimera run FILE`"
@@ -133,9 +150,12 @@ Result<Client> Client::connect(const std::string& subsystem) {
 Client::Got Client::send(std::string_view line, Nanoseconds until) {
   while (!line.empty()) {
     const ssize_t sent = ::send(socket_.fd, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent >= 0) line.remove_prefix(static_cast<std::size_t>(sent));
-    else if (errno == EAGAIN && !wait_for(socket_.fd, POLLOUT, until)) return Got::kLate;
-    else if (errno != EAGAIN && errno != EINTR) return Got::kReset;
+    if (sent >= 0)
+      line.remove_prefix(static_cast<std::size_t>(sent));
+    else if (errno == EAGAIN && !wait_for(socket_.fd, POLLOUT, until))
+      return Got::kLate;
+    else if (errno != EAGAIN && errno != EINTR)
+      return Got::kReset;
   }
   return Got::kLine;
 }
@@ -151,10 +171,14 @@ Client::Got Client::receive(std::string& line, Nanoseconds until) {
     looked = input_.size();
     char bytes[1 << 16];
     const ssize_t got = ::recv(socket_.fd, bytes, sizeof bytes, MSG_DONTWAIT);
-    if (got > 0) input_.append(bytes, static_cast<std::size_t>(got));
-    else if (got == 0 || input_.size() > kMaxInput) return Got::kClosed;
-    else if (errno == EAGAIN && !wait_for(socket_.fd, POLLIN, until)) return Got::kLate;
-    else if (errno != EAGAIN && errno != EINTR) return Got::kReset;  // the other end closed with our line unread
+    if (got > 0)
+      input_.append(bytes, static_cast<std::size_t>(got));
+    else if (got == 0 || input_.size() > kMaxInput)
+      return Got::kClosed;
+    else if (errno == EAGAIN && !wait_for(socket_.fd, POLLIN, until))
+      return Got::kLate;
+    else if (errno != EAGAIN && errno != EINTR)
+      return Got::kReset;  // the other end closed with our line unread
   }
 }
 
@@ -172,36 +196,61 @@ bool Client::take(const std::string& line, std::uint64_t id, Answer& answer) {
   const bool is_for_all = known == message.end() || known->is_null();  // the connection itself is refused
   if (id == 0 || (is_for_all ? !message.contains("error") : *known != id)) return false;
   answer = answer_of(message);
+  is_turned_out_ = is_for_all && (answer.code == kClosed || answer.code == kTooMany);
   return true;
 }
 
-Client::Got Client::exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Answer& answer) {
-  const Got sent = send(line, until);
-  if (sent == Got::kLate) return sent;
+/// Asks for a sign of life when half of `silence` has passed without a word.
+Client::Got Client::exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Nanoseconds silence,
+                             Answer& answer) {
+  const auto within = [&](Nanoseconds time) { return until - now() > time ? now() + time : until; };
+  const Got sent = send(line, within(silence));
+  if (sent == Got::kLate) return now() >= until ? sent : Got::kSilent;
+  bool is_asked = false;
   for (std::string text;;) {  // even if it could not be sent: why not may stand there to read
-    const Got got = receive(text, until);
+    const Got got = receive(text, within(silence == kNever ? silence : Nanoseconds{silence.count / 2}));
+    if (got == Got::kLate) {
+      if (now() >= until) return got;
+      if (std::exchange(is_asked, true)) return Got::kSilent;
+      (void)send(request_line(++last_id_, "hello", Json::object()), now());
+      continue;
+    }
     if (got != Got::kLine) return sent == Got::kReset && got == Got::kClosed ? sent : got;
+    is_asked = false;
     if (take(text, id, answer)) return got;
   }
 }
 
 Answer Client::call(std::string_view method) { return call(method, Json::object()); }
 
-Answer Client::call(std::string_view method, const Json& parameters, Nanoseconds limit) {
+/// After the door closed this connection without having carried out what it did not answer, or had no place: another.
+bool Client::comes_again(int code, Nanoseconds until) {
+  if (code == kTooMany && until - now() > kTryAgain) ::poll(nullptr, 0, static_cast<int>(kTryAgain.count / 1'000'000));
+  return !has_subscribed_ && until - now() > kTryAgain && reconnect(until - now());
+}
+
+Answer Client::call(std::string_view method, const Json& parameters, Nanoseconds limit, Nanoseconds silence) {
   const Nanoseconds until = now() + limit;
   const std::uint64_t id = ++last_id_;
   const std::string line = request_line(id, method, parameters);
   for (;;) {
     Answer answer;
-    const Got got = exchange(id, line, until, answer);
+    const Got got = exchange(id, line, until, silence, answer);
+    if (got == Got::kLine && is_turned_out_) {
+      if (comes_again(answer.code, until)) continue;
+      return answer.code == kClosed ? Answer::error(kNoConnection, kLost) : answer;
+    }
     if (got == Got::kLine) {
       has_subscribed_ = has_subscribed_ || (method == "subscribe" && answer.is_good());
       return answer;
     }
-    if (got == Got::kLate) return Answer::error(kNoAnswer, "no answer in time");
+    if (got == Got::kLate && silence < limit)  // the manager lives
+      return Answer::error(kNoAnswer, "no answer within " + time_text(limit) + "; `chimera status` says what was done");
+    if (got == Got::kLate || got == Got::kSilent)
+      return Answer::error(kNoAnswer, silent(path_, std::min(limit, silence)));
     if (got == Got::kClosed && acts(method))
       return Answer::error(kNoConnection, "the manager ended before it answered; `chimera status` says what was done");
-    if (has_subscribed_ || now() >= until || !reconnect()) return Answer::error(kNoConnection, kLost);
+    if (has_subscribed_ || now() >= until || !reconnect(until - now())) return Answer::error(kNoConnection, kLost);
   }
 }
 

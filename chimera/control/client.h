@@ -22,37 +22,45 @@ struct Note {
   std::shared_ptr<const Json> parameters;
 };
 
+/// Of a call, the connection included: long enough for a manager to be replaced meanwhile.
+inline constexpr Nanoseconds kCallLimit = seconds(5);
+
 /// One connection. Move-only. Context: setup; every call blocks, never longer than its limit.
 class Client {
  public:
   /// To the subsystem of that name; "" takes CHIMERA_SUBSYSTEM, else the one that runs, of several the one of this
   /// terminal or folder (control/home.h). A name with a '/' is the path of a socket: another user's subsystem. Refuses,
-  /// saying what runs, when there is none or the choice is not clear.
-  static Result<Client> connect(const std::string& subsystem);
+  /// saying what runs, when there is none or the choice is not clear; naming the manager when so many wait for it that
+  /// nobody could get through within `limit`.
+  static Result<Client> connect(const std::string& subsystem, Nanoseconds limit = kCallLimit);
   /// To the socket at `path`.
-  static Result<Client> connect_to(const std::string& path);
+  static Result<Client> connect_to(const std::string& path, Nanoseconds limit = kCallLimit);
 
   /// Calls and waits for the answer; a manager that is being restarted is waited for. When it dies meanwhile the call
   /// is made again on a new connection, unless it acts and may have been carried out; after subscribe() it is not: the
-  /// subscriptions would be missing. A connection that is lost answers kNoConnection. Notifications that come
-  /// meanwhile are kept for next().
-  Answer call(std::string_view method, const Json& parameters, Nanoseconds limit = seconds(10));
+  /// subscriptions would be missing. So it is made again when the door closed an idle connection, or had no place.
+  /// A connection that is lost answers kNoConnection. Notifications that come meanwhile are kept for next().
+  /// `silence`: a manager that says nothing at all for so long, though it is asked for a sign of life, is not waited
+  /// for until `limit`. kNoAnswer names its process and says what to do.
+  Answer call(std::string_view method, const Json& parameters, Nanoseconds limit = kCallLimit,
+              Nanoseconds silence = kNever);
   Answer call(std::string_view method);
   /// The next notification; nullopt: none came within `limit`. Refuses when the connection is lost.
   Result<std::optional<Note>> next(Nanoseconds limit);
   /// A new connection to the same socket, without subscriptions.
-  Result<void> reconnect();
+  Result<void> reconnect(Nanoseconds limit = kCallLimit);
   /// Readable when a notification may have come: for poll. next() must have been asked until it said nullopt.
   int descriptor() const noexcept { return socket_.fd; }
   const std::string& path() const noexcept { return path_; }
 
  private:
-  enum class Got { kLine, kLate, kClosed, kReset };  ///< kReset: what was sent last was not read
+  enum class Got { kLine, kLate, kSilent, kClosed, kReset };  ///< kReset: what was sent last was not read
 
   Client(OwnedDescriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
   Got send(std::string_view line, Nanoseconds until);
   Got receive(std::string& line, Nanoseconds until);
-  Got exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Answer& answer);
+  Got exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Nanoseconds silence, Answer& answer);
+  bool comes_again(int code, Nanoseconds until);
   bool take(const std::string& line, std::uint64_t id, Answer& answer);
 
   OwnedDescriptor socket_;
@@ -61,6 +69,7 @@ class Client {
   std::deque<Note> notes_;
   std::uint64_t last_id_ = 0;
   bool has_subscribed_ = false;
+  bool is_turned_out_ = false;  // the last answer was for no call: the door closed the connection
 };
 
 }  // namespace chimera::control

@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <atomic>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -104,17 +105,96 @@ TEST_F(ClientTest, DoesNotHideThatSubscriptionsAreLost) {
   EXPECT_TRUE(client->call("status").is_good());
 }
 
-TEST_F(ClientTest, HearsWhyItIsNotLetIn) {
+TEST_F(ClientTest, HearsWhyItIsNotLetInAndGetsInAsSoonAsThereIsAPlace) {
   start();
   std::vector<int> fds;
-  for (int i = 0; i < 16; ++i) fds.push_back(plain());
+  for (int i = 0; i < 16; ++i) say(fds.emplace_back(plain()), request("signal", R"({"signal":"off","tasks":["a"]})"));
+  for (int i = 0; i < 5000 && subject.later.size() < 16; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   std::this_thread::sleep_for(std::chrono::milliseconds(30));  // refused before it says a word
-  const Answer refused = client->call("hello");
+  const Answer refused = client->call("hello", Json::object(), milliseconds(200));
   EXPECT_EQ(refused.code, kTooMany);
-  EXPECT_EQ(refused.message, "too many connections");
+  EXPECT_EQ(refused.message, "too many connections: the 16 of user " + std::to_string(::getuid()) + " are all in use");
+  std::thread later([fd = fds[3]] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    ::close(fd);
+  });
+  EXPECT_TRUE(client->call("hello").is_good());
+  later.join();
   for (const int fd : fds) ::close(fd);
+}
+
+TEST_F(ClientTest, ThatGaveWayComesAgainAlsoWithAnAct) {
+  start();
+  auto client = Client::connect_to(path);
+  ASSERT_TRUE(client && client->call("hello").is_good());
+  std::vector<int> fds;
+  for (int i = 0; i < 16; ++i) fds.push_back(plain());
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_TRUE(client->call("flag", {{"up", true}}).is_good());
+  for (const int fd : fds) ::close(fd);
+}
+
+struct LimitTest : ClientTest {
+  Nanoseconds took(const std::function<void()>& call) {
+    const auto begun = std::chrono::steady_clock::now();
+    call();
+    return {std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count()};
+  }
+  const std::string silent =
+      "the manager of 'subject' does not answer for 200 ms; its real-time units go on without "
+      "it; try again, or tell whoever started it";
+};
+
+TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {
+  std::vector<int> fds;  // nobody serves: the queue fills
+  for (int i = 0; i < 1000; ++i) {
+    fds.push_back(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    const sockaddr_un address = address_of(path);
+    if (::connect(fds.back(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) break;
+  }
+  const Nanoseconds time = took([&] {
+    const auto client = Client::connect_to(path, milliseconds(200));
+    ASSERT_FALSE(client);
+    EXPECT_EQ(client.error().message.view(), silent);
+  });
+  EXPECT_GE(time, milliseconds(190));
+  EXPECT_LT(time, seconds(2));
+  std::thread later([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    start();
+  });
+  EXPECT_TRUE(Client::connect_to(path)) << "in turn, when there is somebody who takes them";
+  later.join();
+  for (const int fd : fds) ::close(fd);
+}
+
+TEST_F(LimitTest, HoldsForACallThatNobodyAnswers) {
+  auto client = Client::connect_to(path);
+  ASSERT_TRUE(client);
+  const Nanoseconds time = took([&] {
+    const Answer late = client->call("hello", Json::object(), milliseconds(200));
+    EXPECT_EQ(late.code, kNoAnswer);
+    EXPECT_EQ(late.message, silent);
+  });
+  EXPECT_LT(time, seconds(2));
+}
+
+TEST_F(LimitTest, ALongOneIsWaitedForAsLongAsTheManagerShowsASignOfLife) {
+  auto client = Client::connect_to(path);
+  ASSERT_TRUE(client);
+  const Json off{{"signal", "spawn"}, {"tasks", {"a"}}};
+  EXPECT_LT(took([&] { EXPECT_EQ(client->call("signal", off, seconds(60), milliseconds(200)).message, silent); }),
+            seconds(5));
+  start();
+  const Nanoseconds time = took([&] {
+    const Answer late = client->call("signal", off, milliseconds(700), milliseconds(200));
+    EXPECT_EQ(late.code, kNoAnswer);
+    EXPECT_EQ(late.message, "no answer within 700 ms; `chimera status` says what was done");
+  });
+  EXPECT_GE(time, milliseconds(690));
+  EXPECT_TRUE(client->call("hello").is_good()) << "what it asked for meanwhile is passed over";
 }
 
 TEST_F(ClientTest, WhateverTheOtherEndSaysItGoesOn) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chimera/config/nearest.h"
+#include "chimera/config/time_text.h"
 #include "chimera/platform/linux/owned_descriptor.h"
 
 namespace chimera::control {
@@ -49,9 +50,10 @@ Answer no_method(const std::string& name) {
 /// The one answer of a call that was handed to the subject: the first one counts, and if its reply is dropped without
 /// any, the caller is told.
 struct Door::Call {
-  Call(Door& opened, Session& from, const Request& asked)
-      : door(&opened), is_alive(opened.is_alive_), session(from.number()), request(asked) {
+  Call(Door& opened, Session& from, const Request& asked, bool does_act)
+      : door(&opened), is_alive(opened.is_alive_), session(from.number()), request(asked), acts(does_act) {
     ++from.open_calls;
+    from.open_acts += acts;
   }
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
@@ -63,6 +65,7 @@ struct Door::Call {
     const auto found = door->sessions_.find(session);
     if (found == door->sessions_.end()) return;
     --found->second->open_calls;
+    found->second->open_acts -= acts;
     door->answer(*found->second, request, said);
   }
 
@@ -70,6 +73,7 @@ struct Door::Call {
   std::shared_ptr<bool> is_alive;
   std::uint64_t session;
   Request request;
+  bool acts;
   bool is_answered = false;
 };
 
@@ -78,8 +82,7 @@ Result<std::unique_ptr<Door>> Door::open(int listening, Subject& subject, uid_t 
   door->listening_ = OwnedDescriptor(listening);
   door->epoll_ = OwnedDescriptor(::epoll_create1(EPOLL_CLOEXEC));
   const bool is_watched = listening < 0 || watch(door->epoll_.fd, EPOLL_CTL_ADD, listening, EPOLLIN, kListening);
-  if (door->epoll_.fd < 0 || !is_watched)
-    return system_error(Message("the control socket cannot be watched"), "epoll");
+  if (door->epoll_.fd < 0 || !is_watched) return system_error(Message("the control socket cannot be watched"), "epoll");
   return door;
 }
 
@@ -94,23 +97,72 @@ void Door::serve(Nanoseconds now) {
   }
   epoll_event events[kMaxConnections + 1];
   const int n = ::epoll_wait(epoll_.fd, events, static_cast<int>(std::size(events)), 0);
+  bool has_callers = false;
   for (int i = 0; i < n; ++i) {
     const std::uint64_t number = events[i].data.u64;  // a copy: the event itself is packed
     const auto found = sessions_.find(number);
-    if (number == kListening) accept(now);
+    has_callers = has_callers || number == kListening;
     if (found == sessions_.end() || (events[i].events & (EPOLLIN | EPOLLHUP | EPOLLERR)) == 0) continue;
-    found->second->receive();
+    found->second->receive(now);
     if ((events[i].events & (EPOLLHUP | EPOLLERR)) != 0) found->second->is_gone = true;
   }
-  for (const auto& [number, session] : sessions_) read(*session, now);
+  for (const auto& [number, session] : sessions_) read(*session, kLinesAtOnce, now);
+  if (has_callers) accept(now);  // when those inside have been heard: who has just asked is not idle
   subscriptions_.notify([this](std::uint64_t number) -> Session& { return *sessions_.at(number); }, now);
   settle(now);
 }
 
-bool Door::may_enter(const PeerIdentity& peer) const {
-  if (sessions_.size() >= kMaxConnections) return false;
-  const auto is_same = [&](const auto& one) { return one.second->peer().user == peer.user; };
-  return std::count_if(sessions_.begin(), sessions_.end(), is_same) < static_cast<long>(kMaxConnectionsOfUser);
+Standing Door::standing(Session& session, Nanoseconds now) const {
+  if (session.open_acts > 0) return Standing::kActs;
+  const bool listens = subscriptions_.count_of(session.number()) > 0 && session.is_read(now);
+  if (listens && !session.is_gone) return Standing::kListens;
+  if (session.open_calls > 0 || session.has_line() || session.has_output()) return Standing::kAsks;
+  return session.half_since() != kNever ? Standing::kHalfLine : Standing::kIdle;
+}
+
+/// A place for one more, or why there is none.
+Answer Door::admit(const PeerIdentity& peer, Nanoseconds now) {
+  if (peer.role == Role::kNone) return no_role();
+  std::vector<Occupant> all;
+  for (const auto& [number, session] : sessions_) {
+    const Standing has = standing(*session, now);
+    all.push_back({number, session->peer().user, rank_of(session->peer(), owner_), has,
+                   has == Standing::kHalfLine ? session->half_since() : session->active_at});
+  }
+  const Placement placement = find_place(all, peer.user, rank_of(peer, owner_));
+  if (!placement.is_granted) return Answer::error(kTooMany, "too many connections: " + placement.refusal);
+  if (placement.in_place_of == 0) return {};
+  Session& first = *sessions_.at(placement.in_place_of);
+  turn_out(first, idle_text(first, now) + "; its place was needed", now);
+  end(first.number());
+  return {};
+}
+
+std::string Door::idle_text(Session& session, Nanoseconds now) const {
+  switch (standing(session, now)) {
+    case Standing::kHalfLine:
+      return "a line without an end for " + time_text(now - session.half_since());
+    case Standing::kIdle:
+      return "idle for " + time_text(now - session.active_at);
+    case Standing::kAsks:
+      return "it had only asked";
+    case Standing::kListens:
+      return "it only listened, with a lower role";
+    case Standing::kActs:
+      break;  // does not give way
+  }
+  return "";
+}
+
+/// Tells the peer, if that can be done at once, and whoever wants to know what was closed.
+void Door::turn_out(Session& session, const std::string& why, Nanoseconds now) {
+  session.say(answer_line(nullptr, Answer::error(kClosed, "closed: " + why)), now);
+  (void)session.flush(now);
+  const PeerIdentity& peer = session.peer();
+  const std::string process = peer.process > 0 ? "process " + std::to_string(peer.process) + ", " : "";
+  closings_.add(
+      peer.user,
+      "a connection of user " + std::to_string(peer.user) + " (" + process + role_name(peer.role) + "): " + why, now);
 }
 
 void Door::accept(Nanoseconds now) {
@@ -130,24 +182,26 @@ void Door::accept(Nanoseconds now) {
 
 void Door::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now) {
   auto session = std::make_unique<Session>(++last_session_, std::move(connected), peer, now);
-  const bool enters = peer.role != Role::kNone && may_enter(peer);
-  if (!enters) {
-    const Answer why = peer.role == Role::kNone ? no_role() : Answer::error(kTooMany, "too many connections");
-    session->say(answer_line(nullptr, why), now);
+  if (peer.role != Role::kNone) session->receive(now);  // whoever has only one question has asked it by now
+  if (session->has_ended() && !session->has_line()) return;
+  if (const Answer refusal = admit(peer, now); !refusal.is_good()) {
+    session->say(answer_line(nullptr, refusal), now);
     (void)session->flush(now);
     return;
   }
   session->watched = EPOLLIN;
   if (!watch(epoll_.fd, EPOLL_CTL_ADD, session->descriptor(), EPOLLIN, session->number())) return;
-  session->receive();  // whoever has only one question has asked it by now
-  sessions_.emplace(session->number(), std::move(session));
+  Session& entered = *sessions_.emplace(session->number(), std::move(session)).first->second;
+  read(entered, 1, now);  // the next one in the queue may need its place
+  (void)entered.flush(now);
 }
 
-void Door::read(Session& session, Nanoseconds now) {
+void Door::read(Session& session, int lines, Nanoseconds now) {
   const auto is_open = [&] { return !session.is_closing() && session.has_room(); };
   std::string line;
   std::size_t bytes = 0;
-  for (int n = 0; n < kLinesAtOnce && bytes < kMaxLine / 4 && is_open() && session.take_line(line); ++n) {
+  for (int n = 0; n < lines && bytes < kMaxLine / 4 && is_open() && session.take_line(line); ++n) {
+    session.active_at = now;
     take(session, line, now);
     bytes += line.size();
   }
@@ -175,11 +229,10 @@ void Door::carry_out(Session& session, const Request& request, Nanoseconds now) 
   const MethodRule* rule = find_method(request.method);
   const Answer judged = judge(session, request, rule, now);
   if (!judged.is_good()) return answer(session, request, judged);
-  if (request.method == "subscribe")
-    return answer(session, request, subscriptions_.open(session.number(), *request.parameters, now));
+  if (request.method == "subscribe") return answer(session, request, subscribe(session, *request.parameters, now));
   if (request.method == "unsubscribe")
     return answer(session, request, subscriptions_.close(session.number(), *request.parameters));
-  auto call = std::make_shared<Call>(*this, session, request);
+  auto call = std::make_shared<Call>(*this, session, request, rule->role > Role::kObserve);
   subject_.call(*rule, *request.parameters, session.peer().role,
                 [call = std::move(call)](const Answer& said) { call->take(said); });
 }
@@ -188,15 +241,28 @@ Answer Door::judge(Session& session, const Request& request, const MethodRule* r
   if (rule == nullptr) return no_method(request.method);
   const Role has = session.peer().role;
   if (has < rule->role)
-    return Answer::error(kNoRight,
-                         std::string("'") + rule->name + "' needs the role " + role_name(rule->role) + ", you have " +
-                             role_name(has),
-                         {{"needs", role_name(rule->role)}, {"has", role_name(has)}});
+    return Answer::error(
+        kNoRight,
+        std::string("'") + rule->name + "' needs the role " + role_name(rule->role) + ", you have " + role_name(has),
+        {{"needs", role_name(rule->role)}, {"has", role_name(has)}});
   if (rule->is_act && !session.acts.take(now)) return too_fast(session.acts.wait(now));
   return check_parameters(*rule, *request.parameters);
 }
 
+/// Of a user's places some are kept for who comes with one question or act.
+Answer Door::subscribe(Session& session, const Json& parameters, Nanoseconds now) {
+  const auto is_one = [&](const auto& one) {
+    return one.second->peer().user == session.peer().user && subscriptions_.count_of(one.first) > 0;
+  };
+  const auto listeners = std::count_if(sessions_.begin(), sessions_.end(), is_one);
+  if (subscriptions_.count_of(session.number()) == 0 && listeners >= static_cast<long>(kMaxListenersOfUser))
+    return Answer::error(kTooMany, "too many connections: " + std::to_string(kMaxListenersOfUser) + " of user " +
+                                       std::to_string(session.peer().user) + " have subscriptions");
+  return subscriptions_.open(session.number(), parameters, now);
+}
+
 void Door::answer(Session& session, const Request& request, const Answer& answer) {
+  session.active_at = now_;
   if (!request.wants_answer) return;
   session.say(answer_line(*request.id, answer), now_);
   has_more_ = true;  // outside of serve(): to be sent
@@ -208,24 +274,38 @@ bool Door::is_over(Session& session, Nanoseconds now) {
   if (session.is_gone && !session.has_line()) return true;
   const bool wants_more = session.open_calls > 0 || session.has_line() || subscriptions_.count_of(session.number()) > 0;
   if (session.has_ended() && !wants_more) session.close_after();
-  return !session.flush(now);
+  const bool has_more_to_do = session.has_ended() && session.has_line() && session.has_room() && !session.is_closing();
+  return !session.flush(now) && !has_more_to_do;
+}
+
+/// For which it is closed now; null: none.
+const char* Door::fault_of(Session& session, Nanoseconds now) const {
+  if (session.is_closing() || session.is_gone) return nullptr;
+  if (session.patience_ends() <= now) return "it took nothing for 5 s";
+  const Nanoseconds half = session.has_line() ? kNever : session.half_since();
+  return half != kNever && now - half >= kPatience ? "its line did not end within 5 s" : nullptr;
 }
 
 void Door::settle(Nanoseconds now) {
   std::vector<std::uint64_t> over;
   bool waits = false;
   for (const auto& [number, session] : sessions_) {
-    if (is_over(*session, now)) {
+    const bool is_gone = is_over(*session, now);
+    const char* fault = fault_of(*session, now);
+    if (fault != nullptr) turn_out(*session, fault, now);
+    if (is_gone || fault != nullptr) {
       over.push_back(number);
       continue;
     }
     const bool listens = session->has_room() && !session->is_closing() && !session->has_ended();
+    if (!listens) session->excuse(now);
     const std::uint32_t wanted = (listens ? EPOLLIN : 0u) | (session->has_output() ? EPOLLOUT : 0u);
     if (wanted != session->watched) watch(epoll_.fd, EPOLL_CTL_MOD, session->descriptor(), wanted, number);
     session->watched = wanted;
     waits = waits || (!session->is_closing() && session->has_room() && session->has_line());
   }
   for (const std::uint64_t number : over) end(number);
+  closings_.look(now);
   has_more_ = waits;
 }
 
@@ -236,8 +316,11 @@ void Door::end(std::uint64_t session) {
 
 Nanoseconds Door::next_due() const noexcept {
   if (has_more_) return now_;
-  Nanoseconds next = std::min(subscriptions_.next_due(), accepts_again_);
-  for (const auto& [number, session] : sessions_) next = std::min(next, session->patience_ends());
+  Nanoseconds next = std::min({subscriptions_.next_due(), accepts_again_, closings_.next_due()});
+  for (const auto& [number, session] : sessions_) {
+    const bool has_half = session->half_since() != kNever && !session->has_line();
+    next = std::min({next, session->patience_ends(), has_half ? session->half_since() + kPatience : kNever});
+  }
   return next;
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "chimera/base/result.h"
+#include "chimera/control/closings.h"
+#include "chimera/control/places.h"
 #include "chimera/control/request.h"
 #include "chimera/control/session.h"
 #include "chimera/control/subject.h"
@@ -33,8 +35,10 @@ class Door {
   /// When serve() is due though nothing came; kNever: not before something comes. Never later than `now` of the last
   /// serve() when an answer has been given since.
   Nanoseconds next_due() const noexcept;
-  /// Takes over a connected socket whose other end is known; refuses it with words when it has no role or there are
-  /// too many.
+  /// `tell` is told, in words for people, of every connection that the door closes though its peer had no part in it.
+  void tell_closings_by(Closings::Tell tell) { closings_.tell_by(std::move(tell)); }
+  /// Takes over a connected socket whose other end is known; refuses it with words when it has no role or finds no
+  /// place. Another one may have to give way to it.
   void enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now);
   std::size_t connections() const noexcept { return sessions_.size(); }
 
@@ -44,12 +48,17 @@ class Door {
   Door(Subject& subject, uid_t owner, const RoleGroups& groups)
       : subject_(subject), subscriptions_(subject), owner_(owner), groups_(groups) {}
   void accept(Nanoseconds now);
-  bool may_enter(const PeerIdentity& peer) const;
-  void read(Session& session, Nanoseconds now);
+  Answer admit(const PeerIdentity& peer, Nanoseconds now);
+  Standing standing(Session& session, Nanoseconds now) const;
+  std::string idle_text(Session& session, Nanoseconds now) const;
+  void turn_out(Session& session, const std::string& why, Nanoseconds now);
+  void read(Session& session, int lines, Nanoseconds now);
   void take(Session& session, const std::string& line, Nanoseconds now);
   void carry_out(Session& session, const Request& request, Nanoseconds now);
   Answer judge(Session& session, const Request& request, const MethodRule* rule, Nanoseconds now);
+  Answer subscribe(Session& session, const Json& parameters, Nanoseconds now);
   void answer(Session& session, const Request& request, const Answer& answer);
+  const char* fault_of(Session& session, Nanoseconds now) const;
   bool is_over(Session& session, Nanoseconds now);
   void settle(Nanoseconds now);
   void end(std::uint64_t session);
@@ -61,9 +70,10 @@ class Door {
   OwnedDescriptor listening_, epoll_;
   std::map<std::uint64_t, std::unique_ptr<Session>> sessions_;
   std::uint64_t last_session_ = 0;
-  Nanoseconds now_;                    // of the last serve()
-  Nanoseconds accepts_again_ = kNever;  // while nobody can be let in for lack of descriptors
-  bool has_more_ = false;              // to do at once
+  Closings closings_;
+  Nanoseconds now_;                                                // of the last serve()
+  Nanoseconds accepts_again_ = kNever;                             // while nobody can be let in for lack of descriptors
+  bool has_more_ = false;                                          // to do at once
   std::shared_ptr<bool> is_alive_ = std::make_shared<bool>(true);  // for replies that come after the end
 };
 

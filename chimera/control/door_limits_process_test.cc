@@ -16,8 +16,7 @@ using DoorLimits = DoorTest;
 TEST_F(DoorLimits, ClosesAfterALineThatIsTooDeep) {
   const int fd = plain();
   const std::string deep = std::string(31, '[') + std::string(31, ']');
-  EXPECT_EQ(ask(fd, request("set", R"({"values":)" + deep + "}")),
-            error("null", -32001, "nested deeper than 32"));
+  EXPECT_EQ(ask(fd, request("set", R"({"values":)" + deep + "}")), error("null", -32001, "nested deeper than 32"));
   EXPECT_TRUE(is_closed(fd));
   EXPECT_EQ(door->connections(), 0u);
   ::close(fd);
@@ -99,7 +98,8 @@ TEST_F(DoorLimits, GarbageCountsAsRequestsAndALongLineAsSeveral) {
   }
   writer.join();
   EXPECT_EQ(got, R"({"error":{"code":-32003,"data":{"retry_ms":3},"message":"too many requests"},"id":null,)"
-                 R"("jsonrpc":"2.0"})" "\n");
+                 R"("jsonrpc":"2.0"})"
+                 "\n");
   EXPECT_NE(ask(fd, request("hello")).find("\"result\""), std::string::npos);
   ::close(fd);
 }
@@ -121,37 +121,15 @@ TEST_F(DoorLimits, AFloodOfOnePeerDoesNotKeepAnotherWaiting) {
   ::close(other);
 }
 
-TEST_F(DoorLimits, TakesSixteenConnectionsOfOneUser) {
-  std::vector<int> fds;
-  for (int i = 0; i < 17; ++i) fds.push_back(plain());
-  serve();
-  EXPECT_EQ(door->connections(), 16u);
-  EXPECT_EQ(take(fds[16]), error("null", -32002, "too many connections"));
-  for (const int fd : fds) ::close(fd);
-  serve();
-  EXPECT_EQ(door->connections(), 0u);
-}
-
-TEST_F(DoorLimits, TakesSixtyFourConnectionsOfAll) {
-  std::vector<int> fds;
-  for (uid_t user = 1; user <= 65; ++user) {
-    int pair[2];
-    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, pair), 0);
-    door->enter(OwnedDescriptor(pair[0]), {user, Role::kObserve}, now);
-    fds.push_back(pair[1]);
-  }
-  EXPECT_EQ(door->connections(), 64u);
-  EXPECT_EQ(take(fds[64]), error("null", -32002, "too many connections"));
-  for (const int fd : fds) ::close(fd);
-}
-
 TEST_F(DoorLimits, TakesThirtyTwoSubscriptionsOfAConnection) {
   const int fd = plain();
   for (int i = 0; i < 32; ++i)
     EXPECT_NE(ask(fd, request("subscribe", R"({"to":"events"})")).find("\"result\""), std::string::npos);
   const std::string got = ask(fd, request("subscribe", R"({"to":"events"})", 33));
   EXPECT_NE(got.find(R"({"code":-32602,"data":{"where":"to"},"message":"a connection may have 32 subscriptions"},)"
-                     R"("id":33,)"), std::string::npos) << got;
+                     R"("id":33,)"),
+            std::string::npos)
+      << got;
   ::close(fd);
 }
 

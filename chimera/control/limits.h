@@ -14,10 +14,13 @@ inline constexpr std::size_t kLongLine = std::size_t{1} << 14;  ///< a longer on
 inline constexpr int kRequestsPerSecond = 1000, kRequestBurst = 200;
 inline constexpr int kActsPerSecond = 100, kActBurst = 50;
 inline constexpr std::size_t kMaxConnections = 64, kMaxConnectionsOfUser = 16;
+/// Of nobody, observe, operate, configure, root and the user of the subsystem: of all up to that rank together.
+inline constexpr std::size_t kPlacesUpTo[] = {0, 32, 40, 48, kMaxConnections};
+inline constexpr std::size_t kMaxListenersOfUser = 12;  ///< connections with subscriptions: commands find a place
 inline constexpr std::size_t kMaxSubscriptions = 32;
 inline constexpr std::size_t kMaxOutput = std::size_t{1} << 20;  ///< beyond it nothing more is read from the peer
-inline constexpr Nanoseconds kPatience = seconds(5);             ///< with a peer that takes nothing
+inline constexpr Nanoseconds kPatience = seconds(5);  ///< with a peer that takes nothing, or does not end its line
 /// Of one connection in one turn: the others, and what else the owner of the door does, come in between.
-inline constexpr int kLinesAtOnce = 32;
+inline constexpr int kLinesAtOnce = 8;
 
 }  // namespace chimera::control

@@ -30,7 +30,7 @@ PeerIdentity identify(int descriptor, uid_t owner, const RoleGroups& rules) {
   }
   groups.resize(bytes / sizeof(gid_t));
   groups.push_back(peer.gid);
-  return {peer.uid, role_of(peer.uid, groups, owner, rules)};
+  return {peer.uid, role_of(peer.uid, groups, owner, rules), peer.pid};
 }
 
 }  // namespace chimera::control

@@ -19,6 +19,7 @@ struct RoleGroups {
 struct PeerIdentity {
   uid_t user = static_cast<uid_t>(-1);
   Role role = Role::kNone;
+  pid_t process = 0;  ///< that connected; 0: not known
 };
 
 /// The highest role of a peer with that user and those groups; `owner` is the user of the keeper. Context: any.

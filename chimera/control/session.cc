@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/control/session.h"
 
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 
 namespace chimera::control {
 namespace {
@@ -13,7 +16,7 @@ constexpr std::size_t kReadAtOnce = std::size_t{1} << 16;
 
 }  // namespace
 
-void Session::receive() {
+void Session::receive(Nanoseconds now) {
   if (taken_ > 0) {  // once a turn, not once a line
     input_.erase(0, taken_);
     looked_ -= taken_;
@@ -25,8 +28,14 @@ void Session::receive() {
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) {
       has_ended_ = got == 0 || errno != EAGAIN;
+      if (has_ended_) half_since_ = kNever;
       return;
     }
+    const char* end = static_cast<const char*>(::memrchr(bytes, '\n', static_cast<std::size_t>(got)));
+    if (end != nullptr)
+      half_since_ = end == bytes + got - 1 ? kNever : now;
+    else
+      half_since_ = std::min(half_since_, now);
     input_.append(bytes, static_cast<std::size_t>(got));
   }
 }
@@ -51,7 +60,23 @@ void Session::say(const std::string& line, Nanoseconds now) {
   output_ += line;
 }
 
+bool Session::is_read(Nanoseconds now) {
+  int unread = 0;
+  if (::ioctl(socket_.fd, SIOCOUTQ, &unread) != 0) return true;
+  if (unread == 0 || unread < unread_) taken_at_ = now;
+  unread_ = unread;
+  return now - taken_at_ < kPatience;
+}
+
 bool Session::flush(Nanoseconds now) {
+  if (!has_output()) return !is_closing_;
+  (void)is_read(now);  // before there is more to read
+  const bool goes_on = send(now);
+  (void)::ioctl(socket_.fd, SIOCOUTQ, &unread_);
+  return goes_on;
+}
+
+bool Session::send(Nanoseconds now) {
   while (has_output()) {
     const std::size_t left = output_.size() - sent_;
     const ssize_t sent = ::send(socket_.fd, output_.data() + sent_, left, MSG_DONTWAIT | MSG_NOSIGNAL);

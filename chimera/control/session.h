@@ -16,14 +16,18 @@ namespace chimera::control {
 class Session {
  public:
   Session(std::uint64_t number, OwnedDescriptor socket, PeerIdentity peer, Nanoseconds now)
-      : number_(number), socket_(std::move(socket)), peer_(peer), moved_(now) {}
+      : active_at(now), number_(number), socket_(std::move(socket)), peer_(peer), moved_(now), taken_at_(now) {}
 
   std::uint64_t number() const noexcept { return number_; }
   int descriptor() const noexcept { return socket_.fd; }
   const PeerIdentity& peer() const noexcept { return peer_; }
 
   /// Takes what has come, at most a line of the greatest length and one read more.
-  void receive();
+  void receive(Nanoseconds now);
+  /// When the first byte came of a line that has no end yet; kNever: there is none.
+  Nanoseconds half_since() const noexcept { return half_since_; }
+  /// Nobody listens to the peer now: a half line is no fault of its own.
+  void excuse(Nanoseconds now) noexcept { half_since_ = half_since_ == kNever ? kNever : now; }
   /// The peer says nothing more; it may still listen.
   bool has_ended() const noexcept { return has_ended_; }
   /// The next whole line, without its end. A line longer than the limit comes cut behind it, or whole.
@@ -38,6 +42,8 @@ class Session {
   bool has_output() const noexcept { return sent_ < output_.size(); }
   /// The peer takes what it is sent: more may be read from it and made for it.
   bool has_room() const noexcept { return output_.size() - sent_ < kMaxOutput; }
+  /// Has the peer read all that was sent, or some of it within the last kPatience?
+  bool is_read(Nanoseconds now);
   /// When flush() will find that the peer took nothing for too long; kNever: nothing waits.
   Nanoseconds patience_ends() const noexcept { return has_output() ? moved_ + kPatience : kNever; }
   /// After what is queued the connection ends.
@@ -45,11 +51,15 @@ class Session {
   bool is_closing() const noexcept { return is_closing_; }
 
   Allowance requests{kRequestsPerSecond, kRequestBurst}, acts{kActsPerSecond, kActBurst};
-  std::size_t open_calls = 0;   ///< whose answers are still to come
-  bool is_gone = false;         ///< the peer closed: nobody will read
-  std::uint32_t watched = 0;    ///< events of epoll asked for, kept by the door
+  Nanoseconds active_at;       ///< when the peer last said a line or was answered, kept by the door
+  std::size_t open_calls = 0;  ///< whose answers are still to come
+  std::size_t open_acts = 0;   ///< those of them that change something
+  bool is_gone = false;        ///< the peer closed: nobody will read
+  std::uint32_t watched = 0;   ///< events of epoll asked for, kept by the door
 
  private:
+  bool send(Nanoseconds now);
+
   std::uint64_t number_;
   OwnedDescriptor socket_;
   PeerIdentity peer_;
@@ -57,6 +67,9 @@ class Session {
   std::size_t taken_ = 0, looked_ = 0;  // of the input: handed out; known to hold no line end
   std::size_t sent_ = 0;
   Nanoseconds moved_;  // when output last went, or the first of it was queued
+  Nanoseconds half_since_ = kNever;
+  int unread_ = 0;        // what the kernel held of it when looked at last, in the kernel's measure
+  Nanoseconds taken_at_;  // when the peer was last seen to have read
   bool is_closing_ = false;
   bool has_ended_ = false;
 };

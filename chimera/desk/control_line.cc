@@ -24,7 +24,7 @@ Result<Json> ControlLine::ask(std::string_view method, const Json& parameters, N
   const Nanoseconds begun = now(), until = begun + patience;
   do {
     if (!client_)
-      if (auto made = control::Client::connect_to(path_); made) client_ = *std::move(made);
+      if (auto made = control::Client::connect_to(path_, until - now()); made) client_ = *std::move(made);
     if (client_) {
       const Answer answer = client_->call(method, parameters, until - now());
       if (answer.is_good()) return *answer.result;

@@ -21,6 +21,8 @@ Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int3
   auto door = control::Door::open(driver.take_listening(), subject, ::getuid(),
                                   {bundle.observe_group, bundle.operate_group, bundle.configure_group});
   if (!door) return door.error();
+  (*door)->tell_closings_by(
+      [&driver](const std::string& text) { driver.world().tell("closed", TaskId{}, RtpuId{}, text, now()); });
   do (*door)->serve(now());
   while (driver.step((*door)->next_due(), (*door)->descriptor()));
   return 0;

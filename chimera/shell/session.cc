@@ -10,8 +10,14 @@
 namespace chimera::shell {
 namespace {
 
-// A signal may run `init` of many tasks, each with seconds of its own.
-constexpr Nanoseconds kPatience = seconds(60);
+// A signal may run `init` of many tasks, each with seconds of its own, an analysis take what it needs: as long as the
+// manager gives a sign of life.
+constexpr Nanoseconds kWorkLimit = seconds(65);
+
+Nanoseconds limit_of(std::string_view method, const nlohmann::json& parameters) {
+  const bool runs_methods = method == "signal" && parameters.value("signal", "") != "off";
+  return runs_methods || method == "check" || method == "schedule" ? kWorkLimit : control::kCallLimit;
+}
 
 }  // namespace
 
@@ -41,10 +47,14 @@ Result<Session> Session::open(const Surroundings& surroundings) {
 }
 
 const control::Home& Session::home() {
-  if (!home_.subsystem.empty()) return home_;
+  if (home_.subsystem.empty()) (void)hear();
+  return home_;
+}
+
+control::Answer Session::hear() {
   const control::Answer hello = ask("hello");
   if (hello.is_good()) home_ = control::home_of(*hello.result);
-  return home_;
+  return hello;
 }
 
 const std::string& Session::subsystem() { return home().subsystem; }
@@ -54,26 +64,27 @@ Result<void> Session::may_act() {
   const std::string name = home().subsystem;
   if (name.empty()) return Error{ErrorCode::kRefused, {"the subsystem does not say which it is"}, {}};
   const std::string folder = home().folder.empty() ? "elsewhere" : "in " + plain_line(home().folder);
-  const std::string message = "'" + name + "' was started " + folder + " (process " +
-                              std::to_string(home().keeper_pid) +
-                              "), not from this terminal or folder; if you mean it, type: " + surroundings_.command +
-                              " --subsystem " + name;
+  const std::string message =
+      "'" + name + "' was started " + folder + " (process " + std::to_string(home().keeper_pid) +
+      "), not from this terminal or folder; if you mean it, type: " + surroundings_.command + " --subsystem " + name;
   return Error{ErrorCode::kRefused, std::string_view(message), {}};
 }
 
 control::Answer Session::ask(std::string_view method) { return ask(method, nlohmann::json::object()); }
 
 control::Answer Session::ask(std::string_view method, const nlohmann::json& parameters) {
-  control::Answer answer = client_.call(method, parameters, kPatience);
+  const Nanoseconds limit = limit_of(method, parameters);
+  control::Answer answer = client_.call(method, parameters, limit, control::kCallLimit);
   if (answer.code != control::kNoConnection) return answer;
   // The manager died. Its successor answers at the same door; what may have been carried out is not asked for twice.
   const bool may_repeat = method != "signal" && method != "ring" && method != "end" && method != "unsubscribe";
-  return reopen() && may_repeat ? client_.call(method, parameters, kPatience) : answer;
+  return reopen() && may_repeat ? client_.call(method, parameters, limit, control::kCallLimit) : answer;
 }
 
 bool Session::reopen() {
-  auto client = control::Client::connect_to(client_.path());
-  if (!client || !client->call("hello", nlohmann::json::object(), seconds(3)).is_good()) return false;
+  constexpr Nanoseconds kReopenLimit = seconds(3);
+  auto client = control::Client::connect_to(client_.path(), kReopenLimit);
+  if (!client || !client->call("hello", nlohmann::json::object(), kReopenLimit).is_good()) return false;
   client_ = std::move(*client);
   return true;
 }

@@ -35,6 +35,8 @@ class Session {
   const Surroundings& surroundings() const noexcept { return surroundings_; }
   /// Did somebody name the subsystem, by option or by CHIMERA_SUBSYSTEM?
   bool is_named() const noexcept { return is_named_; }
+  /// Asks who it is: what every command begins with. The answer of `hello`.
+  control::Answer hear();
   /// Its name, as it says itself; "" when it does not answer.
   const std::string& subsystem();
   /// May an act go to it? Named, or of this terminal or folder: else refused, with what is to be typed.

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/control/listeners.h"
+
+#include <sys/stat.h>
+
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "chimera/config/time_text.h"
+
+namespace chimera::control {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_same_file(const std::string& a, const std::string& b) {  // std::filesystem::equivalent takes no sockets
+  struct stat of_a {
+  }, of_b{};
+  return ::stat(a.c_str(), &of_a) == 0 && ::stat(b.c_str(), &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
+         of_a.st_ino == of_b.st_ino;
+}
+
+/// "socket:[4711]", as the descriptors of its holders are called; "" when nobody listens there.
+std::string link_of(const std::string& path) {
+  constexpr unsigned kAccepts = 0x10000;  // __SO_ACCEPTCON
+  std::ifstream sockets("/proc/net/unix");
+  std::string line;
+  std::getline(sockets, line);  // headings
+  while (std::getline(sockets, line)) {
+    std::istringstream in(line);
+    std::string number, count, protocol, type, state, inode, bound;
+    unsigned flags = 0;
+    in >> number >> count >> protocol >> std::hex >> flags >> type >> state >> inode >> std::ws;
+    std::getline(in, bound);
+    if ((flags & kAccepts) == 0 || bound.empty() || bound[0] != '/') continue;
+    if (bound == path || (fs::path(bound).filename() == fs::path(path).filename() && is_same_file(bound, path)))
+      return "socket:[" + inode + "]";
+  }
+  return {};
+}
+
+bool holds(const fs::path& process, const std::string& link) {
+  std::error_code error;
+  fs::directory_iterator descriptors(process / "fd", error);
+  for (; !error && descriptors != fs::directory_iterator(); descriptors.increment(error)) {
+    std::error_code gone;
+    if (fs::read_symlink(descriptors->path(), gone) == link) return true;
+  }
+  return false;
+}
+
+/// (name, state) of a process: "chimera-manager", 'T'.
+std::pair<std::string, char> name_and_state(const fs::path& process) {
+  std::ifstream in(process / "stat");
+  std::string text;
+  std::getline(in, text);  // no iterators: they throw when the process ends meanwhile
+  const std::size_t from = text.find('('), to = text.rfind(')');
+  if (from == std::string::npos || to == std::string::npos || to + 2 >= text.size()) return {"", '?'};
+  return {text.substr(from + 1, to - from - 1), text[to + 2]};
+}
+
+}  // namespace
+
+Listeners listeners_at(const std::string& path) {
+  Listeners found;
+  const std::string link = link_of(path);
+  std::error_code error;
+  fs::directory_iterator processes("/proc", error);
+  for (; !link.empty() && !error && processes != fs::directory_iterator(); processes.increment(error)) {
+    const std::string entry = processes->path().filename().string();
+    int pid = 0;
+    if (std::from_chars(entry.data(), entry.data() + entry.size(), pid).ec != std::errc()) continue;
+    const auto [name, state] = name_and_state(processes->path());
+    if ((name != "chimera" && name != "chimera-manager") || !holds(processes->path(), link)) continue;
+    (name == "chimera" ? found.keeper : found.manager) = pid;
+    if (name != "chimera") found.is_stopped = state == 'T' || state == 't';
+  }
+  return found;
+}
+
+std::string silence_text(const std::string& path, const Listeners& listeners, Nanoseconds limit) {
+  const std::string name = "'" + fs::path(path).stem().string() + "'", for_long = " for " + time_text(limit);
+  const std::string goes_on = "its real-time units go on without it; ";
+  const std::string end =
+      listeners.keeper == 0 ? "" : "`kill " + std::to_string(listeners.keeper) + "` ends everything in order";
+  if (listeners.manager == 0 && listeners.keeper == 0)
+    return "the manager of " + name + " does not answer" + for_long + "; " + goes_on +
+           "try again, or tell whoever started it";
+  if (listeners.manager == 0)
+    return "no manager of " + name + " has answered" + for_long + ", none runs just now; " + goes_on +
+           "try again: its keeper starts another; " + end;
+  const std::string manager = std::to_string(listeners.manager);
+  return "the manager (process " + manager + ") of " + name + " does not answer" + for_long + ": it " +
+         (listeners.is_stopped ? "is stopped" : "hangs, or has too much to do") + "; " + goes_on +
+         "try again; `kill -KILL " + manager + "` has the keeper start another" + (end.empty() ? "" : ", " + end);
+}
+
+}  // namespace chimera::control

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who gets a place at the door, and who gives way when none is left: docs/formats/control.md, "Places".
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "chimera/base/time.h"
+#include "chimera/control/rights.h"
+
+namespace chimera::control {
+
+/// What a connection does, those first that give way first.
+enum class Standing : unsigned char {
+  kHalfLine,  ///< began a line and has not ended it
+  kIdle,      ///< nothing at all, or subscriptions that it does not read
+  kAsks,      ///< has asked what changes nothing, and is not answered yet
+  kListens,   ///< reads what it subscribed to
+  kActs,      ///< an act of it is under way: never gives way
+};
+
+/// Beyond the roles: root and the user of the subsystem.
+enum class Rank : unsigned char { kNone, kObserve, kOperate, kConfigure, kOwner };
+Rank rank_of(const PeerIdentity& peer, uid_t owner) noexcept;
+
+struct Occupant {
+  std::uint64_t number = 0;
+  uid_t user = 0;
+  Rank rank = Rank::kObserve;
+  Standing standing = Standing::kIdle;
+  Nanoseconds since;  ///< of a half line its first byte, else when it last said anything
+};
+
+struct Placement {
+  bool is_granted = false;
+  std::uint64_t in_place_of = 0;  ///< 0: nobody
+  std::string refusal;            ///< which places are taken
+};
+
+/// A place for one more, of `user` and `rank`. Where the places of the user or of the rank are taken, somebody gives
+/// way who leaves the place that is wanted: never of a higher rank; whoever reads a subscription only to a higher one;
+/// first of all those who do nothing, of the lowest rank, half lines before whole ones, the longest first.
+/// Context: setup.
+Placement find_place(std::span<const Occupant> all, uid_t user, Rank rank);
+
+}  // namespace chimera::control

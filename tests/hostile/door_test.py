@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The door to a running subsystem: whoever owns it, or may do more than others, gets in; and no command waits longer
+than it says, whatever became of the manager."""
+import grp
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "processes"))
+from system import CHIMERA, TWO_UNITS, Client, System, await_that  # noqa: E402
+
+OBSERVERS = next(g for g in grp.getgrall() if g.gr_gid not in (0, 65534))
+HALF = b'{"jsonrpc":"2.0",'
+CLOSED = -32008
+LIMIT = 5.0  # of a command that looks or acts: docs/howto/operate.md
+SANITIZED = 1.5  # for the start of a program with sanitizers, three at once on a busy machine
+
+# Run as an observer: holds that many connections until its standard input ends.
+HOLD = r'''
+import socket, sys
+held = []
+for _ in range(int(sys.argv[2])):
+    s = socket.socket(socket.AF_UNIX)
+    s.connect(sys.argv[1])
+    s.sendall(sys.argv[3].encode())
+    held.append(s)
+print("held", flush=True)
+sys.stdin.read()
+'''
+
+
+def connections(path, n, text=b""):
+    """Connections of this user, which say that much."""
+    made = []
+    for _ in range(n):
+        one = socket.socket(socket.AF_UNIX)  # without a limit: whoever has one does not wait in a full queue
+        one.connect(str(path))
+        try:
+            one.sendall(text)
+        except BrokenPipeError:
+            pass  # refused
+        made.append(one)
+    return made
+
+
+def is_closed(one):
+    """After what it was told."""
+    try:
+        while one.recv(1 << 16, socket.MSG_DONTWAIT):
+            pass
+        return True
+    except BlockingIOError:
+        return False
+    except ConnectionError:
+        return True
+
+
+class Door(unittest.TestCase):
+    """One subsystem for all of them: what they do to it must not change it."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.system = System(TWO_UNITS, ("--observe-group", OBSERVERS.gr_name))
+        for folder in (cls.system.place, cls.system.runtime):
+            folder.chmod(0o711)
+        cls.system.environment["CHIMERA_SUBSYSTEM"] = "subject"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.system.end()
+
+    def command(self, *words):
+        return subprocess.Popen([str(CHIMERA), *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                env=self.system.environment, cwd=self.system.place)
+
+    def says(self, *words):
+        """(exit code, what it said)"""
+        asked = self.command(*words)
+        out, err = asked.communicate(timeout=90)
+        return asked.returncode, out + err
+
+    def closings(self):
+        return [e["text"] for e in self.system.events() if e["kind"] == "closed"]
+
+    @unittest.skipUnless(os.getuid() == 0, "only root can become somebody else")
+    def test_four_users_who_may_look_do_not_shut_out_the_owner(self):
+        crowds = [subprocess.Popen(["/usr/bin/python3", "-c", HOLD, str(self.system.socket), "16", ""], user=user,
+                                   group=65534, extra_groups=[OBSERVERS.gr_gid], stdin=subprocess.PIPE,
+                                   stdout=subprocess.PIPE, cwd="/") for user in range(61001, 61005)]
+        try:
+            for crowd in crowds:
+                self.assertEqual(crowd.stdout.readline(), b"held\n")
+            self.assertEqual(self.says("off", "beside"), (0, "[subject] beside: ON -> OFF\n"))
+            self.assertEqual(self.says("on", "beside"), (0, "[subject] beside: OFF -> ON\n"))
+        finally:
+            for crowd in crowds:
+                crowd.communicate()
+
+    def test_ones_own_forgotten_connections_give_way_and_what_is_read_stays(self):
+        reading = Client(self.system.socket)
+        reading.call("subscribe", to="values", period_ms=20)
+        idle = connections(self.system.socket, 20)
+        self.assertEqual(self.says("flag", "up"), (0, "[subject] flag UP by operator\n"))
+        self.assertEqual(self.says("flag", "down"), (0, "[subject] flag down\n"))
+        self.assertGreater(len([one for one in idle if is_closed(one)]), 4)
+        for _ in range(20):
+            self.assertEqual(reading.note()["method"], "values")
+        self.assertTrue(any(re.fullmatch(rf"a connection of user {os.getuid()} \(process {os.getpid()}, configure\): "
+                                         r"idle for [0-9.]+ m?s; its place was needed", text)
+                            for text in self.closings()), self.closings())
+        reading.close()
+        for one in idle:
+            one.close()
+
+    def test_two_hundred_that_never_end_a_line_do_not_shut_out_their_own_user(self):
+        slow = connections(self.system.socket, 200, HALF)
+        begun = time.monotonic()
+        with socket.socket(socket.AF_UNIX) as one:
+            one.connect(str(self.system.socket))
+            one.settimeout(5)
+            one.sendall(b'{"jsonrpc":"2.0","id":1,"method":"flag","params":{"up":false}}\n')
+            self.assertIn(b'"result"', one.recv(1 << 16))
+        self.assertLess(time.monotonic() - begun, 1.0)
+        self.assertLess(len([one for one in slow if not is_closed(one)]), 17)
+        for one in slow:
+            one.close()
+
+    def test_a_manager_that_hangs_holds_no_command_longer_than_its_limit(self):
+        """And a line that does not end within 5 s is closed in any case, which takes as long."""
+        pids = self.system.pids()
+        [half] = connections(self.system.socket, 1, HALF)
+        self.system.call("status")
+        self.system.disconnect()
+        stopped = [pids["keeper"], pids["manager"]]  # the keeper: it would replace the manager
+        waiting = []
+        try:
+            for pid in stopped:
+                self.assertTrue(self.system.kill(pid, signal.SIGSTOP))
+            for _ in range(100):  # the queue of the socket is full then
+                one = socket.socket(socket.AF_UNIX)
+                one.setblocking(False)
+                waiting.append(one)
+                try:
+                    one.connect(str(self.system.socket))
+                except BlockingIOError:
+                    break
+            else:
+                self.fail("the queue has no end")
+            begun = time.monotonic()
+            asked = [self.command(*words) for words in (("status",), ("off", "steady"), ("end",))]
+            for one in asked:
+                one.wait(timeout=LIMIT + SANITIZED)
+            self.assertGreater(time.monotonic() - begun, LIMIT - 0.1)
+            for one in asked:
+                out, err = one.communicate()
+                self.assertEqual((one.returncode, out), (1, ""))
+                self.assertEqual(err, f"the manager (process {pids['manager']}) of 'subject' does not answer for 5 s: "
+                                      f"it is stopped; its real-time units go on without it; try again; "
+                                      f"`kill -KILL {pids['manager']}` has the keeper start another, "
+                                      f"`kill {pids['keeper']}` ends everything in order\n")
+        finally:
+            for one in asked:
+                one.kill()
+            for one in waiting:
+                one.close()
+            for pid in reversed(stopped):
+                self.system.kill(pid, signal.SIGCONT)
+        await_that(lambda: is_closed(half), 5, "the end of the half line")
+        self.assertTrue(any("its line did not end within 5 s" in text for text in self.closings()), self.closings())
+        self.assertEqual([t["state"] for t in self.system.call("status")["tasks"]], ["ON", "ON"])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
