@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/chimera/keep.h"
+#include "chimera/base/hosted/terminal_text.h"
 #include "apps/chimera/run_command.h"
 #include "apps/chimera/shell_words.h"
 #include "apps/chimera/sweep_command.h"
@@ -43,9 +44,9 @@ struct Words {
 };
 
 int print(const desk::Output& output) {
-  std::fputs(output.out.c_str(), stdout);
+  std::fputs(for_terminal(output.out).c_str(), stdout);
   std::fflush(stdout);  // in a file that takes both, what came first stands first
-  std::fputs(output.err.c_str(), stderr);
+  std::fputs(for_terminal(output.err).c_str(), stderr);
   return output.code;
 }
 

@@ -14,6 +14,8 @@
 #include "chimera/config/quantity.h"
 #include "chimera/config/recorded_profile.h"
 #include "chimera/desk/output.h"
+#include "chimera/desk/own_process.h"
+#include "chimera/desk/run_plan.h"
 #include "chimera/platform/process.h"
 
 using namespace chimera;  // NOLINT: a main() of this project
@@ -204,8 +206,14 @@ int carry_out_run(RunWords& words, const desk::Workplace& workplace) {
   }
   std::signal(SIGINT, [](int) { desk::request_stop(); });
   std::signal(SIGTERM, [](int) { desk::request_stop(); });
-  return with_records(words, unit, [&](desk::RecordSink* sink) {
-    return desk::run(words.run, workplace, sink, stdout, stderr);
+  const auto run = [&] {
+    return with_records(words, unit, [&](desk::RecordSink* sink) {
+      return desk::run(words.run, workplace, sink, stdout, stderr);
+    });
+  };
+  return desk::in_own_process(run, [&](const std::string& how) {
+    const Error error{ErrorCode::kRefused, {"the run " + how}, {words.run.file}};
+    return desk::refuse_run(words.run, error, stdout, stderr);
   });
 }
 

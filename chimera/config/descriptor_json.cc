@@ -2,11 +2,11 @@
 #include "chimera/config/descriptor_json.h"
 
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/config/descriptor_value.h"
 #include "chimera/config/json_cursor.h"
 #include "chimera/config/nearest.h"
@@ -276,12 +276,9 @@ std::string to_json(const Descriptor& descriptor) {
 }
 
 Result<Descriptor> read_descriptor_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return Error{ErrorCode::kNotFound, std::string_view("cannot be read"), std::string_view(path)};
-  std::string text(kMaxDescriptorBytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  auto parsed = parse_descriptor(text);
+  const auto text = read_ordinary(path, kMaxDescriptorBytes + 1);
+  if (!text) return text.error();
+  auto parsed = parse_descriptor(*text);
   if (parsed) return parsed;
   Error error = parsed.error();
   error.where = FixedString<200>(std::string_view(path));

@@ -139,7 +139,7 @@ TEST(DescriptorJson, NamesTheFileThatCannotBeRead) {
   const auto read = read_descriptor_file("/nowhere/gain.component.json");
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().where.view(), "/nowhere/gain.component.json");
-  EXPECT_EQ(read.error().message.view(), "cannot be read");
+  EXPECT_EQ(read.error().message.view(), "cannot be opened: No such file or directory");
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #include "chimera/config/draft.h"
 
 #include <array>
-#include <fstream>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/config/draft_task.h"
 #include "chimera/config/draft_values.h"
 #include "chimera/config/keys.h"
@@ -132,17 +132,15 @@ Reading read_description(std::string_view text, std::string_view file) {
 }
 
 Reading read_description_file(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return unreadable(path, "file-unreadable", "the file cannot be opened", "check the path and its rights");
-  std::string text(kMaxTextBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad() || (stream.fail() && !stream.eof()))
-    return unreadable(path, "file-unreadable", "the file cannot be read", "a description is a plain file");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > kMaxTextBytes && text.find('\0') == std::string::npos)
+  const auto text = read_ordinary(path, kMaxTextBytes + 1);
+  if (!text)
+    return unreadable(path, "file-unreadable", "the file " + std::string(text.error().message.view()),
+                      text.error().code == ErrorCode::kRefused ? "a description is an ordinary file"
+                                                               : "check the path and its rights");
+  if (text->size() > kMaxTextBytes && text->find('\0') == std::string::npos)
     return unreadable(path, "text-size", "the file has more than " + std::to_string(kMaxTextBytes) + " bytes",
                       "split the application into subsystems");
-  return read_description(text, path);
+  return read_description(*text, path);
 }
 
 }  // namespace chimera

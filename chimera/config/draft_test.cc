@@ -91,10 +91,11 @@ TEST(Draft, GoesOnAfterAFault) {
 
 TEST(Draft, RefusesAFileThatIsNotThere) {
   EXPECT_EQ(read_description_file("/nowhere/arm.yaml").report.text(),
-            "/nowhere/arm.yaml: error: the file cannot be opened [file-unreadable]\n"
+            "/nowhere/arm.yaml: error: the file cannot be opened: No such file or directory [file-unreadable]\n"
             "  check the path and its rights\n");
   EXPECT_EQ(read_description_file("/").report.text(),
-            "/: error: the file cannot be read [file-unreadable]\n  a description is a plain file\n");
+            "/: error: the file is no ordinary file but a folder [file-unreadable]\n"
+            "  a description is an ordinary file\n");
 }
 
 TEST(Draft, ReadsNoMoreOfAFileThanTheLimit) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/config/draft_values.h"
 
+#include <algorithm>
 #include <charconv>
 #include <vector>
 
@@ -102,7 +103,8 @@ std::optional<Located<Rate>> read_rate(const Node& node, const std::string& what
   if (rate) return Located<Rate>{*rate, node.at};
   const bool is_form = rate.error().code == ErrorCode::kBadInput;
   add(report, "quantity-bad", node, what + ": " + std::string(rate.error().message.view()), "a frequency", {},
-      is_form ? "write a number, a space and Hz: 100 Hz" : "write a rate from 1 MHz down to one per hour");
+      is_form ? "write a number and Hz, with at most one space between: 100 Hz"
+              : "write a rate from 1 MHz down to one per hour");
   return std::nullopt;
 }
 
@@ -112,7 +114,7 @@ std::optional<Located<Nanoseconds>> read_duration(const Node& node, const std::s
   if (duration) return Located<Nanoseconds>{*duration, node.at};
   const bool is_form = duration.error().code == ErrorCode::kBadInput;
   add(report, "quantity-bad", node, what + ": " + std::string(duration.error().message.view()), "a duration", {},
-      is_form ? "write a number, a space and ns, us, ms or s: 40 us"
+      is_form ? "write a number and ns, us, ms or s, with at most one space between: 40 us"
               : "write a time from 0 to 292 years, in whole nanoseconds: 40 us");
   return std::nullopt;
 }
@@ -131,15 +133,16 @@ std::optional<Located<std::uint32_t>> read_whole(const Node& node, std::uint32_t
 std::optional<Located<std::uint64_t>> read_bytes(const Node& node, std::uint64_t min, std::uint64_t max,
                                                  const std::string& what, Report& report) {
   if (!expect_plain(node, "a size, as 256 KiB", what, report)) return std::nullopt;
-  const std::size_t space = node.text.find(' ');
-  const auto number = whole(std::string_view(node.text).substr(0, space));
-  const std::string unit = space == std::string::npos ? "" : node.text.substr(space + 1);
+  const std::size_t digits = std::min(node.text.find_first_not_of("0123456789"), node.text.size());
+  const auto number = whole(std::string_view(node.text).substr(0, digits));
+  const std::size_t gap = digits < node.text.size() && node.text[digits] == ' ' ? 1 : 0;
+  const std::string unit = node.text.substr(digits + gap);
   const std::uint64_t factor = unit == "B" ? 1 : unit == "KiB" ? 1024 : unit == "MiB" ? 1024 * 1024 : 0;
   if (number && factor != 0 && *number <= max && *number * factor >= min && *number * factor <= max)
     return Located<std::uint64_t>{*number * factor, node.at};
   const std::string range = std::to_string(min / 1024) + " KiB to " + std::to_string(max / 1024) + " KiB";
   add(report, "quantity-bad", node, what + " is " + written(node) + "; expected a size from " + range, range, {},
-      "write a whole number, a space and B, KiB or MiB: 256 KiB");
+      "write a whole number and B, KiB or MiB, with at most one space between: 256 KiB");
   return std::nullopt;
 }
 

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "chimera/base/hosted/terminal_text.h"
+
 namespace chimera {
 
 std::string json_string(std::string_view text) {
-  return nlohmann::json(std::string(text)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return plain_json(nlohmann::json(std::string(text)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 std::string json_number(double value) { return std::isfinite(value) ? nlohmann::json(value).dump() : "null"; }

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/config/descriptor_json.h"
 #include "chimera/config/nearest.h"
 
@@ -13,6 +14,7 @@ namespace chimera {
 namespace {
 
 constexpr std::string_view kSuffix = ".component.json";
+constexpr std::size_t kMostBuildableBytes = 1 << 20;
 
 Error unit_fault(const std::string& place, const Error& error, const std::string& file) {
   const std::string text = place + ": " + std::string(error.message.view());
@@ -63,7 +65,8 @@ void Library::read_folder(const std::string& folder) {
     const std::string path = it->path().string();
     if (path.ends_with(kSuffix)) files.push_back(path);
   }
-  std::ifstream buildable(folder + "/buildable.txt");
+  const auto names = read_ordinary(folder + "/buildable.txt", kMostBuildableBytes);
+  std::istringstream buildable(names ? *names : std::string());
   for (std::string name; std::getline(buildable, name);) buildable_.push_back(name);
   std::sort(files.begin(), files.end());  // the order of a folder is chance; faults must not be
   for (const std::string& file : files) read_file(file);
@@ -93,7 +96,12 @@ void Library::add(LibraryEntry entry) {
   const auto place = std::lower_bound(
       entries_.begin(), entries_.end(), entry.descriptor.name,
       [](const LibraryEntry& e, const std::string& name) { return e.descriptor.name < name; });
-  if (place != entries_.end() && place->descriptor.name == entry.descriptor.name) return;  // an earlier folder has it
+  if (place != entries_.end() && place->descriptor.name == entry.descriptor.name) {
+    std::error_code unknown;  // a folder that is named twice hides nothing
+    if (!std::filesystem::equivalent(place->descriptor_file, entry.descriptor_file, unknown))
+      hidden_.push_back({entry.descriptor.name, entry.descriptor_file});
+    return;
+  }
   entries_.insert(place, std::move(entry));
 }
 

@@ -20,6 +20,11 @@ struct LibraryEntry {
   std::string object_file;
 };
 
+/// A component that was passed over, because an earlier folder has one of its name.
+struct HiddenComponent {
+  std::string name, file;  ///< of its descriptor
+};
+
 /// Context: setup; may block. Immutable after make().
 class Library {
  public:
@@ -46,6 +51,8 @@ class Library {
   std::span<const Error> faults() const noexcept { return faults_; }
   /// Folders that CHIMERA_PATH names and that do not exist: whoever misses a component wants to know.
   std::span<const std::string> missing_folders() const noexcept { return missing_folders_; }
+  /// What find() does not find because something else of that name stands before it.
+  std::span<const HiddenComponent> hidden() const noexcept { return hidden_; }
   const UnitSystem& units() const noexcept { return units_; }
 
  private:
@@ -59,6 +66,7 @@ class Library {
   std::vector<LibraryEntry> entries_;
   std::vector<Error> faults_;
   std::vector<std::string> missing_folders_;
+  std::vector<HiddenComponent> hidden_;
 };
 
 /// The folders of CHIMERA_PATH (colons between them; empty parts are passed over), then `installed`.

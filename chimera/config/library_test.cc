@@ -52,6 +52,9 @@ TEST_F(Folders, TheFirstFolderCounts) {
   EXPECT_EQ(library.find("nothing"), nullptr);
   EXPECT_EQ(library.nearest_name("gian"), "gain");
   EXPECT_TRUE(library.faults().empty());
+  ASSERT_EQ(library.hidden().size(), 1u);
+  EXPECT_EQ(library.hidden()[0].name, "gain");
+  EXPECT_EQ(library.hidden()[0].file, root + "two/gain.component.json");
 }
 
 TEST_F(Folders, ReportsBadFilesAndGoesOn) {

@@ -15,6 +15,10 @@ Report faulty_objects(const Configuration& configuration, const Library& library
   for (const ConfiguredTask& task : configuration.tasks()) {
     const LibraryEntry* entry = library.find(task.component);
     if (entry == nullptr || entry->object_file.empty() || !seen.insert(task.component).second) continue;
+    for (const HiddenComponent& hidden : library.hidden())
+      if (hidden.name == task.component)
+        report.note("component '" + task.component + "' is that of " + entry->descriptor_file +
+                    ", which CHIMERA_PATH names before " + hidden.file);
     const auto sound = SharedObject::inspect(entry->object_file, task.component);
     if (sound) continue;
     const auto& drafts = configuration.draft().tasks;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/config/quantity.h"
 
+#include <cmath>
 #include <limits>
 
 #include "chimera/config/decimal.h"
@@ -89,7 +90,12 @@ Result<Quantity> parse_quantity(std::string_view text, const UnitSystem& units) 
 }
 
 Result<double> value_in(const Quantity& quantity, const Unit& wanted, std::string_view wanted_text) {
-  if (const auto to_wanted = conversion(quantity.unit, wanted)) return (*to_wanted)(quantity.value);
+  if (const auto to_wanted = conversion(quantity.unit, wanted)) {
+    const double value = (*to_wanted)(quantity.value);
+    if (std::isfinite(value) || !std::isfinite(quantity.value)) return value;
+    const std::string far = "is not finite in \"" + std::string(wanted_text) + "\"; write a finite number";
+    return Error{ErrorCode::kRefused, std::string_view(far), {}};
+  }
   std::string why = "expected a quantity in \"" + std::string(wanted_text) + "\", found ";
   why += quantity.unit_text == "1" ? "a number without unit" : "one in \"" + quantity.unit_text + "\"";
   return Error{ErrorCode::kBadInput, std::string_view(why), {}};

@@ -25,7 +25,8 @@ struct Quantity {
 /// Context: setup.
 Result<Quantity> parse_quantity(std::string_view text, const UnitSystem& units);
 
-/// The value of `quantity` in `wanted`. Refuses a unit that measures something else, naming both.
+/// The value of `quantity` in `wanted`. Refuses a unit that measures something else, naming both, and with kRefused a
+/// finite number that is none any more in that unit. One that is too small for a double becomes 0.
 /// A plain number is refused where `wanted` has a dimension: "the unit is missing". Context: setup.
 Result<double> value_in(const Quantity& quantity, const Unit& wanted, std::string_view wanted_text);
 

@@ -47,6 +47,15 @@ TEST(Quantity, ConvertsIntoTheWantedUnit) {
   EXPECT_EQ(in("3", "1"), 3);
 }
 
+TEST(Quantity, IsRefusedWhereItIsNotFiniteInTheWantedUnit) {
+  EXPECT_EQ(refusal(value_in(quantity("1e308 km"), unit("m"), "m")),
+            "is not finite in \"m\"; write a finite number");
+  EXPECT_EQ(value_in(quantity("1e308 km"), unit("m"), "m").error().code, ErrorCode::kRefused);
+  EXPECT_EQ(in("1e308 m", "m"), 1e308);
+  EXPECT_TRUE(std::isinf(in("inf m", "km"))) << "said so; its user judges it";
+  EXPECT_EQ(in("1e-320 mm", "km"), 0) << "too small for a double";
+}
+
 TEST(Quantity, RefusesAnotherKindOfUnitAndAMissingOne) {
   EXPECT_EQ(refusal(value_in(quantity("3 J"), unit("N.m"), "N.m")),
             "expected a quantity in \"N.m\", found one in \"J\"");

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/config/json_cursor.h"
 #include "chimera/config/json_text.h"
 
@@ -169,12 +169,9 @@ Result<void> may_write_recorded_profile(const std::string& path) {
 }
 
 Result<RecordedProfile> read_recorded_profile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{ErrorCode::kNotFound, {std::string_view(std::strerror(errno))}, {path}};
-  std::string text(kMostBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) return Error{ErrorCode::kSystem, {"cannot be read"}, {path}};
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  const auto read = read_ordinary(path, kMostBytes + 1);
+  if (!read) return read.error();
+  const std::string& text = *read;
   if (text.size() > kMostBytes) return bad("is larger than 256 KiB", path);
   auto profile = parse_recorded_profile(text);
   if (!profile)

@@ -59,7 +59,7 @@ TEST(RecordedProfile, SaysWhichFileIsNotThere) {
   const auto profile = read_recorded_profile("/nowhere/p.json");
   ASSERT_FALSE(profile);
   EXPECT_EQ(profile.error().where.view(), "/nowhere/p.json");
-  EXPECT_EQ(profile.error().message.view(), "No such file or directory");
+  EXPECT_EQ(profile.error().message.view(), "cannot be opened: No such file or directory");
 }
 
 TEST(RecordedProfile, TakesWhatWasMeasured) {

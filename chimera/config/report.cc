@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/json_text.h"
 #include "chimera/config/rule_ids.h"
 
@@ -27,15 +28,20 @@ std::string sentence(const Fault& fault) {
 void Report::add(Fault fault) {
   CHIMERA_ASSERT(is_rule(fault.rule));
   for (std::string* part : {&fault.message, &fault.found, &fault.expected, &fault.nearest, &fault.remedy})
-    for (char& c : *part)
-      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';  // one fault, one line
+    *part = plain_line(*part);  // one fault, one line
   for (const Fault& known : faults_)
     if (known.at == fault.at && known.rule == fault.rule && known.message == fault.message) return;
   ++(fault.severity == Severity::kError ? errors_ : warnings_);
   if (faults_.size() < kMaxFaults) faults_.push_back(std::move(fault));
 }
 
+void Report::note(std::string text) {
+  text = plain_line(text);
+  if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(std::move(text));
+}
+
 void Report::add_all(const Report& other) {
+  for (const std::string& text : other.notes_) note(text);
   for (const Fault& fault : other.faults_) add(fault);
   const std::size_t kept_errors = static_cast<std::size_t>(std::count_if(
       other.faults_.begin(), other.faults_.end(), [](const Fault& f) { return f.severity == Severity::kError; }));
@@ -65,6 +71,7 @@ std::string Report::text() const {
   }
   if (const std::size_t all = errors_ + warnings_; all > faults_.size())
     out += file_ + ": and " + std::to_string(all - faults_.size()) + " more\n";
+  for (const std::string& text : notes_) out += file_ + ": note: " + text + '\n';
   return out;
 }
 
@@ -81,6 +88,8 @@ std::string Report::json() const {
            ", \"nearest\": " + json_string(fault.nearest) + ", \"message\": " + json_string(fault.message) +
            ", \"remedy\": " + json_string(remedy(fault)) + '}';
   }
+  out += "], \"notes\": [";
+  for (std::size_t i = 0; i < notes_.size(); ++i) out += (i == 0 ? "" : ", ") + json_string(notes_[i]);
   return out + "]}";
 }
 

@@ -44,20 +44,24 @@ class Report {
 
   /// Keeps `fault`; one equal in place, rule and message is kept once. At most kMaxFaults are kept, the rest counted.
   void add(Fault fault);
-  /// Takes over all faults of `other`.
+  /// Something to know that is no breach of a rule; the same sentence is kept once.
+  void note(std::string text);
+  /// Takes over all faults and notes of `other`.
   void add_all(const Report& other);
   /// Brings the faults into the order of their places.
   void sort();
 
   const std::string& file() const noexcept { return file_; }
   std::span<const Fault> faults() const noexcept { return faults_; }
+  std::span<const std::string> notes() const noexcept { return notes_; }
   /// No error; warnings do not count.
   bool is_legal() const noexcept { return errors_ == 0; }
   std::size_t errors() const noexcept { return errors_; }
   std::size_t warnings() const noexcept { return warnings_; }
   bool has(std::string_view rule) const noexcept;
 
-  /// One `file:line:column: error: message [rule]` line per fault, each followed by its remedy line, if any.
+  /// One `file:line:column: error: message [rule]` line per fault, each followed by its remedy line, if any;
+  /// then `file: note: text` lines.
   std::string text() const;
   /// One JSON object, without a line end.
   std::string json() const;
@@ -67,6 +71,7 @@ class Report {
  private:
   std::string file_;
   std::vector<Fault> faults_;
+  std::vector<std::string> notes_;
   std::size_t errors_ = 0;
   std::size_t warnings_ = 0;
 };

@@ -61,8 +61,20 @@ TEST(Report, IsOneJsonObject) {
   EXPECT_EQ(report.json(),
             R"({"file": "a \"b\"", "legal": false, "errors": 1, "warnings": 0, "faults": [{"rule": "key-unknown", )"
             R"("severity": "error", "file": "a \"b\"", "line": 2, "column": 3, "found": "rat", "expected": "'rate'", )"
-            R"("nearest": "rate", "message": "back\\slash", "remedy": "did you mean 'rate'?"}]})");
-  EXPECT_EQ(Report("a").json(), R"({"file": "a", "legal": true, "errors": 0, "warnings": 0, "faults": []})");
+            R"("nearest": "rate", "message": "back\\slash", "remedy": "did you mean 'rate'?"}], )"
+            R"("notes": []})");
+  EXPECT_EQ(Report("a").json(),
+            R"({"file": "a", "legal": true, "errors": 0, "warnings": 0, "faults": [], "notes": []})");
+}
+
+TEST(Report, HasNotesThatAreNoFaults) {
+  Report report("a"), other("a");
+  other.note("something to\nknow");
+  other.note("something to know");
+  report.add_all(other);
+  EXPECT_TRUE(report.is_legal());
+  EXPECT_EQ(report.text(), "a: note: something to know\n");
+  EXPECT_TRUE(report.json().ends_with(R"("faults": [], "notes": ["something to know"]})")) << report.json();
 }
 
 }  // namespace

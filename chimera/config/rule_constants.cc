@@ -37,17 +37,16 @@ void refuse_two(Model& model, const VariableModel& variable) {
                     Model::say(port.at),
                 variable.name, "one producer", {}, "take it out here, or link the output elsewhere by alias");
   }
-  for (const SetModel& set : model.sets) {
-    std::vector<PortRef> producers;
-    for (const PortRef ref : variable.producers)
-      if (set.has(ref.task)) producers.push_back(ref);
-    if (producers.size() < 2) continue;
-    const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
-    model.error("constant-two-producers", second.at,
-                "constant '" + variable.name + "' has two producers in configuration '" + set.name + "': " +
-                    model.say(first) + " at " + Model::say(first.at) + " and " + model.say(second),
-                variable.name, "one producer", {}, "link one of them elsewhere by alias");
-  }
+  std::vector<PortRef> producers;  // a standby has the outputs of its task: rule_standby.cc speaks of them
+  for (const PortRef ref : variable.producers)
+    if (!model.tasks[ref.task].draft->standby_for) producers.push_back(ref);
+  if (producers.size() < 2) return;
+  const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
+  model.error("constant-two-producers", second.at,
+              "constant '" + variable.name + "' has two producers: " + model.say(first) + " at " +
+                  Model::say(first.at) + " and " + model.say(second) +
+                  "; every task is initialised, in whichever configuration it is",
+              variable.name, "one producer", {}, "link one of them elsewhere by alias");
 }
 
 /// A port whose extent a constant gives waits for that constant, whether or not its task has a port for it.
@@ -55,18 +54,18 @@ void add_extent_users(const Model& model, const LinkedPort& port, std::vector<st
   for (const SolvedExtent& extent : port.extents) {
     const auto constant = model.variable_index.find(extent.constant);
     if (constant == model.variable_index.end()) continue;
-    for (const PortRef from : model.variables[constant->second].producers)
-      if (from.task != port.task) users[from.task].push_back(port.task);
+    const std::vector<PortRef>& from = model.variables[constant->second].producers;
+    if (!from.empty() && from[0].task != port.task) users[from[0].task].push_back(port.task);
   }
 }
 
-/// users[a] has b when b needs a constant that a produces.
+/// users[a] has b when b needs a constant that a produces. Of several producers the first counts: they are refused, and
+/// a circle through the others would not be the reason.
 std::vector<std::vector<std::size_t>> users_of(const Model& model) {
   std::vector<std::vector<std::size_t>> users(model.tasks.size());
   for (const VariableModel& variable : model.variables) {
-    if (!variable.is_constant) continue;
-    for (const PortRef from : variable.producers)
-      for (const PortRef to : variable.consumers) users[from.task].push_back(to.task);
+    if (!variable.is_constant || variable.producers.empty()) continue;
+    for (const PortRef to : variable.consumers) users[variable.producers[0].task].push_back(to.task);
   }
   for (const TaskModel& task : model.tasks)
     for (const LinkedPort& port : task.ports) add_extent_users(model, port, users);

@@ -210,9 +210,9 @@ Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
   const auto wanted = units.parse(unit);
   if (!quantity || !wanted || quantity->unit_text == unit) return value;
   const auto number = value_in(*quantity, *wanted, unit);
-  if (!number) return value;
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", *number);
+  if (!number && number.error().code != ErrorCode::kRefused) return value;
+  char text[40] = "inf";  // what is none in this unit: the rules say so
+  if (number) std::snprintf(text, sizeof text, "%.17g", *number);
   value.text = unit == "1" ? text : text + (" " + unit);
   return value;
 }

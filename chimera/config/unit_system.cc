@@ -8,16 +8,18 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <sstream>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/config/nearest.h"
 #include "chimera/config/unit_text.h"
 
 namespace chimera {
 namespace {
+
+constexpr std::size_t kMostUnitBytes = 1 << 20;  // ours has 10 KiB
 
 /// UDUNITS keeps its status and its parser in static variables, so only one thread may be inside.
 std::mutex& inside() {
@@ -99,14 +101,6 @@ void collect(const std::string& xml, const std::string& tag, std::vector<std::st
   }
 }
 
-std::string contents(const std::string& file) {
-  errno = 0;
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 /// ": REASON" when the last call failed because there was no memory or descriptor left.
 std::string want() {
   const bool is_want = errno == EMFILE || errno == ENFILE || errno == ENOMEM;
@@ -169,7 +163,7 @@ Result<UnitSystem> UnitSystem::load(std::span<const std::string> files) {
   std::vector<std::string> places(files.begin(), files.end());
   if (const char* named = std::getenv("CHIMERA_UNITS"); named != nullptr && *named != '\0') places = {named};
   for (const std::string& place : places)
-    if (std::ifstream(place).good()) return of(contents(place), place);
+    if (auto text = read_ordinary(place, kMostUnitBytes)) return of(*std::move(text), place);
   std::string all = "no unit file; looked for";
   for (const std::string& place : places) all += " " + place;
   all += want();

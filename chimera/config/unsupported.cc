@@ -16,7 +16,6 @@ class Refusals {
   Report take() {
     for (std::size_t i = 0; i < configuration_.rtpus().size(); ++i) rtpu(i);
     for (const DraftTask& task : configuration_.draft().tasks) judge(task);
-    for (const ConfiguredVariable& variable : configuration_.variables()) constant(variable);
     report_.sort();
     return std::move(report_);
   }
@@ -104,12 +103,6 @@ class Refusals {
       refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
              "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");
     if (task.own_process && task.own_process->value) refuse_key(task.own_process->at, "isolation: process", task);
-  }
-
-  void constant(const ConfiguredVariable& variable) {
-    if (variable.is_constant && variable.producers.size() > 1)
-      refuse(variable.at, "constant '" + variable.name + "' with a producer in each of several configurations",
-             "keep one of its producers to run");
   }
 
   const Configuration& configuration_;

@@ -10,6 +10,7 @@
 #include "chimera/config/draft_values.h"
 #include "chimera/config/nearest.h"
 #include "chimera/config/quantity.h"
+#include "chimera/config/text_limits.h"
 
 namespace chimera {
 namespace {
@@ -180,6 +181,8 @@ class ValueWriter {
   void string(const Node& node, const Cell& cell, std::byte* to) {
     if (!node.is_scalar()) {
       refuse("value-type", node.at, "found " + written(node) + "; expected a text", written(node), "a text");
+    } else if (node.text.find('\0') != std::string::npos) {
+      refuse("text-encoding", node.at, "found a text with the byte 0", {}, "a text", {}, kNoZero);
     } else if (node.text.size() >= cell.size) {
       refuse("value-range", node.at,
              "found a text of " + std::to_string(node.text.size()) + " bytes; expected at most " +
@@ -212,13 +215,26 @@ class ValueWriter {
     if (!quantity)
       return refuse("quantity-bad", node.at, std::string(quantity.error().message.view()), node.text, "a quantity");
     const auto value = value_in(*quantity, cell.unit, cell.unit_text);
+    if (!value && value.error().code == ErrorCode::kRefused) return refuse_infinite(node, cell);
     if (!value)
       return refuse("value-unit", node.at, std::string(value.error().message.view()), quantity->unit_text,
                     cell.unit_text);
+    if (!std::isfinite(*value) && !may_be_infinite(cell, *value)) return refuse_infinite(node, cell);
     if (cell.type == CHIMERA_INT32 || cell.type == CHIMERA_INT64)
       integer(node, cell, *value, to);
     else
       real(node, cell, *value, to);
+  }
+
+  /// A constant whose component declares a range that ends there: it says what it does with it.
+  bool may_be_infinite(const Cell& cell, double value) const {
+    if (!port_.is(CHIMERA_IN_CONST) || !cell.has_range) return false;
+    return value == cell.min || value == cell.max;
+  }
+
+  void refuse_infinite(const Node& node, const Cell& cell) {
+    refuse("value-range", node.at, "found " + written(node) + ", which is not finite in \"" + cell.unit_text + "\"",
+           node.text, "a finite number", {}, "write a finite number");
   }
 
   bool in_range(const Node& node, const Cell& cell, double value) {

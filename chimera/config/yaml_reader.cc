@@ -54,7 +54,9 @@ class TreeBuilder : public YAML::EventHandler {
       refuse("yaml-block-scalar", mark, "a block scalar (| or >) is not accepted", "write the text on one line");
     if (value.size() > kMaxValueBytes)
       refuse("value-size", mark, "a value of " + std::to_string(value.size()) + " bytes; at most " +
-             std::to_string(kMaxValueBytes) + " are read", "");
+             std::to_string(kMaxValueBytes) + " are read", "shorten it, or give the component a file to read");
+    if (value.find('\0') != std::string::npos)
+      refuse("text-encoding", mark, "a text holds the byte 0", std::string(kNoZero));
     Node& node = begin(Node::Kind::kScalar, mark);
     node.text = value.substr(0, kMaxValueBytes);
     node.quoted = tag == "!";
@@ -94,13 +96,18 @@ class TreeBuilder : public YAML::EventHandler {
   /// The node where the next event belongs: the value of the pending key, the next item, or the root.
   Node& begin(Node::Kind kind, const YAML::Mark& mark) {
     if (depth_ == kMaxNesting) {
-      refuse("text-nesting", mark, "more than " + std::to_string(kMaxNesting) + " levels of nesting", "");
+      refuse("text-nesting", mark, "more than " + std::to_string(kMaxNesting) + " levels of nesting",
+             "no description needs so many: take brackets out");
       throw Stop{};
     }
     Node& node = slot();
     if (&node == &key_ && kind != Node::Kind::kScalar) refuse_key(mark);
     node.kind = kind;
+    // What is not there has no place of its own; the parser notices at the next word, lines below.
     node.at = place(mark);
+    const bool has_key = depth_ > 0 && open_[depth_ - 1]->is_map() && &node != &key_;
+    if (kind == Node::Kind::kNone && has_key && node.at.line > open_[depth_ - 1]->keys.back().at.line)
+      node.at = open_[depth_ - 1]->keys.back().at;
     open_[depth_++] = &node;
     return node;
   }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <map>
 
+#include "chimera/desk/under_way.h"
 #include "chimera/load/shared_object.h"
+#include "chimera/runtime/making.h"
 
 namespace chimera::desk {
 namespace {
@@ -34,14 +36,22 @@ std::vector<FieldDescriptor> fields_of(const chimera_port_decl& decl) {
 Result<Application> Application::load(Configuration configuration, const Library& library) {
   Application made(std::move(configuration));
   std::map<std::string, SharedObject> opened;
+  UnderWay& told = under_way();
+  told.know(made.configuration_, library);
   for (const ConfiguredTask& task : made.configuration_.tasks()) {
+    show_making(told.making, made.components_.size(), Making::kLoads);
     const LibraryEntry* entry = library.find(task.component);
     CHIMERA_ASSERT(entry != nullptr);  // verified
     auto component = open(*entry, opened);
     if (!component) return component.error();
     made.components_.push_back(*component);
   }
-  auto tasks = TaskSet::create(made.configuration_.spec(), made.components_);
+  ContextPlace place;
+  place.running = &told.running;
+  place.serving = &told.serving;
+  place.making = &told.making;
+  show_made(told.making);
+  auto tasks = TaskSet::create(made.configuration_.spec(), made.components_, place);
   if (!tasks) return tasks.error();
   made.tasks_ = *std::move(tasks);
   return made;

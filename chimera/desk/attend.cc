@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/json_text.h"
 #include "chimera/config/task_profile.h"
 #include "chimera/desk/control_line.h"
@@ -135,7 +136,7 @@ std::string in_one_line(const std::string& grant) {
 void Attendance::print_grants(const Json& status) {
   const Json& rtpus = status["rtpus"];
   for (const Json& rtpu : rtpus) {
-    const std::string grant = rtpu.value("grant", "");
+    const std::string grant = for_terminal(rtpu.value("grant", ""));
     grants_ +=
         (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : rtpu.value("name", "") + ": ") + in_one_line(grant);
     if (run_.json) continue;
@@ -207,7 +208,7 @@ void Attendance::watch_line(Nanoseconds at) {
     const Seen seen = seen_of(values.value(name, Json::object()));
     line += "  " + name + " " + (seen.is_written ? seen.text : "not written yet");
   }
-  std::fprintf(out_, "%s\n", line.c_str());
+  std::fprintf(out_, "%s\n", plain_line(line).c_str());
   std::fflush(out_);
 }
 

@@ -2,8 +2,8 @@
 #include "chimera/desk/case_file.h"
 
 #include <filesystem>
-#include <fstream>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/config/draft_values.h"
 #include "chimera/config/yaml_reader.h"
 
@@ -142,20 +142,16 @@ CaseFile read_case_text(std::string_view text, const std::string& file, Report& 
 }
 
 CaseFile read_case_file(const std::string& path, Report& report) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string text(kMaxTextBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  const bool is_read = stream.gcount() > 0 || stream.eof();
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (is_read && text.size() <= kMaxTextBytes) return read_case_text(text, path, report);
-  report.add({.rule = is_read ? "text-size" : "file-unreadable",
+  const auto text = read_ordinary(path, kMaxTextBytes + 1);
+  if (text && text->size() <= kMaxTextBytes) return read_case_text(*text, path, report);
+  report.add({.rule = text ? "text-size" : "file-unreadable",
               .at = {},
-              .message = is_read ? "the file has more than " + std::to_string(kMaxTextBytes) + " bytes"
-                                 : "the file cannot be read",
+              .message = "the file " + (text ? "has more than " + std::to_string(kMaxTextBytes) + " bytes"
+                                             : std::string(text.error().message.view())),
               .found = {},
               .expected = {},
               .nearest = {},
-              .remedy = {}});
+              .remedy = text ? "split it into several files" : "check the path and its rights"});
   return {path, described_by(path), {}};
 }
 

@@ -45,7 +45,8 @@ TEST(Check, JsonStandsAloneOnStandardOutput) {
   const Output output = checked(kCounterText, true);
   EXPECT_EQ(output.code, kOk);
   EXPECT_EQ(output.err, "");
-  EXPECT_EQ(output.out, "{\"file\": \"FILE\", \"legal\": true, \"errors\": 0, \"warnings\": 0, \"faults\": []}\n");
+  EXPECT_EQ(output.out,
+            "{\"file\": \"FILE\", \"legal\": true, \"errors\": 0, \"warnings\": 0, \"faults\": [], \"notes\": []}\n");
 }
 
 TEST(Check, RefusesAFileThatIsNotThereAndAnEmptyOne) {

@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <vector>
 
+#include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/config/value_text.h"
 #include "chimera/desk/blanks.h"
 
 namespace chimera::desk {
 namespace {
+
+constexpr std::size_t kMostSheetBytes = 1 << 20;
 
 constexpr const char* kMethodWords[] = {"init", "reinit", "on", "cycle", "sync", "off", "kill", "error", "clear"};
 
@@ -36,7 +39,7 @@ std::string initial_text(const PortDescriptor& port) {
 std::string remarks(const PortDescriptor& port) {
   std::string text;
   const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
-  if (!port.doc.empty()) add(port.doc.substr(0, port.doc.find_last_not_of('.') + 1));
+  if (!port.doc.empty()) add(plain_line(port.doc.substr(0, port.doc.find_last_not_of('.') + 1)));
   if (!port.frame.empty()) add("frame " + port.frame);
   if (port.has_range) add("from " + number_text(port.min) + " to " + number_text(port.max));
   if (!port.at_least.empty()) add("at least " + port.at_least);
@@ -70,8 +73,8 @@ std::string ports_text(const Descriptor& d) {
 }
 
 std::string head_text(const Descriptor& d) {
-  std::string text = d.name + ": " + d.doc + "\n";
-  if (!d.source.empty()) text += "source   " + d.source + "\n";
+  std::string text = d.name + ": " + plain_line(d.doc) + "\n";
+  if (!d.source.empty()) text += "source   " + plain_line(d.source) + "\n";
   text += "rate     " +
           (d.default_rate_hz > 0 ? number_text(d.default_rate_hz) + " Hz by default" : "stated by the description") +
           "\n";
@@ -125,8 +128,7 @@ std::string plain_sheet(std::string_view markdown) {
 std::string data_sheet(const LibraryEntry& entry) {
   std::string text = head_text(entry.descriptor) + "ports\n" + ports_text(entry.descriptor);
   const auto file = std::filesystem::path(entry.descriptor_file).parent_path() / (entry.descriptor.name + ".md");
-  std::ifstream stream(file, std::ios::binary);
-  if (stream) text += "\n" + plain_sheet(std::string{std::istreambuf_iterator<char>(stream), {}}) + "\n";
+  if (const auto sheet = read_ordinary(file.string(), kMostSheetBytes)) text += "\n" + plain_sheet(*sheet) + "\n";
   return text + "file     " + entry.object_file + "\n";
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/descriptor_json.h"
 #include "chimera/desk/blanks.h"
 #include "chimera/desk/data_sheet.h"
@@ -17,7 +18,7 @@ Output list(const Workplace& workplace, bool json) {
   std::string rows;
   for (const LibraryEntry& entry : library->entries()) {
     const Descriptor& d = entry.descriptor;
-    output.out += padded(d.name, width) + "  " + d.doc + "\n";
+    output.out += padded(d.name, width) + "  " + plain_line(d.doc) + "\n";
     rows += (rows.empty() ? "" : ", ") + std::string("{\"name\": ") + json_string(d.name) +
             ", \"doc\": " + json_string(d.doc) + ", \"file\": " + json_string(entry.object_file) + "}";
   }

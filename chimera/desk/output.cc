@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/output.h"
 
+#include "chimera/base/hosted/terminal_text.h"
+
 namespace chimera::desk {
 
 std::string error_line(const Error& error) {
   std::string text(error.where.view());
   text += text.empty() ? "error: " : ": error: ";
   text += error.message.view();
-  return text + "\n";
+  return for_terminal(text) + "\n";
 }
 
 Output refused(const Error& error, bool json, int code) {

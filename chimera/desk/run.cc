@@ -11,6 +11,7 @@
 #include <fstream>
 #include <utility>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/progress.h"
 #include "chimera/desk/run_loop.h"
@@ -140,7 +141,7 @@ void Session::watch_line(Nanoseconds at) {
   std::vector<std::byte> value;
   for (const Probe& probe : watched_)
     line += "  " + probe.name + " " + (probe.read(value) ? value_text(probe.form, value) : "not written yet");
-  std::fprintf(out_, "%s\n", line.c_str());
+  std::fprintf(out_, "%s\n", plain_line(line).c_str());
   std::fflush(out_);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/nearest.h"
 #include "chimera/config/schedule_report.h"
 #include "chimera/config/setting.h"
@@ -128,9 +129,9 @@ Result<void> admit_below(const Configuration& configuration, double share) {
 
 int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code) {
   const Output output = refused(error, request.json, code);
-  std::fputs(output.out.c_str(), out);
+  std::fputs(for_terminal(output.out).c_str(), out);
   std::fflush(out);  // in a file that takes both, what came first stands first
-  std::fputs(output.err.c_str(), err);
+  std::fputs(for_terminal(output.err).c_str(), err);
   return output.code;
 }
 
@@ -161,9 +162,9 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Library& librar
     verdict.report.add_all(unsupported(*verdict.configuration, executor_of(request)));
     if (verdict.report.is_legal()) verdict.report.add_all(promises(request, *verdict.configuration));
   }
-  if (!request.json) std::fputs(verdict.report.text().c_str(), err);
+  if (!request.json) std::fputs(for_terminal(verdict.report.text()).c_str(), err);
   if (!verdict.report.is_legal()) {
-    if (request.json) std::fprintf(out, "%s\n", verdict.report.json().c_str());
+    if (request.json) std::fprintf(out, "%s\n", for_terminal(verdict.report.json()).c_str());
     return std::nullopt;
   }
   if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/json_text.h"
 #include "chimera/config/recorded_profile.h"
 #include "chimera/desk/output.h"
@@ -31,6 +32,12 @@ std::string sentence(const RunReport& report) {
              (report.stopped_by.empty() ? "a task" : "task '" + report.stopped_by + "'");
   }
   return "";
+}
+
+std::string seconds_text(Nanoseconds t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", to_seconds(t));
+  return text;
 }
 
 void print_json(const RunReport& report, std::FILE* out) {
@@ -65,7 +72,7 @@ int RunReport::code() const {
 }
 
 std::string note_line(std::string_view task, std::string_view note) {
-  return std::string(task) + ": note: " + std::string(note);
+  return plain_line(std::string(task) + ": note: " + std::string(note));
 }
 
 bool save_profile(const RunReport& report, const std::string& path, std::FILE* err) {
@@ -80,10 +87,10 @@ void print(const RunReport& report, bool json, std::FILE* out) {
   std::string lines;
   for (const RunReport::Judged& e : report.expectations)
     lines += (e.holds ? "holds: " : "FAILS: ") + e.text + " (" + e.said + ")\n";
-  std::fprintf(out, "ran %.3f s%s\n%s%s%s%s%s", to_seconds(report.ran), sentence(report).c_str(),
-               report.is_flag_up ? "the illegal-configuration flag is up\n" : "", report.refused.c_str(),
-               profile_table(report.profiles, report.ran, report.origin).c_str(), lines.c_str(),
-               report.verdict.text().c_str());
+  std::string text = "ran " + seconds_text(report.ran) + " s" + sentence(report) + "\n";
+  if (report.is_flag_up) text += "the illegal-configuration flag is up\n";
+  text += report.refused + profile_table(report.profiles, report.ran, report.origin) + lines + report.verdict.text();
+  std::fputs(for_terminal(text).c_str(), out);
 }
 
 }  // namespace chimera::desk

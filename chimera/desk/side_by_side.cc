@@ -15,7 +15,9 @@
 #include <cstring>
 #include <thread>
 
+#include "chimera/desk/own_process.h"
 #include "chimera/desk/run.h"
+#include "chimera/desk/under_way.h"
 #include "chimera/platform/process.h"
 
 namespace chimera::desk {
@@ -42,9 +44,12 @@ struct Child {
   Nanoseconds began;
   PieceEnd end;
   bool is_late = false;
+  UnderWay* place = nullptr;  ///< null: no memory for it
 };
 
-[[noreturn]] void live(const SideBySide& plan, std::size_t piece, pid_t parent, int answer, int errors) {
+[[noreturn]] void live(const SideBySide& plan, std::size_t piece, pid_t parent, int answer, int errors,
+                       UnderWay* place) {
+  if (place != nullptr) write_under_way_to(*place);
   (void)follow_parent(parent, SIGKILL);
   std::signal(SIGINT, SIG_IGN);  // of a terminal: the parent ends everybody
   std::signal(SIGTERM, SIG_DFL);
@@ -52,7 +57,9 @@ struct Child {
   ::dup2(nowhere, STDIN_FILENO);
   ::dup2(nowhere, STDOUT_FILENO);
   ::dup2(errors, STDERR_FILENO);
-  write_all(answer, plan.work(piece));
+  const std::string said = plan.work(piece);
+  if (place != nullptr) place->has_returned = true;
+  write_all(answer, said);
   ::_exit(0);
 }
 
@@ -85,16 +92,18 @@ class Crowd {
   bool start() {
     int answer[2] = {-1, -1};
     const int errors = ::memfd_create("chimera-piece", MFD_CLOEXEC);
+    UnderWay* place = make_shared_under_way();
     const bool has_pipe = errors >= 0 && ::pipe2(answer, O_CLOEXEC) == 0;
     const pid_t parent = ::getpid();
     const pid_t pid = has_pipe ? ::fork() : -1;
-    if (pid == 0) live(plan_, next_, parent, answer[1], errors);
+    if (pid == 0) live(plan_, next_, parent, answer[1], errors, place);
     const int why = errno;
     if (has_pipe) ::close(answer[1]);
     if (pid > 0) {
-      children_.push_back({next_++, pid, answer[0], errors, wall(), {}, false});
+      children_.push_back({next_++, pid, answer[0], errors, wall(), {}, false, place});
       return true;
     }
+    release(place);
     for (const int descriptor : {errors, answer[0]})
       if (descriptor >= 0) ::close(descriptor);
     if (!children_.empty()) return false;
@@ -132,16 +141,19 @@ class Crowd {
     int status = 0;
     while (::waitpid(child.pid, &status, 0) < 0 && errno == EINTR) {  // still ours: not reaped
     }
-    char text[120] = "";
-    if (child.is_late)
+    const bool has_returned = child.place == nullptr || child.place->has_returned;
+    std::string& why = child.end.failure;
+    if (child.is_late) {
+      char text[60];
       std::snprintf(text, sizeof text, "did not end within %.6g s", to_seconds(plan_.limit));
-    else if (WIFSIGNALED(status))
-      std::snprintf(text, sizeof text, "ended by signal %d (%s)", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
-    else if (WEXITSTATUS(status) != 0)
-      std::snprintf(text, sizeof text, "ended with exit code %d", WEXITSTATUS(status));
-    child.end.failure = text;
-    const std::string last = text[0] == '\0' ? "" : last_line(child.errors);
-    if (!last.empty()) child.end.failure += ": " + last;
+      why = text;
+    } else if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !has_returned) {
+      why = end_text(status);
+    }
+    const std::string what = why.empty() || child.place == nullptr ? "" : child.place->text();
+    if (!what.empty()) why += " " + what;
+    if (const std::string last = why.empty() ? "" : last_line(child.errors); !last.empty()) why += ": " + last;
+    release(child.place);
     child.end.wall = wall() - child.began;
     ::close(child.answer);
     ::close(child.errors);

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/verify.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/output_file.h"
@@ -104,7 +105,7 @@ int sweep(const SweepRequest& request, const Workplace& workplace, std::FILE* ou
     std::fputs("ended by the operator: no table\n", err);
     return kRefused;
   }
-  std::fputs((request.json ? json(*table) : text(*table)).c_str(), out);
+  std::fputs(for_terminal(request.json ? json(*table) : text(*table)).c_str(), out);
   for (const auto& [path, made] : {std::pair{request.csv, csv(*table)}, {request.svg, draw::svg(plot(*table))}})
     if (auto written = write_whole(path, made); !written) return refuse_run({}, written.error(), out, err);
   return table->is_good() ? kOk : kRefused;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/nearest.h"
 #include "chimera/desk/case_report.h"
 #include "chimera/desk/output.h"
@@ -140,7 +141,7 @@ int test_application(const CasesRequest& request, const Workplace& workplace, st
   if (!files) return refuse_run(words, files.error(), out, err);
   if (!faults.empty() && request.json) return refuse_run(words, refusal(faults.substr(0, faults.find('\n'))), out, err);
   if (!faults.empty()) {
-    std::fputs(faults.c_str(), err);
+    std::fputs(for_terminal(faults).c_str(), err);
     return kRefused;
   }
   if (auto chosen = choose(request.only, *files); !chosen) return refuse_run(words, chosen.error(), out, err);
@@ -150,7 +151,7 @@ int test_application(const CasesRequest& request, const Workplace& workplace, st
     std::fputs("ended by the operator\n", err);
     return kRefused;
   }
-  std::fputs((request.json ? json(report) : text(report)).c_str(), out);
+  std::fputs(for_terminal(request.json ? json(report) : text(report)).c_str(), out);
   if (auto written = write_whole(request.junit, junit(report)); !written)
     return refuse_run({}, written.error(), out, err);
   return report.failed() == 0 ? kOk : kRefused;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/message.h"
 #include "chimera/config/descriptor_json.h"
 #include "chimera/trial/judge.h"
@@ -16,6 +16,8 @@
 
 namespace chimera::desk {
 namespace {
+
+constexpr std::size_t kMostRecordingBytes = std::size_t{256} << 20;
 
 namespace fs = std::filesystem;
 
@@ -114,11 +116,12 @@ class OneTest {
       return trial::Inputs::generated(form, options_.seed, std::clamp(most, kFewest, options_.cycles));
     }
     source = file;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return (Message() << "cannot be read").error(ErrorCode::kNotFound, file);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const auto text = read_ordinary(file, kMostRecordingBytes + 1);
+    if (!text) return text.error();
+    if (text->size() > kMostRecordingBytes)
+      return (Message() << "has more than 256 MiB; a recording for a test is shorter").error(ErrorCode::kRefused, file);
     const Nanoseconds period = configuration.spec().tasks[0].period;
-    return trial::Inputs::recorded(form, text, file, options_.names, period, kFewest);
+    return trial::Inputs::recorded(form, *text, file, options_.names, period, kFewest);
   }
 
   const TestOptions& options_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/keeper/socket_place.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/socket.h>
@@ -19,7 +20,7 @@ Error refusal(const std::string& text, const std::string& where) {
 }
 
 /// The folder, opened and found to be ours alone to write to.
-Result<OwnedDescriptor> open_folder(const std::string& path, bool for_others) {
+Result<OwnedDescriptor> open_folder(const std::string& path) {
   if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) return failed(path, "mkdir");
   OwnedDescriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   if (folder.fd < 0 && errno != ENOTDIR && errno != ELOOP) return failed(path, "open");
@@ -31,9 +32,30 @@ Result<OwnedDescriptor> open_folder(const std::string& path, bool for_others) {
     return refusal("the folder of the sockets is another user's: set XDG_RUNTIME_DIR to a folder of yours", path);
   if ((status.st_mode & 022u) != 0)
     return refusal("others may write to the folder of the sockets: run 'chmod 0700 " + path + "'", path);
-  // A folder that others may also list, such as that of the machine's services, stays so.
-  if (for_others && (status.st_mode & 011u) != 011u && ::fchmod(folder.fd, 0711) != 0) return failed(path, "fchmod");
   return folder;
+}
+
+/// Under the lock of the folder, as the closing: one that others may also list, such as that of the machine's services,
+/// stays so.
+Result<void> let_others_pass(int folder, const std::string& path) {
+  struct stat status {};
+  if (::fstat(folder, &status) != 0) return failed(path, "fstat");
+  if ((status.st_mode & 011u) != 011u && ::fchmod(folder, 0711) != 0) return failed(path, "fchmod");
+  return {};
+}
+
+/// True when a socket in the folder is open to others: whose keeper opened the folder for them, or found it so.
+bool has_open_socket(const std::string& path) {
+  DIR* entries = ::opendir(path.c_str());
+  if (entries == nullptr) return true;  // not seen: left as it is
+  bool found = false;
+  while (const dirent* entry = found ? nullptr : ::readdir(entries)) {
+    struct stat status {};
+    const bool is_seen = ::fstatat(::dirfd(entries), entry->d_name, &status, AT_SYMLINK_NOFOLLOW) == 0;
+    found = is_seen && S_ISSOCK(status.st_mode) && (status.st_mode & 022u) != 0;
+  }
+  ::closedir(entries);
+  return found;
 }
 
 Result<sockaddr_un> address_of(const std::string& path) {
@@ -71,13 +93,15 @@ Result<void> clear_way(const sockaddr_un& address, const std::string& subsystem)
 }  // namespace
 
 Result<SocketPlace> SocketPlace::open(const std::string& path, const std::string& subsystem, bool for_others) {
-  auto folder = open_folder(path, for_others);
+  auto folder = open_folder(path);
   if (!folder) return folder.error();
   SocketPlace place;
   place.path_ = path + "/" + subsystem + ".sock";
   const auto address = address_of(place.path_);
   if (!address) return address.error();
   if (::flock(folder->fd, LOCK_EX) != 0) return failed(path, "flock");
+  if (for_others)
+    if (const auto passable = let_others_pass(folder->fd, path); !passable) return passable.error();
   if (auto clear = clear_way(*address, subsystem); !clear) return clear.error();
   OwnedDescriptor listening(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (listening.fd < 0) return failed(place.path_, "socket");
@@ -107,6 +131,11 @@ SocketPlace::~SocketPlace() {
   ::flock(folder_, LOCK_EX);
   struct stat status {};
   if (::lstat(path_.c_str(), &status) == 0 && status.st_ino == inode_) ::unlink(path_.c_str());
+  // As it was, when the last that let others pass is gone.
+  struct stat folder {};
+  if (::fstat(folder_, &folder) == 0 && (folder.st_mode & 0777u) == 0711u &&
+      !has_open_socket(path_.substr(0, path_.rfind('/'))))
+    ::fchmod(folder_, 0700);
   ::close(listening_);
   ::close(folder_);
 }

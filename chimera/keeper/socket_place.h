@@ -14,7 +14,8 @@ class SocketPlace {
  public:
   /// Listens at FOLDER/SUBSYSTEM.sock; makes the folder (mode 0700, its parent must exist). A socket that nobody
   /// listens at any more is taken over. `for_others`: other users may knock, their rights are judged at the door
-  /// (folder 0711, socket 0666). Refuses a folder that is a symbolic link, another user's, or writable for others; a
+  /// (folder 0711 until the last such socket is gone, socket 0666).
+  /// Refuses a folder that is a symbolic link, another user's, or writable for others; a
   /// subsystem of that name that runs; a path too long for a socket.
   static Result<SocketPlace> open(const std::string& folder, const std::string& subsystem, bool for_others);
 

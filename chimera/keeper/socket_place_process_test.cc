@@ -110,11 +110,24 @@ TEST_F(SocketPlaceTest, OpensTheFolderForOthersAndLeavesOneAsItIsThatTheyMayList
   const auto mode_after = [this](mode_t before) {
     std::filesystem::create_directory(folder_);
     ::chmod(folder_.c_str(), before);
-    EXPECT_TRUE(SocketPlace::open(folder_, "s", true));
+    const auto place = SocketPlace::open(folder_, "s", true);
+    EXPECT_TRUE(place);
     return mode(folder_);
   };
   EXPECT_EQ(mode_after(0700), 0711u);
   EXPECT_EQ(mode_after(0755), 0755u);
+  EXPECT_EQ(mode(folder_), 0755u) << "also behind it";
+}
+
+TEST_F(SocketPlaceTest, ClosesTheFolderBehindTheLastThatLetOthersPass) {
+  auto first = SocketPlace::open(folder_, "a", true);
+  auto second = SocketPlace::open(folder_, "b", true);
+  const auto own = SocketPlace::open(folder_, "c", false);
+  ASSERT_TRUE(first && second && own);
+  *first = SocketPlace();
+  EXPECT_EQ(mode(folder_), 0711u);
+  *second = SocketPlace();
+  EXPECT_EQ(mode(folder_), 0700u);
 }
 
 TEST_F(SocketPlaceTest, RefusesAPathTooLongForASocket) {

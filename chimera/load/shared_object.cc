@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/message.h"
 #include "chimera/load/elf_check.h"
 
@@ -17,6 +18,8 @@ namespace chimera {
 namespace {
 
 constexpr unsigned kSeals = F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
+
+constexpr std::size_t kMostObjectBytes = std::size_t{256} << 20;  // the copy stays in memory
 
 /// A descriptor that is closed at the end of the scope, unless it is taken.
 class OpenFile {
@@ -61,8 +64,9 @@ Result<void> copy_all(int from, int to, const std::string& path) {
 
 /// The descriptor of a sealed copy of the file.
 Result<int> sealed_copy(const std::string& path) {
-  OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.number() < 0) return system_error("cannot be opened", path);
+  const auto opened = open_ordinary(path, kMostObjectBytes);
+  if (!opened) return opened.error();
+  const OpenFile file(*opened);
   const std::size_t slash = path.rfind('/');
   const std::string name = (slash == std::string::npos ? path : path.substr(slash + 1)).substr(0, 200);
   OpenFile copy(::memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
@@ -117,9 +121,10 @@ Result<SharedObject> SharedObject::open(const std::string& path) {
 }
 
 Result<void> SharedObject::inspect(const std::string& path, std::string_view component) {
-  const OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.number() < 0 && errno == ENOENT) return unfit(path, "is missing", ErrorCode::kNotFound);
-  if (file.number() < 0) return system_error("cannot be opened", path);
+  const auto opened = open_ordinary(path, kMostObjectBytes);
+  if (!opened && opened.error().code == ErrorCode::kNotFound) return unfit(path, "is missing", ErrorCode::kNotFound);
+  if (!opened) return opened.error();
+  const OpenFile file(*opened);
   if (const auto why = elf_fault(file.number(), component); !why.empty()) return unfit(path, why.view());
   return {};
 }

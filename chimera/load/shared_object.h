@@ -23,7 +23,8 @@ namespace chimera {
 class SharedObject {
  public:
   /// Copies, seals and opens the file, and runs the static constructors in it. Refuses, with the path in
-  /// Error::where: no such file, not an ELF object, one that cannot be linked (says which symbol), one without
+  /// Error::where: no such file, no ordinary file or one of more than 256 MiB, not
+  /// an ELF object, one that cannot be linked (says which symbol), one without
   /// components, one built for another version of the component interface.
   /// Context: setup; may block.
   static Result<SharedObject> open(const std::string& path);

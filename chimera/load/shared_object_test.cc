@@ -88,7 +88,7 @@ TEST(SharedObject, RefusesWhatIsNoObject) {
   const TemporaryFile text("subsystem: puma\n"), empty("");
   EXPECT_EQ(refusal(text.path()), rebuild(text.path(), "is not a shared object: it does not begin with the ELF mark"));
   EXPECT_EQ(refusal(empty.path()), rebuild(empty.path(), "is empty (0 bytes)"));
-  EXPECT_EQ(refusal("/tmp"), "cannot be read: Is a directory");
+  EXPECT_EQ(refusal("/tmp"), "is no ordinary file but a folder");
 }
 
 TEST(SharedObject, RefusesAnObjectCutShortAtAnyPlace) {
@@ -137,7 +137,7 @@ TEST(SharedObject, IsInspectedWithoutBeingRun) {
   EXPECT_EQ(inspection("/nowhere/at/all.so"), "all.so is missing. Rebuild the component.");
   const TemporaryFile empty("");
   EXPECT_EQ(inspection(empty.path()), rebuild(empty.path(), "is empty (0 bytes)"));
-  EXPECT_EQ(inspection("/tmp"), "tmp cannot be read. Rebuild the component.");
+  EXPECT_EQ(inspection("/tmp"), "is no ordinary file but a folder");
 }
 
 TEST(SharedObject, InspectionStandsAnyDamage) {

@@ -18,14 +18,17 @@ std::string running_text(const ApplicationSpec& spec, std::uint32_t running) {
   return std::string(spec.tasks[task].name) + "." + method_name(static_cast<Method>(method));
 }
 
-std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left) {
+std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left,
+                       const std::string& made) {
   std::string text = "ended with status " + std::to_string(ended.code);
   if (ended.by_signal == 0 && ended.code == kDescriptorLost) text += " (its descriptors were closed)";
   if (ended.by_signal != 0) {
     const char* name = ::sigabbrev_np(ended.code);
     text = "ended by signal " + std::to_string(ended.code) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");
   }
-  if (left.is_there()) {
+  if (!made.empty()) {
+    text += " " + made;
+  } else if (left.is_there()) {
     const std::string running = running_text(spec, left.head().running);
     const std::string service = running_text(spec, left.head().serving);
     if (!running.empty() || !service.empty())

@@ -15,7 +15,8 @@ namespace chimera::manager {
 std::string running_text(const ApplicationSpec& spec, std::uint32_t running);
 
 /// "ended by signal 11 (SIGSEGV) in pid.cycle; core dumped". `left` is the block of the incarnation that ended; not
-/// there: it never showed one. Context: setup.
-std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left);
+/// there: it never showed one. `made` is what it loaded or constructed then ("while it loaded ..."). Context: setup.
+std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left,
+                       const std::string& made = {});
 
 }  // namespace chimera::manager

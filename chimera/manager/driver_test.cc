@@ -142,6 +142,16 @@ TEST(Driver, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
   EXPECT_EQ(fake.told("overrun"), "law: 2 cycles over budget\n");
 }
 
+TEST(Driver, CountersThatCannotBeTrueAreToldAsThatAndNotAsNumbers) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.rtpu(1).block().profile(fake.task("law")).overrun = 6'510'615'555'426'900'570u;
+  ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
+  EXPECT_EQ(fake.told("fault"), "law: its counters cannot be true: something in its unit wrote over them\n");
+  EXPECT_EQ(fake.told("overrun"), "");
+}
+
 TEST(Driver, ADeafRtpuFailsTheCommandInTime) {
   FakeSubsystem fake;
   fake.start_manager();

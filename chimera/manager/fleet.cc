@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/fleet.h"
 
+#include <utility>
+
 #include "chimera/manager/cause.h"
+#include "chimera/manager/credible.h"
 #include "chimera/manager/post_text.h"
 #include "chimera/manager/subject_status.h"
 #include "chimera/platform/doorbell.h"
+#include "chimera/runtime/making.h"
 
 namespace chimera::manager {
 
@@ -67,9 +71,20 @@ void Fleet::ended(const KeeperMessage& message, Events& events) {
   }
   record.is_alive = record.is_up = record.is_away = false;
   record.hang.clear();
-  record.last_end = cause_text(world_.spec(), message, left_words ? world_.peers[rtpu].block() : BlockView());
+  record.last_end = cause_text(world_.spec(), message,
+                               left_words ? world_.peers[rtpu].block() : BlockView(), what_it_made(rtpu));
   if (!record.ended_for.empty()) record.last_end += ": " + std::exchange(record.ended_for, "");
   events.push_back(subsystem::RtpuDown{rtpu, message.incarnation, record.last_end});
+}
+
+/// What a unit that never showed a block was loading or constructing.
+std::string Fleet::what_it_made(RtpuId rtpu) const {
+  const std::uint32_t word = world_.page.making[rtpu.index];
+  const std::uint32_t task = task_of_making(word, world_.spec().tasks.size());
+  if (task == UINT32_MAX) return {};
+  const TaskSpec& spec = world_.spec().tasks[task];
+  const LibraryEntry* entry = world_.bundle.library.find(spec.component);
+  return making_text(word, spec.name, entry == nullptr ? std::string(spec.component) : entry->object_file);
 }
 
 bool Fleet::all_up() const noexcept {
@@ -146,6 +161,11 @@ void Fleet::count(TaskId task, Nanoseconds at) {
   const Profile p = world_.peers.of(task).block().profile(task);
   Counted& before = counted_[task.index];
   const RtpuId rtpu = world_.spec().tasks[task.index].rtpu;
+  if (!is_credible(p, at - world_.keeper.origin)) {
+    if (!std::exchange(before.is_untrue, true))
+      world_.tell("fault", task, rtpu, "its counters cannot be true: something in its unit wrote over them", at);
+    return;
+  }
   if (p.missed > before.missed)
     world_.tell("miss", task, rtpu, counted("deadline", "missed", p.missed - before.missed, p.missed), at);
   if (p.overrun > before.overrun)

@@ -42,6 +42,7 @@ class Fleet {
  private:
   struct Counted {
     std::uint64_t missed = 0, overrun = 0, stale = 0;
+    bool is_untrue = false;  ///< told
   };
   struct Link {
     Inbox inbox;
@@ -58,6 +59,7 @@ class Fleet {
   void see(TaskId task, Events& events, bool always = false);
   void log(const Post& post, RtpuId rtpu);
   void count(TaskId task, Nanoseconds at);
+  std::string what_it_made(RtpuId rtpu) const;
 
   World& world_;
   std::vector<Link> links_;

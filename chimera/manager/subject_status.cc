@@ -6,6 +6,7 @@
 
 #include "chimera/config/schedule_report.h"
 #include "chimera/config/task_profile.h"
+#include "chimera/manager/credible.h"
 #include "chimera/manager/cause.h"
 
 namespace chimera::manager {
@@ -110,7 +111,8 @@ Json spread_json(const Spread& spread) {
 
 Profile profile_of(const World& world, TaskId task) {
   const PeerSegment& segment = world.peers.of(task);
-  return segment.is_there() ? segment.block().profile(task) : Profile{};
+  const Profile counted = segment.is_there() ? segment.block().profile(task) : Profile{};
+  return is_credible(counted, now() - world.keeper.origin) ? counted : Profile{};
 }
 
 Json server_json(const std::optional<ServerSpec>& server) {

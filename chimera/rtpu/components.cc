@@ -7,6 +7,7 @@
 #include "chimera/load/descriptor.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/runtime/under_way.h"
+#include "chimera/runtime/making.h"
 
 namespace chimera {
 namespace {
@@ -26,7 +27,8 @@ Result<const chimera_component*> verified(const SharedObject& object, const Task
 }  // namespace
 
 Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image, RtpuId rtpu,
-                                                              std::atomic<std::uint32_t>& serving) {
+                                                              std::atomic<std::uint32_t>& serving,
+                                                              std::atomic<std::uint32_t>& making) {
   const auto tasks = image.spec().tasks;
   std::vector<const chimera_component*> components(tasks.size());
   std::map<std::string_view, SharedObject> opened;
@@ -34,6 +36,7 @@ Result<std::vector<const chimera_component*>> load_components(const ApplicationI
     if (tasks[t].rtpu != rtpu) continue;
     const ComponentPlace& place = image.places()[t];
     serving.store(under_way(TaskId(t), kOpening), std::memory_order_release);
+    show_making(making, t, Making::kLoads);
     auto found = opened.find(place.object_file);
     if (found == opened.end()) {
       auto object = SharedObject::open(std::string(place.object_file));
@@ -45,6 +48,7 @@ Result<std::vector<const chimera_component*>> load_components(const ApplicationI
     components[t] = *component;
   }
   serving.store(0, std::memory_order_release);
+  show_made(making);
   return components;
 }
 

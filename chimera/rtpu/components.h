@@ -13,9 +13,11 @@
 namespace chimera {
 
 /// The component of every task of `rtpu`; nullptr for those of others. Refuses, with the task in `where`: what
-/// SharedObject::open refuses, and a component that is no longer the one that was verified. `serving` says meanwhile
-/// whose object is being opened, which runs code of its. Context: setup; may block.
+/// SharedObject::open refuses, and a component that is no longer the one that was verified. Opening an object runs code
+/// of its: meanwhile `serving` says whose, for who watches this unit, and `making`, for who finds it dead.
+/// Context: setup; may block.
 Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image, RtpuId rtpu,
-                                                              std::atomic<std::uint32_t>& serving);
+                                                              std::atomic<std::uint32_t>& serving,
+                                                              std::atomic<std::uint32_t>& making);
 
 }  // namespace chimera

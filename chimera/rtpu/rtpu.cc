@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/linux/owned_descriptor.h"
@@ -24,6 +25,7 @@
 #include "chimera/rtpu/hang_watch.h"
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/service_thread.h"
+#include "chimera/runtime/making.h"
 
 namespace chimera {
 namespace {
@@ -127,6 +129,7 @@ Result<void> Rtpu::map() {
   if (!decision) return decision.error();
   decision_pages_ = *std::move(decision);
   decision_ = reinterpret_cast<DecisionPage*>(decision_pages_.bytes().data());
+  show_made(decision_->making[start_.peer]);  // what its predecessor died of
   auto keeper = MemoryRegion::open_read_only(start_.keeper_page, sizeof(KeeperPage));
   if (!keeper) return keeper.error();
   keeper_pages_ = *std::move(keeper);
@@ -152,7 +155,8 @@ Result<void> Rtpu::make_segment() {
 Result<void> Rtpu::make_tasks() {
   const ApplicationSpec& spec = image_->spec();
   BlockHead& head = block_.head();
-  auto components = load_components(*image_, RtpuId(start_.peer), head.serving);
+  std::atomic<std::uint32_t>& making = decision_->making[start_.peer];
+  auto components = load_components(*image_, RtpuId(start_.peer), head.serving, making);
   if (!components) return components.error();
   components_ = *std::move(components);
   service_ = std::make_unique<ServiceThread>(spec.tasks.size(), Doorbell(bell()));
@@ -160,7 +164,8 @@ Result<void> Rtpu::make_tasks() {
   const ContextPlace place{RtpuId(start_.peer), segment_.writable().subspan(sizeof(SegmentHeader)),
                            others_.get(),       service_.get(),
                            &head.running,       &head.serving,
-                           self().preemptive,   &head.at_edge};
+                           self().preemptive,   &head.at_edge,
+                           &making};
   auto tasks = TaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);
@@ -276,7 +281,7 @@ bool Rtpu::loop_hangs() {
 int run_rtpu(const RtpuStart& start) {
   Rtpu rtpu(start);
   if (auto ready = rtpu.prepare(); !ready) {
-    if (start.parent != 0) std::fprintf(stderr, "chimera-rtpu: %s\n", ready.error().message.c_str());
+    if (start.parent != 0) std::fprintf(stderr, "chimera-rtpu: %s\n", plain_line(ready.error().message.view()).c_str());
     return kCouldNotStart;
   }
   const int code = rtpu.run();

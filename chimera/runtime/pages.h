@@ -22,6 +22,8 @@ struct DecisionPage {
   BellWord bells[kMaxPeers];  ///< one for each peer
   /// Counted up after every change of a status word, of who lives, or of a wish of the manager.
   alignas(64) std::atomic<std::uint32_t> changes{0};
+  /// By peer: what it makes before it shows a block of its own, as show_making() writes it.
+  alignas(64) std::atomic<std::uint32_t> making[kMaxPeers];
 };
 
 /// Writable by the keeper alone.

@@ -77,6 +77,8 @@ struct ContextPlace {
   bool preemptive = false;  ///< tasks preempt each other: each reads through copies of its own
   /// Told which method is called where a signal is taken; `running` goes on telling of jobs meanwhile.
   std::atomic<std::uint32_t>* at_edge = &running_untold;
+  /// Told for which task a state is constructed, by show_making().
+  std::atomic<std::uint32_t>* making = &running_untold;
 };
 
 /// Everything about the tasks of one context but time. One thread at a time, but for serve().

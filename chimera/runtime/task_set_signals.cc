@@ -2,6 +2,7 @@
 // The signalling half of TaskSet: one signal, the steps it starts, and what follows for the other tasks.
 #include <cstring>
 
+#include "chimera/runtime/making.h"
 #include "chimera/runtime/task_set.h"
 #include "chimera/runtime/under_way.h"
 #include "chimera/task/background.h"
@@ -182,7 +183,9 @@ Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock*
 }
 
 Answer TaskSet::construct(Task& task, Nanoseconds now) {
+  show_making(*place_.making, task.id.index, Making::kConstructs);
   const auto constructed = memories_[task.id.index].construct(task, now);
+  show_made(*place_.making);
   if (constructed) return Answer::kOk;
   record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
   return Answer::kFault;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/shell/columns.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/figures.h"

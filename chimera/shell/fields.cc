@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "chimera/base/hosted/terminal_text.h"
+
 namespace chimera::shell {
 namespace {
 
@@ -51,18 +53,6 @@ std::vector<std::string> texts_of(const Json& object, std::string_view key) {
   for (const Json& item : field(object, key))
     if (item.is_string()) texts.push_back(plain_line(item.get_ref<const std::string&>()));
   return texts;
-}
-
-std::string plain_line(std::string_view text) {
-  std::string line;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    // 0xC2 0x80..0x9F are control characters too (CSI is one of them).
-    const bool is_c1 = c == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
-    if (is_c1) ++i;
-    line += is_c1 || c < 0x20 || c == 0x7F ? ' ' : text[i];
-  }
-  return line;
 }
 
 }  // namespace chimera::shell

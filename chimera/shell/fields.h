@@ -21,7 +21,5 @@ double number_of(const nlohmann::json& object, std::string_view key);
 bool truth_of(const nlohmann::json& object, std::string_view key);
 /// Every text of the array `key`.
 std::vector<std::string> texts_of(const nlohmann::json& object, std::string_view key);
-/// A text of an answer as one line for a terminal: control characters become spaces, so that none steers the terminal.
-std::string plain_line(std::string_view text);
 
 }  // namespace chimera::shell

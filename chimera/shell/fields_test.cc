@@ -22,9 +22,9 @@ TEST(Fields, WhatIsMissingOrOfAnotherKindIsTheDefault) {
 }
 
 TEST(Fields, NoTextOfAnAnswerSteersTheTerminal) {
-  EXPECT_EQ(plain_line("a\x1b[2Jb\nc\x7f" "d"), "a [2Jb c d");
-  EXPECT_EQ(plain_line("a\xc2\x9b" "2Jb"), "a 2Jb");
-  EXPECT_EQ(plain_line("\xc2\xb5m"), "\xc2\xb5m") << "a micro sign is a letter";
+  const nlohmann::json answer{{"text", "a\x1b[2Jb\n\u202e\u00b5m"}, {"texts", {"\u009b2J"}}};
+  EXPECT_EQ(text_of(answer, "text"), "a [2Jb  \u00b5m");
+  EXPECT_EQ(texts_of(answer, "texts"), std::vector<std::string>{" 2J"});
 }
 
 }  // namespace

@@ -8,11 +8,13 @@
 #include <cerrno>
 #include <clocale>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/shell/carry_out.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/place.h"
@@ -21,6 +23,8 @@
 
 namespace chimera::shell {
 namespace {
+
+constexpr std::size_t kMostScriptBytes = 1 << 20;
 
 struct Outcome {
   int code = kOk;
@@ -163,14 +167,10 @@ int run_script(Session& session, std::istream& script, const std::string& name, 
 }
 
 int interactive(const Surroundings& surroundings, const std::string& script, bool keeps_going) {
-  std::ifstream file;
   const bool is_file = !script.empty() && script != "-";
-  if (is_file) file.open(script);
-  if (is_file && !file) {
-    const std::string why = std::string("cannot be read: ") + std::strerror(errno);
-    const Error error{ErrorCode::kNotFound, std::string_view(why), std::string_view(script)};
-    return print(refused(error, false), stdout, stderr);
-  }
+  const auto text = is_file ? read_ordinary(script, kMostScriptBytes) : Result<std::string>(std::string());
+  if (!text) return print(refused(text.error(), false), stdout, stderr);
+  std::istringstream file(*text);
   Surroundings known = surroundings;
   known.command = "chimera shell" + (script.empty() ? "" : " " + script) + (keeps_going ? " --keep-going" : "");
   auto session = Session::open(known);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/quantity.h"
 #include "chimera/shell/event_lines.h"
 #include "chimera/shell/fields.h"
@@ -151,7 +152,7 @@ int follow(Session& session, const Call& call, Json subscription, std::FILE* out
       return print(refused(woken.error, call.json), out, err);
     if (woken.by != By::kNote) continue;
     show(woken.note, subscription);
-    if (call.json) std::fprintf(out, "%s\n", woken.note.parameters->dump().c_str());
+    if (call.json) std::fprintf(out, "%s\n", for_terminal(woken.note.parameters->dump()).c_str());
     std::fflush(out);
   }
 }

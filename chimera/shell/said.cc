@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/shell/said.h"
 
+#include "chimera/base/hosted/terminal_text.h"
+
 namespace chimera::shell {
 
 int print(const Said& said, std::FILE* out, std::FILE* err) {
-  std::fputs(said.out.c_str(), out);
+  std::fputs(for_terminal(said.out).c_str(), out);
   std::fflush(out);  // in a file that takes both, what came first stands first
-  std::fputs(said.err.c_str(), err);
+  std::fputs(for_terminal(said.err).c_str(), err);
   return said.code;
 }
 

@@ -13,12 +13,15 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/operator_text.h"
 #include "chimera/shell/place.h"
 
 namespace chimera::shell {
 namespace {
+
+constexpr std::size_t kMostBytes = 1 << 20;  // a description has at most 256 KiB
 
 using Json = nlohmann::json;
 
@@ -40,11 +43,10 @@ Result<File> read_file(const std::string& path) {
   File file;
   if (::realpath(path.c_str(), real) == nullptr) return refusal(std::strerror(errno), path);
   file.path = real;
-  std::ifstream stream(file.path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream || ::stat(real, &file.state) != 0) return refusal("cannot be read", path);
-  file.text = text.str();
+  auto text = read_ordinary(file.path, kMostBytes);
+  if (!text) return refusal(std::string(text.error().message.view()), path);
+  if (::stat(real, &file.state) != 0) return refusal("cannot be read", path);
+  file.text = *std::move(text);
   return file;
 }
 

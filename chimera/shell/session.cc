@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/shell/answer_text.h"
 #include "chimera/shell/fields.h"
 

@@ -84,7 +84,7 @@ void Deaths::restart(const RtpuDown& down, const std::vector<std::uint32_t>& goa
 
 void Deaths::give_up(const RtpuDown& down) {
   const std::string why = at_.name(down.rtpu) + " ended " + std::to_string(kRestartIntensity + 1) + " times in " +
-                          std::to_string(kRestartWindow / seconds(1)) + " s and is not restarted" +
+                          std::to_string(kRestartWindow / seconds(1)) + " s and is not restarted: it " + down.cause +
                           (way_back(down.rtpu).empty() ? "" : "; type " + way_back(down.rtpu));
   for (TaskId task : at_.order)
     if (is_of(task, down.rtpu) && goals_.is_pursued(task)) goals_.fail(task, "refused", why);

@@ -211,7 +211,8 @@ TEST_F(SubsystemTest, AfterThreeRestartsInTenSecondsItGivesUpUntilAPersonStartsI
     step(RtpuUp{kSpare, i + 1});
   }
   const std::string why =
-      ": spare ended 4 times in 10 s and is not restarted; type `chimera clear traj reserve`, then `chimera on traj`\n";
+      ": spare ended 4 times in 10 s and is not restarted: it ended by signal 11 (SIGSEGV) in pid.cycle; type `chimera "
+      "clear traj reserve`, then `chimera on traj`\n";
   EXPECT_EQ(die(kSpare, 4),
             "rtpu-ended: spare ended by signal 11 (SIGSEGV) in pid.cycle\n"
             "refused" + why + "goal traj 0\nrefused" + why + "goal reserve 0\nrtpu-given-up" + why +

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "chimera/base/hosted/ordinary_file.h"
+
 namespace chimera::library {
 
 class Recording {
@@ -91,8 +93,12 @@ class RecordingReader {
   Recording made_;
 };
 
+inline constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+
 /// The file with `columns` values behind the time. Throws std::runtime_error. Context: setup; may block.
 inline Recording read_recording(const char* path, std::size_t columns) {
+  if (const std::string why = not_ordinary(path, kMostBytes); !why.empty())
+    throw std::runtime_error(std::string(path) + ": " + why);
   std::ifstream file(path);
   if (!file) throw std::runtime_error(std::string(path) + ": cannot be read");
   RecordingReader reader(path, columns);

@@ -9,8 +9,10 @@ using namespace chimera;
 
 struct Limit {
   In<double[]>      x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  InConst<double[]> low{"low", "U", "[n...<=64]", doc = "Least value of y; one for all elements, or one each."};
-  InConst<double[]> high{"high", "U", "[n...<=64]", at_least = "low", doc = "Greatest value of y; likewise."};
+  InConst<double[]> low{"low", "U", "[n...<=64]", range(-library::kNoLimit, library::kNoLimit),
+                        doc = "Least value of y; one for all elements, or one each."};
+  InConst<double[]> high{"high", "U", "[n...<=64]", range(-library::kNoLimit, library::kNoLimit), at_least = "low",
+                         doc = "Greatest value of y; likewise."};
   Out<double[]>     y{"y", "U", "[n...<=64]", doc = "x, cut at both limits."};
 
   Outcome init() {

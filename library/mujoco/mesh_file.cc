@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "chimera/base/hosted/ordinary_file.h"
 #include "library/mujoco/mesh_file.h"
 
 #include <cctype>
@@ -70,6 +71,8 @@ std::string mesh_extension(std::string_view name) {
 }
 
 std::string read_mesh(const std::string& path, const std::string& extension, std::string& why) {
+  why = not_ordinary(path, SIZE_MAX);
+  if (!why.empty()) return "";
   std::error_code fault;
   const std::uintmax_t size = std::filesystem::file_size(path, fault);
   if (!fault && size > kLongest) return why = "is larger than 64 MiB", "";

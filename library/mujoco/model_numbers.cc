@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "library/mujoco/xml_tags.h"
 
 namespace chimera::library {
@@ -115,6 +116,7 @@ class Reader {
   explicit Reader(std::string folder) : folder_(std::move(folder)) {}
 
   Result<void> read(const std::string& path, int depth) {
+    if (const std::string why = not_ordinary(path, SIZE_MAX); !why.empty()) return bad(path + ": " + why);
     std::ifstream file(path);
     std::string text;
     for (char part[4096]; text.size() <= kLongest && (file.read(part, sizeof part), file.gcount() > 0);)

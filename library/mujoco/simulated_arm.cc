@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "chimera/base/hosted/ordinary_file.h"
 #include "library/mujoco/model_file.h"
 #include "library/mujoco/model_numbers.h"
 #include "library/mujoco/mujoco_guard.h"
@@ -30,6 +31,8 @@ void SimulatedArm::DataRelease::operator()(mjData_* data) const { mj_deleteData(
 
 Result<void> SimulatedArm::load(const char* path, const char* tip, const mjVFS_* files) {
   install_mujoco_handlers();
+  if (const std::string unfit = files == nullptr ? not_ordinary(path, SIZE_MAX) : ""; !unfit.empty())
+    return refusal("%s: %s", path, unfit.c_str());
   if (files == nullptr && std::ifstream(path).peek() == std::ifstream::traits_type::eof()) {
     return refusal("%s: cannot be read, or there is nothing in it", path);
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "chimera/base/hosted/ordinary_file.h"
 #include "library/rmms/module_store.h"
 
 #include <cmath>
@@ -69,6 +70,7 @@ std::string place(const DhLink& before, double theta) {
 }  // namespace
 
 Result<ModuleStore> ModuleStore::read(const std::string& path) {
+  if (const std::string why = not_ordinary(path, SIZE_MAX); !why.empty()) return bad(path + ": " + why);
   std::ifstream file(path);
   if (!file) return bad(path + ": cannot be read");
   ModuleStore store;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "chimera/base/hosted/ordinary_file.h"
 #include "library/urdf_model/urdf_chain.h"
 
 #include <console_bridge/console.h>
@@ -120,6 +121,7 @@ Result<UrdfChain> walk(const std::vector<urdf::JointConstSharedPtr>& joints) {
 }  // namespace
 
 Result<UrdfChain> read_urdf(const std::string& path, const std::string& tip) {
+  if (const std::string why = not_ordinary(path, SIZE_MAX); !why.empty()) return bad(path + ": " + why);
   std::ifstream file(path);
   if (!file) return bad(path + ": cannot be read");
   std::string text(kLongest + 1, '\0');

@@ -19,13 +19,15 @@ ROUNDING = 1.0  # what a compiler's patch release may move
 
 def counted(command, environment):
     """(instructions, standard output) of one run."""
-    with tempfile.NamedTemporaryFile() as file:
-        done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={file.name}", *command],
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/%p", *command],
                               capture_output=True, text=True, env=environment, stdin=subprocess.DEVNULL, check=False)
         if done.returncode != 0:
             raise SystemExit(f"{' '.join(command)}: exit {done.returncode}\n{done.stdout}{done.stderr}")
-        found = re.search(r"^(?:summary|totals): (\d+)", pathlib.Path(file.name).read_text(encoding="utf-8"), re.M)
-        return int(found[1]), done.stdout
+        # Of several processes the one that ran the jobs counts; the other waits for it.
+        found = [re.search(r"^(?:summary|totals): (\d+)", file.read_text(encoding="utf-8"), re.M)
+                 for file in pathlib.Path(folder).iterdir()]
+        return max(int(one[1]) for one in found if one), done.stdout
 
 
 def of_program(build, how):

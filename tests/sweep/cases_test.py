@@ -45,7 +45,7 @@ class Cases(Place):
         self.assertEqual((code, err), (1, ""))
         self.assertEqual(out, "./small.cases.yaml\n"
                               "  FAILS  too_much\n           y <= 1 m2.kg/s2 (y is 2 m2.kg/s2)\n"
-                              "  FAILS  dies\n           ended by signal 9 (Killed)\n"
+                              "  FAILS  dies\n           ended by signal 9 (SIGKILL) in crash.cycle\n"
                               "  FAILS  flagged\n           strict: the illegal-configuration flag is up\n"
                               "  FAILS  misspelt\n           'yy <= 3': no state variable 'yy'; did you mean 'y'?\n"
                               "4 cases in 1 file: 0 passed, 4 failed\n")
@@ -69,7 +69,7 @@ class Cases(Place):
         failure, error = cases[0].find("failure"), cases[1].find("error")
         self.assertEqual(failure.get("message"), "y <= 1 m2.kg/s2 (y is 2 m2.kg/s2)")
         self.assertEqual(failure.text, "y <= 1 m2.kg/s2 (y is 2 m2.kg/s2)\n")
-        self.assertEqual(error.get("message"), "ended by signal 9 (Killed)")
+        self.assertEqual(error.get("message"), "ended by signal 9 (SIGKILL) in crash.cycle")
         self.assertIn("holds: y <= 3 m2.kg/s2 (y is 2 m2.kg/s2)\n", cases[0].find("system-out").text)
 
     def test_a_case_runs_in_the_folder_of_its_description(self):

@@ -55,7 +55,7 @@ class Sweep(Place):
         self.assertEqual((code, err), (1, ""))
         lines = out.splitlines()
         self.assertRegex(lines[1], r"^ +nothing +2$")
-        self.assertRegex(lines[2], r"^ +kill +-  FAILED: ended by signal 9 \(Killed\)")
+        self.assertRegex(lines[2], r"^ +kill +-  FAILED: ended by signal 9 \(SIGKILL\) in crash.cycle")
         self.assertRegex(lines[3], r"^ +abort +-  FAILED: ended by ")
         code, out, _ = self.sweep("--over", "k = 1 N.m/rad, 2 furlongs", "--measure", "y")
         self.assertEqual(code, 1)
@@ -63,7 +63,7 @@ class Sweep(Place):
                               r"k = 2 furlongs: ")
         code, out, _ = self.sweep("--over", "crash.how = nothing, hang", "--measure", "y", "--limit", "2 s")
         self.assertEqual(code, 1)
-        self.assertRegex(out, r"\n +hang +-  FAILED: did not end within 2 s\n$")
+        self.assertRegex(out, r"\n +hang +-  FAILED: did not end within 2 s in crash.cycle\n$")
 
     def test_elements_and_magnitudes_of_a_list(self):
         arm = pathlib.Path(os.environ["CHIMERA_SOURCE"]).resolve() / "examples/01_puma_pid/puma_pid.yaml"

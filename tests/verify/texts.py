@@ -24,7 +24,6 @@ CALLED = (
     ("\"max_step\", task", "`max_step`"),
     ("'stack' of task", "`stack`"),
     ("\"isolation: process\", task", "`isolation: process` of a task"),
-    ("with a producer in each of several configurations", "a constant with several producers"),
 )
 # Calls whose sentence stands in a variable: that of `what` in reaction(), which has two calls.
 ELSEWHERE = ("refuse(reaction->at, what,", "refuse(at, \"'\" + std::string(key)")

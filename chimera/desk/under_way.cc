@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/desk/under_way.h"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+#include "chimera/runtime/making.h"
+#include "chimera/task/signal.h"
+
+namespace chimera::desk {
+namespace {
+
+UnderWay unread;
+UnderWay* written = &unread;
+
+template <std::size_t N>
+void put(char (&to)[N], const std::string& text) {
+  const std::size_t n = std::min(text.size(), N - 1);
+  std::memcpy(to, text.data(), n);
+  to[n] = '\0';
+}
+
+template <std::size_t N>
+std::string got(const char (&from)[N]) {
+  return {from, ::strnlen(from, N)};
+}
+
+}  // namespace
+
+void UnderWay::know(const Configuration& configuration, const Library& library) {
+  n_tasks = 0;
+  for (const ConfiguredTask& task : configuration.tasks()) {
+    if (n_tasks == kMostTasks) return;
+    const LibraryEntry* entry = library.find(task.component);
+    put(tasks[n_tasks].name, task.name);
+    put(tasks[n_tasks++].object, entry == nullptr ? task.component : entry->object_file);
+  }
+}
+
+std::string UnderWay::text() const {
+  if (has_returned) return "at its end";
+  const std::size_t n = std::min<std::size_t>(n_tasks, kMostTasks);
+  if (const std::uint32_t task = task_of_making(making, n); task < n)
+    return making_text(making, got(tasks[task].name), got(tasks[task].object));
+  for (const std::uint32_t word : {running.load(), serving.load()}) {
+    const std::uint32_t task = (word >> 8) - 1, method = word & 255u;
+    if (word != 0 && task < n && method < CHIMERA_METHODS)
+      return "in " + got(tasks[task].name) + "." + method_name(static_cast<Method>(method));
+  }
+  return "";
+}
+
+UnderWay& under_way() noexcept { return *written; }
+void write_under_way_to(UnderWay& place) noexcept { written = &place; }
+
+UnderWay* make_shared_under_way() noexcept {
+  void* place = ::mmap(nullptr, sizeof(UnderWay), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  return place == MAP_FAILED ? nullptr : new (place) UnderWay;
+}
+
+void release(UnderWay* place) noexcept {
+  if (place != nullptr) ::munmap(place, sizeof(UnderWay));
+}
+
+}  // namespace chimera::desk

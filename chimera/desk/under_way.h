@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a process that runs an application is doing, in memory that its parent reads when it is dead: which object it
+// loads, which method runs.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "chimera/config/configuration.h"
+#include "chimera/config/library.h"
+
+namespace chimera::desk {
+
+/// Plain memory: one process writes, another reads. Context: setup, but for the words that an executor writes.
+struct UnderWay {
+  static constexpr std::size_t kMostTasks = 256;
+
+  std::atomic<std::uint32_t> making{0};   ///< as show_making() writes it
+  std::atomic<std::uint32_t> running{0};  ///< as BlockHead::running
+  std::atomic<std::uint32_t> serving{0};
+  std::atomic<bool> has_returned{false};  ///< the work came to its end: what follows is the end of the process
+  std::uint32_t n_tasks = 0;
+  struct {
+    char name[80], object[256];
+  } tasks[kMostTasks];
+
+  /// The names behind the words, before anything is loaded.
+  void know(const Configuration& configuration, const Library& library);
+  /// "while it loaded /lib/gain.so, the component of task 'amp'", "in amp.cycle", "at its end", or "" when nothing is
+  /// known. Whatever stands in the memory is taken for words and nothing else.
+  std::string text() const;
+};
+
+/// Where this process writes; memory of its own that nobody reads, until a parent has passed another to its child.
+UnderWay& under_way() noexcept;
+void write_under_way_to(UnderWay& place) noexcept;
+
+/// One in memory that a child shares with its parent; nullptr when there is no memory.
+UnderWay* make_shared_under_way() noexcept;
+void release(UnderWay* place) noexcept;
+
+}  // namespace chimera::desk

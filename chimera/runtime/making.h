@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is done with strangers' code before a task exists, in a word for whoever finds the process dead: its object is
+// loaded, or its state is constructed.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace chimera {
+
+enum class Making : std::uint32_t { kNothing, kLoads, kConstructs };
+
+/// From here on `what` is done for the task of that index. Context: setup; wait-free.
+inline void show_making(std::atomic<std::uint32_t>& cell, std::size_t task, Making what) noexcept {
+  cell.store(static_cast<std::uint32_t>(task + 1) << 8 | static_cast<std::uint32_t>(what), std::memory_order_relaxed);
+}
+/// From here on nothing is made. Context: setup; wait-free.
+inline void show_made(std::atomic<std::uint32_t>& cell) noexcept { cell.store(0, std::memory_order_relaxed); }
+
+/// The index of the task that `word` speaks of; UINT32_MAX for a word that nobody would write.
+std::uint32_t task_of_making(std::uint32_t word, std::size_t n_tasks) noexcept;
+
+/// "while it loaded /lib/gain.so, the component of task 'amp'". Context: setup.
+std::string making_text(std::uint32_t word, std::string_view task, std::string_view object);
+
+}  // namespace chimera

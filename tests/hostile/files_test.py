@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Strangers' files: components that steer a terminal, are no ordinary files, end their process when they are loaded,
+or hide another of their name."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
+from system import BUILD, CHIMERA, QUIET, System, await_that  # noqa: E402
+
+COMPONENTS = BUILD / "components"
+ESCAPES = "\u001b]0;owned\u0007\u001b[2J\u202eevil\u009b2J\u200b\u2028\u007f"
+STEERS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff]")
+ONE = "subsystem: subject\ntasks:\n  a: {component: NAME, rate: 100 Hz}\n"
+
+
+def maps_of_child(pid):
+    try:
+        child = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0]
+        return pathlib.Path(f"/proc/{child}/maps").read_text()
+    except (OSError, IndexError):
+        return ""
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="chimera-hostile-"))
+        self.addCleanup(shutil.rmtree, self.folder, True)
+        self.path = self.folder / "path"
+        self.path.mkdir()
+        self.environment = dict(os.environ, CHIMERA_PATH=str(self.path), XDG_RUNTIME_DIR=str(self.folder),
+                                ASAN_OPTIONS=QUIET)
+
+    def chimera(self, *words, text=None, limit=20, **environment):
+        """(exit code, standard output, standard error); FILE is the description with that text."""
+        file = self.folder / "subject.yaml"
+        if text is not None:
+            file.write_text(text)
+        done = subprocess.run([str(CHIMERA), *(str(file) if word == "FILE" else str(word) for word in words)],
+                              env=dict(self.environment, **environment), cwd=self.folder, capture_output=True,
+                              timeout=limit, stdin=subprocess.DEVNULL)
+        return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+    def stranger(self, name="stranger", like="t_source", **changes):
+        """A component that was copied and its descriptor changed."""
+        descriptor = json.loads((COMPONENTS / f"{like}.component.json").read_text())
+        descriptor.update(changes)
+        descriptor.pop("fingerprint")
+        (self.path / f"{name}.component.json").write_text(json.dumps(dict(descriptor, name=name)))
+        shutil.copy(COMPONENTS / f"{like}.so", self.path / f"{name}.so")
+        return descriptor
+
+    def test_13_what_a_component_says_does_not_steer_the_terminal(self):
+        was = self.stranger(doc=ESCAPES, source=ESCAPES)
+        was["ports"][0]["doc"] = ESCAPES
+        self.stranger(doc=ESCAPES, source=ESCAPES, ports=was["ports"])
+        (self.path / "stranger.md").write_text(f"# stranger\n\n{ESCAPES}\n")
+        (self.path / f"b\u202ead\x1b[2J.component.json").write_text("{}")
+        for words in (("list",), ("describe", "stranger"), ("check", "FILE"),
+                      ("run", "FILE", "--virtual", "--for", "1 s")):
+            code, out, err = self.chimera(*words, text=ONE.replace("NAME", "stranger"))
+            self.assertNotRegex(out + err, STEERS, words)
+            self.assertIn("evil" if words[0] in ("list", "describe") else "", out)
+        for words in (("list", "--json"), ("describe", "stranger", "--json")):
+            _, out, _ = self.chimera(*words)
+            self.assertNotRegex(out, STEERS, words)
+            found = json.loads(out)
+            found = found if "doc" in found else next(c for c in found["components"] if c["name"] == "stranger")
+            self.assertEqual(found["doc"], ESCAPES, "JSON keeps what was said")
+
+    def test_16_only_ordinary_files_are_read(self):
+        (self.path / "real").mkdir()
+        listening = socket.socket(socket.AF_UNIX)
+        self.addCleanup(listening.close)
+        os.mkfifo(self.path / "pipe.component.json")
+        os.mkfifo(self.path / "buildable.txt")
+        (self.path / "zero.component.json").symlink_to("/dev/zero")
+        (self.path / "folder.component.json").mkdir()
+        listening.bind(str(self.path / "socket.component.json"))
+        for words in (("list",), ("check", "FILE"), ("run", "FILE", "--virtual", "--for", "10 ms")):
+            code, _, err = self.chimera(*words, text=ONE.replace("NAME", "t_source"), limit=10)
+            if words == ("list",):
+                for name, kind in (("pipe", "pipe"), ("zero", "device"), ("folder", "folder"), ("socket", "socket")):
+                    self.assertIn(f"{name}.component.json: error: is no ordinary file but a {kind}", err)
+        for make in (os.mkfifo, lambda place: place.symlink_to("/dev/zero"), pathlib.Path.mkdir):
+            self.stranger()
+            (self.path / "stranger.so").unlink()
+            make(self.path / "stranger.so")
+            for words in (("check", "FILE"), ("run", "FILE", "--virtual", "--for", "10 ms"), ("test", "stranger"),
+                          ("run", "FILE", "--for", "10 ms", "--priority", "0")):
+                code, out, err = self.chimera(*words, text=ONE.replace("NAME", "stranger"), limit=10)
+                self.assertEqual(code, 1, (words, out, err))
+                self.assertIn("is no ordinary file but a ", out + err, words)
+            place = self.path / "stranger.so"
+            place.rmdir() if place.is_dir() else place.unlink()
+        with open(self.path / "stranger.so", "wb") as large:
+            large.truncate(300 << 20)
+        self.assertIn("has 314572800 bytes; at most 268435456 are read", self.chimera("check", "FILE")[2])
+
+    def test_16_so_are_the_files_that_a_command_names(self):
+        pipe = self.folder / "pipe.yaml"
+        os.mkfifo(pipe)
+        os.mkfifo(self.folder / "subject.cases.yaml")
+        self.stranger()
+        for words in (("check", pipe), ("run", pipe, "--virtual", "--for", "1 s"),
+                      ("test", self.folder / "subject.cases.yaml"),
+                      ("schedule", "FILE", "--profile", pipe), ("test", "stranger", "--inputs", pipe),
+                      ("test", "stranger", "--setup", pipe), ("check", "/dev/zero")):
+            code, out, err = self.chimera(*words, text=ONE.replace("NAME", "t_source"), limit=10)
+            self.assertEqual(code, 1, (words, out, err))
+            self.assertIn("is no ordinary file but a ", out + err, words)
+
+    def test_16_so_are_the_files_of_a_component(self):
+        os.mkfifo(self.folder / "pipe")
+        text = ONE.replace("NAME", "csv_player").replace(
+            "rate: 100 Hz", f"rate: 100 Hz, resources: {{file: {self.folder}/pipe}}, alias: {{out: [y]}}")
+        text += "  b: {component: t_recorder, rate: 100 Hz, alias: {x: y, y: z}}\n"
+        code, out, err = self.chimera("run", "FILE", "--virtual", "--for", "10 ms", text=text, limit=10)
+        self.assertEqual(code, 1, out + err)
+        self.assertIn(f"{self.folder}/pipe: is no ordinary file but a pipe", err)
+
+    def test_15_what_ends_the_process_while_it_is_loaded_is_named(self):
+        text = ONE.replace("NAME", "t_load") + "operator: {unused: 1 V}\n"
+        so = re.escape(str(COMPONENTS / "t_load.so"))
+        ends = {"segv": r"ended by signal 11 \(SIGSEGV\)", "abort": r"ended by signal 6 \(SIGABRT\)",
+                "exit": "ended by itself with exit code 0"}
+        (self.folder / "subject.cases.yaml").write_text("cases:\n  one: {for: 100 ms, expect: ['y == 0']}\n")
+        environment = {"CHIMERA_PATH": str(COMPONENTS)}
+        for how, said in ends.items():
+            for place, what in (("load", f"while it loaded {so}, the component of task 'a'"),
+                                ("construct", f"while it constructed a state of {so}, the component of task 'a'"),
+                                ("init", "in a.init"), ("cycle", "in a.cycle"))[:4 if how == "segv" else 1]:
+                code, out, err = self.chimera("run", "FILE", "--virtual", "--for", "1 s", text=text,
+                                              CHIMERA_TEST_LOAD=f"{place} {how}", **environment)
+                self.assertEqual(code, 1, (place, how, out, err))
+                self.assertRegex(err, rf"subject.yaml: error: the run {said} {what}\n")
+            told = rf"{said} while it loaded {so}, the component of task 'a'"
+            for words in (("test", self.folder),
+                          ("sweep", "FILE", "--over", "unused = 1 V, 2 V", "--for", "10 ms", "--measure", "end y"),
+                          ("run", "FILE", "--virtual", "--for", "1 s", "--json"))[0 if how == "exit" else 2:]:
+                code, out, err = self.chimera(*words, CHIMERA_TEST_LOAD=f"load {how}", **environment)
+                self.assertEqual(code, 1, (words, out, err))
+                self.assertRegex(out + err, told, words)
+
+    def test_15_real_time_names_the_object(self):
+        system = System(ONE.replace("NAME", "t_load"), ("--for", "5 s"), wait=False,
+                        environment={"CHIMERA_TEST_LOAD": "load segv"})
+        with system:
+            await_that(lambda: system.process.poll() is not None, 20, "the end")
+            self.assertEqual(system.process.returncode, 1)
+            self.assertRegex(system.said(), r"main ended 4 times in 10 s and is not restarted: it ended by signal 11 "
+                                            r"\(SIGSEGV\) while it loaded \S+/t_load.so, the component of task 'a'")
+
+    def test_15_the_operator_still_ends_a_run_in_virtual_time(self):
+        for how in ("terminal", "kill"):
+            file = self.folder / "subject.yaml"
+            file.write_text(ONE.replace("NAME", "t_source"))
+            run = subprocess.Popen([str(CHIMERA), "run", str(file), "--virtual", "--for", "1000 h"],
+                                   env=dict(self.environment, CHIMERA_PATH=str(COMPONENTS)), start_new_session=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            await_that(lambda: "t_source" in maps_of_child(run.pid), 10, "a run under way")
+            time.sleep(0.1)
+            os.killpg(run.pid, signal.SIGINT) if how == "terminal" else run.send_signal(signal.SIGTERM)
+            out, err = run.communicate(timeout=20)
+            self.assertEqual(run.returncode, 0, (out, err))
+            self.assertIn(b"ended by the operator", out)
+
+    def test_a_component_that_hides_one_of_the_library_is_told(self):
+        self.stranger(name="t_source")
+        text = ONE.replace("NAME", "t_source")
+        for words in (("check", "FILE"), ("run", "FILE", "--virtual", "--for", "10 ms")):
+            code, _, err = self.chimera(*words, text=text)
+            self.assertEqual(code, 0, err)
+            self.assertIn(f"subject.yaml: note: component 't_source' is that of {self.path}/t_source.component.json, "
+                          f"which CHIMERA_PATH names before {COMPONENTS}/t_source.component.json\n", err)
+        self.assertEqual(len(json.loads(self.chimera("check", "FILE", "--json")[1])["notes"]), 1)
+        self.environment["CHIMERA_PATH"] = str(COMPONENTS)
+        self.assertEqual(json.loads(self.chimera("check", "FILE", "--json")[1])["notes"], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
