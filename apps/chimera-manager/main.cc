@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manager of a subsystem, started by its keeper: chimera-manager --peer N --incarnation I --parent PID.
+// The manager of a subsystem, started by its keeper: chimera-manager --peer N --incarnation I --parent PID; and its
+// analyst, started by the manager: chimera-manager --analyst --parent PID.
+#include <sys/prctl.h>
+
 #include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <string_view>
 
+#include "chimera/manager/analyst.h"
+#include "chimera/manager/question.h"
 #include "chimera/manager/run.h"
+#include "chimera/platform/background.h"
 #include "chimera/platform/process.h"
 
 namespace {
@@ -22,11 +28,23 @@ std::int32_t number_after(std::string_view word, int argc, char** argv) {
   return 0;
 }
 
+int analyst(std::int32_t parent) {
+  using namespace chimera;  // NOLINT: as in main()
+  ::prctl(PR_SET_NAME, "chimera-analyst");
+  if (!follow_parent(parent, SIGKILL)) return 0;
+  run_in_background(manager::kAnalystMemory);
+  const auto ran = manager::run_analyst(manager::kAnalystDescriptors[0], manager::kAnalystDescriptors[1]);
+  if (ran) return *ran;
+  std::fprintf(stderr, "chimera-manager: the analyst: %s\n", ran.error().message.c_str());
+  return 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace chimera;  // NOLINT: a main() of this project
   const std::int32_t parent = number_after("--parent", argc, argv);
+  if (argc == 4 && std::strcmp(argv[1], "--analyst") == 0 && parent > 0) return analyst(parent);
   const std::int32_t incarnation = number_after("--incarnation", argc, argv);
   if (parent <= 0 || incarnation <= 0) {
     std::fputs("chimera-manager is started by `chimera run`, with --peer N --incarnation I --parent PID\n", stderr);

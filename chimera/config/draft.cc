@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kExecutors = {"executive", "preemptive"};
 constexpr std::array<std::string_view, 5> kPolicies = {"rm", "edf", "llf", "muf", "muf-laxity"};  // as Policy
-constexpr std::size_t kMaxTasks = 256;
 constexpr std::size_t kMaxRtpus = 16;
 
 void check_count(std::size_t found, std::size_t most, const char* what, Place at, Report& report) {

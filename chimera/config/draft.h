@@ -3,6 +3,7 @@
 // docs/formats/description.md lists the keys; verify() (config/verify.h) is the only reader of a Draft.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@
 #include "chimera/task/task_spec.h"
 
 namespace chimera {
+
+inline constexpr std::size_t kMaxTasks = 256;  ///< of a description; what is beyond is told and left out
 
 /// A value and where it was written.
 template <class T>

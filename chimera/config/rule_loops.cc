@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The order in which the tasks of a configuration go ON, and the loops that it has to cut.
 #include <algorithm>
-#include <limits>
+#include <bitset>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "chimera/base/assert.h"
 #include "chimera/config/rules.h"
@@ -19,35 +22,125 @@ struct Arc {
   Cut cut;
 };
 
+/// One bit for each task of a set: a description has at most kMaxTasks.
+using Tasks = std::bitset<kMaxTasks>;
+
+/// The arcs of one variable from one producer: what one cut takes out, as far as it lies in one loop.
+struct Link {
+  std::pair<Cut, std::size_t> rank;  ///< the variable by its name; the least is cut first
+  Tasks consumers;                   ///< positions in the set; those that were cut are gone
+};
+
+/// Does `from` reach all of `among` within it?
+bool reaches_all(const std::vector<Tasks>& next, std::size_t from, const Tasks& among) {
+  Tasks seen, edge;
+  seen.set(from);
+  edge.set(from);
+  while (seen != among && edge.any()) {
+    const std::size_t at = edge._Find_first();
+    edge.reset(at);
+    const Tasks found = next[at] & among & ~seen;
+    seen |= found;
+    edge |= found;
+  }
+  return seen == among;
+}
+
+/// The strong components of the tasks `among`, along `next` and back along `previous`: `tell(Tasks)` once for each.
+/// Takes time in proportion to the tasks, times the words of a set of them: whole sets are followed at once.
+template <class Tell>
+void for_each_component(const std::vector<Tasks>& next, const std::vector<Tasks>& previous, const Tasks& among,
+                        const Tell& tell) {
+  std::vector<std::size_t> ended;  // in the order in which a walk along `next` left them
+  std::vector<std::size_t> path;
+  Tasks unseen = among;
+  for (std::size_t root = unseen._Find_first(); root < kMaxTasks; root = unseen._Find_first()) {
+    path.push_back(root);
+    unseen.reset(root);
+    while (!path.empty()) {
+      const std::size_t to = (next[path.back()] & unseen)._Find_first();
+      if (to < kMaxTasks) {
+        path.push_back(to);
+        unseen.reset(to);
+      } else {
+        ended.push_back(path.back());
+        path.pop_back();
+      }
+    }
+  }
+  Tasks left = among;
+  for (std::size_t i = ended.size(); i-- > 0;) {
+    if (!left[ended[i]]) continue;
+    Tasks component, edge;
+    edge.set(ended[i]);
+    while (edge.any()) {
+      const std::size_t at = edge._Find_first();
+      component.set(at);
+      edge.reset(at);
+      left.reset(at);
+      edge |= previous[at] & left;
+    }
+    tell(component);
+  }
+}
+
 class SetOrder {
  public:
-  SetOrder(Model& model, SetModel& set) : model_(model), set_(set), component_(set.tasks.size(), 0) {
+  /// `by_name[v]` is the place of variable v when they are sorted by name.
+  SetOrder(Model& model, SetModel& set, const std::vector<std::size_t>& by_name)
+      : model_(model),
+        set_(set),
+        by_name_(by_name),
+        position_(model.tasks.size(), kMaxTasks),
+        links_(set.tasks.size()),
+        first_link_(set.tasks.size(), 0),
+        next_(set.tasks.size()),
+        previous_(set.tasks.size()),
+        component_(set.tasks.size()),
+        between_(set.tasks.size() * set.tasks.size(), 0) {
+    for (std::size_t i = 0; i < set.tasks.size(); ++i) {
+      position_[set.tasks[i]] = i;
+      hardware_[i] = task(i).has_resource() && !task(i).has_inputs();
+    }
     for (std::size_t v = 0; v < model.variables.size(); ++v) add_arcs(v);
   }
 
   void report_loops() {
-    std::vector<Arc> bare;
-    for (const Arc& arc : arcs_)
-      if (arc.cut == Cut::kNot) bare.push_back(arc);
-    find_components(bare, std::vector<bool>(set_.tasks.size(), false));
-    std::vector<bool> told(set_.tasks.size(), false);
-    for (const Arc& arc : bare) {
-      const std::size_t component = component_[arc.from];
-      if (component != component_[arc.to] || told[component]) continue;
-      told[component] = true;
-      report(loop_through(bare, arc));
+    std::vector<std::vector<Arc>> bare(set_.tasks.size());  // by producer
+    std::vector<Tasks> next(set_.tasks.size()), previous(set_.tasks.size());
+    for (const Arc& arc : arcs_) {
+      if (arc.cut != Cut::kNot) continue;
+      bare[arc.from].push_back(arc);
+      next[arc.from].set(arc.to);
+      previous[arc.to].set(arc.from);
+    }
+    std::vector<Tasks> loop_of(set_.tasks.size());
+    for_each_component(next, previous, all(), [&](const Tasks& component) { assign(loop_of, component); });
+    Tasks told;
+    for (const Arc& arc : arcs_) {
+      const Tasks& component = loop_of[arc.from];
+      if (arc.cut != Cut::kNot || !component[arc.to] || told[arc.from]) continue;
+      told |= component;
+      report(loop_through(bare, component, arc));
     }
   }
 
   void order() {
-    std::vector<bool> placed(set_.tasks.size(), false);
-    while (set_.order.size() < set_.tasks.size()) {
-      const std::size_t next = next_ready(placed);
-      if (next == set_.tasks.size()) {
-        cut_a_loop(placed);
+    rank_links();
+    left_ = looping_ = all();
+    for_each_component(next_, previous_, left_, [&](const Tasks& component) { assign(component_, component); });
+    look_at(left_);
+    while (left_.any()) {
+      if (ready_.none()) {
+        cut_a_loop();
         continue;
       }
-      placed[next] = true;
+      // Hardware inputs first, then the order of the description.
+      const Tasks first = ready_ & hardware_;
+      const std::size_t next = (first.any() ? first : ready_)._Find_first();
+      ready_.reset(next);
+      left_.reset(next);
+      look_at(next_[next]);
       set_.order.push_back(TaskId(set_.tasks[next]));
     }
   }
@@ -55,36 +148,56 @@ class SetOrder {
  private:
   const TaskModel& task(std::size_t at) const { return model_.tasks[set_.tasks[at]]; }
 
-  std::size_t position(std::size_t task) const {
-    return static_cast<std::size_t>(std::find(set_.tasks.begin(), set_.tasks.end(), task) - set_.tasks.begin());
+  Tasks all() const {
+    Tasks tasks;
+    for (std::size_t i = 0; i < set_.tasks.size(); ++i) tasks.set(i);
+    return tasks;
+  }
+
+  static void assign(std::vector<Tasks>& component_of, const Tasks& component) {
+    for (std::size_t i = component._Find_first(); i < kMaxTasks; i = component._Find_next(i))
+      component_of[i] = component;
   }
 
   void add_arcs(std::size_t index) {
     const VariableModel& variable = model_.variables[index];
     if (variable.is_constant) return;
     for (const PortRef producer : variable.producers) {
-      if (!set_.has(producer.task)) continue;
+      const std::size_t from = position_[producer.task];
+      if (from == kMaxTasks) continue;
       const LinkedPort& port = model_.port(producer);
       const Cut cut = port.own != nullptr               ? Cut::kByDescription
                       : !port.declared->initial.empty() ? Cut::kByComponent
                                                         : Cut::kNot;
-      for (const PortRef consumer : variable.consumers)
-        if (set_.has(consumer.task))
-          arcs_.push_back({position(producer.task), position(consumer.task), index, cut});
+      Link link{{cut, by_name_[index]}, {}};
+      for (const PortRef consumer : variable.consumers) {
+        const std::size_t to = position_[consumer.task];
+        if (to == kMaxTasks) continue;
+        arcs_.push_back({from, to, index, cut});
+        if (!link.consumers[to]) ++between_[from * set_.tasks.size() + to];
+        link.consumers.set(to);
+      }
+      next_[from] |= link.consumers;
+      for (std::size_t to = link.consumers._Find_first(); to < kMaxTasks; to = link.consumers._Find_next(to))
+        previous_[to].set(from);
+      links_[from].push_back(link);
     }
   }
 
-  /// component_[i] = the same number for all that reach each other along `arcs`, `placed` ones left out (Tarjan,
-  /// with a stack of our own: a chain may be 256 tasks long).
-  void find_components(const std::vector<Arc>& arcs, const std::vector<bool>& placed);
+  /// The best to cut first.
+  void rank_links() {
+    for (std::vector<Link>& of : links_)
+      std::stable_sort(of.begin(), of.end(), [](const Link& a, const Link& b) { return a.rank < b.rank; });
+  }
 
-  /// The shortest loop that starts with `first`.
-  std::vector<Arc> loop_through(const std::vector<Arc>& arcs, const Arc& first) const {
+  /// The shortest loop that starts with `first`, all of it in `component`; `arcs` by producer.
+  std::vector<Arc> loop_through(const std::vector<std::vector<Arc>>& arcs, const Tasks& component,
+                                const Arc& first) const {
     std::vector<const Arc*> by(set_.tasks.size(), nullptr);
     std::vector<std::size_t> queue{first.to};
     for (std::size_t i = 0; i < queue.size() && queue[i] != first.from; ++i)
-      for (const Arc& arc : arcs)
-        if (arc.from == queue[i] && arc.to != first.to && by[arc.to] == nullptr) {
+      for (const Arc& arc : arcs[queue[i]])
+        if (component[arc.to] && arc.to != first.to && by[arc.to] == nullptr) {
           by[arc.to] = &arc;
           queue.push_back(arc.to);
         }
@@ -97,8 +210,7 @@ class SetOrder {
 
   void report(const std::vector<Arc>& loop) {
     std::string path = "'" + task(loop[0].from).name() + "'";
-    for (const Arc& arc : loop)
-      path += " -" + model_.variables[arc.variable].name + "-> '" + task(arc.to).name() + "'";
+    for (const Arc& arc : loop) path += " -" + model_.variables[arc.variable].name + "-> '" + task(arc.to).name() + "'";
     const LinkedPort& port = port_of(loop.back());
     model_.error(
         "loop-without-initial", task(loop[0].from).draft->name.at,
@@ -114,95 +226,103 @@ class SetOrder {
     return model_.tasks[0].ports[0];
   }
 
-  /// Of those that wait for nobody the first: hardware inputs first, then the order of the description.
-  std::size_t next_ready(const std::vector<bool>& placed) const {
-    std::vector<bool> waits(set_.tasks.size(), false);
-    for (const Arc& arc : arcs_)
-      if (!placed[arc.from]) waits[arc.to] = true;
-    std::size_t best = set_.tasks.size();
-    for (std::size_t i = 0; i < set_.tasks.size(); ++i) {
-      if (placed[i] || waits[i]) continue;
-      const bool is_input = task(i).has_resource() && !task(i).has_inputs();
-      if (is_input) return i;
-      if (best == set_.tasks.size()) best = i;
-    }
-    return best;
+  /// Which of `tasks` wait for nobody?
+  void look_at(const Tasks& tasks) {
+    for (std::size_t i = tasks._Find_first(); i < kMaxTasks; i = tasks._Find_next(i))
+      if ((previous_[i] & left_).none()) ready_.set(i);
+  }
+
+  /// The first link of `from` that is part of a loop; nullptr: none is, and none will be, because components only fall
+  /// apart.
+  const Link* best_link(std::size_t from) {
+    std::size_t& at = first_link_[from];
+    while (at < links_[from].size() && (links_[from][at].consumers & component_[from]).none()) ++at;
+    return at < links_[from].size() ? &links_[from][at] : nullptr;
+  }
+
+  /// By a task outside of it that is not placed either.
+  bool is_fed(const Tasks& component) const {
+    const Tasks outside = left_ & ~component;
+    for (std::size_t i = component._Find_first(); i < kMaxTasks; i = component._Find_next(i))
+      if ((previous_[i] & outside).any()) return true;
+    return false;
   }
 
   /// Takes one variable out of a loop that waits for nothing but itself.
-  void cut_a_loop(const std::vector<bool>& placed) {
-    find_components(arcs_, placed);
-    std::vector<bool> fed(set_.tasks.size(), false);  // by another component that is not placed either
-    for (const Arc& arc : arcs_)
-      if (!placed[arc.from] && component_[arc.from] != component_[arc.to]) fed[component_[arc.to]] = true;
-    const Arc* best = nullptr;
-    for (const Arc& arc : arcs_) {
-      if (placed[arc.from] || component_[arc.from] != component_[arc.to] || fed[component_[arc.from]]) continue;
-      const auto rank = [this](const Arc& a) { return std::pair(a.cut, model_.variables[a.variable].name); };
-      if (best == nullptr || rank(arc) < rank(*best)) best = &arc;
+  void cut_a_loop() {
+    const Link* best = nullptr;
+    std::size_t from = kMaxTasks;
+    for (Tasks todo = looping_ &= left_; todo.any();) {
+      const Tasks component = component_[todo._Find_first()];
+      todo &= ~component;
+      if (is_fed(component)) continue;
+      for (std::size_t i = component._Find_first(); i < kMaxTasks; i = component._Find_next(i)) {
+        const Link* link = best_link(i);
+        if (link == nullptr) looping_.reset(i);
+        if (link == nullptr || (best != nullptr && link->rank >= best->rank)) continue;
+        best = link;
+        from = i;
+      }
     }
     CHIMERA_ASSERT(best != nullptr);
-    const std::size_t variable = best->variable, component = component_[best->from];
-    std::erase_if(arcs_, [&](const Arc& arc) {
-      return arc.variable == variable && !placed[arc.from] && component_[arc.from] == component &&
-             component_[arc.to] == component;
-    });
+    cut(from, links_[from][first_link_[from]]);
+  }
+
+  void cut(std::size_t from, Link& link) {
+    const Tasks gone = link.consumers & component_[from];
+    link.consumers &= ~gone;
+    for (std::size_t to = gone._Find_first(); to < kMaxTasks; to = gone._Find_next(to)) {
+      if (--between_[from * set_.tasks.size() + to] > 0) continue;
+      next_[from].reset(to);
+      previous_[to].reset(from);
+    }
+    look_at(gone);
+    split(from);
+  }
+
+  /// The component of `from`, after a cut behind it: mostly that task falls off, or nothing.
+  void split(std::size_t from) {
+    Tasks rest = component_[from];
+    if ((next_[from] & rest).none() && rest.count() > 1) {
+      component_[from].reset();
+      component_[from].set(from);
+      rest.reset(from);
+    }
+    const std::size_t any = rest._Find_first();
+    if (reaches_all(next_, any, rest) && reaches_all(previous_, any, rest)) return assign(component_, rest);
+    for_each_component(next_, previous_, rest, [&](const Tasks& part) { assign(component_, part); });
   }
 
   Model& model_;
   SetModel& set_;
+  const std::vector<std::size_t>& by_name_;
+  std::vector<std::size_t> position_;  // of a task in the set; kMaxTasks: it is not in it
   std::vector<Arc> arcs_;
-  std::vector<std::size_t> component_;
+  std::vector<std::vector<Link>> links_;  // by producer
+  std::vector<std::size_t> first_link_;   // of those the first that may still be part of a loop
+  std::vector<Tasks> next_, previous_;    // consumers and producers, cut arcs left out
+  std::vector<Tasks> component_;          // of those that are not placed
+  std::vector<std::uint16_t> between_;    // links from a task to another, cut ones left out
+  Tasks hardware_;                        // inputs from it: they come first
+  Tasks left_, ready_;                    // not placed yet; those of them that wait for nobody
+  Tasks looping_;                         // whose outputs may be part of a loop
 };
-
-void SetOrder::find_components(const std::vector<Arc>& arcs, const std::vector<bool>& placed) {
-  const std::size_t n = set_.tasks.size(), none = std::numeric_limits<std::size_t>::max();
-  std::vector<std::vector<std::size_t>> next(n);
-  for (const Arc& arc : arcs)
-    if (!placed[arc.from] && !placed[arc.to]) next[arc.from].push_back(arc.to);
-  std::vector<std::size_t> index(n, none), low(n, 0), stack;
-  std::vector<bool> open(n, false);
-  std::vector<std::pair<std::size_t, std::size_t>> calls;  // task, its next successor
-  std::size_t count = 0;
-  const auto enter = [&](std::size_t at) {
-    index[at] = low[at] = count++;
-    stack.push_back(at);
-    open[at] = true;
-    calls.push_back({at, 0});
-  };
-  for (std::size_t root = 0; root < n; ++root) {
-    if (placed[root] || index[root] != none) continue;
-    enter(root);
-    while (!calls.empty()) {
-      const std::size_t at = calls.back().first;
-      if (calls.back().second < next[at].size()) {
-        const std::size_t to = next[at][calls.back().second++];
-        if (index[to] == none)
-          enter(to);
-        else if (open[to])
-          low[at] = std::min(low[at], index[to]);
-        continue;
-      }
-      calls.pop_back();
-      if (!calls.empty()) low[calls.back().first] = std::min(low[calls.back().first], low[at]);
-      if (low[at] != index[at]) continue;
-      for (std::size_t member = none; member != at;) {
-        member = stack.back();
-        stack.pop_back();
-        open[member] = false;
-        component_[member] = at;
-      }
-    }
-  }
-}
 
 }  // namespace
 
 void order_sets(Model& model) {
+  std::vector<std::size_t> by_name(model.variables.size());
+  std::size_t place = 0;
+  for (const auto& [name, index] : model.variable_index) by_name[index] = place++;
+  std::map<std::vector<std::size_t>, const SetModel*> ordered;  // by its tasks: the order depends on nothing else
   for (SetModel& set : model.sets) {
-    SetOrder order(model, set);
+    SetOrder order(model, set, by_name);
     order.report_loops();
-    order.order();
+    const auto [found, is_new] = ordered.emplace(set.tasks, &set);
+    if (is_new)
+      order.order();
+    else
+      set.order = found->second->order;
   }
 }
 

@@ -7,6 +7,8 @@ namespace chimera::control {
 
 Answer Answer::good(const Json& result) { return {0, {}, std::make_shared<const Json>(result), nullptr}; }
 
+Answer Answer::ready(std::shared_ptr<const std::string> text) { return {0, {}, nullptr, nullptr, std::move(text)}; }
+
 Answer Answer::error(int code, std::string message) { return {code, std::move(message), nullptr, nullptr}; }
 
 Answer Answer::error(int code, std::string message, const Json& data) {

@@ -34,9 +34,12 @@ struct Answer {
   int code = 0;  ///< 0: `result` is there; else `message` is
   std::string message;
   std::shared_ptr<const Json> result;
-  std::shared_ptr<const Json> data;  ///< of an error; may be null
+  std::shared_ptr<const Json> data;                   ///< of an error; may be null
+  std::shared_ptr<const std::string> text = nullptr;  ///< in the place of `result`: the same as one line of JSON
 
   static Answer good(const Json& result);
+  /// A result that is JSON already: whoever sends it has nothing to do but to copy it.
+  static Answer ready(std::shared_ptr<const std::string> text);
   static Answer error(int code, std::string message);
   static Answer error(int code, std::string message, const Json& data);
   /// "no task 'pod'" with the nearest of `names` in the data, if one is near.

@@ -106,7 +106,7 @@ void Door::serve(Nanoseconds now) {
     found->second->receive(now);
     if ((events[i].events & (EPOLLHUP | EPOLLERR)) != 0) found->second->is_gone = true;
   }
-  for (const auto& [number, session] : sessions_) read(*session, kLinesAtOnce, now);
+  take_turn(now);
   if (has_callers) accept(now);  // when those inside have been heard: who has just asked is not idle
   subscriptions_.notify([this](std::uint64_t number) -> Session& { return *sessions_.at(number); }, now);
   settle(now);
@@ -192,23 +192,13 @@ void Door::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanosecond
   session->watched = EPOLLIN;
   if (!watch(epoll_.fd, EPOLL_CTL_ADD, session->descriptor(), EPOLLIN, session->number())) return;
   Session& entered = *sessions_.emplace(session->number(), std::move(session)).first->second;
-  read(entered, 1, now);  // the next one in the queue may need its place
+  take_first(entered, now);  // the next one in the queue may need its place
   (void)entered.flush(now);
 }
 
-void Door::read(Session& session, int lines, Nanoseconds now) {
-  const auto is_open = [&] { return !session.is_closing() && session.has_room(); };
-  std::string line;
-  std::size_t bytes = 0;
-  for (int n = 0; n < lines && bytes < kMaxLine / 4 && is_open() && session.take_line(line); ++n) {
-    session.active_at = now;
-    take(session, line, now);
-    bytes += line.size();
-  }
-  if (is_open() && session.has_line()) has_more_ = true;
-}
-
+/// Reads a line: what is no request, or may not be one now, is answered; else it is the session's next.
 void Door::take(Session& session, const std::string& line, Nanoseconds now) {
+  session.active_at = now;
   const std::size_t pieces = 1 + std::min(line.size(), kMaxLine) / kLongLine;
   const bool may = session.requests.take(now, static_cast<std::int64_t>(pieces));
   const Answer refusal = may ? Answer{} : too_fast(session.requests.wait(now, static_cast<std::int64_t>(pieces)));
@@ -221,7 +211,7 @@ void Door::take(Session& session, const std::string& line, Nanoseconds now) {
   } else if (!may) {
     answer(session, request, refusal);
   } else {
-    carry_out(session, request, now);
+    session.next = std::make_unique<const Request>(request);
   }
 }
 
@@ -233,7 +223,7 @@ void Door::carry_out(Session& session, const Request& request, Nanoseconds now) 
   if (request.method == "unsubscribe")
     return answer(session, request, subscriptions_.close(session.number(), *request.parameters));
   auto call = std::make_shared<Call>(*this, session, request, rule->role > Role::kObserve);
-  subject_.call(*rule, *request.parameters, session.peer().role,
+  subject_.call(*rule, *request.parameters, {session.peer().role, session.number()},
                 [call = std::move(call)](const Answer& said) { call->take(said); });
 }
 
@@ -312,6 +302,7 @@ void Door::settle(Nanoseconds now) {
 void Door::end(std::uint64_t session) {
   subscriptions_.end(session);
   sessions_.erase(session);
+  subject_.forget(session);
 }
 
 Nanoseconds Door::next_due() const noexcept {

@@ -52,7 +52,14 @@ class Door {
   Standing standing(Session& session, Nanoseconds now) const;
   std::string idle_text(Session& session, Nanoseconds now) const;
   void turn_out(Session& session, const std::string& why, Nanoseconds now);
-  void read(Session& session, int lines, Nanoseconds now);
+  // door_turn.cc
+  void take_turn(Nanoseconds now);
+  bool act(Nanoseconds now);
+  bool act_of(Session& session, Nanoseconds now);
+  bool ask(Nanoseconds now);
+  void take_first(Session& session, Nanoseconds now);
+  void carry_out_next(Session& session, Nanoseconds now);
+  // door.cc
   void take(Session& session, const std::string& line, Nanoseconds now);
   void carry_out(Session& session, const Request& request, Nanoseconds now);
   Answer judge(Session& session, const Request& request, const MethodRule* rule, Nanoseconds now);
@@ -71,6 +78,7 @@ class Door {
   std::map<std::uint64_t, std::unique_ptr<Session>> sessions_;
   std::uint64_t last_session_ = 0;
   Closings closings_;
+  std::uint64_t last_asked_ = 0;                                   // whose question was answered last
   Nanoseconds now_;                                                // of the last serve()
   Nanoseconds accepts_again_ = kNever;                             // while nobody can be let in for lack of descriptors
   bool has_more_ = false;                                          // to do at once

@@ -31,8 +31,8 @@ void require(bool holds, const char* what) {
 /// Tasks with the real state machine; every method succeeds. Every other signal is answered later.
 class Model final : public Subject {
  public:
-  void call(const MethodRule& method, const Json& parameters, Role role, Reply reply) override {
-    require(role >= method.role, "nobody calls what its role does not open");
+  void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) override {
+    require(caller.role >= method.role, "nobody calls what its role does not open");
     if (std::string_view(method.name) != "signal") return reply(Answer::good({{"method", method.name}}));
     const Answer answer = signal(parameters);
     if (++signals_ % 2 == 0) reply(answer);

@@ -13,13 +13,15 @@
 
 namespace chimera::control {
 
-void FakeSubject::call(const MethodRule& method, const Json& parameters, Role role, Reply reply) {
+void FakeSubject::call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) {
   ++calls;
+  called.emplace_back(method.name);
+  if (called.back() == "status" && busy_us > 0) ::usleep(static_cast<useconds_t>(busy_us));
   if (std::string(method.name) == "signal") return later.push_back(std::move(reply));
   if (std::string(method.name) == "library") return;
   reply(Answer::good({{"method", method.name},
                       {"params", parameters},
-                      {"role", role_name(role)},
+                      {"role", role_name(caller.role)},
                       {"ballast", std::string(ballast, 'x')}}));
 }
 
@@ -145,6 +147,46 @@ TEST_F(DoorTest, WhatAPeerAskedForBeforeItWentIsCarriedOut) {
   serve();
   EXPECT_GE(subject.calls, 32);
   EXPECT_EQ(door->connections(), 0u);
+}
+
+TEST_F(DoorTest, ActsComeBeforeTheQuestionsOfOthersAndATurnEnds) {
+  const int loud = plain(), quiet = plain();
+  serve();
+  subject.busy_us = 2000;
+  for (int i = 0; i < 30; ++i) say(loud, request("status"));
+  say(quiet, request("flag", R"({"up":true})"));
+  door->serve(now = now + milliseconds(1));
+  ASSERT_FALSE(subject.called.empty());
+  EXPECT_EQ(subject.called[0], "flag");
+  EXPECT_LE(subject.called.size(), 4u) << "of 30 questions that take 2 ms each two or three are a turn";
+  EXPECT_NE(take(quiet).find("\"result\""), std::string::npos) << "answered in the same turn";
+  EXPECT_LE(door->next_due(), now) << "there is more to do";
+  serve();
+  EXPECT_EQ(subject.called.size(), 31u);
+  ::close(loud);
+  ::close(quiet);
+}
+
+TEST_F(DoorTest, QuestionsOfConnectionsAreAnsweredInTurnAndEachInItsOrder) {
+  const int a = plain(), b = plain();
+  serve();
+  subject.busy_us = 1;
+  say(a, request("status") + request("hello") + request("flag", R"({"up":true})") + request("hello"));
+  say(b, request("get") + request("profile"));
+  serve();
+  EXPECT_EQ(subject.called, (std::vector<std::string>{"status", "get", "hello", "flag", "profile", "hello"}))
+      << "an act waits for what its own connection asked before, not for others";
+  ::close(a);
+  ::close(b);
+}
+
+TEST_F(DoorTest, TheSubjectIsToldThatAConnectionIsOver) {
+  const int fd = plain();
+  serve();
+  EXPECT_TRUE(subject.forgotten.empty());
+  ::close(fd);
+  serve();
+  EXPECT_EQ(subject.forgotten, std::vector<std::uint64_t>{1});
 }
 
 TEST_F(DoorTest, SubscriptionsComeWithTheirPeriodAndEndWithTheConnection) {

@@ -19,13 +19,16 @@ namespace chimera::control {
 
 /// Echoes; keeps the replies of `signal` until told, forgets that of `library`. In door_process_test.cc.
 struct FakeSubject final : Subject {
-  void call(const MethodRule& method, const Json& parameters, Role role, Reply reply) override;
+  void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) override;
   Answer open(std::uint64_t subscription, const Json& parameters) override;
   void close(std::uint64_t subscription) override { closed.push_back(subscription); }
+  void forget(std::uint64_t session) override { forgotten.push_back(session); }
   std::shared_ptr<const Json> pull(std::uint64_t subscription) override;
 
   std::vector<Reply> later;
-  std::vector<std::uint64_t> opened, closed;
+  std::vector<std::uint64_t> opened, closed, forgotten;
+  std::vector<std::string> called;  ///< methods, in the order in which they came
+  int busy_us = 0;                  ///< that a call for `status` takes
   int calls = 0, pulls = 0, news = 1'000'000;
   std::size_t ballast = 0;
 };

@@ -10,6 +10,7 @@ namespace chimera::control {
 
 inline constexpr std::size_t kMaxLine = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxDepth = 32;
+inline constexpr std::size_t kMaxValues = 10'000;  ///< commas: so that no line takes long to read
 inline constexpr std::size_t kLongLine = std::size_t{1} << 14;  ///< a longer one counts once for each such piece
 inline constexpr int kRequestsPerSecond = 1000, kRequestBurst = 200;
 inline constexpr int kActsPerSecond = 100, kActBurst = 50;
@@ -20,7 +21,8 @@ inline constexpr std::size_t kMaxListenersOfUser = 12;  ///< connections with su
 inline constexpr std::size_t kMaxSubscriptions = 32;
 inline constexpr std::size_t kMaxOutput = std::size_t{1} << 20;  ///< beyond it nothing more is read from the peer
 inline constexpr Nanoseconds kPatience = seconds(5);  ///< with a peer that takes nothing, or does not end its line
-/// Of one connection in one turn: the others, and what else the owner of the door does, come in between.
-inline constexpr int kLinesAtOnce = 8;
+/// Of one turn of the door for questions, and as much for notifications: then acts come first again, and what else the
+/// owner of the door does. One question more may be under way.
+inline constexpr Nanoseconds kTurn = milliseconds(4);
 
 }  // namespace chimera::control

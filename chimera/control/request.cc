@@ -41,8 +41,9 @@ bool is_id(const Json& id) { return id.is_string() || id.is_number_integer() || 
 
 }  // namespace
 
-std::size_t depth_of(std::string_view text) noexcept {
-  std::size_t depth = 0, deepest = 0;
+Extent extent_of(std::string_view text) noexcept {
+  Extent extent;
+  std::size_t depth = 0;
   bool in_text = false, escaped = false;
   for (const char c : text) {
     if (in_text) {
@@ -51,17 +52,21 @@ std::size_t depth_of(std::string_view text) noexcept {
     } else if (c == '"') {
       in_text = true;
     } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++depth);
+      extent.depth = std::max(extent.depth, ++depth);
     } else if ((c == ']' || c == '}') && depth > 0) {
       --depth;
+    } else if (c == ',') {
+      ++extent.commas;
     }
   }
-  return deepest;
+  return extent;
 }
 
 Request read_request(std::string_view line) {
   if (line.size() > kMaxLine) return refused(nullptr, kTooLarge, "a line may have 1 MiB", true);
-  if (depth_of(line) > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32", true);
+  const Extent extent = extent_of(line);
+  if (extent.depth > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32", true);
+  if (extent.commas >= kMaxValues) return refused(nullptr, kTooLarge, "a line may have 10,000 values", true);
   std::optional<std::string> twice;
   const Json message = parse(line, twice);
   if (message.is_discarded()) return refused(nullptr, kParseError, "this is no JSON");
@@ -88,6 +93,11 @@ Request read_request(std::string_view line) {
 }
 
 std::string answer_line(const Json& id, const Answer& answer) {
+  if (answer.is_good() && answer.text != nullptr) {
+    std::string line = R"({"id":)" + id.dump(-1, ' ', false, Json::error_handler_t::replace);
+    line.reserve(line.size() + answer.text->size() + 32);
+    return line.append(R"(,"jsonrpc":"2.0","result":)").append(*answer.text).append("}\n");
+  }
   Json message{{"jsonrpc", "2.0"}, {"id", id}};
   if (answer.is_good()) {
     message["result"] = answer.result == nullptr ? Json::object() : *answer.result;

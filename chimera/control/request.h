@@ -28,7 +28,11 @@ std::string answer_line(const Json& id, const Answer& answer);
 std::string note_line(std::string_view method, std::uint64_t subscription, const Json& parameters);
 std::string request_line(std::uint64_t id, std::string_view method, const Json& parameters);
 
-/// How deep arrays and objects are nested in a text, as far as brackets outside of texts tell.
-std::size_t depth_of(std::string_view text) noexcept;
+/// What a text costs its reader, as far as brackets and commas outside of texts tell.
+struct Extent {
+  std::size_t depth = 0;   ///< how deep arrays and objects are nested
+  std::size_t commas = 0;  ///< one less than the values of a list
+};
+Extent extent_of(std::string_view text) noexcept;
 
 }  // namespace chimera::control

@@ -52,17 +52,33 @@ TEST(Request, BeyondALimitItEndsTheConnection) {
 }
 
 TEST(Request, DepthCountsBracketsOutsideOfTexts) {
-  EXPECT_EQ(depth_of(""), 0u);
-  EXPECT_EQ(depth_of("[[]]{}"), 2u);
-  EXPECT_EQ(depth_of(R"(["[[[[\"[[["])"), 1u);
-  EXPECT_EQ(depth_of(R"(["\\",[]])"), 2u);
-  EXPECT_EQ(depth_of("]]]["), 1u);
+  EXPECT_EQ(extent_of("").depth, 0u);
+  EXPECT_EQ(extent_of("[[]]{}").depth, 2u);
+  EXPECT_EQ(extent_of(R"(["[[[[\"[[["])").depth, 1u);
+  EXPECT_EQ(extent_of(R"(["\\",[]])").depth, 2u);
+  EXPECT_EQ(extent_of("]]][").depth, 1u);
+}
+
+TEST(Request, ALineOfTooManyValuesIsNotRead) {
+  const auto line = [](std::size_t n) {
+    std::string ones = "1";
+    for (std::size_t i = 1; i < n; ++i) ones += ",1";
+    return R"({"jsonrpc":"2.0","method":"set","params":{"values":{"a":[)" + ones + "]}}}";
+  };
+  EXPECT_TRUE(read_request(line(9990)).refusal.is_good());
+  const Request refused = read_request(line(10'001));
+  EXPECT_EQ(refused.refusal.code, kTooLarge);
+  EXPECT_EQ(refused.refusal.message, "a line may have 10,000 values");
+  EXPECT_TRUE(refused.must_close);
+  EXPECT_EQ(extent_of(R"({"a,b": "c,d", "e": [1, 2]})").commas, 2u) << "commas in texts do not count";
 }
 
 TEST(Request, LinesThatGoBackAreOneLineOfUtf8) {
   EXPECT_EQ(answer_line(1, Answer::error(kRefused, "a\nb\xff")),
             "{\"error\":{\"code\":-32000,\"message\":\"a\\nb\xef\xbf\xbd\"},\"id\":1,\"jsonrpc\":\"2.0\"}\n");
   EXPECT_EQ(answer_line("x", Answer{}), "{\"id\":\"x\",\"jsonrpc\":\"2.0\",\"result\":{}}\n");
+  EXPECT_EQ(answer_line("x", Answer::ready(std::make_shared<const std::string>("[1]"))),
+            "{\"id\":\"x\",\"jsonrpc\":\"2.0\",\"result\":[1]}\n");
   EXPECT_EQ(note_line("tap", 3, {{"lost", 0}}),
             "{\"jsonrpc\":\"2.0\",\"method\":\"tap\",\"params\":{\"lost\":0,\"subscription\":3}}\n");
 }

@@ -41,7 +41,11 @@ void Session::receive(Nanoseconds now) {
 }
 
 bool Session::has_line() const noexcept {
-  return input_.size() - taken_ > kMaxLine || input_.find('\n', looked_) != std::string::npos;
+  return next != nullptr || input_.size() - taken_ > kMaxLine || input_.find('\n', looked_) != std::string::npos;
+}
+
+bool Session::has_short_line() const noexcept {
+  return std::string_view(input_).substr(taken_, kLongLine).find('\n') != std::string_view::npos;
 }
 
 bool Session::take_line(std::string& line) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "chimera/control/allowance.h"
 #include "chimera/control/limits.h"
+#include "chimera/control/request.h"
 #include "chimera/control/rights.h"
 #include "chimera/platform/linux/owned_descriptor.h"
 
@@ -32,7 +34,10 @@ class Session {
   bool has_ended() const noexcept { return has_ended_; }
   /// The next whole line, without its end. A line longer than the limit comes cut behind it, or whole.
   bool take_line(std::string& line);
+  /// Something is left to do: a line, or `next`.
   bool has_line() const noexcept;
+  /// The next line is whole, and shorter than kLongLine: quickly read.
+  bool has_short_line() const noexcept;
 
   /// Queues a line that has its end.
   void say(const std::string& line, Nanoseconds now);
@@ -56,6 +61,8 @@ class Session {
   std::size_t open_acts = 0;   ///< those of them that change something
   bool is_gone = false;        ///< the peer closed: nobody will read
   std::uint32_t watched = 0;   ///< events of epoll asked for, kept by the door
+  /// The request that is read and not carried out yet: what it is decides whether it waits. Null: none.
+  std::unique_ptr<const Request> next;
 
  private:
   bool send(Nanoseconds now);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/control/request.h"
+#include "chimera/control/turn.h"
 
 namespace chimera::control {
 namespace {
@@ -51,14 +52,19 @@ std::size_t Subscriptions::count_of(std::uint64_t session) const noexcept {
 }
 
 void Subscriptions::notify(const std::function<Session&(std::uint64_t)>& session_of, Nanoseconds now) {
-  for (auto& [number, one] : all_) {
+  const Turn turn;
+  auto at = all_.upper_bound(last_told_);  // whoever had to wait in the last turn comes first
+  for (std::size_t n = all_.size(); n > 0 && !turn.is_over(); --n, ++at) {
+    if (at == all_.end()) at = all_.begin();
+    auto& [number, one] = *at;
     if (now < one.due) continue;
+    last_told_ = number;
     one.due = one.due + one.period > now ? one.due + one.period : now + one.period;  // what was missed stays so
     Session& session = session_of(one.session);
     if (session.is_closing()) continue;
     if (one.skips) (void)session.flush(now);  // an answer that can go at once is no reason to skip
     const auto may = [&session, skips = one.skips] { return skips ? !session.has_output() : session.has_room(); };
-    for (int n = 0; n < (one.skips ? 1 : kNewsAtOnce) && may(); ++n) {
+    for (int told = 0; told < (one.skips ? 1 : kNewsAtOnce) && may() && (told == 0 || !turn.is_over()); ++told) {
       const auto news = subject_.pull(number);
       if (news == nullptr) break;
       session.say(note_line(one.to, number, *news), now);

@@ -25,7 +25,8 @@ class Subscriptions {
   std::size_t count_of(std::uint64_t session) const noexcept;
 
   /// Tells every session what is due and it has room for. What has a period is made when the peer has taken all that
-  /// came before: who is slow skips to the latest. `session_of` finds a session by number.
+  /// came before: who is slow skips to the latest. `session_of` finds a session by number. Ends with the turn: who is
+  /// left is due at once, and first next time.
   void notify(const std::function<Session&(std::uint64_t)>& session_of, Nanoseconds now);
   /// When notify() is due; kNever: nobody wants anything.
   Nanoseconds next_due() const noexcept;
@@ -42,6 +43,7 @@ class Subscriptions {
   Subject& subject_;
   std::map<std::uint64_t, Subscription> all_;
   std::uint64_t last_ = 0;
+  std::uint64_t last_told_ = 0;
 };
 
 }  // namespace chimera::control

@@ -247,6 +247,8 @@ void Driver::pass_end_on() {
   [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: it ends already
 }
 
+int Driver::bundle() const noexcept { return mapped_->bundle_bytes.descriptor(); }
+
 int Driver::take_listening() noexcept { return std::exchange(mapped_->listening, -1); }
 
 void Driver::look_at_keeper() {
@@ -278,17 +280,19 @@ Nanoseconds Driver::next_due() const noexcept {
 }
 
 /// A negative descriptor is passed over.
-void Driver::wait(Nanoseconds until, int also) {
-  std::array<pollfd, 3> watched = {
-      {{mapped_->channel.descriptor(), POLLIN, 0}, {bell_->descriptor(), POLLIN, 0}, {also, POLLIN, 0}}};
+void Driver::wait(Nanoseconds until, int also, int or_else) {
+  std::array<pollfd, 4> watched = {{{mapped_->channel.descriptor(), POLLIN, 0},
+                                    {bell_->descriptor(), POLLIN, 0},
+                                    {also, POLLIN, 0},
+                                    {or_else, POLLIN, 0}}};
   const std::int64_t left = std::clamp<std::int64_t>((until - now()).count, 0, seconds(1).count);
   const timespec limit{left / 1'000'000'000, left % 1'000'000'000};
   ::ppoll(watched.data(), watched.size(), &limit, nullptr);
 }
 
-bool Driver::step(Nanoseconds at_most, int also) {
+bool Driver::step(Nanoseconds at_most, int also, int or_else) {
   pass_end_on();  // what asked for it is answered by now
-  wait(std::min(next_due(), at_most), also);
+  wait(std::min(next_due(), at_most), also, or_else);
   bell_->reset();
   if (!take_messages()) return false;
   look_at_keeper();

@@ -42,9 +42,9 @@ class Driver {
   Driver& operator=(const Driver&) = delete;
   ~Driver();
 
-  /// One round: waits until something is due, `at_most`, or until `also` is readable; deals with everything that is
-  /// the driver's. False when the keeper is gone.
-  bool step(Nanoseconds at_most = kNever, int also = -1);
+  /// One round: waits until something is due, `at_most`, or until `also` or `or_else` is readable; deals with
+  /// everything that is the driver's. False when the keeper is gone.
+  bool step(Nanoseconds at_most = kNever, int also = -1, int or_else = -1);
   /// Asks for a signal; `answered` is called when it is over, maybe at once.
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered);
   /// Rings doorbells, as Fleet::ring.
@@ -53,6 +53,8 @@ class Driver {
   void end(std::int32_t code);
   /// Hands over the listening socket, once.
   int take_listening() noexcept;
+  /// Of the bundle, to hand on; stays the driver's.
+  int bundle() const noexcept;
 
   World& world() noexcept { return *world_; }
   /// Has the step function been given the whole inventory? Faces are served from then on.
@@ -75,7 +77,7 @@ class Driver {
   void look_at_keeper();
   void watch();
   Nanoseconds next_due() const noexcept;
-  void wait(Nanoseconds until, int also);
+  void wait(Nanoseconds until, int also, int or_else);
 
   std::unique_ptr<Mapped> mapped_;
   std::unique_ptr<World> world_;

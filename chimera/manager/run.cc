@@ -3,7 +3,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "chimera/control/door.h"
+#include "chimera/manager/questions.h"
 #include "chimera/manager/subject.h"
 
 namespace chimera::manager {
@@ -17,14 +21,21 @@ Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int3
   while (!driver.is_ready())
     if (!driver.step()) return 0;
   const Bundle& bundle = driver.world().bundle;
-  Subject subject(driver);
+  std::error_code error;
+  Questions questions(
+      std::filesystem::read_symlink("/proc/self/exe", error).string(), driver.bundle(),
+      [&driver](const std::string& text) { driver.world().tell("note", TaskId{}, RtpuId{}, text, now()); });
+  Subject subject(driver, &questions);
   auto door = control::Door::open(driver.take_listening(), subject, ::getuid(),
                                   {bundle.observe_group, bundle.operate_group, bundle.configure_group});
   if (!door) return door.error();
   (*door)->tell_closings_by(
       [&driver](const std::string& text) { driver.world().tell("closed", TaskId{}, RtpuId{}, text, now()); });
-  do (*door)->serve(now());
-  while (driver.step((*door)->next_due(), (*door)->descriptor()));
+  do {
+    (*door)->serve(now());
+    questions.serve(now());
+  } while (
+      driver.step(std::min((*door)->next_due(), questions.next_due()), (*door)->descriptor(), questions.descriptor()));
   return 0;
 }
 

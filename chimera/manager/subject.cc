@@ -42,26 +42,37 @@ std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Js
 
 }  // namespace
 
-void Subject::call(const control::MethodRule& method, const Json& parameters, control::Role role,
+void Subject::call(const control::MethodRule& method, const Json& parameters, const control::Caller& caller,
                    control::Reply reply) {
   const std::string_view name = method.name;
   if (name == "signal") return signal(parameters, reply);
-  reply(answer(name, parameters, role));
+  if (name == "check") return analyse(Question::Kind::kCheck, parameters, caller.session, std::move(reply));
+  if (name == "schedule") return analyse(Question::Kind::kSchedule, parameters, caller.session, std::move(reply));
+  reply(answer(name, parameters, caller.role));
+}
+
+void Subject::analyse(Question::Kind kind, const Json& parameters, std::uint64_t session, control::Reply reply) {
+  Question question{kind, parameters.value("file", std::string("text")), parameters.at("text")};
+  if (questions_ != nullptr) return questions_->ask(std::move(question), session, std::move(reply), now());
+  reply(Answer::ready(std::make_shared<const std::string>(answer_of(question, world().bundle.library))));
+}
+
+/// What the bundle says is the same as long as the manager lives.
+Answer Subject::always(std::shared_ptr<const std::string>& text, Json (*make)(const World&)) const {
+  if (text == nullptr)
+    text = std::make_shared<const std::string>(make(world()).dump(-1, ' ', false, Json::error_handler_t::replace));
+  return Answer::ready(text);
 }
 
 Answer Subject::answer(std::string_view method, const Json& parameters, control::Role role) {
   if (method == "hello") return hello(role);
   if (method == "status") return Answer::good(status_json(world(), now()));
-  if (method == "describe") return Answer::good(describe_json(world()));
+  if (method == "describe") return always(description_, describe_json);
   if (method == "get") return get(parameters);
   if (method == "profile") return Answer::good(profile_json(world(), now()));
   if (method == "events") return events(parameters);
   if (method == "why") return why(parameters);
-  if (method == "check")
-    return Answer::good(check_json(world(), parameters.at("text"), parameters.value("file", std::string("text"))));
-  if (method == "schedule")
-    return Answer::good(schedule_json(world(), parameters.at("text"), parameters.value("file", std::string("text"))));
-  if (method == "library") return Answer::good(library_json(world()));
+  if (method == "library") return always(library_, library_json);
   if (method == "ring") return ring(parameters);
   if (method == "set") return set_values(world(), parameters.at("values"));
   if (method == "flag") return set_flag(world(), parameters.at("up"));
@@ -109,8 +120,8 @@ void Subject::signal(const Json& parameters, const control::Reply& reply) {
   const auto at = std::find(std::begin(kSignals), std::end(kSignals), name);
   if (at == std::end(kSignals)) {
     const std::string near = nearest(name, std::vector<std::string>(std::begin(kSignals), std::end(kSignals)));
-    return reply(Answer::unknown(
-        "no signal '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
+    return reply(Answer::unknown("no signal '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                                 name, near));
   }
   auto tasks = tasks_named(world(), texts(parameters, "tasks"));
   if (const auto* refused = std::get_if<Answer>(&tasks)) return reply(*refused);
@@ -178,11 +189,13 @@ Answer Subject::open(std::uint64_t subscription, const Json& parameters) {
   Subscription made;
   made.to = to == "status" ? To::kStatus : to == "events" ? To::kEvents : to == "values" ? To::kValues : To::kTap;
   if (made.to == To::kEvents) made.next = number(parameters, "since", world().log.last() + 1);
-  if (made.to == To::kValues) made.variables = std::get<0>(std::move(variables));
+  if (made.to == To::kValues)
+    made.variables = std::get<0>(std::move(variables));
   else if (made.to == To::kTap)
-    made.tap = std::make_unique<TapFeed>(world(), parameters.contains("variables") && !parameters["variables"].empty()
-                                                      ? std::get<0>(std::move(variables))
-                                                      : std::vector<VariableId>(),
+    made.tap = std::make_unique<TapFeed>(world(),
+                                         parameters.contains("variables") && !parameters["variables"].empty()
+                                             ? std::get<0>(std::move(variables))
+                                             : std::vector<VariableId>(),
                                          number(parameters, "since", 1) == 0);
   subscriptions_[subscription] = std::move(made);
   return Answer{};
@@ -192,11 +205,14 @@ std::shared_ptr<const Json> Subject::pull(std::uint64_t subscription) {
   Subscription& wanted = subscriptions_.at(subscription);
   const Nanoseconds at = now();
   switch (wanted.to) {
-    case Subscription::To::kStatus: return shared(status_json(world(), at));
+    case Subscription::To::kStatus:
+      return shared(status_json(world(), at));
     case Subscription::To::kValues:
       return shared({{"at_ns", at.count}, {"values", readings_json(world(), wanted.variables, at)}});
-    case Subscription::To::kEvents: return pull_events(wanted);
-    case Subscription::To::kTap: break;
+    case Subscription::To::kEvents:
+      return pull_events(wanted);
+    case Subscription::To::kTap:
+      break;
   }
   return pull_tap(wanted);
 }

@@ -11,6 +11,7 @@
 
 #include "chimera/control/subject.h"
 #include "chimera/manager/driver.h"
+#include "chimera/manager/questions.h"
 #include "chimera/manager/tap_feed.h"
 
 namespace chimera::manager {
@@ -19,10 +20,14 @@ namespace chimera::manager {
 class Subject final : public control::Subject {
  public:
   /// `driver` outlives it.
-  explicit Subject(Driver& driver) : driver_(driver) {}
+  /// So does `questions`; null: analyses are made here and now.
+  explicit Subject(Driver& driver, Questions* questions = nullptr) : driver_(driver), questions_(questions) {}
 
-  void call(const control::MethodRule& method, const control::Json& parameters, control::Role role,
+  void call(const control::MethodRule& method, const control::Json& parameters, const control::Caller& caller,
             control::Reply reply) override;
+  void forget(std::uint64_t session) override {
+    if (questions_ != nullptr) questions_->forget(session);
+  }
   control::Answer open(std::uint64_t subscription, const control::Json& parameters) override;
   void close(std::uint64_t subscription) override { subscriptions_.erase(subscription); }
   std::shared_ptr<const control::Json> pull(std::uint64_t subscription) override;
@@ -46,12 +51,16 @@ class Subject final : public control::Subject {
   control::Answer why(const control::Json& parameters) const;
   control::Answer end(const control::Json& parameters);
   void signal(const control::Json& parameters, const control::Reply& reply);
+  void analyse(Question::Kind kind, const control::Json& parameters, std::uint64_t session, control::Reply reply);
+  control::Answer always(std::shared_ptr<const std::string>& text, control::Json (*make)(const World&)) const;
   control::Answer told(const subsystem::Answer& answer) const;
   control::Answer no_answer(RtpuId rtpu, const std::string& text) const;
   std::shared_ptr<const control::Json> pull_events(Subscription& subscription) const;
   std::shared_ptr<const control::Json> pull_tap(Subscription& subscription) const;
 
   Driver& driver_;
+  Questions* questions_;
+  std::shared_ptr<const std::string> library_, description_;  // what never changes, once somebody asked for it
   std::map<std::uint64_t, Subscription> subscriptions_;
 };
 

@@ -309,17 +309,4 @@ Json library_json(const World& world) {
   return {{"components", std::move(components)}};
 }
 
-Json check_json(const World& world, const std::string& text, const std::string& file) {
-  Verdict verdict = chimera::verify(read_description(text, file), world.bundle.library);
-  if (verdict.configuration) verdict.report.add_all(faulty_objects(*verdict.configuration, world.bundle.library));
-  return Json::parse(verdict.report.json());
-}
-
-Json schedule_json(const World& world, const std::string& text, const std::string& file) {
-  const Verdict verdict = chimera::verify(read_description(text, file), world.bundle.library, Overload::kTold);
-  if (!verdict.configuration) return Json::parse(verdict.report.json());
-  const ScheduleReport report = schedule_report(*verdict.configuration, {});
-  return Json::parse(chimera::schedule_json(*verdict.configuration, report));
-}
-
 }  // namespace chimera::manager

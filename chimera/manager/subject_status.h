@@ -19,9 +19,6 @@ nlohmann::json event_json(const World& world, const LoggedEvent& event);
 /// At most `limit` events from number `since` on.
 nlohmann::json events_json(const World& world, std::uint64_t since, std::size_t limit);
 nlohmann::json library_json(const World& world);
-nlohmann::json check_json(const World& world, const std::string& text, const std::string& file);
-/// The analysis of a legal text, else what check_json() says.
-nlohmann::json schedule_json(const World& world, const std::string& text, const std::string& file);
 /// The last fault of a task as "cycle: its words"; "" when there was none.
 std::string fault_text(const World& world, TaskId task);
 /// Name of the configuration whose tasks are ON, exactly; "" when it has no name.

@@ -32,7 +32,7 @@ class SubjectTest : public testing::Test {
   }
   control::Answer ask(const char* method, const Json& parameters = Json::object()) {
     std::optional<control::Answer> got;
-    subject_->call(*control::find_method(method), parameters, Role::kConfigure,
+    subject_->call(*control::find_method(method), parameters, {Role::kConfigure, 1},
                    [&](const control::Answer& answer) { got = answer; });
     EXPECT_TRUE(fake_.until([&] { return got.has_value(); })) << method;
     return got.value_or(control::Answer{});
@@ -40,6 +40,7 @@ class SubjectTest : public testing::Test {
   Json good(const char* method, const Json& parameters = Json::object()) {
     const control::Answer answer = ask(method, parameters);
     EXPECT_TRUE(answer.is_good()) << method << ": " << answer.message;
+    if (answer.is_good() && answer.text != nullptr) return Json::parse(*answer.text);
     return answer.is_good() ? *answer.result : Json();
   }
   /// "CODE MESSAGE DATA" of a refusal.

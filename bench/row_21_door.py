@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+# Needs: process_campaigns hostile_questions_needs
+"""Row 21, the door: how long an act waits for its answer beside the most costly questions that all other connections
+may ask without a pause (tests/hostile/costly.py: checks of 256 joins in loops, schedules of 6 MB, the library, the
+description, status, events, values). Baseline, in turn with it: the same door with nobody else asking. The asking side
+runs on the same processors as the manager."""
+import json
+import os
+import pathlib
+import statistics
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "tests" / "hostile"))
+from costly import Load, worst  # noqa: E402
+from system import TWO_UNITS, System, await_that  # noqa: E402
+
+GOAL_MS = 100
+TURNS, ACTS = 5, 60  # an act each 25 ms: below the rate that one connection may have
+WHAT = (("off, on", "signal", lambda n: {"signal": "on" if n % 2 else "off", "tasks": ["beside"]}),
+        ("flag", "flag", lambda n: {"up": n % 2 == 0}))
+
+def window(system, found):
+    for n in range(ACTS):
+        for what, method, parameters in WHAT:
+            began = time.monotonic_ns()
+            system.call(method, **parameters(n))
+            found[what].append((time.monotonic_ns() - began) / 1e6)
+            time.sleep(0.025)
+
+
+def percentile(values, share):
+    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
+
+
+alone, beside = {what: [] for what, _, _ in WHAT}, {what: [] for what, _, _ in WHAT}
+answers = 0
+with System(TWO_UNITS) as system:
+    for _ in range(TURNS):
+        window(system, alone)
+        with Load(system.socket, worst()) as load:
+            await_that(lambda: load.answers > 100, 10, "the load")
+            window(system, beside)
+        answers += load.answers
+for what, _, _ in WHAT:
+    figure, baseline = percentile(beside[what], 0.99), percentile(alone[what], 0.99)
+    middle = statistics.median(beside[what])
+    print(json.dumps({"row": 21, "what": f"{what} beside the worst load, p99 (p50 {middle:.1f})", "unit": "ms",
+                      "figure": round(figure, 2), "baseline": round(baseline, 2),
+                      "baseline_name": f"nobody asks (p50 {statistics.median(alone[what]):.2f})",
+                      "ratio": round(figure / baseline, 1), "goal": f"<= {GOAL_MS} ms", "met": figure <= GOAL_MS,
+                      "n": len(beside[what])}))

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/question.h"
+
+#include <nlohmann/json.hpp>
+
+#include "chimera/config/schedule_report.h"
+#include "chimera/config/verify.h"
+
+namespace chimera::manager {
+namespace {
+
+/// With its keys in the order of all other answers.
+std::string one_line(const std::string& json) {
+  using Json = nlohmann::json;
+  return Json::parse(json).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string answer_of(const Question& question, const Library& library) {
+  const bool is_check = question.kind == Question::Kind::kCheck;
+  Verdict verdict = chimera::verify(read_description(question.text, question.file), library,
+                                    is_check ? Overload::kRefused : Overload::kTold);
+  if (!is_check && verdict.configuration)
+    return one_line(schedule_json(*verdict.configuration, schedule_report(*verdict.configuration, {})));
+  if (is_check && verdict.configuration) verdict.report.add_all(faulty_objects(*verdict.configuration, library));
+  return one_line(verdict.report.json());
+}
+
+}  // namespace chimera::manager

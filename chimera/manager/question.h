@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the manager and its analyst say to each other: one message a question, one its answer, the text as sealed
+// memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "chimera/config/library.h"
+
+namespace chimera::manager {
+
+/// A question about a description that has nothing to do with what runs.
+struct Question {
+  enum class Kind : std::uint32_t { kCheck, kSchedule };
+  Kind kind = Kind::kCheck;
+  std::string file;  ///< name for messages
+  std::string text;
+};
+
+/// 32 bytes over a Channel. With a question go `file_bytes` of the name, `text_bytes` of the text and one byte that
+/// counts for nothing; with an answer `text_bytes` of JSON.
+struct QuestionMessage {
+  enum class What : std::uint32_t {
+    kQuestion,
+    kAnswer,
+    kNoMemory,  ///< kAnalystMemory was not enough, or the answer is larger than kMaxAnalysis
+  };
+  What what = What::kQuestion;
+  Question::Kind kind = Question::Kind::kCheck;
+  std::uint64_t number = 0;  ///< of the question
+  std::uint64_t file_bytes = 0, text_bytes = 0;
+};
+static_assert(sizeof(QuestionMessage) == 32);
+
+inline std::span<const std::byte> bytes_of(const QuestionMessage& message) noexcept {
+  return std::as_bytes(std::span(&message, 1));
+}
+inline std::span<std::byte> bytes_of(QuestionMessage& message) noexcept {
+  return std::as_writable_bytes(std::span(&message, 1));
+}
+
+inline constexpr std::uint64_t kAnalystMemory = std::uint64_t{1} << 30;
+inline constexpr std::uint64_t kMaxAnalysis = std::uint64_t{32} << 20;  ///< bytes of one answer
+
+/// The answer as one line of JSON, docs/formats/run.md: the report of `check`, or of a legal text the analysis of
+/// `schedule`. Context: setup; may take seconds.
+std::string answer_of(const Question& question, const Library& library);
+
+}  // namespace chimera::manager
