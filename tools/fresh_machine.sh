@@ -177,7 +177,10 @@ run() {  # name, limit, user, folder, command
 commit=$(git -c safe.directory='*' -C "$checkout" rev-parse HEAD)
 [ -z "$(git -c safe.directory='*' -C "$checkout" status --porcelain)" ] ||
   step "note: changes that are not committed are not tested"
-[ -n "$folder" ] || { folder=$(mktemp -d "${TMPDIR:-/var/tmp}/fresh_machine.XXXXXX"); chmod 755 "$folder"; }  # ordinary users work in it
+if [ -z "$folder" ]; then
+  folder=$(mktemp -d "${TMPDIR:-/var/tmp}/fresh_machine.XXXXXX")
+  chmod 755 "$folder"  # ordinary users work in it
+fi
 mkdir -p "$folder"
 [ -x "$folder/usr/bin/git" ] || make_root
 enter_root

@@ -13,6 +13,7 @@
 #include "apps/chimera/record_files.h"
 #include "chimera/config/quantity.h"
 #include "chimera/config/recorded_profile.h"
+#include "chimera/desk/guarded.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/own_process.h"
 #include "chimera/desk/run_plan.h"
@@ -211,15 +212,17 @@ int carry_out_run(RunWords& words, const desk::Workplace& workplace) {
       return desk::run(words.run, workplace, sink, stdout, stderr);
     });
   };
-  return desk::in_own_process(run, [&](const std::string& how) {
-    const Error error{ErrorCode::kRefused, {"the run " + how}, {words.run.file}};
-    return desk::refuse_run(words.run, error, stdout, stderr);
-  });
+  return desk::in_own_process(
+      run, [&](const desk::BrokenRun& broken) { return desk::tell_broken(words.run, broken, stdout, stderr); });
 }
 
 int carry_out_attend(RunWords& words) {
   std::signal(SIGTERM, [](int) { desk::request_stop(); });
   std::signal(SIGPIPE, SIG_IGN);  // seen as a failed write
+  sigset_t held;                  // by the keeper, until somebody listens
+  ::sigemptyset(&held);
+  ::sigaddset(&held, SIGTERM);
+  ::sigprocmask(SIG_UNBLOCK, &held, nullptr);
   Nanoseconds unit;
   if (!read_times(words, unit) || words.bounds.size() != words.run.expect.size()) return desk::kUsage;
   if (!follow_parent(words.parent, SIGTERM)) return desk::kRefused;

@@ -30,6 +30,7 @@ using Json = nlohmann::json;
 
 constexpr Nanoseconds kLookEvery = milliseconds(100);  // for what has happened, and whether to stop
 constexpr Nanoseconds kStartLook = milliseconds(5);
+constexpr std::size_t kEventsAtOnce = 1000;
 constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends whoever takes too long: that is not judged here
 
 Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.get<std::int64_t>()} : kNever; }
@@ -59,11 +60,14 @@ class Attendance {
   Result<void> begin();
   RunEnd attend();
   int report(RunEnd end);
+  /// Of a start that failed: what was made is turned off and killed all the same, and that is judged.
+  int refuse(const Error& error);
 
  private:
   Result<void> know_tasks(const Json& status);
   void print_grants(const Json& status);
   void look_at_events();
+  void take_event(const Json& event);
   /// Told to, or nobody reads what it prints.
   bool is_to_stop() const { return stop_is_requested() || std::ferror(out_) != 0; }
   void act(const TimedAct& timed);
@@ -71,6 +75,7 @@ class Attendance {
   Json readings(std::vector<std::string> names);
   std::vector<UnitFate> units_of(const Json& status) const;
   std::vector<TaskProfile> profiles(const Json& origin);
+  std::optional<Json> await_end();
   void judge_end(RunReport& report, const Json& status);
   std::string since_start(Nanoseconds at) const;
 
@@ -90,11 +95,13 @@ class Attendance {
   std::uint64_t next_event_ = 0;
   bool task_stopped_ = false;
   std::string stopped_by_;
+  std::vector<NotOff> not_off_;
   std::map<std::string, Nanoseconds> restarted_;  // by rtpu, the last time
 };
 
 Result<void> Attendance::begin() {
-  while (!stop_is_requested()) {
+  for (bool is_last = false; !is_last;) {
+    is_last = stop_is_requested();  // also then: it may have started long ago
     const auto status = line_.ask("status", Json::object(), seconds(20));
     if (!status) return status.error();
     // What went wrong before the start comes first, also when the start was told meanwhile.
@@ -149,25 +156,31 @@ void Attendance::print_grants(const Json& status) {
 
 /// Before the start a task that cannot be made, or an `on` refused, is the end of it.
 void Attendance::look_at_events() {
-  const auto answer = line_.ask("events", {{"since", next_event_}, {"limit", 1000}});
-  if (!answer) return;
-  for (const Json& event : (*answer)["events"]) {
-    next_event_ = event["number"].get<std::uint64_t>() + 1;
-    const std::string kind = event.value("kind", ""), text = event.value("text", "");
-    const Json about = event.value("task", Json());
-    const std::string task = about.is_string() ? about.get<std::string>() : "";
-    const bool is_refusal = kind == "refused" || kind == "fault" || kind == "rtpu-given-up";
-    if (is_refusal && instant(event["at_ns"]) < started_ && !failure_)
-      failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
-    else if (kind == "refused")
-      refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
-    if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())
-      restarted_[event["rtpu"].get<std::string>()] = instant(event["at_ns"]) - started_;
-    if (kind == "note" && !run_.json) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
-    if (kind != "stop" || task_stopped_) continue;
-    task_stopped_ = true;
-    stopped_by_ = task;
+  for (bool is_all = false; !is_all;) {
+    const auto answer = line_.ask("events", {{"since", next_event_}, {"limit", kEventsAtOnce}});
+    if (!answer) return;
+    is_all = (*answer)["events"].size() < kEventsAtOnce;
+    for (const Json& event : (*answer)["events"]) take_event(event);
   }
+}
+
+void Attendance::take_event(const Json& event) {
+  next_event_ = event["number"].get<std::uint64_t>() + 1;
+  const std::string kind = event.value("kind", ""), text = event.value("text", "");
+  const Json about = event.value("task", Json());
+  const std::string task = about.is_string() ? about.get<std::string>() : "";
+  const bool is_refusal = kind == "refused" || kind == "fault" || kind == "rtpu-given-up";
+  if (is_refusal && instant(event["at_ns"]) < started_ && !failure_)
+    failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
+  else if (kind == "refused")
+    refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
+  if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())
+    restarted_[event["rtpu"].get<std::string>()] = instant(event["at_ns"]) - started_;
+  if (kind == "note" && !run_.json) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
+  if (kind == "not-off") not_off_.push_back({task, text});
+  if (kind != "stop" || task_stopped_) return;
+  task_stopped_ = true;
+  stopped_by_ = task;
 }
 
 std::string Attendance::since_start(Nanoseconds at) const {
@@ -264,17 +277,24 @@ bool any_lives(const Json& status) {
   return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return rtpu.value("alive", false); });
 }
 
-/// Has the tasks turned off and killed, and takes what their last methods left: what fails there belongs to the run.
-void Attendance::judge_end(RunReport& report, const Json& before) {
-  std::vector<UnitFate> units = units_of(before);
-  std::vector<std::uint64_t> faults;
-  for (const TaskProfile& task : report.profiles) faults.push_back(task.faults.count);
+/// Has the tasks turned off and killed, and hears of everything that happens meanwhile: the status after that.
+std::optional<Json> Attendance::await_end() {
   if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR1);
   auto after = line_.ask("status", Json::object());
   for (const Nanoseconds until = clock_.now() + kEndLimit; after && any_lives(*after) && clock_.now() < until;) {
     clock_.wait_until(clock_.now() + kStartLook);
     after = line_.ask("status", Json::object());
   }
+  look_at_events();
+  return after ? std::optional<Json>(*after) : std::nullopt;
+}
+
+/// Takes what the last methods of the tasks left: what fails there belongs to the run.
+void Attendance::judge_end(RunReport& report, const Json& before) {
+  std::vector<UnitFate> units = units_of(before);
+  std::vector<std::uint64_t> faults;
+  for (const TaskProfile& task : report.profiles) faults.push_back(task.faults.count);
+  auto after = await_end();
   const auto ended = after ? profiles(before["origin_ns"]) : std::vector<TaskProfile>();
   for (std::size_t t = 0; t < std::min(ended.size(), report.profiles.size()); ++t) {
     TaskProfile& task = report.profiles[t];  // cycles and misses are those up to the end of the run
@@ -288,9 +308,19 @@ void Attendance::judge_end(RunReport& report, const Json& before) {
     const bool is_new = was.value("alive", false) && end.is_string() && end != was.value("last_end", Json());
     if (is_new && end != "ended with status 0") units[r].bad_end = end.get<std::string>();
   }
-  report.verdict = judge_run({report.profiles, faults, units, report.is_flag_up, run_.strict});
+  report.verdict = judge_run({report.profiles, faults, units, report.is_flag_up, run_.strict, not_off_});
   if (ended.empty() && !names_.tasks.empty())
     report.verdict.failures.emplace_back("nobody answered at the end: how the tasks ended is not known");
+}
+
+int Attendance::refuse(const Error& error) {
+  const Output output = refused(error, run_.json);
+  std::fputs(output.out.c_str(), out_);
+  std::fputs(output.err.c_str(), err_);
+  std::fflush(out_);
+  (void)await_end();
+  for (const NotOff& one : not_off_) std::fprintf(err_, "FAILED: %s: %s\n", one.task.c_str(), one.text.c_str());
+  return output.code;
 }
 
 int Attendance::report(RunEnd end) {
@@ -337,12 +367,7 @@ int Attendance::report(RunEnd end) {
 
 int attend(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err) {
   Attendance attendance(request, sink, out, err);
-  if (auto begun = attendance.begin(); !begun) {
-    const Output output = refused(begun.error(), request.run.json);
-    std::fputs(output.out.c_str(), out);
-    std::fputs(output.err.c_str(), err);
-    return output.code;
-  }
+  if (auto begun = attendance.begin(); !begun) return attendance.refuse(begun.error());
   return attendance.report(attendance.attend());
 }
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "chimera/config/not_off.h"
 #include "chimera/desk/blanks.h"
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/run_loop.h"
@@ -161,6 +162,9 @@ class Measuring {
     for (std::string& remark : made.remarks)
       if (remark.ends_with('\n')) remark.pop_back();
     loop_->shut_down();
+    for (const Task& task : application_.tasks().tasks())
+      if (task.faults.off_count > 0 && made.failure.empty())
+        made.failure = std::string(task.spec->name) + ": " + not_off_text(task.faults.off_method, task.faults.off_text);
   }
 
   const MeasuredRequest& request_;

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/config/not_off.h"
 #include "chimera/desk/under_way.h"
 #include "chimera/platform/process.h"
 
@@ -22,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr long kLookEvery = 100'000'000;  // ns
-constexpr auto kLimit = std::chrono::seconds(kMakingLimitSeconds);
+constexpr std::chrono::seconds kMakingLimit{kMakingLimitSeconds}, kEndingLimit{kEndingLimitSeconds};
 
 /// Somebody steps through this process: the code that he wants to see stays in it.
 bool is_debugged() {
@@ -65,23 +66,41 @@ class HeldSignals {
 /// Something that must not go on for longer than the limit.
 class Patience {
  public:
+  explicit Patience(std::chrono::seconds limit) : limit_(limit) {}
   /// True when `word` has been the same, and not 0, for the limit.
-  bool is_over(std::uint32_t word) {
+  bool is_over(std::uint64_t word) {
     if (word == 0 || word != word_) word_ = word, since_ = Clock::now();
-    return word != 0 && Clock::now() - since_ > kLimit;
+    return word != 0 && Clock::now() - since_ > limit_;
   }
 
  private:
-  std::uint32_t word_ = 0;
+  const std::chrono::seconds limit_;
+  std::uint64_t word_ = 0;
   Clock::time_point since_ = Clock::now();
+};
+
+/// What has gone on for too long; "" when nothing has.
+class Limits {
+ public:
+  std::string look(const UnderWay& place, bool is_asked) {
+    if (making_.is_over(place.making))
+      return "the run did not end within " + std::to_string(kMakingLimitSeconds) + " s " + place.text();
+    if (!method_.is_over(is_asked || place.is_ending ? place.words() : 0)) return "";
+    const UnderWay::Method method = place.method();
+    const std::string within = " within " + std::to_string(kEndingLimitSeconds) + " s";
+    if (method.task.empty()) return "the run did not end" + within + " of being asked to";
+    return method.task + "." + method.name + " did not return" + within;
+  }
+
+ private:
+  Patience making_{kMakingLimit}, method_{kEndingLimit};
 };
 
 /// Waits for the child; why it was killed, "" when it was not.
 std::string watch(pid_t child, const UnderWay& place, const HeldSignals& held, int& status) {
-  Patience making;
+  Limits limits;
   std::string why;
-  Clock::time_point asked = Clock::time_point::max();
-  std::uint32_t then = 0;
+  bool is_asked = false;
   while (true) {
     siginfo_t about{};
     const int number = held.next(about);
@@ -89,12 +108,10 @@ std::string watch(pid_t child, const UnderWay& place, const HeldSignals& held, i
     if (ended == child || (ended < 0 && errno != EINTR)) return why;
     if (number == SIGINT || number == SIGTERM) {
       if (about.si_code <= 0) ::kill(child, number);  // that of a terminal has reached it already; ours: not reaped
-      if (asked == Clock::time_point::max()) asked = Clock::now(), then = place.running;
+      is_asked = true;
     }
     if (!why.empty()) continue;
-    if (making.is_over(place.making)) why = "did not end within " + std::to_string(kMakingLimitSeconds) + " s";
-    else if (asked != Clock::time_point::max() && Clock::now() - asked > kLimit && place.running == then)
-      why = "did not end within " + std::to_string(kMakingLimitSeconds) + " s of being asked to";
+    why = limits.look(place, is_asked);
     if (!why.empty()) ::kill(child, SIGKILL);  // ours: not reaped
   }
 }
@@ -102,13 +119,13 @@ std::string watch(pid_t child, const UnderWay& place, const HeldSignals& held, i
 }  // namespace
 
 std::string end_text(int status) {
-  if (!WIFSIGNALED(status)) return "ended by itself with exit code " + std::to_string(WEXITSTATUS(status));
+  if (!WIFSIGNALED(status)) return "ended with status " + std::to_string(WEXITSTATUS(status));
   const char* name = ::sigabbrev_np(WTERMSIG(status));
   const std::string number = "ended by signal " + std::to_string(WTERMSIG(status));
   return name == nullptr ? number : number + " (SIG" + name + ")";
 }
 
-int in_own_process(const std::function<int()>& work, const std::function<int(const std::string&)>& died) {
+int in_own_process(const std::function<int()>& work, const std::function<int(const BrokenRun&)>& died) {
   UnderWay* place = is_debugged() ? nullptr : make_shared_under_way();
   if (place == nullptr) return work();
   std::fflush(nullptr);  // or both would write it
@@ -124,10 +141,12 @@ int in_own_process(const std::function<int()>& work, const std::function<int(con
   int status = 0;
   std::string why = watch(child, *place, held, status);
   const bool is_clean = WIFEXITED(status) && place->has_returned;
-  if (why.empty()) why = end_text(status);
   const std::string what = place->text();
+  const UnderWay::Method method = place->making == 0 ? place->method() : UnderWay::Method{};
   release(place);
-  return is_clean ? WEXITSTATUS(status) : died(what.empty() ? why : why + " " + what);
+  if (is_clean) return WEXITSTATUS(status);
+  if (why.empty()) why = "the run " + end_text(status) + (what.empty() ? "" : " " + what);
+  return died({method.task, method.turns_off ? not_off_text(why) : why});
 }
 
 }  // namespace chimera::desk

@@ -19,8 +19,8 @@ namespace {
 /// What was told of the end of a child that does `work`, and 7; its exit code when nothing was.
 std::string end_of(const std::function<int()>& work) {
   std::string told = "returned";
-  const int code = in_own_process(work, [&](const std::string& how) {
-    told = how;
+  const int code = in_own_process(work, [&](const BrokenRun& broken) {
+    told = broken.task.empty() ? broken.text : broken.task + ": " + broken.text;
     return 7;
   });
   return told + " " + std::to_string(code);
@@ -42,18 +42,32 @@ TEST(OwnProcess, AnswersWhatItsWorkReturned) {
 }
 
 TEST(OwnProcess, TellsWhatWasUnderWayWhenItDied) {
-  EXPECT_EQ(end_of([] { return ::raise(SIGKILL); }), "ended by signal 9 (SIGKILL) 7");
+  EXPECT_EQ(end_of([] { return ::raise(SIGKILL); }), "the run ended by signal 9 (SIGKILL) 7");
   EXPECT_EQ(end_of([] {
               show_making(known().making, 0, Making::kLoads);
               return ::raise(SIGKILL);
             }),
-            "ended by signal 9 (SIGKILL) while it loaded /lib/gain.so, the component of task 'amp' 7");
+            "the run ended by signal 9 (SIGKILL) while it loaded /lib/gain.so, the component of task 'amp' 7");
   EXPECT_EQ(end_of([] {
               known().running = 1u << 8 | CHIMERA_CYCLE;
               ::_exit(0);
               return 0;
             }),
-            "ended by itself with exit code 0 in amp.cycle 7");
+            "amp: the run ended with status 0 in amp.cycle 7");
+}
+
+TEST(OwnProcess, TellsThatAMethodWhichTurnsOffDidNotReturn) {
+  EXPECT_EQ(end_of([] {
+              known().running = 1u << 8 | CHIMERA_OFF;
+              return ::raise(SIGKILL);
+            }),
+            "amp: the run ended by signal 9 (SIGKILL) in amp.off: its hardware may not be off 7");
+  EXPECT_EQ(end_of([] {
+              known().serving = 1u << 8 | CHIMERA_KILL;
+              under_way().is_ending = true;
+              return ::pause();
+            }),
+            "amp: amp.kill did not return within 2 s: its hardware may not be off 7");
 }
 
 TEST(OwnProcess, TakesNoWordForGranted) {
@@ -64,7 +78,7 @@ TEST(OwnProcess, TakesNoWordForGranted) {
               place.running = place.serving = place.making = 0xdeadbeef;
               return ::raise(SIGKILL);
             }),
-            "ended by signal 9 (SIGKILL) 7");
+            "the run ended by signal 9 (SIGKILL) 7");
 }
 
 }  // namespace

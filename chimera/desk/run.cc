@@ -17,6 +17,7 @@
 #include "chimera/desk/run_loop.h"
 #include "chimera/desk/run_plan.h"
 #include "chimera/desk/run_report.h"
+#include "chimera/desk/under_way.h"
 #include "chimera/desk/watch_plot.h"
 #include "chimera/runtime/tap_ring.h"
 
@@ -202,7 +203,11 @@ int Session::report(RunEnd end) {
   const Nanoseconds now = loop_->now();
   std::vector<std::uint64_t> faults_before;
   for (const Task& task : application_.tasks().tasks()) faults_before.push_back(task.faults.count);
+  under_way().running = 0;  // of the run, which is over
+  under_way().is_ending = true;
   loop_->shut_down();
+  under_way().is_ending = false;
+  under_way().running = under_way().serving = 0;
   // What `off` and `kill` cost, and their faults, too.
   report.profiles = profiles_of(application_.tasks(), states, application_.configuration(), now);
   report.verdict = judge_run({report.profiles, faults_before, {}, report.is_flag_up, request_.strict});

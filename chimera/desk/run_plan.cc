@@ -135,6 +135,14 @@ int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, st
   return output.code;
 }
 
+int tell_broken(const RunRequest& request, const BrokenRun& broken, std::FILE* out, std::FILE* err) {
+  if (broken.task.empty() || request.json)
+    return refuse_run(request, {ErrorCode::kRefused, {broken.text}, {broken.task.empty() ? request.file : broken.task}},
+                      out, err);
+  std::fprintf(err, "FAILED: %s: %s\n", broken.task.c_str(), for_terminal(broken.text).c_str());
+  return kRefused;
+}
+
 std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out,
                                 std::FILE* err, int* code) {
   const auto library = workplace.library();

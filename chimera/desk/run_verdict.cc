@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "chimera/config/json_text.h"
+#include "chimera/config/not_off.h"
 
 namespace chimera::desk {
 namespace {
@@ -29,7 +30,14 @@ std::uint64_t add_up(RunVerdict& verdict, std::span<const TaskProfile> tasks, co
   return sum;
 }
 
-void add_unit(RunVerdict& verdict, const UnitFate& unit) {
+void add_not_off(RunVerdict& verdict, const std::string& task, const std::string& text) {
+  verdict.failures.push_back(task + ": " + text);
+  if (std::find(verdict.not_off.begin(), verdict.not_off.end(), task) == verdict.not_off.end())
+    verdict.not_off.push_back(task);
+}
+
+/// `is_told`: tasks of it that were not turned off say how it ended.
+void add_unit(RunVerdict& verdict, const UnitFate& unit, bool is_told) {
   verdict.restarts += unit.restarts;
   if (unit.restarts > 0) {
     verdict.remarks.push_back(counted(unit.restarts, "restart", "restarts") + " of " + unit.name);
@@ -39,17 +47,24 @@ void add_unit(RunVerdict& verdict, const UnitFate& unit) {
   }
   if (unit.is_given_up)
     verdict.failures.push_back(unit.name + " was given up: its process ended too often, its tasks did not run");
-  if (!unit.bad_end.empty()) verdict.failures.push_back(unit.name + " did not end in order: it " + unit.bad_end);
+  if (!unit.bad_end.empty() && !is_told)
+    verdict.failures.push_back(unit.name + " did not end in order: it " + unit.bad_end);
 }
 
 void add_end(RunVerdict& verdict, const TaskProfile& task, std::uint64_t faults_before) {
   const Method method = task.faults.method;
-  const bool is_of_the_end = method == Method::kOff || method == Method::kKill || method == Method::kError;
   const std::string fault = std::string(method_name(method)) + ": " + task.faults.last.text;
+  const bool is_new = task.faults.count > faults_before;
+  const bool is_told = std::find(verdict.not_off.begin(), verdict.not_off.end(), task.task) != verdict.not_off.end();
   if (task.state == State::kError)
     verdict.failures.push_back(task.task + " was in ERROR at the end" + (task.faults.count > 0 ? ": " + fault : ""));
-  else if (task.faults.count > faults_before && is_of_the_end)
+  else if (is_new && method == Method::kError)
     verdict.failures.push_back(task.task + " failed at the end: " + fault);
+  if (is_told) return;
+  if (task.faults.off_count > 0)
+    add_not_off(verdict, task.task, not_off_text(task.faults.off_method, task.faults.off_text));
+  else if (is_new && turns_off(method))
+    add_not_off(verdict, task.task, not_off_text(method, task.faults.last.text));
 }
 
 std::string json_array(const std::vector<std::string>& texts) {
@@ -71,7 +86,14 @@ RunVerdict judge_run(const RunFacts& facts) {
                            [](const TaskProfile& task) { return task.profile.dropped; });
   verdict.faults = add_up(verdict, facts.tasks, "fault", "faults",
                           [](const TaskProfile& task) { return std::uint64_t{task.faults.count}; });
-  for (const UnitFate& unit : facts.units) add_unit(verdict, unit);
+  for (const NotOff& one : facts.not_off) add_not_off(verdict, one.task, one.text);
+  for (const UnitFate& unit : facts.units) {
+    const bool is_told = std::any_of(facts.tasks.begin(), facts.tasks.end(), [&](const TaskProfile& task) {
+      return task.rtpu == unit.name && std::any_of(facts.not_off.begin(), facts.not_off.end(),
+                                                   [&](const NotOff& one) { return one.task == task.task; });
+    });
+    add_unit(verdict, unit, is_told);
+  }
   if (facts.is_flag_up) verdict.remarks.emplace_back("the illegal-configuration flag is up");
   for (std::size_t t = 0; t < facts.tasks.size(); ++t)
     add_end(verdict, facts.tasks[t], t < facts.faults_before.size() ? facts.faults_before[t] : 0);
@@ -96,7 +118,8 @@ std::string RunVerdict::json() const {
          ", \"strict\": " + (is_strict ? "true" : "false") + ", \"missed\": " + std::to_string(missed) +
          ", \"dropped\": " + std::to_string(dropped) + ", \"faults\": " + std::to_string(faults) +
          ", \"restarts\": " + std::to_string(restarts) + ", \"remarks\": " + json_array(remarks) +
-         ", \"since\": " + json_array(since) + ", \"failures\": " + json_array(failures) + "}";
+         ", \"since\": " + json_array(since) + ", \"not_off\": " + json_array(not_off) +
+         ", \"failures\": " + json_array(failures) + "}";
 }
 
 }  // namespace chimera::desk

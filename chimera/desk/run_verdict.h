@@ -20,6 +20,12 @@ struct UnitFate {
   std::string bad_end = {};        ///< how it ended although all was to be turned off in order; "": in order
 };
 
+/// A task of which `off` or `kill` failed or was never run. Plain value.
+struct NotOff {
+  std::string task;
+  std::string text;  ///< `not_off_text` (chimera/config/not_off.h)
+};
+
 /// Plain value.
 struct RunVerdict {
   std::uint64_t missed = 0;   ///< deadlines, but for those that may be missed
@@ -30,6 +36,7 @@ struct RunVerdict {
   bool is_strict = false;             ///< whatever is not clean is a failure
   std::vector<std::string> remarks;   ///< what was not clean: "20 deadlines missed (pi 12, motor 8)"
   std::vector<std::string> since;     ///< "servo: counted since its restart at 3.214 s"
+  std::vector<std::string> not_off;   ///< tasks whose hardware may not be off
   std::vector<std::string> failures;  ///< what makes the run a failure, strict or not
 
   bool is_clean() const noexcept { return remarks.empty() && failures.empty(); }
@@ -48,6 +55,7 @@ struct RunFacts {
   std::span<const UnitFate> units;
   bool is_flag_up = false;
   bool is_strict = false;
+  std::span<const NotOff> not_off = {};  ///< as told by the subsystem's events; what else the tasks tell is added
 };
 RunVerdict judge_run(const RunFacts& facts);
 

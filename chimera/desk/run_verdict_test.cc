@@ -78,7 +78,8 @@ TEST(RunVerdict, WhatIsBrokenAtTheEndIsAFailureAlways) {
   EXPECT_EQ(error.text(), "not clean: 1 fault (pi 1)\nFAILED: pi was in ERROR at the end: cycle: no sensor\n");
   EXPECT_TRUE(error.is_failure());
   const RunVerdict log = judged({with_fault(task("log"), Method::kKill, "884 rows were not written")});
-  EXPECT_EQ(log.text(), "not clean: 1 fault (log 1)\nFAILED: log failed at the end: kill: 884 rows were not written\n");
+  EXPECT_EQ(log.text(), "not clean: 1 fault (log 1)\nFAILED: log: kill failed: 884 rows were not written: "
+            "its hardware may not be off or released\n");
   EXPECT_TRUE(log.is_failure());
 }
 
@@ -90,6 +91,22 @@ TEST(RunVerdict, AFaultThatWasGotOverFailsOnlyAStrictRun) {
   EXPECT_TRUE(judged({off}, {}, false, false, {0}).is_failure());
 }
 
+TEST(RunVerdict, WhatMayNotBeOffIsToldOnceWithItsCauseWheneverItHappened) {
+  TaskProfile pi = with_fault(task("pi"), Method::kOff, "stuck"), arm = task("arm");
+  pi.rtpu = arm.rtpu = "servo";
+  const NotOff told[] = {{"arm", "servo ended by signal 9 (SIGKILL) in arm.off: its hardware may not be off"}};
+  const UnitFate servo{.name = "servo", .bad_end = "ended by signal 9 (SIGKILL) in arm.off"};
+  const std::vector<TaskProfile> tasks = {pi, arm};
+  const RunVerdict verdict = judge_run({tasks, {}, {&servo, 1}, false, false, told});
+  EXPECT_EQ(verdict.text(), "not clean: 1 fault (pi 1)\n"
+                            "FAILED: arm: servo ended by signal 9 (SIGKILL) in arm.off: its hardware may not be off\n"
+                            "FAILED: pi: off failed: stuck: its hardware may not be off\n");
+  EXPECT_EQ(verdict.not_off, (std::vector<std::string>{"arm", "pi"}));
+  pi.faults.off_count = 1;
+  std::snprintf(pi.faults.off_text, sizeof pi.faults.off_text, "stuck");
+  EXPECT_TRUE(judged({pi}, {}, false, false, {1}).is_failure()) << "also in the middle of a run";
+}
+
 TEST(RunVerdict, ProgramsReadTheSame) {
   TaskProfile pi = task("pi");
   pi.profile.missed = 1;
@@ -97,7 +114,7 @@ TEST(RunVerdict, ProgramsReadTheSame) {
             "{\"clean\": false, \"strict\": true, \"missed\": 1, \"dropped\": 0, \"faults\": 0, \"restarts\": 1, "
             "\"remarks\": [\"1 deadline missed (pi 1)\", \"1 restart of servo\", "
             "\"the illegal-configuration flag is up\"], "
-            "\"since\": [\"servo: what its tasks count is since its restart\"], \"failures\": []}");
+            "\"since\": [\"servo: what its tasks count is since its restart\"], \"not_off\": [], \"failures\": []}");
 }
 
 }  // namespace

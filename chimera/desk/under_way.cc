@@ -7,6 +7,7 @@
 #include <cstring>
 #include <new>
 
+#include "chimera/config/not_off.h"
 #include "chimera/runtime/making.h"
 #include "chimera/task/signal.h"
 
@@ -45,12 +46,19 @@ std::string UnderWay::text() const {
   const std::size_t n = std::min<std::size_t>(n_tasks, kMostTasks);
   if (const std::uint32_t task = task_of_making(making, n); task < n)
     return making_text(making, got(tasks[task].name), got(tasks[task].object));
+  const Method runs = method();
+  return runs.task.empty() ? "" : "in " + runs.task + "." + runs.name;
+}
+
+UnderWay::Method UnderWay::method() const {
+  const std::size_t n = std::min<std::size_t>(n_tasks, kMostTasks);
   for (const std::uint32_t word : {running.load(), serving.load()}) {
-    const std::uint32_t task = (word >> 8) - 1, method = word & 255u;
-    if (word != 0 && task < n && method < CHIMERA_METHODS)
-      return "in " + got(tasks[task].name) + "." + method_name(static_cast<Method>(method));
+    const std::uint32_t task = (word >> 8) - 1, number = word & 255u;
+    if (word == 0 || task >= n || number >= CHIMERA_METHODS) continue;
+    const auto method = static_cast<chimera::Method>(number);
+    return {got(tasks[task].name), method_name(method), chimera::turns_off(method)};
   }
-  return "";
+  return {};
 }
 
 UnderWay& under_way() noexcept { return *written; }

@@ -41,7 +41,7 @@ Result<void> Keeper::start() {
   if (auto started = peers_.start_all(); !started || plan_.face.empty()) return started;
   std::vector<const char*> words;
   for (const std::string& word : plan_.face) words.push_back(word.c_str());
-  auto face = Process::start(words[0], words, {});
+  auto face = Process::start(words[0], words, {}, SIGTERM);  // an early end waits until it listens
   if (!face) return face.error();
   face_ = *std::move(face);
   return {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/cause.h"
 
+#include <cstdio>
 #include <cstring>
 
 #include "chimera/platform/lost_descriptor.h"
@@ -18,8 +19,18 @@ std::string running_text(const ApplicationSpec& spec, std::uint32_t running) {
   return std::string(spec.tasks[task].name) + "." + method_name(static_cast<Method>(method));
 }
 
+std::string hung_text(const ApplicationSpec& spec, const BlockHead& left) {
+  const std::string method = running_text(spec, left.hung);
+  const auto limit = static_cast<double>(left.hung_limit.load());
+  char within[48];
+  std::snprintf(within, sizeof within, " did not return within %.3g s", limit * 1e-9);
+  return method.empty() ? "" : method + (limit > 0 ? within : " ended its thread");
+}
+
 std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left,
                        const std::string& made) {
+  if (const std::string hung = left.is_there() ? hung_text(spec, left.head()) : ""; !hung.empty() && ended.code != 0)
+    return "was ended: " + hung;
   std::string text = "ended with status " + std::to_string(ended.code);
   if (ended.by_signal == 0 && ended.code == kDescriptorLost) text += " (its descriptors were closed)";
   if (ended.by_signal != 0) {
@@ -28,12 +39,14 @@ std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, 
   }
   if (!made.empty()) {
     text += " " + made;
-  } else if (left.is_there()) {
+  } else if (left.is_there() && left.head().phase != PeerPhase::kEnded) {
     const std::string running = running_text(spec, left.head().running);
     const std::string service = running_text(spec, left.head().serving);
     if (!running.empty() || !service.empty())
       text += " in " + running + (running.empty() || service.empty() ? "" : " or ") + service;
-  } else {
+    else if (ended.by_signal == 0 && ended.code == 0)
+      text += ", which nobody had told it to";
+  } else if (!left.is_there()) {
     text += " before it was ready";
   }
   return text + (ended.core_dumped != 0 ? "; core dumped" : "");

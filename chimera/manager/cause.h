@@ -14,8 +14,13 @@ namespace chimera::manager {
 /// setup.
 std::string running_text(const ApplicationSpec& spec, std::uint32_t running);
 
-/// "ended by signal 11 (SIGSEGV) in pid.cycle; core dumped". `left` is the block of the incarnation that ended; not
-/// there: it never showed one. `made` is what it loaded or constructed then ("while it loaded ..."). Context: setup.
+/// "pid.off did not return within 2 s" of a unit that gave itself up, and "pid.cycle ended its thread"; "" when it did
+/// not. Context: setup.
+std::string hung_text(const ApplicationSpec& spec, const BlockHead& left);
+
+/// "ended by signal 11 (SIGSEGV) in pid.cycle; core dumped", or "was ended: pid.off did not return within 2 s". `left`
+/// is the block of the incarnation that ended; not there: it never showed one. `made` is what it loaded or constructed
+/// then ("while it loaded ..."). Context: setup.
 std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left,
                        const std::string& made = {});
 

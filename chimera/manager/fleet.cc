@@ -3,10 +3,12 @@
 
 #include <utility>
 
+#include "chimera/config/not_off.h"
 #include "chimera/manager/cause.h"
 #include "chimera/manager/credible.h"
 #include "chimera/manager/post_text.h"
 #include "chimera/manager/subject_status.h"
+#include "chimera/manager/unfinished.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/runtime/making.h"
 
@@ -71,10 +73,16 @@ void Fleet::ended(const KeeperMessage& message, Events& events) {
   }
   record.is_alive = record.is_up = record.is_away = false;
   record.hang.clear();
-  record.last_end = cause_text(world_.spec(), message,
-                               left_words ? world_.peers[rtpu].block() : BlockView(), what_it_made(rtpu));
+  const BlockView left = left_words ? world_.peers[rtpu].block() : BlockView();
+  record.last_end = cause_text(world_.spec(), message, left, what_it_made(rtpu));
   if (!record.ended_for.empty()) record.last_end += ": " + std::exchange(record.ended_for, "");
-  events.push_back(subsystem::RtpuDown{rtpu, message.incarnation, record.last_end});
+  const bool is_known = message.incarnation <= world_.own.block().memory().handled[rtpu.index];  // to a predecessor
+  if (left_words && !is_known)
+    for (const Unfinished& one : unfinished(world_, rtpu, left, record.last_end))
+      world_.tell("not-off", one.task, rtpu, one.text, message.at);
+  const bool is_end = world_.keeper.ending.load(std::memory_order_acquire) != 0;
+  const bool is_orderly = left_words && left.head().phase == PeerPhase::kEnded;
+  events.push_back(subsystem::RtpuDown{rtpu, message.incarnation, record.last_end, is_end, is_orderly});
 }
 
 /// What a unit that never showed a block was loading or constructing.
@@ -144,6 +152,15 @@ void Fleet::log(const Post& post, RtpuId rtpu) {
   if (const std::string missing = is_illegal_set ? world_.logic.missing() : ""; !missing.empty())
     text += ": " + missing;
   world_.tell(event_kind(post.happening), has_task ? post.task : TaskId{}, rtpu, std::move(text), post.at);
+  const auto method = static_cast<Method>(post.detail);
+  if (has_task && post.happening == Happening::kFault && turns_off(method))
+    tell_not_off(post.task, method, rtpu, post.at);
+}
+
+void Fleet::tell_not_off(TaskId task, Method method, RtpuId rtpu, Nanoseconds at) {
+  const FaultRecord fault = world_.peers.fault(task);
+  const char* words = fault.method == method ? fault.last.text : "its words were replaced by those of a later fault";
+  world_.tell("not-off", task, rtpu, not_off_text(method, words), at);
 }
 
 void Fleet::look_at_counters(Nanoseconds at) {

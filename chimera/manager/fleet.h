@@ -58,6 +58,7 @@ class Fleet {
   void take(const Post& post, RtpuId rtpu, Events& events);
   void see(TaskId task, Events& events, bool always = false);
   void log(const Post& post, RtpuId rtpu);
+  void tell_not_off(TaskId task, Method method, RtpuId rtpu, Nanoseconds at);
   void count(TaskId task, Nanoseconds at);
   std::string what_it_made(RtpuId rtpu) const;
 

@@ -22,12 +22,12 @@ struct ProcessEnd {
 class Process {
  public:
   /// Starts `program` by exec with `arguments` (argv[0] included; a null pointer is added). descriptors[i] becomes
-  /// descriptor 3 + i of the child; nothing else but 0, 1 and 2 is inherited. The signal mask of the child is empty,
-  /// SIGINT and SIGHUP ignored: those of a terminal reach everybody, and the parent answers them. Refuses with the
-  /// system's reason. Call from one thread of the process only, the one that lives longest: a child that follows its
-  /// parent follows that thread.
+  /// descriptor 3 + i of the child; nothing else but 0, 1 and 2 is inherited. The signal mask of the child is empty but
+  /// for the signal `blocked` (0: none), which waits until the child is ready for it; SIGINT and SIGHUP are ignored:
+  /// those of a terminal reach everybody, and the parent answers them. Refuses with the system's reason. Call from one
+  /// thread of the process only, the one that lives longest: a child that follows its parent follows that thread.
   static Result<Process> start(const char* program, std::span<const char* const> arguments,
-                               std::span<const int> descriptors) noexcept;
+                               std::span<const int> descriptors, int blocked = 0) noexcept;
 
   Process() noexcept = default;
   Process(Process&& other) noexcept

@@ -31,6 +31,19 @@ bool has_arrived(Signal signal, const SignalReport& report) noexcept {
   }
 }
 
+// The first that a signal calls.
+Method method_of(Signal signal) noexcept {
+  switch (signal) {
+    case Signal::kSpawn: return Method::kInit;
+    case Signal::kOn: return Method::kOn;
+    case Signal::kOff: return Method::kOff;
+    case Signal::kKill: return Method::kKill;
+    case Signal::kClear: return Method::kClear;
+    case Signal::kReinit: return Method::kReinit;
+    default: return Method::kCycle;
+  }
+}
+
 }  // namespace
 
 Edge::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
@@ -135,7 +148,7 @@ void Edge::act(std::span<const Post> step, Releases& releases, Nanoseconds now) 
   for (const Post& post : step) {
     const bool is_echo = post.signal == Signal::kReinit && post.detail != 0;
     if (is_echo && !tasks_.uses_changed_constants(post.task)) continue;
-    const SignalReport done = releases.signal({&post.task, 1}, post.signal, now);
+    const SignalReport done = carry_out(releases, {&post.task, 1}, post.signal, now);
     if (done.is_deferred) commands_[post.task.index] = post;
     else report(post, done, now);
   }
@@ -144,7 +157,7 @@ void Edge::act(std::span<const Post> step, Releases& releases, Nanoseconds now) 
 void Edge::turn_on(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept {
   FixedVector<TaskId, kWaiting> tasks;
   for (const Post& post : step) (void)tasks.try_push(post.task);
-  const SignalReport done = releases.signal({tasks.begin(), tasks.size()}, Signal::kOn, now);
+  const SignalReport done = carry_out(releases, {tasks.begin(), tasks.size()}, Signal::kOn, now);
   for (const Post& post : step) {
     const State after = tasks_.tasks()[post.task.index].state;
     const Refusal why = post.task == done.task ? done.why : Refusal::kNone;
@@ -206,9 +219,22 @@ void Edge::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
 void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
   others_.tell(Happening::kHang, task, static_cast<std::uint64_t>(used.count), now);
   hangs_[task.index] = true;
-  others_.die();
+  others_.keep_last_words(true);
+  hanging_used_ = used.count;
+  hanging_job_ = (task.index + 1) << 8 | CHIMERA_CYCLE;
   hanging_ = true;
   wake_supervisor();
+}
+
+// Carries out a signal in sight of whoever supervises: its method may not come to its end.
+SignalReport Edge::carry_out(Releases& releases, std::span<const TaskId> tasks, Signal signal,
+                             Nanoseconds now) noexcept {
+  acting_ = (tasks[0].index + 1) << 8 | static_cast<std::uint32_t>(method_of(signal));
+  ++progress_;
+  const SignalReport done = releases.signal(tasks, signal, now);
+  acting_ = 0;
+  ++progress_;
+  return done;
 }
 
 void Edge::wake_supervisor() noexcept {
@@ -221,7 +247,7 @@ void Edge::stop_all(Releases& releases, Nanoseconds now) noexcept {
   for (const TaskId id : ending_order_) {
     Task& task = tasks_.tasks()[id.index];
     if (!tasks_.is_mine(id) || task.state != State::kOn) continue;
-    if (releases.may_touch(id)) (void)releases.signal({&id, 1}, Signal::kOff, now);
+    if (releases.may_touch(id)) (void)carry_out(releases, {&id, 1}, Signal::kOff, now);
     else tasks_.defer(task, Signal::kOff);  // its job is late, and is not waited for
   }
 }
@@ -238,6 +264,7 @@ void Edge::show_profiles() noexcept {
 }
 
 void Edge::go_on_ending(Releases& releases, Nanoseconds now) noexcept {
+  others_.keep_last_words(ends_alone_);
   if (!has_begun_ending_) {
     has_begun_ending_ = true;
     patience_ = now + method_limit_;
@@ -263,9 +290,8 @@ bool Edge::turn_off_next(Releases& releases, Nanoseconds now) noexcept {
       if (now < patience_ && !hangs_[id.index]) return false;
       continue;
     }
-    (void)releases.signal({&id, 1}, Signal::kOff, now);
+    (void)carry_out(releases, {&id, 1}, Signal::kOff, now);
     patience_ = now + method_limit_;
-    ++progress_;
   }
   return true;
 }
@@ -282,8 +308,7 @@ bool Edge::kill_next(Releases& releases, Nanoseconds now) noexcept {
       is_done = is_done && hangs_[id.index];
       continue;
     }
-    ++progress_;
-    if (releases.signal({&id, 1}, Signal::kKill, now).is_deferred) return false;
+    if (carry_out(releases, {&id, 1}, Signal::kKill, now).is_deferred) return false;
   }
   return is_done;
 }

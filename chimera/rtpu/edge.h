@@ -37,10 +37,19 @@ class Edge final : public EdgeGuest {
   /// Before a wait: shows what the tasks cost, a few of them at a time.
   void show_profiles() noexcept;
 
-  /// From now on everything ends. Any thread; ring the bell afterwards.
-  void end() noexcept { ending_ = true; }
-  /// How many methods of the end are done: whoever supervises sees it grow. Any thread.
+  /// From now on all tasks of the unit end. `is_alone`: the others go on, and a successor brings back what is ON now;
+  /// may be said again. Any thread; ring the bell afterwards.
+  void end(bool is_alone) noexcept {
+    ends_alone_ = is_alone;
+    ending_ = true;
+  }
+  /// Grows with each method that an edge begins or is done with: for whoever supervises. Any thread.
   std::uint32_t progress() const noexcept { return progress_; }
+  /// The method that an edge has called, as BlockHead::running; 0: none. Any thread.
+  std::uint32_t acting() const noexcept { return acting_; }
+  /// The job that does not end, likewise, and what it has used. After has_hanging(). Any thread.
+  std::uint32_t hanging() const noexcept { return hanging_job_; }
+  Nanoseconds hanging_used() const noexcept { return {hanging_used_}; }
   /// Set when all tasks are killed: the loop's RunOptions::stop.
   const std::atomic<bool>& is_over() const noexcept { return over_; }
 
@@ -57,6 +66,7 @@ class Edge final : public EdgeGuest {
   void report(const Post& signal, const SignalReport& report, Nanoseconds now) noexcept;
   void report(const Post& signal, State before, State after, Refusal why, bool accepted, Nanoseconds now) noexcept;
   void go_on_ending(Releases& releases, Nanoseconds now) noexcept;
+  SignalReport carry_out(Releases& releases, std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
   bool turn_off_next(Releases& releases, Nanoseconds now) noexcept;
   bool kill_next(Releases& releases, Nanoseconds now) noexcept;
   void wake_supervisor() noexcept;
@@ -78,9 +88,12 @@ class Edge final : public EdgeGuest {
   std::size_t next_off_ = 0;       // in ending_order_
   Nanoseconds patience_;           // with the tasks of others, while ending
   std::atomic<bool> ending_{false};
+  std::atomic<bool> ends_alone_{false};
   std::atomic<bool> hanging_{false};
+  std::atomic<std::uint32_t> hanging_job_{0};
+  std::atomic<std::int64_t> hanging_used_{0};
   std::atomic<bool> over_{false};
-  std::atomic<std::uint32_t> progress_{0};
+  std::atomic<std::uint32_t> progress_{0}, acting_{0};
 };
 
 }  // namespace chimera

@@ -278,12 +278,12 @@ TEST_F(EdgeTest, AManagerThatIsReplacedIsServedAndItsPredecessorsSignalsAreNot) 
 
 TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllUnits) {
   all_on();
-  first().edge->end();
+  first().edge->end(false);
   units->change();
   units->run(milliseconds(3));
   EXPECT_EQ(first().state(kKiller), State::kOff) << "nobody comes before it";
   EXPECT_EQ(first().state(kSource), State::kOn) << "the follower in the other unit is still ON";
-  second().edge->end();
+  second().edge->end(false);
   units->change();
   units->run(milliseconds(10));
   EXPECT_EQ(second().state(kFollower), State::kNotCreated);
@@ -294,7 +294,7 @@ TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllUnits) {
 
 TEST_F(EdgeTest, TheEndDoesNotWaitForEverForAnotherUnit) {
   all_on();
-  first().edge->end();
+  first().edge->end(false);
   units->change();
   units->run(milliseconds(1100));
   EXPECT_TRUE(first().edge->is_over());

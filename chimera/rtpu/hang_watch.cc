@@ -12,6 +12,15 @@ bool HangWatch::loop_hangs(std::uint32_t running, std::uint64_t beats, Nanosecon
   return now - beaten_at_ > limit_;
 }
 
+bool HangWatch::method_hangs(std::uint32_t method, std::uint32_t progress, Nanoseconds now) noexcept {
+  if (method == 0 || method != method_ || progress != method_progress_) {
+    method_ = method;
+    method_progress_ = progress;
+    method_at_ = now;
+  }
+  return now - method_at_ > limit_;
+}
+
 bool HangWatch::end_hangs(std::uint32_t progress, Nanoseconds now) noexcept {
   if (progress != progress_) {
     progress_ = progress;

@@ -19,6 +19,13 @@ class HangWatch {
   /// ended. Context: main thread; wait-free.
   bool loop_hangs(std::uint32_t running, std::uint64_t beats, Nanoseconds now) noexcept;
 
+  /// True when one method that an edge or the service thread called has been under way for longer than the limit.
+  /// `method` is the one (0: none), `progress` grows with each that begins or ends. Context: main thread; wait-free.
+  bool method_hangs(std::uint32_t method, std::uint32_t progress, Nanoseconds now) noexcept;
+
+  /// For how long one method may take.
+  Nanoseconds limit() const noexcept { return limit_; }
+
   /// From here on the unit ends. Context: main thread; wait-free.
   void begin_end(Nanoseconds now) noexcept { progress_at_ = now; }
   /// True when no method of the end has come to its own end for two limits and 100 ms: what waits for others waits one
@@ -28,8 +35,8 @@ class HangWatch {
  private:
   const Nanoseconds limit_;
   std::uint64_t beats_ = 0;
-  std::uint32_t running_ = 0;
-  Nanoseconds beaten_at_;
+  std::uint32_t running_ = 0, method_ = 0, method_progress_ = 0;
+  Nanoseconds beaten_at_, method_at_;
   std::uint32_t progress_ = 0;
   Nanoseconds progress_at_;
 };

@@ -33,6 +33,15 @@ TEST_F(HangWatchTest, AJobThatEndsOrAnotherMethodBeginsTheLimitAnew) {
   EXPECT_TRUE(watch.loop_hangs(kOffOfFirst, 8, now + milliseconds(1701)));
 }
 
+TEST_F(HangWatchTest, OneMethodOfAnEdgeMayTakeTheLimit) {
+  EXPECT_FALSE(watch.method_hangs(kOffOfFirst, 1, now));
+  EXPECT_FALSE(watch.method_hangs(kOffOfFirst, 1, now + milliseconds(500)));
+  EXPECT_FALSE(watch.method_hangs(kOffOfFirst, 3, now + milliseconds(501))) << "another call of it";
+  EXPECT_FALSE(watch.method_hangs(0, 4, now + seconds(60)));
+  EXPECT_FALSE(watch.method_hangs(kOffOfFirst, 5, now + seconds(61)));
+  EXPECT_TRUE(watch.method_hangs(kOffOfFirst, 5, now + seconds(61) + milliseconds(501)));
+}
+
 TEST_F(HangWatchTest, AnEndInWhichNothingGetsDoneHangsAfterTwoLimitsAndAMargin) {
   watch.begin_end(now);
   EXPECT_FALSE(watch.end_hangs(0, now + milliseconds(1100)));

@@ -77,7 +77,7 @@ std::uint32_t Others::flag_word() const noexcept {
 }
 
 void Others::changed() noexcept {
-  if (tasks_ == nullptr || is_dying_) return;  // set-up; the last words are said
+  if (tasks_ == nullptr || keeps_last_words_) return;  // set-up; the last words are said
   bool any = false;
   for (const Task& task : tasks_->tasks()) {
     if (!tasks_->is_mine(task.id)) continue;
@@ -96,8 +96,10 @@ void Others::changed() noexcept {
     post.after = now.state;
     tell(post);
   }
-  const std::uint32_t flag = flag_word();
-  if (block_.head().flag.load(std::memory_order_relaxed) != flag) {
+  const std::uint32_t before = block_.head().flag.load(std::memory_order_relaxed);
+  // Whoever ends raises no flag any more: what its tasks lack is what was told to go.
+  const std::uint32_t flag = is_told_to_end() ? flag_word() & before : flag_word();
+  if (before != flag) {
     block_.head().flag.store(flag, std::memory_order_release);
     Post post;
     post.at = LinuxClock().now();
@@ -113,6 +115,10 @@ void Others::changed() noexcept {
   decision_->changes.fetch_add(1, std::memory_order_release);  // pairs with changes(): the words above are seen
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer)
     if (peer != me_) ring(peer);
+}
+
+void Others::keep_last_words(bool keeps) noexcept {
+  if (std::exchange(keeps_last_words_, keeps) && !keeps) changed();
 }
 
 // The flags of those who live; that of the manager also while it is being restarted.

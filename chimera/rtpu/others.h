@@ -21,8 +21,9 @@ class Others final : public Neighbours {
          DecisionPage& decision, const KeeperPage& keeper, Peers& peers);
   /// By whom the states to publish are known. Context: setup.
   void attach(TaskSet& tasks) noexcept { tasks_ = &tasks; }
-  /// From now on nobody is told of states: what was ON when the unit began to end comes back with its successor.
-  void die() noexcept { is_dying_ = true; }
+  /// While it keeps them nobody is told of states: what was ON when the unit began to end alone comes back with its
+  /// successor. When it does not any more, everybody is told. Context: edge.
+  void keep_last_words(bool keeps) noexcept;
 
   State state(TaskId task) const noexcept override;
   GroupReader outputs(TaskId task) const noexcept override;
@@ -53,6 +54,7 @@ class Others final : public Neighbours {
 
  private:
   bool lives(std::uint32_t peer) const noexcept;
+  bool is_told_to_end() const noexcept { return keeper_->ending.load(std::memory_order_acquire) != 0; }
   GroupReader group(std::uint32_t peer, GroupId id) const noexcept;
   void watch_flags() noexcept;
   void let_go_unread() noexcept;
@@ -67,7 +69,7 @@ class Others final : public Neighbours {
   const KeeperPage* keeper_;
   Peers* peers_;
   TaskSet* tasks_ = nullptr;
-  bool is_dying_ = false;
+  bool keeps_last_words_ = false;
   std::vector<std::uint64_t> faults_, notes_;  // by task: of those that were told
   std::vector<Outbox> outboxes_;  // by peer
   std::vector<Inbox> inboxes_;    // by peer

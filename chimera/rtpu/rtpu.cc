@@ -30,7 +30,7 @@
 namespace chimera {
 namespace {
 
-constexpr int kCouldNotStart = 1, kMethodHangs = 3;
+constexpr int kCouldNotStart = 1, kMethodHangs = 3, kTerminated = 5;
 constexpr Nanoseconds kLongBackground = seconds(1);  // what takes less is no news
 constexpr int kSuperviseEveryMs = 50;
 constexpr std::size_t kStackBytes = 256 * 1024;  // locked whole, and given back whole when it dies
@@ -61,8 +61,10 @@ class Rtpu {
   void attend();
   void take_messages();
   void take_peer(const KeeperMessage& message, int descriptor);
-  void end();
+  void end(bool is_alone);
+  bool hangs();
   bool loop_hangs();
+  bool give_up(std::uint32_t method, Nanoseconds waited);
   std::uint64_t jobs_of(std::uint32_t task) const;
 
   std::atomic<std::uint32_t>& bell() { return decision_->bells[start_.peer].word; }
@@ -90,6 +92,7 @@ class Rtpu {
   std::unique_ptr<HangWatch> hang_watch_;
   std::unique_ptr<CyclingThread> cycling_;
   bool is_ending_ = false;
+  bool ends_alone_ = false;    // the others go on
   bool is_giving_up_ = false;  // because a job does not end
   LinuxClock wall_;
 };
@@ -194,17 +197,36 @@ int Rtpu::run() {
   while (!cycling_->has_ended()) {
     listen(kSuperviseEveryMs);
     attend();
-    if (!is_ending_ && loop_hangs()) return kMethodHangs;  // nobody else takes edges
+    if (hangs()) return kMethodHangs;
     if (!is_ending_ && edge_->has_hanging()) {
-      is_giving_up_ = true;
-      end();
+      is_giving_up_ = give_up(edge_->hanging(), edge_->hanging_used());
+      end(true);
     }
-    if (is_ending_ && hang_watch_->end_hangs(edge_->progress(), wall_.now())) return kMethodHangs;
     if (is_giving_up_ && edge_->is_over()) return kMethodHangs;  // but for the job that does not end
   }
   cycling_->join();
   service_->stop();
-  return is_giving_up_ ? kMethodHangs : 0;
+  return is_giving_up_ ? kMethodHangs : ends_alone_ ? kTerminated : 0;
+}
+
+// A method that does not come to its end: nothing else ends it than the end of the process.
+bool Rtpu::hangs() {
+  const Nanoseconds now = wall_.now(), limit = hang_watch_->limit();
+  const BlockHead& head = block_.head();
+  const std::uint32_t running = head.running, serving = is_ending_ ? head.serving.load() : 0;
+  const std::uint32_t acting = edge_->acting() != 0 ? edge_->acting() : serving;
+  if (hang_watch_->method_hangs(acting, edge_->progress(), now))
+    return give_up(running >> 8 == acting >> 8 ? running : acting, limit);  // error, after the one that was called
+  if (loop_hangs()) return give_up(running, limit);
+  const bool end_hangs = is_ending_ && hang_watch_->end_hangs(edge_->progress(), now);
+  return end_hangs && give_up(running != 0 ? running : serving, limit);
+}
+
+// Leaves word of why; always true.
+bool Rtpu::give_up(std::uint32_t method, Nanoseconds waited) {
+  block_.head().hung_limit = waited.count;
+  block_.head().hung = method;
+  return true;
 }
 
 // For whoever watches this process: BlockHead.
@@ -225,7 +247,8 @@ void Rtpu::listen(int timeout_ms) {
   if (fds[0].revents != 0) take_messages();
   if (fds[2].revents != 0) {
     signalfd_siginfo info;
-    while (::read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) end();
+    while (::read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info))
+      end(keeper_->ending.load(std::memory_order_acquire) == 0 && ::getppid() == start_.parent);
   }
 }
 
@@ -236,9 +259,9 @@ void Rtpu::take_messages() {
     if (got == Channel::Got::kNothing) return;
     if (got == Channel::Got::kClosed) {
       channel_ = Channel();
-      return end();
+      return end(false);
     }
-    if (message.kind == KeeperMessage::Kind::kFinish) end();
+    if (message.kind == KeeperMessage::Kind::kFinish) end(false);
     if (message.kind == KeeperMessage::Kind::kPeer) take_peer(message, descriptor);
     if (descriptor >= 0) ::close(descriptor);
   }
@@ -255,11 +278,14 @@ void Rtpu::take_peer(const KeeperMessage& message, int descriptor) {
                  std::string(self().name).c_str(), message.index, offered.error().message.c_str());
 }
 
-void Rtpu::end() {
-  if (is_ending_) return;
+// Alone: told so by a plain SIGTERM, or for a job that does not end. A keeper that is gone or ends everything is the
+// end of all, also of one that ends already.
+void Rtpu::end(bool is_alone) {
+  if (is_ending_ && (is_alone || !ends_alone_)) return;
+  if (!is_ending_) hang_watch_->begin_end(wall_.now());
   is_ending_ = true;
-  hang_watch_->begin_end(wall_.now());
-  edge_->end();
+  ends_alone_ = is_alone;
+  edge_->end(is_alone);
   Doorbell(bell()).ring();
 }
 
@@ -278,6 +304,16 @@ bool Rtpu::loop_hangs() {
 
 }  // namespace
 
+// As somebody wished who is not the keeper: seen by the keeper as what it was.
+static void leave_by_sigterm() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  ::sigaddset(&set, SIGTERM);
+  ::signal(SIGTERM, SIG_DFL);
+  ::raise(SIGTERM);
+  ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
 int run_rtpu(const RtpuStart& start) {
   Rtpu rtpu(start);
   if (auto ready = rtpu.prepare(); !ready) {
@@ -285,6 +321,7 @@ int run_rtpu(const RtpuStart& start) {
     return kCouldNotStart;
   }
   const int code = rtpu.run();
+  if (code == kTerminated) leave_by_sigterm();
   if (code == kMethodHangs) ::_exit(kMethodHangs);  // threads are still in components: nothing can be taken down
   return code;
 }

@@ -16,6 +16,10 @@ void note_fault(Task& task, Method method, Nanoseconds at) noexcept {
   task.faults.at = at;
   task.faults.method = method;
   if (task.faults.last.text[0] == '\0') std::strcpy(task.faults.last.text, "answered with a fault and gave no text");
+  if (method != Method::kOff && method != Method::kKill) return;
+  ++task.faults.off_count;
+  task.faults.off_method = method;
+  std::memcpy(task.faults.off_text, task.faults.last.text, CHIMERA_FAULT_TEXT);
 }
 
 // What the method said of its fault becomes the task's last one.

@@ -56,8 +56,10 @@ struct alignas(64) BlockHead {
   std::atomic<std::uint32_t> seen_changes{0};
   std::atomic<std::uint64_t> lost_posts{0};  ///< events that found no room in the manager's ring
   std::atomic<std::uint64_t> beats{0};       ///< edges passed: one that does not grow is stuck in `running`
+  std::atomic<std::uint32_t> hung{0};        ///< as `running`: the method for whose sake the unit gives itself up
   std::atomic<std::uint32_t> attended{0};    ///< how often its main thread came round: every 50 ms, or it hangs
-  char grant[448] = {};                      ///< one line about real-time rights, zero-terminated
+  std::atomic<std::int64_t> hung_limit{0};   ///< nanoseconds for which that method was waited for
+  char grant[432] = {};                      ///< one line about real-time rights, zero-terminated
   std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method that is called at an edge; 0: none
   std::atomic<std::uint32_t> background{0};  ///< as `running`: the background that is under way longest; 0: none
   std::atomic<std::uint32_t> jobs{0};        ///< cycles of the task in `running` that ended, as the main thread saw

@@ -44,6 +44,7 @@ bool Deaths::take(const RtpuDown& down) {
     return true;
   }
   at_.tell("rtpu-ended", TaskId{}, down.rtpu, at_.name(down.rtpu) + " " + down.cause);
+  if (down.is_end) return true;  // the keeper starts nobody any more, and no manager comes to wonder why
   if (recent(down.rtpu) < kRestartIntensity) restart(down, goals);
   else give_up(down);
   return true;
@@ -89,6 +90,11 @@ void Deaths::give_up(const RtpuDown& down) {
   for (TaskId task : at_.order)
     if (is_of(task, down.rtpu) && goals_.is_pursued(task)) goals_.fail(task, "refused", why);
   at_.tell("rtpu-given-up", TaskId{}, down.rtpu, why);
+  for (TaskId task : at_.order)
+    if (is_of(task, down.rtpu) && was_on_[task.index] && !down.is_orderly)
+      at_.tell("not-off", task, down.rtpu,
+               at_.name(down.rtpu) + " " + down.cause + ", is not restarted, and this task was not turned off: its "
+               "hardware may not be off");
   handled_[down.rtpu.index] = down.incarnation;
   at_.act(RememberHandled{down.rtpu, down.incarnation});
 }

@@ -49,8 +49,10 @@ struct InventoryComplete {};
 struct RtpuUp { RtpuId rtpu; std::uint32_t incarnation = 0; };
 /// The process is dead (proof by pidfd). TaskSeen events with the last words of its segment have come before, also for
 /// one that is found dead at the start. `cause` follows the name in a sentence: "ended by signal 11 (SIGSEGV) in
-/// pid.cycle; core dumped".
-struct RtpuDown { RtpuId rtpu; std::uint32_t incarnation = 0; std::string cause; };
+/// pid.cycle; core dumped". `is_end`: everything ends, and nobody starts it again. `is_orderly`: its tasks were turned
+/// off and killed before.
+struct RtpuDown { RtpuId rtpu; std::uint32_t incarnation = 0; std::string cause; bool is_end = false;
+                  bool is_orderly = false; };
 /// A status word as it is now.
 struct TaskSeen { TaskId task; TaskStatus status; };
 /// What became of a signal that was sent with a command number: one for each task of a Send. TaskSeen of the task, read

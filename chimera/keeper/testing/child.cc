@@ -174,6 +174,10 @@ class Child {
 
 int main(int argc, char** argv) {
   std::signal(SIGTERM, [](int) { told_to_end = 1; });
+  sigset_t held;  // of a face, until it listens
+  ::sigemptyset(&held);
+  ::sigaddset(&held, SIGTERM);
+  ::sigprocmask(SIG_UNBLOCK, &held, nullptr);
   std::signal(SIGSEGV, SIG_DFL);
   if (argc == 3 && std::strcmp(argv[1], "face") == 0) return follow_parent(std::stoi(argv[2]), SIGKILL) ? face() : 10;
   if (argc != 7 || !follow_parent(std::stoi(argv[6]), SIGTERM)) return 10;

@@ -30,7 +30,8 @@ constexpr std::size_t kMaxPassed = 16;
 constexpr int kFirst = 3;  // of the descriptors that are passed on
 
 // In the child, between fork and exec: nothing here may allocate, lock or return.
-[[noreturn]] void become(const char* program, char* const* words, std::span<const int> passed, int failed) noexcept {
+[[noreturn]] void become(const char* program, char* const* words, std::span<const int> passed, int failed,
+                         int blocked) noexcept {
   const int above = kFirst + static_cast<int>(passed.size());
   // Out of the way first: a descriptor to pass on may itself be 3 or 4 here. The copies do not survive exec.
   int copies[kMaxPassed] = {};
@@ -47,9 +48,10 @@ constexpr int kFirst = 3;  // of the descriptors that are passed on
   const int passing_error = good ? 0 : errno;
   for (int number = 1; number < NSIG; ++number) ::signal(number, SIG_DFL);
   for (const int number : {SIGINT, SIGHUP}) ::signal(number, SIG_IGN);
-  sigset_t none;
-  ::sigemptyset(&none);
-  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  sigset_t mask;
+  ::sigemptyset(&mask);
+  if (blocked != 0) ::sigaddset(&mask, blocked);
+  ::sigprocmask(SIG_SETMASK, &mask, nullptr);
   if (good) ::execv(program, words);
   const int error = passing_error != 0 ? passing_error : errno;
   if (::write(report >= 0 ? report : failed, &error, sizeof error) < 0) ::_exit(126);
@@ -65,7 +67,7 @@ Nanoseconds monotonic() noexcept {
 }  // namespace
 
 Result<Process> Process::start(const char* program, std::span<const char* const> arguments,
-                               std::span<const int> descriptors) noexcept {
+                               std::span<const int> descriptors, int blocked) noexcept {
   const Message what = Message() << "program " << program;
   if (arguments.size() > kMaxArguments || descriptors.size() > kMaxPassed)
     return (Message() << what.view() << ": more than " << kMaxArguments << " arguments or " << kMaxPassed
@@ -82,7 +84,7 @@ Result<Process> Process::start(const char* program, std::span<const char* const>
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t pid = ::fork();
-  if (pid == 0) become(program, words, descriptors, failed.fd);
+  if (pid == 0) become(program, words, descriptors, failed.fd, blocked);
   const int fork_error = errno;
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   errno = fork_error;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/unfinished.h"
+
+#include "chimera/config/not_off.h"
+#include "chimera/manager/cause.h"
+
+namespace chimera::manager {
+namespace {
+
+bool is_of(std::uint32_t word, TaskId task) {
+  const std::uint32_t method = word & 255u;
+  return (word >> 8) == task.index + 1 && method < CHIMERA_METHODS && turns_off(static_cast<Method>(method));
+}
+
+}  // namespace
+
+std::vector<Unfinished> unfinished(const World& world, RtpuId rtpu, const BlockView& left, const std::string& cause) {
+  std::vector<Unfinished> found;
+  const BlockHead& head = left.head();
+  if (head.phase == PeerPhase::kEnded) return found;
+  const bool is_end = world.keeper.ending.load(std::memory_order_acquire) != 0;
+  const std::string name = world.name(rtpu);
+  for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) {
+    const TaskId task(t);
+    if (world.spec().tasks[t].rtpu != rtpu) continue;
+    const bool is_culprit = is_of(head.hung, task) || is_of(head.running, task) || is_of(head.serving, task);
+    const bool was_on = left.status(task).state == State::kOn;
+    if (is_culprit && head.hung != 0)
+      found.push_back({task, not_off_text(hung_text(world.spec(), head))});
+    else if (is_culprit)
+      found.push_back({task, not_off_text(name + " " + cause)});
+    else if (is_end && was_on)
+      found.push_back({task, not_off_text(name + " " + cause + " before this task was turned off")});
+  }
+  return found;
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tasks that a real-time unit left without turning them off, of a unit that has ended.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/manager/world.h"
+#include "chimera/rtpu/keeper_message.h"
+
+namespace chimera::manager {
+
+struct Unfinished {
+  TaskId task;
+  std::string text;  ///< `not_off_text` (chimera/config/not_off.h)
+};
+
+/// Those in whose `off` or `kill` the unit died, and, when everything ends, those that were still ON. `left` is the
+/// block of the incarnation that ended, `cause` its `cause_text`. Context: setup.
+std::vector<Unfinished> unfinished(const World& world, RtpuId rtpu, const BlockView& left, const std::string& cause);
+
+}  // namespace chimera::manager
