@@ -10,7 +10,7 @@ namespace chimera::desk {
 
 /// The longest that one object may take to be loaded, or one state to be constructed.
 inline constexpr int kMakingLimitSeconds = 10;
-/// The longest that `off` and `kill` may take at the end, as in real time, and any method of a run that was told to end.
+/// The longest that `off` and `kill` may take at the end, as in real time, and any method of a run told to end.
 inline constexpr int kEndingLimitSeconds = 2;
 
 /// How a run ended that did not come to its end.

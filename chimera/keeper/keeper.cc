@@ -16,7 +16,6 @@ constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, an
 constexpr Nanoseconds kWatchEvery = milliseconds(250);
 constexpr Nanoseconds kManagerPatience = milliseconds(1500);  // it is replaced within 20 ms
 constexpr Nanoseconds kStartPatience = seconds(10);           // until it serves: it verifies the whole description
-constexpr Nanoseconds kUndertakersLimit = milliseconds(100);  // ten times what they wait
 
 }  // namespace
 
@@ -37,7 +36,6 @@ Result<void> Keeper::start() {
   ::sigdelset(&mask, SIGPIPE);
   signals_ = OwnedDescriptor(::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK));
   if (signals_.fd < 0) return system_error(Message("keeper"), "signalfd");
-  adopt_orphans();  // undertakers: a process 1 that reaps nobody is met in containers
   if (auto started = peers_.start_all(); !started || plan_.face.empty()) return started;
   std::vector<const char*> words;
   for (const std::string& word : plan_.face) words.push_back(word.c_str());
@@ -55,8 +53,10 @@ int Keeper::run() {
     while (advance()) {
     }
   }
-  for (const Nanoseconds until = clock_.now() + kUndertakersLimit; bury_orphans() && clock_.now() < until;)
-    clock_.wait_until(clock_.now() + milliseconds(1));
+  face_.signal(SIGKILL);  // it had its time
+  ProcessEnd end;
+  face_.wait(end, kLastLimit.count);
+  peers_.end_all();
   return end_code_ != 0 ? end_code_ : face_code_;
 }
 
@@ -66,7 +66,7 @@ void Keeper::wait() {
     events.push_back({peers_.channel(index), POLLIN, 0});
     events.push_back({peers_.pidfd(index), POLLIN, 0});
   }
-  const Nanoseconds due = std::min({phase_due_, manager_due_, watch_due_});
+  const Nanoseconds due = std::min({phase_due_, manager_due_, watch_due_, peers_.orphans_due()});
   const Nanoseconds left = std::max(due - clock_.now(), Nanoseconds{0});
   const timespec patience{left.count / 1'000'000'000, left.count % 1'000'000'000};
   ::ppoll(events.data(), events.size(), &patience, nullptr);
@@ -101,14 +101,7 @@ void Keeper::look() {
     face_code_ = end.code;
     end_asked_ = true;
   }
-  bury_orphans();
-}
-
-/// True while there are children, alive or dead.
-bool Keeper::bury_orphans() {
-  std::vector<pid_t> held = {face_.pid()};
-  for (std::uint32_t index = 0; index < peers_.size(); ++index) held.push_back(peers_.pid(index));
-  return reap_orphans(held);
+  peers_.look_at_orphans(face_.pid());
 }
 
 /// A manager that never came to serve is not tried for ever: there is nothing running yet that would go on without it.

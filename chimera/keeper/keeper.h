@@ -48,7 +48,6 @@ class Keeper {
   };
 
   void wait();
-  bool bury_orphans();
   void look();
   void count_refusal(Nanoseconds lived);
   void obey(const KeeperMessage& wish);

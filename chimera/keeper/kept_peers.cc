@@ -5,20 +5,63 @@
 #include <array>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 
 #include "chimera/platform/doorbell.h"
+#include "chimera/platform/origin.h"
 
 namespace chimera {
 
 using Kind = KeeperMessage::Kind;
 
+namespace {
+
+constexpr Nanoseconds kDyingLimit = seconds(1);  // for SIGKILL to be carried out
+
+/// What is started while it lives comes from there. Of one thread only: the environment is the whole process's.
+class StartsFrom {
+ public:
+  explicit StartsFrom(const std::string& origin) {
+    const char* before = std::getenv(kOriginVariable);
+    has_before_ = before != nullptr;
+    if (has_before_) before_ = before;
+    ::setenv(kOriginVariable, origin.c_str(), 1);
+  }
+  ~StartsFrom() {
+    if (has_before_) ::setenv(kOriginVariable, before_.c_str(), 1);
+    else ::unsetenv(kOriginVariable);
+  }
+  StartsFrom(const StartsFrom&) = delete;
+  StartsFrom& operator=(const StartsFrom&) = delete;
+
+ private:
+  bool has_before_;
+  std::string before_;
+};
+
+}  // namespace
+
 KeptPeers::KeptPeers(PeerPlan plan) : plan_(std::move(plan)), peers_(plan_.n_rtpus + 1) {}
 
-KeptPeers::~KeptPeers() {
+KeptPeers::~KeptPeers() { end_all(); }
+
+void KeptPeers::end_all() {
   ProcessEnd how;
+  const Nanoseconds until = clock_.now() + kDyingLimit;
   for (Peer& peer : peers_) peer.process.signal(SIGKILL);
-  for (Peer& peer : peers_) peer.process.wait(how, seconds(1).count);
+  for (Peer& peer : peers_) peer.process.wait(how, std::max(until - clock_.now(), Nanoseconds{0}).count);
+  orphans_.end_all(kDyingLimit);
+}
+
+void KeptPeers::look_at_orphans(pid_t other) {
+  std::vector<pid_t> held = {other};
+  for (const Peer& peer : peers_) held.push_back(peer.process.pid());
+  const auto lives = [this](std::string_view origin) {
+    return std::any_of(peers_.begin(), peers_.end(),
+                       [origin](const Peer& peer) { return peer.process.is_held() && peer.origin == origin; });
+  };
+  orphans_.look(held, lives, clock_.now());
 }
 
 Result<void> KeptPeers::start_all() {
@@ -57,6 +100,8 @@ Result<void> KeptPeers::start(std::uint32_t index) {
                              keeper_.descriptor(),      plan_.listening, plan_.bundle};
   publish_life(index, incarnation);  // before it can look
   ring_all();
+  peer.origin = orphans_.prefix() + numbers[0] + "." + numbers[1];
+  const StartsFrom origin(peer.origin);
   auto process = Process::start(program.c_str(), words, std::span(passed).first(is_manager ? 6 : 4));
   if (!process) return process.error();
   peer.process = *std::move(process);

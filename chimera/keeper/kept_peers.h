@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chimera/base/result.h"
+#include "chimera/keeper/orphans.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/platform/linux/owned_descriptor.h"
@@ -30,7 +31,6 @@ struct PeerPlan {
 class KeptPeers {
  public:
   explicit KeptPeers(PeerPlan plan);
-  /// Nobody outlives it.
   ~KeptPeers();
   KeptPeers(const KeptPeers&) = delete;
   KeptPeers& operator=(const KeptPeers&) = delete;
@@ -49,6 +49,11 @@ class KeptPeers {
   void beat() noexcept { page().beats.fetch_add(1, std::memory_order_release); }
   /// Tells every rtpu to end its tasks; from here on everybody sees that it ends.
   void finish_rtpus();
+  /// Ends what dead rtpus left behind; `other` is a child of somebody else in this process. Due again at orphans_due().
+  void look_at_orphans(pid_t other);
+  Nanoseconds orphans_due() const noexcept { return orphans_.due(); }
+  /// SIGKILL for whoever is left, and for what they left behind: nobody outlives it. Blocks for 2 s at most.
+  void end_all();
 
   std::uint32_t size() const noexcept { return plan_.n_rtpus + 1; }
   std::uint32_t manager() const noexcept { return plan_.n_rtpus; }
@@ -71,6 +76,7 @@ class KeptPeers {
     OwnedDescriptor segment;                     // of its last incarnation that made one
     std::uint32_t segment_incarnation = 0;
     KeeperMessage last;                     // kStarted or kEnded: what a new manager is told
+    std::string origin;                     // of its last incarnation, and of what that starts
   };
 
   KeeperPage& page() const noexcept { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
@@ -85,6 +91,7 @@ class KeptPeers {
 
   const PeerPlan plan_;
   LinuxClock clock_;
+  Orphans orphans_;
   SharedPages decision_;
   MemoryRegion keeper_;
   std::vector<Peer> peers_;

@@ -112,6 +112,7 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
   world_->keeper_pid = keeper_pid;
   fleet_ = std::make_unique<Fleet>(*world_);
   watch_ = std::make_unique<UnitWatch>(*world_);
+  health_ = std::make_unique<UnitHealth>(*world_);
   auto bell = BellWatch::start(Doorbell(mapped_->decision_page().bells[world_->own.peer()].word));
   if (!bell) return bell.error();
   bell_ = *std::move(bell);
@@ -177,6 +178,7 @@ void Driver::take(const KeeperMessage& message, int passed) {
 void Driver::look() {
   Events events;
   fleet_->look(events);
+  health_->look(now());  // before a task of a unit that came up is ON
   feed(events);
   if (!is_ready_ && (fleet_->all_up() || now() - begun_ > kPatience)) become_ready();
 }

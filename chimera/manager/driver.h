@@ -9,6 +9,7 @@
 
 #include "chimera/manager/bell_watch.h"
 #include "chimera/manager/fleet.h"
+#include "chimera/manager/unit_health.h"
 #include "chimera/manager/unit_watch.h"
 #include "chimera/manager/world.h"
 #include "chimera/platform/channel.h"
@@ -84,6 +85,7 @@ class Driver {
   std::unique_ptr<Fleet> fleet_;
   std::unique_ptr<UnitWatch> watch_;
   std::uint64_t keeper_beats_ = 0;  // that were answered
+  std::unique_ptr<UnitHealth> health_;
   std::unique_ptr<BellWatch> bell_;
   std::map<std::uint64_t, Answered> waiting_;
   std::uint64_t last_command_ = 0;

@@ -78,6 +78,9 @@ Json rtpu_json(const World& world, RtpuId rtpu) {
                {"given_up", is_given_up(world, rtpu)},
                {"remedy", is_given_up(world, rtpu) ? or_null(world.logic.way_back(rtpu)) : Json()},
                {"lost_events", 0},
+               {"resident_bytes", record.resident_bytes},
+               {"first_resident_bytes", record.first_resident_bytes},
+               {"lost_rights", record.is_alive ? or_null(record.lost_rights) : Json()},
                {"flag", false}};
   if (!segment.is_there()) return json;
   const BlockHead& head = segment.block().head();

@@ -78,6 +78,8 @@ void add_producer(const World& world, TaskId task, VariableFacts& facts) {
   if (const PeerSegment& segment = world.peers[spec.rtpu]; segment.is_there()) {
     const Profile profile = segment.block().profile(task);
     facts.timing = timing_text(profile);
+    if (rtpu.is_alive && !rtpu.lost_rights.empty())
+      facts.timing += (facts.timing.empty() ? "" : ", ") + facts.rtpu + ": " + rtpu.lost_rights;
     facts.waits_for_events = spec.server && profile.events == 0;
   }
   for (const PortSpec& port : spec.ports)

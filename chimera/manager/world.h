@@ -28,6 +28,8 @@ struct RtpuRecord {
   bool is_away = false;        ///< alive, but does not run: nothing of what it shows is of now
   std::string hang;            ///< what does not run or end: "log.init for 2.0 s"; "": nothing
   std::string ended_for;       ///< why this manager had it ended; "": it had not
+  std::uint64_t resident_bytes = 0, first_resident_bytes = 0;  ///< now, and when it was ON; 0: not known
+  std::string lost_rights;     ///< what of its real-time rights is not as granted any more
 };
 
 /// Owned by the driver; the rest reads, and acts through publish_operator(), raise_flag() and tap().

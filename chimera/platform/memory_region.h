@@ -32,6 +32,9 @@ class MemoryRegion {
   /// The bytes to write. Empty when this mapping is read-only.
   std::span<std::byte> writable() const noexcept;
   std::span<const std::byte> bytes() const noexcept { return {base_, size_}; }
+  /// A child that this process forks from now on does not have these bytes: it ends by SIGSEGV where it goes on as if
+  /// it were its parent. False when the system refuses. Context: setup.
+  bool keep_from_children() const noexcept;
   /// To hand on: by inheritance or over a Unix socket. Owned by the region.
   int descriptor() const noexcept { return descriptor_; }
 

@@ -53,11 +53,6 @@ class Process {
 /// From now on, whoever loses its parent among this process's descendants becomes its child. Context: setup.
 bool adopt_orphans() noexcept;
 
-/// Reaps the ended children that are not among `held`: those of which somebody has a Process, and reaps it himself.
-/// Comes to a halt at one of them that has ended; call it again then. True: there are children left. Never blocks.
-/// Context: setup.
-bool reap_orphans(std::span<const pid_t> held) noexcept;
-
 /// By a child: from now on it is sent `signal` when its parent dies. False when the parent is not `parent` (any more):
 /// the caller should end. Context: setup.
 bool follow_parent(pid_t parent, int signal) noexcept;

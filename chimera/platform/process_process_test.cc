@@ -169,35 +169,6 @@ TEST(Process, AChildFollowsItsParent) {
   ::close(ends[0]);
 }
 
-// In a process of its own: who adopts orphans does so for good.
-TEST(Process, OrphansAreAdoptedAndReapedButNotWhatSomebodyHolds) {
-  const pid_t adopter = ::fork();
-  if (adopter == 0) {
-    if (!adopt_orphans() || reap_orphans({})) ::_exit(1);  // there is no child yet
-    const std::array<const char*, 1> words = {"true"};
-    auto held = Process::start("/bin/true", words, {});
-    const pid_t parent = ::fork();
-    if (parent == 0) ::_exit(::fork() < 0 ? 1 : 0);  // its child ends as an orphan, or before it
-    ProcessEnd end;
-    pollfd ended{held->pidfd(), POLLIN, 0};
-    ::poll(&ended, 1, 20'000);
-    ::waitpid(parent, nullptr, 0);
-    const pid_t pids[] = {held->pid()};
-    if (!reap_orphans(pids)) ::_exit(2);
-    if (!held->has_ended(end) || end.code != 0) ::_exit(3);  // it was left to its holder
-    for (int left = 20'000; reap_orphans({}); --left) {
-      if (left == 0) ::_exit(4);
-      const timespec ms{0, 1'000'000};
-      ::nanosleep(&ms, nullptr);
-    }
-    ::_exit(::waitpid(-1, nullptr, WNOHANG) == -1 ? 0 : 5);
-  }
-  int status = -1;
-  ::waitpid(adopter, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 0);
-  EXPECT_TRUE(WIFEXITED(status));
-}
-
 TEST(Process, AChildSeesThatItsParentIsGoneAlready) {
   EXPECT_FALSE(follow_parent(::getpid(), SIGTERM)) << "no process is its own parent";
   EXPECT_FALSE(signal_parent(::getpid(), SIGTERM)) << "nor is it signalled as that";

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SCHED_FIFO levels of threads of this process, changed while they run, and what a thread has used of its processor.
+// What such a thread starts, threads and processes, is ordinary (SCHED_RESET_ON_FORK); without CAP_SYS_NICE that cannot
+// be taken back, so every change of a level says it again.
 #pragma once
 
 #include <sys/types.h>

@@ -31,7 +31,8 @@ struct RealtimeGrant {
 };
 
 /// Applies `request` to the calling thread (memory: the process), as far as the system allows. Nothing is fatal:
-/// without rights the same program runs, late. Context: setup; may block.
+/// without rights the same program runs, late. Threads and processes that the thread starts from then on are ordinary
+/// (SCHED_RESET_ON_FORK). Context: setup; may block.
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept;
 
 /// The share of a CPU that the kernel lets real-time threads have (sched_rt_runtime_us of sched_rt_period_us); 1: all.

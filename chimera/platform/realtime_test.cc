@@ -6,10 +6,13 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <string_view>
 #include <thread>
+
+#include "chimera/platform/processor_level.h"
 
 namespace chimera {
 namespace {
@@ -19,10 +22,9 @@ RealtimeGrant enter_on_a_thread(const RealtimeRequest& request, int* policy = nu
   RealtimeGrant grant;
   std::thread([&] {
     grant = enter_realtime(request);
-    sched_param param{};
-    int found = 0;
-    ::pthread_getschedparam(::pthread_self(), &found, &param);
-    if (policy != nullptr) *policy = found;
+    const int found = ::sched_getscheduler(0);
+    EXPECT_EQ((found & SCHED_RESET_ON_FORK) != 0, request.priority > 0 && grant.priority);
+    if (policy != nullptr) *policy = found & ~SCHED_RESET_ON_FORK;
     cpu_set_t set;
     CPU_ZERO(&set);
     ::pthread_getaffinity_np(::pthread_self(), sizeof set, &set);
@@ -81,6 +83,30 @@ TEST(Realtime, PriorityIsReportedAsTheKernelHasIt) {
     EXPECT_TRUE(report.starts_with("WARNING: not real time\n  SCHED_FIFO 7 refused (")) << report;
     EXPECT_NE(report.find("set RLIMIT_RTPRIO to 7 (is "), std::string_view::npos) << report;
   }
+}
+
+// Also after its level was changed, as the preemptive executor does with every job.
+TEST(Realtime, WhatAThreadStartsIsOrdinary) {
+  int policies[4] = {-1, -1, -1, -1};
+  bool granted = false;
+  std::thread([&] {
+    const auto policy_of_child = [] {
+      const pid_t child = ::fork();
+      if (child == 0) ::_exit(::sched_getscheduler(0));
+      int status = -1;
+      ::waitpid(child, &status, 0);
+      return WEXITSTATUS(status);
+    };
+    granted = enter_realtime({.priority = 7, .cpu = -1, .lock_memory = false}).priority;
+    policies[0] = policy_of_child();
+    EXPECT_EQ(set_level(0, 5), granted);
+    policies[1] = policy_of_child();
+    std::thread([&] { policies[2] = ::sched_getscheduler(0); }).join();
+    EXPECT_TRUE(set_below_all(this_thread()));
+    EXPECT_EQ(set_level(this_thread(), 6), granted);
+    policies[3] = policy_of_child();
+  }).join();
+  for (const int policy : policies) EXPECT_EQ(policy, SCHED_OTHER);
 }
 
 TEST(Realtime, APriorityOutOfRangeIsRefusedEvenWithRights) {

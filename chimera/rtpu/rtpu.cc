@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/rtpu/rtpu.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <sys/eventfd.h>
@@ -9,6 +10,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/linux/owned_descriptor.h"
 #include "chimera/platform/lost_descriptor.h"
+#include "chimera/platform/origin.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/platform/undertaker.h"
@@ -103,6 +106,8 @@ Result<void> Rtpu::prepare() {
   ::sigaddset(&set, SIGTERM);  // a SIGINT or SIGHUP of the terminal is the keeper's to answer
   if (start_.parent != 0) {
     limit_stacks();
+    for (const int fd : {start_.channel, start_.image, start_.decision_page, start_.keeper_page})
+      ::fcntl(fd, F_SETFD, FD_CLOEXEC);  // what a component starts by exec has none of them
     ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
     signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
     if (signals_ < 0) return system_error(Message("rtpu"), "signalfd");
@@ -149,6 +154,7 @@ Result<void> Rtpu::make_segment() {
   auto made = MemoryRegion::create("chimera-rtpu", peer_segment_bytes(table, n_tasks));
   if (!made) return made.error();
   segment_ = *std::move(made);
+  if (start_.parent != 0) (void)segment_.keep_from_children();  // a child of a component is not this unit
   if (auto owner = SegmentOwner::format(segment_.writable(), table); !owner) return owner.error();
   std::byte* at = segment_.writable().data() + block_offset(table);
   block_ = BlockOwner(at, start_.peer, start_.incarnation, n_tasks, peers_->count());
@@ -302,6 +308,12 @@ bool Rtpu::loop_hangs() {
   return hang_watch_->loop_hangs(running, block_.head().beats + jobs_of((running >> 8) - 1), wall_.now());
 }
 
+// What components left behind is the keeper's to end, as long as there is one.
+void end_children_without_keeper(const RtpuStart& start) {
+  const char* mine = std::getenv(kOriginVariable);
+  if (start.parent != 0 && ::getppid() != start.parent && mine != nullptr) (void)end_all_from(mine, seconds(1));
+}
+
 }  // namespace
 
 // As somebody wished who is not the keeper: seen by the keeper as what it was.
@@ -321,6 +333,7 @@ int run_rtpu(const RtpuStart& start) {
     return kCouldNotStart;
   }
   const int code = rtpu.run();
+  end_children_without_keeper(start);
   if (code == kTerminated) leave_by_sigterm();
   if (code == kMethodHangs) ::_exit(kMethodHangs);  // threads are still in components: nothing can be taken down
   return code;

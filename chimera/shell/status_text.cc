@@ -34,13 +34,17 @@ std::string policy_of(const Json& rtpu) {
   return text_of(rtpu, "policy") + (text_of(rtpu, "executor") == "preemptive" ? " preemptive" : "");
 }
 
+std::string memory_text(std::int64_t bytes) {
+  return bytes == 0 ? "-" : std::to_string(bytes / 1'000'000) + " MB";
+}
+
 Columns rtpu_table(const Json& status) {
-  Columns table({"rtpu", ">cpu", "policy", "phase", ">pid", ">restarts", "running", "flag"});
+  Columns table({"rtpu", ">cpu", "policy", "phase", ">pid", ">restarts", ">memory", "running", "flag"});
   for (const Json& rtpu : field(status, "rtpus"))
     table.add({text_of(rtpu, "name"), std::to_string(whole_of(rtpu, "cpu")), policy_of(rtpu),
                text_of(rtpu, "phase"), std::to_string(whole_of(rtpu, "pid")),
-               std::to_string(whole_of(rtpu, "restarts")), or_dash(text_of(rtpu, "running")),
-               truth_of(rtpu, "flag") ? "UP" : "-"});
+               std::to_string(whole_of(rtpu, "restarts")), memory_text(whole_of(rtpu, "resident_bytes")),
+               or_dash(text_of(rtpu, "running")), truth_of(rtpu, "flag") ? "UP" : "-"});
   return table;
 }
 
@@ -205,6 +209,8 @@ std::string rtpu_remarks(const Json& rtpu) {
   if (const std::string running = text_of(rtpu, "running"); !running.empty()) line += ", running " + running;
   if (const std::string hang = text_of(rtpu, "hang"); !hang.empty()) line += ", HANGS: " + hang;
   if (truth_of(rtpu, "flag")) line += ", FLAG";
+  if (const std::int64_t bytes = whole_of(rtpu, "resident_bytes"); bytes > 0) line += ", " + memory_text(bytes);
+  if (const std::string lost = text_of(rtpu, "lost_rights"); !lost.empty()) line += ", RIGHTS LOST: " + lost;
   if (const std::int64_t lost = whole_of(rtpu, "lost_events"); lost > 0)
     line += ", " + std::to_string(lost) + " events lost";
   if (const std::string end = text_of(rtpu, "last_end"); !end.empty()) line += "; last end: " + end;
@@ -234,6 +240,9 @@ std::string status_text(const Json& status) {
       text += text_of(rtpu, "name") + ": " + (truth_of(rtpu, "given_up") ? "GIVEN UP; " : "") + "last end: " + end +
               (whole_of(rtpu, "restarts") > 0 ? "; its tasks count from their restart" : "") +
               (text_of(rtpu, "remedy").empty() ? "" : "\n  to bring it back type " + text_of(rtpu, "remedy")) + "\n";
+  for (const Json& rtpu : field(status, "rtpus"))
+    if (const std::string lost = text_of(rtpu, "lost_rights"); !lost.empty())
+      text += text_of(rtpu, "name") + ": RIGHTS LOST: " + lost + "\n";
   if (const Columns tasks = task_table(status); !tasks.empty()) text += "\n" + tasks.text();
   for (const Json& task : field(status, "tasks"))
     if (const std::string fault = text_of(task, "fault"); !fault.empty())

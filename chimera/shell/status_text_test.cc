@@ -29,13 +29,26 @@ TEST(StatusText, OfAUnitThatWasGivenUpItSaysWhatToType) {
   EXPECT_TRUE(rtpu_remarks(status["rtpus"][1]).starts_with("spare GIVEN UP, restarted 2 times"));
 }
 
+TEST(StatusText, TellsWhatAUnitTakesAndWhatItGaveUp) {
+  nlohmann::json status = chimera::shell::status();
+  status["rtpus"][0]["resident_bytes"] = 255'400'000;
+  status["rtpus"][0]["lost_rights"] = "thread 7 runs at SCHED_OTHER instead of SCHED_FIFO 80";
+  EXPECT_NE(status_text(status).find("servo    1  muf     serving  4711         0  255 MB  pid.cycle  -\n"),
+            std::string::npos);
+  EXPECT_NE(status_text(status).find("\nservo: RIGHTS LOST: thread 7 runs at SCHED_OTHER instead of SCHED_FIFO 80\n"),
+            std::string::npos);
+  EXPECT_EQ(rtpu_remarks(status["rtpus"][0]),
+            "servo serving, running pid.cycle, 255 MB, RIGHTS LOST: thread 7 runs at SCHED_OTHER instead of "
+            "SCHED_FIFO 80");
+}
+
 TEST(StatusText, TellsTheWholeTheUnitsAndTheTasks) {
   EXPECT_EQ(status_text(status()),
             "puma_pid: run, up 12.5 min, flag UP by spare, operator\n"
             "\n"
-            "rtpu   cpu  policy  phase     pid  restarts  running    flag\n"
-            "servo    1  muf     serving  4711         0  pid.cycle  -\n"
-            "spare    0  edf     ended    4712         2  -          UP\n"
+            "rtpu   cpu  policy  phase     pid  restarts  memory  running    flag\n"
+            "servo    1  muf     serving  4711         0       -  pid.cycle  -\n"
+            "spare    0  edf     ended    4712         2       -  -          UP\n"
             "spare: last end: signal 11 in trajectory.cycle; its tasks count from their restart\n"
             "\n"
             "task        state        rtpu     rate  cycles     mean      max   budget   jitter  missed  faults"

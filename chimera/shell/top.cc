@@ -156,7 +156,8 @@ TopLine task_line(const Row& row, std::size_t width) {
 }
 
 TopLine rtpu_line(const Json& rtpu, std::size_t width) {
-  const bool is_dead = !truth_of(rtpu, "alive") || truth_of(rtpu, "flag") || !text_of(rtpu, "hang").empty();
+  const bool is_dead = !truth_of(rtpu, "alive") || truth_of(rtpu, "flag") || !text_of(rtpu, "hang").empty() ||
+                       !text_of(rtpu, "lost_rights").empty();
   const std::string head = "cpu " + std::to_string(whole_of(rtpu, "cpu")) + " " + text_of(rtpu, "policy") +
                            (text_of(rtpu, "executor") == "preemptive" ? " preemptive" : "") + "  ";
   return {fitted(head + rtpu_remarks(rtpu), width), is_dead ? LineLook::kAlarm : LineLook::kPlain};

@@ -2,6 +2,7 @@
 #include "chimera/platform/memory_region.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 
 #include <utility>
 
@@ -63,6 +64,10 @@ MemoryRegion::~MemoryRegion() {
 
 std::span<std::byte> MemoryRegion::writable() const noexcept {
   return is_writable_ ? std::span(base_, size_) : std::span<std::byte>();
+}
+
+bool MemoryRegion::keep_from_children() const noexcept {
+  return base_ != nullptr && ::madvise(base_, size_, MADV_DONTFORK) == 0;
 }
 
 }  // namespace chimera

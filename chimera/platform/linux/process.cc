@@ -146,15 +146,6 @@ bool Process::signal(int number) const noexcept {
 
 bool adopt_orphans() noexcept { return ::prctl(PR_SET_CHILD_SUBREAPER, 1) == 0; }
 
-bool reap_orphans(std::span<const pid_t> held) noexcept {
-  for (;;) {
-    siginfo_t ended{};
-    if (::waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT) != 0) return false;  // no child at all
-    if (ended.si_pid == 0 || std::find(held.begin(), held.end(), ended.si_pid) != held.end()) return true;
-    ::waitpid(ended.si_pid, nullptr, 0);  // still ours
-  }
-}
-
 bool follow_parent(pid_t parent, int signal) noexcept {
   return ::prctl(PR_SET_PDEATHSIG, signal) == 0 && ::getppid() == parent;
 }

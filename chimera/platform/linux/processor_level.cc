@@ -35,12 +35,12 @@ pid_t this_thread() noexcept { return static_cast<pid_t>(::syscall(SYS_gettid));
 bool set_level(pid_t thread, int level) noexcept {
   sched_param p{};
   p.sched_priority = level;
-  return ::sched_setscheduler(thread, SCHED_FIFO, &p) == 0;
+  return ::sched_setscheduler(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &p) == 0;
 }
 
 bool set_below_all(pid_t thread) noexcept {
   const sched_param p{};
-  return ::sched_setscheduler(thread, SCHED_OTHER, &p) == 0;
+  return ::sched_setscheduler(thread, SCHED_OTHER | SCHED_RESET_ON_FORK, &p) == 0;
 }
 
 int level_of(pid_t thread) noexcept {

@@ -19,11 +19,18 @@
 namespace chimera {
 namespace {
 
+// Asked of the kernel: pthread_getschedparam answers with what it remembers.
 bool has_priority(int priority) noexcept {
-  int policy = 0;
   sched_param param{};
-  return ::pthread_getschedparam(::pthread_self(), &policy, &param) == 0 && policy == SCHED_FIFO &&
+  return (::sched_getscheduler(0) & ~SCHED_RESET_ON_FORK) == SCHED_FIFO && ::sched_getparam(0, &param) == 0 &&
          param.sched_priority == priority;
+}
+
+// What the thread starts is ordinary.
+bool set_fifo(int priority) noexcept {
+  sched_param param{};
+  param.sched_priority = priority;
+  return ::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &param) == 0;
 }
 
 /// What the report is made of: what is in force, and a line for each thing that is not.
@@ -41,9 +48,7 @@ void set_priority(const RealtimeRequest& request, RealtimeGrant& grant, Parts& r
     report.miss() << "ordinary scheduling was asked for (priority 0): any job may come late";
     return;
   }
-  sched_param param{};
-  param.sched_priority = request.priority;
-  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param);
+  const int error = set_fifo(request.priority) ? 0 : errno;
   grant.priority = error == 0 && has_priority(request.priority);
   if (grant.priority) {
     report.grant() << "SCHED_FIFO " << request.priority;
@@ -163,12 +168,14 @@ RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
 }
 
 bool may_be_realtime(int priority) noexcept {
-  int policy = 0;
   sched_param before{}, wanted{};
   wanted.sched_priority = priority;
-  if (::pthread_getschedparam(::pthread_self(), &policy, &before) != 0) return false;
-  const bool granted = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &wanted) == 0 && has_priority(priority);
-  ::pthread_setschedparam(::pthread_self(), policy, &before);
+  const int policy = ::sched_getscheduler(0);
+  if (policy < 0 || ::sched_getparam(0, &before) != 0) return false;
+  // Without CAP_SYS_NICE a thread cannot have SCHED_RESET_ON_FORK taken back: it keeps what it has of that.
+  const int fifo = SCHED_FIFO | (policy & SCHED_RESET_ON_FORK);
+  const bool granted = ::sched_setscheduler(0, fifo, &wanted) == 0 && has_priority(priority);
+  ::sched_setscheduler(0, policy, &before);
   return granted;
 }
 

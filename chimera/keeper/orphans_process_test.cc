@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// With real processes, in a process of their own: who adopts orphans does so for good.
+#include "chimera/keeper/orphans.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdlib>
+
+#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/origin.h"
+#include "chimera/platform/process.h"
+
+namespace chimera {
+namespace {
+
+constexpr auto kNobodyLives = [](std::string_view) { return false; };
+
+/// In a child: 0 when `body` answers true.
+template <class Body>
+int code_of(Body body) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(body() ? 0 : 1);
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 256;
+}
+
+/// A shell of that origin that has run `command`, and ended.
+bool has_run(const std::string& origin, const char* command) {
+  ::setenv(kOriginVariable, origin.c_str(), 1);
+  const std::array<const char*, 3> words = {"sh", "-c", command};
+  auto shell = Process::start("/bin/sh", words, {});
+  ProcessEnd end;
+  return shell && shell->wait(end, seconds(20).count);
+}
+
+/// Looks until `left` children are left.
+bool comes_to(Orphans& orphans, std::size_t left, std::function<bool(std::string_view)> lives = kNobodyLives) {
+  LinuxClock clock;
+  for (const Nanoseconds until = clock.now() + seconds(20); clock.now() < until; ::usleep(1000)) {
+    orphans.look({}, lives, clock.now());
+    if (children_of_this_process().size() == left) return true;
+  }
+  return false;
+}
+
+TEST(Orphans, OfADeadUnitAreEndedAndThoseOfOneThatLivesAreNot) {
+  EXPECT_EQ(code_of([] {
+              Orphans orphans;
+              const std::string dead = orphans.prefix() + "0.1", alive = orphans.prefix() + "1.1";
+              const auto lives = [&](std::string_view origin) { return origin == alive; };
+              return has_run(dead, "sleep 1000 & setsid sleep 1000 & (sleep 1000 & sleep 1000) &") &&
+                     has_run(alive, "sleep 1000 &") && comes_to(orphans, 1, lives) && comes_to(orphans, 0);
+            }),
+            0);
+}
+
+TEST(Orphans, WhatSomebodyHoldsIsLeftToIt) {
+  EXPECT_EQ(code_of([] {
+              Orphans orphans;
+              ::setenv(kOriginVariable, (orphans.prefix() + "0.1").c_str(), 1);
+              const std::array<const char*, 1> words = {"true"};
+              auto held = Process::start("/bin/true", words, {});
+              const pid_t pids[] = {held->pid()};
+              ProcessEnd end;
+              for (int i = 0; i < 50; ++i, ::usleep(1000)) orphans.look(pids, kNobodyLives, {});
+              return held->has_ended(end) && !end.by_signal;
+            }),
+            0);
+}
+
+TEST(Orphans, AtTheEndThoseWithoutAnOriginEndTooAndThoseThatForkOn) {
+  EXPECT_EQ(code_of([] {
+              Orphans orphans;
+              const bool begun = has_run("", "env -u CHIMERA_ORIGIN sleep 1000 &") &&
+                                 has_run(orphans.prefix() + "0.1", "chain() { (sleep 0.002; chain) & }; chain");
+              LinuxClock clock;
+              orphans.look({}, kNobodyLives, clock.now());
+              orphans.end_all(seconds(20));
+              return begun && ::waitpid(-1, nullptr, WNOHANG) == -1;
+            }),
+            0);
+}
+
+// A shell that started something and then became `chimera run`.
+TEST(Orphans, AChildThatWasThereBeforeIsNobodysToEnd) {
+  EXPECT_EQ(code_of([] {
+              const std::array<const char*, 2> words = {"sleep", "1000"};
+              auto before = Process::start("/bin/sleep", words, {});
+              Orphans orphans;
+              const bool begun = has_run(orphans.prefix() + "0.1", "sleep 1000 &");
+              orphans.end_all(seconds(20));
+              ProcessEnd end;
+              const bool lives = !before->has_ended(end);
+              const bool alone = children_of_this_process().size() == 1;
+              before->signal(SIGKILL);
+              return begun && lives && alone;
+            }),
+            0);
+}
+
+}  // namespace
+}  // namespace chimera

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/unit_health.h"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace chimera::manager {
+namespace {
+
+constexpr Nanoseconds kEvery = milliseconds(500);
+constexpr Nanoseconds kSettled = seconds(1);  // after it came up: its tasks have what they need
+constexpr std::uint64_t kMegabyte = 1'000'000, kMuch = 64 * kMegabyte;
+
+std::string folder_of(pid_t pid) { return "/proc/" + std::to_string(pid) + "/"; }
+
+std::uint64_t resident_bytes(pid_t pid) {
+  std::uint64_t total = 0, resident = 0;
+  std::ifstream(folder_of(pid) + "statm") >> total >> resident;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+bool has_locked_memory(pid_t pid) {
+  std::ifstream status(folder_of(pid) + "status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmLck:")) return std::strtoull(line.c_str() + std::strlen("VmLck:"), nullptr, 10) > 0;
+  return true;  // it has just ended
+}
+
+std::vector<pid_t> threads_of(pid_t pid) {
+  std::vector<pid_t> threads;
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(folder_of(pid) + "task", error), end; !error && at != end;
+       at.increment(error))
+    threads.push_back(static_cast<pid_t>(std::strtol(at->path().filename().c_str(), nullptr, 10)));
+  return threads;
+}
+
+/// False when it is gone.
+bool rights_of(pid_t thread, ThreadRights& rights) {
+  sched_param param{};
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  const int policy = ::sched_getscheduler(thread);
+  if (policy < 0 || ::sched_getparam(thread, &param) != 0 || ::sched_getaffinity(thread, sizeof set, &set) != 0)
+    return false;
+  rights = {thread, policy & ~SCHED_RESET_ON_FORK, param.sched_priority, -1};
+  for (int cpu = 0; CPU_COUNT(&set) == 1 && cpu < CPU_SETSIZE; ++cpu)
+    if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) rights.only_cpu = cpu;
+  return true;
+}
+
+std::string policy_text(int policy, int level) {
+  if (policy == SCHED_FIFO || policy == SCHED_RR)
+    return (policy == SCHED_FIFO ? "SCHED_FIFO " : "SCHED_RR ") + std::to_string(level);
+  if (policy == SCHED_OTHER) return "SCHED_OTHER";
+  return "policy " + std::to_string(policy);
+}
+
+/// The number behind `word`, where that stands in `report`.
+int number_behind(std::string_view report, std::string_view word, int none) {
+  const std::size_t at = report.find(word);
+  if (at == report.npos) return none;
+  int value = none;
+  const char* begin = report.data() + at + word.size();
+  const auto [end, error] = std::from_chars(begin, report.data() + report.size(), value);
+  const bool is_refused = std::string_view(end, report.data() + report.size()).starts_with(" refused");
+  return error == std::errc() && !is_refused ? value : none;
+}
+
+std::string memory_text(std::uint64_t bytes) { return std::to_string(bytes / kMegabyte) + " MB"; }
+
+bool has_its_level(const GrantedRights& granted, bool preemptive, const ThreadRights& now) {
+  if (preemptive) return now.policy == SCHED_OTHER || (now.policy == SCHED_FIFO && now.level <= granted.level);
+  return granted.level == 0 ? now.policy == SCHED_OTHER : now.policy == SCHED_FIFO && now.level == granted.level;
+}
+
+}  // namespace
+
+GrantedRights GrantedRights::of(std::string_view report) {
+  GrantedRights granted;
+  granted.level = number_behind(report, "SCHED_FIFO ", 0);
+  granted.cpu = number_behind(report, "pinned to CPU ", -1);
+  granted.is_locked = report.find("memory locked") != report.npos;
+  return granted;
+}
+
+std::string lost_rights(const GrantedRights& granted, bool preemptive, const std::vector<ThreadRights>& threads,
+                        bool is_locked) {
+  std::string text;
+  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  const std::string due = granted.level > 0 ? policy_text(SCHED_FIFO, granted.level) : policy_text(SCHED_OTHER, 0);
+  for (const ThreadRights& now : threads) {
+    const std::string who = "thread " + std::to_string(now.thread);
+    if (!has_its_level(granted, preemptive, now))
+      add(who + " runs at " + policy_text(now.policy, now.level) + " instead of " + due);
+    if (granted.cpu >= 0 && now.only_cpu != granted.cpu)
+      add(who + " is not bound to CPU " + std::to_string(granted.cpu) + " any more");
+  }
+  if (granted.is_locked && !is_locked) add("memory is not locked any more");
+  return text;
+}
+
+void UnitHealth::look(Nanoseconds now) {
+  const bool is_due = now >= due_;
+  if (is_due) due_ = now + kEvery;
+  for (std::size_t index = 0; index < seen_.size(); ++index) {
+    RtpuRecord& rtpu = world_.rtpus[index];
+    if (!rtpu.is_alive) rtpu.resident_bytes = 0;
+    if (!rtpu.is_alive || !rtpu.is_up) continue;
+    if (seen_[index].incarnation != rtpu.incarnation)
+      meet(index, now);
+    else if (!is_due)
+      continue;
+    weigh(index, now);
+    compare(index, now);
+  }
+}
+
+void UnitHealth::meet(std::size_t index, Nanoseconds now) {
+  RtpuRecord& rtpu = world_.rtpus[index];
+  rtpu.lost_rights.clear();
+  seen_[index] = {rtpu.incarnation, {}, now, 0, {}};
+  for (const pid_t thread : threads_of(rtpu.pid)) {
+    ThreadRights rights;
+    const bool is_special = rights_of(thread, rights) && (rights.policy != SCHED_OTHER || rights.only_cpu >= 0);
+    if (is_special) seen_[index].threads.push_back(thread);
+  }
+}
+
+void UnitHealth::weigh(std::size_t index, Nanoseconds now) {
+  RtpuRecord& rtpu = world_.rtpus[index];
+  Seen& seen = seen_[index];
+  rtpu.resident_bytes = resident_bytes(rtpu.pid);
+  const std::uint64_t bytes = rtpu.resident_bytes;
+  const bool is_on = world_.own.block().memory().started_at != 0 && now - seen.up_at > kSettled;
+  if (seen.told_bytes == 0 && is_on) seen.told_bytes = rtpu.first_resident_bytes = bytes;
+  if (seen.told_bytes == 0 || bytes < 2 * seen.told_bytes || bytes < seen.told_bytes + kMuch) return;
+  const RtpuId id(static_cast<std::uint32_t>(index));
+  world_.tell("memory", TaskId{}, id,
+              world_.name(id) + " has grown to " + memory_text(bytes) + " resident, from " +
+                  memory_text(rtpu.first_resident_bytes) + " when it was ON: does one of its components leak?",
+              now);
+  seen.told_bytes = bytes;
+}
+
+/// A look at a thread that is just changing its own level would be unfair: what is told was seen twice.
+void UnitHealth::compare(std::size_t index, Nanoseconds now) {
+  RtpuRecord& rtpu = world_.rtpus[index];
+  Seen& seen = seen_[index];
+  const RtpuId id(static_cast<std::uint32_t>(index));
+  const BlockHead& head = world_.peers[id].block().head();
+  std::vector<ThreadRights> threads;
+  for (const pid_t thread : seen.threads)
+    if (ThreadRights rights; rights_of(thread, rights)) threads.push_back(rights);
+  const auto granted = GrantedRights::of({head.grant, ::strnlen(head.grant, sizeof head.grant)});
+  const bool is_preemptive = world_.spec().rtpus[index].preemptive;
+  const std::string lost = lost_rights(granted, is_preemptive, threads, has_locked_memory(rtpu.pid));
+  const bool is_sure = lost == seen.suspected;
+  seen.suspected = lost;
+  if (!is_sure || lost == rtpu.lost_rights) return;
+  rtpu.lost_rights = lost;
+  world_.tell("rights", TaskId{}, id,
+              lost.empty() ? world_.name(id) + " has its real-time rights again"
+                           : world_.name(id) + " gave up real-time rights: " + lost,
+              now);
+}
+
+}  // namespace chimera::manager

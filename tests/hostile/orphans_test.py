@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What components leave behind ends with their real-time unit, at the latest with the subsystem, and is never real
+time; what a unit takes and what it gives up is told."""
+import os
+import pathlib
+import signal
+import sys
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "processes"))
+from system import UNITS, System, await_that, processes_of  # noqa: E402
+
+# The test itself has no real-time rights on some machines; then there is nothing to inherit.
+PRIORITY = 20
+
+
+def tasks(*ways, rate="100 Hz"):
+    """A task for each misdeed, all in the second unit; `steady` in the first must never notice."""
+    text = UNITS + "tasks:\n  steady: {component: t_counter, rtpu: first, rate: 200 Hz}\n"
+    for way in ways:
+        text += (f"  {way}: {{component: t_misdeed, rtpu: second, rate: {rate}, alias: {{y: y_{way}}}, "
+                 f"constants: {{how: {way}}}, resources: {{armed: ARMED}}}}\n")
+    return text + f"configurations: {{all: [{', '.join(('steady',) + ways)}]}}\nstart: all\n"
+
+
+def name_of(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/comm").read_text().strip()
+    except OSError:
+        return ""
+
+
+def rt_rights():
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        return True
+    except OSError:
+        return False
+
+
+def descriptors(pid):
+    return {int(fd): os.readlink(f"/proc/{pid}/fd/{fd}") for fd in os.listdir(f"/proc/{pid}/fd")}
+
+
+class Rig(System):
+    def __init__(self, text, priority=PRIORITY):
+        super().__init__(text, arguments=("--priority", str(priority if rt_rights() else 0)))
+
+    def children(self):
+        """Of components: neither of the project's own processes."""
+        own = set(self.pids().values()) | {self.process.pid}
+        return [p for p in self.left_over() if p not in own and name_of(p) not in ("undertaker", "chimera", "")]
+
+    def undertaker_of(self, pid):
+        found = [p for p in self.left_over() if name_of(p) == "undertaker" and parent_of(p) == pid]
+        return found[0] if found else None
+
+
+def parent_of(pid):
+    return int(pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[1])
+
+
+def gone(pids, marker):
+    return not set(pids) & set(processes_of(marker))
+
+
+class Orphans(unittest.TestCase):
+    WAYS = ("child", "daemon", "chain", "exec", "stays")
+
+    def test_children_are_never_real_time_and_end_with_their_unit(self):
+        with Rig(tasks(*self.WAYS)) as system:
+            missed = system.task("steady")["cycles"]
+            system.arm()
+            # The chain has another number each time one looks, the one that stays does not live on: three are sure.
+            children = await_that(lambda: len(c := system.children()) >= 3 and "sleep" in map(name_of, c) and c, 5,
+                                  "children")
+            for pid in children:
+                try:
+                    policy, name = os.sched_getscheduler(pid), name_of(pid)
+                except OSError:
+                    continue
+                self.assertEqual(policy, os.SCHED_OTHER, f"{name} {pid} is a real-time process")
+            sleeper = [p for p in children if name_of(p) == "sleep"]
+            self.assertEqual(len(sleeper), 1)
+            self.assertEqual(sorted(descriptors(sleeper[0])), [0, 1, 2])
+            # Its rtpu ends: so do they, while the others go on; a stopped undertaker does not keep its memory.
+            system.disarm()
+            second = system.pids()["second"]
+            undertaker = system.undertaker_of(second)
+            if undertaker:
+                system.kill(undertaker, signal.SIGSTOP)
+            system.kill(second)
+            await_that(lambda: not system.children(), 1.5, "the end of the children of a unit that died")
+            if undertaker:
+                await_that(lambda: gone([undertaker], system.marker), 1.0, "the end of a stopped undertaker")
+            self.assertGreater(system.task("steady")["cycles"], missed)
+            self.assertEqual(system.rtpu("first")["restarts"], 0)
+            # And again at the end of everything.
+            system.await_state("child", "ON")
+            system.arm()
+            await_that(lambda: len(system.children()) >= 3, 5, "children")
+            begun = time.monotonic()
+            system.disconnect()
+            system.process.send_signal(signal.SIGTERM)
+            self.assertEqual(system.process.wait(15), 0, system.said())
+            self.assertLess(time.monotonic() - begun, 2.0)
+            self.assertEqual(system.left_over(), [])
+
+    def test_children_end_also_when_the_keeper_was_killed(self):
+        with Rig(tasks("child", "daemon", "exec"), 0) as system:
+            system.arm()
+            await_that(lambda: len(system.children()) >= 3, 5, "children")
+            system.disconnect()
+            system.process.kill()
+            system.process.wait(5)
+            system.await_nothing_left(3)
+
+
+class Watched(unittest.TestCase):
+    def test_memory_that_grows_and_rights_that_are_given_up_are_told(self):
+        with Rig(tasks("leak", "ordinary", "unlocked", rate="1 kHz")) as system:
+            before = system.rtpu("second")["resident_bytes"]
+            self.assertGreater(before, 1 << 20)
+            self.assertIsNone(system.rtpu("second")["lost_rights"])
+            system.arm()
+
+            def told(kind):
+                return [e["text"] for e in system.events() if e["kind"] == kind and e.get("rtpu") == "second"]
+            grown = await_that(lambda: told("memory"), 8, "the growth")
+            self.assertRegex(grown[0], r"^second has grown to \d+ MB resident, from \d+ MB when it was ON")
+            self.assertGreater(system.rtpu("second")["resident_bytes"], before + (64 << 20))
+            self.assertNotIn("first", [e.get("rtpu") for e in system.events() if e["kind"] in ("memory", "rights")])
+            if not rt_rights():
+                return self.skipTest("no real-time rights on this machine: none can be given up")
+            lost = await_that(lambda: told("rights"), 3, "the lost priority")
+            self.assertRegex(lost[0], r"^second gave up real-time rights: .*SCHED_OTHER instead of SCHED_FIFO 20")
+            self.assertIn("SCHED_OTHER", system.rtpu("second")["lost_rights"])
+
+
+if __name__ == "__main__":
+    unittest.main()
