@@ -2,11 +2,13 @@
 // The manager of a subsystem, started by its keeper: chimera-manager --peer N --incarnation I --parent PID; and its
 // analyst, started by the manager: chimera-manager --analyst --parent PID.
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <string_view>
 
 #include "chimera/manager/analyst.h"
@@ -16,6 +18,8 @@
 #include "chimera/platform/process.h"
 
 namespace {
+
+constexpr std::string_view kNoMemory = "chimera-manager: out of memory\n";
 
 /// The number behind `word`; 0 when it is not there or is none.
 std::int32_t number_after(std::string_view word, int argc, char** argv) {
@@ -53,6 +57,10 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   if (!follow_parent(parent, SIGTERM)) return 0;
+  std::set_new_handler([] {  // the keeper starts another one
+    (void)!::write(STDERR_FILENO, kNoMemory.data(), kNoMemory.size());
+    ::_exit(1);
+  });
   const auto ran = manager::run({}, static_cast<std::uint32_t>(incarnation), parent);
   if (ran) return *ran;
   std::fprintf(stderr, "chimera-manager: %s\n", ran.error().message.c_str());

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <system_error>
 
 #include "chimera/rtpu/keeper_message.h"
@@ -41,6 +42,8 @@ int main(int argc, char** argv) {
     code = chimera::run_rtpu(start);
   } catch (const std::system_error& error) {
     std::fprintf(stderr, "chimera-rtpu: no thread: %s\n", error.code().message().c_str());
+  } catch (const std::bad_alloc&) {
+    std::fputs("chimera-rtpu: out of memory\n", stderr);
   }
   ::_exit(code);  // static destructors of components are not run: they may be in any state
 }

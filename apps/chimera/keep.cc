@@ -14,8 +14,10 @@
 #include "chimera/manager/bundle.h"
 #include "chimera/platform/cpu_claim.h"
 #include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/limits.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/socket_folder.h"
+#include "chimera/platform/standard_output.h"
 #include "chimera/runtime/application_image.h"
 
 namespace {
@@ -33,9 +35,8 @@ Result<FrozenBytes> make_image(const desk::RunPlan& plan, const RunSettings& set
 }
 
 Result<FrozenBytes> make_bundle(const KeepRequest& request, const desk::RunPlan& plan) {
-  const manager::Bundle bundle{CHIMERA_VERSION,       request.run.file,      plan.description,
-                               request.observe_group, request.operate_group, request.configure_group,
-                               plan.library,          request.run.settings};
+  const manager::Bundle bundle{CHIMERA_VERSION,       request.run.file,        plan.description, request.observe_group,
+                               request.operate_group, request.configure_group, plan.library,     request.run.settings};
   const std::string text = encode(bundle);
   return FrozenBytes::create("chimera-bundle", std::as_bytes(std::span(text)));
 }
@@ -90,14 +91,20 @@ Result<int> keep(const KeepRequest& request, const desk::RunPlan& plan) {
   const auto place = SocketPlace::open(socket_folder().c_str(), plan.configuration.subsystem(), for_others);
   if (!place) return place.error();
   const auto n_rtpus = static_cast<std::uint32_t>(plan.configuration.rtpus().size());
-  Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"), .manager_program = sibling("chimera-manager"),
-                           .n_rtpus = n_rtpus, .image = image->descriptor(), .bundle = bundle->descriptor(),
+  Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"),
+                           .manager_program = sibling("chimera-manager"),
+                           .n_rtpus = n_rtpus,
+                           .image = image->descriptor(),
+                           .bundle = bundle->descriptor(),
                            .listening = place->descriptor()},
                  .face = face_of(request, plan, place->path()),
                  .ending_limit = settings.method_limit * (n_rtpus + 1) + seconds(1)});
-  std::fflush(stdout);  // what the face prints comes after it
+  (void)flush_and_look(stdout);  // what the face prints comes after it
   if (auto started = keeper.start(); !started) return started.error();
-  return keeper.run();
+  const int code = keeper.run();
+  if (!keeper.output_is_lost()) return code;
+  loss_is_told();
+  return std::max(code, desk::kRefused);
 }
 
 Result<int> keep_nothing(const std::string& subsystem, const Library& library) {
@@ -113,13 +120,17 @@ Result<int> keep_nothing(const std::string& subsystem, const Library& library) {
   if (!bundle) return bundle.error();
   const auto place = SocketPlace::open(socket_folder().c_str(), subsystem, false);
   if (!place) return place.error();
-  Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"), .manager_program = sibling("chimera-manager"),
-                           .n_rtpus = 0, .image = image->descriptor(), .bundle = bundle->descriptor(),
+  Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"),
+                           .manager_program = sibling("chimera-manager"),
+                           .n_rtpus = 0,
+                           .image = image->descriptor(),
+                           .bundle = bundle->descriptor(),
                            .listening = place->descriptor()},
-                 .face = {}, .ending_limit = seconds(1)});
+                 .face = {},
+                 .ending_limit = seconds(1)});
   std::printf("%s: nothing is loaded; serves `check`, `schedule` and `library` at %s\n", subsystem.c_str(),
               place->path().c_str());
-  std::fflush(stdout);
+  (void)flush_and_look(stdout);
   if (auto started = keeper.start(); !started) return started.error();
   return keeper.run();
 }
@@ -127,12 +138,14 @@ Result<int> keep_nothing(const std::string& subsystem, const Library& library) {
 }  // namespace
 
 int keep_idle(const std::string& subsystem, const desk::Workplace& workplace) {
+  if (auto may = may_share_memory_here(); !may) return desk::refuse_run({}, may.error(), stdout, stderr);
   const auto library = workplace.library();
   const auto code = library ? keep_nothing(subsystem, *library) : Result<int>(library.error());
   return code ? *code : desk::refuse_run({}, code.error(), stdout, stderr);
 }
 
 int keep(const KeepRequest& request, const desk::Workplace& workplace) {
+  if (auto may = may_share_memory_here(); !may) return desk::refuse_run(request.run, may.error(), stdout, stderr);
   int wrong = desk::kRefused;
   const auto plan = desk::plan_run(request.run, workplace, stdout, stderr, &wrong);
   if (!plan) return wrong;

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The `chimera` command: words of the command line to the commands of chimera/desk.
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
+#include <exception>
+#include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +28,8 @@
 #include "chimera/desk/schedule.h"
 #include "chimera/desk/test_application.h"
 #include "chimera/desk/test_component.h"
+#include "chimera/platform/limits.h"
+#include "chimera/platform/standard_output.h"
 
 namespace {
 
@@ -45,7 +54,7 @@ struct Words {
 
 int print(const desk::Output& output) {
   std::fputs(for_terminal(output.out).c_str(), stdout);
-  std::fflush(stdout);  // in a file that takes both, what came first stands first
+  (void)flush_and_look(stdout);  // in a file that takes both, what came first stands first
   std::fputs(for_terminal(output.err).c_str(), stderr);
   return output.code;
 }
@@ -71,11 +80,12 @@ void add_schedule(CLI::App& app, Words& words) {
                 "judge all rtpus as 'preemptive' or 'executive'; else each as described")
       ->check(CLI::IsMember({"preemptive", "executive"}));
   s->add_flag("--json", words.json, "the analysis as one JSON object");
-  s->footer("Response: longest from release to end. Blocked: by a job that cannot be taken off. Copies: at each\n"
-            "cycle, from tables of other rtpus or the operator. `run` starts only when every task keeps its deadline\n"
-            "that does not say 'may miss'.\n"
-            "Exit code 0: everything keeps its deadlines; 1: it does not.\n"
-            "Example: chimera schedule examples/01_puma_pid/puma_pid.yaml --svg window.svg");
+  s->footer(
+      "Response: longest from release to end. Blocked: by a job that cannot be taken off. Copies: at each\n"
+      "cycle, from tables of other rtpus or the operator. `run` starts only when every task keeps its deadline\n"
+      "that does not say 'may miss'.\n"
+      "Exit code 0: everything keeps its deadlines; 1: it does not.\n"
+      "Example: chimera schedule examples/01_puma_pid/puma_pid.yaml --svg window.svg");
 }
 
 void add_list(CLI::App& app, Words& words) {
@@ -108,12 +118,13 @@ void add_test(CLI::App& app, Words& words) {
       ->check(CLI::Range(1, 1024));
   t->add_option("--limit", words.cases_limit, "a folder: time on the wall for each case (10 min)");
   t->add_flag("--json", words.json, "the reports as one JSON object");
-  t->footer("A component runs three times in a process of its own; docs/formats/component-test.md has the setup.\n"
-            "A folder: every case of every NAME.cases.yaml in it and below; docs/formats/cases.md has the keys.\n"
-            "A bare word that is both a component and a folder is the component: write 'NAME/' for the folder.\n"
-            "Exit code 0: all pass, 1: one fails, or there is no test, 2: wrong usage.\n"
-            "Examples: chimera test pid_joint --inputs run.csv\n"
-            "          chimera test . --junit report.xml");
+  t->footer(
+      "A component runs three times in a process of its own; docs/formats/component-test.md has the setup.\n"
+      "A folder: every case of every NAME.cases.yaml in it and below; docs/formats/cases.md has the keys.\n"
+      "A bare word that is both a component and a folder is the component: write 'NAME/' for the folder.\n"
+      "Exit code 0: all pass, 1: one fails, or there is no test, 2: wrong usage.\n"
+      "Examples: chimera test pid_joint --inputs run.csv\n"
+      "          chimera test . --junit report.xml");
 }
 
 int usage(const std::string& what) { return print({"", "chimera test: " + what + "\n", desk::kUsage}); }
@@ -136,9 +147,10 @@ int run_tests(const CLI::App& app, Words& words, const desk::Workplace& workplac
   const auto& what = words.test.components;
   if (!words.test.all && what.empty()) return usage("name a component, a folder with NAME.cases.yaml, or --all");
   const auto library = workplace.library();
-  const auto places = library ? std::count_if(what.begin(), what.end(), [&](const std::string& word) {
-    return desk::is_place_of_cases(word, *library);
-  }) : 0;
+  const auto places =
+      library ? std::count_if(what.begin(), what.end(),
+                              [&](const std::string& word) { return desk::is_place_of_cases(word, *library); })
+              : 0;
   if (places == 0) {
     if (is_given({"--case", "--junit", "--jobs", "--limit"}))
       return usage("--case, --junit, --jobs and --limit belong to a folder with NAME.cases.yaml");
@@ -165,9 +177,12 @@ void add_new(CLI::App& app, Words& words) {
 }
 
 desk::Output make_new(const CLI::App& app, Words& words) {
-  if (app.get_subcommand("new")->got_subcommand("app")) words.made.kind = desk::NewKind::kApplication;
-  else if (words.in_c) words.made.kind = desk::NewKind::kComponentInC;
-  else if (words.for_hardware) words.made.kind = desk::NewKind::kHardwareComponent;
+  if (app.get_subcommand("new")->got_subcommand("app"))
+    words.made.kind = desk::NewKind::kApplication;
+  else if (words.in_c)
+    words.made.kind = desk::NewKind::kComponentInC;
+  else if (words.for_hardware)
+    words.made.kind = desk::NewKind::kHardwareComponent;
   return desk::new_project(words.made, desk::program_path());
 }
 
@@ -203,9 +218,38 @@ int no_command(const std::string& word, const std::vector<std::string>& names) {
   return desk::kUsage;
 }
 
-}  // namespace
+/// What goes on although nobody reads what it prints; the other commands end with their reader, as `cat` does.
+bool outlives_its_reader(const CLI::App& app) {
+  return std::ranges::any_of(std::array{"run", "idle", "attend", "test", "sweep", "shell"},
+                             [&app](const char* name) { return app.got_subcommand(name); });
+}
 
-int main(int argc, char** argv) {
+std::terminate_handler tell_defect = nullptr;  // of the C++ library: says what was thrown, and leaves a core
+
+bool memory_is_limited() {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+/// The last words of a program that gets no memory, or no thread. Under a limit there may be no memory for an exception
+/// either; without one it is a thread of a component that nobody joined, or the like.
+[[noreturn]] void give_up() {
+  const char* why = "out of memory: Cannot allocate memory";
+  if (!std::current_exception() && !memory_is_limited()) tell_defect();
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) tell_defect();
+    why = "no thread can be started: Resource temporarily unavailable";
+  } catch (const std::bad_alloc&) {
+  } catch (...) {
+    tell_defect();
+  }
+  std::fprintf(stderr, "chimera: %s\n", why);
+  ::_exit(desk::kRefused);
+}
+
+int run_program(int argc, char** argv) {
   CLI::App app{"Real-time control software assembled from components: check it, run it, look at it."};
   app.require_subcommand(1);
   app.footer("`chimera COMMAND --help` has an example. Documents and examples: " +
@@ -228,5 +272,18 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return tell_wrong_usage(app, e, argc, argv);
   }
+  if (outlives_its_reader(app)) std::signal(SIGPIPE, SIG_IGN);  // seen as a failed write
   return carry_out(app, words);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hold_standard_streams();
+  if (const auto may = may_run_here(); !may) {
+    std::fputs(desk::error_line(may.error()).c_str(), stderr);
+    return desk::kRefused;
+  }
+  tell_defect = std::set_terminate(give_up);
+  return report_lost_output(run_program(argc, argv));
 }

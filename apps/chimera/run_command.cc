@@ -2,6 +2,7 @@
 #include "apps/chimera/run_command.h"
 
 #include <grp.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -13,11 +14,13 @@
 #include "apps/chimera/record_files.h"
 #include "chimera/config/quantity.h"
 #include "chimera/config/recorded_profile.h"
-#include "chimera/desk/guarded.h"
+#include "chimera/desk/outlet.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/own_process.h"
 #include "chimera/desk/run_plan.h"
 #include "chimera/platform/process.h"
+#include "chimera/platform/shared_pages.h"
+#include "chimera/platform/standard_output.h"
 
 using namespace chimera;  // NOLINT: a main() of this project
 
@@ -26,6 +29,8 @@ namespace {
 /// What the face of a run does, and so what both commands know.
 void add_face_options(CLI::App* command, RunWords& words) {
   command->add_option("--for", words.duration, "how long, such as '10 s'; without it until Ctrl-C");
+  command->add_option("--start-limit", words.start_limit,
+                      "real time: tasks that are not ON after this long end the run (with --for 10 s, else no limit)");
   command->add_option("--at", words.run.at,
                       "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad'; may be repeated");
   command->add_option("--watch", words.run.watch, "print these state variables while it runs");
@@ -49,9 +54,10 @@ bool read_group(const std::string& name, const char* option, std::optional<std::
 
 bool read_times(RunWords& words, Nanoseconds& unit) {
   desk::RunRequest& r = words.run;
-  return read_duration(words.duration, "--for", r.duration) && read_duration(words.every, "--every", r.every) &&
-         read_duration(words.quantum, "--quantum", r.quantum) && read_duration(words.timeline, "--timeline", unit) &&
-         read_seed(words.seed, r.seed);
+  return read_duration(words.duration, "--for", r.duration) &&
+         read_duration(words.start_limit, "--start-limit", r.start_limit) &&
+         read_duration(words.every, "--every", r.every) && read_duration(words.quantum, "--quantum", r.quantum) &&
+         read_duration(words.timeline, "--timeline", unit) && read_seed(words.seed, r.seed);
 }
 
 /// Better now than after an hour.
@@ -72,6 +78,8 @@ bool read_run(RunWords& words, Nanoseconds& unit) {
   if (!r.virtual_time && (r.preemptive || r.seed || !words.quantum.empty()))
     wrong = "--preemptive, --seed and --quantum belong to --virtual";
   if (r.virtual_time && r.duration == kNever) wrong = "--virtual needs --for: virtual time has no end of its own";
+  if (!words.start_limit.empty() && (r.virtual_time || r.one_process))
+    wrong = "--start-limit belongs to real time with a process for each unit";
   if (!words.timeline.empty() && r.duration == kNever) wrong = "--timeline needs --for";
   if (!words.timeline.empty() && r.json) wrong = "--timeline and --json exclude each other";
   if (wrong != nullptr) std::fprintf(stderr, "%s\n", wrong);
@@ -85,6 +93,7 @@ std::vector<std::string> words_for_face(const RunWords& words) {
     if (!value.empty()) made.push_back(std::string(option) + "=" + value);
   };
   add("--for", words.duration);
+  add("--start-limit", words.start_limit);
   add("--every", words.every);
   add("--trace", words.trace);
   add("--profile", words.run.profile);
@@ -97,9 +106,17 @@ std::vector<std::string> words_for_face(const RunWords& words) {
   return made;
 }
 
+constexpr Nanoseconds kStartLimit = seconds(10);  // of a run that has an end
+constexpr Nanoseconds kLastLines = milliseconds(500);
+
+int print_refusal(const Error& error) {
+  std::fputs(desk::error_line(error).c_str(), stderr);
+  return desk::kRefused;
+}
+
 /// Runs `body` with what writes the trace and the timeline; with null when neither is wanted.
 template <class Body>
-int with_records(const RunWords& words, Nanoseconds unit, Body body) {
+int with_records(const RunWords& words, Nanoseconds unit, std::FILE* out, Body body) {
   if (words.trace.empty() && words.timeline.empty()) return body(nullptr);
   RecordFiles files(words.trace, unit, words.run.duration);
   if (!files.is_open()) {
@@ -107,7 +124,7 @@ int with_records(const RunWords& words, Nanoseconds unit, Body body) {
     return desk::kRefused;
   }
   const int code = body(&files);
-  return files.finish(stdout, stderr) ? code : desk::kRefused;
+  return files.finish(out, stderr) ? code : desk::kRefused;
 }
 
 }  // namespace
@@ -137,8 +154,9 @@ void add_file_option(CLI::App& app, const char* name, std::string& file, const c
 }
 
 void add_set_option(CLI::App& app, SetWords& words) {
-  app.add_option("--set", words, "this value instead of the file's; VAR is an operator variable, a constant, or "
-                                 "TASK.CONSTANT; may be repeated")
+  app.add_option("--set", words,
+                 "this value instead of the file's; VAR is an operator variable, a constant, or "
+                 "TASK.CONSTANT; may be repeated")
       ->type_name("VAR VALUE")
       ->allow_extra_args(false);
 }
@@ -208,7 +226,7 @@ int carry_out_run(RunWords& words, const desk::Workplace& workplace) {
   std::signal(SIGINT, [](int) { desk::request_stop(); });
   std::signal(SIGTERM, [](int) { desk::request_stop(); });
   const auto run = [&] {
-    return with_records(words, unit, [&](desk::RecordSink* sink) {
+    return with_records(words, unit, stdout, [&](desk::RecordSink* sink) {
       return desk::run(words.run, workplace, sink, stdout, stderr);
     });
   };
@@ -226,7 +244,18 @@ int carry_out_attend(RunWords& words) {
   Nanoseconds unit;
   if (!read_times(words, unit) || words.bounds.size() != words.run.expect.size()) return desk::kUsage;
   if (!follow_parent(words.parent, SIGTERM)) return desk::kRefused;
-  return with_records(words, unit, [&](desk::RecordSink* sink) {
-    return desk::attend({words.socket, words.run, words.bounds, words.parent}, sink, stdout, stderr);
+  if (words.start_limit.empty() && !words.duration.empty()) words.run.start_limit = kStartLimit;
+  const auto page = SharedPages::open(kFacePageDescriptor, sizeof(FacePage));
+  if (!page) return print_refusal(page.error());
+  auto& done = *reinterpret_cast<FacePage*>(page->bytes().data());
+  desk::Outlet outlet(STDOUT_FILENO);
+  if (outlet.stream() == nullptr) return print_refusal({ErrorCode::kSystem, {"no memory to print"}, {}});
+  const int code = with_records(words, unit, outlet.stream(), [&](desk::RecordSink* sink) {
+    return desk::attend({words.socket, words.run, words.bounds, words.parent, &done, &outlet}, sink, outlet.stream(),
+                        stderr);
   });
+  outlet.finish(kLastLines);  // of --timeline
+  if (const int why = outlet.why_lost(); why != 0 && done.lost_output == 0)
+    std::fprintf(stderr, "standard output is lost (%s)\n", why_lost_text(why));
+  return done.lost_output == 0 && outlet.why_lost() == 0 ? code : desk::kRefused;
 }

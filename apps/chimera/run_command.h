@@ -20,7 +20,7 @@ using SetWords = std::vector<std::pair<std::string, std::string>>;
 struct RunWords {
   chimera::desk::RunRequest run;
   SetWords set;
-  std::string duration, every, quantum, seed;
+  std::string duration, start_limit, every, quantum, seed;
   std::string trace, timeline;
   std::string isolation = "process";
   std::string observe_group, operate_group, configure_group;

@@ -3,11 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "chimera/config/nearest.h"
 #include "chimera/desk/output.h"
+#include "chimera/platform/standard_output.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
 
@@ -69,7 +71,13 @@ std::string about_operands(const CLI::ParseError& fault, const CLI::App& command
 }  // namespace
 
 int tell_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv) {
-  if (fault.get_exit_code() == 0) return app.exit(fault);
+  if (fault.get_exit_code() == 0) {  // --help and --version
+    std::ostringstream text;
+    const int code = app.exit(fault, text, text);
+    std::fputs(text.str().c_str(), stdout);
+    (void)flush_and_look(stdout);
+    return code;
+  }
   const CLI::App& command = innermost(app);
   const std::vector<std::string> extras = app.remaining(true);
   std::string text;

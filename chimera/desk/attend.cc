@@ -15,6 +15,7 @@
 #include "chimera/config/task_profile.h"
 #include "chimera/desk/control_line.h"
 #include "chimera/desk/expectation.h"
+#include "chimera/desk/not_ready.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/record_line.h"
@@ -22,6 +23,7 @@
 #include "chimera/desk/script_text.h"
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/platform/process.h"
+#include "chimera/platform/standard_output.h"
 
 namespace chimera::desk {
 namespace {
@@ -31,14 +33,24 @@ using Json = nlohmann::json;
 constexpr Nanoseconds kLookEvery = milliseconds(100);  // for what has happened, and whether to stop
 constexpr Nanoseconds kStartLook = milliseconds(5);
 constexpr std::size_t kEventsAtOnce = 1000;
+constexpr Nanoseconds kLastOutput = seconds(1);  // half of what the keeper waits for a face to finish
 constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends whoever takes too long: that is not judged here
+
+std::string limit_text(Nanoseconds time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g s", to_seconds(time));
+  return text;
+}
 
 Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.get<std::int64_t>()} : kNever; }
 
 void add_numbers(const Json& value, std::vector<double>& numbers) {
-  if (value.is_number()) numbers.push_back(value.get<double>());
-  else if (value.is_boolean()) numbers.push_back(value.get<bool>() ? 1 : 0);
-  else if (value.is_null()) numbers.push_back(std::numeric_limits<double>::quiet_NaN());
+  if (value.is_number())
+    numbers.push_back(value.get<double>());
+  else if (value.is_boolean())
+    numbers.push_back(value.get<bool>() ? 1 : 0);
+  else if (value.is_null())
+    numbers.push_back(std::numeric_limits<double>::quiet_NaN());
   else if (value.is_array())
     for (const Json& element : value) add_numbers(element, numbers);
 }
@@ -54,7 +66,14 @@ Seen seen_of(const Json& reading) {
 class Attendance {
  public:
   Attendance(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err)
-      : request_(request), run_(request.run), sink_(sink), out_(out), err_(err), line_(request.socket) {}
+      : request_(request),
+        run_(request.run),
+        sink_(sink),
+        out_(out),
+        err_(err),
+        line_(request.socket),
+        page_(request.page == nullptr ? own_page_ : *request.page),
+        is_resumed_(page_.has_begun != 0) {}
 
   /// Waits until the tasks are ON. Refuses when they will not be.
   Result<void> begin();
@@ -68,8 +87,8 @@ class Attendance {
   void print_grants(const Json& status);
   void look_at_events();
   void take_event(const Json& event);
-  /// Told to, or nobody reads what it prints.
-  bool is_to_stop() const { return stop_is_requested() || std::ferror(out_) != 0; }
+  void look_at_output();
+  void act_next();
   void act(const TimedAct& timed);
   void watch_line(Nanoseconds at);
   Json readings(std::vector<std::string> names);
@@ -90,6 +109,9 @@ class Attendance {
   std::vector<TimedAct> acts_;
   std::optional<RecordLine> records_;
   std::string grants_, refused_;
+  FacePage own_page_;  // of one that has no predecessors
+  FacePage& page_;
+  const bool is_resumed_;         // a face that died had begun
   std::optional<Error> failure_;  // of the start
   Nanoseconds started_ = kNever;
   std::uint64_t next_event_ = 0;
@@ -100,22 +122,31 @@ class Attendance {
 };
 
 Result<void> Attendance::begin() {
+  Json last = Json::object();
+  const Nanoseconds until = run_.start_limit == kNever ? kNever : clock_.now() + run_.start_limit;
   for (bool is_last = false; !is_last;) {
     is_last = stop_is_requested();  // also then: it may have started long ago
     const auto status = line_.ask("status", Json::object(), seconds(20));
     if (!status) return status.error();
+    last = *status;
     // What went wrong before the start comes first, also when the start was told meanwhile.
     started_ = instant((*status)["started_ns"]);
     look_at_events();
     if (failure_) return *failure_;
-    if (started_ == kNever) {
-      clock_.wait_until(clock_.now() + kStartLook);
-      continue;
+    if (started_ != kNever) {
+      print_grants(*status);
+      page_.has_begun = 1;
+      return know_tasks(*status);
     }
-    print_grants(*status);
-    return know_tasks(*status);
+    if (clock_.now() >= until) {
+      const std::string why =
+          "not ON after " + limit_text(run_.start_limit) + " (--start-limit): " + not_ready(*status);
+      return Error{ErrorCode::kRefused, std::string_view(why), {}};
+    }
+    clock_.wait_until(clock_.now() + kStartLook);
   }
-  return Error{ErrorCode::kRefused, std::string_view("ended before its tasks were ON"), {}};
+  const std::string why = "ended before its tasks were ON: " + not_ready(last);
+  return Error{ErrorCode::kRefused, std::string_view(why), {}};
 }
 
 Result<void> Attendance::know_tasks(const Json& status) {
@@ -146,10 +177,13 @@ void Attendance::print_grants(const Json& status) {
     const std::string grant = for_terminal(rtpu.value("grant", ""));
     grants_ +=
         (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : rtpu.value("name", "") + ": ") + in_one_line(grant);
-    if (run_.json) continue;
+    if (run_.json || is_resumed_) continue;
     std::fprintf(out_, "%s%s\n", rtpus.size() == 1 ? "" : (rtpu.value("name", "") + ": ").c_str(), grant.c_str());
   }
-  if (!run_.json && run_.duration == kNever)
+  if (!run_.json && is_resumed_)
+    std::fprintf(out_, "(the process that prints this died of %s and was replaced)\n",
+                 std::string(signal_text(page_.last_signal).view()).c_str());
+  else if (!run_.json && run_.duration == kNever)
     std::fputs("running until Ctrl-C; `chimera top` in another terminal shows the tasks\n", out_);
   std::fflush(out_);
 }
@@ -162,6 +196,16 @@ void Attendance::look_at_events() {
     is_all = (*answer)["events"].size() < kEventsAtOnce;
     for (const Json& event : (*answer)["events"]) take_event(event);
   }
+  page_.events_seen = std::max<std::uint64_t>(page_.events_seen, next_event_);
+}
+
+/// What is printed may be lost: that is told, and nothing else changes.
+void Attendance::look_at_output() {
+  const int why = request_.outlet == nullptr ? 0 : request_.outlet->why_lost();
+  if (why == 0 || page_.lost_output != 0) return;
+  page_.lost_output = why;
+  std::fprintf(err_, "standard output is lost (%s): the run goes on, and its exit code is 1\n", why_lost_text(why));
+  if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR2);
 }
 
 void Attendance::take_event(const Json& event) {
@@ -176,7 +220,8 @@ void Attendance::take_event(const Json& event) {
     refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
   if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())
     restarted_[event["rtpu"].get<std::string>()] = instant(event["at_ns"]) - started_;
-  if (kind == "note" && !run_.json) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
+  const bool is_news = next_event_ > page_.events_seen;
+  if (kind == "note" && !run_.json && is_news) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
   if (kind == "not-off") not_off_.push_back({task, text});
   if (kind != "stop" || task_stopped_) return;
   task_stopped_ = true;
@@ -189,17 +234,23 @@ std::string Attendance::since_start(Nanoseconds at) const {
   return text;
 }
 
+/// One that was begun by a face that died is not done twice.
+void Attendance::act_next() {
+  const TimedAct& timed = acts_[page_.acts_begun++];
+  act(timed);
+  ++page_.acts_done;
+}
+
 void Attendance::act(const TimedAct& timed) {
   const ScriptAct& act = timed.act;
   const bool is_set = act.kind == ScriptAct::Kind::kSet;
   const bool is_signal = act.kind == ScriptAct::Kind::kSignal;
   const std::string task = is_signal ? names_.tasks[act.task.index] : "";
   const bool is_ring = is_signal && act.signal == Signal::kWakeup;
-  const auto answer =
-      is_ring     ? line_.ask("ring", {{"tasks", {task}}})
-      : is_signal ? line_.ask("signal", {{"signal", signal_name(act.signal)}, {"tasks", {task}}})
-      : is_set    ? line_.ask("set", {{"values", {{timed.variable, timed.value}}}})
-                  : line_.ask("flag", {{"up", act.kind == ScriptAct::Kind::kRaiseFlag}});
+  const auto answer = is_ring     ? line_.ask("ring", {{"tasks", {task}}})
+                      : is_signal ? line_.ask("signal", {{"signal", signal_name(act.signal)}, {"tasks", {task}}})
+                      : is_set    ? line_.ask("set", {{"values", {{timed.variable, timed.value}}}})
+                                  : line_.ask("flag", {{"up", act.kind == ScriptAct::Kind::kRaiseFlag}});
   if (answer) return;
   const std::string what = is_signal ? std::string(is_ring ? "ring" : signal_name(act.signal)) + " " + task
                            : is_set  ? "set " + timed.variable
@@ -228,25 +279,30 @@ void Attendance::watch_line(Nanoseconds at) {
 RunEnd Attendance::attend() {
   const Nanoseconds end = run_.duration == kNever ? kNever : started_ + run_.duration;
   Nanoseconds next_watch = run_.watch.empty() ? kNever : started_ + run_.every;
-  Nanoseconds next_look = started_;
-  for (std::size_t next_act = 0;;) {
+  while (is_resumed_ && next_watch < clock_.now()) next_watch += run_.every;
+  Nanoseconds next_look = is_resumed_ ? clock_.now() : started_;
+  for (;;) {
+    const std::size_t next_act = page_.acts_begun;
     const Nanoseconds act_at = next_act < acts_.size() ? started_ + acts_[next_act].act.at : kNever;
     const Nanoseconds next = std::min({next_watch, next_look, act_at, end});
-    while (clock_.now() < next && !is_to_stop()) {
-      if (records_) records_->take(next, *sink_);
-      else clock_.wait_until(next);
+    while (clock_.now() < next && !stop_is_requested()) {
+      if (records_)
+        records_->take(next, *sink_);
+      else
+        clock_.wait_until(next);
     }
-    if (is_to_stop()) {
+    if (stop_is_requested()) {
       watch_line(clock_.now());
       return RunEnd::kStopped;
     }
-    if (next == act_at) act(acts_[next_act++]);
+    if (next == act_at) act_next();
     if (next == next_watch) {
       watch_line(next);
       next_watch += run_.every;
     }
     if (next == next_look) {
       look_at_events();
+      look_at_output();
       next_look += kLookEvery;
     }
     if (task_stopped_) return RunEnd::kTaskStopped;
@@ -309,6 +365,13 @@ void Attendance::judge_end(RunReport& report, const Json& before) {
     if (is_new && end != "ended with status 0") units[r].bad_end = end.get<std::string>();
   }
   report.verdict = judge_run({report.profiles, faults, units, report.is_flag_up, run_.strict, not_off_});
+  if (page_.deaths > 0)
+    report.verdict.remarks.push_back("the process that prints and ends the run died " + std::to_string(page_.deaths) +
+                                     (page_.deaths == 1 ? " time" : " times"));
+  if (const std::uint32_t lost = page_.acts_begun - page_.acts_done; lost > 0)
+    report.verdict.failures.push_back("of " + std::to_string(lost) +
+                                      " of the acts of --at it is not known whether they were done: the process that "
+                                      "asked for them died");
   if (ended.empty() && !names_.tasks.empty())
     report.verdict.failures.emplace_back("nobody answered at the end: how the tasks ended is not known");
 }
@@ -350,8 +413,7 @@ int Attendance::report(RunEnd end) {
   report.refused = refused_;
   for (std::size_t i = 0; i < run_.expect.size(); ++i) {
     const auto expectation = Expectation::with_bound(run_.expect[i], request_.bounds[i]);
-    if (expectation)
-      report.judge(*expectation, seen_of(values.value(expectation->variable(), Json::object())));
+    if (expectation) report.judge(*expectation, seen_of(values.value(expectation->variable(), Json::object())));
   }
   for (const std::string& name : run_.watch) {
     const Json reading = values.value(name, Json::object());
@@ -360,7 +422,13 @@ int Attendance::report(RunEnd end) {
   if (records_) records_->finish(*sink_);
   judge_end(report, status ? *status : Json::object());
   print(report, run_.json, out_);
-  return save_profile(report, run_.profile, err_) ? report.code() : kRefused;
+  std::fflush(out_);
+  const bool is_saved = save_profile(report, run_.profile, err_);
+  if (request_.outlet == nullptr) return is_saved ? report.code() : kRefused;
+  request_.outlet->finish(kLastOutput);
+  look_at_output();
+  if (page_.lost_output != 0) std::fputs(report.verdict.text().c_str(), err_);  // what somebody must know
+  return is_saved && page_.lost_output == 0 ? report.code() : kRefused;
 }
 
 }  // namespace

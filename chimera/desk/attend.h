@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "chimera/desk/outlet.h"
 #include "chimera/desk/run.h"
+#include "chimera/runtime/face_page.h"
 
 namespace chimera::desk {
 
@@ -16,10 +18,13 @@ struct AttendRequest {
   RunRequest run;              ///< of these: duration, every, watch, at, expect, json
   std::vector<double> bounds;  ///< of run.expect, each in the unit of its variable
   int keeper = 0;              ///< process that ends the tasks when it is told so by SIGUSR1; 0: nobody
+  FacePage* page = nullptr;    ///< what faces before this one have done; null: there was none, and none will be
+  Outlet* outlet = nullptr;    ///< of `out`: asked for losses, of which SIGUSR2 tells the keeper; may be null
 };
 
 /// Waits for the start, attends until the end of the duration or request_stop(), reports; answers the exit code of the
-/// run. `sink` may be null. Context: setup; blocks.
+/// run. What it prints may be lost: the run goes on, and the code is 1 at its end. `sink` may be null. Context: setup;
+/// blocks.
 int attend(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err);
 
 }  // namespace chimera::desk

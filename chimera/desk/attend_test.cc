@@ -28,7 +28,8 @@ using control::Json;
 /// One task `pid` on two rtpus; what it answers may be changed before it is asked.
 class MadeUp final : public control::Subject {
  public:
-  void call(const control::MethodRule& method, const Json& parameters, control::Role, control::Reply reply) override {
+  void call(const control::MethodRule& method, const Json& parameters, const control::Caller&,
+            control::Reply reply) override {
     const std::string name = method.name;
     asked += name + (name == "signal" ? parameters.dump() : "") + "\n";
     if (name == "status") return reply(Answer::good(status()));

@@ -19,6 +19,7 @@
 #include "chimera/desk/run_report.h"
 #include "chimera/desk/under_way.h"
 #include "chimera/desk/watch_plot.h"
+#include "chimera/platform/standard_output.h"
 #include "chimera/runtime/tap_ring.h"
 
 namespace chimera::desk {
@@ -28,7 +29,7 @@ std::atomic<bool> stop_requested{false};
 
 constexpr Nanoseconds kDrainEvery = milliseconds(10);
 constexpr Nanoseconds kWatchEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
-constexpr Nanoseconds kTellEvery = seconds(3);         // of wall time
+constexpr Nanoseconds kTellEvery = seconds(3);          // of wall time
 
 /// Lines of progress, each over the one before; silent unless somebody can see them.
 class ProgressLine {
@@ -143,7 +144,7 @@ void Session::watch_line(Nanoseconds at) {
   for (const Probe& probe : watched_)
     line += "  " + probe.name + " " + (probe.read(value) ? value_text(probe.form, value) : "not written yet");
   std::fprintf(out_, "%s\n", plain_line(line).c_str());
-  std::fflush(out_);
+  (void)flush_and_look(out_);
 }
 
 bool Session::write_plot() const {
@@ -217,6 +218,7 @@ int Session::report(RunEnd end) {
   }
   tell_notes();
   print(report, request_.json, out_);
+  (void)flush_and_look(out_);
   return write_plot() && save_profile(report, request_.profile, err_) ? report.code() : kRefused;
 }
 

@@ -18,21 +18,22 @@ namespace chimera::desk {
 
 struct RunRequest {
   std::string file;
-  Nanoseconds duration = kNever;        ///< until a signal of the operating system ends it
+  Nanoseconds duration = kNever;     ///< until a signal of the operating system ends it
+  Nanoseconds start_limit = kNever;  ///< real time: tasks that are not ON after it end the run
   bool virtual_time = false;
-  bool one_process = false;             ///< real time without other processes
-  bool preemptive = false;              ///< virtual time only
-  std::optional<std::uint64_t> seed;    ///< virtual time only
+  bool one_process = false;           ///< real time without other processes
+  bool preemptive = false;            ///< virtual time only
+  std::optional<std::uint64_t> seed;  ///< virtual time only
   Nanoseconds quantum = milliseconds(1);
-  int priority = 80;                    ///< SCHED_FIFO, real time only; 0: as an ordinary process
-  std::vector<std::string> may_miss;    ///< real time: tasks that need not be guaranteed to keep their deadlines
-  std::vector<Setting> settings;        ///< values in the place of those of the file
-  std::vector<std::string> at;          ///< timed acts, script_text.h
-  std::vector<std::string> expect;      ///< expectation.h
-  std::vector<std::string> watch;       ///< state variables to print while it runs
-  Nanoseconds every = seconds(1);       ///< how often
-  std::string svg;                      ///< draw them to this file instead; virtual time or one process only
-  std::string profile;                  ///< save the profile into this file at the end; "": not
+  int priority = 80;                  ///< SCHED_FIFO, real time only; 0: as an ordinary process
+  std::vector<std::string> may_miss;  ///< real time: tasks that need not be guaranteed to keep their deadlines
+  std::vector<Setting> settings;      ///< values in the place of those of the file
+  std::vector<std::string> at;        ///< timed acts, script_text.h
+  std::vector<std::string> expect;    ///< expectation.h
+  std::vector<std::string> watch;     ///< state variables to print while it runs
+  Nanoseconds every = seconds(1);     ///< how often
+  std::string svg;                    ///< draw them to this file instead; virtual time or one process only
+  std::string profile;                ///< save the profile into this file at the end; "": not
   bool json = false;
   bool strict = false;  ///< a run that was not clean (run_verdict.h) is no success
 };

@@ -12,6 +12,7 @@
 #include "chimera/desk/run.h"
 #include "chimera/desk/script_text.h"
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/standard_output.h"
 #include "chimera/schedule/utilisation.h"
 
 namespace chimera::desk {
@@ -31,7 +32,8 @@ Result<void> judge_task_names(const RunRequest& request, const Configuration& co
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     const std::string near = nearest(name, names);
     return Error{ErrorCode::kNotFound,
-                 {"--may-miss: no task '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")}, {}};
+                 {"--may-miss: no task '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")},
+                 {}};
   }
   return {};
 }
@@ -66,8 +68,10 @@ Result<ScriptAct> settled(const TimedAct& timed, RunPlan& plan) {
     if (known.is_constant && known.name == timed.variable) constant = &known;
   if (constant != nullptr || timed.variable.find('.') != std::string::npos)
     return Error{ErrorCode::kRefused,
-                 {said + ": '" + timed.variable + "' is a constant, which nothing changes while tasks run; for the "
-                  "whole run: --set " + timed.variable + " VALUE"},
+                 {said + ": '" + timed.variable +
+                  "' is a constant, which nothing changes while tasks run; for the "
+                  "whole run: --set " +
+                  timed.variable + " VALUE"},
                  {plan.configuration.file()}};
   auto set = with_new_value(plan.configuration, plan.library, {timed.variable, timed.value, said});
   if (!set) return set.error();
@@ -130,7 +134,7 @@ Result<void> admit_below(const Configuration& configuration, double share) {
 int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code) {
   const Output output = refused(error, request.json, code);
   std::fputs(for_terminal(output.out).c_str(), out);
-  std::fflush(out);  // in a file that takes both, what came first stands first
+  (void)flush_and_look(out);  // in a file that takes both, what came first stands first
   std::fputs(for_terminal(output.err).c_str(), err);
   return output.code;
 }

@@ -11,6 +11,7 @@
 #include "chimera/desk/run_plan.h"
 #include "chimera/desk/side_by_side.h"
 #include "chimera/desk/sweep_table.h"
+#include "chimera/platform/standard_output.h"
 
 namespace chimera::desk {
 namespace {
@@ -106,6 +107,7 @@ int sweep(const SweepRequest& request, const Workplace& workplace, std::FILE* ou
     return kRefused;
   }
   std::fputs(for_terminal(request.json ? json(*table) : text(*table)).c_str(), out);
+  (void)flush_and_look(out);
   for (const auto& [path, made] : {std::pair{request.csv, csv(*table)}, {request.svg, draw::svg(plot(*table))}})
     if (auto written = write_whole(path, made); !written) return refuse_run({}, written.error(), out, err);
   return table->is_good() ? kOk : kRefused;

@@ -12,6 +12,7 @@
 #include "chimera/desk/piece_progress.h"
 #include "chimera/desk/run_plan.h"
 #include "chimera/desk/side_by_side.h"
+#include "chimera/platform/standard_output.h"
 
 namespace chimera::desk {
 namespace {
@@ -152,6 +153,7 @@ int test_application(const CasesRequest& request, const Workplace& workplace, st
     return kRefused;
   }
   std::fputs(for_terminal(request.json ? json(report) : text(report)).c_str(), out);
+  (void)flush_and_look(out);
   if (auto written = write_whole(request.junit, junit(report)); !written)
     return refuse_run({}, written.error(), out, err);
   return report.failed() == 0 ? kOk : kRefused;

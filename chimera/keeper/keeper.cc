@@ -11,7 +11,7 @@ namespace chimera {
 namespace {
 
 constexpr Nanoseconds kQuickDeath = seconds(1), kLongestPause = milliseconds(500);
-constexpr int kMostRefusals = 10;  // of the manager, before anybody was served: within about two seconds
+constexpr int kMostRefusals = 10;               // of the manager, before anybody was served: within about two seconds
 constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to be carried out
 constexpr Nanoseconds kWatchEvery = milliseconds(250);
 constexpr Nanoseconds kManagerPatience = milliseconds(1500);  // it is replaced within 20 ms
@@ -19,30 +19,22 @@ constexpr Nanoseconds kStartPatience = seconds(10);           // until it serves
 
 }  // namespace
 
-Keeper::Keeper(KeeperPlan plan) : plan_(std::move(plan)), peers_(plan_.peers) {}
+Keeper::Keeper(KeeperPlan plan) : plan_(std::move(plan)), peers_(plan_.peers), face_(plan_.face) {}
 
 Keeper::~Keeper() {
-  ProcessEnd end;
-  face_.signal(SIGKILL);
-  face_.wait(end, kLastLimit.count);
   if (signals_.fd >= 0) ::pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
 }
 
 Result<void> Keeper::start() {
   sigset_t mask;
   ::sigemptyset(&mask);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGCHLD, SIGPIPE}) ::sigaddset(&mask, number);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGCHLD, SIGPIPE}) ::sigaddset(&mask, number);
   ::pthread_sigmask(SIG_BLOCK, &mask, &mask_before_);
   ::sigdelset(&mask, SIGPIPE);
   signals_ = OwnedDescriptor(::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK));
   if (signals_.fd < 0) return system_error(Message("keeper"), "signalfd");
-  if (auto started = peers_.start_all(); !started || plan_.face.empty()) return started;
-  std::vector<const char*> words;
-  for (const std::string& word : plan_.face) words.push_back(word.c_str());
-  auto face = Process::start(words[0], words, {}, SIGTERM);  // an early end waits until it listens
-  if (!face) return face.error();
-  face_ = *std::move(face);
-  return {};
+  if (auto started = peers_.start_all(); !started || !face_.is_wanted()) return started;
+  return face_.start();
 }
 
 int Keeper::run() {
@@ -53,11 +45,9 @@ int Keeper::run() {
     while (advance()) {
     }
   }
-  face_.signal(SIGKILL);  // it had its time
-  ProcessEnd end;
-  face_.wait(end, kLastLimit.count);
+  face_.end();  // it had its time
   peers_.end_all();
-  return end_code_ != 0 ? end_code_ : face_code_;
+  return end_code_ != 0 ? end_code_ : face_.code();
 }
 
 void Keeper::wait() {
@@ -76,10 +66,12 @@ void Keeper::wait() {
 void Keeper::look() {
   signalfd_siginfo taken;
   while (::read(signals_.fd, &taken, sizeof taken) == sizeof taken) {
-    const bool is_of_face = face_.is_held() && taken.ssi_pid == static_cast<std::uint32_t>(face_.pid());
+    const bool is_of_face = face_.lives() && taken.ssi_pid == static_cast<std::uint32_t>(face_.pid());
     if (taken.ssi_signo == SIGUSR1)
       face_has_looked_ = face_has_looked_ || is_of_face;
-    else if (taken.ssi_signo != SIGCHLD)
+    else if (taken.ssi_signo == SIGUSR2 && is_of_face)
+      peers_.publish_face(face_.page());
+    else if (taken.ssi_signo != SIGCHLD && taken.ssi_signo != SIGUSR2)
       end_asked_ = true;
   }
   end_asked_ = end_asked_ || face_has_looked_;
@@ -96,29 +88,47 @@ void Keeper::look() {
     manager_pause_ = std::clamp(manager_pause_ * 2, milliseconds(10), kLongestPause);
   }
   for (const KeeperMessage& wish : wishes) obey(wish);
-  ProcessEnd end;
-  if (face_.has_ended(end) && !end.by_signal) {
-    face_code_ = end.code;
-    end_asked_ = true;
-  }
+  look_at_face();
   peers_.look_at_orphans(face_.pid());
+}
+
+void Keeper::end_badly(const Message& why) {
+  std::fprintf(stderr, "%.*s\n", static_cast<int>(why.view().size()), why.view().data());
+  end_asked_ = true;
+  end_code_ = 1;
+}
+
+void Keeper::look_at_face() {
+  const KeptFace::Fate fate = face_.look();
+  if (fate == KeptFace::Fate::kNothingNew) return;
+  peers_.publish_face(face_.page());
+  Message said("the process that prints and ends this run died ");
+  if (fate == KeptFace::Fate::kExited) {
+    end_asked_ = true;
+  } else if (phase_ != Phase::kRunning || end_asked_) {
+    end_badly(said << "of " << face_.cause().view() << " while everything ends: how the run went is not judged");
+  } else if (fate == KeptFace::Fate::kGivenUp) {
+    end_badly(said << kMostFaceDeaths << " times in 10 s, the last time of " << face_.cause().view()
+                   << ": everything ends");
+  } else if (const auto started = face_.start(); !started) {
+    end_badly(said << "of " << face_.cause().view() << ", and no other can be started ("
+                   << started.error().message.view() << "): everything ends");
+  }
 }
 
 /// A manager that never came to serve is not tried for ever: there is nothing running yet that would go on without it.
 void Keeper::count_refusal(Nanoseconds lived) {
   const bool refused = lived < kQuickDeath && !peers_.by_signal(peers_.manager());
   if (!refused) manager_refusals_ = -1;
-  if (manager_refusals_ < 0 || ++manager_refusals_ < kMostRefusals) return;
-  std::fprintf(stderr, "the manager could not start, %d times: nothing is run\n", kMostRefusals);
-  end_asked_ = true;
-  end_code_ = 1;
+  if (manager_refusals_ < 0 || ++manager_refusals_ != kMostRefusals) return;
+  end_badly(Message("the manager could not start, ") << kMostRefusals << " times: nothing is run");
 }
 
 void Keeper::obey(const KeeperMessage& wish) {
   if (wish.kind == KeeperMessage::Kind::kBeat) ++manager_beats_;
   if (wish.kind == KeeperMessage::Kind::kEnd) {
     end_asked_ = true;
-    end_code_ = wish.code;
+    if (end_code_ == 0) end_code_ = wish.code;
   }
   if (wish.index >= peers_.manager()) return;
   const bool is_meant = wish.incarnation == 0 || wish.incarnation == peers_.incarnation(wish.index);
@@ -177,7 +187,7 @@ bool Keeper::advance() {
   } else if (phase_ == Phase::kRunning && end_asked_) {
     face_.signal(SIGTERM);
     enter(Phase::kFaceLooks, plan_.face_limit);
-  } else if (phase_ == Phase::kFaceLooks && (!face_.is_held() || face_has_looked_ || is_late)) {
+  } else if (phase_ == Phase::kFaceLooks && (!face_.lives() || face_has_looked_ || is_late)) {
     peers_.finish_rtpus();
     enter(Phase::kRtpusFinish, plan_.ending_limit);
   } else if (phase_ == Phase::kRtpusFinish && (!peers_.any_rtpu_lives() || is_late)) {
@@ -185,7 +195,9 @@ bool Keeper::advance() {
     enter(Phase::kRtpusDie, kLastLimit);
   } else if (phase_ == Phase::kRtpusDie && (!peers_.any_rtpu_lives() || is_late)) {
     enter(Phase::kFaceFinishes, plan_.face_limit);
-  } else if (phase_ == Phase::kFaceFinishes && (!face_.is_held() || is_late)) {
+  } else if (phase_ == Phase::kFaceFinishes && (!face_.lives() || is_late)) {
+    if (face_.lives())
+      end_badly(Message("the process that prints did not come to its end: how the run went is not told"));
     peers_.signal(manager, SIGTERM);
     enter(Phase::kManagerFinishes, kLastLimit);
   } else if (phase_ == Phase::kManagerFinishes && (!peers_.lives(manager) || is_late)) {

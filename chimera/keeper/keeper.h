@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/keeper/kept_face.h"
 #include "chimera/keeper/kept_peers.h"
 #include "chimera/platform/life_watch.h"
 
@@ -32,9 +33,12 @@ class Keeper {
   /// them.
   Result<void> start();
   /// Keeps until the face exits or says SIGUSR1, the manager says so, or a signal does; then ends everybody: the face
-  /// has taken its last values by then, and sees how the tasks end. The exit code: the manager's if it gave one above
-  /// 0, else that of the face, 0 without one.
+  /// has taken its last values by then, and sees how the tasks end. A face that dies by a signal is replaced, and so
+  /// are its successors; when one dies too often, or while everything ends, that is told on standard error and the exit
+  /// code is 1. Else the manager's if it gave one above 0, else that of the face, 0 without one.
   int run();
+  /// The face has told that what it printed is lost. Requires: start() was called.
+  bool output_is_lost() const noexcept { return face_.is_wanted() && face_.page().lost_output != 0; }
 
  private:
   enum class Phase : std::uint8_t {
@@ -49,6 +53,8 @@ class Keeper {
 
   void wait();
   void look();
+  void look_at_face();
+  void end_badly(const Message& why);
   void count_refusal(Nanoseconds lived);
   void obey(const KeeperMessage& wish);
   bool advance();
@@ -59,7 +65,7 @@ class Keeper {
   const KeeperPlan plan_;
   LinuxClock clock_;
   KeptPeers peers_;
-  Process face_;
+  KeptFace face_;
   OwnedDescriptor signals_;
   sigset_t mask_before_{};
   Phase phase_ = Phase::kRunning;
@@ -73,7 +79,7 @@ class Keeper {
   int manager_refusals_ = 0;  // in a row from the start on; negative once one has lived
   bool end_asked_ = false;
   bool face_has_looked_ = false;  // and says so by SIGUSR1: from there on it only waits for the ends
-  int end_code_ = 0, face_code_ = 0;
+  int end_code_ = 0;
 };
 
 }  // namespace chimera

@@ -46,9 +46,15 @@ class KeeperProcess : public ::testing::Test {
     if (keeper_ != 0) return;
     const auto image = FrozenBytes::create("image", text("the image"));
     const auto bundle = FrozenBytes::create("bundle", text("the bundle"));
-    KeeperPlan plan{.peers = {.rtpu_program = KEEPER_TEST_CHILD, .manager_program = KEEPER_TEST_CHILD, .n_rtpus = n,
-                              .image = image->descriptor(), .bundle = bundle->descriptor(), .listening = 0},
-                    .face = {}, .face_limit = limit, .ending_limit = limit};
+    KeeperPlan plan{.peers = {.rtpu_program = KEEPER_TEST_CHILD,
+                              .manager_program = KEEPER_TEST_CHILD,
+                              .n_rtpus = n,
+                              .image = image->descriptor(),
+                              .bundle = bundle->descriptor(),
+                              .listening = 0},
+                    .face = {},
+                    .face_limit = limit,
+                    .ending_limit = limit};
     if (with_face) plan.face = {KEEPER_TEST_CHILD, "face", std::to_string(::getpid())};
     Keeper keeper(plan);
     if (const auto started = keeper.start(); !started) ::_exit(99);
@@ -69,10 +75,20 @@ class KeeperProcess : public ::testing::Test {
       if (clock.now() > until) return ADD_FAILURE() << "no line '" << line << "' in\n" << log(), false;
     return true;
   }
-  /// Of the process that logged "WHO begin PID".
+  bool wait_for_times(const std::string& line, int n) {
+    LinuxClock clock;
+    for (const Nanoseconds until = clock.now() + kPatience; clock.now() < until; ::usleep(1000)) {
+      const std::string all = "\n" + log();
+      int found = 0;
+      for (std::size_t at = 0; (at = all.find("\n" + line, at)) != std::string::npos; ++at) ++found;
+      if (found >= n) return true;
+    }
+    return ADD_FAILURE() << "no " << n << " lines '" << line << "' in\n" << log(), false;
+  }
+  /// Of the process that logged "WHO begin PID" last.
   pid_t pid_of(const std::string& who) {
     const std::string all = "\n" + log(), begin = "\n" + who + " begin ";
-    const std::size_t at = all.find(begin);
+    const std::size_t at = all.rfind(begin);
     return at == std::string::npos ? 0 : std::stoi(all.substr(at + begin.size()));
   }
   /// Whoever logged that it began, which it has not ended since: its parent holds it until then.
@@ -238,19 +254,33 @@ TEST_F(KeeperProcess, WhoeverDoesNotFinishIsKilledAfterItsLimit) {
   ASSERT_TRUE(wait_for("0.1 is stubborn"));
   ASSERT_TRUE(wait_for("2.1 is stubborn"));
   ::kill(keeper_, SIGINT);  // still ours
-  EXPECT_EQ(code_of_keeper(), 0);
+  EXPECT_EQ(code_of_keeper(), 1) << "nobody has judged the run";
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, AFaceThatDiesBySignalDoesNotEndTheRun) {
+TEST_F(KeeperProcess, AFaceThatDiesBySignalIsReplacedAndTheRunGoesOn) {
   start(1);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
   kill_the("face");
   order("1", "kill 0");
   EXPECT_TRUE(wait_for("1.1 ended 0 1 signal 9")) << "it still keeps";
-  ::kill(keeper_, SIGTERM);  // still ours
-  EXPECT_EQ(code_of_keeper(), 0);
+  ASSERT_TRUE(wait_for_times("face begin", 2));
+  order("face", "exit 3");
+  EXPECT_EQ(code_of_keeper(), 3) << "that of the second one";
+  EXPECT_TRUE(nobody_is_left());
+}
+
+TEST_F(KeeperProcess, AFaceThatDiesAgainAndAgainEndsEverything) {
+  start(1);
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));
+  for (int n = 1; n <= kMostFaceDeaths; ++n) {
+    ASSERT_TRUE(wait_for_times("face begin", n));
+    kill_the("face");
+  }
+  EXPECT_EQ(code_of_keeper(), 1);
+  EXPECT_TRUE(has("0.1 finish")) << "in order";
+  EXPECT_TRUE(nobody_is_left());
 }
 
 TEST_F(KeeperProcess, NobodyIsLeftWhenTheKeeperItselfIsKilled) {
@@ -273,13 +303,16 @@ TEST_F(KeeperProcess, AManagerThatDiesAgainAndAgainIsStartedMoreAndMoreSlowly) {
 }
 
 TEST(Keeper, RefusesProgramsThatCannotBeStartedAndLeavesNobody) {
-  const PeerPlan peers{.rtpu_program = "/nowhere/chimera-rtpu", .manager_program = "/bin/true", .n_rtpus = 1,
-                       .image = 0, .bundle = 0, .listening = 0};
+  const PeerPlan peers{.rtpu_program = "/nowhere/chimera-rtpu",
+                       .manager_program = "/bin/true",
+                       .n_rtpus = 1,
+                       .image = 0,
+                       .bundle = 0,
+                       .listening = 0};
   Keeper keeper({.peers = peers, .face = {}});
   const auto started = keeper.start();
   ASSERT_FALSE(started.has_value());
-  EXPECT_EQ(started.error().message.view(),
-            "program /nowhere/chimera-rtpu: exec failed: No such file or directory");
+  EXPECT_EQ(started.error().message.view(), "program /nowhere/chimera-rtpu: exec failed: No such file or directory");
 }
 
 }  // namespace

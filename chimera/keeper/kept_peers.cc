@@ -106,7 +106,10 @@ Result<void> KeptPeers::start(std::uint32_t index) {
   if (!process) return process.error();
   peer.process = *std::move(process);
   peer.channel = std::move(ends->first);
-  peer.last = {.kind = Kind::kStarted, .index = index, .incarnation = incarnation, .pid = peer.process.pid(),
+  peer.last = {.kind = Kind::kStarted,
+               .index = index,
+               .incarnation = incarnation,
+               .pid = peer.process.pid(),
                .at = clock_.now()};
   return {};
 }
@@ -195,10 +198,22 @@ bool KeptPeers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishe
 void KeptPeers::end(std::uint32_t index, const ProcessEnd& how) {
   Peer& peer = peers_[index];
   peer.channel = Channel();
-  peer.last = {.kind = Kind::kEnded, .index = index, .incarnation = peer.last.incarnation, .code = how.code,
-               .by_signal = how.by_signal, .core_dumped = how.core_dumped, .at = clock_.now()};
+  peer.last = {.kind = Kind::kEnded,
+               .index = index,
+               .incarnation = peer.last.incarnation,
+               .code = how.code,
+               .by_signal = how.by_signal,
+               .core_dumped = how.core_dumped,
+               .at = clock_.now()};
   publish_life(index, 0);
   if (index != manager()) tell_life(index);  // before the bells: each of them is a system call
+  ring_all();
+}
+
+void KeptPeers::publish_face(const FacePage& face) {
+  page().face_signal.store(face.last_signal, std::memory_order_relaxed);
+  page().face_deaths.store(face.deaths, std::memory_order_release);
+  page().lost_output.store(face.lost_output, std::memory_order_release);
   ring_all();
 }
 

@@ -16,6 +16,7 @@
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/rtpu/keeper_message.h"
+#include "chimera/runtime/face_page.h"
 #include "chimera/runtime/pages.h"
 
 namespace chimera {
@@ -47,6 +48,8 @@ class KeptPeers {
   void tell_manager(const KeeperMessage& message) { tell(manager(), message); }
   /// Shows all that the keeper came round.
   void beat() noexcept { page().beats.fetch_add(1, std::memory_order_release); }
+  /// Everybody may know this of the face of the run.
+  void publish_face(const FacePage& face);
   /// Tells every rtpu to end its tasks; from here on everybody sees that it ends.
   void finish_rtpus();
   /// Ends what dead rtpus left behind; `other` is a child of somebody else in this process. Due again at orphans_due().
@@ -73,7 +76,7 @@ class KeptPeers {
   struct Peer {
     Process process;
     Channel channel;
-    OwnedDescriptor segment;                     // of its last incarnation that made one
+    OwnedDescriptor segment;  // of its last incarnation that made one
     std::uint32_t segment_incarnation = 0;
     KeeperMessage last;                     // kStarted or kEnded: what a new manager is told
     std::string origin;                     // of its last incarnation, and of what that starts

@@ -2,9 +2,9 @@
 #include "chimera/manager/cause.h"
 
 #include <cstdio>
-#include <cstring>
 
 #include "chimera/platform/lost_descriptor.h"
+#include "chimera/platform/process.h"
 #include "chimera/runtime/under_way.h"
 #include "chimera/task/signal.h"
 
@@ -33,10 +33,7 @@ std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, 
     return "was ended: " + hung;
   std::string text = "ended with status " + std::to_string(ended.code);
   if (ended.by_signal == 0 && ended.code == kDescriptorLost) text += " (its descriptors were closed)";
-  if (ended.by_signal != 0) {
-    const char* name = ::sigabbrev_np(ended.code);
-    text = "ended by signal " + std::to_string(ended.code) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");
-  }
+  if (ended.by_signal != 0) text = "ended by " + std::string(signal_text(ended.code).view());
   if (!made.empty()) {
     text += " " + made;
   } else if (left.is_there() && left.head().phase != PeerPhase::kEnded) {

@@ -33,9 +33,7 @@ struct Driver::Mapped {
     if (listening >= 0) ::close(listening);
   }
   DecisionPage& decision_page() const noexcept { return *reinterpret_cast<DecisionPage*>(decision.bytes().data()); }
-  const KeeperPage& keeper_page() const noexcept {
-    return *reinterpret_cast<const KeeperPage*>(keeper.bytes().data());
-  }
+  const KeeperPage& keeper_page() const noexcept { return *reinterpret_cast<const KeeperPage*>(keeper.bytes().data()); }
 
   Result<void> open(const Inherited& from) {
     channel = Channel(from.channel);
@@ -98,8 +96,8 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
   PeerSegment predecessor;
   for (auto& [message, passed] : inventory) {
     if (message.kind != KeeperMessage::Kind::kPeer || message.index != peers->n_rtpus() || passed < 0) continue;
-    auto opened = PeerSegment::open(passed, peers->manager_layout(), peers->n_tasks(), peers->n_rtpus(),
-                                    message.incarnation);
+    auto opened =
+        PeerSegment::open(passed, peers->manager_layout(), peers->n_tasks(), peers->n_rtpus(), message.incarnation);
     passed = -1;
     if (opened) predecessor = *std::move(opened);
   }
@@ -152,9 +150,12 @@ bool Driver::take_messages() {
   int passed = -1;
   while (true) {
     switch (mapped_->channel.receive(bytes_of(message), passed)) {
-      case Channel::Got::kClosed: return false;
-      case Channel::Got::kNothing: return true;
-      case Channel::Got::kMessage: take(message, passed);
+      case Channel::Got::kClosed:
+        return false;
+      case Channel::Got::kNothing:
+        return true;
+      case Channel::Got::kMessage:
+        take(message, passed);
     }
   }
 }
@@ -254,6 +255,7 @@ int Driver::bundle() const noexcept { return mapped_->bundle_bytes.descriptor();
 int Driver::take_listening() noexcept { return std::exchange(mapped_->listening, -1); }
 
 void Driver::look_at_keeper() {
+  face_watch_.look(*world_, now());
   if (is_ending_ || world_->keeper.ending.load(std::memory_order_acquire) == 0) return;
   is_ending_ = true;
   world_->tell("ending", TaskId{}, RtpuId{}, "everything ends", now());

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "chimera/manager/bell_watch.h"
+#include "chimera/manager/face_watch.h"
 #include "chimera/manager/fleet.h"
 #include "chimera/manager/unit_health.h"
 #include "chimera/manager/unit_watch.h"
@@ -94,6 +95,7 @@ class Driver {
   bool is_ready_ = false;
   std::optional<std::int32_t> end_wish_;
   bool is_ending_ = false;
+  FaceWatch face_watch_;
 };
 
 }  // namespace chimera::manager

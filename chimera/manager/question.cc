@@ -9,9 +9,10 @@
 namespace chimera::manager {
 namespace {
 
+using Json = nlohmann::json;
+
 /// With its keys in the order of all other answers.
 std::string one_line(const std::string& json) {
-  using Json = nlohmann::json;
   return Json::parse(json).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -8,6 +8,7 @@
 #include "chimera/config/task_profile.h"
 #include "chimera/manager/credible.h"
 #include "chimera/manager/cause.h"
+#include "chimera/manager/face_watch.h"
 
 namespace chimera::manager {
 namespace {
@@ -21,10 +22,14 @@ const char* policy_text(Policy policy) {
 
 const char* phase_text(PeerPhase phase) {
   switch (phase) {
-    case PeerPhase::kStarting: return "starting";
-    case PeerPhase::kServing: return "serving";
-    case PeerPhase::kEnding: return "ending";
-    case PeerPhase::kEnded: break;
+    case PeerPhase::kStarting:
+      return "starting";
+    case PeerPhase::kServing:
+      return "serving";
+    case PeerPhase::kEnding:
+      return "ending";
+    case PeerPhase::kEnded:
+      break;
   }
   return "ended";
 }
@@ -32,9 +37,7 @@ const char* phase_text(PeerPhase phase) {
 Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 /// What the rtpu says of itself, one that was cut short included.
-std::string grant_of(const BlockHead& head) {
-  return {head.grant, ::strnlen(head.grant, sizeof head.grant)};
-}
+std::string grant_of(const BlockHead& head) { return {head.grant, ::strnlen(head.grant, sizeof head.grant)}; }
 
 bool is_ending(const World& world) { return world.keeper.ending.load(std::memory_order_acquire) != 0; }
 
@@ -102,7 +105,9 @@ Json inputs_json(const World& world, TaskId task, Nanoseconds at) {
     const bool is_there = reading.is_valid && reading.slot.sequence > 0;
     inputs.push_back({{"port", port.name},
                       {"variable", port.variable},
-                      {"age_ns", is_operators ? Json(0) : is_there ? Json(reading.age(at).count) : Json()}});
+                      {"age_ns", is_operators ? Json(0)
+                                 : is_there   ? Json(reading.age(at).count)
+                                              : Json()}});
   }
   return inputs;
 }
@@ -169,8 +174,8 @@ Json task_json(const World& world, TaskId task, Nanoseconds at) {
 }
 
 Json port_json(const ConfiguredPort& port) {
-  return {{"port", port.name},         {"kind", kind_name(port.kind)}, {"variable", port.variable},
-          {"type", port.type},         {"unit", port.unit},            {"shape", port.shape}};
+  return {{"port", port.name}, {"kind", kind_name(port.kind)}, {"variable", port.variable}, {"type", port.type},
+          {"unit", port.unit}, {"shape", port.shape}};
 }
 
 Json described_task(const World& world, const ConfiguredTask& task) {
@@ -196,10 +201,14 @@ Json described_variable(const Configuration& configuration, const ConfiguredVari
     }
     return all;
   };
-  return {{"variable", variable.name}, {"constant", variable.is_constant},
-          {"given", variable.is_given}, {"type", variable.type},
-          {"unit", variable.unit},      {"shape", variable.shape},
-          {"producers", names(variable.producers)}, {"consumers", names(variable.consumers)}};
+  return {{"variable", variable.name},
+          {"constant", variable.is_constant},
+          {"given", variable.is_given},
+          {"type", variable.type},
+          {"unit", variable.unit},
+          {"shape", variable.shape},
+          {"producers", names(variable.producers)},
+          {"consumers", names(variable.consumers)}};
 }
 
 }  // namespace
@@ -247,6 +256,7 @@ Json status_json(const World& world, Nanoseconds at) {
           {"ending", world.keeper.ending.load(std::memory_order_acquire) != 0},
           {"flag", flag_json(world)},
           {"keeper", {{"pid", world.keeper_pid}, {"hang", or_null(world.keeper_hang)}}},
+          {"face", face_json(world)},
           {"rtpus", std::move(rtpus)},
           {"tasks", std::move(tasks)}};
 }
@@ -277,8 +287,8 @@ Json profile_json(const World& world, Nanoseconds at) {
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) {
     const TaskSpec& spec = world.spec().tasks[t];
     const Profile profile = profile_of(world, TaskId(t));
-    tasks.push_back({std::string(spec.name), std::string(spec.component), world.state(TaskId(t)), spec.period,
-                     profile, world.peers.fault(TaskId(t)), std::string(world.name(spec.rtpu)),
+    tasks.push_back({std::string(spec.name), std::string(spec.component), world.state(TaskId(t)), spec.period, profile,
+                     world.peers.fault(TaskId(t)), std::string(world.name(spec.rtpu)),
                      world.configuration ? transfer_of(*world.configuration, t) : TransferCost{},
                      on_time(world, TaskId(t), profile, at), spec.server});
   }
@@ -307,8 +317,7 @@ Json events_json(const World& world, std::uint64_t since, std::size_t limit) {
 Json library_json(const World& world) {
   Json components = Json::array();
   for (const LibraryEntry& entry : world.bundle.library.entries())
-    components.push_back(
-        {{"name", entry.descriptor.name}, {"doc", entry.descriptor.doc}, {"file", entry.object_file}});
+    components.push_back({{"name", entry.descriptor.name}, {"doc", entry.descriptor.doc}, {"file", entry.object_file}});
   return {{"components", std::move(components)}};
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "chimera/base/message.h"
 #include "chimera/base/result.h"
 
 namespace chimera {
@@ -18,20 +19,23 @@ struct ProcessEnd {
   bool core_dumped = false;
 };
 
+/// "signal 9 (SIGKILL)". Context: any; wait-free.
+Message signal_text(int number) noexcept;
+
 /// A child. Move-only; closing the handle leaves the child alone. Context: setup.
 class Process {
  public:
   /// Starts `program` by exec with `arguments` (argv[0] included; a null pointer is added). descriptors[i] becomes
   /// descriptor 3 + i of the child; nothing else but 0, 1 and 2 is inherited. The signal mask of the child is empty but
   /// for the signal `blocked` (0: none), which waits until the child is ready for it; SIGINT and SIGHUP are ignored:
-  /// those of a terminal reach everybody, and the parent answers them. Refuses with the system's reason. Call from one
+  /// those of a terminal reach everybody, and the parent answers them; so are SIGPIPE and SIGXFSZ: a write that fails
+  /// ends nobody. Refuses with the system's reason. Call from one
   /// thread of the process only, the one that lives longest: a child that follows its parent follows that thread.
   static Result<Process> start(const char* program, std::span<const char* const> arguments,
                                std::span<const int> descriptors, int blocked = 0) noexcept;
 
   Process() noexcept = default;
-  Process(Process&& other) noexcept
-      : pidfd_(std::exchange(other.pidfd_, -1)), pid_(std::exchange(other.pid_, -1)) {}
+  Process(Process&& other) noexcept : pidfd_(std::exchange(other.pidfd_, -1)), pid_(std::exchange(other.pid_, -1)) {}
   Process& operator=(Process&& other) noexcept;
   ~Process();
 

@@ -33,6 +33,10 @@ struct KeeperPage {
   std::uint32_t n_rtpus = 0;
   std::atomic<std::uint32_t> ending{0};
   std::atomic<std::uint32_t> alive[kMaxPeers];  ///< incarnation of the peer that lives; 0: none
+  // Of the face of the run, face_page.h: for those who cannot see its page.
+  std::atomic<std::uint32_t> face_deaths{0};
+  std::atomic<std::int32_t> face_signal{0};
+  std::atomic<std::int32_t> lost_output{0};
 };
 
 }  // namespace chimera

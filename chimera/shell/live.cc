@@ -9,6 +9,7 @@
 
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/config/quantity.h"
+#include "chimera/platform/standard_output.h"
 #include "chimera/shell/event_lines.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/one_shot.h"
@@ -42,10 +43,14 @@ int end_of_notes(Session& session) {
 
 const char* style(TopLine::Look look) {
   switch (look) {
-    case TopLine::Look::kHeading: return "\x1b[7m";
-    case TopLine::Look::kAlarm: return "\x1b[1;31m";
-    case TopLine::Look::kFaint: return "\x1b[2m";
-    default: return "";
+    case TopLine::Look::kHeading:
+      return "\x1b[7m";
+    case TopLine::Look::kAlarm:
+      return "\x1b[1;31m";
+    case TopLine::Look::kFaint:
+      return "\x1b[2m";
+    default:
+      return "";
   }
 }
 
@@ -135,11 +140,12 @@ void redraw(const std::vector<std::string>& lines, bool is_first, std::FILE* out
   std::string text = is_first ? "" : "\r\x1b[" + std::to_string(lines.size()) + "A";
   for (const std::string& line : lines) text += line + "\x1b[K\n";
   std::fputs(text.c_str(), out);
-  std::fflush(out);
+  (void)flush_and_look(out);
 }
 
-/// Prints what a subscription brings until somebody ends it; a manager that is restarted is waited for. `show` prints
-/// one notification, and may change the subscription to what a new manager is to be asked for.
+/// Prints what a subscription brings until somebody ends it or nothing can be printed; a manager that is restarted is
+/// waited for. `show` prints one notification, and may change the subscription to what a new manager is to be asked
+/// for.
 template <class Show>
 int follow(Session& session, const Call& call, Json subscription, std::FILE* out, std::FILE* err, const Show& show) {
   const control::Answer subscribed = session.ask("subscribe", subscription);
@@ -153,7 +159,7 @@ int follow(Session& session, const Call& call, Json subscription, std::FILE* out
     if (woken.by != By::kNote) continue;
     show(woken.note, subscription);
     if (call.json) std::fprintf(out, "%s\n", for_terminal(woken.note.parameters->dump()).c_str());
-    std::fflush(out);
+    if (flush_and_look(out) != 0) return kRefused;  // nobody sees it any more
   }
 }
 
@@ -170,8 +176,10 @@ int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
     if (call.json) return;
     shown.take(field(*note.parameters, "values"));
     const std::size_t width = screen_size(STDOUT_FILENO).width;
-    if (is_live) redraw(shown.lines(width > 1 ? width - 1 : 1, writes_unicode()), is_first, out);
-    else std::fprintf(out, "%s\n", shown.plain().c_str());
+    if (is_live)
+      redraw(shown.lines(width > 1 ? width - 1 : 1, writes_unicode()), is_first, out);
+    else
+      std::fprintf(out, "%s\n", shown.plain().c_str());
     is_first = false;
   });
 }
@@ -204,6 +212,7 @@ int get_every(Session& session, const Call& call, std::FILE* out, std::FILE* err
   for (;;) {
     const Said said = one_shot(session, call, {});
     if (print(said, out, err) != kOk) return said.code;
+    if (flush_and_look(out) != 0) return kRefused;  // nobody sees it any more
     const Woken woken = attention.wait(nullptr, milliseconds(period.value()));
     if (woken.by == By::kStop) return kOk;
   }

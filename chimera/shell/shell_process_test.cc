@@ -38,7 +38,8 @@ using control::Json;
 
 /// Two tasks and the variables of test_answers.h; `error` rises by 1 mrad a row.
 struct FakeSubject final : control::Subject {
-  void call(const control::MethodRule& method, const Json& parameters, control::Role, control::Reply reply) override {
+  void call(const control::MethodRule& method, const Json& parameters, const control::Caller&,
+            control::Reply reply) override {
     const std::string name = method.name;
     calls += name + " " + parameters.dump() + "\n";
     if (name == "status") {

@@ -82,19 +82,24 @@ std::vector<std::string> server_cells(const Json& task, double load) {
 
 Columns task_table(const Json& status) {
   const auto seldom = that_count(status, {"partial", "tolerated", "preempted", "demoted", "events_lost", "exhausted"});
-  std::vector<std::string> heading = {"task", "state", "rtpu", ">rate", ">cycles", ">mean", ">max", ">budget",
-                                      ">jitter", ">missed"};
+  std::vector<std::string> heading = {"task",  "state", "rtpu",    ">rate",   ">cycles",
+                                      ">mean", ">max",  ">budget", ">jitter", ">missed"};
   const bool serves = has_server(status);
   if (serves) heading.insert(heading.end(), {">server", ">used"});
   for (const std::string& key : seldom) heading.push_back(">" + key);
   heading.insert(heading.end(), {">faults", "oldest input"});
   Columns table(std::move(heading));
   for (const Json& task : field(status, "tasks")) {
-    std::vector<std::string> row = {text_of(task, "task"), text_of(task, "state"), text_of(task, "rtpu"),
-                                    rate_text(number_of(task, "rate_hz")), count_of(task, "cycles"),
+    std::vector<std::string> row = {text_of(task, "task"),
+                                    text_of(task, "state"),
+                                    text_of(task, "rtpu"),
+                                    rate_text(number_of(task, "rate_hz")),
+                                    count_of(task, "cycles"),
                                     time_of(field(task, "execution_ns"), "mean"),
-                                    time_of(field(task, "execution_ns"), "max"), time_of(task, "budget_ns"),
-                                    time_of(task, "jitter_ns"), count_of(task, "missed")};
+                                    time_of(field(task, "execution_ns"), "max"),
+                                    time_of(task, "budget_ns"),
+                                    time_of(task, "jitter_ns"),
+                                    count_of(task, "missed")};
     const auto on = static_cast<double>(whole_of(task, "on_ns"));
     const double load = on > 0 ? number_of(task, "busy_ns") / on : 0;
     if (const auto cells = server_cells(task, load); serves) row.insert(row.end(), cells.begin(), cells.end());
@@ -185,7 +190,19 @@ std::string headline(const Json& status) {
   line += configuration.empty() ? "no configuration" : configuration;
   const auto started = whole_or_none(status, "started_ns");
   line += started ? ", up " + duration_text(whole_of(status, "now_ns") - *started) : ", starting";
-  return line + ", " + flag_words(field(status, "flag")) + (truth_of(status, "ending") ? ", ENDING" : "");
+  return line + ", " + flag_words(field(status, "flag")) + (truth_of(status, "ending") ? ", ENDING" : "") +
+         (text_of(field(status, "face"), "lost_output").empty() ? "" : ", OUTPUT LOST");
+}
+
+/// Of the process in whose terminal the run was typed: lines only when something happened to it.
+static std::string face_text(const Json& face) {
+  std::string text;
+  if (const std::string lost = text_of(face, "lost_output"); !lost.empty())
+    text += "standard output of the run is lost: " + lost + "\n";
+  if (const std::int64_t deaths = whole_of(face, "deaths"); deaths > 0)
+    text += "the process that prints and ends the run was replaced " + std::to_string(deaths) +
+            (deaths == 1 ? " time" : " times") + "; last end: " + text_of(face, "last_end") + "\n";
+  return text;
 }
 
 std::string flag_words(const Json& flag) {
@@ -228,7 +245,7 @@ OldestInput oldest_input(const Json& task) {
 }
 
 std::string status_text(const Json& status) {
-  std::string text = headline(status) + "\n";
+  std::string text = headline(status) + "\n" + face_text(field(status, "face"));
   if (const Columns rtpus = rtpu_table(status); !rtpus.empty()) text += "\n" + rtpus.text();
   if (const std::string hang = text_of(field(status, "keeper"), "hang"); !hang.empty())
     text += "keeper: HANGS: " + hang + "\n";
@@ -262,12 +279,15 @@ std::string profile_text(const Json& answer) {
     const Json& cycle = field(field(task, "execution_ns"), "cycle");
     const Json& delay = field(task, "start_delay_ns");
     const bool has_delay = whole_of(delay, "count") > 0;
-    std::vector<std::string> row = {
-        text_of(task, "task"), text_of(task, "state"), count_of(task, "cycles"), time_of(cycle, "mean"),
-        time_of(cycle, "max"), load_text(task), time_of(field(task, "response_ns"), "max"),
-        has_delay ? duration_text(whole_of(delay, "max") - whole_of(delay, "min")) : "-"};
-    if (const auto cells = server_cells(task, load_of(task)); serves)
-      row.insert(row.end(), cells.begin(), cells.end());
+    std::vector<std::string> row = {text_of(task, "task"),
+                                    text_of(task, "state"),
+                                    count_of(task, "cycles"),
+                                    time_of(cycle, "mean"),
+                                    time_of(cycle, "max"),
+                                    load_text(task),
+                                    time_of(field(task, "response_ns"), "max"),
+                                    has_delay ? duration_text(whole_of(delay, "max") - whole_of(delay, "min")) : "-"};
+    if (const auto cells = server_cells(task, load_of(task)); serves) row.insert(row.end(), cells.begin(), cells.end());
     for (const std::string& key : counters) row.push_back(count_of(task, key));
     table.add(std::move(row));
     const Json& fault = field(task, "last_fault");

@@ -145,9 +145,9 @@ def kill(pid, marker, how=signal.SIGKILL):
 
 
 class System:
-    """`chimera run` of a description, in a place of its own."""
+    """`chimera run` of a description, in a place of its own. `popen`: where its output goes instead, and the like."""
 
-    def __init__(self, text, arguments=(), environment=None, name="subject", wait=True):
+    def __init__(self, text, arguments=(), environment=None, name="subject", wait=True, popen=None):
         if "--priority" not in arguments:  # several systems at once: none claims a CPU
             arguments = ("--priority", "0", *arguments)
         self.place = pathlib.Path(tempfile.mkdtemp(prefix="chimera-processes-"))
@@ -161,9 +161,9 @@ class System:
         self.environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), CHIMERA_TEST_MARK=str(self.place),
                                 CHIMERA_TEST_RECORD=str(self.record), **{"ASAN_OPTIONS": QUIET, **(environment or {})})
         self.output = open(self.place / "output", "w+b")
-        self.process = subprocess.Popen([str(CHIMERA), "run", str(self.file), *arguments], stdout=self.output,
-                                        stderr=self.output, stdin=subprocess.DEVNULL, env=self.environment,
-                                        cwd=self.place)
+        streams = {"stdout": self.output, "stderr": self.output, **(popen or {})}
+        self.process = subprocess.Popen([str(CHIMERA), "run", str(self.file), *arguments], stdin=subprocess.DEVNULL,
+                                        env=self.environment, cwd=self.place, **streams)
         self.socket = self.runtime / "chimera" / f"{name}.sock"
         self.client = None
         if wait:

@@ -41,13 +41,12 @@ constexpr int kFirst = 3;  // of the descriptors that are passed on
     copies[i] = ::fcntl(passed[i], F_DUPFD_CLOEXEC, above);
     good = copies[i] >= 0;
   }
-  for (std::size_t i = 0; good && i < passed.size(); ++i)
-    good = ::dup2(copies[i], kFirst + static_cast<int>(i)) >= 0;
+  for (std::size_t i = 0; good && i < passed.size(); ++i) good = ::dup2(copies[i], kFirst + static_cast<int>(i)) >= 0;
   // Whatever the parent was careless with ends at exec too.
   good = good && ::close_range(static_cast<unsigned>(above), UINT_MAX, CLOSE_RANGE_CLOEXEC) == 0;
   const int passing_error = good ? 0 : errno;
   for (int number = 1; number < NSIG; ++number) ::signal(number, SIG_DFL);
-  for (const int number : {SIGINT, SIGHUP}) ::signal(number, SIG_IGN);
+  for (const int number : {SIGINT, SIGHUP, SIGPIPE, SIGXFSZ}) ::signal(number, SIG_IGN);
   sigset_t mask;
   ::sigemptyset(&mask);
   if (blocked != 0) ::sigaddset(&mask, blocked);
@@ -65,6 +64,12 @@ Nanoseconds monotonic() noexcept {
 }
 
 }  // namespace
+
+Message signal_text(int number) noexcept {
+  Message text = Message() << "signal " << number;
+  const char* name = ::sigabbrev_np(number);
+  return name == nullptr ? text : text << " (SIG" << name << ")";
+}
 
 Result<Process> Process::start(const char* program, std::span<const char* const> arguments,
                                std::span<const int> descriptors, int blocked) noexcept {
@@ -100,7 +105,8 @@ Result<Process> Process::start(const char* program, std::span<const char* const>
   while (got < 0 && errno == EINTR);
   if (got == 0 && child.pidfd_ >= 0) return child;
   if (got == 0) ::kill(pid, SIGKILL);  // still ours: nobody has reaped it
-  while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {}  // still ours
+  while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+  }  // still ours
   errno = got == 0 ? pidfd_error : error;
   return system_error(what, got == 0 ? "pidfd_open" : "exec");
 }
@@ -140,9 +146,7 @@ bool Process::wait(ProcessEnd& end, std::int64_t limit_ns) noexcept {
   return false;
 }
 
-bool Process::signal(int number) const noexcept {
-  return pidfd_ >= 0 && pidfd_send_signal(pidfd_, number);
-}
+bool Process::signal(int number) const noexcept { return pidfd_ >= 0 && pidfd_send_signal(pidfd_, number); }
 
 bool adopt_orphans() noexcept { return ::prctl(PR_SET_CHILD_SUBREAPER, 1) == 0; }
 

@@ -9,7 +9,7 @@ _chimera_words() {
       'profile reinit ring save scope set spawn status top watch why shell' ;;
     check) echo '--help --json --set --graph' ;;
     schedule) echo '--help --set --profile --svg --dispatch --json' ;;
-    run) echo '--help --for --set --at --watch --every --svg --expect --strict --trace --profile --timeline --virtual' \
+    run) echo '--help --for --start-limit --set --at --watch --every --svg --expect --strict --trace --profile --timeline --virtual' \
       '--preemptive --seed --quantum --priority --may-miss --isolation --observe-group --operate-group --configure-group --json' ;;
     sweep) echo '--help --over --for --measure --expect --set --at --every --jobs --limit --preemptive --seed' \
       '--quantum --csv --svg --json' ;;

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/face_watch.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "chimera/manager/world.h"
+#include "chimera/platform/process.h"
+#include "chimera/platform/standard_output.h"
+
+namespace chimera::manager {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string last_end(const World& world) {
+  return "ended by " + std::string(signal_text(world.keeper.face_signal.load(std::memory_order_relaxed)).view());
+}
+
+}  // namespace
+
+void FaceWatch::look(World& world, Nanoseconds at) {
+  const std::uint32_t deaths = world.keeper.face_deaths.load(std::memory_order_acquire);
+  if (deaths > deaths_)
+    world.tell("face-died", TaskId{}, RtpuId{},
+               "the process that prints and ends the run " + last_end(world) + ", " + std::to_string(deaths) +
+                   (deaths == 1 ? " time in all" : " times in all"),
+               at);
+  deaths_ = deaths;
+  const std::int32_t lost = world.keeper.lost_output.load(std::memory_order_acquire);
+  if (lost != 0 && lost_ == 0)
+    world.tell("output-lost", TaskId{}, RtpuId{},
+               std::string("standard output of the run is lost (") + why_lost_text(lost) + "); the run goes on", at);
+  lost_ = lost;
+}
+
+Json face_json(const World& world) {
+  const std::uint32_t deaths = world.keeper.face_deaths.load(std::memory_order_acquire);
+  const std::int32_t lost = world.keeper.lost_output.load(std::memory_order_acquire);
+  return {{"deaths", deaths},
+          {"last_end", deaths > 0 ? Json(last_end(world)) : Json()},
+          {"lost_output", lost != 0 ? Json(why_lost_text(lost)) : Json()}};
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of the face of the run, as the keeper publishes it: events, and a part of `status`.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+
+#include "chimera/base/time.h"
+
+namespace chimera::manager {
+
+struct World;
+
+/// Tells each death and each loss once in the life of a manager: the events of its predecessor are gone.
+class FaceWatch {
+ public:
+  /// Context: setup; may allocate.
+  void look(World& world, Nanoseconds at);
+
+ private:
+  std::uint32_t deaths_ = 0;
+  std::int32_t lost_ = 0;
+};
+
+/// {"deaths", "last_end", "lost_output"}: docs/formats/control.md.
+nlohmann::json face_json(const World& world);
+
+}  // namespace chimera::manager

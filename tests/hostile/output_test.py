@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Output is not control: whatever becomes of the places to which a run prints, and of the process that prints, the
+application runs on to its end, and the loss is told where it still can be, with exit code 1."""
+import concurrent.futures
+import contextlib
+import json
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "processes"))
+from system import BUILD, CHIMERA, QUIET, TWO_UNITS, UNITS, System, await_that  # noqa: E402
+
+FOR = 0.7  # s
+RUN = ("--for", f"{FOR} s", "--expect", "count >= 100", "--watch", "count", "--every", "50 ms")
+
+# A logger whose pipe has no reader: `init` never comes back.
+LOGGING = UNITS + """
+tasks:
+  wave: {component: t_source, rtpu: first, rate: 100 Hz, alias: {x: w}}
+  log: {component: csv_log, rtpu: second, rate: 100 Hz, alias: {in: [w]}, resources: {file: PIPE}}
+configurations: {all: [wave, log]}
+start: all
+"""
+
+
+def is_sanitized():
+    return "CHIMERA_SANITIZE:STRING=address" in (BUILD / "CMakeCache.txt").read_text()
+
+
+@contextlib.contextmanager
+def gone(kind):
+    """A standard output that cannot be written: a descriptor for the child."""
+    if kind in ("full", "closed"):
+        with open("/dev/full", "wb") as full:
+            yield full
+    else:
+        reader, writer = os.pipe()
+        if kind == "broken":
+            os.close(reader)
+        try:
+            yield writer
+        finally:
+            os.close(writer)
+            if kind != "broken":
+                os.close(reader)
+
+
+def fill(pipe):
+    os.set_blocking(pipe, False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(pipe, bytes(4096))
+    os.set_blocking(pipe, True)
+
+
+def command(*words, **options):
+    return subprocess.run([str(CHIMERA), *words], capture_output="stdout" not in options, text=True, timeout=60,
+                          env=dict(os.environ, ASAN_OPTIONS=QUIET), **options)
+
+
+class OutputIsNotControl(unittest.TestCase):
+    def run_with(self, kind, *more):
+        """A run whose standard output is of that kind; its exit code, its length and what stood on standard error."""
+        with gone(kind) as lost:
+            close = (lambda: os.close(1)) if kind == "closed" else None
+            with System(TWO_UNITS, (*RUN, *more), popen={"stdout": lost, "preexec_fn": close}) as system:
+                begun = system.call("status")["started_ns"]
+                if kind == "stuck":  # the reader has stopped reading
+                    fill(lost)
+                told = lambda: [e for e in system.events() if e["kind"] == "output-lost"]  # noqa: E731
+                told = None if kind == "stuck" else await_that(told, 5, "an event")
+                face = system.call("status")["face"]
+                system.process.wait(20)
+                return {"code": system.process.returncode, "ran": time.monotonic() - begun / 1e9, "told": told,
+                        "face": face, "said": system.said()}
+
+    def test_the_run_goes_on_when_standard_output_is_lost(self):
+        reasons = {"full": "No space left on device", "closed": "Bad file descriptor", "broken": "Broken pipe",
+                   "stuck": "nobody reads"}
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            runs = {kind: pool.submit(self.run_with, kind) for kind in reasons}
+        for kind, run in runs.items():
+            with self.subTest(kind):
+                got = run.result()
+                self.assertGreaterEqual(got["ran"], FOR)
+                self.assertEqual(got["code"], 1, got["said"])
+                self.assertIn(f"standard output is lost ({reasons[kind]}", got["said"])
+                self.assertIn("clean", got["said"], "the verdict stands where it still can")
+                if kind == "stuck":  # it might still be read
+                    continue
+                self.assertEqual(len(got["told"]), 1)
+                self.assertIn(reasons[kind], got["told"][0]["text"])
+                self.assertIn(reasons[kind], got["face"]["lost_output"])
+
+    def test_a_lost_result_is_told(self):
+        with gone("broken") as lost:
+            with System(TWO_UNITS, ("--for", "0.2 s", "--json"), popen={"stdout": lost}, wait=False) as system:
+                self.assertEqual(system.process.wait(20), 1)
+                self.assertIn("standard output is lost (Broken pipe", system.said())
+
+    def test_standard_error_may_be_gone_too(self):
+        with gone("full") as lost, System(TWO_UNITS, RUN, popen={"stdout": lost, "stderr": lost}) as system:
+            begun = system.call("status")["started_ns"]
+            self.assertEqual(system.process.wait(20), 1)
+            self.assertGreaterEqual(time.monotonic() - begun / 1e9, FOR)
+
+    def test_a_run_in_one_process_or_in_virtual_time_comes_to_its_end_too(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "subject.yaml"
+            file.write_text(TWO_UNITS.replace("rtpu: second", "rtpu: first"))
+            for how in (("--virtual", "--for", "60 s"), ("--isolation", "none", "--priority", "0", "--for", "0.2 s")):
+                for kind in ("full", "broken"):
+                    with self.subTest(how=how[0], kind=kind), gone(kind) as lost:
+                        saved = pathlib.Path(folder) / f"{how[0]}-{kind}"
+                        got = command("run", str(file), *how, "--profile", str(saved), "--watch", "count", stdout=lost,
+                                      stderr=subprocess.PIPE)
+                        self.assertEqual(got.returncode, 1, got.stderr)
+                        self.assertIn("standard output is lost", got.stderr)
+                        self.assertEqual(json.loads(saved.read_text())["subsystem"], "subject", "it came to its end")
+
+    def test_files_that_cannot_be_written_whole_are_named(self):
+        with System(TWO_UNITS, ("--for", "0.2 s", "--trace", "/dev/full"), wait=False) as system:
+            self.assertEqual(system.process.wait(20), 1)
+            self.assertIn("No space left on device", system.said())
+
+    def test_one_answer_that_is_lost_is_exit_code_1(self):
+        for words in (("list",), ("describe", "t_counter"), ("run", "--help"), ("--version",)):
+            with self.subTest(words), gone("full") as lost:
+                got = command(*words, stdout=lost, stderr=subprocess.PIPE)
+                self.assertEqual(got.returncode, 1)
+                self.assertIn("standard output is lost (No space left on device", got.stderr)
+        for words in (("list",), ("run", "--help")):
+            with self.subTest(words), gone("broken") as lost:  # as of `cat`: silent, unless somebody wants to know
+                got = command(*words, stdout=lost, stderr=subprocess.PIPE)
+                self.assertEqual((got.returncode, got.stderr), (-signal.SIGPIPE, ""))
+                got = command(*words, stdout=lost, stderr=subprocess.PIPE, restore_signals=False)
+                self.assertEqual(got.returncode, 1)
+                self.assertIn("standard output is lost (Broken pipe", got.stderr)
+
+    def test_an_operators_answer_that_is_lost_is_exit_code_1_and_the_act_is_done(self):
+        with System(TWO_UNITS) as system:
+            for words in (("status",), ("off", "beside"), ("events", "--follow"), ("watch", "count"),
+                          ("get", "count", "--every", "20 ms")):
+                with self.subTest(words), gone("full") as lost:
+                    got = subprocess.run([str(CHIMERA), *words, "--subsystem", str(system.socket)], stdout=lost,
+                                         stderr=subprocess.PIPE, text=True, env=system.environment, timeout=10)
+                    self.assertEqual(got.returncode, 1)
+                    self.assertIn("standard output is lost (No space left on device", got.stderr)
+            self.assertEqual(system.state("beside"), "OFF")
+            script = system.place / "script"
+            script.write_text("on beside\noff steady\n")
+            with gone("broken") as lost:
+                got = subprocess.run([str(CHIMERA), "shell", "--subsystem", str(system.socket), str(script)],
+                                     stdout=lost, stderr=subprocess.PIPE, text=True, env=system.environment, timeout=10)
+            self.assertEqual(got.returncode, 1)
+            self.assertEqual((system.state("beside"), system.state("steady")), ("ON", "OFF"))
+
+
+class TheFaceDies(unittest.TestCase):
+    def face_of(self, system):
+        def found():
+            for pid in system.left_over():
+                with contextlib.suppress(OSError):
+                    words = pathlib.Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
+                    if words[1:2] == [b"attend"]:
+                        return pid
+        return await_that(found, 5, "a face")
+
+    def kill_face(self, system):
+        pid = self.face_of(system)
+        self.assertTrue(system.kill(pid))
+        await_that(lambda: self.face_of(system) != pid, 5, "another face")
+
+    def run_and_kill(self, expected, kills):
+        words = ("--for", "1 s", "--at", "0.1 s: off beside", "--at", "0.6 s: on beside", "--expect", expected)
+        with System(TWO_UNITS, words) as system:
+            begun = system.call("status")["started_ns"]
+            time.sleep(0.25)
+            for _ in range(kills):
+                self.kill_face(system)
+            status = system.call("status")
+            told = [e["text"] for e in system.events() if e["kind"] == "face-died"]
+            done = await_that(lambda: [e["text"] for e in system.events() if e["kind"] == "command"][1:], 5, "on")
+            system.process.wait(20)
+            return {"code": system.process.returncode, "ran": time.monotonic() - begun / 1e9, "said": system.said(),
+                    "face": status["face"], "told": told, "done": done}
+
+    def test_another_one_keeps_for_at_and_expect(self):
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            runs = {expected: pool.submit(self.run_and_kill, expected, kills)
+                    for expected, kills in (("count >= 100", 1), ("count <= 0", 2))}
+        for (expected, run), code, deaths in zip(runs.items(), (0, 1), (1, 2), strict=True):
+            with self.subTest(expected):
+                got = run.result()
+                self.assertEqual(got["code"], code, got["said"])
+                self.assertTrue(1.0 <= got["ran"] < 4, got)
+                self.assertIn(("FAILS: " if code else "holds: ") + expected, got["said"])
+                self.assertEqual(got["done"], ["on beside: done"], "what was due later, once")
+                self.assertEqual(got["face"]["deaths"], deaths)
+                self.assertIn("signal 9 (SIGKILL)", got["told"][0])
+                self.assertIn("not clean: ", got["said"])
+
+    def test_one_that_dies_again_and_again_ends_everything_in_order(self):
+        with System(TWO_UNITS, ("--for", "60 s"), wait=False) as system:
+            await_that(system.socket.exists, 10, "the socket")
+            for _ in range(2):
+                self.kill_face(system)
+            self.assertTrue(system.kill(self.face_of(system)))
+            self.assertEqual(system.process.wait(10), 1)
+            self.assertIn("3 times in 10 s, the last time of signal 9 (SIGKILL): everything ends", system.said())
+            system.await_nothing_left()
+
+
+def hang_at_start():
+    """Exit code, duration and words of a run whose logger waits for a reader."""
+    with tempfile.TemporaryDirectory() as folder:
+        os.mkfifo(folder + "/pipe")
+        words = ("--for", "0.2 s", "--start-limit", "0.3 s")
+        with System(LOGGING.replace("PIPE", folder + "/pipe"), words, wait=False) as system:
+            begun = time.monotonic()
+            return system.process.wait(30), time.monotonic() - begun, system.said()
+
+
+class TheStartHangs(unittest.TestCase):
+    def test_it_ends_and_names_what_was_not_ready(self):
+        code, lasted, said = meanwhile.result()
+        self.assertEqual(code, 1)
+        self.assertLess(lasted, 10, "the limit, twice what a method has at the end, and what a slow machine needs")
+        self.assertIn("not ON after 0.3 s (--start-limit): log (csv_log): its `init` is under way", said)
+
+
+class Limits(unittest.TestCase):
+    def run_limited(self, *limits):
+        """Exit code and standard error of a run whose parent set these limits."""
+        def limit():
+            for what, value in limits:
+                resource.setrlimit(what, (value, value))
+        reader, writer = os.pipe()  # a file would be under the limit itself
+        with open(reader) as said:
+            with System(TWO_UNITS, ("--for", "0.2 s"), wait=False,
+                        popen={"preexec_fn": limit, "stdout": subprocess.DEVNULL, "stderr": writer}) as system:
+                os.close(writer)
+                text = said.read()
+                return system.process.wait(20), text
+
+    def test_a_limit_of_files_is_told(self):
+        for most in (0, 64 << 10):
+            with self.subTest(most):
+                code, said = self.run_limited((resource.RLIMIT_FSIZE, most))
+                self.assertEqual(code, 1, said)
+                self.assertIn(f"is limited to {most >> 10} KiB, expected at least 4096 KiB: ulimit -f", said)
+
+    def test_a_low_stack_is_told(self):
+        for most in (64 << 10, 128 << 10) if is_sanitized() else (16 << 10, 32 << 10, 64 << 10):
+            with self.subTest(most):
+                code, said = self.run_limited((resource.RLIMIT_STACK, most))
+                self.assertEqual(code, 1, said)
+                self.assertIn(f"the stack is limited to {most >> 10} KiB", said)
+
+    @unittest.skipIf(is_sanitized(), "the sanitizers reserve terabytes of addresses")
+    def test_little_memory_is_told(self):
+        for megabytes in (11, 12, 14, 16, 18):
+            with self.subTest(megabytes):
+                code, said = self.run_limited((resource.RLIMIT_AS, megabytes << 20))
+                self.assertIn(code, (1, 127), said)  # 127: the loader of the C library, which says so itself
+                self.assertRegex(said, "out of memory|Cannot allocate memory|Resource temporarily unavailable|"
+                                       "no thread can be started|failed to map")
+                self.assertNotIn("terminate", said)
+
+
+if __name__ == "__main__":
+    with concurrent.futures.ThreadPoolExecutor() as beside:  # it waits most of its time
+        meanwhile = beside.submit(hang_at_start)
+        unittest.main(verbosity=1)
