@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Needs: process_campaigns hostile_questions_needs
+# Needs: process_campaigns hostile_campaigns
 """Row 21, the door: how long an act waits for its answer beside the most costly questions that all other connections
 may ask without a pause (tests/hostile/costly.py: checks of 256 joins in loops, schedules of 6 MB, the library, the
 description, status, events, values). Baseline, in turn with it: the same door with nobody else asking. The asking side

@@ -91,7 +91,9 @@ TEST_F(UrdfChainTest, RefusesWhatIsNoChainOfTurningJoints) {
   EXPECT_EQ(refusal("<link name='c'/><joint name='j" + turns + "<parent link='c'/><child link='b'/></joint>" +
                     "<joint name='k" + turns + "<parent link='b'/><child link='c'/></joint>"),
             ": its joints go round in a circle");
-  EXPECT_EQ(read_urdf("/dev/zero", "").error().message.view(), "/dev/zero: is longer than 4 MiB");
+  EXPECT_EQ(read_urdf("/dev/zero", "").error().message.view(), "/dev/zero: is no ordinary file but a device");
+  std::ofstream(path) << std::string((std::size_t{4} << 20) + 1, ' ');
+  EXPECT_EQ(read_urdf(path, "").error().message.view(), path + ": is longer than 4 MiB");
   std::ofstream(path) << "<robot";
   EXPECT_FALSE(read_urdf(path, ""));
   EXPECT_EQ(read_urdf("no_such.urdf", "").error().message.view(), "no_such.urdf: cannot be read");
