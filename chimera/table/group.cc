@@ -35,4 +35,10 @@ bool GroupReader::try_again(std::uint64_t n, chimera_slot& header, std::byte* va
   return false;
 }
 
+bool GroupReader::try_again(std::uint64_t n, chimera_slot* to) const noexcept {
+  for (std::uint32_t tries = 1; tries < kReadTries; ++tries)
+    if (read_slot(n, to)) return true;
+  return false;
+}
+
 }  // namespace chimera

@@ -83,11 +83,7 @@ class GroupReader {
   /// Requires: sizeof(chimera_slot) + payload_bytes at `to`. Context: cycle; bounded; plain loads only.
   [[nodiscard]] bool try_read(chimera_slot* to) const noexcept {
     std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
-    for (std::uint32_t tries = 0; tries < kReadTries; ++tries) {
-      shared_copy::copy_out(to, slot(n), sizeof *to + payload_bytes_);
-      if (was_whole(base_, n)) return true;
-    }
-    return false;
+    return read_slot(n, to) || try_again(n, to);
   }
   /// The latest published slot in place: its values follow the header. Only where writer and reader run
   /// in one context, so that nothing is published while the pointer is in use.
@@ -107,6 +103,11 @@ class GroupReader {
     shared_copy::copy_out(values, from + sizeof header, payload_bytes_);
     return was_whole(base_, n);
   }
+  bool read_slot(std::uint64_t& n, chimera_slot* to) const noexcept {
+    const std::byte* const base = base_;  // a copy may write anywhere, as the compiler sees it
+    shared_copy::copy_out(to, slot(n), sizeof *to + payload_bytes_);
+    return was_whole(base, n);
+  }
   // After a copy of slot n: was it left alone? Then n becomes the latest.
   static bool was_whole(const std::byte* base, std::uint64_t& n) noexcept {
     shared_copy::acquire_fence();  // pairs with the fence at the end of publish()
@@ -117,6 +118,7 @@ class GroupReader {
   }
   // The tries after the first, seldom needed.
   bool try_again(std::uint64_t n, chimera_slot& header, std::byte* values) const noexcept;
+  bool try_again(std::uint64_t n, chimera_slot* to) const noexcept;
 
   const std::byte* base_ = nullptr;
   std::uint32_t payload_bytes_ = 0;

@@ -29,7 +29,7 @@ class LocalGroup {
   /// Takes over the latest publication. False when the writer overtook every try: the previous copy stays and
   /// counts as stale. Context: cycle; bounded; O(payload).
   bool refresh() noexcept {
-    if (!reader_.try_read(spare_)) {
+    if (!reader_.try_read(spare_)) [[unlikely]] {
       ++stale_;
       return false;
     }

@@ -16,12 +16,12 @@ struct FaultRecord {
   Nanoseconds at;                 ///< of the last fault
   Method method = Method::kInit;  ///< that answered it
   chimera_fault last{};           ///< its code and text
-  std::uint64_t off_count = 0;         ///< of those that `off` or `kill` answered
-  Method off_method = Method::kOff;    ///< that answered the last of them
-  char off_text[CHIMERA_FAULT_TEXT] = {};
   std::uint64_t told = 0;         ///< faults and notes
   std::uint64_t notes = 0;
   char note[CHIMERA_FAULT_TEXT] = {};  ///< the last one, zero-terminated
+  std::uint64_t off_count = 0;         ///< faults that `off` or `kill` answered
+  Method off_method = Method::kOff;    ///< that answered the last of them
+  char off_text[CHIMERA_FAULT_TEXT] = {};
 };
 
 }  // namespace chimera
