@@ -24,7 +24,7 @@ PLAIN = (r'mem(cpy|move|set|cmp|chr)|str(len|cpy|ncpy|cmp)|__(u?div|u?mod)ti3|__
          r'|clock_nanosleep|__errno_location|_GLOBAL_OFFSET_TABLE_|snprintf|__snprintf_chk')
 WAKES = r'|syscall|write'  # futex; the descriptor of a bell
 LEVELS = r'|sched_setscheduler|timerfd_settime|read|ppoll|__libc_current_sigrtmin|getpid|__rseq_offset|__tls_get_addr'
-ASSERTS = {r'chimera::assertion_failed\(': 'ends the program'}
+ASSERTS = {r'chimera::(assertion_failed|end_without_descriptor)\(': 'ends the program'}
 # on and off begin and end background methods, spawn runs init; for the others no_heap_test.cc counts
 SIGNALS = {r'chimera::Releases::carry_out\(': 'a signal at an edge'}
 SIGNALS_OF_OTHERS = {r'chimera::Releases::(signal|served)\(': 'the same'}

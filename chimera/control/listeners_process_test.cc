@@ -21,7 +21,7 @@ struct Child {
     for (;;) ::pause();
   }
   ~Child() {
-    ::kill(pid, SIGKILL);
+    ::kill(pid, SIGKILL);  // still ours
     ::waitpid(pid, nullptr, 0);
   }
   pid_t pid;
@@ -40,7 +40,7 @@ TEST_F(ListenersTest, AreTheKeeperAndTheManager) {
   EXPECT_EQ(found.keeper, keeper.pid);
   EXPECT_EQ(found.manager, manager.pid);
   EXPECT_FALSE(found.is_stopped);
-  ::kill(manager.pid, SIGSTOP);
+  ::kill(manager.pid, SIGSTOP);  // still ours
   EXPECT_TRUE(await(path, [](const Listeners& l) { return l.is_stopped; }).is_stopped);
   EXPECT_EQ(listeners_at(folder + "/./subject.sock").manager, manager.pid) << "whatever the path is called";
   EXPECT_EQ(listeners_at(folder + "/other.sock").manager, 0);

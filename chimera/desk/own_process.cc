@@ -16,6 +16,7 @@
 #include "chimera/config/not_off.h"
 #include "chimera/desk/under_way.h"
 #include "chimera/platform/process.h"
+#include "chimera/platform/standard_output.h"
 
 namespace chimera::desk {
 namespace {
@@ -58,7 +59,7 @@ class HeldSignals {
   (void)follow_parent(parent, SIGKILL);
   held.let_go();
   write_under_way_to(place);
-  const int code = work();
+  const int code = report_lost_output(work());
   place.has_returned = true;
   std::exit(code);
 }
@@ -104,15 +105,16 @@ std::string watch(pid_t child, const UnderWay& place, const HeldSignals& held, i
   while (true) {
     siginfo_t about{};
     const int number = held.next(about);
-    const pid_t ended = ::waitpid(child, &status, WNOHANG);
+    const pid_t ended = ::waitpid(child, &status, WNOHANG);  // still ours
     if (ended == child || (ended < 0 && errno != EINTR)) return why;
     if (number == SIGINT || number == SIGTERM) {
-      if (about.si_code <= 0) ::kill(child, number);  // that of a terminal has reached it already; ours: not reaped
+      const bool has_reached_it = about.si_code > 0;    // that of a terminal
+      if (!has_reached_it) ::kill(child, number);       // still ours: not reaped
       is_asked = true;
     }
     if (!why.empty()) continue;
     why = limits.look(place, is_asked);
-    if (!why.empty()) ::kill(child, SIGKILL);  // ours: not reaped
+    if (!why.empty()) ::kill(child, SIGKILL);  // still ours: not reaped
   }
 }
 

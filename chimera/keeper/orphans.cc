@@ -44,9 +44,11 @@ Nanoseconds Orphans::first_seen(pid_t pid, Nanoseconds now) {
 /// Those that have ended are reaped here: until then a number is nobody else's.
 std::vector<pid_t> Orphans::living(std::span<const pid_t> held) {
   std::vector<pid_t> found;
-  for (const pid_t pid : children_of_this_process())
-    if (!is_among(held, pid) && ::waitpid(pid, nullptr, WNOHANG) == 0 && !is_among(strangers_, pid))
-      found.push_back(pid);
+  for (const pid_t pid : children_of_this_process()) {
+    if (is_among(held, pid)) continue;
+    const bool lives = ::waitpid(pid, nullptr, WNOHANG) == 0;  // still ours
+    if (lives && !is_among(strangers_, pid)) found.push_back(pid);
+  }
   std::erase_if(seen_, [&](const Seen& seen) { return !is_among(found, seen.pid); });
   return found;
 }
@@ -65,7 +67,7 @@ void Orphans::look(std::span<const pid_t> held, const std::function<bool(std::st
     const std::string origin = origin_of(pid);
     const bool is_known = origin.starts_with(prefix_);
     if (!is_known && now - first_seen(pid, now) < kDoubtful) due_ = std::min(due_, now + kLookAgain);
-    if (is_known && !lives(origin) && !has_time(pid, now)) ::kill(pid, SIGKILL);  // a child: the number is its own
+    if (is_known && !lives(origin) && !has_time(pid, now)) ::kill(pid, SIGKILL);  // still ours
   }
 }
 
@@ -78,7 +80,7 @@ void Orphans::end_all(Nanoseconds limit) {
     std::erase_if(left, [this](pid_t pid) { return !strangers_.empty() && !origin_of(pid).starts_with(prefix_); });
     const Nanoseconds now = clock.now();
     for (const pid_t pid : left)
-      if (!has_time(pid, now)) ::kill(pid, SIGKILL);
+      if (!has_time(pid, now)) ::kill(pid, SIGKILL);  // still ours
     if (left.empty() && (!strangers_.empty() || !has_children())) return;
     clock.wait_until(now + kMoment);
   } while (clock.now() < until);

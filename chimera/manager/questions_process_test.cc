@@ -104,7 +104,7 @@ TEST_F(QuestionsTest, ADeathCostsOneQuestion) {
 
 TEST_F(QuestionsTest, WhatTakesTooLongIsGivenUp) {
   ask("slow", 1);
-  ::kill(questions_->analyst(), SIGSTOP);
+  ::kill(questions_->analyst(), SIGSTOP);  // still ours: its manager is this process
   const Nanoseconds late = now() + kAnalysisLimit;
   EXPECT_LE(questions_->next_due(), late);
   questions_->serve(late);

@@ -21,10 +21,10 @@ TEST(ProcessState, TellsWhoWaitsFromWhoIsStopped) {
   if (child == 0)
     for (;;) ::pause();
   EXPECT_EQ(await_letter(child, 'S'), 'S');
-  ::kill(child, SIGSTOP);
+  ::kill(child, SIGSTOP);  // still ours
   EXPECT_EQ(await_letter(child, 'T'), 'T');
   EXPECT_EQ(process_state(child).tracer, 0);
-  ::kill(child, SIGKILL);
+  ::kill(child, SIGKILL);  // still ours
   ::waitpid(child, nullptr, 0);
   EXPECT_EQ(process_state(child).letter, 0) << "nobody is left to ask";
 }

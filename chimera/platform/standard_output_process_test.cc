@@ -35,7 +35,7 @@ TEST(StandardOutput, ADescriptorThatIsClosedIsNotGivenToAnybodyElse) {
               hold_standard_streams();
               const int next = ::open("/dev/null", O_RDONLY);
               const bool fails = ::write(1, "x", 1) < 0 && errno == EBADF && ::write(2, "x", 1) < 0;
-              return next == 3 && fails ? 7 : 8;
+              return next > 2 && fails ? 7 : 8;
             }),
             7);
 }

@@ -216,8 +216,8 @@ TEST_F(SubsystemTest, AfterThreeRestartsInTenSecondsItGivesUpUntilAPersonStartsI
   EXPECT_EQ(die(kSpare, 4),
             "rtpu-ended: spare ended by signal 11 (SIGSEGV) in pid.cycle\n"
             "refused" + why + "goal traj 0\nrefused" + why + "goal reserve 0\nrtpu-given-up" + why +
-                "not-off: spare ended by signal 11 (SIGSEGV) in pid.cycle, is not restarted, and this task was not turned "
-                "off: its hardware may not be off\nhandled spare 4\n");
+                "not-off: spare ended by signal 11 (SIGSEGV) in pid.cycle, is not restarted, and this task was not "
+                "turned off: its hardware may not be off\nhandled spare 4\n");
   EXPECT_EQ(subsystem->state(kTraj), State::kError);
   EXPECT_EQ(command(Signal::kOn, {kTraj}),
             "answer 1 no: traj is in state ERROR, where on is not legal; type `chimera clear traj`, then `chimera on "

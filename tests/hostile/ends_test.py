@@ -90,7 +90,7 @@ class Ends(unittest.TestCase):
     def failures(self, said):
         return sorted(line.removeprefix("FAILED: ") for line in said.splitlines() if line.startswith("FAILED: "))
 
-    def test_1_off_and_kill_that_fail_at_ctrl_c_are_told_by_task_method_and_cause(self):
+    def test_off_and_kill_that_fail_at_ctrl_c_are_told_by_task_method_and_cause(self):
         ends = [("executive", "off", "throw"), ("executive", "off", "sleep"), ("preemptive", "kill", "segv"),
                 ("preemptive", "off", "exit")]
         with System(application(ends, beside="{component: t_source, rtpu: u2, rate: 100 Hz}")) as system:
@@ -109,7 +109,7 @@ class Ends(unittest.TestCase):
             self.assertEqual(sorted(listener.of("not-off")), ["t0", "t1", "t2", "t3"])
             self.assertEqual(listener.of("rtpu-restarted"), {})
 
-    def test_1_the_same_after_chimera_end_as_json(self):
+    def test_the_same_after_chimera_end_as_json(self):
         ends = [("executive", "kill", "fault"), ("preemptive", "kill", "loop"), ("executive", "kill", "abort"),
                 ("preemptive", "off", "throw")]
         with System(application(ends), ["--json"]) as system:
@@ -125,7 +125,7 @@ class Ends(unittest.TestCase):
                 "t2: u2 ended by signal 6 (SIGABRT) in t2.kill: its hardware may not be off",
                 "t3: off failed: thrown on demand: its hardware may not be off"])
 
-    def test_1_a_run_of_stated_length_and_an_off_in_the_middle_of_one(self):
+    def test_a_run_of_stated_length_and_an_off_in_the_middle_of_one(self):
         with System(application([("executive", "off", "throw"), ("executive", "off", "segv")]),
                     ["--for", "1 s"]) as system:
             system.arm()
@@ -139,7 +139,7 @@ class Ends(unittest.TestCase):
             self.assertIn("FAILED: t0: off failed: thrown on demand: its hardware may not be off\n", said)
             self.assertIn("FAILED: t1: u1 ended by signal 11 (SIGSEGV) in t1.off: its hardware may not be off\n", said)
 
-    def test_11_a_plain_kill_of_a_unit_is_a_death_like_any_other(self):
+    def test_a_plain_kill_of_a_unit_is_a_death_like_any_other(self):
         units = [("executive", "cycle", "loop")]
         chain = {"a": recorder("a", "good", "x0", "x1"), "b": recorder("b", "u1", "x1", "x2"),
                  "c": recorder("c", "u1", "x2", "x3"), "asleep": recorder("d", "u1", "x3", "x4"),
@@ -169,7 +169,7 @@ class Ends(unittest.TestCase):
             system.disarm()
             self.assertEqual(self.ended(system, lambda: system.process.send_signal(signal.SIGTERM))[0], 1)  # given up
 
-    def test_17_no_event_says_what_does_not_happen_when_all_are_told_to_end_at_once(self):
+    def test_no_event_says_what_does_not_happen_when_all_are_told_to_end_at_once(self):
         slow = recorder("a", "u0", "x0", "x1", "300 ms")
         text = application([("executive", "none", "none")], a=slow, b=recorder("b", "good", "x1", "x2"))
         with System(text + "operator: {x0: 0}\n") as system:
@@ -200,7 +200,7 @@ class VirtualEnds(unittest.TestCase):
             ("off", "loop"): "FAILED: bad: bad.off did not return within 2 s: its hardware may not be off\n",
             ("kill", "sleep"): "FAILED: bad: bad.kill did not return within 2 s: its hardware may not be off\n"}
 
-    def test_1_off_and_kill_that_fail_at_the_end_of_virtual_time(self):
+    def test_off_and_kill_that_fail_at_the_end_of_virtual_time(self):
         with tempfile.TemporaryDirectory() as place:
             running = []
             for i, way in enumerate(self.WAYS):

@@ -51,7 +51,7 @@ class Values(unittest.TestCase):
                               stdin=subprocess.DEVNULL)
         return done.returncode, done.stdout, done.stderr
 
-    def test_12_what_is_not_finite_in_the_unit_of_the_port_is_refused(self):
+    def test_what_is_not_finite_in_the_unit_of_the_port_is_refused(self):
         for value in ("inf V", "-inf V", "inf"):
             code, _, said = self.chimera("check", "FILE", text=GAIN.replace("VALUE", f"wanted: {value}"))
             self.assertEqual(code, 1, value + said)
@@ -68,7 +68,7 @@ class Values(unittest.TestCase):
                       "finite in \"m\"", said)
         self.assertIn(REMEDY, said)
 
-    def test_12_every_way_in_refuses_it(self):
+    def test_every_way_in_refuses_it(self):
         far = "1e308 km"
         code, _, said = self.chimera("check", "FILE", "--set", "rod.scale", far, text=WITHIN)
         self.assertEqual(code, 1, said)
@@ -86,7 +86,7 @@ class Values(unittest.TestCase):
         self.assertEqual(code, 1, out + said)
         self.assertIn("finite", out + said)
 
-    def test_19_a_zero_byte_in_a_text_is_refused(self):
+    def test_a_zero_byte_in_a_text_is_refused(self):
         for text in ('subsystem: subject\ntasks:\n  a: {component: t_resource, resources: {file: "a\\0b"}}\n',
                      'subsystem: subject\ntasks:\n  a: {component: "t_resource\\x00"}\n',
                      'subsystem: subject\ntasks:\n  a: {component: t_resource, "resour\\u0000ces": {}}\n'):
@@ -95,7 +95,7 @@ class Values(unittest.TestCase):
             self.assertRegex(said, r"subject.yaml:3:\d+: error: a text holds the byte 0")
             self.assertIn("leave it out", said)
 
-    def test_20_between_a_number_and_its_unit_stands_one_space_or_none(self):
+    def test_between_a_number_and_its_unit_stands_one_space_or_none(self):
         for gap, right in (("", True), (" ", True), ("  ", False)):
             for rate, budget, low in ((gap, " ", " "), (" ", gap, " "), (" ", " ", gap)):
                 line = f"rate: 10{rate}Hz, budget: 40{budget}us, constants: {{low: -1{low}V, high: 1 V}}"
@@ -107,7 +107,7 @@ class Values(unittest.TestCase):
                      f"tasks: {{a: {{component: t_source, rtpu: second, stack: 256{gap}KiB}}}}\n")
             self.assertEqual(self.chimera("check", "FILE", text=stack)[0], 0 if right else 1, f"stack 256{gap}KiB")
 
-    def test_21_a_constant_with_a_producer_in_each_of_two_configurations_has_one_answer(self):
+    def test_a_constant_with_a_producer_in_each_of_two_configurations_has_one_answer(self):
         for user in ("t_counter", "t_extent"):
             text = TWO_MAKERS.replace("USER", user)
             code, out, said = self.chimera("check", "FILE", text=text)
@@ -120,12 +120,12 @@ class Values(unittest.TestCase):
             again = self.chimera("run", "FILE", "--virtual", "--for", "10 ms")[2]
             self.assertEqual(again, said.rsplit("\n", 2)[0] + "\n", "`run` says the same")
 
-    def test_23_a_key_without_a_value_is_placed_where_it_stands(self):
+    def test_a_key_without_a_value_is_placed_where_it_stands(self):
         code, _, said = self.chimera("check", "FILE", text="subsystem: subject\ntasks:\n")
         self.assertEqual(code, 1)
         self.assertIn("subject.yaml:2:1: error: 'tasks' is nothing", said)
 
-    def test_12_and_23_a_running_subsystem(self):
+    def test_a_running_subsystem(self):
         with System(WITHIN, ("--observe-group", "root")) as system:
             folder = system.runtime / "chimera"
             self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o711)

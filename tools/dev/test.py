@@ -27,7 +27,7 @@ class Share:
 
 COMPILE = Share("compile", 12)
 SHARES = (
-    Share("units", 3, (("debug", "unit"), ("tsan", "threads"), ("release", "symbol|cost"))),
+    Share("units", 3, (("debug", "unit|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
     Share("processes", 4, (("debug", "process"), ("release", "realtime"))),
     Share("models", 2, (("debug", "model"), ("fuzz", "fuzz"))),
 )

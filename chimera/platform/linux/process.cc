@@ -105,8 +105,8 @@ Result<Process> Process::start(const char* program, std::span<const char* const>
   while (got < 0 && errno == EINTR);
   if (got == 0 && child.pidfd_ >= 0) return child;
   if (got == 0) ::kill(pid, SIGKILL);  // still ours: nobody has reaped it
-  while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
-  }  // still ours
+  while (::waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {  // still ours
+  }
   errno = got == 0 ? pidfd_error : error;
   return system_error(what, got == 0 ? "pidfd_open" : "exec");
 }
