@@ -13,14 +13,16 @@ namespace chimera::control {
 struct Home {
   std::string subsystem;
   std::int64_t keeper_pid = 0;
-  std::int64_t session = 0;  ///< number of the session of its keeper; 0: not known, as of one outside this container
+  /// Number of the session of its keeper; 0: one whose leader is outside this container, -1: not known.
+  std::int64_t session = -1;
   std::string folder;        ///< in which `chimera run` was typed
   std::string file;          ///< the description, as it was named there
 };
 
 /// Reads the answer of `hello`; what it does not tell stays empty. Context of all: setup; may block.
 Home home_of(const Json& hello);
-/// Is it a subsystem of the caller's terminal (the same session), or was it started in the caller's working folder, or
+/// Is it a subsystem of the caller's terminal (the same session; all sessions from outside of a container count as one,
+/// for they cannot be told apart there), or was it started in the caller's working folder, or
 /// from a description that lies there?
 bool is_here(const Home& home);
 
