@@ -61,6 +61,13 @@ bool Orphans::has_time(pid_t pid, Nanoseconds now) {
   return true;
 }
 
+/// Began with a unit of this keeper. `is_doubtful` becomes true for one of which that cannot be told yet.
+bool Orphans::is_ours(pid_t pid, Nanoseconds now, bool& is_doubtful) {
+  const std::string origin = origin_of(pid);
+  is_doubtful = is_doubtful || (origin.empty() && now - first_seen(pid, now) < kDoubtful);
+  return origin.starts_with(prefix_);
+}
+
 void Orphans::look(std::span<const pid_t> held, const std::function<bool(std::string_view)>& lives, Nanoseconds now) {
   due_ = kNever;
   for (const pid_t pid : living(held)) {
@@ -77,11 +84,12 @@ void Orphans::end_all(Nanoseconds limit) {
   std::vector<pid_t> left;
   do {
     left = living({});
-    std::erase_if(left, [this](pid_t pid) { return !strangers_.empty() && !origin_of(pid).starts_with(prefix_); });
     const Nanoseconds now = clock.now();
+    bool is_doubtful = false;
+    if (!strangers_.empty()) std::erase_if(left, [&](pid_t pid) { return !is_ours(pid, now, is_doubtful); });
     for (const pid_t pid : left)
       if (!has_time(pid, now)) ::kill(pid, SIGKILL);  // still ours
-    if (left.empty() && (!strangers_.empty() || !has_children())) return;
+    if (left.empty() && !is_doubtful && (!strangers_.empty() || !has_children())) return;
     clock.wait_until(now + kMoment);
   } while (clock.now() < until);
   for (const pid_t pid : left)

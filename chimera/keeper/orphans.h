@@ -42,6 +42,7 @@ class Orphans {
     Nanoseconds at;
   };
   bool has_time(pid_t pid, Nanoseconds now);
+  bool is_ours(pid_t pid, Nanoseconds now, bool& is_doubtful);
   Nanoseconds first_seen(pid_t pid, Nanoseconds now);
   std::vector<pid_t> living(std::span<const pid_t> held);
 
