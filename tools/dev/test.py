@@ -27,7 +27,7 @@ class Share:
 
 COMPILE = Share("compile", 12)
 SHARES = (
-    Share("units", 3, (("debug", "unit|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
+    Share("units", 3, (("debug", "unit"), ("debug", "hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
     Share("processes", 4, (("debug", "process"), ("release", "realtime"))),
     Share("models", 2, (("debug", "model"), ("fuzz", "fuzz"))),
 )
@@ -84,7 +84,7 @@ def without_address_randomisation():
     return prefix if works else []
 
 
-def ctest(tree, labels, serial):
+def ctest(tree, labels, jobs):
     """Runs the tests of a tree that carry one of the labels. Returns their cases."""
     folder = common.BUILD / tree
     junit = folder / "results" / "ctest.xml"
@@ -92,7 +92,7 @@ def ctest(tree, labels, serial):
     junit.parent.mkdir(parents=True)
     command = ["ctest", "--test-dir", f"build/{tree}", "-L", f"^({labels})$", "--no-tests=ignore", "--output-junit",
                str(junit), "--test-output-size-passed", "200000", "--test-output-size-failed", "1000000",
-               "-j", "1" if serial else str(max(2, os.cpu_count() or 2))]
+               "-j", str(jobs)]
     prefix = without_address_randomisation() if tree == "tsan" else []
     code = common.run_logged(prefix + command, folder / "ctest.log", r"\s*\d+/\d+ Test ")
     if not junit.exists():
@@ -112,15 +112,15 @@ def unlabelled(tree):
 
 
 def run_share(share, trees):
-    cases = []
+    cases, cpus = [], max(2, os.cpu_count() or 2)
     for tree, labels in share.runs:
         if tree not in trees:
             continue
         if labels == "realtime":
             with common.realtime_lock():
-                cases += ctest(tree, labels, serial=True)
+                cases += ctest(tree, labels, jobs=1)
         else:
-            cases += ctest(tree, labels, serial=False)
+            cases += ctest(tree, labels, jobs=cpus + 1 if labels == "hostile" else cpus)  # those wait most of the time
     return cases or [Case(f"share {share.name}", FAILED, "it has no tests")]
 
 
