@@ -115,7 +115,8 @@ TEST_P(PreemptiveFaults, RandomOverrunsNeverMakeABurst) {
   const auto seen = judged_beside(overruns);
   if (!seen) GTEST_SKIP() << "not judged: host stalled";
   expect_others_untouched(*seen);
-  EXPECT_GT(seen->bad.overrun, 60u);
+  EXPECT_GT(seen->bad.overrun, seen->bad.cycles / 2);  // two of three on average
+  EXPECT_GT(seen->bad.cycles, 40u) << "a job that takes three periods costs its own task two releases";
   EXPECT_LE(seen->bad.cycles + seen->bad.dropped, 120u);
 }
 

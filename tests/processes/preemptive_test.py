@@ -153,7 +153,7 @@ def median(values):
 
 
 class Preemptive(unittest.TestCase):
-    counts, times = {}, {}
+    counts, times, has_rights = {}, {}, True
 
     @classmethod
     def tearDownClass(cls):
@@ -169,8 +169,10 @@ class Preemptive(unittest.TestCase):
         Preemptive.times.setdefault(what, []).append(ns / 1e6)
 
     def is_judged(self, system):
-        """Without real-time rights levels are the system's choice, and so is who is late."""
-        return all(r["grant"].startswith("Real-time OK") for r in system.call("status")["rtpus"])
+        """Without real-time rights levels are the system's choice, and so is who is late. Sanitizers make every job
+        slower and never lock memory, so only a release build is judged: the campaign `process_preemptive`."""
+        Preemptive.has_rights = all(r["grant"].startswith("Real-time OK") for r in system.call("status")["rtpus"])
+        return Preemptive.has_rights
 
     def lost(self, system, tasks):
         """Deadlines missed and releases dropped by now, of each of these."""
@@ -183,12 +185,12 @@ class Preemptive(unittest.TestCase):
 
     def undisturbed(self, once):
         """One try in which the witness was not disturbed decides; at most five are made. `once` gives what others
-        lost, or None when the machine disturbed the witness or grants no real-time rights."""
+        lost, or None when the machine disturbed the witness or grants no real-time rights: those do not come back."""
         outcomes = [once()]
-        while outcomes[-1] != {} and len(outcomes) < 5:
+        while outcomes[-1] != {} and len(outcomes) < 5 and Preemptive.has_rights:
             outcomes.append(once())
         if outcomes[-1] is None:
-            print("not judged: host stalled, or no real-time rights", file=sys.stderr)
+            print(f"not judged: {'host stalled' if Preemptive.has_rights else 'no real-time rights'}", file=sys.stderr)
         else:
             self.assertEqual(outcomes[-1], {}, f"lost beside a clean witness: {outcomes}")
 
