@@ -7,8 +7,8 @@
 
 #include "bench/bench.h"
 #include "chimera/base/hosted/tree_path.h"
-#include "chimera/config/library.h"
-#include "chimera/config/verify.h"
+#include "chimera/catalogue/library.h"
+#include "chimera/verify/verify.h"
 
 namespace {
 

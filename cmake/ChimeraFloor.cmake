@@ -139,7 +139,7 @@ function(chimera_tests name)
     set(options)
   endif()
   file(GLOB all CONFIGURE_DEPENDS *_test.cc hosted/*_test.cc
-    linux/*_test.cc virtual/*_test.cc executive/*_test.cc preemptive/*_test.cc)
+    linux/*_test.cc virtual/*_test.cc executive/*_test.cc preemptive/*_test.cc rules/*_test.cc)
   set(plain ${all})
   list(FILTER plain EXCLUDE REGEX "_(threads|process|realtime)_test\\.cc$")
   foreach(kind threads process realtime)
@@ -222,7 +222,8 @@ endfunction()
 
 function(chimera_floor name)
   cmake_parse_arguments(arg "EXCEPTIONS;TEXT" "" "LINKS;LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cc hosted/*.cc linux/*.cc virtual/*.cc executive/*.cc preemptive/*.cc)
+  file(GLOB sources CONFIGURE_DEPENDS
+    *.cc hosted/*.cc linux/*.cc virtual/*.cc executive/*.cc preemptive/*.cc rules/*.cc)
   list(FILTER sources EXCLUDE REGEX "_(test|fuzz|stress)\\.cc$")
   set(target chimera_${name})
   set(scope PUBLIC)

@@ -51,7 +51,7 @@ foreach(name IN LISTS names)
     install(${kind} ${file} DESTINATION lib/chimera/components COMPONENT sdk OPTIONAL)
   endforeach()
 endforeach()
-# What this tree can build, for the message about what it has not built (chimera/config/library.h).
+# What this tree can build, for the message about what it has not built (chimera/catalogue/library.h).
 list(JOIN names "\n" buildable)
 list(APPEND buildable ${absent})
 list(JOIN buildable "\n" buildable)

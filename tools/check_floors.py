@@ -7,9 +7,9 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
-FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "config": 6,
-         "rtpu": 6, "keeper": 7, "trial": 7, "control": 7, "subsystem": 7, "draw": 7, "desk": 8, "manager": 8,
-         "record": 8, "shell": 8}
+FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "rtpu": 6,
+         "text": 6, "units": 7, "description": 8, "catalogue": 9, "verify": 10, "analysis": 11, "keeper": 12,
+         "trial": 12, "control": 12, "subsystem": 12, "draw": 12, "desk": 13, "manager": 13, "record": 13, "shell": 13}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
                        "chimera/task/number_at.h", "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")
@@ -124,12 +124,12 @@ PLANTED = (
     (_tree("chimera/base/x.h", '"chimera/table/y.h"'),
      "chimera/base/x.h:1: includes chimera/table/y.h: base is floor 0, table is floor 2"),
     (_tree("chimera/shell/x.cc", '"chimera/record/y.h"'),
-     "chimera/shell/x.cc:1: includes chimera/record/y.h: shell is floor 8, record is floor 8"),
+     "chimera/shell/x.cc:1: includes chimera/record/y.h: shell is floor 13, record is floor 13"),
     ({"CONTRIBUTING.md": _DRAWING.format(""), "chimera/base/x.h": "", "chimera/load/x.h": ""}, None),
     ({"CONTRIBUTING.md": _DRAWING.format(" web"), "chimera/base/x.h": "", "chimera/load/x.h": ""},
      "CONTRIBUTING.md: floor 'web' is no folder of chimera/"),
     ({"CONTRIBUTING.md": _DRAWING.format(""), "chimera/base/x.h": "", "chimera/load/x.h": "", "chimera/draw/x.h": ""},
-     "CONTRIBUTING.md: floor of 'draw': None, but tools/check_floors.py says 7"),
+     "CONTRIBUTING.md: floor of 'draw': None, but tools/check_floors.py says 12"),
     (_tree("chimera/load/x_test.cc", '"chimera/runtime/y.h"'),
      "chimera/load/x_test.cc:1: includes chimera/runtime/y.h: load is floor 5, runtime is floor 5"),
     (_tree("chimera/oddity/x.cc", '"chimera/base/y.h"'),
@@ -144,12 +144,12 @@ PLANTED = (
      "library/ imports only the component interface and chimera/base"),
     ({"library/gain/gain.cc": '#include "chimera/task/component.h"\n#include "chimera/table/slot.h"\n',
       "chimera/task/component.h": '#include "chimera/table/slot.h"\n', "chimera/table/slot.h": "\n"}, None),
-    (_tree("executive/main.cc", '"chimera/config/verify.h"'),
-     "executive/main.cc:1: includes chimera/config/verify.h: executive/ imports only floors 0 to 5"),
+    (_tree("executive/main.cc", '"chimera/verify/verify.h"'),
+     "executive/main.cc:1: includes chimera/verify/verify.h: executive/ imports only floors 0 to 5"),
     (_tree("chimera/runtime/x.cc", "<nlohmann/json.hpp>"),
      "chimera/runtime/x.cc:1: includes nlohmann/json.hpp: libraries like this stay above the real-time line"),
-    (_tree("chimera/config/x.h", "<yaml-cpp/yaml.h>"),
-     "chimera/config/x.h:1: includes yaml-cpp/yaml.h: slow to compile: include it in the one .cc that needs it"),
+    (_tree("chimera/description/x.h", "<yaml-cpp/yaml.h>"),
+     "chimera/description/x.h:1: includes yaml-cpp/yaml.h: slow to compile: include it in the one .cc that needs it"),
 )
 
 if __name__ == "__main__":

@@ -52,7 +52,7 @@ def check(root):
 _NAME = "chimera/table/x.cc"
 PLANTED = (
     ({_NAME: "#include <cstring>\nnamespace chimera { void f(char* a, int n) { std::memset(a, n, n); } }\n"}, None),
-    ({"chimera/config/x.cc": "#include <string>\nstd::string s(100, 'x');\n"}, None),
+    ({"chimera/text/x.cc": "#include <string>\nstd::string s(100, 'x');\n"}, None),
     ({"chimera/table/x_test.cc": "int* p = new int;\n"}, None),
     ({_NAME: "int* f() { return new int; }\n"}, f"{_NAME}: asks for _Znwm"),
     ({_NAME: "#include <cstdlib>\nvoid* f() { return std::malloc(8); }\n"}, f"{_NAME}: asks for malloc"),

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-#include "chimera/config/descriptor_json.h"
+#include "chimera/catalogue/descriptor_json.h"
 #include "chimera/load/component_state.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/task/signal.h"

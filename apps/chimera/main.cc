@@ -16,12 +16,11 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/chimera/keep.h"
-#include "chimera/base/hosted/terminal_text.h"
 #include "apps/chimera/run_command.h"
 #include "apps/chimera/shell_words.h"
 #include "apps/chimera/sweep_command.h"
 #include "apps/chimera/wrong_usage.h"
-#include "chimera/config/nearest.h"
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/list.h"
 #include "chimera/desk/new.h"
@@ -30,6 +29,7 @@
 #include "chimera/desk/test_component.h"
 #include "chimera/platform/limits.h"
 #include "chimera/platform/standard_output.h"
+#include "chimera/text/nearest.h"
 
 namespace {
 

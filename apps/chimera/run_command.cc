@@ -12,8 +12,7 @@
 
 #include "apps/chimera/keep.h"
 #include "apps/chimera/record_files.h"
-#include "chimera/config/quantity.h"
-#include "chimera/config/recorded_profile.h"
+#include "chimera/analysis/recorded_profile.h"
 #include "chimera/desk/outlet.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/own_process.h"
@@ -21,6 +20,7 @@
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/platform/standard_output.h"
+#include "chimera/units/quantity.h"
 
 using namespace chimera;  // NOLINT: a main() of this project
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/nearest.h"
 #include "chimera/desk/output.h"
 #include "chimera/platform/standard_output.h"
+#include "chimera/text/nearest.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
 

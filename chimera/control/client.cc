@@ -12,8 +12,6 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/nearest.h"
-#include "chimera/config/time_text.h"
 #include "chimera/control/home.h"
 #include "chimera/control/listeners.h"
 #include "chimera/control/methods.h"
@@ -21,6 +19,8 @@
 #include "chimera/control/running.h"
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/platform/socket_folder.h"
+#include "chimera/text/nearest.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::control {
 namespace {

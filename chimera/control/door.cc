@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "chimera/config/nearest.h"
-#include "chimera/config/time_text.h"
 #include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/text/nearest.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::control {
 namespace {

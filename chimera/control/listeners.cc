@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "chimera/config/time_text.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::control {
 namespace {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "chimera/config/nearest.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::control {
 namespace {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/configuration.h"
-#include "chimera/config/library.h"
-#include "chimera/config/value_text.h"
-#include "chimera/config/verify.h"
+#include "chimera/catalogue/library.h"
 #include "chimera/desk/expectation.h"
 #include "chimera/runtime/task_set.h"
+#include "chimera/text/value_text.h"
+#include "chimera/verify/configuration.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::desk {
 

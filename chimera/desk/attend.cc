@@ -10,9 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "chimera/analysis/task_profile.h"
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/config/json_text.h"
-#include "chimera/config/task_profile.h"
 #include "chimera/desk/control_line.h"
 #include "chimera/desk/expectation.h"
 #include "chimera/desk/not_ready.h"
@@ -24,6 +23,7 @@
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/standard_output.h"
+#include "chimera/text/json_text.h"
 
 namespace chimera::desk {
 namespace {

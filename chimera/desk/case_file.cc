@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/config/draft_values.h"
-#include "chimera/config/yaml_reader.h"
+#include "chimera/description/draft_values.h"
+#include "chimera/description/yaml_reader.h"
 
 namespace chimera::desk {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "chimera/config/report.h"
+#include "chimera/description/report.h"
 #include "chimera/desk/measured_run.h"
 
 namespace chimera::desk {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/configuration.h"
-#include "chimera/config/setting.h"
-#include "chimera/config/verify.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/workplace.h"
+#include "chimera/verify/configuration.h"
+#include "chimera/verify/setting.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::desk {
 

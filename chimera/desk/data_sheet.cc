@@ -7,10 +7,10 @@
 #include <iterator>
 #include <vector>
 
-#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/config/value_text.h"
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/desk/blanks.h"
+#include "chimera/text/value_text.h"
 
 namespace chimera::desk {
 namespace {

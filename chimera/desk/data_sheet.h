@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "chimera/config/library.h"
+#include "chimera/catalogue/library.h"
 
 namespace chimera::desk {
 

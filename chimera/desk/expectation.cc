@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "chimera/config/nearest.h"
-#include "chimera/config/quantity.h"
 #include "chimera/desk/blanks.h"
+#include "chimera/text/nearest.h"
+#include "chimera/units/quantity.h"
 
 namespace chimera::desk {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/configuration.h"
-#include "chimera/config/unit_system.h"
+#include "chimera/units/unit_system.h"
+#include "chimera/verify/configuration.h"
 
 namespace chimera::desk {
 

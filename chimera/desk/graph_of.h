@@ -2,8 +2,8 @@
 // A configuration as the picture's boxes and lines.
 #pragma once
 
-#include "chimera/config/configuration.h"
 #include "chimera/draw/graph.h"
+#include "chimera/verify/configuration.h"
 
 namespace chimera::desk {
 

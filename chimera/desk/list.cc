@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/config/descriptor_json.h"
+#include "chimera/catalogue/descriptor_json.h"
 #include "chimera/desk/blanks.h"
 #include "chimera/desk/data_sheet.h"
 

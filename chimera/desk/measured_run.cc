@@ -9,11 +9,11 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/not_off.h"
 #include "chimera/desk/blanks.h"
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/run_loop.h"
 #include "chimera/desk/run_plan.h"
+#include "chimera/text/not_off.h"
 
 namespace chimera::desk {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/library.h"
+#include "chimera/catalogue/library.h"
 #include "chimera/desk/measure.h"
 #include "chimera/desk/run.h"
 #include "chimera/desk/run_report.h"

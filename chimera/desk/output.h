@@ -5,7 +5,7 @@
 #include <string>
 
 #include "chimera/base/result.h"
-#include "chimera/config/json_text.h"
+#include "chimera/text/json_text.h"
 
 namespace chimera::desk {
 

@@ -13,10 +13,10 @@
 #include <string_view>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/config/not_off.h"
 #include "chimera/desk/under_way.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/standard_output.h"
+#include "chimera/text/not_off.h"
 
 namespace chimera::desk {
 namespace {

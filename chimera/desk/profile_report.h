@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/task_profile.h"
+#include "chimera/analysis/task_profile.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera::desk {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/setting.h"
 #include "chimera/desk/application.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/workplace.h"
 #include "chimera/runtime/tap_record.h"
+#include "chimera/verify/setting.h"
 
 namespace chimera::desk {
 

@@ -3,17 +3,17 @@
 
 #include <algorithm>
 
+#include "chimera/analysis/schedule_report.h"
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/config/nearest.h"
-#include "chimera/config/schedule_report.h"
-#include "chimera/config/setting.h"
-#include "chimera/config/verify.h"
 #include "chimera/desk/check.h"
 #include "chimera/desk/run.h"
 #include "chimera/desk/script_text.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/standard_output.h"
 #include "chimera/schedule/utilisation.h"
+#include "chimera/text/nearest.h"
+#include "chimera/verify/setting.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::desk {
 namespace {

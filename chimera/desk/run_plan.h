@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/configuration.h"
-#include "chimera/config/library.h"
+#include "chimera/catalogue/library.h"
 #include "chimera/desk/expectation.h"
 #include "chimera/desk/own_process.h"
 #include "chimera/desk/workplace.h"
 #include "chimera/runtime/script.h"
+#include "chimera/verify/configuration.h"
 
 namespace chimera::desk {
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
+#include "chimera/analysis/recorded_profile.h"
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/config/json_text.h"
-#include "chimera/config/recorded_profile.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/profile_report.h"
+#include "chimera/text/json_text.h"
 
 namespace chimera::desk {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/task_profile.h"
+#include "chimera/analysis/task_profile.h"
 #include "chimera/desk/expectation.h"
 #include "chimera/desk/run_verdict.h"
 #include "chimera/runtime/release.h"

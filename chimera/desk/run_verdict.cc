@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "chimera/config/json_text.h"
-#include "chimera/config/not_off.h"
+#include "chimera/text/json_text.h"
+#include "chimera/text/not_off.h"
 
 namespace chimera::desk {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "chimera/analysis/task_profile.h"
 #include "chimera/base/time.h"
-#include "chimera/config/task_profile.h"
 
 namespace chimera::desk {
 
@@ -23,7 +23,7 @@ struct UnitFate {
 /// A task of which `off` or `kill` failed or was never run. Plain value.
 struct NotOff {
   std::string task;
-  std::string text;  ///< `not_off_text` (chimera/config/not_off.h)
+  std::string text;  ///< `not_off_text` (chimera/text/not_off.h)
 };
 
 /// Plain value.

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "chimera/config/verify.h"
 #include "chimera/desk/schedule_text.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::desk {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/schedule_report.h"
-#include "chimera/config/setting.h"
+#include "chimera/analysis/schedule_report.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/workplace.h"
+#include "chimera/verify/setting.h"
 
 namespace chimera::desk {
 

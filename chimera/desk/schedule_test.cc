@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "chimera/config/recorded_profile.h"
-#include "chimera/config/time_text.h"
+#include "chimera/analysis/recorded_profile.h"
 #include "chimera/desk/test_place.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::desk {
 namespace {

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "chimera/config/criticality.h"
-#include "chimera/config/time_text.h"
+#include "chimera/analysis/schedule_words.h"
+#include "chimera/description/criticality.h"
 #include "chimera/draw/timeline.h"
 #include "chimera/schedule/utilisation.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::desk {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/config/schedule_report.h"
+#include "chimera/analysis/schedule_report.h"
 #include "chimera/draw/gantt.h"
 
 namespace chimera::desk {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/config/verify.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/output_file.h"
 #include "chimera/desk/piece_progress.h"
@@ -12,6 +11,7 @@
 #include "chimera/desk/side_by_side.h"
 #include "chimera/desk/sweep_table.h"
 #include "chimera/platform/standard_output.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::desk {
 namespace {

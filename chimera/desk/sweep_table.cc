@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "chimera/config/json_text.h"
 #include "chimera/desk/blanks.h"
+#include "chimera/text/json_text.h"
 
 namespace chimera::desk {
 namespace {

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/config/nearest.h"
 #include "chimera/desk/case_report.h"
 #include "chimera/desk/output.h"
 #include "chimera/desk/output_file.h"
@@ -13,6 +12,7 @@
 #include "chimera/desk/run_plan.h"
 #include "chimera/desk/side_by_side.h"
 #include "chimera/platform/standard_output.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::desk {
 namespace {

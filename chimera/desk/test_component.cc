@@ -9,7 +9,7 @@
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/message.h"
-#include "chimera/config/descriptor_json.h"
+#include "chimera/catalogue/descriptor_json.h"
 #include "chimera/trial/judge.h"
 #include "chimera/trial/partner.h"
 #include "chimera/trial/setup.h"

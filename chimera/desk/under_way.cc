@@ -7,9 +7,9 @@
 #include <cstring>
 #include <new>
 
-#include "chimera/config/not_off.h"
 #include "chimera/runtime/making.h"
 #include "chimera/task/signal.h"
+#include "chimera/text/not_off.h"
 
 namespace chimera::desk {
 namespace {

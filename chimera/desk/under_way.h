@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "chimera/config/configuration.h"
-#include "chimera/config/library.h"
+#include "chimera/catalogue/library.h"
+#include "chimera/verify/configuration.h"
 
 namespace chimera::desk {
 

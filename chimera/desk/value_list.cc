@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <optional>
 
-#include "chimera/config/decimal.h"
 #include "chimera/desk/blanks.h"
+#include "chimera/text/decimal.h"
 
 namespace chimera::desk {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <unistd.h>
 
-#include "chimera/config/unit_system.h"
+#include "chimera/units/unit_system.h"
 
 namespace chimera::desk {
 

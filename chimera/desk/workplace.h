@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/config/library.h"
+#include "chimera/catalogue/library.h"
 
 namespace chimera::desk {
 

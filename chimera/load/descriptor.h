@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a component says about itself, as plain owned data: the declaration of task/abi.h without its pointers.
 // Checking, browsing and drawing read descriptors and never run component code. The file form is
-// docs/formats/descriptor.md (config/descriptor_json.h).
+// docs/formats/descriptor.md (catalogue/descriptor_json.h).
 #pragma once
 
 #include <array>

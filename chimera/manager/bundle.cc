@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/descriptor_json.h"
+#include "chimera/catalogue/descriptor_json.h"
 
 namespace chimera::manager {
 namespace {

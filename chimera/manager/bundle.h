@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/config/library.h"
-#include "chimera/config/setting.h"
-#include "chimera/config/verify.h"
+#include "chimera/catalogue/library.h"
+#include "chimera/verify/setting.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::manager {
 

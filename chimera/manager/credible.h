@@ -6,9 +6,9 @@
 #include <cstdint>
 
 #include "chimera/base/time.h"
-#include "chimera/config/quantity.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/task.h"
+#include "chimera/units/quantity.h"
 
 namespace chimera::manager {
 

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "chimera/config/not_off.h"
 #include "chimera/manager/cause.h"
 #include "chimera/manager/credible.h"
 #include "chimera/manager/post_text.h"
@@ -11,6 +10,7 @@
 #include "chimera/manager/unfinished.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/runtime/making.h"
+#include "chimera/text/not_off.h"
 
 namespace chimera::manager {
 

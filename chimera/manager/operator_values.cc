@@ -5,10 +5,10 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/descriptor_value.h"
-#include "chimera/config/json_text.h"
-#include "chimera/config/setting.h"
-#include "chimera/config/verify.h"
+#include "chimera/catalogue/descriptor_value.h"
+#include "chimera/text/json_text.h"
+#include "chimera/verify/setting.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::manager {
 namespace {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/config/configuration.h"
-#include "chimera/config/library.h"
-#include "chimera/config/value_text.h"
+#include "chimera/catalogue/library.h"
+#include "chimera/text/value_text.h"
+#include "chimera/verify/configuration.h"
 
 namespace chimera::manager {
 

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/schedule_report.h"
-#include "chimera/config/verify.h"
+#include "chimera/analysis/schedule_report.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::manager {
 namespace {

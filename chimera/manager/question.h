@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "chimera/config/library.h"
+#include "chimera/catalogue/library.h"
 
 namespace chimera::manager {
 

@@ -10,12 +10,12 @@
 #include <string_view>
 #include <vector>
 
-#include "chimera/config/configuration.h"
-#include "chimera/config/library.h"
-#include "chimera/config/value_text.h"
+#include "chimera/catalogue/library.h"
 #include "chimera/manager/own_segment.h"
 #include "chimera/manager/peers.h"
 #include "chimera/runtime/variables.h"
+#include "chimera/text/value_text.h"
+#include "chimera/verify/configuration.h"
 
 namespace chimera::manager {
 

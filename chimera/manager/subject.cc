@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/nearest.h"
 #include "chimera/manager/cause.h"
 #include "chimera/manager/command_text.h"
 #include "chimera/manager/subject_acts.h"
 #include "chimera/manager/subject_status.h"
 #include "chimera/manager/subject_values.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::manager {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/nearest.h"
 #include "chimera/manager/operator_values.h"
 #include "chimera/manager/subject_status.h"
 #include "chimera/manager/subject_values.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::manager {
 namespace {

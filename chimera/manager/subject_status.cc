@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/schedule_report.h"
-#include "chimera/config/task_profile.h"
-#include "chimera/manager/credible.h"
+#include "chimera/analysis/schedule_report.h"
+#include "chimera/analysis/task_profile.h"
 #include "chimera/manager/cause.h"
+#include "chimera/manager/credible.h"
 #include "chimera/manager/face_watch.h"
 
 namespace chimera::manager {

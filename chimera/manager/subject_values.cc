@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/descriptor_value.h"
+#include "chimera/catalogue/descriptor_value.h"
 #include "chimera/manager/subject_status.h"
 
 namespace chimera::manager {

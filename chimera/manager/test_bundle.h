@@ -7,8 +7,8 @@
 #include <string>
 
 #include "chimera/base/hosted/tree_path.h"
-#include "chimera/config/unit_samples.h"
 #include "chimera/manager/bundle.h"
+#include "chimera/units/unit_samples.h"
 
 namespace chimera::manager {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/unfinished.h"
 
-#include "chimera/config/not_off.h"
 #include "chimera/manager/cause.h"
+#include "chimera/text/not_off.h"
 
 namespace chimera::manager {
 namespace {

@@ -12,7 +12,7 @@ namespace chimera::manager {
 
 struct Unfinished {
   TaskId task;
-  std::string text;  ///< `not_off_text` (chimera/config/not_off.h)
+  std::string text;  ///< `not_off_text` (chimera/text/not_off.h)
 };
 
 /// Those in whose `off` or `kill` the unit died, and, when everything ends, those that were still ON. `left` is the

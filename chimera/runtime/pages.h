@@ -9,7 +9,7 @@
 
 namespace chimera {
 
-inline constexpr std::uint32_t kMaxRtpus = 16;             // config/draft.cc refuses more
+inline constexpr std::uint32_t kMaxRtpus = 16;             // description/draft.cc refuses more
 inline constexpr std::uint32_t kMaxPeers = kMaxRtpus + 1;  // the manager is peer number n_rtpus
 
 /// One word on a cache line of its own, so that ringing one bell does not slow the reader of another.

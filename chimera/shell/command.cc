@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "chimera/config/nearest.h"
 #include "chimera/shell/columns.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::shell {
 namespace {

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "chimera/base/time.h"
-#include "chimera/config/nearest.h"
 #include "chimera/shell/columns.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/figures.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::shell {
 namespace {

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/config/quantity.h"
 #include "chimera/platform/standard_output.h"
 #include "chimera/shell/event_lines.h"
 #include "chimera/shell/fields.h"
@@ -17,6 +16,7 @@
 #include "chimera/shell/terminal.h"
 #include "chimera/shell/top.h"
 #include "chimera/shell/watch.h"
+#include "chimera/units/quantity.h"
 
 namespace chimera::shell {
 namespace {

@@ -6,13 +6,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/nearest.h"
-#include "chimera/config/recorded_profile.h"
+#include "chimera/analysis/recorded_profile.h"
 #include "chimera/shell/answer_text.h"
 #include "chimera/shell/event_lines.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/status_text.h"
 #include "chimera/shell/words.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::shell {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/draft.h"
-#include "chimera/config/yaml_reader.h"
+#include "chimera/description/draft.h"
+#include "chimera/description/yaml_reader.h"
 
 namespace chimera::shell {
 namespace {

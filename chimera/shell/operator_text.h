@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "chimera/base/result.h"
-#include "chimera/config/unit_system.h"
+#include "chimera/units/unit_system.h"
 
 namespace chimera::shell {
 

@@ -7,9 +7,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "chimera/config/nearest.h"
-#include "chimera/config/quantity.h"
-#include "chimera/config/recorded_profile.h"
+#include "chimera/analysis/recorded_profile.h"
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/figures.h"
@@ -17,6 +15,8 @@
 #include "chimera/shell/sketch.h"
 #include "chimera/shell/sparkline.h"
 #include "chimera/shell/terminal.h"
+#include "chimera/text/nearest.h"
+#include "chimera/units/quantity.h"
 
 namespace chimera::shell {
 namespace {

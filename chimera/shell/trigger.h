@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "chimera/base/result.h"
-#include "chimera/config/quantity.h"
 #include "chimera/shell/channel.h"
+#include "chimera/units/quantity.h"
 
 namespace chimera::shell {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the table is told about a state variable: its bytes at their largest. Names, units and shapes are
-// settled above (config/); the table never learns what a file is.
+// settled above (verify/); the table never learns what a file is.
 #pragma once
 
 #include <cstdint>

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/config/configuration.h"
 #include "chimera/load/descriptor.h"
+#include "chimera/verify/configuration.h"
 
 namespace chimera::trial {
 

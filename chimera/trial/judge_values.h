@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "chimera/config/configuration.h"
 #include "chimera/load/descriptor.h"
+#include "chimera/verify/configuration.h"
 
 namespace chimera::trial {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
-#include "chimera/config/draft.h"
+#include "chimera/description/draft.h"
 
 namespace chimera::trial {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "chimera/config/configuration.h"
-#include "chimera/config/library.h"
-#include "chimera/config/verify.h"
+#include "chimera/catalogue/library.h"
+#include "chimera/verify/configuration.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera::trial {
 

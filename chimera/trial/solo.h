@@ -7,7 +7,7 @@
 #include <string>
 
 #include "chimera/base/result.h"
-#include "chimera/config/library.h"
+#include "chimera/catalogue/library.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/runtime/aligned_bytes.h"
 #include "chimera/runtime/task_set.h"

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "chimera/config/unit_samples.h"
 #include "chimera/trial/inputs.h"
 #include "chimera/trial/setup.h"
+#include "chimera/units/unit_samples.h"
 
 namespace chimera::trial {
 

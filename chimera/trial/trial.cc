@@ -13,7 +13,7 @@
 #include <functional>
 
 #include "chimera/base/message.h"
-#include "chimera/config/descriptor_json.h"
+#include "chimera/catalogue/descriptor_json.h"
 #include "chimera/platform/watched_child.h"
 #include "chimera/trial/plays.h"
 

@@ -13,7 +13,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/base/time.h"
-#include "chimera/config/library.h"
+#include "chimera/catalogue/library.h"
 #include "chimera/platform/process.h"
 #include "chimera/trial/inputs.h"
 #include "chimera/trial/record.h"

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "chimera/base/hosted/tree_path.h"
-#include "chimera/config/library.h"
-#include "chimera/config/unit_samples.h"
-#include "chimera/config/verify.h"
+#include "chimera/catalogue/library.h"
 #include "chimera/runtime/application_image.h"
 #include "chimera/runtime/spec_equal.h"
+#include "chimera/units/unit_samples.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera {
 namespace {

@@ -44,13 +44,14 @@ def self_test():
 
 def main():
     self_test()
-    config = ROOT / "chimera/config"
-    rules = array((config / "rule_ids.h").read_text(), "kRules")
-    keys = key_patterns((config / "keys.h").read_text())
+    description = ROOT / "chimera/description"
+    rules = array((description / "rule_ids.h").read_text(), "kRules")
+    keys = key_patterns((description / "keys.h").read_text())
     folder = ROOT / "tests/verify/faulty"
     reports = "\n".join(p.read_text(errors="replace") for p in sorted(folder.glob("*.expected")))
     # What no text can show (a file that is not there) is shown by a unit test that pins the report.
-    reports += "\n".join(p.read_text() for p in sorted([*config.glob("draft*_test.cc"), config / "objects_test.cc"]))
+    reports += "\n".join(p.read_text() for p in sorted([*description.glob("draft*_test.cc"),
+                                                        ROOT / "chimera/verify/objects_test.cc"]))
     missing = uncovered(reports, rules, keys)
     for name in missing:
         print(f"no faulty description shows {name}")

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Holds docs/formats/description.schema.json against the reader and the descriptions.
 
-The schema is a schema; it has the keys of chimera/config/keys.h and no other; every example and every good description
-satisfies it; and it refuses the descriptions that a reader refuses for their keys alone.
+The schema is a schema; it has the keys of chimera/description/keys.h and no other; every example and every good
+description satisfies it; and it refuses the descriptions that a reader refuses for their keys alone.
 """
 import json
 import pathlib
@@ -41,7 +41,7 @@ def main():
     jsonschema.Draft7Validator.check_schema(schema)
     judge = jsonschema.Draft7Validator(schema)
     faults = []
-    header = (ROOT / "chimera/config/keys.h").read_text()
+    header = (ROOT / "chimera/description/keys.h").read_text()
     document = (ROOT / "docs/formats/description.md").read_text()
     for name, properties in keys_of(schema).items():
         reader = set(array(header, name))

@@ -7,7 +7,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools" / "check"))
 import sources  # noqa: E402
 
-REFUSALS = "chimera/config/unsupported.cc"
+REFUSALS = "chimera/verify/unsupported.cc"
 # What a refusal says in the code, and how the limits of README.md call it.
 CALLED = (
     ("llf in real time", "`llf` in real time"),
@@ -53,7 +53,7 @@ def refusal_complaints(root):
 
 
 def table_complaints(root):
-    room = sources.text(root, "chimera/config/rule_room.cc")
+    room = sources.text(root, "chimera/verify/rules/rule_room.cc")
     most = re.search(r"kMaxTableBytes = (\d+) << 20;", room)
     document = re.sub(r"\s+", " ", sources.text(root, "docs/formats/table.md"))
     told = re.search(r"outputs take more than (\d+) MiB", document)
@@ -80,7 +80,7 @@ _TABLE = "outputs take more than\n4 MiB. No executor uses them\nyet.\n"
 
 
 def _tree(**other):
-    files = {"README.md": _README, REFUSALS: _CODE, "chimera/config/rule_room.cc": _ROOM,
+    files = {"README.md": _README, REFUSALS: _CODE, "chimera/verify/rules/rule_room.cc": _ROOM,
              "docs/formats/table.md": _TABLE}
     return files | {{"readme": "README.md", "code": REFUSALS, "table": "docs/formats/table.md",
                      "user": "chimera/rtpu/x.cc"}[key]: text for key, text in other.items()}

@@ -8,11 +8,11 @@
 #include <fstream>
 #include <sstream>
 
+#include "chimera/analysis/schedule_report.h"
 #include "chimera/base/hosted/tree_path.h"
-#include "chimera/config/library.h"
-#include "chimera/config/unit_samples.h"
-#include "chimera/config/schedule_report.h"
-#include "chimera/config/verify.h"
+#include "chimera/catalogue/library.h"
+#include "chimera/units/unit_samples.h"
+#include "chimera/verify/verify.h"
 
 namespace chimera {
 namespace {

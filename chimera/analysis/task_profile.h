@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The profile of a task as it is told: what it costs, how punctual it is, its last fault. The JSON of
+// docs/formats/run.md, written and read back here alone.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/analysis/transfer_cost.h"
+#include "chimera/base/result.h"
+#include "chimera/task/fault_record.h"
+#include "chimera/task/profile.h"
+#include "chimera/task/server_spec.h"
+#include "chimera/task/state_machine.h"
+
+namespace chimera {
+
+/// Plain value.
+struct TaskProfile {
+  std::string task;
+  std::string component;
+  State state = State::kNotCreated;
+  Nanoseconds period;
+  Profile profile;
+  FaultRecord faults;
+  std::string rtpu;
+  TransferCost transfer;  ///< of each cycle
+  Nanoseconds on;         ///< time that it was ON
+  std::optional<ServerSpec> server;
+};
+
+/// A JSON array with everything counted, one object a task, times in nanoseconds, of faults from `origin`.
+/// Context: setup.
+std::string profile_json(std::span<const TaskProfile> tasks, Nanoseconds origin);
+
+/// Reads such an array; `origin` as when it was written. A mean is read as a sum that gives it again. Refuses what is
+/// no profile, naming the key. Context: setup.
+Result<std::vector<TaskProfile>> parse_profiles(std::string_view json, Nanoseconds origin);
+
+}  // namespace chimera

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// A description as read: every key typed, every value with its place, nothing yet believed.
+// docs/formats/description.md lists the keys; verify() (verify/verify.h) is the only reader of a Draft.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/base/time.h"
+#include "chimera/description/node.h"
+#include "chimera/description/report.h"
+#include "chimera/schedule/policy.h"
+#include "chimera/task/server_spec.h"
+#include "chimera/task/task_spec.h"
+#include "chimera/units/quantity.h"
+
+namespace chimera {
+
+inline constexpr std::size_t kMaxTasks = 256;  ///< of a description; what is beyond is told and left out
+
+/// A value and where it was written.
+template <class T>
+struct Located {
+  T value{};
+  Place at;
+};
+
+/// A name and the value written for it.
+struct NamedNode {
+  Word name;
+  Node value;
+};
+
+/// `port: variable`, or `port: [variable, ...]` for the instances of a repeated port.
+struct DraftAlias {
+  Word port;
+  std::vector<Word> variables;
+  bool is_list = false;
+};
+
+struct DraftReaction {
+  OnMiss kind = OnMiss::kContinue;
+  Word configuration;  ///< of {switch: NAME}
+  Place at;
+};
+
+enum class OnFault : std::uint8_t { kError, kFlag, kStop, kSwitch };
+
+struct DraftServer {
+  Place at;
+  ServerKind kind = ServerKind::kDeferrable;
+  Located<Nanoseconds> capacity;
+  Located<Nanoseconds> period;
+};
+
+struct DraftTolerate {
+  Place at;
+  std::uint32_t misses = 0;
+  std::uint32_t of = 0;
+};
+
+struct DraftOnFault {
+  OnFault kind = OnFault::kError;
+  Word configuration;
+  Place at;
+};
+
+struct DraftTask {
+  Word name;
+  Word component;  ///< `at` is the name's when the key was left out
+  std::optional<Word> rtpu;
+  std::optional<Located<Rate>> rate;
+  std::optional<Located<Nanoseconds>> deadline, offset, budget, min_time, stale_after;
+  std::optional<Located<std::uint32_t>> criticality, user_priority, max_consecutive;
+  std::vector<DraftAlias> alias;
+  std::vector<NamedNode> constants, resources, initial, max_step;
+  std::optional<DraftReaction> on_miss, on_overrun;
+  std::optional<DraftOnFault> on_fault;
+  std::optional<DraftTolerate> tolerate;
+  std::optional<DraftServer> server;
+  std::optional<Word> standby_for;
+  std::optional<Located<std::uint64_t>> stack_bytes;
+  std::optional<Located<bool>> own_process;
+  bool is_partial = false;  ///< some key could not be read: say nothing about what the task lacks
+};
+
+struct DraftRtpu {
+  Word name;
+  Located<std::uint32_t> cpu;
+  Located<Policy> policy{Policy::kEdf, {}};
+  Located<bool> preemptive{false, {}};
+};
+
+struct DraftSet {
+  Word name;
+  std::vector<Word> tasks;
+};
+
+struct Draft {
+  std::string file;  ///< as named by the user, for messages
+  Word subsystem;
+  std::vector<NamedNode> constants;
+  std::vector<DraftRtpu> rtpus;  ///< empty: none declared
+  std::vector<DraftTask> tasks;
+  std::vector<NamedNode> operators;
+  std::vector<DraftSet> configurations;  ///< empty: none declared
+  std::optional<Word> start;
+  bool is_partial = false;  ///< something outside the tasks could not be read
+};
+
+/// A draft, when the text can be read at all, and what is wrong with the text. A draft with faults in its report
+/// holds what could be read; verify it all the same, so that one report has everything.
+struct Reading {
+  std::optional<Draft> draft;
+  Report report;
+  std::string text;  ///< as it was read; empty when it could not be
+};
+
+/// Reads `text`, naming it `file` in messages. Context: setup.
+Reading read_description(std::string_view text, std::string_view file);
+
+/// Reads the file at `path`; one above the size limit is refused without being read. Context: setup; may block.
+Reading read_description_file(const std::string& path);
+
+}  // namespace chimera

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every key of a description, in the order of docs/formats/description.md. The reader accepts no other;
+// tests/verify/coverage.py compares them with description.schema.json.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace chimera {
+
+inline constexpr std::array<std::string_view, 8> kFileKeys = {"version", "subsystem", "constants",      "rtpus",
+                                                              "tasks",   "operator",  "configurations", "start"};
+
+inline constexpr std::array<std::string_view, 3> kRtpuKeys = {"cpu", "policy", "executor"};
+
+inline constexpr std::array<std::string_view, 24> kTaskKeys = {
+    "component",     "rtpu",   "rate",        "deadline",    "offset",   "budget",   "min",        "criticality",
+    "user_priority", "alias",  "constants",   "resources",   "initial",  "on_miss",  "on_overrun", "max_consecutive",
+    "tolerate",      "server", "stale_after", "standby_for", "on_fault", "max_step", "stack",      "isolation"};
+
+inline constexpr std::array<std::string_view, 2> kTolerateKeys = {"misses", "of"};
+
+inline constexpr std::array<std::string_view, 3> kServerKeys = {"kind", "capacity", "period"};
+
+}  // namespace chimera

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/description/report.h"
+
+#include <algorithm>
+
+#include "chimera/base/assert.h"
+#include "chimera/base/hosted/terminal_text.h"
+#include "chimera/description/rule_ids.h"
+#include "chimera/text/json_text.h"
+
+namespace chimera {
+namespace {
+
+std::string_view word(Severity severity) { return severity == Severity::kError ? "error" : "warning"; }
+
+std::string remedy(const Fault& fault) {
+  if (!fault.remedy.empty()) return fault.remedy;
+  return fault.nearest.empty() ? std::string{} : "did you mean '" + fault.nearest + "'?";
+}
+
+}  // namespace
+
+std::string sentence(const Fault& fault) {
+  const std::string help = remedy(fault);
+  return help.empty() ? fault.message : fault.message + " (" + help + ")";
+}
+
+void Report::add(Fault fault) {
+  CHIMERA_ASSERT(is_rule(fault.rule));
+  for (std::string* part : {&fault.message, &fault.found, &fault.expected, &fault.nearest, &fault.remedy})
+    *part = plain_line(*part);  // one fault, one line
+  for (const Fault& known : faults_)
+    if (known.at == fault.at && known.rule == fault.rule && known.message == fault.message) return;
+  ++(fault.severity == Severity::kError ? errors_ : warnings_);
+  if (faults_.size() < kMaxFaults) faults_.push_back(std::move(fault));
+}
+
+void Report::note(std::string text) {
+  text = plain_line(text);
+  if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(std::move(text));
+}
+
+void Report::add_all(const Report& other) {
+  for (const std::string& text : other.notes_) note(text);
+  for (const Fault& fault : other.faults_) add(fault);
+  const std::size_t kept_errors = static_cast<std::size_t>(std::count_if(
+      other.faults_.begin(), other.faults_.end(), [](const Fault& f) { return f.severity == Severity::kError; }));
+  errors_ += other.errors_ - kept_errors;
+  warnings_ += other.warnings_ - (other.faults_.size() - kept_errors);
+}
+
+void Report::sort() {
+  std::stable_sort(faults_.begin(), faults_.end(), [](const Fault& a, const Fault& b) { return a.at < b.at; });
+}
+
+bool Report::has(std::string_view rule) const noexcept {
+  return std::any_of(faults_.begin(), faults_.end(), [rule](const Fault& f) { return f.rule == rule; });
+}
+
+std::string Report::text() const {
+  std::string out;
+  for (const Fault& fault : faults_) {
+    out += file_;
+    if (fault.at.line != 0) out += ':' + std::to_string(fault.at.line) + ':' + std::to_string(fault.at.column);
+    out += ": ";
+    out += word(fault.severity);
+    out += ": " + fault.message + " [";
+    out += fault.rule;
+    out += "]\n";
+    if (const std::string help = remedy(fault); !help.empty()) out += "  " + help + '\n';
+  }
+  if (const std::size_t all = errors_ + warnings_; all > faults_.size())
+    out += file_ + ": and " + std::to_string(all - faults_.size()) + " more\n";
+  for (const std::string& text : notes_) out += file_ + ": note: " + text + '\n';
+  return out;
+}
+
+std::string Report::json() const {
+  std::string out = "{\"file\": " + json_string(file_) + ", \"legal\": " + (is_legal() ? "true" : "false") +
+                    ", \"errors\": " + std::to_string(errors_) + ", \"warnings\": " + std::to_string(warnings_) +
+                    ", \"faults\": [";
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    const Fault& fault = faults_[i];
+    out += std::string(i == 0 ? "" : ", ") + "{\"rule\": " + json_string(fault.rule) +
+           ", \"severity\": " + json_string(word(fault.severity)) + ", \"file\": " + json_string(file_) +
+           ", \"line\": " + std::to_string(fault.at.line) + ", \"column\": " + std::to_string(fault.at.column) +
+           ", \"found\": " + json_string(fault.found) + ", \"expected\": " + json_string(fault.expected) +
+           ", \"nearest\": " + json_string(fault.nearest) + ", \"message\": " + json_string(fault.message) +
+           ", \"remedy\": " + json_string(remedy(fault)) + '}';
+  }
+  out += "], \"notes\": [";
+  for (std::size_t i = 0; i < notes_.size(); ++i) out += (i == 0 ? "" : ", ") + json_string(notes_[i]);
+  return out + "]}";
+}
+
+}  // namespace chimera

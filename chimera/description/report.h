@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a description: all faults of one reading, each with its place and its remedy.
+// Rendered as docs/formats/description.md says ("Faults").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace chimera {
+
+/// A place in a description. Lines and columns count from 1, columns in bytes; line 0 is the file as a whole.
+struct Place {
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;
+
+  constexpr auto operator<=>(const Place&) const noexcept = default;
+};
+
+enum class Severity : std::uint8_t { kError, kWarning };
+
+/// One breach of one rule.
+struct Fault {
+  std::string_view rule;  ///< one of kRules (description/rule_ids.h); points at static text
+  Place at;
+  std::string message;   ///< what was found and what was expected, in one sentence
+  std::string found;     ///< the offending words as written; may be empty
+  std::string expected;  ///< what would be accepted; may be empty
+  std::string nearest;   ///< the right name nearest to `found`; may be empty
+  std::string remedy;    ///< what to do, in one line; empty: made from `nearest`, if there is one
+  Severity severity = Severity::kError;
+};
+
+/// The message with what to do behind it, in one line. Context: setup.
+std::string sentence(const Fault& fault);
+
+/// Every fault of one description. Context: setup; may block.
+class Report {
+ public:
+  explicit Report(std::string file = {}) : file_(std::move(file)) {}
+
+  /// Keeps `fault`; one equal in place, rule and message is kept once. At most kMaxFaults are kept, the rest counted.
+  void add(Fault fault);
+  /// Something to know that is no breach of a rule; the same sentence is kept once.
+  void note(std::string text);
+  /// Takes over all faults and notes of `other`.
+  void add_all(const Report& other);
+  /// Brings the faults into the order of their places.
+  void sort();
+
+  const std::string& file() const noexcept { return file_; }
+  std::span<const Fault> faults() const noexcept { return faults_; }
+  std::span<const std::string> notes() const noexcept { return notes_; }
+  /// No error; warnings do not count.
+  bool is_legal() const noexcept { return errors_ == 0; }
+  std::size_t errors() const noexcept { return errors_; }
+  std::size_t warnings() const noexcept { return warnings_; }
+  bool has(std::string_view rule) const noexcept;
+
+  /// One `file:line:column: error: message [rule]` line per fault, each followed by its remedy line, if any;
+  /// then `file: note: text` lines.
+  std::string text() const;
+  /// One JSON object, without a line end.
+  std::string json() const;
+
+  static constexpr std::size_t kMaxFaults = 200;
+
+ private:
+  std::string file_;
+  std::vector<Fault> faults_;
+  std::vector<std::string> notes_;
+  std::size_t errors_ = 0;
+  std::size_t warnings_ = 0;
+};
+
+}  // namespace chimera

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/text/json_cursor.h"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "chimera/text/nearest.h"
+
+namespace chimera {
+namespace {
+
+using nlohmann::json;
+
+std::string in_quotes(std::string_view text) { return "\"" + std::string(text.substr(0, 60)) + "\""; }
+
+std::string kind(const json& value) {
+  if (value.is_number_float()) return "a fraction";
+  if (value.is_number()) return "a whole number";
+  if (value.is_string()) return in_quotes(value.get_ref<const std::string&>());
+  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+  return value.is_null() ? "null" : value.is_array() ? "a list" : "an object";
+}
+
+std::size_t nesting_of(std::string_view text) {
+  std::size_t depth = 0, deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      deepest = std::max(deepest, ++depth);
+    } else if ((c == '}' || c == ']') && depth > 0) {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+/// The place and reason in the parser's message, without its own name and number.
+std::string reason(const json::parse_error& error) {
+  const std::string_view what = error.what();
+  const std::size_t at = what.find("parse error");
+  return std::string(at == std::string_view::npos ? what : what.substr(at)).substr(0, 200);
+}
+
+}  // namespace
+
+void JsonCursor::expect_keys(std::initializer_list<std::string_view> required,
+                             std::initializer_list<std::string_view> optional) const {
+  if (!value_.is_object()) refuse("expected an object, found " + kind(value_));
+  std::vector<std::string> known(required.begin(), required.end());
+  known.insert(known.end(), optional.begin(), optional.end());
+  for (const auto& [key, unused] : value_.items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const std::string near = nearest(key, known);
+    refuse("unknown key " + in_quotes(key) + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+  }
+  for (const std::string_view key : required) {
+    if (!value_.contains(key)) refuse("the key " + in_quotes(key) + " is missing");
+  }
+}
+
+bool JsonCursor::has(std::string_view key) const { return value_.contains(key); }
+
+JsonCursor JsonCursor::at(std::string_view key) const {
+  return {value_.at(std::string(key)), path_ + "." + std::string(key)};
+}
+
+JsonCursor JsonCursor::at(std::size_t i) const { return {value_.at(i), path_ + "[" + std::to_string(i) + "]"}; }
+
+std::size_t JsonCursor::size(std::size_t limit) const {
+  if (!value_.is_array()) refuse("expected a list, found " + kind(value_));
+  if (value_.size() > limit) {
+    refuse("a list of " + std::to_string(value_.size()) + ", at most " + std::to_string(limit) + " are allowed");
+  }
+  return value_.size();
+}
+
+std::string JsonCursor::text() const {
+  if (!value_.is_string()) refuse("expected a text, found " + kind(value_));
+  return value_.get<std::string>();
+}
+
+bool JsonCursor::truth() const {
+  if (!value_.is_boolean()) refuse("expected true or false, found " + kind(value_));
+  return value_.get<bool>();
+}
+
+std::uint32_t JsonCursor::whole() const {
+  if (!value_.is_number_unsigned() || value_.get<std::uint64_t>() > UINT32_MAX) {
+    refuse("expected a whole number from 0 to 4294967295, found " + kind(value_));
+  }
+  return value_.get<std::uint32_t>();
+}
+
+double JsonCursor::number() const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (value_.is_string() && value_.get_ref<const std::string&>() == "inf") return kInfinity;
+  if (value_.is_string() && value_.get_ref<const std::string&>() == "-inf") return -kInfinity;
+  if (!value_.is_number()) refuse("expected a number, found " + kind(value_));
+  return value_.get<double>();
+}
+
+json read_json(std::string_view text, std::size_t bytes, std::size_t nesting) {
+  if (text.size() > bytes) {
+    throw JsonRefusal{"$: " + std::to_string(text.size()) + " bytes, at most " + std::to_string(bytes) +
+                      " are allowed"};
+  }
+  if (nesting_of(text) > nesting) throw JsonRefusal{"$: nested deeper than " + std::to_string(nesting)};
+  std::vector<std::set<std::string>> open;
+  std::string twice;
+  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
+    if (event == json::parse_event_t::object_start) open.emplace_back();
+    if (event == json::parse_event_t::object_end) open.pop_back();
+    if (event == json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second && twice.empty()) {
+      twice = in_quotes(parsed.get<std::string>());
+    }
+    return true;
+  };
+  try {
+    json tree = json::parse(text, watch);
+    if (!twice.empty()) throw JsonRefusal{"$: the key " + twice + " comes twice in one object"};
+    return tree;
+  } catch (const json::parse_error& error) {
+    throw JsonRefusal{"$: " + reason(error)};
+  } catch (const json::exception& error) {  // a number beyond every double
+    throw JsonRefusal{"$: " + std::string(error.what()).substr(0, 200)};
+  }
+}
+
+}  // namespace chimera

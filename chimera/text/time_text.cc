@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// A time as people read it.
+#include "chimera/text/time_text.h"
+
+#include <cstdio>
+
+namespace chimera {
+
+std::string time_text(Nanoseconds time) {
+  constexpr struct {
+    double ns;
+    const char* name;
+  } kUnits[] = {{1e9, "s"}, {1e6, "ms"}, {1e3, "us"}};
+  for (const auto& unit : kUnits) {
+    if (static_cast<double>(time.count) < unit.ns) continue;
+    char text[48];
+    std::snprintf(text, sizeof text, "%.4g %s", static_cast<double>(time.count) / unit.ns, unit.name);
+    return text;
+  }
+  return std::to_string(time.count) + " ns";
+}
+
+}  // namespace chimera

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The unit of a generic port: a unit and powers of the unit variables U X Y Z ("U", "U/s", "U.X", "U2").
+// Verification solves the variables for each task: solve() from a concrete neighbour, substitute() for the rest.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "chimera/units/unit.h"
+
+namespace chimera {
+
+/// The letters that stand for any unit. None of them is a unit (V, W, N, J and others are).
+inline constexpr std::string_view kUnitVariables = "UXYZ";
+
+/// `rest` times the product of variable powers, in the order of kUnitVariables.
+struct UnitExpression {
+  std::array<std::int16_t, kUnitVariables.size()> variables{};
+  Unit rest;
+
+  /// No variable: `rest` is the unit.
+  bool is_concrete() const noexcept;
+  /// The number of variables that occur.
+  int unknowns() const noexcept;
+};
+
+UnitExpression operator*(const UnitExpression& a, const UnitExpression& b) noexcept;
+UnitExpression operator/(const UnitExpression& a, const UnitExpression& b) noexcept;
+UnitExpression power(const UnitExpression& expression, int exponent) noexcept;
+
+/// `expression` with every `variable` (a letter of kUnitVariables) replaced. "U/s" with m for U is m/s, with
+/// degC/s for "U/s" K/s: offsets are lost but where the expression is the variable alone. Context: setup.
+UnitExpression substitute(const UnitExpression& expression, char variable, const Unit& unit) noexcept;
+
+/// A variable and what it must be.
+struct Solved {
+  char variable = 'U';
+  Unit unit;
+};
+
+/// The only unknown of `expression` such that it becomes `unit`: "U/s" and m/s give U = m. nullopt when there is
+/// not exactly one unknown or no unit fits ("U2" and m/s). Context: setup.
+std::optional<Solved> solve(const UnitExpression& expression, const Unit& unit) noexcept;
+
+/// "U.m/s" form in base units, for messages.
+std::string text(const UnitExpression& expression);
+
+}  // namespace chimera

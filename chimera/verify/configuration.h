@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// A verified application: immutable, made by verify() alone. Everything later stages need to know about a
+// description, with the places it came from. spec() hands it down to the runtime.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/description/draft.h"
+#include "chimera/runtime/application_spec.h"
+
+namespace chimera {
+
+/// One port instance of one task, solved.
+struct ConfiguredPort {
+  std::uint32_t declared = 0;  ///< index in the component's descriptor
+  std::uint32_t instance = 0;
+  std::uint32_t kind = 0;  ///< CHIMERA_IN_VAR ...
+  std::string name;        ///< as declared; an instance of a repeated port as "in[2]"
+  std::string variable;    ///< linked to; empty for resources and for in-consts that nobody else gives
+  std::string type;        ///< "float64", "Pose"
+  std::string unit;        ///< solved; "1" for none
+  std::string shape;       ///< "" scalar, "[6]", "[ndof<=10]"
+  Place at;                ///< of the alias, else of the task
+};
+
+struct ConfiguredTask {
+  std::string name;
+  std::string component;
+  std::string doc;  ///< one sentence of the component
+  Place at;
+  std::size_t rtpu = 0;
+  double rate_hz = 0;
+  bool is_aperiodic = false;
+  bool has_event_source = false;
+  bool is_hardware = false;  ///< has a resource port
+  std::string standby_for;   ///< empty: not a standby
+  std::vector<ConfiguredPort> ports;
+};
+
+/// A task's port, by index.
+struct PortRef {
+  std::size_t task = 0;
+  std::size_t port = 0;
+};
+
+/// A state variable or constant and everybody who names it, over all tasks.
+struct ConfiguredVariable {
+  std::string name;
+  bool is_constant = false;
+  bool is_given = false;  ///< by `operator` (a state variable) or `constants` of the file
+  std::string type, unit, shape;
+  Place at;  ///< of the given value, else of the first producer
+  std::vector<PortRef> producers;
+  std::vector<PortRef> consumers;
+};
+
+/// One of `configurations`: its tasks in data-flow order.
+struct ConfiguredSet {
+  std::string name;
+  Place at;
+  std::vector<TaskId> order;  ///< hardware inputs first; loops cut at initial values
+};
+
+/// Cheap to copy: all copies share one immutable whole. Context: setup.
+class Configuration {
+ public:
+  struct Parts;  // verify/parts.h; only verify() fills it
+
+  const std::string& file() const noexcept;
+  const std::string& subsystem() const noexcept;
+  std::span<const ConfiguredTask> tasks() const noexcept;
+  std::span<const ConfiguredVariable> variables() const noexcept;
+  std::span<const ConfiguredSet> sets() const noexcept;
+  /// Index in sets() of the one that goes ON at the start.
+  std::size_t start() const noexcept;
+  std::span<const RtpuSpec> rtpus() const noexcept;
+  /// The description it came from.
+  const Draft& draft() const noexcept;
+  /// The application for the runtime. Its spans live as long as any copy of this Configuration.
+  const ApplicationSpec& spec() const noexcept;
+  /// The utilisation of each CPU in the start configuration by declared budgets; 0 where none is declared.
+  std::span<const double> utilisation() const noexcept;  // one per rtpu
+
+  explicit Configuration(std::shared_ptr<const Parts> parts) noexcept : parts_(std::move(parts)) {}
+
+ private:
+  std::shared_ptr<const Parts> parts_;
+};
+
+}  // namespace chimera

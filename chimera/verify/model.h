@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the legality rules work on: the draft, linked with descriptors and filled in step by step.
+// Lives only inside verify(); pointers into draft and library are good for that long.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/catalogue/library.h"
+#include "chimera/description/draft.h"
+#include "chimera/description/report.h"
+#include "chimera/load/descriptor.h"
+#include "chimera/units/unit.h"
+#include "chimera/units/unit_expression.h"
+#include "chimera/verify/configuration.h"
+#include "chimera/verify/verify.h"
+
+namespace chimera {
+
+/// One dimension of a port of a task: a literal (`constant` empty) or a constant variable with a maximum.
+/// `known` is the number of elements where the description or a default settles it.
+struct SolvedExtent {
+  std::string constant;
+  std::uint32_t max = 1;
+  std::optional<std::uint32_t> known;
+};
+
+/// Who produces the value of an in-const.
+enum class ConstSource : std::uint8_t { kNobody, kOwn, kVariable, kDefault };
+
+/// One instance of one port of one task.
+struct LinkedPort {
+  const PortDescriptor* declared = nullptr;
+  std::uint32_t index = 0;  ///< of `declared` in the component
+  std::uint32_t instance = 0;
+  std::size_t task = 0;
+  std::string name;                           ///< "x", "in[2]"
+  std::string variable;                       ///< "" for resources and in-consts that are not linked
+  Place at;                                   ///< of the alias, else of the task
+  const Node* own = nullptr;                  ///< `constants`, `initial` or `resources` of the task
+  ConstSource source = ConstSource::kNobody;  ///< in-const
+  // Filled in by the rules of agreement:
+  std::optional<std::uint32_t> type;
+  std::uint32_t element_bytes = 0;
+  std::optional<Unit> unit;
+  std::string unit_text;
+  std::vector<SolvedExtent> extents;
+  bool has_extents = false;
+  /// In-const: its written or default value, elements at their maxima; empty where only init will know it.
+  std::vector<std::byte> value;
+
+  bool is(std::uint32_t kind) const noexcept { return declared->kind == kind; }
+  bool is_linked() const noexcept { return !variable.empty(); }
+  bool is_producer() const noexcept { return is(CHIMERA_OUT_VAR) || is(CHIMERA_OUT_CONST); }
+};
+
+struct TaskModel {
+  const DraftTask* draft = nullptr;
+  const Descriptor* component = nullptr;  ///< nullptr: unknown
+  std::vector<LinkedPort> ports;
+  std::optional<Nanoseconds> period;
+  double rate_hz = 0;
+  Nanoseconds deadline, offset, budget, min_time;
+  std::uint32_t criticality = 0;
+  std::size_t rtpu = 0;
+  bool lacks_link = false;  ///< a name under its keys is no port, or a repeated port has no instances
+
+  const std::string& name() const noexcept { return draft->name.text; }
+  /// Of an unknown component, or with a key or a link that could not be read.
+  bool is_partial() const noexcept { return component == nullptr || draft->is_partial || lacks_link; }
+  bool has_inputs() const noexcept;
+  bool has_resource() const noexcept;
+};
+
+struct VariableModel {
+  std::string name;
+  bool is_constant = false;
+  const NamedNode* given = nullptr;  ///< by `operator` or `constants`
+  std::vector<PortRef> producers, consumers;
+  // The agreement of its ports, each with the port that settled it (nullopt: the given value did).
+  std::optional<std::uint32_t> type;
+  std::optional<Unit> unit;
+  std::string unit_text;
+  std::optional<PortRef> type_from, unit_from, shape_from;
+  std::vector<SolvedExtent> extents;
+  bool has_extents = false;
+};
+
+struct SetModel {
+  std::string name;
+  Place at;
+  std::vector<std::size_t> tasks;  ///< indices, in the order of the description
+  bool is_whole = true;            ///< false: names a task that is unknown, so nothing is said about its inputs
+  std::vector<TaskId> order;
+
+  bool has(std::size_t task) const noexcept;
+};
+
+/// A written list that tells how many elements a constant extent has, before `init` tells it.
+struct WrittenLength {
+  std::size_t count = 0;
+  Place at;
+};
+
+struct Model {
+  Model(const Draft& d, const Library& l, Report& r) : draft(d), library(l), report(r) {}
+
+  const Draft& draft;
+  const Library& library;
+  Report& report;
+  std::vector<TaskModel> tasks;
+  std::vector<VariableModel> variables;
+  std::map<std::string, std::size_t, std::less<>> variable_index;
+  std::vector<SetModel> sets;
+  std::size_t start = 0;
+  std::vector<DraftRtpu> rtpus;  ///< the declared ones, or the one by default
+  std::vector<TaskId> init_order;
+  std::vector<double> utilisation;                       ///< per rtpu, start configuration
+  std::map<std::string, WrittenLength> written_lengths;  ///< by constant
+  Overload overload = Overload::kRefused;
+  bool has_unmet = false;  ///< an input or a constant without producer was reported
+
+  LinkedPort& port(PortRef ref) { return tasks[ref.task].ports[ref.port]; }
+  const LinkedPort& port(PortRef ref) const { return tasks[ref.task].ports[ref.port]; }
+  std::optional<std::size_t> task_named(std::string_view name) const;
+  VariableModel* variable(std::string_view name);
+  /// What the port is linked to; nullptr: nothing.
+  VariableModel* variable(const LinkedPort& p) { return p.is_linked() ? variable(p.variable) : nullptr; }
+  /// Something is missing that could supply what else seems to be missing: say nothing about lacks.
+  bool is_incomplete() const noexcept;
+
+  void error(std::string_view rule, Place at, std::string message, std::string found = {}, std::string expected = {},
+             std::string nearest = {}, std::string remedy = {});
+  void warn(std::string_view rule, Place at, std::string message, std::string remedy = {});
+
+  /// "output 'tau' of task 'pid'", with "(variable 'x')" where an alias says so.
+  std::string say(const LinkedPort& port) const;
+  /// "12:8".
+  static std::string say(Place at) { return std::to_string(at.line) + ':' + std::to_string(at.column); }
+};
+
+}  // namespace chimera

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two set equations of the 1994 paper, per configuration, and who produces what.
+#include <algorithm>
+#include <set>
+
+#include "chimera/text/nearest.h"
+#include "chimera/verify/rules/rules.h"
+
+namespace chimera {
+namespace {
+
+constexpr std::size_t kListed = 8;
+
+VariableModel& variable_of(Model& model, const std::string& name, bool is_constant) {
+  const auto [entry, is_new] = model.variable_index.emplace(name, model.variables.size());
+  if (is_new) {
+    VariableModel variable;
+    variable.name = name;
+    variable.is_constant = is_constant;
+    model.variables.push_back(std::move(variable));
+  }
+  return model.variables[entry->second];
+}
+
+void add_given(Model& model, const std::vector<NamedNode>& given, bool is_constant) {
+  for (const NamedNode& value : given) {
+    VariableModel& variable = variable_of(model, value.name.text, is_constant);
+    if (variable.is_constant != is_constant)
+      model.error("variable-and-constant", value.name.at,
+                  "'" + value.name.text + "' is given under 'constants' and under 'operator'", value.name.text,
+                  "one of the two", {}, "a constant is fixed at init; an operator variable changes while tasks are ON");
+    else
+      variable.given = &value;
+  }
+}
+
+void refuse_both(Model& model, const LinkedPort& port) {
+  const bool is_constant = port.declared->is_constant();
+  const char *constant = "constant", *state = "state variable";
+  model.error("variable-and-constant", port.at,
+              "'" + port.variable + "' is a " + (is_constant ? constant : state) + " here (" + model.say(port) +
+                  ") and a " + (is_constant ? state : constant) + " elsewhere",
+              port.variable, {}, {}, "rename one of the two: alias: {" + port.declared->name + ": another_name}");
+}
+
+void add_port(Model& model, PortRef ref) {
+  LinkedPort& port = model.port(ref);
+  if (!port.is_linked() || port.is(CHIMERA_IN_CONST)) return;
+  VariableModel& variable = variable_of(model, port.variable, port.declared->is_constant());
+  if (variable.is_constant == port.declared->is_constant()) {
+    (port.is_producer() ? variable.producers : variable.consumers).push_back(ref);
+    return;
+  }
+  refuse_both(model, port);
+  port.variable.clear();
+}
+
+/// An in-const is linked only to a constant that somebody produces; else it falls back (settle_constants).
+void add_in_const(Model& model, PortRef ref) {
+  LinkedPort& port = model.port(ref);
+  if (!port.is(CHIMERA_IN_CONST) || port.own != nullptr) return;
+  VariableModel* variable = model.variable(port.variable);
+  if (variable == nullptr) return;
+  if (variable->is_constant)
+    variable->consumers.push_back(ref);
+  else if (port.declared->initial.empty())
+    refuse_both(model, port);
+}
+
+std::vector<PortRef> producers_in(const VariableModel& variable, const SetModel& set) {
+  std::vector<PortRef> out;
+  for (const PortRef ref : variable.producers)
+    if (set.has(ref.task)) out.push_back(ref);
+  return out;
+}
+
+/// "'q' by 'arm', 'tau' by 'pid'": the products of a configuration, for the message of an unmet input.
+std::string products(const Model& model, const SetModel& set, std::vector<std::string>& names) {
+  std::string out;
+  std::size_t count = 0;
+  for (const VariableModel& variable : model.variables) {
+    if (variable.is_constant) continue;
+    for (const PortRef ref : producers_in(variable, set)) {
+      names.push_back(variable.name);
+      if (++count <= kListed)
+        out += (out.empty() ? "'" : ", '") + variable.name + "' by '" + model.tasks[ref.task].name() + "'";
+    }
+    if (variable.given != nullptr) names.push_back(variable.name);
+  }
+  if (count > kListed) out += " and " + std::to_string(count - kListed) + " more";
+  return out.empty() ? "nothing" : out;
+}
+
+std::string unmet_remedy(const Model& model, const LinkedPort& port, const VariableModel& variable, const SetModel& set,
+                         const std::string& near) {
+  if (!variable.producers.empty()) {
+    const std::string task = "'" + model.tasks[variable.producers[0].task].name() + "'";
+    return "task " + task + " produces it and is not in '" + set.name + "': add it there";
+  }
+  if (!near.empty()) return "did you mean alias: {" + port.declared->name + ": " + near + "}?";
+  return "add a task that produces it, or give it under 'operator'";
+}
+
+void report_unmet(Model& model, const LinkedPort& port, const VariableModel& variable, const SetModel& set) {
+  std::vector<std::string> names;
+  const std::string made = products(model, set, names);
+  const std::string near = nearest(variable.name, names);
+  model.has_unmet = true;
+  model.error("input-unmet", port.at,
+              model.say(port) + " has no producer in configuration '" + set.name + "', which produces " + made,
+              variable.name, "a producer of '" + variable.name + "'", near,
+              unmet_remedy(model, port, variable, set, near));
+}
+
+/// A task and its standby: rule_standby.cc speaks of them.
+bool is_standby_pair(const Model& model, const std::vector<PortRef>& producers) {
+  for (const PortRef ref : producers)
+    if (model.tasks[ref.task].draft->standby_for) return true;
+  return false;
+}
+
+/// ON when the set is ON, or in place of one that is: a standby's inputs have to be met too.
+bool counts_in(const Model& model, const SetModel& set, std::size_t task) {
+  if (set.has(task)) return true;
+  const auto& primary = model.tasks[task].draft->standby_for;
+  if (!primary) return false;
+  const auto index = model.task_named(primary->text);
+  return index && set.has(*index);
+}
+
+}  // namespace
+
+void collect_variables(Model& model) {
+  add_given(model, model.draft.constants, true);
+  add_given(model, model.draft.operators, false);
+  for (const auto add : {add_port, add_in_const})
+    for (std::size_t t = 0; t < model.tasks.size(); ++t)
+      for (std::size_t p = 0; p < model.tasks[t].ports.size(); ++p) add(model, {t, p});
+}
+
+void refuse_two_producers(Model& model) {
+  for (const VariableModel& variable : model.variables) {
+    if (variable.is_constant) continue;
+    for (const SetModel& set : model.sets) {
+      const std::vector<PortRef> producers = producers_in(variable, set);
+      if (variable.given != nullptr && !producers.empty())
+        model.error("operator-produced", variable.given->name.at,
+                    "operator variable '" + variable.name + "' is produced by task '" +
+                        model.tasks[producers[0].task].name() + "' in configuration '" + set.name + "'",
+                    variable.name, "a variable without a producing task", {},
+                    "take it out of 'operator', or link the output elsewhere by alias");
+      if (producers.size() < 2 || is_standby_pair(model, producers)) continue;
+      const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
+      model.error("two-producers", second.at,
+                  "'" + variable.name + "' has two producers in configuration '" + set.name + "': " + model.say(first) +
+                      " at " + Model::say(first.at) + " and " + model.say(second),
+                  variable.name, "one producer", {},
+                  "rename both by alias (" + variable.name + "_1, " + variable.name +
+                      "_2) and join them with a component such as join_mean");
+    }
+  }
+}
+
+void refuse_unmet_inputs(Model& model) {
+  std::set<const LinkedPort*> reported;
+  for (const SetModel& set : model.sets) {
+    if (!set.is_whole || model.draft.is_partial) continue;
+    for (const VariableModel& variable : model.variables) {
+      if (variable.is_constant || variable.given != nullptr || !producers_in(variable, set).empty()) continue;
+      for (const PortRef ref : variable.consumers) {
+        const LinkedPort& port = model.port(ref);
+        if (counts_in(model, set, ref.task) && reported.insert(&port).second) report_unmet(model, port, variable, set);
+      }
+    }
+  }
+}
+
+}  // namespace chimera

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+
+#include "chimera/description/draft_values.h"
+#include "chimera/text/nearest.h"
+#include "chimera/verify/rules/rules.h"
+
+namespace chimera {
+namespace {
+
+std::set<std::string> outputs(const TaskModel& task) {
+  std::set<std::string> names;
+  for (const LinkedPort& port : task.ports)
+    if (port.is(CHIMERA_OUT_VAR)) names.insert(port.variable);
+  return names;
+}
+
+std::string text(const std::set<std::string>& names) {
+  return listed(std::vector<std::string>(names.begin(), names.end()));
+}
+
+/// The task that `standby` stands in for; nullopt, with a fault, when there is none such.
+std::optional<std::size_t> primary_of(Model& model, std::size_t standby) {
+  const Word& name = *model.tasks[standby].draft->standby_for;
+  const std::string who = "'standby_for' of task '" + model.tasks[standby].name() + "'";
+  const auto primary = model.task_named(name.text);
+  if (primary && *primary != standby && !model.tasks[*primary].draft->standby_for) return primary;
+  std::vector<std::string> names;
+  for (const TaskModel& task : model.tasks)
+    if (&task != &model.tasks[standby] && !task.draft->standby_for) names.push_back(task.name());
+  const std::string near = primary ? "" : nearest(name.text, names);
+  const std::string found = !primary              ? " names the task '" + name.text + "', which is not there"
+                            : *primary == standby ? " names the task itself"
+                                                  : " names '" + name.text + "', which is itself a standby";
+  model.error("standby-unknown", name.at, who + found, name.text, listed(names), near,
+              near.empty() ? "it may stand in for: " + listed(names) : "");
+  return std::nullopt;
+}
+
+void check(Model& model, std::size_t standby, std::size_t primary) {
+  const TaskModel &task = model.tasks[standby], &other = model.tasks[primary];
+  const Place at = task.draft->standby_for->at;
+  if (task.component != nullptr && other.component != nullptr && outputs(task) != outputs(other))
+    model.error("standby-outputs", at,
+                "task '" + task.name() + "' stands in for '" + other.name() + "' and produces " + text(outputs(task)) +
+                    "; expected " + text(outputs(other)),
+                text(outputs(task)), text(outputs(other)), {}, "link its outputs by alias");
+  for (const SetModel& set : model.sets)
+    if (set.has(standby) && set.has(primary))
+      model.error(
+          "standby-in-configuration", set.at,
+          "configuration '" + set.name + "' names task '" + other.name() + "' and its standby '" + task.name() + "'",
+          task.name(), "one of the two", {},
+          "take '" + task.name() + "' out: it goes ON when '" + other.name() + "' fails");
+  if (task.rtpu == other.rtpu)
+    model.warn("standby-same-rtpu", at,
+               "task '" + task.name() + "' and the task it stands in for, '" + other.name() + "', are both on rtpu '" +
+                   model.rtpus[task.rtpu].name.text + "'",
+               "a crash of that process takes both: put one of them on another rtpu");
+}
+
+}  // namespace
+
+void check_standbys(Model& model) {
+  for (std::size_t i = 0; i < model.tasks.size(); ++i) {
+    if (!model.tasks[i].draft->standby_for) continue;
+    if (const auto primary = primary_of(model, i)) check(model, i, *primary);
+  }
+}
+
+}  // namespace chimera

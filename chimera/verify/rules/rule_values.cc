@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/verify/rules/rules.h"
+#include "chimera/verify/solve.h"
+#include "chimera/verify/values.h"
+
+namespace chimera {
+namespace {
+
+void check_own(Model& model, LinkedPort& port) {
+  const char* key = port.is(CHIMERA_IN_CONST) ? "constant" : "initial value";
+  auto bytes = value_bytes(
+      model, *port.own,
+      {port, std::string(key) + " '" + port.declared->name + "' of task '" + model.tasks[port.task].name() + "'"});
+  if (bytes && port.is(CHIMERA_IN_CONST)) port.value = *std::move(bytes);
+}
+
+/// A given value must fit everybody who uses it; the first who refuses it speaks.
+void check_given(Model& model, const VariableModel& variable) {
+  const char* key = variable.is_constant ? "constant" : "operator variable";
+  for (const PortRef ref : variable.consumers) {
+    LinkedPort& port = model.port(ref);
+    const std::string what = std::string(key) + " '" + variable.name + "'";
+    if (!is_solved(port)) continue;
+    auto bytes = value_bytes(model, variable.given->value, {port, what});
+    if (!bytes) return;
+    if (port.is(CHIMERA_IN_CONST)) port.value = *std::move(bytes);
+  }
+}
+
+void check_steps(Model& model, const TaskModel& task) {
+  for (const NamedNode& step : task.draft->max_step)
+    for (const LinkedPort& port : task.ports)
+      if (port.declared->name == step.name.text && port.is(CHIMERA_OUT_VAR) && is_solved(port)) {
+        ValueTarget target{port, "largest step of '" + step.name.text + "' of task '" + task.name() + "'"};
+        target.is_step = true;
+        value_bytes(model, step.value, target);
+      }
+}
+
+void check_resources(Model& model, const TaskModel& task) {
+  for (const LinkedPort& port : task.ports) {
+    if (!port.is(CHIMERA_RESOURCE) || port.own == nullptr) continue;
+    if (!port.own->is_scalar())
+      model.error("value-type", port.own->at,
+                  "resource '" + port.name + "' of task '" + task.name() + "': expected a text", {}, "a text");
+  }
+}
+
+}  // namespace
+
+void check_values(Model& model) {
+  for_each_port(model, [&](PortRef, LinkedPort& port) {
+    if (!is_solved(port)) return;
+    if (port.own != nullptr)
+      check_own(model, port);
+    else if (port.source == ConstSource::kDefault)
+      port.value = declared_bytes(port);
+  });
+  for (const VariableModel& variable : model.variables)
+    if (variable.given != nullptr) check_given(model, variable);
+  for (const TaskModel& task : model.tasks) {
+    check_steps(model, task);
+    check_resources(model, task);
+  }
+}
+
+}  // namespace chimera

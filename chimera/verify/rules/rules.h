@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The legality rules, in the order in which verify() asks them. Each adds its faults to the model's report and
+// fills in what later rules read. docs/formats/description.md, "What makes a description legal".
+#pragma once
+
+#include "chimera/schedule/utilisation.h"
+#include "chimera/verify/model.h"
+
+namespace chimera {
+
+// rule_components.cc
+/// Every task's component is in the library; no streams; ports within the limits of a group.
+void find_components(Model& model);
+
+// rule_ports.cc
+/// Names under alias, constants, resources, initial and max_step are ports of the right kind; repeated ports have
+/// instances. Makes TaskModel::ports.
+void link_ports(Model& model);
+/// Every resource port has its text.
+void require_resources(Model& model);
+
+// rule_sets.cc
+/// Configurations name known tasks, each once; `start` and {switch: ...} name known configurations.
+void make_sets(Model& model);
+
+// rule_links.cc
+/// Makes Model::variables; no name stands for a state variable and a constant.
+void collect_variables(Model& model);
+/// 1994 paper, equation 1: in each configuration no variable has two producers.
+void refuse_two_producers(Model& model);
+/// 1994 paper, equation 2: in each configuration every input has a producer.
+void refuse_unmet_inputs(Model& model);
+
+// rule_constants.cc
+/// Every in-const has one source.
+void settle_constants(Model& model);
+/// The producers of constants stand in no circle. Makes Model::init_order.
+void order_constants(Model& model);
+
+// rule_types.cc
+/// All ports of a variable have one element type; type variables are solved per task.
+void agree_on_types(Model& model);
+// rule_units.cc
+/// All ports of a variable have one unit; unit variables are solved per task.
+void agree_on_units(Model& model);
+// rule_shapes.cc
+/// All ports of a variable can have one shape; extent variables are solved per task.
+void agree_on_shapes(Model& model);
+
+// rule_room.cc
+/// Every port of a variable reserves the same room: the least of their maxima, which no legal extent exceeds.
+void share_maxima(Model& model);
+/// The largest table that a description may ask for.
+void limit_table(Model& model);
+
+// rule_values.cc
+/// Every value of the description fits its port in type, unit, shape and range. Makes LinkedPort::value.
+void check_values(Model& model);
+
+// rule_order.cc
+/// No element of a constant is below that of the constant which its component names as the lower one.
+void check_order_of_constants(Model& model);
+
+// rule_loops.cc
+/// Every loop of a configuration has an initial value. Makes SetModel::order.
+void order_sets(Model& model);
+
+// rule_timing.cc
+/// Rates, deadlines, offsets, budgets and minimum times fit each other; servers stand on aperiodic components.
+void check_times(Model& model);
+/// The budgets of a configuration take at most kMaxUtilisation of each CPU.
+void limit_utilisation(Model& model);
+
+// rule_rtpus.cc
+/// Tasks name declared rtpus.
+void place_tasks(Model& model);
+/// On a CPU with several rtpus no task stands in a higher band than a more critical one.
+void check_bands(Model& model);
+
+// rule_standby.cc
+/// A standby names another task, has exactly its outputs, and is not ON beside it.
+void check_standbys(Model& model);
+
+// rule_unused.cc
+/// Warns of what is declared and never used.
+void warn_of_unused(Model& model);
+
+}  // namespace chimera

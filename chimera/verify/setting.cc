@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/verify/setting.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "chimera/catalogue/library.h"
+#include "chimera/description/yaml_reader.h"
+#include "chimera/text/nearest.h"
+#include "chimera/units/quantity.h"
+
+namespace chimera {
+namespace {
+
+/// "[1 2] rad" as people are shown it becomes "[1 rad, 2 rad]".
+std::string spread_unit(const std::string& text) {
+  const std::size_t end = text.rfind(']');
+  if (text.empty() || text[0] != '[' || end == std::string::npos) return text;
+  const std::size_t unit = text.find_first_not_of(' ', end + 1);
+  if (unit == std::string::npos && text.find(',') != std::string::npos) return text;
+  std::string out = "[";
+  for (std::size_t at = 1; at < end;) {
+    const std::size_t next = std::min(text.find_first_of(" ,", at), end);
+    if (next > at) {
+      out += (out.size() == 1 ? "" : ", ") + text.substr(at, next - at);
+      if (unit != std::string::npos) out += " " + text.substr(unit);
+    }
+    at = next + 1;
+  }
+  return out + "]";
+}
+
+std::string did_you_mean(const std::string& name, std::span<const std::string> names) {
+  const std::string near = nearest(name, names);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+void place(Node& node, Place at) {
+  node.at = at;
+  for (Word& key : node.keys) key.at = at;
+  for (Node& item : node.items) place(item, at);
+}
+
+NamedNode* named(std::vector<NamedNode>& list, const std::string& name) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&name](const NamedNode& node) { return node.name.text == name; });
+  return found == list.end() ? nullptr : &*found;
+}
+
+/// Puts settings into a draft, and knows afterwards where.
+class Placement {
+ public:
+  /// `keeps_units`: in_unit(), by these.
+  Placement(const Configuration& configuration, std::span<const Setting> settings,
+            const UnitSystem* keeps_units = nullptr)
+      : configuration_(configuration), settings_(settings), keeps_units_(keeps_units), draft_(configuration.draft()) {}
+
+  Result<void> put_all() {
+    for (std::size_t i = 0; i < settings_.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k)
+        if (settings_[k].name == settings_[i].name)
+          return refuse(settings_[i], "'" + settings_[i].name + "' is set twice", {});
+      NamedNode* target = nullptr;
+      if (auto found = find(settings_[i], target); !found) return found;
+      const Place at = target->value.is_none() ? target->name.at : target->value.at;
+      target->value = node_of(settings_[i]);
+      place(target->value, at);
+      places_.push_back(at);
+    }
+    return {};
+  }
+
+  const Draft& draft() const { return draft_; }
+
+  Error refuse(const Setting& setting, const std::string& why, Place at) const {
+    return {ErrorCode::kBadInput, {setting.said + ": " + why}, {where(at)}};
+  }
+
+  const ConfiguredVariable* variable(const std::string& name) const {
+    for (const ConfiguredVariable& known : configuration_.variables())
+      if (known.name == name) return &known;
+    return nullptr;
+  }
+
+  /// The errors of a report as one, each behind the settings that it is about.
+  Error refusal(const Report& report) const {
+    std::string text;
+    Place first;
+    for (const Fault& fault : report.faults()) {
+      if (fault.severity != Severity::kError) continue;
+      if (text.empty()) first = fault.at;
+      text += (text.empty() ? "" : "; ") + authors(fault.at) + ": " + sentence(fault);
+    }
+    return {ErrorCode::kBadInput, {text}, {where(first)}};
+  }
+
+ private:
+  std::string where(Place at) const {
+    if (at.line == 0) return configuration_.file();
+    return configuration_.file() + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+  }
+  std::string authors(Place at) const {
+    std::string those, all;
+    for (std::size_t i = 0; i < settings_.size(); ++i) {
+      if (places_[i] == at) those += (those.empty() ? "" : ", ") + settings_[i].said;
+      all += (all.empty() ? "" : ", ") + settings_[i].said;
+    }
+    return those.empty() ? all : those;
+  }
+
+  /// A text for a port of texts is taken as it is; anything else is read as the description would read it.
+  Node node_of(const Setting& setting) const {
+    const ConfiguredVariable* known = variable(setting.name);
+    if (known == nullptr || known->type != "string" || !known->shape.empty()) {
+      Node value = written_value(setting.value);
+      return known == nullptr || keeps_units_ == nullptr ? value
+                                                         : in_unit(std::move(value), known->unit, *keeps_units_);
+    }
+    Node node;
+    node.kind = Node::Kind::kScalar;
+    node.quoted = true;
+    node.text = setting.value;
+    return node;
+  }
+
+  Result<void> find(const Setting& setting, NamedNode*& target) {
+    const std::size_t dot = setting.name.find('.');
+    if (dot != std::string::npos) return find_of_task(setting, dot, target);
+    target = named(draft_.operators, setting.name);
+    if (target == nullptr) target = named(draft_.constants, setting.name);
+    return target != nullptr ? Result<void>() : Result<void>(no_such(setting));
+  }
+
+  Result<void> find_of_task(const Setting& setting, std::size_t dot, NamedNode*& target) {
+    const std::string task = setting.name.substr(0, dot), constant = setting.name.substr(dot + 1);
+    std::vector<std::string> names;
+    for (DraftTask& known : draft_.tasks) {
+      names.push_back(known.name.text);
+      if (known.name.text != task) continue;
+      target = named(known.constants, constant);
+      if (target != nullptr) return {};
+      known.constants.push_back({{constant, known.name.at}, {}});
+      target = &known.constants.back();
+      return {};
+    }
+    return refuse(setting, "no task '" + task + "'" + did_you_mean(task, names), {});
+  }
+
+  Error no_such(const Setting& setting) const {
+    if (const ConfiguredVariable* known = variable(setting.name); known != nullptr) {
+      const ConfiguredTask* task =
+          known->producers.empty() ? nullptr : &configuration_.tasks()[known->producers[0].task];
+      return refuse(setting,
+                    "'" + setting.name + "' is produced by " +
+                        (task == nullptr ? "a task" : "task '" + task->name + "'") +
+                        "; operator variables and constants of the file can be set",
+                    known->at);
+    }
+    std::vector<std::string> names;
+    for (const auto* list : {&draft_.operators, &draft_.constants})
+      for (const NamedNode& known : *list) names.push_back(known.name.text);
+    std::string hint = did_you_mean(setting.name, names);
+    for (const ConfiguredTask& task : configuration_.tasks())
+      for (const ConfiguredPort& port : task.ports)
+        if (hint.empty() && port.kind == CHIMERA_IN_CONST && port.name == setting.name)
+          hint = "; task '" + task.name + "' has a constant of that name: '" + task.name + "." + port.name + "'";
+    return refuse(setting, "the file has no operator variable or constant '" + setting.name + "'" + hint, {});
+  }
+
+  const Configuration& configuration_;
+  std::span<const Setting> settings_;
+  const UnitSystem* keeps_units_;
+  std::vector<Place> places_;
+  Draft draft_;
+};
+
+}  // namespace
+
+Node written_value(const std::string& text) {
+  Report report;
+  const auto tree = read_yaml("value: " + spread_unit(text), report);
+  const Node* value = tree ? tree->find("value") : nullptr;
+  if (value != nullptr && report.is_legal() && tree->keys.size() == 1) return *value;
+  Node node;
+  node.kind = Node::Kind::kScalar;
+  node.text = text;
+  return node;
+}
+
+Result<Configuration> with_settings(const Configuration& configuration, const Library& library,
+                                    std::span<const Setting> settings, Overload overload) {
+  if (settings.empty()) return configuration;
+  Placement placement(configuration, settings);
+  if (auto put = placement.put_all(); !put) return put.error();
+  const Verdict verdict = verify({placement.draft(), Report(configuration.file()), {}}, library, overload);
+  if (!verdict.configuration) return placement.refusal(verdict.report);
+  return *verdict.configuration;
+}
+
+Result<void> knows(const Configuration& configuration, std::span<const Setting> settings) {
+  return Placement(configuration, settings).put_all();
+}
+
+Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
+  if (value.is_map()) return value;  // the fields of a struct have units of their own
+  for (Node& item : value.items) item = in_unit(std::move(item), unit, units);
+  if (!value.is_scalar() || value.quoted) return value;
+  const auto quantity = parse_quantity(value.text, units);
+  const auto wanted = units.parse(unit);
+  if (!quantity || !wanted || quantity->unit_text == unit) return value;
+  const auto number = value_in(*quantity, *wanted, unit);
+  if (!number && number.error().code != ErrorCode::kRefused) return value;
+  char text[40] = "inf";  // what is none in this unit: the rules say so
+  if (number) std::snprintf(text, sizeof text, "%.17g", *number);
+  value.text = unit == "1" ? text : text + (" " + unit);
+  return value;
+}
+
+Result<Configuration> with_new_value(const Configuration& configuration, const Library& library,
+                                     const Setting& setting) {
+  Placement placement(configuration, {&setting, 1}, &library.units());
+  if (auto put = placement.put_all(); !put) return put.error();
+  const Verdict verdict = verify(placement.draft(), library);
+  if (!verdict.configuration) return placement.refusal(verdict.report);
+  const ConfiguredVariable* before = placement.variable(setting.name);
+  for (const ConfiguredVariable& now : verdict.configuration->variables()) {
+    if (now.name != setting.name || before == nullptr) continue;
+    if (now.unit != before->unit)
+      return placement.refuse(
+          setting, "expected a quantity in \"" + before->unit + "\", found one in \"" + now.unit + "\"", before->at);
+    if (now.type != before->type || now.shape != before->shape)
+      return placement.refuse(setting, "expected " + before->type + before->shape + ", found " + now.type + now.shape,
+                              before->at);
+  }
+  return *verdict.configuration;
+}
+
+}  // namespace chimera

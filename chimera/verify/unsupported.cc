@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `check` accepts and the executors cannot do yet: refused by name, never passed over.
+#include <algorithm>
+
+#include "chimera/schedule/utilisation.h"
+#include "chimera/verify/verify.h"
+
+namespace chimera {
+namespace {
+
+class Refusals {
+ public:
+  Refusals(const Configuration& configuration, Executor executor)
+      : configuration_(configuration), executor_(executor), report_(configuration.file()) {}
+
+  Report take() {
+    for (std::size_t i = 0; i < configuration_.rtpus().size(); ++i) rtpu(i);
+    for (const DraftTask& task : configuration_.draft().tasks) judge(task);
+    report_.sort();
+    return std::move(report_);
+  }
+
+ private:
+  void refuse(Place at, const std::string& what, std::string remedy) {
+    report_.add({.rule = "not-built",
+                 .at = at,
+                 .message = what + ": run cannot do this yet",
+                 .found = {},
+                 .expected = {},
+                 .nearest = {},
+                 .remedy = std::move(remedy)});
+  }
+  void refuse_key(Place at, const char* key, const DraftTask& task) {
+    refuse(at, "'" + std::string(key) + "' of task '" + task.name.text + "'", "take it out to run");
+  }
+
+  bool is_virtual() const { return executor_ == Executor::kVirtual || executor_ == Executor::kPreemptiveVirtual; }
+  bool is_preemptive(std::size_t rtpu) const {
+    if (executor_ == Executor::kPreemptiveVirtual) return true;
+    return executor_ != Executor::kOneProcess && configuration_.rtpus()[rtpu].preemptive;
+  }
+
+  void rtpu(std::size_t index) {
+    const RtpuSpec& spec = configuration_.rtpus()[index];
+    if (!is_virtual() && spec.policy == Policy::kLlf)
+      refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time",
+             "use muf-laxity, or run --virtual");
+    if (!is_virtual() && is_beyond(configuration_.utilisation()[index]))
+      refuse(configuration_.tasks()[0].at, "budgets above 0.93 of a CPU in real time", "run --virtual");
+    if (executor_ == Executor::kProcesses) return;
+    if (executor_ == Executor::kOneProcess) return one_loop(index);
+    const auto tasks = configuration_.tasks();
+    const auto first =
+        std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
+    if (first == tasks.end() || index == tasks[0].rtpu) return;
+    refuse(first->at, "task '" + first->name + "' on a second rtpu, '" + std::string(spec.name) + "', in virtual time",
+           "run without --virtual, each rtpu a process, or place every task on one rtpu");
+  }
+
+  // All tasks in one loop on the CPU of the first rtpu.
+  void one_loop(std::size_t index) {
+    double sum = 0;
+    for (const double utilisation : configuration_.utilisation()) sum += utilisation;
+    if (index == 0 && configuration_.rtpus().size() > 1 && is_beyond(sum))
+      refuse(configuration_.tasks()[0].at, "budgets of all rtpus together above 0.93 of one CPU in one process",
+             "run without --isolation none");
+  }
+
+  void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task,
+                bool is_preemptive) {
+    if (!reaction || (reaction->kind != OnMiss::kDemote && reaction->kind != OnMiss::kSwitch)) return;
+    const bool is_switch = reaction->kind == OnMiss::kSwitch;
+    if (!is_switch && is_preemptive) return;
+    const std::string what =
+        "'" + std::string(key) + (is_switch ? ": switch' of task '" : ": demote' of task '") + task.name.text + "'";
+    if (is_switch)
+      return refuse(reaction->at, what, "use continue, hold, skip, abort, demote, error, flag or stop to run");
+    const char* const remedy = executor_ == Executor::kOneProcess ? "run without --isolation none"
+                               : executor_ == Executor::kVirtual  ? "run with --preemptive"
+                                                                  : "give its rtpu 'executor: preemptive'";
+    refuse(reaction->at, what, std::string(remedy) + ", or use another reaction");
+  }
+
+  // A job behind a server is taken off the processor when the capacity is used up: one loop cannot do that.
+  void server(const DraftTask& task, bool preempts, bool has_source) {
+    if (task.server && has_source && is_virtual())
+      refuse(task.server->at, "events of task '" + task.name.text + "' from a descriptor, in virtual time",
+             "run without --virtual, or take a component whose events are rung");
+    if (!task.server || preempts) return;
+    std::string remedy = executor_ == Executor::kVirtual ? "run --virtual --preemptive, or give" : "give";
+    if (executor_ == Executor::kOneProcess) remedy = "run without --isolation none, and give";
+    refuse(task.server->at, "'server' of task '" + task.name.text + "'", remedy + " its rtpu 'executor: preemptive'");
+  }
+
+  void judge(const DraftTask& task) {
+    const auto tasks = configuration_.tasks();
+    const auto here =
+        std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.name == task.name.text; });
+    const bool preempts = here != tasks.end() && is_preemptive(here->rtpu);
+    reaction(task.on_miss, "on_miss", task, preempts);
+    reaction(task.on_overrun, "on_overrun", task, preempts);
+    if (task.on_fault && task.on_fault->kind != OnFault::kError) refuse_key(task.on_fault->at, "on_fault", task);
+    server(task, preempts, here != tasks.end() && here->has_event_source);
+    if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
+    if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
+    for (const NamedNode& step : task.max_step) refuse_key(step.name.at, "max_step", task);
+    if (task.stack_bytes && !preempts && executor_ == Executor::kProcesses)
+      refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
+             "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");
+    if (task.own_process && task.own_process->value) refuse_key(task.own_process->at, "isolation: process", task);
+  }
+
+  const Configuration& configuration_;
+  Executor executor_;
+  Report report_;
+};
+
+}  // namespace
+
+Report unsupported(const Configuration& configuration, Executor executor) {
+  return Refusals(configuration, executor).take();
+}
+
+}  // namespace chimera

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stage 2 as one walk: link, ask every rule, and only then make the configuration.
+#include "chimera/verify/verify.h"
+
+#include "chimera/catalogue/library.h"
+#include "chimera/verify/parts.h"
+#include "chimera/verify/rules/rules.h"
+
+namespace chimera {
+namespace {
+
+void link(Model& model) {
+  find_components(model);
+  link_ports(model);
+  require_resources(model);
+  place_tasks(model);
+  make_sets(model);
+  collect_variables(model);
+}
+
+void judge_links(Model& model) {
+  refuse_two_producers(model);
+  refuse_unmet_inputs(model);
+  settle_constants(model);
+}
+
+void judge_values(Model& model) {
+  agree_on_types(model);
+  agree_on_units(model);
+  agree_on_shapes(model);
+  share_maxima(model);
+  limit_table(model);
+  check_values(model);
+  check_order_of_constants(model);
+}
+
+void judge_order(Model& model) {
+  order_constants(model);
+  order_sets(model);
+  check_times(model);
+  limit_utilisation(model);
+  check_bands(model);
+  check_standbys(model);
+  warn_of_unused(model);
+}
+
+Verdict judge(const Draft& draft, const Library& library, Report report, Overload overload) {
+  Verdict verdict{std::nullopt, std::move(report)};
+  if (draft.tasks.empty() && !draft.is_partial && verdict.report.is_legal())
+    verdict.report.add({.rule = "key-missing",
+                        .at = draft.subsystem.at,
+                        .message = "there is no task",
+                        .found = {},
+                        .expected = "tasks",
+                        .nearest = {},
+                        .remedy = "write 'tasks:' and a line 'NAME: {component: COMPONENT, rate: 100 Hz}' for each"});
+  Model model(draft, library, verdict.report);
+  model.overload = overload;
+  link(model);
+  judge_links(model);
+  judge_values(model);
+  judge_order(model);
+  if (verdict.report.is_legal()) verdict.configuration.emplace(make_parts(model));
+  verdict.report.sort();
+  return verdict;
+}
+
+}  // namespace
+
+Verdict verify(const Draft& draft, const Library& library) {
+  return judge(draft, library, Report(draft.file), Overload::kRefused);
+}
+
+Verdict verify(const Reading& reading, const Library& library, Overload overload) {
+  if (!reading.draft) return {std::nullopt, reading.report};
+  return judge(*reading.draft, library, reading.report, overload);
+}
+
+}  // namespace chimera
