@@ -146,38 +146,39 @@ std::vector<ComponentCase> inverse_cases() {
 }
 
 std::vector<ComponentCase> other_cases() {
-  return {{"computed_torque", "Newton-Euler", [](ArmRig& rig) {
-             rig.build_puma();
-             for (std::size_t i = 0; i < 6; ++i) rig.set("links", library::kPuma560Links[i], i);
-             for (const char* port : {"q", "q_ref", "qd", "qd_ref", "qdd_ref"}) rig.give(port, kBent);
-             rig.give("tau_max", Puma560::kHigh);
-           },
-           along_a_path([arm = library::ArmDynamics(puma_rows(), library::kPuma560Links, {0, 0, -9.81}, 0)](
-                            const Puma560::Vector& q) {
-             Puma560::Vector torque;
-             arm.torque(q, q, q, torque);
-             bench::keep(torque);
-           })},
-          {"time_integrator", "x += v dt", [](ArmRig& rig) {
-             rig.give("rate_of_change", kBent), rig.give("start", kBent);
-           },
-           [](std::uint64_t n) {
-             for (Puma560::Vector x{}; n > 0; --n) {
-               for (std::size_t i = 0; i < 6; ++i) x[i] += kBent[i] * 1e-3;
-               bench::keep(x);
-             }
-           }},
-          {"ctraj", "3 std::sin", [](ArmRig& rig) {
-             rig.set("centre", library::kSamePlace);
-             for (const char* port : {"amplitude", "frequency", "phase"}) rig.give(port, std::array{0.1, 0.2, 0.3});
-           },
-           [](std::uint64_t n) {
-             std::array<double, 3> x{};
-             for (double t = 0; n > 0; --n, t += 1e-3) {
-               for (std::size_t i = 0; i < 3; ++i) x[i] = 0.1 * std::sin(6.28 * t + static_cast<double>(i));
-               bench::keep(x);
-             }
-           }}};
+  return {
+      {"computed_torque", "Newton-Euler",
+       [](ArmRig& rig) {
+         rig.build_puma();
+         for (std::size_t i = 0; i < 6; ++i) rig.set("links", library::kPuma560Links[i], i);
+         for (const char* port : {"q", "q_ref", "qd", "qd_ref", "qdd_ref"}) rig.give(port, kBent);
+         rig.give("tau_max", Puma560::kHigh);
+       },
+       along_a_path([arm = library::ArmDynamics(puma_rows(), library::kPuma560Links, {0, 0, -9.81}, 0)](
+                        const Puma560::Vector& q) {
+         Puma560::Vector torque;
+         arm.torque(q, q, q, torque);
+         bench::keep(torque);
+       })},
+      {"time_integrator", "x += v dt", [](ArmRig& rig) { rig.give("rate_of_change", kBent), rig.give("start", kBent); },
+       [](std::uint64_t n) {
+         for (Puma560::Vector x{}; n > 0; --n) {
+           for (std::size_t i = 0; i < 6; ++i) x[i] += kBent[i] * 1e-3;
+           bench::keep(x);
+         }
+       }},
+      {"ctraj", "3 std::sin",
+       [](ArmRig& rig) {
+         rig.set("centre", library::kIdentityPose);
+         for (const char* port : {"amplitude", "frequency", "phase"}) rig.give(port, std::array{0.1, 0.2, 0.3});
+       },
+       [](std::uint64_t n) {
+         std::array<double, 3> x{};
+         for (double t = 0; n > 0; --n, t += 1e-3) {
+           for (std::size_t i = 0; i < 3; ++i) x[i] = 0.1 * std::sin(6.28 * t + static_cast<double>(i));
+           bench::keep(x);
+         }
+       }}};
 }
 
 /// The distance and the turn between two poses.

@@ -87,7 +87,7 @@ void see(std::uint64_t n) {
   library::Feature feature;
   std::array<double, 3> hz{0.3, 0.31, 0.32};
   for (double t = 0; n > 0; --n, t += 1e-3) {
-    library::Triple ball{0.6, 0, 0.5};
+    library::Vec3 ball{0.6, 0, 0.5};
     bench::keep(hz);
     for (std::size_t i = 0; i < 3; ++i) ball[i] += 0.1 * std::sin(2 * std::numbers::pi * hz[i] * t);
     pinhole.project(ball, feature);
@@ -100,7 +100,7 @@ void follow(std::uint64_t n) {
   Pose tool{{0.5, 0, 0.5}, {1, 0, 0, 0}};
   const double goal[4] = {0.8, 0.6, 0, 0};
   for (; n > 0; --n) {
-    library::Triple ball;
+    library::Vec3 ball;
     bench::keep(feature);
     pinhole.locate(feature, ball);
     for (std::size_t i = 0; i < 3; ++i) tool.position[i] += 5e-3 * (ball[i] - tool.position[i]);

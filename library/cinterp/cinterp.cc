@@ -25,10 +25,10 @@ struct Cinterp {
     if (!library::DhPorts::is_pose(*xd) || !library::DhPorts::is_pose(*xm)) {
       return fault("a pose is not finite, or has no orientation");
     }
-    const library::Triple way = place(*xd) - place(*xr);
+    const library::Vec3 way = place(*xd) - place(*xr);
     const double distance = library::length(way), step = std::min(*gain * distance, *speed_limit) * c.dt();
-    library::Triple next = place(*xr) + (distance > 0 ? step / distance : 0) * way;
-    const library::Triple ahead = next - place(*xm);
+    library::Vec3 next = place(*xr) + (distance > 0 ? step / distance : 0) * way;
+    const library::Vec3 ahead = next - place(*xm);
     if (library::length(ahead) > *leash) next = place(*xm) + (*leash / library::length(ahead)) * ahead;
     std::copy_n(next.at, 3, xr->position);
     const double angle = library::angle_between(xr->orientation, xd->orientation);
@@ -37,7 +37,7 @@ struct Cinterp {
   }
 
  private:
-  static library::Triple place(const Pose& pose) { return {pose.position[0], pose.position[1], pose.position[2]}; }
+  static library::Vec3 place(const Pose& pose) { return {pose.position[0], pose.position[1], pose.position[2]}; }
 };
 
 CHIMERA_COMPONENT(Cinterp, "cinterp", "Cartesian trajectory interpolator.", rate = 1000.0,

@@ -35,13 +35,13 @@ TEST_F(CinterpTest, MakesASmoothWayOfATargetThatJumps) {
   Pose before = xr();
   for (int step = 0; step < 3000; ++step) {
     const Pose now = follow();
-    const Triple way{now.position[0] - before.position[0], now.position[1] - before.position[1],
-                     now.position[2] - before.position[2]};
+    const Vec3 way{now.position[0] - before.position[0], now.position[1] - before.position[1],
+                   now.position[2] - before.position[2]};
     ASSERT_LE(length(way), 0.5 * 1e-3 + 1e-12);
     ASSERT_LE(angle_between(before.orientation, now.orientation), 1.0 * 1e-3 + 1e-9);
     before = now;
   }
-  EXPECT_LT(apart(frame_of(before), frame_of(goal)), 1e-6);
+  EXPECT_LT(distance(frame_of(before), frame_of(goal)), 1e-6);
 }
 
 TEST_F(CinterpTest, IsNoFartherFromTheToolThanItsLeash) {
@@ -60,7 +60,7 @@ TEST_F(CinterpTest, TurnsByHalfARevolutionToo) {
   const Pose goal{{0.5, 0.1, 0.3}, {0, 0, 0, 1}};
   rig.set("xd", goal);
   for (int step = 0; step < 5000; ++step) follow();
-  EXPECT_LT(apart(frame_of(xr()), frame_of(goal)), 1e-6);
+  EXPECT_LT(distance(frame_of(xr()), frame_of(goal)), 1e-6);
 }
 
 TEST_F(CinterpTest, StandsWithoutGainAndWhileTheConfigurationIsIllegal) {

@@ -33,7 +33,7 @@ struct ComputedTorque : library::DhPorts {
     for (double limit : tau_max) {
       if (!(limit >= 0)) return fault("tau_max must be 0 N.m or more");
     }
-    const library::Triple falls{gravity[0], gravity[1], gravity[2]};
+    const library::Vec3 falls{gravity[0], gravity[1], gravity[2]};
     if (!std::isfinite(library::length(falls))) return fault("gravity is not finite");
     dynamics_ = library::ArmDynamics(chain, links.span(), falls, *payload_mass);
     return ok();

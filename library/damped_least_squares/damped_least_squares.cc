@@ -36,7 +36,7 @@ struct DampedLeastSquares {
     if (!library::DhPorts::is_pose(*xd) || !library::DhPorts::is_pose(*xm)) {
       return fault("a pose is not finite, or has no orientation");
     }
-    library::Six e = library::motion_between(library::frame_of(*xm), library::frame_of(*xd));
+    library::Vec6 e = library::motion_between(library::frame_of(*xm), library::frame_of(*xd));
     for (double& part : e) part *= *gain;
     library::Jacobian jacobian;
     double sum = 0;  // of squares: what is solved with must be finite too
@@ -59,7 +59,7 @@ struct DampedLeastSquares {
   void stop() {
     for (double& speed : qd_ref) speed = 0;
   }
-  void move(const library::Jacobian& jacobian, const library::Six& e) {
+  void move(const library::Jacobian& jacobian, const library::Vec6& e) {
     std::array<double, library::kMostJoints> speed{};
     inverse_.solve(jacobian, qd_ref.size(), e, speed);
     *manipulability = inverse_.manipulability();

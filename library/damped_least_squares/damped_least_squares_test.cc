@@ -24,7 +24,7 @@ struct DampedLeastSquaresTest : testing::Test {
     rig.set("xm", pose);
     rig.set("xd", pose);
   }
-  void want(const Triple& way) {
+  void want(const Vec3& way) {
     Pose goal = rig.get<Pose>("xm");
     for (std::size_t r = 0; r < 3; ++r) goal.position[r] += way[r];
     rig.set("xd", goal);
@@ -59,7 +59,7 @@ TEST_F(DampedLeastSquaresTest, BringsTheArmToItsTargetThroughASingularPose) {
     least = std::min(least, rig.get<double>("manipulability"));
   }
   EXPECT_LT(least, 2e-3);
-  EXPECT_LT(apart(Puma560::forward(q), Puma560::forward(goal)), 1e-4);
+  EXPECT_LT(distance(Puma560::forward(q), Puma560::forward(goal)), 1e-4);
 }
 
 TEST_F(DampedLeastSquaresTest, SpeedsAreCutTogether) {

@@ -13,7 +13,7 @@ TEST(FwdkinJacobian, TellsWhereTheToolIsAndHowItMovesWithEachJoint) {
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
   Jacobian expected;
-  EXPECT_LT(apart(rig.pose("xm"), Puma560::forward(kBent, expected)), 1e-12);
+  EXPECT_LT(distance(rig.pose("xm"), Puma560::forward(kBent, expected)), 1e-12);
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t r = 0; r < 3; ++r) {
       EXPECT_NEAR(rig.get<double>("jv", 6 * r + i), expected.linear[i][r], 1e-12);

@@ -17,7 +17,7 @@ struct GfwdkinTest : testing::Test {
 TEST_F(GfwdkinTest, TellsWhereTheToolIsFromOnAlready) {
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
-  EXPECT_LT(apart(rig.pose("xm"), Puma560::forward(kBent)), 1e-12);
+  EXPECT_LT(distance(rig.pose("xm"), Puma560::forward(kBent)), 1e-12);
 }
 
 TEST_F(GfwdkinTest, BaseAndToolAreBeforeAndBehindTheRows) {
@@ -26,7 +26,7 @@ TEST_F(GfwdkinTest, BaseAndToolAreBeforeAndBehindTheRows) {
   rig.set("tool", tool);
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.cycle());
-  EXPECT_LT(apart(rig.pose("xm"), frame_of(base) * Puma560::forward(kBent) * frame_of(tool)), 1e-12);
+  EXPECT_LT(distance(rig.pose("xm"), frame_of(base) * Puma560::forward(kBent) * frame_of(tool)), 1e-12);
 }
 
 TEST_F(GfwdkinTest, TakesAnotherToolByReinit) {
@@ -55,7 +55,7 @@ TEST_F(GfwdkinTest, RefusesConstantsThatAreNoArm) {
   rig.build_puma();
   rig.set("base", Pose{{0, 0, 0}, {0, 0, 0, 0}});
   EXPECT_EQ(rig.refusal(), "base: not finite, or the orientation is no unit quaternion");
-  rig.set("base", kSamePlace);
+  rig.set("base", kIdentityPose);
   rig.set("tool", Pose{{HUGE_VAL, 0, 0}, {1, 0, 0, 0}});
   EXPECT_EQ(rig.refusal(), "tool: not finite, or the orientation is no unit quaternion");
 }

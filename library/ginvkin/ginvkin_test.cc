@@ -30,14 +30,14 @@ TEST_F(GinvkinTest, FollowsAPathToWithinItsTolerance) {
     want(Puma560::forward(goal));
     ASSERT_TRUE(rig.cycle());
     ASSERT_LT(rig.get<double>("residual"), 1e-6) << "step " << step;
-    ASSERT_LT(apart(reached(), Puma560::forward(goal)), 1e-6);
+    ASSERT_LT(distance(reached(), Puma560::forward(goal)), 1e-6);
   }
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], goal[i], 1e-5);
 }
 
 TEST_F(GinvkinTest, OutOfReachItStretchesTowardsTheTargetAndComesBack) {
   Frame far = Puma560::forward(kBent);
-  const Triple home = far.origin;
+  const Vec3 home = far.origin;
   far.origin = 3.0 * home;
   want(far);
   Puma560::Vector before = kBent;
@@ -97,7 +97,7 @@ TEST_F(GinvkinTest, StaysWithinItsLimitsSaysSoAndComesBack) {
   }
   EXPECT_FALSE(rig.get<bool>("is_reachable"));
   EXPECT_GT(rig.get<double>("residual"), 0.01);
-  EXPECT_NEAR(rig.get<double>("residual"), apart(reached(), Puma560::forward(goal)), 1e-12);
+  EXPECT_NEAR(rig.get<double>("residual"), distance(reached(), Puma560::forward(goal)), 1e-12);
   want(Puma560::forward(kBent));
   for (int step = 0; step < 50; ++step) ASSERT_TRUE(rig.cycle());
   EXPECT_TRUE(rig.get<bool>("is_reachable"));

@@ -55,8 +55,8 @@ struct ArmRig : Rig {
   }
 };
 
-inline double apart(const Frame& a, const Frame& b) {
-  const Six e = motion_between(a, b);
+inline double distance(const Frame& a, const Frame& b) {
+  const Vec6 e = motion_between(a, b);
   return std::max(length({e[0], e[1], e[2]}), length({e[3], e[4], e[5]}));
 }
 

@@ -30,7 +30,7 @@ struct DhLink {
 };
 
 /// A pose that changes nothing.
-inline constexpr Pose kSamePlace{{0, 0, 0}, {1, 0, 0, 0}};
+inline constexpr Pose kIdentityPose{{0, 0, 0}, {1, 0, 0, 0}};
 
 }  // namespace chimera::library
 

@@ -28,9 +28,9 @@ class ArmDynamics {
   ArmDynamics() = default;
   /// `links`: one a joint of `chain`. `gravity` (m/s2): along the axes of the base. A `payload` (kg) is a point at the
   /// tool. Context: setup.
-  ArmDynamics(const DhChain& chain, std::span<const LinkMass> links, const Triple& gravity, double payload) noexcept
+  ArmDynamics(const DhChain& chain, std::span<const LinkMass> links, const Vec3& gravity, double payload) noexcept
       : joints_(chain.ndof) {
-    const Triple seen = frame_of(chain.base).seen(gravity);
+    const Vec3 seen = frame_of(chain.base).inverse_rotate(gravity);
     upward_ = {-seen[0], -seen[1], -seen[2]};
     for (std::size_t i = 0; i < joints_; ++i) links_[i] = {chain.dh[i], links[i]};
     if (payload > 0) add(payload, frame_of(chain.tool).origin, links_[joints_ - 1].of);
@@ -53,8 +53,8 @@ class ArmDynamics {
     for (std::size_t i = joints_; i-- > 0;) {  // moments about the joint, in the frame before it
       carried.force = carried.force + loads[i].force;
       carried.moment = carried.moment + loads[i].moment;
-      const Triple force = frames[i].turned(carried.force);
-      carried = {force, frames[i].turned(carried.moment) + cross(frames[i].origin, force)};
+      const Vec3 force = frames[i].rotate(carried.force);
+      carried = {force, frames[i].rotate(carried.moment) + cross(frames[i].origin, force)};
       tau[i] = carried.moment[2] + links_[i].of.rotor * qdd[i] + links_[i].of.friction * qd[i];
     }
   }
@@ -65,39 +65,39 @@ class ArmDynamics {
     LinkMass of;
   };
   struct Motion {
-    Triple turn, turn_rate, acceleration;  // of a frame, along its own axes; acceleration of its origin
+    Vec3 turn, turn_rate, acceleration;  // of a frame, along its own axes; acceleration of its origin
   };
   struct Load {
-    Triple force, moment;  // about the origin of the frame
+    Vec3 force, moment;  // about the origin of the frame
   };
 
   /// The motion of the next frame: it turns about the z axis of this one, its origin turns with it.
   static Motion behind(const Frame& next, const Motion& here, double speed, double speed_rate) noexcept {
-    const Triple axis{0, 0, 1};
-    const Triple turn = here.turn + speed * axis;
-    const Triple turn_rate = here.turn_rate + speed_rate * axis + speed * cross(here.turn, axis);
-    const Triple moved = here.acceleration + carried_round(turn, turn_rate, next.origin);
-    return {next.seen(turn), next.seen(turn_rate), next.seen(moved)};
+    const Vec3 axis{0, 0, 1};
+    const Vec3 turn = here.turn + speed * axis;
+    const Vec3 turn_rate = here.turn_rate + speed_rate * axis + speed * cross(here.turn, axis);
+    const Vec3 moved = here.acceleration + carried_round(turn, turn_rate, next.origin);
+    return {next.inverse_rotate(turn), next.inverse_rotate(turn_rate), next.inverse_rotate(moved)};
   }
   /// The acceleration of a point that turns with a body.
-  static Triple carried_round(const Triple& turn, const Triple& turn_rate, const Triple& point) noexcept {
+  static Vec3 carried_round(const Vec3& turn, const Vec3& turn_rate, const Vec3& point) noexcept {
     return cross(turn_rate, point) + cross(turn, cross(turn, point));
   }
   static Load load(const LinkMass& link, const Motion& motion) noexcept {
-    const Triple centre{link.centre[0], link.centre[1], link.centre[2]};
-    const Triple moved = motion.acceleration + carried_round(motion.turn, motion.turn_rate, centre);
-    const Triple force = link.mass * moved;
-    const Triple spin = times(link.inertia, motion.turn);
+    const Vec3 centre{link.centre[0], link.centre[1], link.centre[2]};
+    const Vec3 moved = motion.acceleration + carried_round(motion.turn, motion.turn_rate, centre);
+    const Vec3 force = link.mass * moved;
+    const Vec3 spin = times(link.inertia, motion.turn);
     return {force, times(link.inertia, motion.turn_rate) + cross(motion.turn, spin) + cross(centre, force)};
   }
-  static Triple times(const double (&inertia)[6], const Triple& v) noexcept {
+  static Vec3 times(const double (&inertia)[6], const Vec3& v) noexcept {
     const auto [xx, yy, zz, xy, xz, yz] = inertia;
     return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2], xz * v[0] + yz * v[1] + zz * v[2]};
   }
   /// A point of `mass` at `place` becomes part of `link` (parallel axes).
-  static void add(double mass, const Triple& place, LinkMass& link) noexcept {
+  static void add(double mass, const Vec3& place, LinkMass& link) noexcept {
     const double whole = link.mass + mass, reduced = link.mass * mass / whole;
-    const Triple apart = place - Triple{link.centre[0], link.centre[1], link.centre[2]};
+    const Vec3 apart = place - Vec3{link.centre[0], link.centre[1], link.centre[2]};
     const double square = dot(apart, apart);
     for (std::size_t i = 0; i < 3; ++i) {
       link.inertia[i] += reduced * (square - apart[i] * apart[i]);
@@ -111,7 +111,7 @@ class ArmDynamics {
 
   std::size_t joints_ = 0;
   std::array<Link, kMostJoints> links_{};
-  Triple upward_{0, 0, 0};  // that the base moves upward has the effect of weight
+  Vec3 upward_{0, 0, 0};  // that the base moves upward has the effect of weight
 };
 
 }  // namespace chimera::library

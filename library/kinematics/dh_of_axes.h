@@ -21,14 +21,14 @@ inline Frame frame_of(const DhLink& link, double angle) noexcept {
 
 /// The axis of a joint: a point on it (m) and its direction, with the robot at zero, in the base frame.
 struct JointAxis {
-  Triple point, direction;
+  Vec3 point, direction;
 };
 
 /// A robot in the constants of library/kinematics/dh.h.
 struct DhChain {
   std::size_t ndof = 0;
   std::array<DhLink, kMostJoints> dh{};
-  Pose base = kSamePlace, tool = kSamePlace;
+  Pose base = kIdentityPose, tool = kIdentityPose;
 };
 
 /// Base to tool with the joints at `q` (rad, ndof of them). Context: cycle; wait-free.
@@ -43,29 +43,29 @@ namespace dh_of_axes_steps {
 // Directions closer than this are the same, lines closer than this (m) meet: what a file with six digits means.
 inline constexpr double kSame = 1e-7;
 
-inline Triple unit(const Triple& v) noexcept { return (1 / length(v)) * v; }
+inline Vec3 unit(const Vec3& v) noexcept { return (1 / length(v)) * v; }
 
 /// The angle from `a` to `b`, both at right angles to the unit vector `about`.
-inline double angle(const Triple& a, const Triple& b, const Triple& about) noexcept {
+inline double angle(const Vec3& a, const Vec3& b, const Vec3& about) noexcept {
   const double s = dot(cross(a, b), about), c = dot(a, b);
   return std::abs(s) < kSame * kSame ? (c < 0 ? std::atan2(0.0, -1.0) : 0) : std::atan2(s, c);
 }
 
 /// The base itself where the first axis is its z axis, else a frame on the first axis nearest to the base.
 inline Frame first_frame(const JointAxis& axis) noexcept {
-  const Triple z = unit(axis.direction), foot = axis.point - dot(axis.point, z) * z;
-  const Triple across = std::abs(z[0]) < 0.9 ? Triple{1, 0, 0} : Triple{0, 1, 0};
-  const Triple x = unit(across - dot(across, z) * z);
+  const Vec3 z = unit(axis.direction), foot = axis.point - dot(axis.point, z) * z;
+  const Vec3 across = std::abs(z[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 x = unit(across - dot(across, z) * z);
   return {foot, x, cross(z, x), z};
 }
 
 /// From the frame on one axis to the frame on the next, at zero.
 inline Frame next_frame(const Frame& from, const JointAxis& axis) noexcept {
-  const Triple z = unit(axis.direction), between = axis.point - from.origin, normal = cross(from.z, z);
+  const Vec3 z = unit(axis.direction), between = axis.point - from.origin, normal = cross(from.z, z);
   const double sine = length(normal);
-  Triple origin, x;
+  Vec3 origin, x;
   if (sine < kSame) {  // parallel: the common normal through the present origin
-    const Triple across = between - dot(between, from.z) * from.z;
+    const Vec3 across = between - dot(between, from.z) * from.z;
     origin = from.origin + across;
     x = length(across) < kSame ? from.x : unit(across);
   } else {
@@ -73,7 +73,7 @@ inline Frame next_frame(const Frame& from, const JointAxis& axis) noexcept {
     const double along_next = (cosine * dot(between, from.z) - dot(between, z)) / (sine * sine);
     origin = axis.point + along_next * z;
     const double along_this = dot(between + along_next * z, from.z);
-    const Triple across = origin - from.origin - along_this * from.z;
+    const Vec3 across = origin - from.origin - along_this * from.z;
     x = length(across) < kSame ? unit(normal) : unit(across);
     if (length(across) < kSame && dot(x, from.x) < 0) x = -1.0 * x;
   }
@@ -82,7 +82,7 @@ inline Frame next_frame(const Frame& from, const JointAxis& axis) noexcept {
 
 /// The row that leads from one frame to another whose x axis meets the first z axis at a right angle.
 inline DhLink row(const Frame& from, const Frame& to) noexcept {
-  const Triple between = to.origin - from.origin;
+  const Vec3 between = to.origin - from.origin;
   return {dot(between, to.x), angle(from.z, to.z, to.x), dot(between, from.z), angle(from.x, to.x, from.z)};
 }
 
@@ -102,7 +102,7 @@ inline DhChain dh_of_axes(std::span<const JointAxis> axes, const Frame& tool) no
     frame = next;
   }
   // The last row takes the tool as far as one row can.
-  const Frame seen = frame.seen(tool);
+  const Frame seen = frame.relative(tool);
   const double beside = seen.origin[0] * seen.x[1] - seen.origin[1] * seen.x[0];
   if (std::abs(seen.x[2]) < kSame && std::abs(beside) < kSame) chain.dh[axes.size() - 1] = row(frame, tool);
   else chain.tool = pose_of(seen);

@@ -21,18 +21,18 @@ void expect_near(const Frame& found, const Frame& expected, double within) {
 }
 
 // Turns `point` about an axis: the chain without any Denavit and Hartenberg.
-Triple turned(const JointAxis& axis, double angle, const Triple& v) {
-  const Triple k = (1 / length(axis.direction)) * axis.direction;
+Vec3 rotate(const JointAxis& axis, double angle, const Vec3& v) {
+  const Vec3 k = (1 / length(axis.direction)) * axis.direction;
   return std::cos(angle) * v + std::sin(angle) * cross(k, v) + (1 - std::cos(angle)) * dot(k, v) * k;
 }
 
 Frame by_axes(const std::vector<JointAxis>& axes, const Frame& tool, const std::vector<double>& q) {
   Frame frame = tool;
   for (std::size_t i = axes.size(); i-- > 0;) {
-    frame.origin = axes[i].point + turned(axes[i], q[i], frame.origin - axes[i].point);
-    frame.x = turned(axes[i], q[i], frame.x);
-    frame.y = turned(axes[i], q[i], frame.y);
-    frame.z = turned(axes[i], q[i], frame.z);
+    frame.origin = axes[i].point + rotate(axes[i], q[i], frame.origin - axes[i].point);
+    frame.x = rotate(axes[i], q[i], frame.x);
+    frame.y = rotate(axes[i], q[i], frame.y);
+    frame.z = rotate(axes[i], q[i], frame.z);
   }
   return frame;
 }

@@ -16,8 +16,8 @@ namespace chimera::library {
 struct DhPorts {
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to tip."};
-  InConst<Pose> base{"base", initial = kSamePlace, frame = "base", doc = "Frame 0."};
-  InConst<Pose> tool{"tool", initial = kSamePlace, frame = "last", doc = "Tool frame in frame ndof."};
+  InConst<Pose> base{"base", initial = kIdentityPose, frame = "base", doc = "Frame 0."};
+  InConst<Pose> tool{"tool", initial = kIdentityPose, frame = "last", doc = "Tool frame in frame ndof."};
 
  protected:
   SerialArm arm_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places with axes, in plain numbers: what kinematics and cameras compute with.
+// Vectors and homogeneous transforms in plain numbers: what kinematics and cameras compute with.
 #pragma once
 
 #include <array>
@@ -11,35 +11,38 @@
 namespace chimera::library {
 
 /// Three numbers: a point (m) or a direction.
-struct Triple {
+struct Vec3 {
   double at[3];
 
   double& operator[](std::size_t i) noexcept { return at[i]; }
   const double& operator[](std::size_t i) const noexcept { return at[i]; }
 };
 
-inline Triple operator+(const Triple& a, const Triple& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Triple operator-(const Triple& a, const Triple& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Triple operator*(double s, const Triple& a) noexcept { return {s * a[0], s * a[1], s * a[2]}; }
-inline double dot(const Triple& a, const Triple& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Triple cross(const Triple& a, const Triple& b) noexcept {
+inline Vec3 operator+(const Vec3& a, const Vec3& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Vec3 operator*(double s, const Vec3& a) noexcept { return {s * a[0], s * a[1], s * a[2]}; }
+inline double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-inline double length(const Triple& a) noexcept { return std::sqrt(dot(a, a)); }
+inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
 
-/// A place with axes: x, y and z are unit vectors, right-handed, in the frame that `origin` (m) is given in.
+/// A homogeneous transform: x, y and z are right-handed unit vectors, given like `origin` (m) in the parent frame.
 struct Frame {
-  Triple origin{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  Vec3 origin{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
 
-  /// `inner`, which is given in this frame, in the frame that this one is given in.
+  /// `inner`, given in this frame, expressed in the parent frame.
   Frame operator*(const Frame& inner) const noexcept {
-    return {origin + turned(inner.origin), turned(inner.x), turned(inner.y), turned(inner.z)};
+    return {origin + rotate(inner.origin), rotate(inner.x), rotate(inner.y), rotate(inner.z)};
   }
-  Triple turned(const Triple& v) const noexcept { return v[0] * x + v[1] * y + v[2] * z; }
-  Triple seen(const Triple& v) const noexcept { return {dot(x, v), dot(y, v), dot(z, v)}; }
-  /// `other`, which is given beside this one, as seen from this one.
-  Frame seen(const Frame& other) const noexcept {
-    return {seen(other.origin - origin), seen(other.x), seen(other.y), seen(other.z)};
+  /// R v: a direction given in this frame, expressed in the parent frame.
+  Vec3 rotate(const Vec3& v) const noexcept { return v[0] * x + v[1] * y + v[2] * z; }
+  /// R^T v: a direction given in the parent frame, expressed in this frame.
+  Vec3 inverse_rotate(const Vec3& v) const noexcept { return {dot(x, v), dot(y, v), dot(z, v)}; }
+  /// `other`, given in the same parent frame, expressed in this frame.
+  Frame relative(const Frame& other) const noexcept {
+    return {inverse_rotate(other.origin - origin), inverse_rotate(other.x), inverse_rotate(other.y),
+            inverse_rotate(other.z)};
   }
 };
 

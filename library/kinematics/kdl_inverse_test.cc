@@ -102,7 +102,7 @@ TEST_F(InverseAgainstKdl, OutOfReachThereIsNoClosedForm) {
   for (std::size_t p = 0; p < 20000; ++p) {
     const Joints q = random.joints(p);
     Frame wanted = forward(kdl, q);
-    const Triple wrist = wanted.origin - Puma560::d6 * wanted.z;
+    const Vec3 wrist = wanted.origin - Puma560::d6 * wanted.z;
     const double reach = Puma560::a2 + std::hypot(Puma560::a3, Puma560::d4) + Puma560::d3;
     wanted.origin = ((reach + within(1e-3, 2)) / length(wrist)) * wrist + Puma560::d6 * wanted.z;
     Joints stands{9, 9, 9, 9, 9, 9};
@@ -142,7 +142,7 @@ TEST_F(InverseAgainstKdl, TheSearchIsThereOrSaysHowFarItIsNot) {
       const Joints goal = random.joints(p);
       Frame wanted = forward(kdl, goal);
       const bool is_far = p % 5 == 4;
-      if (is_far) wanted.origin = wanted.origin + Triple{20, 0, 0};
+      if (is_far) wanted.origin = wanted.origin + Vec3{20, 0, 0};
       Joints begin = goal;
       JointLimits limits;
       for (std::size_t i = 0; i < chain.ndof; ++i) {

@@ -8,7 +8,7 @@
 namespace chimera::library {
 namespace {
 
-Triple triple(const KDL::Vector& v) { return {v(0), v(1), v(2)}; }
+Vec3 triple(const KDL::Vector& v) { return {v(0), v(1), v(2)}; }
 
 KDL::Segment fixed(const Pose& pose) {
   const auto [w, x, y, z] = pose.orientation;

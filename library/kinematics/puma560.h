@@ -45,15 +45,15 @@ struct Puma560 {
     const double c6 = std::cos(q[5]), s6 = std::sin(q[5]);
     const Frame forearm = forearm_frame(c1, s1, c23, s23);
     Frame f;
-    f.x = forearm.turned({c4 * c5 * c6 - s4 * s6, s4 * c5 * c6 + c4 * s6, s5 * c6});
-    f.y = forearm.turned({-c4 * c5 * s6 - s4 * c6, -s4 * c5 * s6 + c4 * c6, -s5 * s6});
-    f.z = forearm.turned({-c4 * s5, -s4 * s5, c5});
+    f.x = forearm.rotate({c4 * c5 * c6 - s4 * s6, s4 * c5 * c6 + c4 * s6, s5 * c6});
+    f.y = forearm.rotate({-c4 * c5 * s6 - s4 * c6, -s4 * c5 * s6 + c4 * c6, -s5 * s6});
+    f.z = forearm.rotate({-c4 * s5, -s4 * s5, c5});
     const double out = a2 * c2 + a3 * c23 - d4 * s23, up = a2 * s2 + a3 * s23 + d4 * c23;
-    const Triple aside{s1, -c1, 0}, wrist{c1 * out + s1 * d3, s1 * out - c1 * d3, up}, flange = d6 * f.z;
-    const Triple elbow{a2 * c2 * c1, a2 * c2 * s1, a2 * s2};
+    const Vec3 aside{s1, -c1, 0}, wrist{c1 * out + s1 * d3, s1 * out - c1 * d3, up}, flange = d6 * f.z;
+    const Vec3 elbow{a2 * c2 * c1, a2 * c2 * s1, a2 * s2};
     f.origin = wrist + flange;
-    jacobian.angular = {Triple{0, 0, 1}, aside, aside, forearm.z, forearm.turned({s4, -c4, 0}), f.z};
-    jacobian.linear = {Triple{-f.origin[1], f.origin[0], 0}, cross(aside, f.origin), cross(aside, f.origin - elbow)};
+    jacobian.angular = {Vec3{0, 0, 1}, aside, aside, forearm.z, forearm.rotate({s4, -c4, 0}), f.z};
+    jacobian.linear = {Vec3{-f.origin[1], f.origin[0], 0}, cross(aside, f.origin), cross(aside, f.origin - elbow)};
     for (std::size_t i : {3, 4}) jacobian.linear[i] = cross(jacobian.angular[i], flange);
     return f;
   }
@@ -68,7 +68,7 @@ struct Puma560 {
   };
   static Solutions inverse(const Frame& wanted, std::span<const double, kJoints> near) noexcept {
     Solutions found;
-    const Triple p = wanted.origin - d6 * wanted.z;
+    const Vec3 p = wanted.origin - d6 * wanted.z;
     const double r = std::hypot(p[0], p[1]);
     if (!(r >= d3 - kRounding)) return found;
     const double toward = std::atan2(p[1], p[0]), aside = std::asin(std::min(1.0, d3 / r));
@@ -118,11 +118,12 @@ struct Puma560 {
       add_wrists(wanted, near, {q1, q2, q3}, stretched, found);
     }
   }
-  static void add_wrists(const Frame& wanted, std::span<const double, kJoints> near, const Triple& arm,
-                         double stretched, Solutions& found) noexcept {
+  static void add_wrists(const Frame& wanted, std::span<const double, kJoints> near, const Vec3& arm, double stretched,
+                         Solutions& found) noexcept {
     const Frame forearm = forearm_frame(std::cos(arm[0]), std::sin(arm[0]), std::cos(arm[1] + arm[2]),
                                         std::sin(arm[1] + arm[2]));
-    const Triple x = forearm.seen(wanted.x), y = forearm.seen(wanted.y), z = forearm.seen(wanted.z);
+    const Vec3 x = forearm.inverse_rotate(wanted.x), y = forearm.inverse_rotate(wanted.y),
+               z = forearm.inverse_rotate(wanted.z);
     const double s5 = std::hypot(z[0], z[1]);
     for (const double sign : {1.0, -1.0}) {
       const bool is_told = s5 > stretched;

@@ -48,7 +48,7 @@ struct RandomArms {
   }
 };
 
-inline double difference(const Triple& a, const Triple& b) { return length(a - b); }
+inline double difference(const Vec3& a, const Vec3& b) { return length(a - b); }
 inline double difference(const Frame& a, const Frame& b) {
   return std::max({difference(a.origin, b.origin), difference(a.x, b.x), difference(a.y, b.y), difference(a.z, b.z)});
 }

@@ -15,11 +15,11 @@ namespace chimera::library {
 
 /// How the tool moves with each joint, along the axes of the base: linear in m/rad, angular in rad/rad.
 struct Jacobian {
-  std::array<Triple, kMostJoints> linear{}, angular{};
+  std::array<Vec3, kMostJoints> linear{}, angular{};
 };
 
 /// Six numbers of a motion: linear, then angular.
-using Six = std::array<double, 6>;
+using Vec6 = std::array<double, 6>;
 
 /// A chain made ready to compute with: what does not depend on the joints is computed once.
 class SerialArm {
@@ -44,7 +44,7 @@ class SerialArm {
   /// Base to tool, and the Jacobian there. Context: cycle; wait-free.
   Frame tool_frame(std::span<const double> q, Jacobian& jacobian) const noexcept {
     Frame frame = base_;
-    std::array<Triple, kMostJoints> at;
+    std::array<Vec3, kMostJoints> at;
     for (std::size_t i = 0; i < joints_; ++i) {
       at[i] = frame.origin;
       jacobian.angular[i] = frame.z;
@@ -64,7 +64,7 @@ class SerialArm {
     /// The frame behind the joint of a frame before it: frame Rz(angle + theta) Tz(d) Tx(a) Rx(alpha).
     Frame next(const Frame& f, double angle) const noexcept {
       const double c = std::cos(angle + theta), s = std::sin(angle + theta);
-      const Triple x = c * f.x + s * f.y, across = c * f.y - s * f.x;
+      const Vec3 x = c * f.x + s * f.y, across = c * f.y - s * f.x;
       return {f.origin + a * x + d * f.z, x, cos_alpha * across + sin_alpha * f.z,
               cos_alpha * f.z - sin_alpha * across};
     }
@@ -76,20 +76,21 @@ class SerialArm {
 };
 
 /// The turn from `from` to `to` as a vector: its direction the axis, its length the angle (rad, at most pi).
-inline Triple turn_between(const Frame& from, const Frame& to) noexcept {
-  const Triple twice_sine = cross(from.x, to.x) + cross(from.y, to.y) + cross(from.z, to.z);
+inline Vec3 turn_between(const Frame& from, const Frame& to) noexcept {
+  const Vec3 twice_sine = cross(from.x, to.x) + cross(from.y, to.y) + cross(from.z, to.z);
   const double cosine = (dot(from.x, to.x) + dot(from.y, to.y) + dot(from.z, to.z) - 1) / 2;
   const double sine = length(twice_sine) / 2;
   const double angle = std::atan2(sine, cosine);
   if (sine > 1e-9) return (angle / (2 * sine)) * twice_sine;
   if (cosine > 0) return {0, 0, 0};
-  const Pose half = pose_of(Frame{{0, 0, 0}, from.seen(to.x), from.seen(to.y), from.seen(to.z)});  // turned by pi
-  return angle * from.turned({half.orientation[1], half.orientation[2], half.orientation[3]});
+  const Pose half = pose_of(Frame{
+      {0, 0, 0}, from.inverse_rotate(to.x), from.inverse_rotate(to.y), from.inverse_rotate(to.z)});  // turned by pi
+  return angle * from.rotate({half.orientation[1], half.orientation[2], half.orientation[3]});
 }
 
 /// What is missing from `is` to `wanted`: m and rad.
-inline Six motion_between(const Frame& is, const Frame& wanted) noexcept {
-  const Triple way = wanted.origin - is.origin, turn = turn_between(is, wanted);
+inline Vec6 motion_between(const Frame& is, const Frame& wanted) noexcept {
+  const Vec3 way = wanted.origin - is.origin, turn = turn_between(is, wanted);
   return {way[0], way[1], way[2], turn[0], turn[1], turn[2]};
 }
 
@@ -103,14 +104,14 @@ class DampedInverse {
   double threshold = 0.02;  ///< of the manipulability
 
   /// Joint motion for the tool motion `e`; ndof numbers in `dq`. Context: cycle; wait-free.
-  void solve(const Jacobian& jacobian, std::size_t ndof, const Six& e, std::span<double> dq) noexcept {
+  void solve(const Jacobian& jacobian, std::size_t ndof, const Vec6& e, std::span<double> dq) noexcept {
     Matrix m = square(jacobian, ndof, 0);
     manipulability_ = factor(m) ? product_of_diagonal(m) : 0;
     const double short_of = std::max(0.0, 1 - manipulability_ / threshold);
     const double k = std::max(damping * damping * short_of * short_of, kLeast);
     m = square(jacobian, ndof, k);
     factor(m);
-    const Six y = substitute(m, e);
+    const Vec6 y = substitute(m, e);
     for (std::size_t i = 0; i < ndof; ++i) {
       dq[i] = 0;
       for (std::size_t r = 0; r < 6; ++r) dq[i] += element(jacobian, r, i) * y[r];
@@ -124,7 +125,7 @@ class DampedInverse {
   }
 
  private:
-  using Matrix = std::array<Six, 6>;
+  using Matrix = std::array<Vec6, 6>;
   static constexpr double kLeast = 1e-10;
 
   static Matrix square(const Jacobian& jacobian, std::size_t ndof, double k) noexcept {
@@ -156,7 +157,7 @@ class DampedInverse {
     for (std::size_t r = 0; r < 6; ++r) product *= m[r][r];
     return product;
   }
-  static Six substitute(const Matrix& m, Six e) noexcept {
+  static Vec6 substitute(const Matrix& m, Vec6 e) noexcept {
     for (std::size_t r = 0; r < 6; ++r) {
       for (std::size_t c = 0; c < r; ++c) e[r] -= m[r][c] * e[c];
       e[r] /= m[r][r];
@@ -197,7 +198,7 @@ class PoseSearch {
     std::array<double, kMostJoints> dq;
     Jacobian jacobian;
     for (steps_ = 0; steps_ < kMostSteps; ++steps_) {
-      const Six e = motion_between(arm.tool_frame(q, jacobian), wanted);
+      const Vec6 e = motion_between(arm.tool_frame(q, jacobian), wanted);
       residual_ = size_of(e);
       if (residual_ < kNearEnough) break;
       inverse_.solve(jacobian, arm.joints(), e, dq);
@@ -226,7 +227,7 @@ class PoseSearch {
     }
     return has_held;
   }
-  static double size_of(const Six& e) noexcept {
+  static double size_of(const Vec6& e) noexcept {
     return std::max(length({e[0], e[1], e[2]}), length({e[3], e[4], e[5]}));
   }
 

@@ -42,7 +42,7 @@ TEST(SerialArm, JacobianIsTheSlopeOfTheForwardKinematics) {
     for (std::size_t i = 0; i < 6; ++i) {
       Puma560::Vector moved = q;
       moved[i] += h;
-      const Six slope = motion_between(here, arm.tool_frame(moved));
+      const Vec6 slope = motion_between(here, arm.tool_frame(moved));
       for (std::size_t r = 0; r < 6; ++r) EXPECT_NEAR(DampedInverse::element(jacobian, r, i), slope[r] / h, 1e-5);
     }
   }
@@ -52,7 +52,7 @@ TEST(SerialArm, TurnsAreFoundUpToHalfARevolution) {
   const Frame start;
   for (const double angle : {0.0, 1e-12, 1e-6, 0.3, 3.0, math::kPi - 1e-9, math::kPi}) {
     const Frame turned = frame_of(DhLink{0, angle, 0, 0}, 0);
-    const Triple found = turn_between(start, turned);
+    const Vec3 found = turn_between(start, turned);
     EXPECT_NEAR(std::abs(found[0]), angle, 2e-8) << angle;
     EXPECT_NEAR(found[1], 0, 1e-8);
   }
@@ -64,7 +64,7 @@ TEST(DampedInverse, IsTheInverseFarFromSingularPoses) {
   Jacobian jacobian;
   arm.tool_frame(q, jacobian);
   DampedInverse inverse;
-  const Six wanted{0.1, -0.2, 0.05, 0.3, 0.1, -0.4};
+  const Vec6 wanted{0.1, -0.2, 0.05, 0.3, 0.1, -0.4};
   Puma560::Vector dq;
   inverse.solve(jacobian, 6, wanted, dq);
   ASSERT_GT(inverse.manipulability(), 0.02);
@@ -101,7 +101,7 @@ TEST(PoseSearch, FollowsAPathAwayFromSingularPoses) {
     const Frame wanted = arm.tool_frame(goal, jacobian);
     DampedInverse inverse;
     Puma560::Vector q = goal, dq;
-    inverse.solve(jacobian, 6, Six{}, dq);
+    inverse.solve(jacobian, 6, Vec6{}, dq);
     if (inverse.manipulability() < 0.03) continue;
     ++tried;
     for (double& angle : q) angle += 0.02;
@@ -145,7 +145,7 @@ TEST(Puma560, ForwardIsTheGeneralOne) {
   RandomJoints joints;
   for (int trial = 0; trial < 20000; ++trial) {
     const Puma560::Vector q = joints.next();
-    ASSERT_LT(apart(Puma560::forward(q), arm.tool_frame(q)), 1e-12);
+    ASSERT_LT(distance(Puma560::forward(q), arm.tool_frame(q)), 1e-12);
   }
 }
 
@@ -158,7 +158,7 @@ TEST(Puma560, EveryInverseSolutionReachesThePoseAndOneIsWhereWeCameFrom) {
     const Puma560::Solutions all = Puma560::inverse(wanted, q);
     ASSERT_GE(all.count, 4u);
     if (all.count == 8) ++eight;
-    for (std::size_t s = 0; s < all.count; ++s) ASSERT_LT(apart(Puma560::forward(all.q[s]), wanted), 1e-9);
+    for (std::size_t s = 0; s < all.count; ++s) ASSERT_LT(distance(Puma560::forward(all.q[s]), wanted), 1e-9);
     Puma560::Vector found;
     ASSERT_TRUE(Puma560::nearest(wanted, q, found));
     for (std::size_t i = 0; i < 6; ++i) ASSERT_NEAR(found[i], q[i], 1e-6) << "trial " << trial << " joint " << i + 1;
@@ -199,7 +199,7 @@ TEST(Puma560, SingularPosesAreReachedToo) {
     const Frame wanted = Puma560::forward(q);
     Puma560::Vector found;
     ASSERT_TRUE(Puma560::nearest(wanted, q, found));
-    ASSERT_LT(apart(Puma560::forward(found), wanted), 3e-7) << "trial " << trial;
+    ASSERT_LT(distance(Puma560::forward(found), wanted), 3e-7) << "trial " << trial;
     for (std::size_t i = 0; i < 6; ++i) ASSERT_NEAR(found[i], q[i], i == 3 || i == 5 ? 1.0 : 1e-5) << "trial " << trial;
   }
 }

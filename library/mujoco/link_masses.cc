@@ -21,14 +21,14 @@ std::size_t joint_before(const mjModel* m, const ArmModel& arm, int body) {
 /// Sums about the origin of a frame, along its axes.
 struct Sums {
   double mass = 0;
-  Triple moment{0, 0, 0};            // of mass
+  Vec3 moment{0, 0, 0};             // of mass
   std::array<double, 6> inertia{};  // xx yy zz xy xz yz
 };
 
 constexpr std::size_t kRow[] = {0, 1, 2, 0, 0, 1}, kColumn[] = {0, 1, 2, 1, 2, 2};
 
 /// A mass at `place` adds this to the inertia about the origin, with opposite sign what it takes when moved away.
-void add_point(double mass, const Triple& place, std::array<double, 6>& inertia) {
+void add_point(double mass, const Vec3& place, std::array<double, 6>& inertia) {
   for (std::size_t e = 0; e < 6; ++e) {
     inertia[e] -= mass * place[kRow[e]] * place[kColumn[e]];
     if (e < 3) inertia[e] += mass * dot(place, place);
@@ -38,11 +38,11 @@ void add_point(double mass, const Triple& place, std::array<double, 6>& inertia)
 void add_body(const mjModel* m, const mjData* d, int body, const Frame& frame, Sums& sums) {
   const double mass = m->body_mass[body];
   const mjtNum *p = d->xipos + 3 * body, *r = d->ximat + 9 * body;
-  const Triple centre = frame.seen(Triple{p[0], p[1], p[2]} - frame.origin);
+  const Vec3 centre = frame.inverse_rotate(Vec3{p[0], p[1], p[2]} - frame.origin);
   sums.mass += mass;
   sums.moment = sums.moment + mass * centre;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Triple axis = frame.seen(Triple{r[k], r[3 + k], r[6 + k]});
+    const Vec3 axis = frame.inverse_rotate(Vec3{r[k], r[3 + k], r[6 + k]});
     for (std::size_t e = 0; e < 6; ++e) {
       sums.inertia[e] += m->body_inertia[3 * static_cast<std::size_t>(body) + k] * axis[kRow[e]] * axis[kColumn[e]];
     }
@@ -54,7 +54,7 @@ LinkMass link_of(const Sums& sums, double rotor, double friction) {
   LinkMass link{sums.mass, {0, 0, 0}, {}, rotor, friction};
   std::array<double, 6> inertia = sums.inertia;
   if (sums.mass > 0) {
-    const Triple centre = (1 / sums.mass) * sums.moment;
+    const Vec3 centre = (1 / sums.mass) * sums.moment;
     for (std::size_t i = 0; i < 3; ++i) link.centre[i] = centre[i];
     add_point(-sums.mass, centre, inertia);
   }

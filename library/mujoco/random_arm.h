@@ -21,7 +21,7 @@ struct RandomArm {
   DhChain chain;
   std::array<LinkMass, kMostJoints> links{};
   std::array<Frame, kMostJoints> principal{};  // axes of the inertia at the centre of mass, in the frame of the link
-  std::array<Triple, kMostJoints> moments{};
+  std::array<Vec3, kMostJoints> moments{};
   double payload = 0;
 
   RandomArm(std::mt19937& random, std::size_t joints) : random_(random) {
@@ -80,7 +80,7 @@ struct RandomArm {
   LinkMass link(std::size_t i) {
     LinkMass made{within(0.5, 10), {}, {}, within(0, 1), within(0, 5)};
     std::copy_n(principal[i].origin.at, 3, made.centre);
-    const Triple* axes[] = {&principal[i].x, &principal[i].y, &principal[i].z};
+    const Vec3* axes[] = {&principal[i].x, &principal[i].y, &principal[i].z};
     constexpr std::size_t kRow[] = {0, 1, 2, 0, 0, 1}, kColumn[] = {0, 1, 2, 1, 2, 2};
     for (std::size_t e = 0; e < 6; ++e) {
       for (std::size_t k = 0; k < 3; ++k) {

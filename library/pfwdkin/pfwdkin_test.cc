@@ -8,7 +8,10 @@ namespace {
 
 TEST(Pfwdkin, IsTheFlangeOfThePublishedPoses) {
   // Of the wrist centre (Corke and Armstrong-Helouvry 1994); the flange is before it along the z axis of the hand.
-  struct Published { Puma560::Vector q; Triple wrist, z; };
+  struct Published {
+    Puma560::Vector q;
+    Vec3 wrist, z;
+  };
   constexpr double kRight = std::numbers::pi / 2;
   const Published poses[] = {{{0, 0, 0, 0, 0, 0}, {.4521, -.15005, .4318}, {0, 0, 1}},
                              {{0, kRight, -kRight, 0, 0, 0}, {.0203, -.15005, .8636}, {0, 0, 1}},

@@ -36,7 +36,7 @@ TEST_F(PinvkinTest, FollowsAPathWithoutChangingTheArm) {
     want(Puma560::forward(goal));
     ASSERT_TRUE(rig.cycle());
     const Puma560::Vector now = rig.six("q_ref");
-    EXPECT_LT(apart(Puma560::forward(now), Puma560::forward(goal)), 1e-9);
+    EXPECT_LT(distance(Puma560::forward(now), Puma560::forward(goal)), 1e-9);
     for (std::size_t i = 0; i < 6; ++i) ASSERT_LT(std::abs(now[i] - before[i]), 0.02) << "step " << step;
     before = now;
   }
@@ -66,7 +66,7 @@ TEST_F(PinvkinTest, ComesThroughTheSingularPosesOfThePuma) {
     ASSERT_TRUE(rig.cycle());
     EXPECT_TRUE(rig.get<bool>("is_reachable"));
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], q[i], 1e-5);
-    EXPECT_LT(apart(Puma560::forward(rig.six("q_ref")), Puma560::forward(q)), 1e-7);
+    EXPECT_LT(distance(Puma560::forward(rig.six("q_ref")), Puma560::forward(q)), 1e-7);
   }
 }
 

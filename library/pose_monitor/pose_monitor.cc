@@ -30,7 +30,7 @@ struct PoseMonitor {
   Outcome cycle(Cycle c) {
     if (!target.valid() || !xm.valid()) return fault("target or xm was never written");
     elapsed_ += c.dt();
-    const Triple goal = place(*target), tool = place(*xm);
+    const Vec3 goal = place(*target), tool = place(*xm);
     *distance = library::length(goal - tool);
     *angle = library::angle_between(target->orientation, xm->orientation);
     if (!std::isfinite(*distance) || !std::isfinite(*angle)) return fault("a pose is not a number");
@@ -50,10 +50,10 @@ struct PoseMonitor {
   }
 
  private:
-  using Triple = library::Triple;
-  static Triple place(const Pose& pose) { return {pose.position[0], pose.position[1], pose.position[2]}; }
+  using Vec3 = library::Vec3;
+  static Vec3 place(const Pose& pose) { return {pose.position[0], pose.position[1], pose.position[2]}; }
 
-  Triple goal_before_{}, tool_before_{};
+  Vec3 goal_before_{}, tool_before_{};
   double elapsed_ = 0;
   bool has_before_ = false;
 };

@@ -23,7 +23,7 @@ Jacobian of_puma(const Puma560::Vector& q) {
 
 TEST(SingularValues, OfAJacobianWhoseMotionsAreOrthogonalAreTheirLengths) {
   Jacobian jacobian;
-  jacobian.linear = {library::Triple{3, 0, 0}, {0, 2, 0}, {0, 0, 5}};
+  jacobian.linear = {library::Vec3{3, 0, 0}, {0, 2, 0}, {0, 0, 5}};
   jacobian.angular[3] = {0, 0, 0.5};
   const SingularValues four(jacobian, 4);
   EXPECT_DOUBLE_EQ(four.least(), 0.5);

@@ -104,9 +104,9 @@ Result<UrdfChain> walk(const std::vector<urdf::JointConstSharedPtr>& joints) {
     if (!turns(*joint)) return bad("joint '" + joint->name + "' slides or floats; expected joints that turn");
     if (joint->mimic) return bad("joint '" + joint->name + "' mimics another; expected joints of their own");
     if (n == kMostJoints) return bad("there are more than " + std::to_string(kMostJoints) + " joints");
-    const Triple axis{joint->axis.x, joint->axis.y, joint->axis.z};
+    const Vec3 axis{joint->axis.x, joint->axis.y, joint->axis.z};
     if (!(length(axis) > 1e-9)) return bad("the axis of joint '" + joint->name + "' has no direction");
-    axes[n] = {frame.origin, frame.turned(axis)};
+    axes[n] = {frame.origin, frame.rotate(axis)};
     take_limits(*joint, n, found);
     if (found.low[n] > found.high[n]) {
       return bad("the lower limit of joint '" + joint->name + "' is above its upper one");

@@ -36,11 +36,13 @@ TEST_F(UrdfChainTest, ThePumasFlangeStandsWhereItIsPublished) {
   ASSERT_EQ(puma->chain.ndof, 6u);
   // Wrist centres of Corke and Armstrong-Helouvry, and the flange 56.25 mm further along z of frame 6.
   const Result<UrdfChain> wrist = read_urdf(shipped_urdf("puma560.urdf"), "link6");
-  const struct { std::vector<double> q; Triple p; } published[] = {
-      {{0, 0, 0, 0, 0, 0}, {.4521, -.15005, .4318}},
-      {{0, math::kPi / 2, -math::kPi / 2, 0, 0, 0}, {.0203, -.15005, .8636}},
-      {{0, 0, -math::kPi / 2, 0, 0, 0}, {.8636, -.15005, -.0203}},
-      {{0, math::kPi / 4, -math::kPi, 0, math::kPi / 4, 0}, {.5963, -.15005, -.01435}}};
+  const struct {
+    std::vector<double> q;
+    Vec3 p;
+  } published[] = {{{0, 0, 0, 0, 0, 0}, {.4521, -.15005, .4318}},
+                   {{0, math::kPi / 2, -math::kPi / 2, 0, 0, 0}, {.0203, -.15005, .8636}},
+                   {{0, 0, -math::kPi / 2, 0, 0, 0}, {.8636, -.15005, -.0203}},
+                   {{0, math::kPi / 4, -math::kPi, 0, math::kPi / 4, 0}, {.5963, -.15005, -.01435}}};
   for (const auto& [q, p] : published) {
     const Frame frame = tool_frame(wrist->chain, q), flange = tool_frame(puma->chain, q);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(frame.origin[i], p[i], 6e-5);

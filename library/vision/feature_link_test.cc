@@ -21,11 +21,11 @@ TEST(Pinhole, LocatesWhatItProjects) {
   std::uniform_real_distribution<double> metre(-0.3, 0.3);
   int seen = 0;
   for (int i = 0; i < 1000; ++i) {
-    const Triple ball = camera.place.origin + camera.place.turned({metre(random), metre(random), 1 + metre(random)});
+    const Vec3 ball = camera.place.origin + camera.place.rotate({metre(random), metre(random), 1 + metre(random)});
     Feature feature;
     if (!camera.project(ball, feature)) continue;
     ++seen;
-    Triple found;
+    Vec3 found;
     ASSERT_TRUE(camera.locate(feature, found));
     EXPECT_LT(length(found - ball), 1e-12);
   }
@@ -42,7 +42,7 @@ TEST(Pinhole, SeesNothingBehindItOrBesideThePicture) {
   EXPECT_FALSE(camera.project({0, 0, -1}, feature));
   EXPECT_FALSE(camera.project({0.81, 0, 1}, feature));
   EXPECT_FALSE(camera.project({0, -0.61, 1}, feature));
-  Triple point;
+  Vec3 point;
   EXPECT_FALSE(camera.locate({0, 640, 480, 0}, point));
   EXPECT_FALSE(camera.locate({0, 640, std::nan(""), 40}, point));
 }

@@ -23,8 +23,8 @@ struct Pinhole {
   double ball_diameter = 0.05;        ///< m
 
   /// The picture of a ball at `point` (m, base frame). False, and nothing written, when it is not in the picture.
-  bool project(const Triple& point, Feature& feature) const noexcept {
-    const Triple seen = place.seen(point - place.origin);
+  bool project(const Vec3& point, Feature& feature) const noexcept {
+    const Vec3 seen = place.inverse_rotate(point - place.origin);
     if (!(seen[2] > ball_diameter)) return false;
     const double u = width / 2 + focal_length * seen[0] / seen[2], v = height / 2 + focal_length * seen[1] / seen[2];
     if (!(u >= 0 && u <= width && v >= 0 && v <= height)) return false;
@@ -34,10 +34,10 @@ struct Pinhole {
     return true;
   }
   /// Where the ball of that picture is (m, base frame). False when the numbers are those of no picture.
-  bool locate(const Feature& feature, Triple& point) const noexcept {
+  bool locate(const Feature& feature, Vec3& point) const noexcept {
     if (!(feature.size > 0) || !std::isfinite(feature.size + feature.u + feature.v)) return false;
     const double depth = focal_length * ball_diameter / feature.size;
-    point = place.origin + place.turned({(feature.u - width / 2) * depth / focal_length,
+    point = place.origin + place.rotate({(feature.u - width / 2) * depth / focal_length,
                                          (feature.v - height / 2) * depth / focal_length, depth});
     return true;
   }

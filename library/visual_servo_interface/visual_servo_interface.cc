@@ -19,7 +19,7 @@ struct VisualServoInterface : library::CameraPorts {
   Out<Pose> target{"target", frame = "base", doc = "Where the tool should be for the ball that is seen."};
   Out<bool> in_sight{"in_sight", "1", initial = false, doc = "The last feature is younger than timeout."};
   Out<std::int64_t> received{"received", "1", initial = 0, doc = "Features that told a place."};
-  InConst<Pose> grip{"grip", initial = library::kSamePlace, frame = "base",
+  InConst<Pose> grip{"grip", initial = library::kIdentityPose, frame = "base",
                      doc = "Tool beside the ball: offset along the base's axes, orientation in the base."};
   InConst<double> gain{"gain", "1/s", initial = 5.0, range(0, 100), doc = "How fast xd closes in on the target."};
   InConst<double> speed_limit{"speed_limit", "m/s", initial = 0.5, range(0, 10), doc = "Of xd."};
@@ -59,15 +59,15 @@ struct VisualServoInterface : library::CameraPorts {
   void kill() { reader_.close(); }
 
  private:
-  using Triple = library::Triple;
+  using Vec3 = library::Vec3;
 
   // Between two pictures the ball goes on as it went from the last to this one.
   void look(const library::Feature& feature, double now) {
-    Triple place;
+    Vec3 place;
     if (!pinhole_.locate(feature, place)) return;
     const double between = feature.time - seen_.time;
     const bool follows = was_seen_ && between > 1e-4 && between < *timeout;
-    velocity_ = follows ? (1 / between) * (place - place_) : Triple{};
+    velocity_ = follows ? (1 / between) * (place - place_) : Vec3{};
     place_ = place;
     seen_ = feature;
     seen_at_ = now;
@@ -82,7 +82,7 @@ struct VisualServoInterface : library::CameraPorts {
   }
   void approach(double dt) {
     const double lead = *gain > 0 ? 1 : 0;  // without it xd would trail a ball that moves by its speed over the gain
-    Triple v;
+    Vec3 v;
     for (std::size_t i = 0; i < 3; ++i) v[i] = *gain * (target->position[i] - xd->position[i]) + lead * velocity_[i];
     const double speed = library::length(v), share = speed > *speed_limit ? *speed_limit / speed : 1;
     for (std::size_t i = 0; i < 3; ++i) xd->position[i] += share * v[i] * dt;
@@ -93,7 +93,7 @@ struct VisualServoInterface : library::CameraPorts {
   library::Pinhole pinhole_;
   library::FeatureReader reader_;
   library::Feature seen_;
-  Triple place_{}, velocity_{};
+  Vec3 place_{}, velocity_{};
   Nanoseconds begin_{};
   double seen_at_ = 0;
   bool was_seen_ = false;

@@ -18,7 +18,7 @@ class Worlds {
   }
 
   std::vector<Scenario> all() {
-    std::vector<Scenario> worlds = {together(), together(), apart(), apart(), apart()};
+    std::vector<Scenario> worlds = {together(), together(), distance(), distance(), distance()};
     worlds[1].shorter = worlds[1].scarce = worlds[1].drops_late = true;
     worlds[3].shorter = worlds[3].drops_late = true;
     worlds[4].shorter = worlds[4].scarce = true;
@@ -41,7 +41,7 @@ class Worlds {
     return world;
   }
   /// Offsets at random; tasks of one period and offset stay together, as on their grid.
-  Scenario apart() {
+  Scenario distance() {
     Scenario world = together();
     for (std::size_t i = 0; i < set_.works.size(); ++i) {
       world.first[i] = static_cast<Tick>(random_() % static_cast<std::uint32_t>(set_.works[i].period.count));
