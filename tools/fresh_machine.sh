@@ -148,10 +148,12 @@ clone_to() {  # path inside the root
 
 # Runs a command inside as a given user, its output on ours. The time it took is left in $took.
 inside() {  # user, folder, command
-  local begin=$SECONDS code=0
+  local begin=$SECONDS code=0 lent=()
+  [ -z "$cache" ] || lent=(CCACHE_DIR=/var/cache/ccache CCACHE_UMASK=000)
+  [ -z "$cache" ] || [ "$1" = root ] || lent+=(CCACHE_READONLY=1 CCACHE_TEMPDIR=/tmp)  # the folder belongs to root
   chroot "$folder" runuser -u "$1" -- env -i HOME="$(chroot "$folder" getent passwd "$1" | cut -d: -f6)" \
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 CI=true USER="$1" \
-    ${cache:+CCACHE_DIR=/var/cache/ccache CCACHE_UMASK=000} \
+    "${lent[@]}" \
     ${http_proxy:+http_proxy="$http_proxy"} ${https_proxy:+https_proxy="$https_proxy"} \
     ${no_proxy:+no_proxy="$no_proxy"} bash -c "cd '$2' && $3" </dev/null || code=$?
   took=$((SECONDS - begin))
