@@ -11,7 +11,7 @@
 
 namespace chimera {
 
-/// Text of at most N bytes. Longer text is cut at N; `is_cut()` says so. Trivially copyable.
+/// Text of at most N bytes. Longer text is cut at N. Trivially copyable.
 /// Context: any; wait-free.
 template <std::size_t N>
 class FixedString {
@@ -20,22 +20,19 @@ class FixedString {
   constexpr FixedString(std::string_view text) noexcept { assign(text); }  // NOLINT: text is text
 
   constexpr void assign(std::string_view text) noexcept {
-    cut_ = text.size() > N;
-    size_ = static_cast<std::uint16_t>(cut_ ? N : text.size());
+    size_ = static_cast<std::uint16_t>(text.size() > N ? N : text.size());
     for (std::size_t i = 0; i < size_; ++i) bytes_[i] = text[i];
     bytes_[size_] = '\0';
   }
   constexpr std::string_view view() const noexcept { return {bytes_, size_}; }
   constexpr const char* c_str() const noexcept { return bytes_; }
   constexpr bool empty() const noexcept { return size_ == 0; }
-  constexpr bool is_cut() const noexcept { return cut_; }
   static constexpr std::size_t capacity() noexcept { return N; }
 
  private:
   static_assert(N > 0 && N < UINT16_MAX);
   char bytes_[N + 1] = {};
   std::uint16_t size_ = 0;
-  bool cut_ = false;
 };
 
 /// At most N values in place. Requires: T default-constructible. Context: any; wait-free.

@@ -157,11 +157,6 @@ Urgency ReadyQueue::top_urgency() const noexcept {
   return loose_is_top() ? storage_.loose[0].urgency : run_urgency(storage_.runs[0]);
 }
 
-TaskId ReadyQueue::top_task() const noexcept {
-  CHIMERA_ASSERT(!is_empty());
-  return loose_is_top() ? storage_.loose[0].job.task : TaskId(head(storage_.runs[0]).task);
-}
-
 // More than one run, or jobs beside them.
 Job ReadyQueue::pop_among() noexcept {
   CHIMERA_ASSERT(!is_empty());

@@ -119,8 +119,6 @@ class ReadyQueue {
   bool is_empty() const noexcept { return n_runs_ == 0 && n_loose_ == 0; }
   /// The urgency of what pop would give. Requires: not empty. Context: cycle; O(1).
   Urgency top_urgency() const noexcept;
-  /// What pop would give. Requires: not empty. Context: cycle; O(1).
-  TaskId top_task() const noexcept;
   /// Takes the most urgent job; ties: user priority, then order of the tasks. Requires: not empty.
   /// Context: cycle; O(1) while one class is ready, else O(log classes).
   Job pop() noexcept {

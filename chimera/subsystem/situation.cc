@@ -30,12 +30,6 @@ std::vector<TaskId> Situation::sorted(std::span<const TaskId> tasks, bool backwa
   return result;
 }
 
-std::size_t Situation::run_at(std::span<const TaskId> tasks, std::size_t first) const {
-  std::size_t n = 1;
-  while (first + n < tasks.size() && roster.rtpu(tasks[first + n]) == roster.rtpu(tasks[first])) ++n;
-  return n;
-}
-
 // A process that does not serve us yet may still carry out what an earlier manager sent, or be mute.
 bool Situation::may_be_on(TaskId task) const {
   const State seen = roster.status(task).state;

@@ -51,8 +51,6 @@ struct Situation {
 
   /// Each task once, in data-flow order, or against it.
   std::vector<TaskId> sorted(std::span<const TaskId> tasks, bool backwards = false) const;
-  /// Length of the run of tasks of one rtpu that begins at `first`.
-  std::size_t run_at(std::span<const TaskId> tasks, std::size_t first) const;
 
   /// Is it ON, or might it be for all we know?
   bool may_be_on(TaskId task) const;

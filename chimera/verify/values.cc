@@ -82,7 +82,7 @@ class ValueWriter {
     if (!extent.known && !extent.constant.empty() && !agrees(node, extent)) return;
     for (const Node& item : node.items) {
       if (dimension + 1 < port_.extents.size()) {
-        row(item, node.items.size() != 0 ? dimension + 1 : 0);
+        row(item, dimension + 1);
       } else {
         element(item, bytes_.data() + next_);
         next_ += port_.element_bytes;

@@ -8,6 +8,7 @@
 #include "library/kinematics/puma560.h"
 #include "library/kinematics/puma560_links.h"
 #include "library/puma_torque/puma_arm.h"
+#include "library/puma_torque/testing/puma_mechanics.h"
 
 namespace chimera {
 namespace {
@@ -81,7 +82,7 @@ TEST_F(ComputedTorqueTest, CarriesTheWeightAtRest) {
   library::PumaArm arm;
   ASSERT_TRUE(arm.load(library::kPumaModel, {}));
   ASSERT_TRUE(arm.place(kNominal));
-  const PumaVector weight = arm.bias_torque(), found = torque();
+  const PumaVector weight = library::bias_torque(arm), found = torque();
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(found[i], weight[i], 1e-9);
 }
 

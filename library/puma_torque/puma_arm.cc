@@ -97,29 +97,4 @@ void PumaArm::brake() { arm_.brake(); }
 PumaInput PumaArm::position() const noexcept { return arm_.position().first<kPumaJoints>(); }
 PumaInput PumaArm::velocity() const noexcept { return arm_.velocity().first<kPumaJoints>(); }
 
-PumaVector PumaArm::bias_torque() {
-  mj_forward(arm_.model(), arm_.state());
-  PumaVector torque;
-  std::copy_n(arm_.state()->qfrc_bias, kPumaJoints, torque.begin());
-  return torque;
-}
-
-std::array<double, 36> PumaArm::mass_matrix() {
-  mj_forward(arm_.model(), arm_.state());
-  std::array<double, 36> full;
-  mj_fullM(arm_.model(), full.data(), arm_.state()->qM);
-  return full;
-}
-
-std::array<double, 3> PumaArm::wrist_position() const {
-  const double* p = arm_.state()->xpos + 3 * mj_name2id(arm_.model(), mjOBJ_BODY, "link6");
-  return {p[0], p[1], p[2]};
-}
-
-std::array<double, 9> PumaArm::wrist_rotation() const {
-  std::array<double, 9> rotation;
-  std::copy_n(arm_.state()->xmat + 9 * mj_name2id(arm_.model(), mjOBJ_BODY, "link6"), 9, rotation.begin());
-  return rotation;
-}
-
 }  // namespace chimera::library

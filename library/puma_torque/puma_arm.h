@@ -61,13 +61,8 @@ class PumaArm {
   const ArmVector& lower_limit() const noexcept { return arm_.arm().low; }
   const ArmVector& upper_limit() const noexcept { return arm_.arm().high; }
 
-  /// Gravity, centrifugal and Coriolis torque in the present state (N.m): what holds the arm at rest.
-  PumaVector bias_torque();
-  /// Joint-space mass matrix with motor inertias, row by row (kg.m2).
-  std::array<double, kPumaJoints * kPumaJoints> mass_matrix();
-  /// Wrist centre (frame 6) in the base frame: position (m), rotation row by row.
-  std::array<double, 3> wrist_position() const;
-  std::array<double, 9> wrist_rotation() const;
+  /// The simulated arm that this Puma is made of, with its MuJoCo model and state. Context: setup.
+  const SimulatedArm& simulation() const noexcept { return arm_; }
 
   /// Why the last call that answered false did; empty before. Context: any.
   const char* fault() const noexcept { return arm_.fault(); }

@@ -13,6 +13,7 @@
 #include "chimera/base/hosted/tree_path.h"
 #include "chimera/base/math.h"
 #include "library/mujoco/mujoco_guard.h"
+#include "library/puma_torque/testing/puma_mechanics.h"
 
 namespace chimera::library {
 namespace {
@@ -33,13 +34,13 @@ struct PumaArmTest : testing::Test {
   }
   void expect_gravity(const PumaVector& q, const PumaVector& published) {
     ASSERT_TRUE(arm.place(q));
-    const PumaVector found = arm.bias_torque();
+    const PumaVector found = bias_torque(arm);
     for (std::size_t i = 0; i < kPumaJoints; ++i) EXPECT_NEAR(found[i], published[i], 6e-5) << "joint " << i + 1;
   }
   void expect_wrist(const PumaVector& q, std::array<double, 3> p, std::array<double, 9> r) {
     ASSERT_TRUE(arm.place(q));
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(arm.wrist_position()[i], p[i], 6e-5);
-    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(arm.wrist_rotation()[i], r[i], 1e-6);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(wrist_position(arm)[i], p[i], 6e-5);
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(wrist_rotation(arm)[i], r[i], 1e-6);
   }
 };
 
@@ -65,7 +66,7 @@ TEST_F(PumaArmTest, HasThePublishedGravityTorques) {
 TEST_F(PumaArmTest, HasThePublishedMassMatrix) {
   load();
   ASSERT_TRUE(arm.place(kQn));
-  const auto m = arm.mass_matrix();
+  const auto m = mass_matrix(arm);
   const PumaVector diagonal{3.6594, 4.4137, .9378, .1925, .1713, .1941};
   for (std::size_t i = 0; i < kPumaJoints; ++i) EXPECT_NEAR(m[7 * i], diagonal[i], 6e-5) << "joint " << i + 1;
   EXPECT_NEAR(m[1], -.4044, 6e-5);
@@ -76,19 +77,19 @@ TEST_F(PumaArmTest, PayloadAddsItsWeightAtTheFlange) {
   load({.payload_mass = 2});
   ASSERT_TRUE(arm.place(kQs));
   // Stretched out level: the wrist is 0.8636 m out and the flange points on outwards.
-  EXPECT_NEAR(arm.bias_torque()[1], 46.0069 + 2 * 9.81 * (.8636 + .05625), 1e-3);
-  EXPECT_NEAR(arm.bias_torque()[4], (2 * .05625 + .09 * .032) * 9.81, 1e-6);
+  EXPECT_NEAR(bias_torque(arm)[1], 46.0069 + 2 * 9.81 * (.8636 + .05625), 1e-3);
+  EXPECT_NEAR(bias_torque(arm)[4], (2 * .05625 + .09 * .032) * 9.81, 1e-6);
   PumaVector upright = kQs;
   upright[4] = math::kPi / 2;
   ASSERT_TRUE(arm.place(upright));
-  EXPECT_NEAR(arm.bias_torque()[1], 46.0069 - .09 * .032 * 9.81 + 2 * 9.81 * .8636, 1e-3);
-  EXPECT_NEAR(arm.bias_torque()[4], 0, 1e-6);
+  EXPECT_NEAR(bias_torque(arm)[1], 46.0069 - .09 * .032 * 9.81 + 2 * 9.81 * .8636, 1e-3);
+  EXPECT_NEAR(bias_torque(arm)[4], 0, 1e-6);
 }
 
 TEST_F(PumaArmTest, StandsStillUnderItsGravityTorque) {
   load();
   ASSERT_TRUE(arm.place(kQs));
-  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(arm.step(arm.bias_torque(), 1e-3));
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(arm.step(bias_torque(arm), 1e-3));
   for (std::size_t j = 0; j < kPumaJoints; ++j) EXPECT_NEAR(arm.position()[j], kQs[j], 1e-9);
 }
 

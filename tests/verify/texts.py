@@ -60,11 +60,6 @@ def table_complaints(root):
     if not most or not told or most[1] != told[1]:
         yield (f"docs/formats/table.md: says {told and told[1]} MiB for all outputs, the rule table-limit has "
                f"{most and most[1]}")
-    used = [name for name in sources.files(root) if name.startswith("chimera/") and name.endswith((".h", ".cc"))
-            and not re.match(r"chimera/table/(group_pool|binding)", name)
-            and re.search(r'"chimera/table/(group_pool|binding)\.h"', sources.text(root, name))]
-    if ("No executor uses them yet" in document) == bool(used):
-        yield f"docs/formats/table.md: who uses GroupPool and BindingTable? The code: {', '.join(used) or 'nobody'}"
 
 
 def check(root):
@@ -76,14 +71,14 @@ _README = "# A\n\n## Limits\n\n- Refused: `max_step`, `standby_for`.\n\n## More\
 _CODE = ('  void refuse_key(Place at, const char* key) {\n    refuse(at, "\'" + std::string(key) + "\' of");\n  }\n'
          '  refuse_key(a, "max_step", task);\n')
 _ROOM = "  constexpr std::uint64_t kMaxTableBytes = 4 << 20;\n"
-_TABLE = "outputs take more than\n4 MiB. No executor uses them\nyet.\n"
+_TABLE = "outputs take more than\n4 MiB.\n"
 
 
 def _tree(**other):
     files = {"README.md": _README, REFUSALS: _CODE, "chimera/verify/rules/rule_room.cc": _ROOM,
              "docs/formats/table.md": _TABLE}
-    return files | {{"readme": "README.md", "code": REFUSALS, "table": "docs/formats/table.md",
-                     "user": "chimera/rtpu/x.cc"}[key]: text for key, text in other.items()}
+    names = {"readme": "README.md", "code": REFUSALS, "table": "docs/formats/table.md"}
+    return files | {names[key]: text for key, text in other.items()}
 
 
 _MISSING = "README.md: the limits do not say \"`max_step`\", which run refuses"
@@ -95,8 +90,6 @@ PLANTED = (
      f'{REFUSALS}: no phrase is known here for the refusal refuse_key(a, "magic", task'),
     (_tree(table=_TABLE.replace("4", "8")),
      "docs/formats/table.md: says 8 MiB for all outputs, the rule table-limit has 4"),
-    (_tree(user='#include "chimera/table/group_pool.h"\n'),
-     "docs/formats/table.md: who uses GroupPool and BindingTable? The code: chimera/rtpu/x.cc"),
 )
 
 if __name__ == "__main__":
