@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "bench/bench.h"
-#include "chimera/base/hosted/tree_path.h"
-#include "library/kinematics/arm_rig.h"
+#include "chimera/base/testing/tree_path.h"
+#include "library/kinematics/testing/arm_rig.h"
 
 namespace chimera::bench {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/bench.h"
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/verify/verify.h"
 

@@ -8,10 +8,10 @@
 
 #include "bench/component.h"
 #include "library/kinematics/dh_dynamics.h"
-#include "library/kinematics/puma560_links.h"
+#include "library/kinematics/testing/puma560_links.h"
 #include "library/kinematics/singular_values.h"
 #ifdef CHIMERA_KDL
-#include "library/kinematics/kdl_oracle.h"
+#include "library/kinematics/testing/kdl_oracle.h"
 #endif
 
 namespace chimera {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "bench/component.h"
-#include "library/kinematics/puma560_links.h"
+#include "library/kinematics/testing/puma560_links.h"
 #include "library/mujoco/simulated_arm.h"
 #include "library/rmms/module_store.h"
 

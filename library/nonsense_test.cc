@@ -14,7 +14,7 @@
 #include <map>
 #include <random>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/task/rig.h"
 
 namespace chimera {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Proves by the #include lines that a folder imports only lower floors (docs/walk.md)."""
+"""Proves by the #include lines that a folder imports only lower floors (docs/walk.md), and that the support of tests
+lies in testing/ folders, which no production source includes."""
 import pathlib
 import re
 import sys
@@ -36,6 +37,34 @@ def interface_headers(root):
     return known
 
 
+TESTS = re.compile(r"^(tests|bench)/|/testing/|_(test|fuzz|stress)\.cc$")
+# Included by tests alone, and yet no support of our tests.
+OFFERED = {"chimera/task/rig.h": "the authors of components test with it",
+           "chimera/task/rig_ports.h": "a part of rig.h",
+           "chimera/platform/virtual/virtual_clock.h": "the Clock for machines without one"}
+
+
+def testing_complaints(root, names):
+    """Headers outside of testing/ that are included by nothing but tests, other such headers and their own .cc."""
+    users = {}
+    for name in names:
+        for _, quoted, path in includes(root, name):
+            if quoted:
+                users.setdefault(path, set()).add(name)
+    of_tests, grows = {name for name in names if TESTS.search(name)}, True
+    while grows:
+        grows = False
+        for name in names:
+            beside = name[:-2] + ".cc"
+            others = users.get(name, set()) - {beside}
+            if name.endswith(".h") and name not in of_tests and others and others <= of_tests:
+                of_tests |= {name, beside}
+                grows = True
+    for name in names:
+        if name in of_tests and name.endswith(".h") and not TESTS.search(name) and name not in OFFERED:
+            yield f"{name}: only tests use it: it belongs into testing/, or is dead"
+
+
 def floor_of(path):
     parts = path.split("/")
     return FLOOR.get(parts[1]) if parts[0] == "chimera" and len(parts) > 2 else None
@@ -44,6 +73,8 @@ def floor_of(path):
 def refusal(root, name, path, interface):
     """Why `name` must not include the project's file `path`; None when it may."""
     folder, target = name.split("/"), path.split("/")
+    if "testing" in target[:-1] and not TESTS.search(name):
+        return "testing/ is for tests"
     if target[0] not in ROOT_FOLDERS:  # else made by the build
         beside = ((root / name).parent / path).is_file()
         return "includes start at the root of the checkout" if beside else None
@@ -104,9 +135,9 @@ def drawing_complaints(root):
 def check(root):
     yield from drawing_complaints(root)
     interface = interface_headers(root)
-    for name in sources.files(root):
-        if not name.endswith((".h", ".cc", ".c")):
-            continue
+    names = [name for name in sources.files(root) if name.endswith((".h", ".cc", ".c"))]
+    yield from testing_complaints(root, names)
+    for name in names:
         for line, quoted, path in includes(root, name):
             why = refusal(root, name, path, interface) if quoted else heavy_refusal(name, path)
             if why:
@@ -117,6 +148,7 @@ def _tree(name, included):
     return {name: f"#include {included}\n"}
 
 
+_SUPPORT = "chimera/base/testing/x.h"
 _DRAWING = "## Floors\n\n    base 0 | the line |\n    load{} 5\n\nMore.\n"
 PLANTED = (
     (_tree("chimera/table/x.h", '"chimera/base/time.h"'), None),
@@ -146,6 +178,17 @@ PLANTED = (
       "chimera/task/component.h": '#include "chimera/table/slot.h"\n', "chimera/table/slot.h": "\n"}, None),
     (_tree("executive/main.cc", '"chimera/verify/verify.h"'),
      "executive/main.cc:1: includes chimera/verify/verify.h: executive/ imports only floors 0 to 5"),
+    ({"chimera/base/x.cc": f'#include "{_SUPPORT}"\n', _SUPPORT: ""},
+     f"chimera/base/x.cc:1: includes {_SUPPORT}: testing/ is for tests"),
+    ({"chimera/base/x_test.cc": f'#include "{_SUPPORT}"\n', _SUPPORT: ""}, None),
+    ({"chimera/base/x_test.cc": '#include "chimera/base/y.h"\n', "chimera/base/y.h": ""},
+     "chimera/base/y.h: only tests use it: it belongs into testing/, or is dead"),
+    ({"bench/x.h": '#include "chimera/base/y.h"\n', "chimera/base/y.h": '#include "chimera/base/z.h"\n',
+      "chimera/base/x.cc": '#include "chimera/base/z.h"\n', "chimera/base/z.h": ""},
+     "chimera/base/y.h: only tests use it: it belongs into testing/, or is dead"),
+    ({"chimera/base/x_test.cc": '#include "chimera/base/x.h"\n', "chimera/base/x.h": "",
+      "chimera/base/x.cc": '#include "chimera/base/x.h"\n'},
+     "chimera/base/x.h: only tests use it: it belongs into testing/, or is dead"),
     (_tree("chimera/runtime/x.cc", "<nlohmann/json.hpp>"),
      "chimera/runtime/x.cc:1: includes nlohmann/json.hpp: libraries like this stay above the real-time line"),
     (_tree("chimera/description/x.h", "<yaml-cpp/yaml.h>"),

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "chimera/base/hosted/property.h"
+#include "chimera/base/testing/property.h"
 #include "chimera/catalogue/descriptor_json.h"
 
 namespace {

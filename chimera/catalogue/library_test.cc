@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "chimera/catalogue/descriptor_json.h"
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 
 namespace chimera {
 namespace {

@@ -2,7 +2,7 @@
 // Who gets in when places are short, and who is turned out: by a stepped clock.
 #include <algorithm>
 
-#include "chimera/control/door_rig.h"
+#include "chimera/control/testing/door_rig.h"
 #include "chimera/control/request.h"
 
 namespace chimera::control {

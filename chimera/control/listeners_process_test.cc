@@ -6,7 +6,7 @@
 
 #include <csignal>
 
-#include "chimera/control/door_rig.h"
+#include "chimera/control/testing/door_rig.h"
 
 namespace chimera::control {
 namespace {

@@ -2,7 +2,7 @@
 #include "chimera/desk/check.h"
 
 #include "chimera/desk/graph_of.h"
-#include "chimera/desk/test_place.h"
+#include "chimera/desk/testing/test_place.h"
 
 namespace chimera::desk {
 namespace {

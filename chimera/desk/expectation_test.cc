@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "chimera/desk/test_place.h"
+#include "chimera/desk/testing/test_place.h"
 
 namespace chimera::desk {
 namespace {

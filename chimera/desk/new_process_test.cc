@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 
 namespace chimera::desk {
 namespace {

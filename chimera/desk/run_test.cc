@@ -2,7 +2,7 @@
 #include "chimera/desk/run.h"
 
 #include "chimera/desk/profile_report.h"
-#include "chimera/desk/test_place.h"
+#include "chimera/desk/testing/test_place.h"
 
 namespace chimera::desk {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "chimera/analysis/recorded_profile.h"
-#include "chimera/desk/test_place.h"
+#include "chimera/desk/testing/test_place.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::desk {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/script_text.h"
 
-#include "chimera/desk/test_place.h"
+#include "chimera/desk/testing/test_place.h"
 
 namespace chimera::desk {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 
 namespace chimera::desk {
 namespace {

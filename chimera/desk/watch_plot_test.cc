@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "chimera/desk/run.h"
-#include "chimera/desk/test_place.h"
+#include "chimera/desk/testing/test_place.h"
 
 namespace chimera::desk {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "chimera/load/test_declaration.h"
+#include "chimera/load/testing/test_declaration.h"
 
 namespace chimera {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/load/test_declaration.h"
+#include "chimera/load/testing/test_declaration.h"
 
 namespace chimera {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects good and bad: chimera/load/test_objects.
+// Objects good and bad: chimera/load/testing.
 #include "chimera/load/shared_object.h"
 
 #include <elf.h>
@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/load/component_state.h"
 
 namespace chimera {

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "chimera/manager/test_bundle.h"
+#include "chimera/manager/testing/test_bundle.h"
 
 namespace chimera::manager {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/manager/fake_subsystem.h"
+#include "chimera/manager/testing/fake_subsystem.h"
 #include "chimera/manager/subject_values.h"
 
 namespace chimera::manager {

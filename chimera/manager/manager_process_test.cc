@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/control/client.h"
-#include "chimera/manager/fake_subsystem.h"
+#include "chimera/manager/testing/fake_subsystem.h"
 
 namespace chimera::manager {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "chimera/manager/test_bundle.h"
+#include "chimera/manager/testing/test_bundle.h"
 
 namespace chimera::manager {
 namespace {

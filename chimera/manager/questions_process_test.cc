@@ -7,8 +7,8 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "chimera/base/hosted/tree_path.h"
-#include "chimera/manager/fake_subsystem.h"
+#include "chimera/base/testing/tree_path.h"
+#include "chimera/manager/testing/fake_subsystem.h"
 
 namespace chimera::manager {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "chimera/manager/fake_subsystem.h"
+#include "chimera/manager/testing/fake_subsystem.h"
 
 namespace chimera::manager {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "chimera/rtpu/test_units.h"
+#include "chimera/rtpu/testing/test_units.h"
 
 namespace {
 

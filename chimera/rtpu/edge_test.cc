@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/rtpu/test_units.h"
+#include "chimera/rtpu/testing/test_units.h"
 
 namespace chimera {
 namespace {

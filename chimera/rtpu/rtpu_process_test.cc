@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/load/descriptor.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/platform/channel.h"
@@ -20,7 +20,7 @@
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/peers.h"
 #include "chimera/runtime/application_image.h"
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
 namespace {

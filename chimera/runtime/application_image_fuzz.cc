@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "chimera/base/hosted/property.h"
+#include "chimera/base/testing/property.h"
 #include "chimera/runtime/application_image.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "chimera/runtime/spec_equal.h"
+#include "chimera/runtime/testing/spec_equal.h"
 
 namespace chimera {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "chimera/runtime/executive/executive.h"
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 
 namespace chimera::testing {
 namespace {

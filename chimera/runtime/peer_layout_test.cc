@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 #include "chimera/task/fault_record.h"
 
 namespace chimera {

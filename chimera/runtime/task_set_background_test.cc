@@ -10,7 +10,7 @@
 
 #include "chimera/runtime/background_writer.h"
 #include "chimera/runtime/task_set.h"
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 
 namespace chimera {

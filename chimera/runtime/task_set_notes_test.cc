@@ -5,7 +5,7 @@
 #include <string>
 
 #include "chimera/runtime/task_set.h"
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 
 namespace chimera {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
 namespace {

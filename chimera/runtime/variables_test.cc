@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 
 namespace chimera::shell {
 namespace {

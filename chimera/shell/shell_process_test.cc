@@ -23,12 +23,12 @@
 #include <thread>
 #include <utility>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/control/door.h"
 #include "chimera/platform/linux/linux_clock.h"
 #include "chimera/shell/carry_out.h"
 #include "chimera/shell/interactive.h"
-#include "chimera/shell/test_answers.h"
+#include "chimera/shell/testing/test_answers.h"
 
 namespace chimera::shell {
 namespace {

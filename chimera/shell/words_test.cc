@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "chimera/shell/test_answers.h"
+#include "chimera/shell/testing/test_answers.h"
 
 namespace chimera::shell {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/subsystem/test_world.h"
+#include "chimera/subsystem/testing/test_world.h"
 
 namespace chimera::subsystem {
 namespace {

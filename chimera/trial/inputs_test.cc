@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chimera/trial/test_component.h"
+#include "chimera/trial/testing/test_component.h"
 
 namespace chimera::trial {
 namespace {

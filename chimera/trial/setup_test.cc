@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "chimera/trial/test_component.h"
+#include "chimera/trial/testing/test_component.h"
 
 namespace chimera::trial {
 namespace {

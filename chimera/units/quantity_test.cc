@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 
 namespace chimera {
 namespace {

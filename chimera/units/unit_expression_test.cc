@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 
 namespace chimera {
 namespace {

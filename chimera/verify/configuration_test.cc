@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "chimera/catalogue/library.h"
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {

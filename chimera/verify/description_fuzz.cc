@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "chimera/base/hosted/property.h"
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/property.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/verify/verify.h"
 

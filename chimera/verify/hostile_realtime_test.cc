@@ -11,7 +11,7 @@
 #include <string>
 
 #include "chimera/catalogue/library.h"
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {

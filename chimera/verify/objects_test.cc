@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/descriptor_json.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/load/shared_object.h"
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {

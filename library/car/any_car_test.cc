@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "library/car/car_rig.h"
+#include "library/car/testing/car_rig.h"
 
 namespace chimera::library {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "library/car/car_rig.h"
+#include "library/car/testing/car_rig.h"
 
 namespace chimera::library {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "chimera/task/rig.h"
 #include "library/kinematics/puma560.h"
-#include "library/kinematics/puma560_links.h"
+#include "library/kinematics/testing/puma560_links.h"
 #include "library/puma_torque/puma_arm.h"
 #include "library/puma_torque/testing/puma_mechanics.h"
 

@@ -2,7 +2,7 @@
 // Against a reference that nobody here wrote: MuJoCo's inverse dynamics of the same arms, told as MJCF.
 #include <gtest/gtest.h>
 
-#include "library/mujoco/random_arm.h"
+#include "library/mujoco/testing/random_arm.h"
 
 namespace chimera::library {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "library/signals/signal_rig.h"
+#include "library/signals/testing/signal_rig.h"
 
 namespace chimera {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "library/kinematics/puma560.h"
-#include "library/kinematics/random_arms.h"
+#include "library/kinematics/testing/random_arms.h"
 
 namespace chimera::library {
 namespace {

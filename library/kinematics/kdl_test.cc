@@ -2,9 +2,9 @@
 // Against a reference that nobody here wrote: Orocos KDL.
 #include <gtest/gtest.h>
 
-#include "library/kinematics/kdl_proof.h"
+#include "library/kinematics/testing/kdl_proof.h"
 #include "library/kinematics/puma560.h"
-#include "library/kinematics/random_arms.h"
+#include "library/kinematics/testing/random_arms.h"
 #include "library/kinematics/singular_values.h"
 
 namespace chimera::library {

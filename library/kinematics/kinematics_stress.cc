@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "library/kinematics/kdl_proof.h"
+#include "library/kinematics/testing/kdl_proof.h"
 
 using namespace chimera::library;  // NOLINT: a main() of this project
 

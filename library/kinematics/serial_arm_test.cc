@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chimera/base/math.h"
-#include "library/kinematics/arm_rig.h"
+#include "library/kinematics/testing/arm_rig.h"
 #include "library/kinematics/puma560.h"
 
 namespace chimera::library {

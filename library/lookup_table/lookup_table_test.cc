@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "library/signals/signal_rig.h"
+#include "library/signals/testing/signal_rig.h"
 
 namespace chimera {
 namespace {

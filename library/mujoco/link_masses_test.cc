@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "library/mujoco/link_masses.h"
 
-#include "library/mujoco/random_arm.h"
+#include "library/mujoco/testing/random_arm.h"
 
 namespace chimera::library {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "library/mujoco/package_of_meshes.h"
+#include "library/mujoco/testing/package_of_meshes.h"
 
 namespace chimera::library {
 namespace {

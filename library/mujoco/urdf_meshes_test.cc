@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "library/mujoco/package_of_meshes.h"
+#include "library/mujoco/testing/package_of_meshes.h"
 #include "library/mujoco/simulated_arm.h"
 
 namespace chimera::library {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "library/signals/signal_rig.h"
+#include "library/signals/testing/signal_rig.h"
 
 namespace chimera {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "library/kinematics/arm_rig.h"
+#include "library/kinematics/testing/arm_rig.h"
 
 namespace chimera::library {
 namespace {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/base/math.h"
 #include "library/mujoco/mujoco_guard.h"
 #include "library/puma_torque/testing/puma_mechanics.h"

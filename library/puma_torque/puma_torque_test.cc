@@ -8,7 +8,7 @@
 
 #include "chimera/task/rig.h"
 #include "library/kinematics/puma560.h"
-#include "library/kinematics/puma560_links.h"
+#include "library/kinematics/testing/puma560_links.h"
 
 namespace chimera {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/task/rig.h"
 #include "library/kinematics/dh_of_axes.h"
 #include "library/rmms/module_store.h"

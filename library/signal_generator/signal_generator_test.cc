@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "library/signals/signal_rig.h"
+#include "library/signals/testing/signal_rig.h"
 
 namespace chimera {
 namespace {

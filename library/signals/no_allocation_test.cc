@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "library/signals/signal_rig.h"
+#include "library/signals/testing/signal_rig.h"
 
 // Of the address sanitizer, under which the tests of the library are built; <sanitizer/allocator_interface.h>.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*made)(const volatile void*, std::size_t),

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "chimera/base/math.h"
-#include "library/kinematics/arm_rig.h"
+#include "library/kinematics/testing/arm_rig.h"
 #include "library/kinematics/singular_values.h"
 
 namespace chimera {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/task/geometry.h"
 #include "chimera/task/rig.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/base/math.h"
 #include "chimera/task/rig.h"
 #include "library/mujoco/simulated_arm.h"

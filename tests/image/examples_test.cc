@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <string>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/runtime/application_image.h"
-#include "chimera/runtime/spec_equal.h"
-#include "chimera/units/unit_samples.h"
+#include "chimera/runtime/testing/spec_equal.h"
+#include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {

@@ -13,11 +13,11 @@
 #include <string>
 #include <thread>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 #include "tests/conformance/witness.h"
 
 namespace chimera {

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/draw/plot.h"
 #include "chimera/task/geometry.h"
-#include "library/signals/signal_rig.h"
+#include "library/signals/testing/signal_rig.h"
 
 namespace chimera {
 namespace {

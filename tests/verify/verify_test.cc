@@ -9,9 +9,9 @@
 #include <sstream>
 
 #include "chimera/analysis/schedule_report.h"
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/library.h"
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {

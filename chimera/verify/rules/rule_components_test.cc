@@ -8,7 +8,7 @@
 
 #include "chimera/catalogue/descriptor_json.h"
 #include "chimera/catalogue/library.h"
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/units/unit_system.h"
 
 namespace chimera {

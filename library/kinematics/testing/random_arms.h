@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "library/kinematics/kdl_oracle.h"
+#include "library/kinematics/testing/kdl_oracle.h"
 #include "library/kinematics/serial_arm.h"
 
 namespace chimera::library {

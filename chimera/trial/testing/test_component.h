@@ -10,7 +10,7 @@
 
 #include "chimera/trial/inputs.h"
 #include "chimera/trial/setup.h"
-#include "chimera/units/unit_samples.h"
+#include "chimera/units/testing/unit_samples.h"
 
 namespace chimera::trial {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "chimera/manager/driver.h"
-#include "chimera/manager/fake_rtpu.h"
-#include "chimera/manager/test_bundle.h"
+#include "chimera/manager/testing/fake_rtpu.h"
+#include "chimera/manager/testing/test_bundle.h"
 #include "chimera/platform/process.h"
 
 namespace chimera::manager {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "chimera/base/hosted/tree_path.h"
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/desk/application.h"
 #include "chimera/desk/workplace.h"
 

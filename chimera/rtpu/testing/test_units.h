@@ -12,7 +12,7 @@
 #include "chimera/platform/virtual/virtual_clock.h"
 #include "chimera/rtpu/edge.h"
 #include "chimera/runtime/executive/executive.h"
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 
 namespace chimera::testing {
 

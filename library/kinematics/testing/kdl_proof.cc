@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "library/kinematics/kdl_proof.h"
+#include "library/kinematics/testing/kdl_proof.h"
 
 #include <cstdio>
 
 #include "library/kinematics/puma560.h"
-#include "library/kinematics/random_arms.h"
+#include "library/kinematics/testing/random_arms.h"
 
 namespace chimera::library {
 namespace {
