@@ -14,7 +14,7 @@
 #include "bench/bench.h"
 #include "bench/tasks.h"
 #include "chimera/platform/doorbell.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/processor_level.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"

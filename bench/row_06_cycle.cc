@@ -3,7 +3,7 @@
 // the register: judgement at the start, transfer in, body, judgement at the end, publication, profile.
 #include "bench/bench.h"
 #include "bench/tasks.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/runtime/release.h"
 #include "chimera/runtime/executive/executive.h"
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Proves by the #include lines that a folder imports only lower floors (docs/walk.md), and that the support of tests
-lies in testing/ folders, which no production source includes."""
+lies in testing/ folders, which no production source includes,
+and that only chimera/platform/ sees the headers of an operating system."""
 import pathlib
 import re
 import sys
@@ -37,6 +38,22 @@ def interface_headers(root):
     return known
 
 
+# Headers of POSIX and Linux. Not among them: <csignal>, standard C++ for the numbers of signals; <elf.h>, a format.
+SYSTEM = re.compile(r"^(aio|dirent|dlfcn|execinfo|fcntl|ftw|glob|grp|ifaddrs|libgen|link|mqueue|netdb|poll|pthread|"
+                    r"pty|pwd|sched|semaphore|signal|spawn|sys(exits|log)|termios?|ucontext|unistd|utime?|utmpx?|"
+                    r"wordexp|(arpa|asm|asm-generic|linux|net|netinet|netpacket|sys)/.*)\.h$")
+SEES_THE_SYSTEM = {
+    "chimera/platform/": "the floor for it",
+    "chimera/base/hosted/ordinary_file.h": "components read files too, and they see chimera/base only",
+    "chimera/control/": "to be moved", "chimera/desk/": "to be moved", "chimera/manager/": "to be moved",
+    "chimera/rtpu/": "to be moved", "chimera/runtime/": "to be moved", "chimera/shell/": "to be moved",
+    "library/csv_log/": "writes a file, whose loss it must tell",
+    "library/device/": "reasons why a device cannot be opened",
+    "library/serial_frame/": "a serial line",
+    "library/tball/": "an input device",
+    "library/udp_frame/": "a socket",
+    "library/vision/": "a socket",
+}
 TESTS = re.compile(r"^(tests|bench)/|/testing/|_(test|fuzz|stress)\.cc$")
 # Included by tests alone, and yet no support of our tests.
 OFFERED = {"chimera/task/rig.h": "the authors of components test with it",
@@ -104,6 +121,16 @@ def heavy_refusal(name, path):
     return "slow to compile: include it in the one .cc that needs it" if name.endswith(".h") else None
 
 
+def system_refusal(name, path):
+    if not name.startswith(("chimera/", "library/")) or TESTS.search(name):
+        return None
+    if name.startswith(tuple(SEES_THE_SYSTEM)):
+        return None
+    if path.startswith("chimera/platform/linux/") or SYSTEM.match(path):
+        return "only chimera/platform/ sees the operating system"
+    return None
+
+
 def told_floors(root):
     """{folder: floor} as CONTRIBUTING.md draws the floors; none without that file."""
     if not (root / "CONTRIBUTING.md").is_file():
@@ -140,6 +167,7 @@ def check(root):
     for name in names:
         for line, quoted, path in includes(root, name):
             why = refusal(root, name, path, interface) if quoted else heavy_refusal(name, path)
+            why = why or system_refusal(name, path)
             if why:
                 yield f"{name}:{line}: includes {path}: {why}"
 
@@ -189,6 +217,16 @@ PLANTED = (
     ({"chimera/base/x_test.cc": '#include "chimera/base/x.h"\n', "chimera/base/x.h": "",
       "chimera/base/x.cc": '#include "chimera/base/x.h"\n'},
      "chimera/base/x.h: only tests use it: it belongs into testing/, or is dead"),
+    (_tree("chimera/draw/x.cc", "<sys/eventfd.h>"),
+     "chimera/draw/x.cc:1: includes sys/eventfd.h: only chimera/platform/ sees the operating system"),
+    (_tree("library/gain/gain.cc", "<unistd.h>"),
+     "library/gain/gain.cc:1: includes unistd.h: only chimera/platform/ sees the operating system"),
+    (_tree("chimera/draw/x.cc", '"chimera/platform/linux/y.h"'),
+     "chimera/draw/x.cc:1: includes chimera/platform/linux/y.h: only chimera/platform/ sees the operating system"),
+    (_tree("chimera/rtpu/x_test.cc", "<sys/eventfd.h>"), None),
+    (_tree("chimera/platform/linux/x.cc", "<sys/eventfd.h>"), None),
+    (_tree("library/tball/x.cc", "<linux/input.h>"), None),
+    (_tree("chimera/rtpu/x.cc", "<csignal>"), None),
     (_tree("chimera/runtime/x.cc", "<nlohmann/json.hpp>"),
      "chimera/runtime/x.cc:1: includes nlohmann/json.hpp: libraries like this stay above the real-time line"),
     (_tree("chimera/description/x.h", "<yaml-cpp/yaml.h>"),

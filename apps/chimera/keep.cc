@@ -9,7 +9,7 @@
 #include "chimera/desk/output.h"
 #include "chimera/desk/run_plan.h"
 #include "chimera/keeper/keeper.h"
-#include "chimera/keeper/socket_place.h"
+#include "chimera/platform/socket_place.h"
 #include "chimera/load/descriptor.h"
 #include "chimera/manager/bundle.h"
 #include "chimera/platform/cpu_claim.h"

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/analysis/recorded_profile.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/platform/part_file.h"
 #include "chimera/text/json_cursor.h"
 #include "chimera/text/json_text.h"
 
@@ -74,26 +69,6 @@ RecordedProfile profile_at(const JsonCursor& at) {
 
 Nanoseconds bounded(Nanoseconds time) { return {std::clamp<std::int64_t>(time.count, 0, kLongestPeriod)}; }
 
-/// A new file beside `path`, to be put into its place.
-struct PartFile {
-  std::string path;
-  int descriptor = -1;
-};
-
-Error not_written(const std::string& path, int error) {
-  return {ErrorCode::kSystem, {std::string("cannot be written: ") + std::strerror(error)}, {path}};
-}
-
-Result<PartFile> open_part(const std::string& path) {
-  struct stat there {};
-  if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
-    return Error{ErrorCode::kRefused, {"is no ordinary file"}, {path}};
-  PartFile part{path + "." + std::to_string(::getpid()) + ".part", -1};
-  part.descriptor = ::open(part.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (part.descriptor < 0) return not_written(path, errno);
-  return part;
-}
-
 Error bad(const std::string& message, std::string_view where) {
   return {ErrorCode::kBadInput, {std::string_view(message)}, {where}};
 }
@@ -146,26 +121,13 @@ Result<RecordedProfile> parse_recorded_profile(std::string_view json) {
 }
 
 Result<void> write_recorded_profile(const std::string& path, const RecordedProfile& profile) {
-  const auto part = open_part(path);
-  if (!part) return part.error();
-  const std::string text = to_json(profile);
-  errno = ENOSPC;  // a write that is cut short says nothing itself
-  bool is_good =
-      ::write(part->descriptor, text.data(), text.size()) == std::ssize(text) && ::fsync(part->descriptor) == 0;
-  is_good = is_good && ::rename(part->path.c_str(), path.c_str()) == 0;
-  const int error = errno;
-  ::close(part->descriptor);
-  if (is_good) return {};
-  ::unlink(part->path.c_str());
-  return not_written(path, error);
+  auto part = PartFile::open(path);
+  return part ? part->put(to_json(profile)) : part.error();
 }
 
 Result<void> may_write_recorded_profile(const std::string& path) {
-  const auto part = open_part(path);
-  if (!part) return part.error();
-  ::close(part->descriptor);
-  ::unlink(part->path.c_str());
-  return {};
+  const auto part = PartFile::open(path);
+  return part ? Result<void>() : part.error();
 }
 
 Result<RecordedProfile> read_recorded_profile(const std::string& path) {

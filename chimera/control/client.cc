@@ -17,7 +17,7 @@
 #include "chimera/control/methods.h"
 #include "chimera/control/request.h"
 #include "chimera/control/running.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/socket_folder.h"
 #include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"

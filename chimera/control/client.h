@@ -12,7 +12,7 @@
 #include "chimera/base/result.h"
 #include "chimera/base/time.h"
 #include "chimera/control/answer.h"
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera::control {
 

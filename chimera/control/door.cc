@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 #include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"
 

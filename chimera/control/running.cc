@@ -8,7 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera::control {
 namespace {

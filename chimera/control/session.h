@@ -10,7 +10,7 @@
 #include "chimera/control/limits.h"
 #include "chimera/control/request.h"
 #include "chimera/control/rights.h"
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera::control {
 

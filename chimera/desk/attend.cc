@@ -20,7 +20,7 @@
 #include "chimera/desk/record_line.h"
 #include "chimera/desk/run_report.h"
 #include "chimera/desk/script_text.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/standard_output.h"
 #include "chimera/text/json_text.h"

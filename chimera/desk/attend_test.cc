@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "chimera/control/door.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 
 namespace chimera::desk {
 namespace {

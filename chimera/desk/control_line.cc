@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/desk/run.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 
 namespace chimera::desk {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 
 namespace chimera::desk {
 namespace {

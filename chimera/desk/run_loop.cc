@@ -5,7 +5,7 @@
 #include <future>
 #include <thread>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/keeper/keeper.h"
 
-#include <poll.h>
-#include <sys/signalfd.h>
-
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
+
+#include "chimera/platform/readiness.h"
 
 namespace chimera {
 namespace {
@@ -21,18 +21,13 @@ constexpr Nanoseconds kStartPatience = seconds(10);           // until it serves
 
 Keeper::Keeper(KeeperPlan plan) : plan_(std::move(plan)), peers_(plan_.peers), face_(plan_.face) {}
 
-Keeper::~Keeper() {
-  if (signals_.fd >= 0) ::pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
-}
+Keeper::~Keeper() = default;
 
 Result<void> Keeper::start() {
-  sigset_t mask;
-  ::sigemptyset(&mask);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGCHLD, SIGPIPE}) ::sigaddset(&mask, number);
-  ::pthread_sigmask(SIG_BLOCK, &mask, &mask_before_);
-  ::sigdelset(&mask, SIGPIPE);
-  signals_ = OwnedDescriptor(::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK));
-  if (signals_.fd < 0) return system_error(Message("keeper"), "signalfd");
+  constexpr int kTaken[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGCHLD}, kIgnored[] = {SIGPIPE};
+  auto signals = SignalQueue::open(kTaken, kIgnored);
+  if (!signals) return signals.error();
+  signals_ = *std::move(signals);
   if (auto started = peers_.start_all(); !started || !face_.is_wanted()) return started;
   return face_.start();
 }
@@ -51,27 +46,25 @@ int Keeper::run() {
 }
 
 void Keeper::wait() {
-  std::vector<pollfd> events = {{signals_.fd, POLLIN, 0}, {face_.pidfd(), POLLIN, 0}};
+  std::vector<int> descriptors = {signals_.descriptor(), face_.pidfd()};
   for (std::uint32_t index = 0; index < peers_.size(); ++index) {
-    events.push_back({peers_.channel(index), POLLIN, 0});
-    events.push_back({peers_.pidfd(index), POLLIN, 0});
+    descriptors.push_back(peers_.channel(index));
+    descriptors.push_back(peers_.pidfd(index));
   }
   const Nanoseconds due = std::min({phase_due_, manager_due_, watch_due_, peers_.orphans_due()});
-  const Nanoseconds left = std::max(due - clock_.now(), Nanoseconds{0});
-  const timespec patience{left.count / 1'000'000'000, left.count % 1'000'000'000};
-  ::ppoll(events.data(), events.size(), &patience, nullptr);
+  await_readable(descriptors, due - clock_.now());
 }
 
 /// Takes everything that has happened.
 void Keeper::look() {
-  signalfd_siginfo taken;
-  while (::read(signals_.fd, &taken, sizeof taken) == sizeof taken) {
-    const bool is_of_face = face_.lives() && taken.ssi_pid == static_cast<std::uint32_t>(face_.pid());
-    if (taken.ssi_signo == SIGUSR1)
+  SignalQueue::Arrived signal;
+  while (signals_.take(signal)) {
+    const bool is_of_face = face_.lives() && signal.from == face_.pid();
+    if (signal.number == SIGUSR1)
       face_has_looked_ = face_has_looked_ || is_of_face;
-    else if (taken.ssi_signo == SIGUSR2 && is_of_face)
+    else if (signal.number == SIGUSR2 && is_of_face)
       peers_.publish_face(face_.page());
-    else if (taken.ssi_signo != SIGCHLD && taken.ssi_signo != SIGUSR2)
+    else if (signal.number != SIGCHLD && signal.number != SIGUSR2)
       end_asked_ = true;
   }
   end_asked_ = end_asked_ || face_has_looked_;

@@ -3,13 +3,13 @@
 // nothing. docs/formats/processes.md, "Keeper messages" and "Ending".
 #pragma once
 
-#include <csignal>
 #include <string>
 #include <vector>
 
 #include "chimera/keeper/kept_face.h"
 #include "chimera/keeper/kept_peers.h"
 #include "chimera/platform/life_watch.h"
+#include "chimera/platform/signal_queue.h"
 
 namespace chimera {
 
@@ -66,8 +66,7 @@ class Keeper {
   LinuxClock clock_;
   KeptPeers peers_;
   KeptFace face_;
-  OwnedDescriptor signals_;
-  sigset_t mask_before_{};
+  SignalQueue signals_;
   Phase phase_ = Phase::kRunning;
   Nanoseconds phase_due_ = kNever;
   Nanoseconds watch_due_ = {};

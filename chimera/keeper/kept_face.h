@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/runtime/face_page.h"

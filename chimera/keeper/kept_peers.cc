@@ -10,6 +10,7 @@
 
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/origin.h"
+#include "chimera/platform/process_id.h"
 
 namespace chimera {
 
@@ -93,7 +94,7 @@ Result<void> KeptPeers::start(std::uint32_t index) {
   const bool is_manager = index == manager();
   const std::uint32_t incarnation = peer.last.incarnation + 1;
   const std::string& program = is_manager ? plan_.manager_program : plan_.rtpu_program;
-  const std::string numbers[] = {std::to_string(index), std::to_string(incarnation), std::to_string(::getpid())};
+  const std::string numbers[] = {std::to_string(index), std::to_string(incarnation), std::to_string(own_process_id())};
   const std::array words = {program.c_str(),    "--peer",   numbers[0].c_str(), "--incarnation",
                             numbers[1].c_str(), "--parent", numbers[2].c_str()};
   const std::array passed = {ends->second.descriptor(), plan_.image,     decision_.descriptor(),

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/keeper/orphans.h"
+#include "chimera/platform/orphans.h"
 #include "chimera/platform/channel.h"
-#include "chimera/platform/linux/linux_clock.h"
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/owned_descriptor.h"
 #include "chimera/platform/memory_region.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"

@@ -2,15 +2,15 @@
 #include "chimera/load/elf_check.h"
 
 #include <elf.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "chimera/platform/file_bytes.h"
 #include "chimera/task/abi.h"
 
 namespace chimera {
@@ -37,8 +37,8 @@ bool is_whole(int file, const Elf64_Ehdr& head, std::uint64_t size) noexcept {
   if (!is_inside(head.e_shoff, std::uint64_t{head.e_shnum} * head.e_shentsize, size)) return false;
   for (std::uint16_t i = 0; i < head.e_phnum; ++i) {
     Elf64_Phdr segment{};
-    const auto at = static_cast<off_t>(head.e_phoff + std::uint64_t{i} * sizeof segment);
-    if (::pread(file, &segment, sizeof segment, at) != sizeof segment) return false;
+    const auto bytes = std::as_writable_bytes(std::span(&segment, 1));
+    if (read_at(file, head.e_phoff + std::uint64_t{i} * sizeof segment, bytes) != sizeof segment) return false;
     if (!is_inside(segment.p_offset, segment.p_filesz, size)) return false;
   }
   return true;
@@ -46,15 +46,10 @@ bool is_whole(int file, const Elf64_Ehdr& head, std::uint64_t size) noexcept {
 
 /// The whole file; empty when it cannot be read.
 std::string contents(int file) {
-  struct stat status {};
-  if (::fstat(file, &status) != 0 || static_cast<std::uint64_t>(status.st_size) > kMostBytes) return {};
-  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t got = ::pread(file, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
-    if (got <= 0) return {};
-    done += static_cast<std::size_t>(got);
-  }
-  return bytes;
+  const std::int64_t size = file_size(file);
+  if (size < 0 || static_cast<std::uint64_t>(size) > kMostBytes) return {};
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  return read_at(file, 0, std::as_writable_bytes(std::span(bytes))) == size ? bytes : std::string();
 }
 
 /// The `index`th record of a table at `offset`; false where it lies outside the bytes.
@@ -96,20 +91,19 @@ Exported exports(const std::string& bytes, std::string_view symbol) {
 
 Message elf_fault(int file) noexcept {
   Elf64_Ehdr head{};
-  struct stat status {};
-  const ssize_t got = ::pread(file, &head, sizeof head, 0);
-  if (got < 0 || ::fstat(file, &status) != 0) return Message("cannot be read");
-  if (status.st_size == 0) return Message("is empty (0 bytes)");
+  const std::int64_t got = read_at(file, 0, std::as_writable_bytes(std::span(&head, 1))), size = file_size(file);
+  if (got < 0 || size < 0) return Message("cannot be read");
+  if (size == 0) return Message("is empty (0 bytes)");
   if (got < SELFMAG || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0)
     return Message("is not a shared object: it does not begin with the ELF mark");
   Message cut;
-  cut << "is truncated (" << status.st_size << " bytes)";
+  cut << "is truncated (" << size << " bytes)";
   if (got != sizeof head) return cut;
   if (head.e_ident[EI_CLASS] != ELFCLASS64 || head.e_machine != kMachine)
     return Message() << "was built for another kind of processor; this machine is " << kMachineName;
   if (head.e_type != ET_DYN) return Message("is not a shared object: it is another kind of ELF file");
   if (head.e_phentsize != sizeof(Elf64_Phdr)) return Message("has damaged headers");
-  if (!is_whole(file, head, static_cast<std::uint64_t>(status.st_size))) return cut;
+  if (!is_whole(file, head, static_cast<std::uint64_t>(size))) return cut;
   return {};
 }
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <system_error>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera::manager {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "chimera/base/time.h"
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera {
 

@@ -8,7 +8,7 @@
 #include <atomic>
 #include <thread>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/virtual/virtual_clock.h"
 
 namespace chimera {

@@ -7,7 +7,7 @@
 
 #include <thread>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 
 namespace chimera {
 namespace {

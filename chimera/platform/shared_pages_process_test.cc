@@ -15,7 +15,7 @@
 
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/memory_region.h"
 
 namespace chimera {

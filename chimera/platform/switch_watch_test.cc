@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/processor_level.h"
 
 namespace chimera {

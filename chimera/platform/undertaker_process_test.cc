@@ -16,7 +16,7 @@
 #include <fstream>
 #include <string>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 #include "chimera/platform/process.h"
 
 namespace chimera {

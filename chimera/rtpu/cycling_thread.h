@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "chimera/platform/doorbell.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/rtpu/bell_clock.h"
 #include "chimera/rtpu/edge.h"
 #include "chimera/runtime/executive/executive.h"

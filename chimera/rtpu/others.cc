@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 
 namespace chimera {
 namespace {

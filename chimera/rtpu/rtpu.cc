@@ -17,7 +17,7 @@
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 #include "chimera/platform/lost_descriptor.h"
 #include "chimera/platform/origin.h"
 #include "chimera/platform/process.h"

@@ -14,7 +14,7 @@
 #include "chimera/platform/channel.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/rtpu/keeper_message.h"

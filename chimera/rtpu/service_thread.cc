@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/rtpu/service_thread.h"
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/runtime/executive/executive.h"
 
 namespace chimera {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/analysis/recorded_profile.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/figures.h"
 #include "chimera/shell/scope.h"

@@ -25,7 +25,7 @@
 
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/control/door.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/shell/carry_out.h"
 #include "chimera/shell/interactive.h"
 #include "chimera/shell/testing/test_answers.h"

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 
 namespace chimera::shell {
 namespace {

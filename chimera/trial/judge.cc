@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "chimera/trial/judge_values.h"
-#include "chimera/trial/system_call_name.h"
+#include "chimera/platform/system_call_name.h"
 
 namespace chimera::trial {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "chimera/platform/allocation_count.h"
 #include "chimera/trial/judge_values.h"
-#include "chimera/trial/leftovers.h"
+#include "chimera/platform/open_resources.h"
 
 namespace chimera::trial {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chimera/base/fixed.h"
+#include "chimera/platform/family_memory.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/state_machine.h"
@@ -94,18 +95,15 @@ class SharedRecord {
  public:
   /// For `rows` cycles of a task whose outputs take `payload` bytes together.
   SharedRecord(std::size_t rows, std::size_t payload);
-  SharedRecord(SharedRecord&& other) noexcept;
-  SharedRecord& operator=(SharedRecord&&) = delete;
-  ~SharedRecord();
 
-  Record& record() const noexcept { return *static_cast<Record*>(memory_); }
+  Record& record() const noexcept { return *reinterpret_cast<Record*>(memory_.bytes().data()); }
   std::span<RowRecord> rows() const noexcept;
   /// The outputs as published with row `i`.
   std::span<std::byte> outputs(std::size_t i) const noexcept;
 
  private:
-  std::size_t rows_, payload_, bytes_;
-  void* memory_;
+  std::size_t rows_, payload_;
+  FamilyMemory memory_;
 };
 
 /// Where each output lies in the payload of a row, in the order of the task's out-vars.

@@ -1,30 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/trial/trial.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <functional>
 
 #include "chimera/base/message.h"
 #include "chimera/catalogue/descriptor_json.h"
+#include "chimera/platform/family_memory.h"
+#include "chimera/platform/forked_child.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/watched_child.h"
 #include "chimera/trial/plays.h"
 
 namespace chimera::trial {
 namespace {
-
-std::int64_t monotonic() {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * 1'000'000'000 + now.tv_nsec;
-}
 
 /// Counts the system calls of watched methods, and sees when nothing goes on any more.
 class Watcher final : public ChildWatcher {
@@ -39,50 +30,41 @@ class Watcher final : public ChildWatcher {
   }
   bool has_waited_enough() noexcept override {
     const std::uint64_t progress = record_.progress.load(std::memory_order_relaxed);
-    const std::int64_t now = monotonic();
-    if (progress != seen_ || since_ == 0) seen_ = progress, since_ = now;
-    return now - since_ > patience_.count;
+    const Nanoseconds now = clock_.now();
+    if (progress != seen_ || since_ == Nanoseconds{}) seen_ = progress, since_ = now;
+    return now - since_ > patience_;
   }
 
  private:
   Record& record_;
   Nanoseconds patience_;
   std::uint64_t seen_ = 0;
-  std::int64_t since_ = 0;
+  LinuxClock clock_;
+  Nanoseconds since_;
 };
 
-// What a component prints is not ours to print.
-void be_quiet() {
-  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (nowhere < 0) return;
-  for (const int stream : {0, 1, 2}) ::dup2(nowhere, stream);
-  ::close(nowhere);
-}
-
-[[noreturn]] void live(const std::function<void()>& play, Record& record, const TrialOptions& options, bool traced) {
-  be_quiet();
-  if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(1);
+/// By the child.
+int live(const std::function<void()>& play, Record& record, bool traced) {
   record.is_traced = traced && let_parent_trace();
   try {
     play();
   } catch (const std::exception& fault) {  // of our own: those of a component end in its face
     std::snprintf(record.refusal, sizeof record.refusal, "%s", fault.what());
-    ::_exit(1);
+    return 1;
   }
-  ::_exit(0);  // nothing of the parent's is ours to end
+  return 0;
 }
 
 Result<PlayEnd> run(const std::function<void()>& play, Record& record, const TrialOptions& options, bool traced) {
   BlockedChildSignal blocked;
-  const pid_t child = ::fork();
-  if (child < 0) return (Message() << "no process: " << std::strerror(errno)).error(ErrorCode::kSystem);
-  if (child == 0) {
+  const auto child = fork_quietly(options.folder, [&] {
     blocked.undo();
-    live(play, record, options, traced);
-  }
+    return live(play, record, traced);
+  });
+  if (!child) return child.error();
   PlayEnd end;
   Watcher watcher(record, options.patience);
-  end.has_hung = watch_child(child, watcher, end.process);
+  end.has_hung = watch_child(*child, watcher, end.process);
   return end;
 }
 
@@ -131,9 +113,9 @@ Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configur
 Result<std::string> descriptor_text(const std::string& object_file, const TrialOptions& options) {
   SharedRecord record(0, 0);
   constexpr std::size_t kBytes = kMaxDescriptorBytes + 1;
-  void* shared = ::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared == MAP_FAILED) return (Message() << std::strerror(errno)).error(ErrorCode::kSystem);
-  auto* text = static_cast<char*>(shared);
+  const auto shared = FamilyMemory::create(kBytes);
+  if (!shared) return shared.error();
+  auto* text = reinterpret_cast<char*>(shared->bytes().data());
   const auto ask = [&] {
     const auto said = [&]() -> Result<std::string> {
       const auto object = SharedObject::open(object_file);
@@ -152,7 +134,6 @@ Result<std::string> descriptor_text(const std::string& object_file, const TrialO
   };
   const auto end = run(ask, record.record(), options, false);
   const std::string found(text);
-  ::munmap(shared, kBytes);
   if (!end) return end.error();
   if (!found.empty() && end->is_clean()) return found;
   const char* refusal = record.record().refusal;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/units/unit_system.h"
 
-#include <sys/mman.h>
 #include <udunits2.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
@@ -13,6 +11,7 @@
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/platform/frozen_bytes.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/unit_text.h"
 
@@ -109,15 +108,11 @@ std::string want() {
 
 /// The units of `xml`. UDUNITS reads nothing but files, so the text is given the form of one.
 ut_system* read_units(const std::string& xml) {
-  const int descriptor = ::memfd_create("chimera-units", MFD_CLOEXEC);
-  if (descriptor < 0) return nullptr;
+  const auto file = FrozenBytes::create("chimera-units", std::as_bytes(std::span(xml)));
+  if (!file) return nullptr;
   const std::scoped_lock lock(inside());
   ut_set_error_message_handler(ut_ignore);
-  ut_system* system = nullptr;
-  if (::write(descriptor, xml.data(), xml.size()) == static_cast<ssize_t>(xml.size()))
-    system = ut_read_xml(("/proc/self/fd/" + std::to_string(descriptor)).c_str());
-  ::close(descriptor);
-  return system;
+  return ut_read_xml(("/proc/self/fd/" + std::to_string(file->descriptor())).c_str());
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/release.h"
 

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 
 namespace chimera::toy {
 

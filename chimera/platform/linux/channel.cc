@@ -2,8 +2,11 @@
 #include "chimera/platform/channel.h"
 
 #include <sys/socket.h>
+#include <unistd.h>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include <cerrno>
+
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera {
 namespace {

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <ctime>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/lost_descriptor.h"
 
 namespace chimera {

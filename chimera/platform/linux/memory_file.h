@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "chimera/base/result.h"
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera {
 

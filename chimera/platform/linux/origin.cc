@@ -11,8 +11,8 @@
 #include <cstdlib>
 #include <memory>
 
-#include "chimera/platform/linux/linux_clock.h"
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera {
 namespace {

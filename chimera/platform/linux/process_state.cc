@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera {
 namespace {

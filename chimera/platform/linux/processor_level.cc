@@ -11,7 +11,7 @@
 #include <ctime>
 #include <string_view>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera {
 namespace {

@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <ctime>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "chimera/platform/clock.h"
 #include "chimera/platform/cycle_counter.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 
 namespace chimera {
 

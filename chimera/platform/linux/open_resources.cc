@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/trial/leftovers.h"
+#include "chimera/platform/open_resources.h"
 
 #include <dirent.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 
-namespace chimera::trial {
+namespace chimera {
 
 Descriptors open_descriptors() {
   Descriptors found;
@@ -42,4 +42,4 @@ void name_first_new(const Descriptors& before, const Descriptors& after, std::sp
   }
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera

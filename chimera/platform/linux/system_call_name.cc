@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/trial/system_call_name.h"
+#include "chimera/platform/system_call_name.h"
 
 #include <sys/syscall.h>
 
-namespace chimera::trial {
+namespace chimera {
 namespace {
 
 struct Name {
@@ -32,4 +32,4 @@ std::string system_call_name(std::uint64_t number) {
   return "system call " + std::to_string(number);
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// A file descriptor with an owner, and the text of a system call that failed.
 #pragma once
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include "chimera/base/message.h"
 
 namespace chimera {
 
-/// Closes unless released. Move-only.
+/// Closes unless released. Move-only. Context: setup.
 struct OwnedDescriptor {
   explicit OwnedDescriptor(int f = -1) noexcept : fd(f) {}
   OwnedDescriptor(OwnedDescriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
@@ -19,18 +16,12 @@ struct OwnedDescriptor {
     std::swap(fd, other.fd);
     return *this;
   }
-  ~OwnedDescriptor() {
-    if (fd >= 0) ::close(fd);
-  }
+  ~OwnedDescriptor();
   int release() noexcept { return std::exchange(fd, -1); }
-  int fd;
+  int fd;  ///< -1: none
 };
 
-/// "WHAT: CALL failed: REASON" by errno.
-inline Error system_error(const Message& what, const char* call) noexcept {
-  const int error = errno;
-  return (Message() << what.view() << ": " << call << " failed: " << ::strerrordesc_np(error))
-      .error(ErrorCode::kSystem);
-}
+/// "WHAT: CALL failed: REASON" by errno. Context: setup.
+Error system_error(const Message& what, const char* call) noexcept;
 
 }  // namespace chimera

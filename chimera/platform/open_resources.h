@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace chimera::trial {
+namespace chimera {
 
 /// Open file descriptors, each as "7 -> /dev/null".
 struct Descriptors {
@@ -20,4 +20,4 @@ std::uint32_t threads();
 /// Writes the first of `after` that is not in `before` to `text`, zero-terminated; nothing when there is none.
 void name_first_new(const Descriptors& before, const Descriptors& after, std::span<char> text);
 
-}  // namespace chimera::trial
+}  // namespace chimera

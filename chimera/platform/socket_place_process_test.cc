@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/keeper/socket_place.h"
+#include "chimera/platform/socket_place.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

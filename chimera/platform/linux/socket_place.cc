@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/keeper/socket_place.h"
+#include "chimera/platform/socket_place.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -7,8 +7,12 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
-#include "chimera/platform/linux/owned_descriptor.h"
+#include <cerrno>
+#include <cstring>
+
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // With real processes, in a process of their own: who adopts orphans does so for good.
-#include "chimera/keeper/orphans.h"
+#include "chimera/platform/orphans.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,7 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/platform/origin.h"
 #include "chimera/platform/process.h"
 

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copies objects into sealed memory and hands them to the dynamic linker by their place in /proc.
+#include "chimera/platform/linked_object.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+
+namespace chimera {
+namespace {
+
+constexpr int kSeals = F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
+
+Error failed(std::string_view what, const std::string& path) noexcept {
+  return (Message() << what << ": " << std::strerror(errno)).error(ErrorCode::kSystem, path);
+}
+
+Result<void> copy_all(int from, int to, const std::string& path) noexcept {
+  char block[65536];
+  for (;;) {
+    const ssize_t got = ::read(from, block, sizeof block);
+    if (got == 0) return {};
+    if (got < 0) return failed("cannot be read", path);
+    for (ssize_t done = 0; done < got;) {
+      const ssize_t put = ::write(to, block + done, static_cast<std::size_t>(got - done));
+      if (put < 0) return failed("cannot be copied into memory", path);
+      done += put;
+    }
+  }
+}
+
+/// The linker's reason without the place in /proc, which nobody else knows.
+std::string_view reason(const char* text) noexcept {
+  const std::string_view all = text == nullptr ? "unknown" : text;
+  const std::size_t colon = all.find(": ");
+  return all.starts_with("/proc/self/fd/") && colon != std::string_view::npos ? all.substr(colon + 2) : all;
+}
+
+}  // namespace
+
+Result<OwnedDescriptor> sealed_copy(int from, const char* name, const std::string& path) noexcept {
+  OwnedDescriptor copy(::memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (copy.fd < 0) return failed("no memory for a copy", path);
+  if (const auto copied = copy_all(from, copy.fd, path); !copied) return copied.error();
+  if (::fcntl(copy.fd, F_ADD_SEALS, kSeals) != 0) return failed("the copy cannot be sealed", path);
+  return copy;
+}
+
+Result<void*> link_object(OwnedDescriptor descriptor) {
+  const std::string place = "/proc/self/fd/" + std::to_string(descriptor.fd);
+  void* object = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (object == nullptr) return (Message() << reason(::dlerror())).error(ErrorCode::kBadInput);
+  (void)descriptor.release();
+  return object;
+}
+
+void* symbol_of(void* object, const char* name) noexcept { return ::dlsym(object, name); }
+
+}  // namespace chimera

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/platform/pipe.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "chimera/platform/readiness.h"
+
+namespace chimera {
+namespace {
+
+void say(const Pipe& pipe, const std::string& text) {
+  ASSERT_EQ(::write(pipe.writing.fd, text.data(), text.size()), std::ssize(text));
+}
+
+TEST(Pipe, GivesTheFirstLineWithoutItsEnd) {
+  const auto pipe = Pipe::open();
+  ASSERT_TRUE(pipe);
+  say(*pipe, "ready\nmore");
+  EXPECT_EQ(pipe->first_line(seconds(1)), "ready");
+}
+
+TEST(Pipe, CutsALongLine) {
+  const auto pipe = Pipe::open();
+  ASSERT_TRUE(pipe);
+  say(*pipe, std::string(300, 'x') + "\n");
+  EXPECT_EQ(pipe->first_line(seconds(1)), std::string(200, 'x'));
+}
+
+TEST(Pipe, GivesNothingWhenTheWriterClosesOrIsLate) {
+  auto pipe = Pipe::open();
+  ASSERT_TRUE(pipe);
+  say(*pipe, "half a line");
+  EXPECT_EQ(pipe->first_line(milliseconds(40)), "");
+  pipe->writing = OwnedDescriptor();
+  EXPECT_EQ(pipe->first_line(seconds(100)), "");
+}
+
+TEST(Readiness, SeesWhatIsReadableAndLeavesNegativeNumbersOut) {
+  const auto pipe = Pipe::open();
+  ASSERT_TRUE(pipe);
+  const int descriptors[] = {-1, pipe->reading.fd};
+  EXPECT_FALSE(await_readable(descriptors, milliseconds(1)));
+  EXPECT_FALSE(await_readable(descriptors, Nanoseconds{-1}));
+  say(*pipe, "x");
+  EXPECT_TRUE(await_readable(descriptors, kNever));
+}
+
+TEST(Readiness, AClosedPipeEndsTheWait) {
+  auto pipe = Pipe::open();
+  ASSERT_TRUE(pipe);
+  pipe->writing = OwnedDescriptor();
+  const int descriptors[] = {pipe->reading.fd};
+  EXPECT_TRUE(await_readable(descriptors, seconds(100)));
+}
+
+}  // namespace
+}  // namespace chimera
