@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Floors 0, 2, 3 and 4 build freestanding and without exceptions or RTTI, and ask for no heap, stream, thread or file.
-Their hosted halves lie in subfolders (base/hosted), which a microcontroller replaces."""
+"""Floors 0, 2, 3 and 4, what a cycle needs of floor 5, and components build freestanding for x86-64 and for a 32-bit
+microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for no heap, stream, thread or file.
+The hosted halves of these floors lie in subfolders (base/hosted), which a microcontroller replaces."""
 import concurrent.futures
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,18 +16,34 @@ import sources  # noqa: E402
 
 FLOORS = ("base", "table", "task", "schedule")
 SOURCE = re.compile(rf"chimera/({'|'.join(FLOORS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.cc$")
-COMPILE = ("g++", "-std=c++20", "-O1", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
+CYCLE = ("chimera/runtime/job_step.cc", "chimera/runtime/outbox.cc", "chimera/runtime/safety.cc",
+         "chimera/runtime/tap_ring.cc")
+COMPONENTS = ("library/gain/gain.cc", "library/pid_joint/pid_joint.cc", "library/tderiv/tderiv.cc")
+FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
+ARM = "arm-none-eabi-g++"
+MACHINES = {"x86-64": ("g++", "-O1", *FREESTANDING),
+            "ARM": (ARM, "-Os", "-mcpu=cortex-m3", "-mthumb", *FREESTANDING)}
 # All that an object may ask of the outside: our own names, and what every C library for microcontrollers has.
 OURS = re.compile(r"_ZN[KVR]*7chimera|_ZT[VSI]N7chimera|chimera_|_GLOBAL_OFFSET_TABLE_$|__cxa_pure_virtual$")
-C_MEMORY = {"memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strcmp", "strncmp"}
+C_MEMORY = {"memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strcmp", "strncmp", "strcpy", "strncpy"}
+# What a processor does not do itself: double arithmetic, division, and the 64-bit atomics of a single context.
+ARITHMETIC = re.compile(r"__aeabi_(?!read_tp)\w+$|__atomic_(load|store)_8$")
 # std::string_view and std::span out of range: ends the program, never in a cycle.
 ENDING = re.compile(r"_ZSt\d+__throw_\w+|abort$|_ZSt21__glibcxx_assert_failPKciS0_S0_$")
+# The text of a refused output, and the making and declaring of a component: setup, to be replaced on a target.
+TEXT = {"snprintf"}
+DECLARING = re.compile(r"snprintf$|_ZSt7nothrow$|_Zn[wa][jm]|_Zd[la]Pv|__aeabi_read_tp$|__tls_get_addr$")
 
 
-def undefined_symbols(root, name, folder):
+def is_known(name, symbol):
+    return (OURS.match(symbol) or ENDING.match(symbol) or ARITHMETIC.match(symbol) or symbol in C_MEMORY
+            or (name in CYCLE and symbol in TEXT) or (name in COMPONENTS and DECLARING.match(symbol)))
+
+
+def undefined_symbols(root, name, machine, folder):
     """(symbols the object asks for, what the compiler said)"""
-    target = pathlib.Path(folder, name.replace("/", "_") + ".o")
-    command = [*COMPILE, "-I", str(root), "-c", str(root / name), "-o", str(target)]
+    target = pathlib.Path(folder, machine + name.replace("/", "_") + ".o")
+    command = [*MACHINES[machine], "-I", str(root), "-c", str(root / name), "-o", str(target)]
     compiled = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, LC_ALL="C"))
     if compiled.returncode != 0:
         return [], compiled.stderr
@@ -33,35 +51,69 @@ def undefined_symbols(root, name, folder):
     return [line.split()[0] for line in listing.stdout.splitlines() if line.strip()], ""
 
 
-def complaints_about(root, name, folder):
-    symbols, said = undefined_symbols(root, name, folder)
+def complaints_about(root, name, machine, folder):
+    symbols, said = undefined_symbols(root, name, machine, folder)
     if said:
         error = next((line for line in said.splitlines() if "error:" in line), said.splitlines()[0])
-        return [f"{name}: does not compile freestanding: {error.split('error: ', 1)[-1]}"]
-    return [f"{name}: asks for {symbol}" for symbol in symbols
-            if not (OURS.match(symbol) or ENDING.match(symbol) or symbol in C_MEMORY)]
+        return [f"{name}: does not compile freestanding for {machine}: {error.split('error: ', 1)[-1]}"]
+    return [f"{name}: asks for {symbol} on {machine}" for symbol in symbols if not is_known(name, symbol)]
 
 
-def check(root):
-    names = [name for name in sources.files(root) if SOURCE.match(name)]
+def check(root, machine):
+    there = list(sources.files(root))
+    names = [name for name in there if SOURCE.match(name) or name in CYCLE or name in COMPONENTS]
+    if "CONTRIBUTING.md" in there:  # not of a planted tree
+        yield from (f"{name}: is not there, but tools/check_freestanding.py lists it"
+                    for name in (*CYCLE, *COMPONENTS) if name not in names)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for complaints in pool.map(lambda name: complaints_about(root, name, folder), names):
+        for complaints in pool.map(lambda name: complaints_about(root, name, machine, folder), names):
             yield from complaints
 
 
 _NAME = "chimera/table/x.cc"
-PLANTED = (
-    ({_NAME: "#include <cstring>\nnamespace chimera { void f(char* a, int n) { std::memset(a, n, n); } }\n"}, None),
-    ({"chimera/text/x.cc": "#include <string>\nstd::string s(100, 'x');\n"}, None),
-    ({"chimera/table/x_test.cc": "int* p = new int;\n"}, None),
-    ({_NAME: "int* f() { return new int; }\n"}, f"{_NAME}: asks for _Znwm"),
-    ({_NAME: "#include <cstdlib>\nvoid* f() { return std::malloc(8); }\n"}, f"{_NAME}: asks for malloc"),
-    ({_NAME: "#include <cstdio>\nvoid f(int n) { std::printf(\"%d\", n); }\n"}, f"{_NAME}: asks for printf"),
-    ({_NAME: "#include <pthread.h>\nvoid f(pthread_mutex_t* m) { pthread_mutex_lock(m); }\n"},
-     f"{_NAME}: asks for pthread_mutex_lock"),
-    ({_NAME: "void f() { throw 1; }\n"},
-     f"{_NAME}: does not compile freestanding: exception handling disabled, use '-fexceptions' to enable"),
-)
+_COMPONENT = '#include <new>\n#include <cstdio>\nint* f() { return new (std::nothrow) int; }\n'
+_PRINTF = "#include <cstdio>\nvoid f(int n) { std::printf(\"%d\", n); }\n"
+_MUTEX = {_NAME: "#include <mutex>\nstd::mutex m;\n"}
+
+
+def planted(machine):
+    def asks(symbol, name=_NAME):
+        return f"{name}: asks for {symbol} on {machine}"
+
+    yield {_NAME: "#include <cstring>\nnamespace chimera { void f(char* a, int n) { std::memset(a, n, n); } }\n"}, None
+    yield {_NAME: "double f(double a, long long b) { return a / static_cast<double>(b); }\n"}, None
+    yield {"chimera/text/x.cc": "#include <string>\nstd::string s(100, 'x');\n"}, None
+    yield {"chimera/table/x_test.cc": "int* p = new int;\n"}, None
+    yield {COMPONENTS[0]: _COMPONENT}, None
+    yield ({"CONTRIBUTING.md": "", **dict.fromkeys((*CYCLE, *COMPONENTS[1:]), "")},
+           f"{COMPONENTS[0]}: is not there, but tools/check_freestanding.py lists it")
+    yield {_NAME: "int* f() { return new int; }\n"}, asks("_Znwj" if machine == "ARM" else "_Znwm")
+    yield {_NAME: "#include <cstdlib>\nvoid* f() { return std::malloc(8); }\n"}, asks("malloc")
+    yield {_NAME: _PRINTF}, asks("printf")
+    yield {CYCLE[0]: _PRINTF}, asks("printf", CYCLE[0])
+    yield {_NAME: "extern int g();\nint f() { return g(); }\n"}, asks("_Z1gv")
+    yield ({_NAME: "void f() { throw 1; }\n"},
+           f"{_NAME}: does not compile freestanding for {machine}: "
+           "exception handling disabled, use '-fexceptions' to enable")
+    if machine == "x86-64":
+        yield ({_NAME: "#include <pthread.h>\nvoid f(pthread_mutex_t* m) { pthread_mutex_lock(m); }\n"},
+               asks("pthread_mutex_lock"))
+    if machine == "ARM":
+        yield (_MUTEX, f"{_NAME}: does not compile freestanding for ARM: "
+                       "'mutex' in namespace 'std' does not name a type")
+        yield {_NAME: "static_assert(sizeof(void*) == 4);\n"}, None
+
+
+def main():
+    code = 0
+    for machine, command in MACHINES.items():
+        if shutil.which(command[0]):
+            code = code or sources.main(lambda root: check(root, machine), list(planted(machine)))  # noqa: B023
+        elif code == 0:
+            print(f"skipped: {command[0]} is not installed, so nothing is known of {machine}")
+            code = 77
+    return code
+
 
 if __name__ == "__main__":
-    sources.run(check, PLANTED)
+    sys.exit(main())

@@ -18,13 +18,17 @@ struct Literal {
   const char* text;
 };
 
+/// Called while the compiler evaluates a name, which ends the compilation at the line that says why. Has no body.
+void refused(const char* why);
+
 /// [a-z][a-z0-9_]*, at most 64 letters, for the first `size` characters.
 consteval void check_name(const char* name, std::size_t size) {
-  if (size == 0 || size > 64 || *name < 'a' || *name > 'z') throw "a name begins with a small letter: \"r\", not \"R\"";
+  if (size == 0 || size > 64 || *name < 'a' || *name > 'z')
+    refused("a name begins with a small letter: \"r\", not \"R\"");
   for (std::size_t i = 0; i < size; ++i) {
     const char c = name[i];
     if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9') && c != '_')
-      throw "a name has small letters, digits and '_' only";
+      refused("a name has small letters, digits and '_' only");
   }
 }
 
@@ -40,7 +44,7 @@ struct PortName {
 struct RepeatedName {
   consteval RepeatedName(const char* literal) : text(literal) {  // NOLINT: a literal is a name
     const std::size_t size = std::char_traits<char>::length(literal);
-    if (size == 0 || literal[size - 1] != '*') throw "the name of a repeated port ends in '*'";
+    if (size == 0 || literal[size - 1] != '*') refused("the name of a repeated port ends in '*'");
     check_name(literal, size - 1);
   }
   const char* text;

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "chimera/base/assert.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/fields.h"
 

@@ -15,7 +15,7 @@
 
 #include "chimera/manager/peers.h"
 #include "chimera/platform/doorbell.h"
-#include "chimera/platform/linux/linux_clock.h"
+#include "chimera/platform/linux_clock.h"
 #include "chimera/task/fault_record.h"
 
 namespace chimera::manager {
