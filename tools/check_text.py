@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every tracked file: a name that says what it is. Every tracked text: the licence line, no path of one machine, no
-word about a workplace, nothing left to do."""
+word about a workplace, nothing left to do. Every production source x.cc: a sentence that says what it does."""
 import pathlib
 import re
 import sys
@@ -49,6 +49,16 @@ def is_known(name):
     return all(PART.fullmatch(part) for part in parts) and (free or name in NAMES or name.endswith(ENDINGS))
 
 
+def wants_purpose(name):
+    return (re.match(r"(chimera/(base|platform|table|task|schedule|load|keeper|trial|record|draw)|library)/.*\.cc$", name)
+            and not re.search(r"/testing/|_(test|fuzz|stress)\.cc$", name))
+
+
+def has_purpose(lines):
+    """A comment line of three words or more follows the licence."""
+    return len(lines) > 1 and re.match(r"// ?(\S+\s+){2}\S", lines[1]) is not None
+
+
 def check(root):
     for name in sources.files(root):
         if not is_known(name):
@@ -61,6 +71,8 @@ def check(root):
         head = lines[1:2] if lines and lines[0].startswith("#!") else lines[:1]
         if needs_licence(name) and not (head and LICENCE in head[0]):
             yield f"{name}:1: the first line lacks '{LICENCE}'"
+        if wants_purpose(name) and not has_purpose(lines):
+            yield f"{name}:2: a sentence is missing that says what this file does"
         for number, line in enumerate(lines, 1):
             for what, pattern in FORBIDDEN:
                 match = pattern.search(line)
@@ -88,6 +100,12 @@ PLANTED = (
     ({"a.cc": _HEAD + "// 1994 paper, section 3.3. 1994 paper, section 2, figure 4\n"}, None),
     ({"a.cc": _HEAD + "// 1994 paper, " + "section 4\n"},
      "a.cc:2: a section that the 1994 paper does not have: '1994 paper, " + "section 4'"),
+    ({"chimera/base/x.cc": _HEAD + "// Adds one number to another.\n"}, None),
+    ({"chimera/base/x.cc": _HEAD + "#include <new>\n"},
+     "chimera/base/x.cc:2: a sentence is missing that says what this file does"),
+    ({"library/gain/gain.cc": _HEAD + "// ---\n"},
+     "library/gain/gain.cc:2: a sentence is missing that says what this file does"),
+    ({"chimera/base/x_test.cc": _HEAD, "chimera/base/testing/x.cc": _HEAD, "bench/x.cc": _HEAD}, None),
     ({"a.cc": _HEAD + "// TO" + "DO\n"}, "a.cc:2: something left to do: 'TO" + "DO'"),
 )
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reduces arguments exactly, evaluates minimax polynomials, and puts the parts together in a fixed order of
+// operations.
 #include "chimera/base/math.h"
 
 #include <bit>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a graph of tasks in the language of Graphviz.
 #include <map>
 
 #include "chimera/draw/graph.h"

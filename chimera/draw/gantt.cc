@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws a schedule as an SVG chart: a row a task, with marks for releases and deadlines.
 #include "chimera/draw/gantt.h"
 
 #include <algorithm>

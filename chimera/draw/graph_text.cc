@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a graph of tasks as plain text: each task a box with its inputs on the left and its outputs on the right.
 #include <algorithm>
 #include <numeric>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sorts tasks into columns by data flow, orders each column by its neighbours, and measures boxes in pixels.
 #include "chimera/draw/layout.h"
 
 #include <algorithm>

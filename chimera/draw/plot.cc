@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws curves as SVG panels with axes, linear or logarithmic.
 #include "chimera/draw/plot.h"
 #include "chimera/draw/svg_text.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Places the lines between the boxes of a picture and writes them as SVG paths.
 #include "chimera/draw/route.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws a graph of tasks, laid out and routed, as an SVG picture.
 #include <algorithm>
 
 #include "chimera/draw/graph.h"

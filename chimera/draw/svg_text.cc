@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Escapes texts for SVG.
 #include "chimera/draw/svg_text.h"
 
 namespace chimera::draw {

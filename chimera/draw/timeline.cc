@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a schedule as a line of letters, one for each unit of time, with a legend.
 #include "chimera/draw/timeline.h"
 
 #include <algorithm>

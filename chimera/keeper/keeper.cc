@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The keeper's loop: wait, take what has happened, watch the manager, and go through the phases of the end.
 #include "chimera/keeper/keeper.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Starts the client of a run, and counts its deaths.
 #include "chimera/keeper/kept_face.h"
 
 #include <csignal>

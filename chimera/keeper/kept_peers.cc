@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Starts and restarts the processes of a subsystem, hands their memory round, and publishes who lives.
 #include "chimera/keeper/kept_peers.h"
 
 #include <algorithm>

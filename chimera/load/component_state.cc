@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Allocates the state of a component with its own alignment.
 #include "chimera/load/component_state.h"
 
 #include <cstring>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Compares two descriptors of one component and says where they differ.
 #include "chimera/load/descriptor.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks the headers, segments and exported symbols of an ELF file against the bytes that it has.
 #include "chimera/load/elf_check.h"
 
 #include <elf.h>

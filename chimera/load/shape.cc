@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the text of a shape.
 #include "chimera/load/shape.h"
 
 #include <charconv>

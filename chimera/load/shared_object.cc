@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Opens a sealed copy of a component's object and finds the components that it offers.
 #include "chimera/load/shared_object.h"
 
 #include "chimera/base/hosted/ordinary_file.h"

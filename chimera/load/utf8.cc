@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Decodes UTF-8 and refuses overlong forms and surrogates.
 #include "chimera/load/utf8.h"
 
 #include <cstdint>

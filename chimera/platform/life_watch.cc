@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Judges samples of a process: how long its loop is silent, and from its state in the kernel why.
 #include "chimera/platform/life_watch.h"
 
 namespace chimera {

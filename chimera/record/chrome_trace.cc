@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes rows of the tap as events of the Chrome trace format.
 #include "chimera/record/chrome_trace.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sorts the tasks of a CPU into levels and proves or refutes the deadlines level by level.
 #include "chimera/schedule/analysis.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Adds up the worst age along a chain of periodic tasks.
 #include "chimera/schedule/data_age.h"
 
 #include "chimera/base/assert.h"

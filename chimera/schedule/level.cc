@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks the processor demand of one level at each of its deadlines within the longest busy period.
 #include "chimera/schedule/level.h"
 
 #include "chimera/base/assert.h"

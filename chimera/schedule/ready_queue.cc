@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keeps classes of tasks in two heaps, by next release and by urgency, over memory that it is given.
 #include "chimera/schedule/ready_queue.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Iterates the response time equations of fixed priorities to their fixed point, preemptive and in an executive.
 #include "chimera/schedule/response.h"
 
 namespace chimera {

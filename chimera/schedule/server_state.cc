@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Replenishes and charges the capacity of deferrable and sporadic servers.
 #include "chimera/schedule/server_state.h"
 
 namespace chimera {

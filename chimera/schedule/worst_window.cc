@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Plays the worst window of a set of tasks: all releases at once, all budgets used up.
 #include "chimera/schedule/worst_window.h"
 
 #include <algorithm>

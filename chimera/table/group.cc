@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks the memory of a group, and repeats a read that the writer overtook.
 #include "chimera/table/group.h"
 
 #include "chimera/base/assert.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Plans offsets of groups and variables, and hashes the plan.
 #include "chimera/table/layout.h"
 
 #include "chimera/base/assert.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lays out the two halves of a local copy of a group.
 #include "chimera/table/local_group.h"
 
 #include "chimera/base/assert.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes and checks the header of a segment, and finds groups in it.
 #include "chimera/table/segment.h"
 
 #include <cstring>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes inputs that are read in place, copied, or refreshed together with others.
 #include "chimera/table/transfer.h"
 
 namespace chimera {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads and writes the values of an input of the component under test, within the limits that its port declares.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Turns the records of the test runs of a component into judgements, one line each.
 #include "chimera/trial/judge.h"
 
 #include <algorithm>

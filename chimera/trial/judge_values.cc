@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks each published value of a run for being written, finite and within the range of its port.
 #include "chimera/trial/judge_values.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Starts the program at the other end of a device by a shell that gives it a pipe for its first line.
 #include "chimera/trial/partner.h"
 
 #include <csignal>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Goes through the rows, faults and bad inputs of a test run inside of the child.
 #include "chimera/trial/plays.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lays out the record of a run in memory shared with the child.
 #include "chimera/trial/record.h"
 
 #include <new>

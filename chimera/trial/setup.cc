@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads NAME.test.yaml and makes a description with the component as its only task.
 #include "chimera/trial/setup.h"
 
 #include <algorithm>

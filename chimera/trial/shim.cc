@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Counts allocations and time around each method of a component, and answers with faults on demand.
 #include "chimera/trial/shim.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Builds one task in virtual time, and feeds, signals and cycles it by hand.
 #include "chimera/trial/solo.h"
 
 #include <cstring>

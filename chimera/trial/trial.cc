@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs a component in forked children: counted under trace, timed three times, and with faults and bad inputs.
 #include "chimera/trial/trial.h"
 
 #include <algorithm>

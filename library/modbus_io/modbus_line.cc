@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Connects to a Modbus device by libmodbus, and reads and writes its registers.
 #include "library/modbus_io/modbus_line.h"
 
 #include <modbus/modbus.h>

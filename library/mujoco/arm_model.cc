@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the chain of hinges in a MuJoCo model, with its limits, and derives its Denavit-Hartenberg constants.
 #include "library/mujoco/arm_model.h"
 
 #include <mujoco/mujoco.h>

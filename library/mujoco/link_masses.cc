@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Adds up mass, centre and inertia of the bodies that move with each joint.
 #include "library/mujoco/link_masses.h"
 
 #include <mujoco/mujoco.h>

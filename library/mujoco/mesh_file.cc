@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks STL and OBJ files for their numbers of triangles and vertices.
 #include "chimera/base/hosted/ordinary_file.h"
 #include "library/mujoco/mesh_file.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Looks for a ROS package in the folders around a URDF file and in the package paths of the environment.
 #include "library/mujoco/mesh_folders.h"
 
 #include <algorithm>

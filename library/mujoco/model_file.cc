@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Loads MJCF and URDF files, and tries again without the meshes that MuJoCo refuses.
 #include "library/mujoco/model_file.h"
 
 #include <mujoco/mujoco.h>

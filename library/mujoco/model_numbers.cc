@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks the numbers in the attributes of a model file.
 #include "library/mujoco/model_numbers.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Replaces MuJoCo's handlers of errors and warnings, and returns from an error by longjmp.
 #include "library/mujoco/mujoco_guard.h"
 
 #include <csetjmp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Integrates a simulated arm with its drives in sub-steps of at most 0.5 ms.
 #include "library/mujoco/simulated_arm.h"
 
 #include <mujoco/mujoco.h>

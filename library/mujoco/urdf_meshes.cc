@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Goes through the tags of a URDF file, reads its collision meshes and leaves its pictures out.
 #include "library/mujoco/urdf_meshes.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Loads the model of the Puma 560 and sets its payload and friction.
 #include "library/puma_torque/puma_arm.h"
 
 #include <mujoco/mujoco.h>

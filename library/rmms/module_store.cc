@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the modules of an arm from a text file and writes a MuJoCo model of them.
 #include "chimera/base/hosted/ordinary_file.h"
 #include "library/rmms/module_store.h"
 

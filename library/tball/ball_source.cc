@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Opens devices, terminals and recordings, and turns their bytes into events of the ball.
 #include "library/tball/ball_source.h"
 
 #include <fcntl.h>

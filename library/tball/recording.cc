@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads recorded input events from their text.
 #include "library/tball/recording.h"
 
 #include <cerrno>

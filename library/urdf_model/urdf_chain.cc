@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Walks from the root of a URDF model to a tip and collects its joints.
 #include "chimera/base/hosted/ordinary_file.h"
 #include "library/urdf_model/urdf_chain.h"
 

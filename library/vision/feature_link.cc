@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Opens a datagram socket by its address, and reads and writes lines of features.
 #include "library/vision/feature_link.h"
 
 #include <arpa/inet.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Replaces, character by character, everything in a UTF-8 text that a terminal would act on.
 #include "chimera/base/hosted/terminal_text.h"
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// An alarm is a futex wait whose instant another thread may change.
 #include "chimera/platform/alarm.h"
 
 #include <sys/timerfd.h>

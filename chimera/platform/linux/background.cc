@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lowers the priority of a process, bounds its memory, and lets the kernel end it first when memory runs out.
 #include "chimera/platform/background.h"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sends and receives messages with descriptors over a pair of Unix sockets.
 #include "chimera/platform/channel.h"
 
 #include <sys/socket.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Claims a CPU by binding an abstract Unix socket with its number: the kernel gives the claim back at the holder's
+// death.
 #include "chimera/platform/cpu_claim.h"
 
 #include <sys/socket.h>

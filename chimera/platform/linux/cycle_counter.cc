@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Judges whether the time stamp counter of this machine is sound, and measures its rate against CLOCK_MONOTONIC.
 #include "chimera/platform/cycle_counter.h"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Waits by poll for a descriptor and for an eventfd, which is the bell.
 #include "chimera/platform/descriptor_bell.h"
 
 #include <poll.h>

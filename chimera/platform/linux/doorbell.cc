@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Waits and wakes by futex.
 #include "chimera/platform/doorbell.h"
 
 #include <linux/futex.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Copies bytes into a memfd, seals it against every change, and maps it.
 #include "chimera/platform/frozen_bytes.h"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Halts a thread inside of a signal handler, which sleeps on a futex until the thread may go on.
 #include "chimera/platform/halt.h"
 
 #include <linux/futex.h>

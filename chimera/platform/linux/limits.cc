@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Compares resource limits of this process with the least that it needs.
 #include "chimera/platform/limits.h"
 
 #include <sys/resource.h>

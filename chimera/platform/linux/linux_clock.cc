@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads CLOCK_MONOTONIC and sleeps until an instant of it.
 #include "chimera/platform/linux_clock.h"
 
 #include <cerrno>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Ends a process that has lost its descriptors.
 #include "chimera/platform/lost_descriptor.h"
 
 #include <unistd.h>

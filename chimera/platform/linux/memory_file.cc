@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes, judges and maps the memfds of MemoryRegion and SharedPages.
 #include "chimera/platform/linux/memory_file.h"
 
 #include <fcntl.h>

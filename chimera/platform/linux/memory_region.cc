@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes memory that one process writes and others read: mapped writable once, then sealed against further writers.
 #include "chimera/platform/memory_region.h"
 
 #include <fcntl.h>

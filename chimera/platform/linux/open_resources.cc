@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lists the descriptors and threads of this process from /proc.
 #include "chimera/platform/open_resources.h"
 
 #include <dirent.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the environment, name and children of processes from /proc, and ends all processes of one origin.
 #include "chimera/platform/origin.h"
 
 #include <dirent.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reaps adopted processes, and ends those whose real-time unit has ended.
 #include "chimera/platform/orphans.h"
 
 #include <sys/wait.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Starts programs by fork and exec with nothing inherited but what is named, and holds them by pidfd.
 #include "chimera/platform/process.h"
 
 #include <fcntl.h>

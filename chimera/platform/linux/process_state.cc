@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the state, processor time and tracer of a process from /proc.
 #include "chimera/platform/process_state.h"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Changes SCHED_FIFO priorities of threads and reads the clocks of their execution time.
 #include "chimera/platform/processor_level.h"
 
 #include <fcntl.h>

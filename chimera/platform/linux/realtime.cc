@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Asks the kernel for SCHED_FIFO, a CPU and locked memory, reads back what holds, and reports what is missing.
 #include "chimera/platform/realtime.h"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes memory that several processes write: a memfd whose size is sealed.
 #include "chimera/platform/shared_pages.h"
 
 #include <fcntl.h>

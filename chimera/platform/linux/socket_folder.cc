@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the folder of the sockets and judges who may write to it.
 #include "chimera/platform/socket_folder.h"
 
 #include <sys/stat.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the listening socket of a subsystem under the lock of its folder, and removes it.
 #include "chimera/platform/socket_place.h"
 
 #include <dirent.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Occupies closed standard descriptors, and remembers the first error of writing to a standard stream.
 #include "chimera/platform/standard_output.h"
 
 #include <fcntl.h>

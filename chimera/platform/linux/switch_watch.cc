@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Tells by a restartable sequence (rseq) of the kernel whether a thread was taken off its processor.
 #include "chimera/platform/switch_watch.h"
 
 #include <sys/rseq.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Names of the system calls that components make most.
 #include "chimera/platform/system_call_name.h"
 
 #include <sys/syscall.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sets the default stack size of new threads and restores it.
 #include "chimera/platform/thread_stack.h"
 
 #include <pthread.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Clones a process that shares the memory of this one and outlives it.
 #include "chimera/platform/undertaker.h"
 
 #include <linux/close_range.h>

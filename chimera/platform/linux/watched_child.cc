@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Waits for a forked child, and follows its system calls by ptrace.
 #include "chimera/platform/watched_child.h"
 
 #include <sys/ptrace.h>

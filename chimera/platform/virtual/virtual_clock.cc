@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Advances virtual time.
 #include "chimera/platform/virtual/virtual_clock.h"
 
 #include "chimera/base/assert.h"
