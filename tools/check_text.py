@@ -50,7 +50,8 @@ def is_known(name):
 
 
 def wants_purpose(name):
-    return (re.match(r"(chimera/(base|platform|table|task|schedule|load|keeper|trial|record|draw)|library)/.*\.cc$", name)
+    floors = "base|platform|table|task|schedule|load|keeper|component_test|record|draw"
+    return (re.match(rf"(chimera/({floors})|library)/.*\.cc$", name)
             and not re.search(r"/testing/|_(test|fuzz|stress)\.cc$", name))
 
 

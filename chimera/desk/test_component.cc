@@ -10,9 +10,9 @@
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/message.h"
 #include "chimera/catalogue/descriptor_json.h"
-#include "chimera/trial/judge.h"
-#include "chimera/trial/partner.h"
-#include "chimera/trial/setup.h"
+#include "chimera/component_test/judge.h"
+#include "chimera/component_test/partner.h"
+#include "chimera/component_test/setup.h"
 
 namespace chimera::desk {
 namespace {
@@ -45,9 +45,9 @@ Result<LibraryEntry> entry_of_object(const std::string& path, Nanoseconds patien
     entry.descriptor = *std::move(descriptor);
     return entry;
   }
-  trial::TrialOptions options;
+  component_test::TrialOptions options;
   options.patience = patience;
-  const auto text = trial::descriptor_text(entry.object_file, options);
+  const auto text = component_test::descriptor_text(entry.object_file, options);
   if (!text) return text.error();
   auto descriptor = parse_descriptor(*text);
   if (!descriptor) return descriptor.error();
@@ -64,56 +64,56 @@ class OneTest {
     entry_.object_file = fs::absolute(entry.object_file).string();  // the child lives in another folder
   }
 
-  Result<trial::TrialReport> run() {
-    trial::Setup setup;
+  Result<component_test::TrialReport> run() {
+    component_test::Setup setup;
     setup.file = options_.setup.empty() ? beside(entry_, ".test.yaml") : options_.setup;
     setup.folder = fs::absolute(setup.file.empty() ? entry_.object_file : setup.file).parent_path().string();
     if (auto partner = start_partner(setup); !partner) return partner.error();
-    const Verdict verdict = trial::arrange(setup, entry_, units_);
+    const Verdict verdict = component_test::arrange(setup, entry_, units_);
     if (!verdict.configuration) return refuse(verdict.report);
     const Configuration& configuration = *verdict.configuration;
-    const auto form = trial::InputForm::of(configuration, entry_.descriptor);
+    const auto form = component_test::InputForm::of(configuration, entry_.descriptor);
     std::string source;
     const auto inputs = read_inputs(configuration, form, source);
     if (!inputs) return inputs.error();
-    trial::TrialOptions how;
+    component_test::TrialOptions how;
     how.patience = options_.patience;
     how.folder = setup.folder;
-    const auto trial = trial::run_trial(entry_, configuration, form, *inputs, how);
+    const auto trial = component_test::run_trial(entry_, configuration, form, *inputs, how);
     if (!trial) return trial.error();
-    trial::TrialReport report =
-        trial::judge(*trial, {entry_.descriptor, configuration, *inputs, partner_.has_value()});
+    component_test::TrialReport report =
+        component_test::judge(*trial, {entry_.descriptor, configuration, *inputs, partner_.has_value()});
     report.inputs = source;
     return report;
   }
 
  private:
-  Result<void> start_partner(trial::Setup& setup) {
+  Result<void> start_partner(component_test::Setup& setup) {
     const std::string program = beside(entry_, ".test.partner");
     if (program.empty()) return {};
-    auto partner = trial::Partner::start(program, kPartnerPatience);
+    auto partner = component_test::Partner::start(program, kPartnerPatience);
     if (!partner) return partner.error();
     partner_.emplace(*std::move(partner));
     setup.partner_text = partner_->line();
     return {};
   }
-  trial::TrialReport refuse(const Report& report) const {
-    trial::TrialReport said;
+  component_test::TrialReport refuse(const Report& report) const {
+    component_test::TrialReport said;
     said.component = entry_.descriptor.name;
     std::string text = report.text();
     text += "docs/formats/component-test.md: what " + said.component + ".test.yaml beside the component may say";
-    said.judgements.push_back({"setup", trial::Finding::kFails, text});
+    said.judgements.push_back({"setup", component_test::Finding::kFails, text});
     return said;
   }
-  Result<trial::Inputs> read_inputs(const Configuration& configuration, const trial::InputForm& form,
-                                    std::string& source) const {
+  Result<component_test::Inputs> read_inputs(const Configuration& configuration, const component_test::InputForm& form,
+                                             std::string& source) const {
     const std::string file = options_.inputs.empty() ? beside(entry_, ".test.csv") : options_.inputs;
     if (file.empty()) {
       std::size_t payload = 0;
-      (void)trial::output_places(configuration.spec(), payload);
-      const std::size_t most = kMostMemory / (form.bytes() + payload + sizeof(trial::RowRecord));
+      (void)component_test::output_places(configuration.spec(), payload);
+      const std::size_t most = kMostMemory / (form.bytes() + payload + sizeof(component_test::RowRecord));
       source = "generated, seed " + std::to_string(options_.seed);
-      return trial::Inputs::generated(form, options_.seed, std::clamp(most, kFewest, options_.cycles));
+      return component_test::Inputs::generated(form, options_.seed, std::clamp(most, kFewest, options_.cycles));
     }
     source = file;
     const auto text = read_ordinary(file, kMostRecordingBytes + 1);
@@ -121,17 +121,19 @@ class OneTest {
     if (text->size() > kMostRecordingBytes)
       return (Message() << "has more than 256 MiB; a recording for a test is shorter").error(ErrorCode::kRefused, file);
     const Nanoseconds period = configuration.spec().tasks[0].period;
-    return trial::Inputs::recorded(form, *text, file, options_.names, period, kFewest);
+    return component_test::Inputs::recorded(form, *text, file, options_.names, period, kFewest);
   }
 
   const TestOptions& options_;
   LibraryEntry entry_;
   const UnitSystem& units_;
-  std::optional<trial::Partner> partner_;
+  std::optional<component_test::Partner> partner_;
 };
 
-const char* word(trial::Finding finding) {
-  return finding == trial::Finding::kOk ? "ok" : finding == trial::Finding::kFails ? "fails" : "not judged";
+const char* word(component_test::Finding finding) {
+  return finding == component_test::Finding::kOk      ? "ok"
+         : finding == component_test::Finding::kFails ? "fails"
+                                                      : "not judged";
 }
 
 std::string short_text(double ns) {
@@ -142,11 +144,11 @@ std::string short_text(double ns) {
   return text;
 }
 
-std::string text_of(const trial::TrialReport& report) {
+std::string text_of(const component_test::TrialReport& report) {
   std::string text = report.component + ": " + (report.passes() ? "passes" : "FAILS");
   if (!report.inputs.empty()) text += " (inputs: " + report.inputs + ")";
   text += "\n";
-  for (const trial::Judgement& one : report.judgements) {
+  for (const component_test::Judgement& one : report.judgements) {
     char head[64];
     std::snprintf(head, sizeof head, "  %-10s  %-12s  ", word(one.verdict), one.name.c_str());
     std::string body = one.text;
@@ -160,9 +162,9 @@ std::string text_of(const trial::TrialReport& report) {
   return text;
 }
 
-std::string json_of(const trial::TrialReport& report) {
+std::string json_of(const component_test::TrialReport& report) {
   std::string rows;
-  for (const trial::Judgement& one : report.judgements)
+  for (const component_test::Judgement& one : report.judgements)
     rows += std::string(rows.empty() ? "" : ", ") + "{\"name\": " + json_string(one.name) + ", \"finding\": \"" +
             word(one.verdict) + "\", \"text\": " + json_string(one.text) + "}";
   return "{\"component\": " + json_string(report.component) + ", \"passes\": " + (report.passes() ? "true" : "false") +

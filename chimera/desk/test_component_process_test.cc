@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 class TestComponent : public ::testing::Test {
  protected:
-  TestComponent() : folder_(fs::temp_directory_path() / ("chimera_trial_" + std::to_string(::getpid()))) {
+  TestComponent() : folder_(fs::temp_directory_path() / ("chimera_component_test_" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
     workplace_.component_folders = {build_path("components")};
     workplace_.unit_files = {source_path("share/chimera/units.xml")};

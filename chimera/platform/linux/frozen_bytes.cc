@@ -3,6 +3,9 @@
 #include "chimera/platform/frozen_bytes.h"
 
 #include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 
 #include "chimera/platform/linux/memory_file.h"
 

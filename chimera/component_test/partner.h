@@ -8,7 +8,7 @@
 #include "chimera/base/time.h"
 #include "chimera/platform/process.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
 /// Context: setup; may block. Movable; ends the program with it.
 class Partner {
@@ -28,4 +28,4 @@ class Partner {
   std::string line_;
 };
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

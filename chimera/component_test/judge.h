@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "chimera/trial/trial.h"
+#include "chimera/component_test/trial.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
 enum class Finding : std::uint8_t { kOk, kFails, kNotJudged };
 
 struct Judgement {
-  std::string name;   ///< "outputs"
+  std::string name;  ///< "outputs"
   Finding verdict = Finding::kOk;
-  std::string text;   ///< one sentence without a full stop
+  std::string text;  ///< one sentence without a full stop
 };
 
 /// Measured, not judged.
@@ -26,7 +26,7 @@ struct Measured {
 
 struct TrialReport {
   std::string component;
-  std::string inputs;               ///< where they came from
+  std::string inputs;  ///< where they came from
   std::vector<Judgement> judgements;
   Measured measured;
 
@@ -44,7 +44,7 @@ struct Circumstances {
 /// Judges everything; each judgement appears once, in a fixed order. Context: setup.
 TrialReport judge(const Trial& trial, const Circumstances& about);
 
-/// "signal 11 (Segmentation fault) in cycle 17"; "" when the play came to its end. Context: setup.
+/// "signal 11 (Segmentation fault) in cycle 17"; "" when the scenario came to its end. Context: setup.
 std::string how_it_ended(const PlayEnd& end, const Record& record);
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

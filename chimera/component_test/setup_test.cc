@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/trial/setup.h"
+#include "chimera/component_test/setup.h"
 
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "chimera/trial/testing/test_component.h"
+#include "chimera/component_test/testing/test_component.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,7 +26,7 @@ LibraryEntry everything() {
 }
 
 TEST(MadeUp, GivesEveryInputAndConstant) {
-  EXPECT_EQ(made_up(everything().descriptor),
+  EXPECT_EQ(default_setup(everything().descriptor),
             "subsystem: trial\n"
             "tasks:\n"
             "  thing:\n"
@@ -100,4 +100,4 @@ TEST_F(ArrangeFrom, RefusesWhatIsNoSetupOfThisComponent) {
 }
 
 }  // namespace
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

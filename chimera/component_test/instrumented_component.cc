@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts allocations and time around each method of a component, and answers with faults on demand.
-#include "chimera/trial/shim.h"
+#include "chimera/component_test/instrumented_component.h"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 
 #include "chimera/platform/allocation_count.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
-Shim* present = nullptr;  // a method of the C interface knows nothing but its component's state
+InstrumentedComponent* present = nullptr;  // a method of the C interface knows nothing but its component's state
 
 template <std::uint32_t kMethod>
 std::int32_t through_shim(void* state, const chimera_call* call) {
@@ -27,7 +27,8 @@ constexpr auto kThrough = all(std::make_index_sequence<CHIMERA_METHODS>{});
 
 }  // namespace
 
-Shim::Shim(const chimera_component& real, Record& record) : real_(real), record_(record) {
+InstrumentedComponent::InstrumentedComponent(const chimera_component& real, Record& record)
+    : real_(real), record_(record) {
   std::memcpy(&wrapped_, &real, std::min<std::size_t>(real.struct_size, sizeof wrapped_));
   wrapped_.struct_size = sizeof wrapped_;
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m) wrapped_.methods[m] = has(m) ? kThrough[m] : nullptr;
@@ -35,16 +36,16 @@ Shim::Shim(const chimera_component& real, Record& record) : real_(real), record_
   present = this;
 }
 
-Shim::~Shim() { present = nullptr; }
+InstrumentedComponent::~InstrumentedComponent() { present = nullptr; }
 
-void Shim::measure_measuring() noexcept {
+void InstrumentedComponent::measure_measuring() noexcept {
   for (std::int64_t& time : record_.measuring_ns) {
     const Nanoseconds began = clock_.now();
     time = (clock_.now() - began).count;
   }
 }
 
-std::int32_t Shim::call(std::uint32_t method, void* state, const chimera_call* call) noexcept {
+std::int32_t InstrumentedComponent::call(std::uint32_t method, void* state, const chimera_call* call) noexcept {
   MethodRecord& counts = record_.methods[method];
   record_.method = method;
   record_.progress.fetch_add(1, std::memory_order_relaxed);
@@ -68,4 +69,4 @@ std::int32_t Shim::call(std::uint32_t method, void* state, const chimera_call* c
   return answer;
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

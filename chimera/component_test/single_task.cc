@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds one task in virtual time, and feeds, signals and cycles it by hand.
-#include "chimera/trial/solo.h"
+#include "chimera/component_test/single_task.h"
 
 #include <cstring>
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
-Result<std::unique_ptr<Solo>> Solo::create(const LibraryEntry& entry, const Configuration& configuration,
-                                           const InputForm& form, Record& record) {
+Result<std::unique_ptr<SingleTask>> SingleTask::create(const LibraryEntry& entry, const Configuration& configuration,
+                                                       const InputForm& form, Record& record) {
   auto object = SharedObject::open(entry.object_file);
   if (!object) return object.error();
-  std::unique_ptr<Solo> made(new Solo(*std::move(object), configuration, form, record));
+  std::unique_ptr<SingleTask> made(new SingleTask(*std::move(object), configuration, form, record));
   if (auto built = made->build(entry); !built) return built.error();
   return made;
 }
 
-Result<void> Solo::build(const LibraryEntry& entry) {
+Result<void> SingleTask::build(const LibraryEntry& entry) {
   const auto component = object_.matching(entry.descriptor);
   if (!component) return component.error();
-  shim_ = std::make_unique<Shim>(**component, record_);
+  component_ = std::make_unique<InstrumentedComponent>(**component, record_);
   const ApplicationSpec& spec = configuration_.spec();
   const auto layout = PeerLayout::of_everything(spec);
   if (!layout) return layout.error();
   table_ = AlignedBytes(layout->table().region_bytes(), kCacheLine);
   ContextPlace place;
   place.table = table_.span();
-  const chimera_component* components[] = {&shim_->component()};
+  const chimera_component* components[] = {&component_->component()};
   auto set = TaskSet::create(spec, components, place);
   if (!set) return set.error();
   set_ = *std::move(set);
@@ -39,7 +39,7 @@ Result<void> Solo::build(const LibraryEntry& entry) {
   return {};
 }
 
-void Solo::feed(std::span<const std::byte> row) noexcept {
+void SingleTask::feed(std::span<const std::byte> row) noexcept {
   for (std::size_t o = 0; o < writers_.size(); ++o) {
     const std::size_t bytes = configuration_.spec().operators[o].value.size();
     std::memcpy(writers_[o].staging(), row.data() + form_.offsets[o], bytes);
@@ -47,7 +47,7 @@ void Solo::feed(std::span<const std::byte> row) noexcept {
   }
 }
 
-State Solo::signal(Signal signal) {
+State SingleTask::signal(Signal signal) {
   clock_.set(now_);
   const State before = state();
   set_->signal(task().id, signal, now_);
@@ -57,7 +57,7 @@ State Solo::signal(Signal signal) {
   return task.state;
 }
 
-RowRecord Solo::cycle() noexcept {
+RowRecord SingleTask::cycle() noexcept {
   Task& task = set_->tasks()[0];
   const Nanoseconds period = task.spec->period;
   now_ += period;
@@ -70,7 +70,7 @@ RowRecord Solo::cycle() noexcept {
   row.state = static_cast<std::uint8_t>(end_cycle(task, body, time, now_, true, &clock_));
   row.answer = static_cast<std::uint8_t>(task.faults.count != faults ? Answer::kFault : body.answer);
   row.valid = task.valid;
-  row.time_ns = shim_->cycle_time().count;
+  row.time_ns = component_->cycle_time().count;
   if (task.profile.rejected != rejected && record_.unsafe++ == 0)
     std::memcpy(record_.unsafe_text, fault_text(), sizeof record_.unsafe_text);
   task.outbox.clear();  // there is nobody else
@@ -79,16 +79,16 @@ RowRecord Solo::cycle() noexcept {
   return row;
 }
 
-void Solo::copy_outputs(std::span<std::byte> to) const noexcept {
+void SingleTask::copy_outputs(std::span<std::byte> to) const noexcept {
   const Task& mine = task();
   const auto* values = reinterpret_cast<const std::byte*>(mine.group.published() + 1);
   for (std::size_t i = 0; i < places_.size(); ++i)
     std::memcpy(to.data() + places_[i].offset, values + mine.outputs[i].offset, places_[i].bytes);
 }
 
-void Solo::copy_counts(std::span<std::uint32_t> to) const noexcept {
+void SingleTask::copy_counts(std::span<std::uint32_t> to) const noexcept {
   const Task& mine = task();
   for (std::size_t i = 0; i < places_.size(); ++i) to[i] = mine.outputs[i].port->count;
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

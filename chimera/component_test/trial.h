@@ -14,13 +14,13 @@
 #include "chimera/base/result.h"
 #include "chimera/base/time.h"
 #include "chimera/catalogue/library.h"
+#include "chimera/component_test/inputs.h"
+#include "chimera/component_test/record.h"
 #include "chimera/platform/process.h"
-#include "chimera/trial/inputs.h"
-#include "chimera/trial/record.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
-/// How a play ended.
+/// How a scenario ended.
 struct PlayEnd {
   ProcessEnd process;
   bool has_hung = false;  ///< nothing happened for TrialOptions::patience
@@ -35,8 +35,7 @@ struct TrialOptions {
 
 /// Everything that was found out about a component.
 struct Trial {
-  Trial(std::size_t rows, std::size_t payload)
-      : counted(rows, payload), timed(rows, payload), troubled(1, payload) {}
+  Trial(std::size_t rows, std::size_t payload) : counted(rows, payload), timed(rows, payload), troubled(1, payload) {}
 
   SharedRecord counted, timed, troubled;
   std::vector<std::int64_t> times_ns;  ///< of every completed cycle of all timed plays but the first tenth of each
@@ -52,4 +51,4 @@ Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configur
 /// SharedObject and describe() do, what is no component, and one that dies of it. Context: setup; may block.
 Result<std::string> descriptor_text(const std::string& object_file, const TrialOptions& options);
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

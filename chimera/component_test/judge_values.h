@@ -11,7 +11,7 @@
 #include "chimera/load/descriptor.h"
 #include "chimera/verify/configuration.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
 /// The first unsound value of a row in words ("y[1] is NaN", "tau is 210, outside -200 to 200"); nothing when all are
 /// sound. `counts` are the elements of each out-var in use, `outputs` their values as output_places() packs them,
@@ -20,4 +20,4 @@ std::optional<std::string> first_unsound(const Configuration& configuration, con
                                          std::span<const std::uint32_t> counts, std::span<const std::byte> outputs,
                                          std::uint64_t valid, bool with_ranges);
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

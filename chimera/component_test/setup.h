@@ -9,12 +9,12 @@
 #include "chimera/verify/configuration.h"
 #include "chimera/verify/verify.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
 struct Setup {
-  std::string file;           ///< of the description; empty: none, everything is made up
-  std::string folder;         ///< that relative paths of resources start from; empty: the present one
-  std::string partner_text;   ///< stands for {partner} in resources
+  std::string file;          ///< of the description; empty: none, everything is made up
+  std::string folder;        ///< that relative paths of resources start from; empty: the present one
+  std::string partner_text;  ///< stands for {partner} in resources
 };
 
 /// The description of a task of `component` alone, judged by every rule of legality with `units`. Refuses in the
@@ -26,6 +26,6 @@ Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSys
 Descriptor settled(const Descriptor& component);
 
 /// The description that is made up for a component of which nothing is known but its descriptor. Context: setup.
-std::string made_up(const Descriptor& component);
+std::string default_setup(const Descriptor& component);
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

@@ -8,27 +8,27 @@
 
 #include "chimera/base/result.h"
 #include "chimera/catalogue/library.h"
+#include "chimera/component_test/inputs.h"
+#include "chimera/component_test/instrumented_component.h"
+#include "chimera/component_test/record.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/runtime/aligned_bytes.h"
 #include "chimera/runtime/task_set.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
-#include "chimera/trial/inputs.h"
-#include "chimera/trial/record.h"
-#include "chimera/trial/shim.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
 /// Context: setup.
-class Solo {
+class SingleTask {
  public:
   /// Opens the object and makes the task, in NOT-CREATED. Everything given outlives it. Refuses as SharedObject and
   /// TaskSet do.
-  static Result<std::unique_ptr<Solo>> create(const LibraryEntry& entry, const Configuration& configuration,
-                                              const InputForm& form, Record& record);
+  static Result<std::unique_ptr<SingleTask>> create(const LibraryEntry& entry, const Configuration& configuration,
+                                                    const InputForm& form, Record& record);
 
   State state() const noexcept { return task().state; }
   const Task& task() const noexcept { return set_->tasks()[0]; }
-  Shim& shim() noexcept { return *shim_; }
+  InstrumentedComponent& component() noexcept { return *component_; }
   /// The last fault in words.
   const char* fault_text() const noexcept { return task().faults.last.text; }
 
@@ -44,7 +44,7 @@ class Solo {
   void copy_counts(std::span<std::uint32_t> to) const noexcept;
 
  private:
-  Solo(SharedObject object, const Configuration& configuration, const InputForm& form, Record& record)
+  SingleTask(SharedObject object, const Configuration& configuration, const InputForm& form, Record& record)
       : object_(std::move(object)), configuration_(configuration), form_(form), record_(record) {}
   Result<void> build(const LibraryEntry& entry);
 
@@ -54,11 +54,11 @@ class Solo {
   Record& record_;
   ModelledClock clock_;
   Nanoseconds now_;
-  std::unique_ptr<Shim> shim_;
+  std::unique_ptr<InstrumentedComponent> component_;
   AlignedBytes table_;
   std::unique_ptr<TaskSet> set_;
   std::vector<GroupWriter> writers_;
   std::vector<OutputPlace> places_;
 };
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "chimera/base/message.h"
-#include "chimera/trial/inputs.h"
+#include "chimera/component_test/inputs.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 std::vector<std::string_view> split(std::string_view line) {
@@ -26,8 +26,7 @@ struct Place {
   std::size_t line = 1, column = 1;
 
   Error refuse(const Message& message) const {
-    return message.error(ErrorCode::kBadInput,
-                         file + ":" + std::to_string(line) + ":" + std::to_string(column));
+    return message.error(ErrorCode::kBadInput, file + ":" + std::to_string(line) + ":" + std::to_string(column));
   }
 };
 
@@ -149,8 +148,7 @@ Result<Inputs> Inputs::recorded(const InputForm& form, std::string_view text, co
   if (const auto read = read_all(reader, text, names, {file}); !read) return read.error();
   const double length = reader.times.back() - reader.times.front();
   const double cycles = length / to_seconds(period) + 1.5;
-  const std::size_t rows =
-      std::max(least, static_cast<std::size_t>(std::min(cycles, static_cast<double>(kMaxRows))));
+  const std::size_t rows = std::max(least, static_cast<std::size_t>(std::min(cycles, static_cast<double>(kMaxRows))));
   Inputs made(rows, form.bytes());
   made.are_recorded_ = true;
   for (std::size_t i = 0, at = 0; i < rows; ++i) {
@@ -161,4 +159,4 @@ Result<Inputs> Inputs::recorded(const InputForm& form, std::string_view text, co
   return made;
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

@@ -5,10 +5,10 @@
 #include <cstring>
 #include <limits>
 
+#include "chimera/component_test/inputs.h"
 #include "chimera/task/number_at.h"
-#include "chimera/trial/inputs.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -84,8 +84,10 @@ InputForm InputForm::of(const Configuration& configuration, const Descriptor& co
       const std::string tail = count == 1 ? "" : element(i, given.extent[1].max);
       const std::size_t at = form.offsets[o] + i * given.element_bytes;
       const std::string name = std::string(given.name) + tail, port_name = reader->name + tail;
-      if (given.type == CHIMERA_STRUCT) maker.add_fields(name, port_name, at, port);
-      else if (is_number(given.type)) maker.add(name, port_name, reader->unit, at, given.type, port);
+      if (given.type == CHIMERA_STRUCT)
+        maker.add_fields(name, port_name, at, port);
+      else if (is_number(given.type))
+        maker.add(name, port_name, reader->unit, at, given.type, port);
     }
   }
   return form;
@@ -104,12 +106,21 @@ void InputForm::put(const Channel& channel, double value, std::span<std::byte> r
     return value >= static_cast<double>(most) ? most : static_cast<T>(std::llround(value));
   };
   switch (channel.type) {
-    case CHIMERA_BOOL: write(static_cast<std::uint8_t>(value > 0.5 ? 1 : 0)); return;
-    case CHIMERA_INT32: write(whole(std::numeric_limits<std::int32_t>::min())); return;
-    case CHIMERA_INT64: write(whole(std::numeric_limits<std::int64_t>::min())); return;
-    case CHIMERA_FLOAT32: write(static_cast<float>(value)); return;
-    default: write(value);
+    case CHIMERA_BOOL:
+      write(static_cast<std::uint8_t>(value > 0.5 ? 1 : 0));
+      return;
+    case CHIMERA_INT32:
+      write(whole(std::numeric_limits<std::int32_t>::min()));
+      return;
+    case CHIMERA_INT64:
+      write(whole(std::numeric_limits<std::int64_t>::min()));
+      return;
+    case CHIMERA_FLOAT32:
+      write(static_cast<float>(value));
+      return;
+    default:
+      write(value);
   }
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

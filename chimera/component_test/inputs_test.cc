@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/trial/inputs.h"
+#include "chimera/component_test/inputs.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "chimera/trial/testing/test_component.h"
+#include "chimera/component_test/testing/test_component.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 LibraryEntry two_inputs() {
@@ -129,4 +129,4 @@ TEST(Spoil, PutsEachKindOfBadValueWhereItFits) {
 }
 
 }  // namespace
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

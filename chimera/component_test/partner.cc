@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Starts the program at the other end of a device by a shell that gives it a pipe for its first line.
-#include "chimera/trial/partner.h"
+#include "chimera/component_test/partner.h"
 
 #include <csignal>
 
 #include "chimera/base/message.h"
 #include "chimera/platform/pipe.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 constexpr std::int64_t kEnd = 2'000'000'000;  // ns between SIGTERM and SIGKILL
@@ -41,4 +41,4 @@ Partner::~Partner() {
   (void)process_.wait(end, kEnd);
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

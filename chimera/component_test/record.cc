@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lays out the record of a run in memory shared with the child.
-#include "chimera/trial/record.h"
+#include "chimera/component_test/record.h"
 
 #include <new>
 
 #include "chimera/base/assert.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 constexpr std::size_t kFixed = (sizeof(Record) + 63) / 64 * 64;
@@ -40,4 +40,4 @@ std::vector<OutputPlace> output_places(const ApplicationSpec& spec, std::size_t&
   return places;
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

@@ -14,7 +14,7 @@
 #include "chimera/load/descriptor.h"
 #include "chimera/verify/configuration.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
 inline constexpr std::size_t kMaxRecordingBytes = 16u * 1024 * 1024;
 inline constexpr std::size_t kMaxRows = 100'000;
@@ -22,24 +22,24 @@ inline constexpr std::size_t kMaxColumns = 256;
 
 /// One number of an in-var.
 struct Channel {
-  std::string name;              ///< as a recording calls it: "q_ref[2]"
-  std::string port_name;         ///< the same by the port, for a repeated one: "in[0][2]"
-  std::string unit;              ///< of its values
-  std::size_t offset = 0;        ///< in the row
+  std::string name;        ///< as a recording calls it: "q_ref[2]"
+  std::string port_name;   ///< the same by the port, for a repeated one: "in[0][2]"
+  std::string unit;        ///< of its values
+  std::size_t offset = 0;  ///< in the row
   std::uint32_t type = CHIMERA_FLOAT64;
-  double base = 0;               ///< value in the setup
-  double low = 0, high = 0;      ///< generated values lie between
-  double declared_high = 0;      ///< end of the declared range; infinity: none
+  double base = 0;           ///< value in the setup
+  double low = 0, high = 0;  ///< generated values lie between
+  double declared_high = 0;  ///< end of the declared range; infinity: none
 };
 
 /// Where the values of a row stand: those of operator variable o at offsets[o]. Context: setup.
 struct InputForm {
   static InputForm of(const Configuration& configuration, const Descriptor& component);
 
-  std::vector<std::size_t> offsets;     ///< by operator variable
+  std::vector<std::size_t> offsets;  ///< by operator variable
   std::vector<Channel> channels;
-  std::vector<std::size_t> quaternions; ///< offsets of four numbers that stay a unit quaternion
-  std::vector<std::byte> base;          ///< the row of the setup
+  std::vector<std::size_t> quaternions;  ///< offsets of four numbers that stay a unit quaternion
+  std::vector<std::byte> base;           ///< the row of the setup
 
   std::size_t bytes() const noexcept { return base.size(); }
   double get(const Channel& channel, std::span<const std::byte> row) const noexcept;
@@ -58,9 +58,7 @@ class Inputs {
                                  std::span<const std::string> names, Nanoseconds period, std::size_t least);
 
   std::size_t rows() const noexcept { return row_bytes_ == 0 ? rows_ : bytes_.size() / row_bytes_; }
-  std::span<const std::byte> row(std::size_t i) const noexcept {
-    return {bytes_.data() + i * row_bytes_, row_bytes_};
-  }
+  std::span<const std::byte> row(std::size_t i) const noexcept { return {bytes_.data() + i * row_bytes_, row_bytes_}; }
   bool are_recorded() const noexcept { return are_recorded_; }
 
  private:
@@ -78,4 +76,4 @@ bool spoil(const InputForm& form, std::size_t kind, std::span<std::byte> row) no
 /// What spoil() puts there, for people: "NaN".
 const char* spoilt_name(std::size_t kind) noexcept;
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

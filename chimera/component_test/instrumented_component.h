@@ -3,20 +3,20 @@
 // component itself. One at a time in a process.
 #pragma once
 
+#include "chimera/component_test/record.h"
 #include "chimera/platform/cycle_counter.h"
 #include "chimera/task/abi.h"
-#include "chimera/trial/record.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
 /// Context: setup; the methods of component(): those of the component.
-class Shim {
+class InstrumentedComponent {
  public:
   /// `real` and `record` outlive it.
-  Shim(const chimera_component& real, Record& record);
-  Shim(const Shim&) = delete;
-  Shim& operator=(const Shim&) = delete;
-  ~Shim();
+  InstrumentedComponent(const chimera_component& real, Record& record);
+  InstrumentedComponent(const InstrumentedComponent&) = delete;
+  InstrumentedComponent& operator=(const InstrumentedComponent&) = delete;
+  ~InstrumentedComponent();
 
   const chimera_component& component() const noexcept { return wrapped_; }
   bool has(std::uint32_t method) const noexcept { return real_.methods[method] != nullptr; }
@@ -40,4 +40,4 @@ class Shim {
   Nanoseconds cycle_time_;
 };
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

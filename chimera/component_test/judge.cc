@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns the records of the test runs of a component into judgements, one line each.
-#include "chimera/trial/judge.h"
+#include "chimera/component_test/judge.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "chimera/trial/judge_values.h"
+#include "chimera/component_test/judge_values.h"
 #include "chimera/platform/system_call_name.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 constexpr const char* kMethodNames[] = {"init", "reinit", "on", "cycle", "sync", "off", "kill", "error", "clear"};
@@ -56,8 +56,7 @@ struct Judge {
   bool start() {
     const Record& record = trial.counted.record();
     if (record.refusal[0] != '\0') return fails("start", record.refusal), false;
-    if (record.stage < Stage::kRows)
-      return fails("start", how_it_ended(trial.counted_end, record)), false;
+    if (record.stage < Stage::kRows) return fails("start", how_it_ended(trial.counted_end, record)), false;
     std::string methods;
     for (std::size_t m = 0; m < CHIMERA_METHODS; ++m)
       if (about.component.methods[m]) methods += std::string(methods.empty() ? "" : " ") + kMethodNames[m];
@@ -69,8 +68,9 @@ struct Judge {
     const Record& record = trial.counted.record();
     if (const std::string how = how_it_ended(trial.counted_end, record); !how.empty()) return fails("cycles", how);
     const std::size_t done = completed();
-    const std::string first = record.rejected == 0 ? "" : ", the first with " + quoted(record.first_text) +
-                                                              " in cycle " + std::to_string(record.first_rejected);
+    const std::string first = record.rejected == 0 ? ""
+                                                   : ", the first with " + quoted(record.first_text) + " in cycle " +
+                                                         std::to_string(record.first_rejected);
     if (record.rejected > 0 && about.inputs.are_recorded())
       return fails("cycles", times(record.rejected, "cycle", "cycles") + " of " + std::to_string(about.inputs.rows()) +
                                  " ended in a fault" + first);
@@ -143,14 +143,16 @@ struct Judge {
     ok("repeatable", "the same inputs gave the same outputs twice, to the bit");
   }
 
-  /// False: the play broke off in `stage`, and that is what is to be said under `name`.
+  /// False: the scenario broke off in `stage`, and that is what is to be said under `name`.
   bool reached(const char* name, Stage stage) {
     const Record& record = trial.troubled.record();
     if (record.stage > stage) return true;
     std::string how = how_it_ended(trial.troubled_end, record);
     if (how.empty()) how = record.refusal;
-    if (record.stage == stage) fails(name, how);
-    else not_judged(name, "it did not come so far");
+    if (record.stage == stage)
+      fails(name, how);
+    else
+      not_judged(name, "it did not come so far");
     return false;
   }
 
@@ -233,7 +235,7 @@ bool TrialReport::passes() const noexcept {
 std::string how_it_ended(const PlayEnd& end, const Record& record) {
   if (end.is_clean()) return record.refusal;
   const bool is_in_method = record.method < CHIMERA_METHODS;
-  std::string where = is_in_method ? std::string(" in ") + kMethodNames[record.method]
+  std::string where = is_in_method                    ? std::string(" in ") + kMethodNames[record.method]
                       : record.stage == Stage::kStart ? " in its constructor"
                                                       : " while it was loaded";
   if (is_in_method && record.stage == Stage::kRows) where += " " + std::to_string(record.row);
@@ -258,4 +260,4 @@ TrialReport judge(const Trial& trial, const Circumstances& about) {
   return judge.report;
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "chimera/trial/inputs.h"
-#include "chimera/trial/setup.h"
+#include "chimera/component_test/inputs.h"
+#include "chimera/component_test/setup.h"
 #include "chimera/units/testing/unit_samples.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
 inline PortDescriptor port(const char* name, std::uint32_t kind, const char* unit, const char* shape = "") {
   PortDescriptor made;
@@ -49,4 +49,4 @@ inline InputForm form_of(const LibraryEntry& entry) {
   return InputForm::of(*verdict.configuration, entry.descriptor);
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

@@ -6,9 +6,9 @@
 #include <cstdio>
 
 #include "chimera/base/assert.h"
-#include "chimera/trial/setup.h"
+#include "chimera/component_test/setup.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 constexpr double kPlain = 0.5;
@@ -76,12 +76,17 @@ std::string struct_text(const PortDescriptor& port) {
 
 std::string element_text(const Descriptor& component, const PortDescriptor& port) {
   switch (port.type) {
-    case CHIMERA_STRING: return "\"\"";
-    case CHIMERA_BOOL: return "false";
-    case CHIMERA_STRUCT: return struct_text(port);
+    case CHIMERA_STRING:
+      return "\"\"";
+    case CHIMERA_BOOL:
+      return "false";
+    case CHIMERA_STRUCT:
+      return struct_text(port);
     case CHIMERA_INT32:
-    case CHIMERA_INT64: return with_unit(std::round(middle(component, port)), port.unit);
-    default: return with_unit(middle(component, port), port.unit);
+    case CHIMERA_INT64:
+      return with_unit(std::round(middle(component, port)), port.unit);
+    default:
+      return with_unit(middle(component, port), port.unit);
   }
 }
 
@@ -103,9 +108,7 @@ std::string value_text_of(const Descriptor& component, const PortDescriptor& por
   return text;
 }
 
-std::string instance_name(const PortDescriptor& port, std::uint32_t i) {
-  return port.name + "_" + std::to_string(i);
-}
+std::string instance_name(const PortDescriptor& port, std::uint32_t i) { return port.name + "_" + std::to_string(i); }
 
 std::uint32_t instances_of(const PortDescriptor& port) { return std::min(kInstances, port.max_instances); }
 
@@ -120,7 +123,10 @@ Descriptor settled(const Descriptor& component) {
     std::string shape;
     for (const Extent& extent : port.extents) {
       const bool is_open = !extent.is_literal() && component.port(extent.symbol) == nullptr;
-      shape += "[" + (extent.is_literal() ? "" : is_open ? "" : extent.symbol + "<=") +
+      shape += "[" +
+               (extent.is_literal() ? ""
+                : is_open           ? ""
+                                    : extent.symbol + "<=") +
                std::to_string(is_open ? 1 : extent.max) + "]";
     }
     port.shape = shape;
@@ -129,7 +135,7 @@ Descriptor settled(const Descriptor& component) {
   return plain;
 }
 
-std::string made_up(const Descriptor& component) {
+std::string default_setup(const Descriptor& component) {
   std::string alias, constants, operators;
   for (const PortDescriptor& port : component.ports) {
     const std::string value = value_text_of(component, port);
@@ -143,7 +149,8 @@ std::string made_up(const Descriptor& component) {
       alias += "\n      " + port.name + ": [" + names + "]";
     }
     if (port.kind != CHIMERA_IN_VAR) continue;
-    if (!port.repeated) operators += "\n  " + port.name + ": " + value;
+    if (!port.repeated)
+      operators += "\n  " + port.name + ": " + value;
     else
       for (std::uint32_t i = 0; i < instances_of(port); ++i)
         operators += "\n  " + instance_name(port, i) + ": " + value;
@@ -156,4 +163,4 @@ std::string made_up(const Descriptor& component) {
   return text;
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

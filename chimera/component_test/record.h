@@ -15,24 +15,24 @@
 #include "chimera/task/abi.h"
 #include "chimera/task/state_machine.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 
-/// Where the child is. kEnd: it came to the end of its play.
+/// Where the child is. kEnd: it came to the end of its scenario.
 enum class Stage : std::uint32_t { kLoad, kStart, kRows, kFaults, kBadInputs, kLeftovers, kStop, kEnd };
 
 /// One cycle.
 struct RowRecord {
-  std::uint64_t valid = 0;       ///< bits of the out-vars
-  std::int64_t time_ns = 0;      ///< that the method cycle took
-  std::uint8_t answer = 0;       ///< Answer of the cycle, after the safety ports were looked at
-  std::uint8_t state = 0;        ///< State after it
+  std::uint64_t valid = 0;   ///< bits of the out-vars
+  std::int64_t time_ns = 0;  ///< that the method cycle took
+  std::uint8_t answer = 0;   ///< Answer of the cycle, after the safety ports were looked at
+  std::uint8_t state = 0;    ///< State after it
   bool is_run = false;
 };
 
 /// What one method asked of the heap and of the system, over all its calls.
 struct MethodRecord {
   std::uint64_t calls = 0;
-  std::uint64_t allocations = 0;    ///< all
+  std::uint64_t allocations = 0;  ///< all
   std::uint64_t most_allocations = 0;
   std::uint64_t system_calls = 0;
   std::uint64_t most_system_calls = 0;
@@ -44,16 +44,16 @@ enum class Return : std::uint8_t { kNone, kAtOnce, kByOn, kByClear, kBySpawn, kN
 
 struct Trouble {
   bool is_tried = false;
-  bool has_happened = false;     ///< the fault was answered, the values were read
+  bool has_happened = false;  ///< the fault was answered, the values were read
   State after = State::kNotCreated;
   Return how = Return::kNone;
   bool refused_clear = false;
-  bool is_finite = true;         ///< the outputs of the cycles after it
-  bool is_rejected = false;      ///< a cycle answered with a fault
+  bool is_finite = true;     ///< the outputs of the cycles after it
+  bool is_rejected = false;  ///< a cycle answered with a fault
   char text[CHIMERA_FAULT_TEXT] = {};
 };
 
-/// What spoil() (trial/inputs.h) knows.
+/// What spoil() (component_test/inputs.h) knows.
 inline constexpr std::size_t kBadInputs = 5;
 inline constexpr std::size_t kRounds = 4;
 
@@ -67,30 +67,30 @@ struct Round {
 /// Fixed part; rows and outputs follow in their own memory.
 struct Record {
   // Written by the child, read by the watcher while it runs.
-  std::atomic<std::uint32_t> watched{0};    ///< 1 + method while the component's own code runs that is counted
+  std::atomic<std::uint32_t> watched{0};  ///< 1 + method while the component's own code runs that is counted
   std::atomic<std::uint64_t> progress{0};
   Stage stage = Stage::kLoad;
-  std::uint32_t method = CHIMERA_METHODS;   ///< that runs, or ran last
+  std::uint32_t method = CHIMERA_METHODS;  ///< that runs, or ran last
   std::uint32_t row = 0;
   bool is_traced = false;
 
-  char refusal[CHIMERA_FAULT_TEXT + 120] = {};  ///< why the component could not be loaded or started
-  std::int64_t measuring_ns[1000] = {};         ///< what it takes to measure nothing
-  std::uint32_t counts[CHIMERA_MAX_PORTS] = {}; ///< elements in use of each out-var
-  std::uint32_t rejected = 0;                   ///< cycles that answered with a fault
-  std::uint32_t lost = 0;                       ///< times that clear did not help and it was spawned anew
-  std::uint32_t unsafe = 0;                     ///< publications that a safety port refused
-  std::uint32_t first_rejected = 0;             ///< its row
+  char refusal[CHIMERA_FAULT_TEXT + 120] = {};   ///< why the component could not be loaded or started
+  std::int64_t measuring_ns[1000] = {};          ///< what it takes to measure nothing
+  std::uint32_t counts[CHIMERA_MAX_PORTS] = {};  ///< elements in use of each out-var
+  std::uint32_t rejected = 0;                    ///< cycles that answered with a fault
+  std::uint32_t lost = 0;                        ///< times that clear did not help and it was spawned anew
+  std::uint32_t unsafe = 0;                      ///< publications that a safety port refused
+  std::uint32_t first_rejected = 0;              ///< its row
   char first_text[CHIMERA_FAULT_TEXT] = {};
   char unsafe_text[CHIMERA_FAULT_TEXT] = {};
   MethodRecord methods[CHIMERA_METHODS];
   Trouble faults[CHIMERA_METHODS];
   Trouble bad_inputs[kBadInputs];
   Round rounds[kRounds];
-  char left_open[200] = {};                     ///< a descriptor that the last round left
+  char left_open[200] = {};  ///< a descriptor that the last round left
 };
 
-/// The record of one play, in memory shared with children forked afterwards. Movable. Context: setup.
+/// The record of one scenario, in memory shared with children forked afterwards. Movable. Context: setup.
 class SharedRecord {
  public:
   /// For `rows` cycles of a task whose outputs take `payload` bytes together.
@@ -115,4 +115,4 @@ struct OutputPlace {
 /// The out-vars of the one task, packed one behind the other. Context: setup.
 std::vector<OutputPlace> output_places(const ApplicationSpec& spec, std::size_t& payload);
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs a component in forked children: counted under trace, timed three times, and with faults and bad inputs.
-#include "chimera/trial/trial.h"
+#include "chimera/component_test/trial.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -9,13 +9,13 @@
 
 #include "chimera/base/message.h"
 #include "chimera/catalogue/descriptor_json.h"
+#include "chimera/component_test/scenarios.h"
 #include "chimera/platform/family_memory.h"
 #include "chimera/platform/forked_child.h"
 #include "chimera/platform/linux_clock.h"
 #include "chimera/platform/watched_child.h"
-#include "chimera/trial/plays.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 /// Counts the system calls of watched methods, and sees when nothing goes on any more.
@@ -45,10 +45,10 @@ class Watcher final : public ChildWatcher {
 };
 
 /// By the child.
-int live(const std::function<void()>& play, Record& record, bool traced) {
+int live(const std::function<void()>& scenario, Record& record, bool traced) {
   record.is_traced = traced && let_parent_trace();
   try {
-    play();
+    scenario();
   } catch (const std::exception& fault) {  // of our own: those of a component end in its face
     std::snprintf(record.refusal, sizeof record.refusal, "%s", fault.what());
     return 1;
@@ -56,11 +56,11 @@ int live(const std::function<void()>& play, Record& record, bool traced) {
   return 0;
 }
 
-Result<PlayEnd> run(const std::function<void()>& play, Record& record, const TrialOptions& options, bool traced) {
+Result<PlayEnd> run(const std::function<void()>& scenario, Record& record, const TrialOptions& options, bool traced) {
   BlockedChildSignal blocked;
   const auto child = fork_quietly(options.folder, [&] {
     blocked.undo();
-    return live(play, record, traced);
+    return live(scenario, record, traced);
   });
   if (!child) return child.error();
   PlayEnd end;
@@ -87,25 +87,27 @@ Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configur
   std::size_t payload = 0;
   (void)output_places(configuration.spec(), payload);
   Trial trial(inputs.rows(), payload);
-  const auto play_of = [&](const SharedRecord& record) { return Play{entry, configuration, form, inputs, record}; };
-  auto end = run([&] { play_inputs(play_of(trial.counted)); }, trial.counted.record(), options, true);
+  const auto scenario_of = [&](const SharedRecord& record) {
+    return Scenario{entry, configuration, form, inputs, record};
+  };
+  auto end = run([&] { run_inputs(scenario_of(trial.counted)); }, trial.counted.record(), options, true);
   if (!end) return end.error();
   trial.counted_end = *end;
-  if (end->has_hung && trial.counted.record().stage < Stage::kRows) return trial;  // so would the other plays
-  end = run([&] { play_inputs(play_of(trial.timed)); }, trial.timed.record(), options, false);
+  if (end->has_hung && trial.counted.record().stage < Stage::kRows) return trial;  // so would the other scenarios
+  end = run([&] { run_inputs(scenario_of(trial.timed)); }, trial.timed.record(), options, false);
   if (!end) return end.error();
   trial.timed_end = *end;
   keep_times(trial.timed.rows(), trial.times_ns);
   for (int again = 0; again < 2 && trial.timed_end.is_clean(); ++again) {
     const SharedRecord record(inputs.rows(), payload);
-    end = run([&] { play_inputs(play_of(record)); }, record.record(), options, false);
+    end = run([&] { run_inputs(scenario_of(record)); }, record.record(), options, false);
     if (!end) return end.error();
     if (!end->is_clean()) break;
     keep_times(record.rows(), trial.times_ns);
     take_least_times(record.rows(), trial.timed.rows());
   }
   const auto good = trial.counted.rows();
-  end = run([&] { play_troubles(play_of(trial.troubled), good); }, trial.troubled.record(), options, false);
+  end = run([&] { run_faults(scenario_of(trial.troubled), good); }, trial.troubled.record(), options, false);
   if (!end) return end.error();
   trial.troubled_end = *end;
   return trial;
@@ -130,7 +132,7 @@ Result<std::string> descriptor_text(const std::string& object_file, const TrialO
     }();
     if (said && said->size() < kBytes) std::memcpy(text, said->c_str(), said->size() + 1);
     if (said) return;
-    char (&refusal)[sizeof(Record::refusal)] = record.record().refusal;
+    char(&refusal)[sizeof(Record::refusal)] = record.record().refusal;
     std::snprintf(refusal, sizeof refusal, "%s", std::string(said.error().message.view()).c_str());
   };
   const auto end = run(ask, record.record(), options, false);
@@ -142,4 +144,4 @@ Result<std::string> descriptor_text(const std::string& object_file, const TrialO
       .error(ErrorCode::kBadInput, object_file);
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

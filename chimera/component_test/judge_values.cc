@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks each published value of a run for being written, finite and within the range of its port.
-#include "chimera/trial/judge_values.h"
+#include "chimera/component_test/judge_values.h"
 
 #include <cmath>
 #include <cstdio>
 
+#include "chimera/component_test/record.h"
 #include "chimera/task/number_at.h"
-#include "chimera/trial/record.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 std::optional<std::string> why_unsound(double value, const PortSpec& spec, bool with_ranges) {
@@ -45,11 +45,10 @@ std::optional<std::string> first_unsound(const Configuration& configuration, con
     for (std::uint32_t i = 0; i < counts[o]; ++i) {
       const std::byte* at = outputs.data() + places[o].offset + i * spec.element_bytes;
       if (const auto why = unsound_element(at, spec, port, with_ranges))
-        return name + (counts[o] == 1 ? "" : "[" + std::to_string(i) + "]") + (why->starts_with(".") ? "" : " ") +
-               *why;
+        return name + (counts[o] == 1 ? "" : "[" + std::to_string(i) + "]") + (why->starts_with(".") ? "" : " ") + *why;
     }
   }
   return std::nullopt;
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

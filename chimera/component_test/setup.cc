@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads NAME.test.yaml and makes a description with the component as its only task.
-#include "chimera/trial/setup.h"
+#include "chimera/component_test/setup.h"
 
 #include <algorithm>
 
 #include "chimera/base/assert.h"
 #include "chimera/description/draft.h"
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 constexpr std::string_view kPartner = "{partner}";
@@ -90,13 +90,12 @@ Verdict judge_alone(const Draft& draft, const LibraryEntry& component, const Uni
 
 Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSystem& units) {
   const Descriptor& descriptor = component.descriptor;
-  const std::string plain_text = made_up(descriptor);
+  const std::string plain_text = default_setup(descriptor);
   const Reading plain = read_description(plain_text, descriptor.name + ".test.yaml (made up)");
   CHIMERA_ASSERT(plain.draft && plain.report.is_legal());
   if (setup.file.empty()) return judge_alone(*plain.draft, component, units);
   Reading reading = read_description_file(setup.file);
-  if (!reading.draft || !reading.report.is_legal())
-    return verify(reading, Library::of_entries({component}, units));
+  if (!reading.draft || !reading.report.is_legal()) return verify(reading, Library::of_entries({component}, units));
   Draft& draft = *reading.draft;
   if (draft.tasks.size() != 1 || draft.tasks[0].component.text != descriptor.name) {
     const Place at = draft.tasks.empty() ? Place{} : draft.tasks[0].name.at;
@@ -108,4 +107,4 @@ Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSys
   return judge_alone(draft, component, units);
 }
 
-}  // namespace chimera::trial
+}  // namespace chimera::component_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/trial/partner.h"
+#include "chimera/component_test/partner.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace chimera::trial {
+namespace chimera::component_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,4 +50,4 @@ TEST_F(PartnerProgram, IsRefusedWhenItSaysNothing) {
 }
 
 }  // namespace
-}  // namespace chimera::trial
+}  // namespace chimera::component_test
