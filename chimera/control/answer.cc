@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makers of answers: one for each form that the data of an error have.
 #include "chimera/control/answer.h"
 
 #include <nlohmann/json.hpp>
@@ -13,6 +14,12 @@ Answer Answer::error(int code, std::string message) { return {code, std::move(me
 
 Answer Answer::error(int code, std::string message, const Json& data) {
   return {code, std::move(message), nullptr, std::make_shared<const Json>(data)};
+}
+
+Answer Answer::refused(const char* kind, std::string message, const std::string& where, const std::string& remedy) {
+  Json data{{"kind", kind}, {"where", where}};
+  if (!remedy.empty()) data["remedy"] = remedy;
+  return error(kRefused, std::move(message), data);
 }
 
 Answer Answer::unknown(std::string message, const std::string& where, const std::string& nearest) {

@@ -42,6 +42,10 @@ struct Answer {
   static Answer ready(std::shared_ptr<const std::string> text);
   static Answer error(int code, std::string message);
   static Answer error(int code, std::string message, const Json& data);
+  /// Error kRefused. `kind` is a word for programs (docs/formats/control.md), `where` names a task, a variable or
+  /// nothing, `remedy` says what to do; "": nothing is known.
+  static Answer refused(const char* kind, std::string message, const std::string& where,
+                        const std::string& remedy = {});
   /// "no task 'pod'" with the nearest of `names` in the data, if one is near.
   static Answer unknown(std::string message, const std::string& where, const std::string& nearest);
 

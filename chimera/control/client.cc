@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds a subsystem, and exchanges lines with its manager within a limit of time.
 #include "chimera/control/client.h"
 
 #include <poll.h>
@@ -52,9 +53,10 @@ Error refusal(const std::string& text, const std::string& where = {}) {
   return Message(text).error(ErrorCode::kRefused, where);
 }
 
-bool acts(std::string_view method) {
+/// Of a method that this client does not know nothing is known.
+bool may_be_sent_twice(std::string_view method) {
   const MethodRule* rule = find_method(method);
-  return rule == nullptr || (rule->is_act && rule->role > Role::kObserve);
+  return rule != nullptr && !rule->is_act;
 }
 
 /// Waits for a place in the queue of the socket, as whoever else waits does: in turn, not by trying again and again.
@@ -113,13 +115,26 @@ Result<Client> Client::connect_to(const std::string& path, Nanoseconds limit) {
   return Client(*std::move(socket), path);
 }
 
-Result<void> Client::reconnect(Nanoseconds limit) {
-  auto socket = connected(path_, limit);
-  if (!socket) return socket.error();
+bool Client::reconnect(Nanoseconds until) {
+  auto socket = connected(path_, until - now());
+  if (!socket) return false;
   socket_ = *std::move(socket);
   input_.clear();
+  return true;
+}
+
+void Client::drop() {
+  socket_ = OwnedDescriptor();
+  input_.clear();
+  notes_.clear();
   has_subscribed_ = false;
-  return {};
+}
+
+/// The caller is told, and with that knows that its subscriptions are gone.
+Answer Client::lost(const char* why) {
+  socket_ = OwnedDescriptor();
+  has_subscribed_ = false;
+  return Answer::error(kNoConnection, why);
 }
 
 Result<Client> Client::connect(const std::string& subsystem, Nanoseconds limit) {
@@ -226,19 +241,20 @@ Answer Client::call(std::string_view method) { return call(method, Json::object(
 /// After the door closed this connection without having carried out what it did not answer, or had no place: another.
 bool Client::comes_again(int code, Nanoseconds until) {
   if (code == kTooMany && until - now() > kTryAgain) ::poll(nullptr, 0, static_cast<int>(kTryAgain.count / 1'000'000));
-  return !has_subscribed_ && until - now() > kTryAgain && reconnect(until - now());
+  return !has_subscribed_ && until - now() > kTryAgain && reconnect(until);
 }
 
 Answer Client::call(std::string_view method, const Json& parameters, Nanoseconds limit, Nanoseconds silence) {
   const Nanoseconds until = now() + limit;
   const std::uint64_t id = ++last_id_;
   const std::string line = request_line(id, method, parameters);
+  if (!is_connected() && !reconnect(until)) return lost(kLost);
   for (;;) {
     Answer answer;
     const Got got = exchange(id, line, until, silence, answer);
     if (got == Got::kLine && is_turned_out_) {
       if (comes_again(answer.code, until)) continue;
-      return answer.code == kClosed ? Answer::error(kNoConnection, kLost) : answer;
+      return answer.code == kClosed ? lost(kLost) : answer;
     }
     if (got == Got::kLine) {
       has_subscribed_ = has_subscribed_ || (method == "subscribe" && answer.is_good());
@@ -248,9 +264,9 @@ Answer Client::call(std::string_view method, const Json& parameters, Nanoseconds
       return Answer::error(kNoAnswer, "no answer within " + time_text(limit) + "; `chimera status` says what was done");
     if (got == Got::kLate || got == Got::kSilent)
       return Answer::error(kNoAnswer, silent(path_, std::min(limit, silence)));
-    if (got == Got::kClosed && acts(method))
-      return Answer::error(kNoConnection, "the manager ended before it answered; `chimera status` says what was done");
-    if (has_subscribed_ || now() >= until || !reconnect(until - now())) return Answer::error(kNoConnection, kLost);
+    if (got == Got::kClosed && !may_be_sent_twice(method))
+      return lost("the manager ended before it answered; `chimera status` says what was done");
+    if (has_subscribed_ || now() >= until || !reconnect(until)) return lost(kLost);
   }
 }
 
@@ -260,7 +276,10 @@ Result<std::optional<Note>> Client::next(Nanoseconds limit) {
   for (std::string line; notes_.empty();) {
     const Got got = receive(line, until);
     if (got == Got::kLate) return std::optional<Note>{};
-    if (got != Got::kLine) return Message(kLost).error(ErrorCode::kSystem, path_);
+    if (got != Got::kLine) {
+      (void)lost(kLost);
+      return Message(kLost).error(ErrorCode::kSystem, path_);
+    }
     (void)take(line, 0, ignored);
   }
   std::optional<Note> note = std::move(notes_.front());

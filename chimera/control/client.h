@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A face's end of the control protocol.
+// A client's end of the control protocol: the only place that makes a lost connection again, and that decides what may
+// be sent twice.
+//
+//   the connection is lost while a call waits      the call                  the next call
+//   the line was not read, or the door let go      is made again             -
+//   it may have been read: a question              is made again             -
+//   it may have been read: an act (is_act)         answers kNoConnection     connects anew
+//   there were subscriptions                       answers kNoConnection     connects anew, without subscriptions
 #pragma once
 
 #include <cstdint>
@@ -25,7 +32,7 @@ struct Note {
 /// Of a call, the connection included: long enough for a manager to be replaced meanwhile.
 inline constexpr Nanoseconds kCallLimit = seconds(5);
 
-/// One connection. Move-only. Context: setup; every call blocks, never longer than its limit.
+/// One connection at a time. Move-only. Context: setup; every call blocks, never longer than its limit.
 class Client {
  public:
   /// To the subsystem of that name; "" takes CHIMERA_SUBSYSTEM, else the one that runs, of several the one of this
@@ -35,20 +42,22 @@ class Client {
   static Result<Client> connect(const std::string& subsystem, Nanoseconds limit = kCallLimit);
   /// To the socket at `path`.
   static Result<Client> connect_to(const std::string& path, Nanoseconds limit = kCallLimit);
+  /// To the socket at `path`, connected by the first call.
+  static Client at(std::string path) { return {OwnedDescriptor(), std::move(path)}; }
 
-  /// Calls and waits for the answer; a manager that is being restarted is waited for. When it dies meanwhile the call
-  /// is made again on a new connection, unless it acts and may have been carried out; after subscribe() it is not: the
-  /// subscriptions would be missing. So it is made again when the door closed an idle connection, or had no place.
-  /// A connection that is lost answers kNoConnection. Notifications that come meanwhile are kept for next().
+  /// Calls and waits for the answer; a manager that is being restarted is waited for. What happens when the connection
+  /// is lost meanwhile stands above. Notifications that come meanwhile are kept for next().
   /// `silence`: a manager that says nothing at all for so long, though it is asked for a sign of life, is not waited
   /// for until `limit`. kNoAnswer names its process and says what to do.
   Answer call(std::string_view method, const Json& parameters, Nanoseconds limit = kCallLimit,
               Nanoseconds silence = kNever);
   Answer call(std::string_view method);
-  /// The next notification; nullopt: none came within `limit`. Refuses when the connection is lost.
+  /// The next notification; nullopt: none came within `limit`. Refuses when the connection is lost, and the
+  /// subscriptions with it.
   Result<std::optional<Note>> next(Nanoseconds limit);
-  /// A new connection to the same socket, without subscriptions.
-  Result<void> reconnect(Nanoseconds limit = kCallLimit);
+  /// Ends the connection, its subscriptions and their notifications; the next call connects anew.
+  void drop();
+  bool is_connected() const noexcept { return socket_.fd >= 0; }
   /// Readable when a notification may have come: for poll. next() must have been asked until it said nullopt.
   int descriptor() const noexcept { return socket_.fd; }
   const std::string& path() const noexcept { return path_; }
@@ -60,7 +69,9 @@ class Client {
   Got send(std::string_view line, Nanoseconds until);
   Got receive(std::string& line, Nanoseconds until);
   Got exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Nanoseconds silence, Answer& answer);
+  bool reconnect(Nanoseconds until);
   bool comes_again(int code, Nanoseconds until);
+  Answer lost(const char* why);
   bool take(const std::string& line, std::uint64_t id, Answer& answer);
 
   OwnedDescriptor socket_;

@@ -15,7 +15,7 @@
 namespace chimera::control {
 namespace {
 
-constexpr std::uint64_t kListening = 0;                  // of epoll; sessions count from 1
+constexpr std::uint64_t kListening = 0;                  // of epoll; connections count from 1
 constexpr int kAcceptAtOnce = 64;                        // a crowd of strangers must not stop the others
 constexpr Nanoseconds kAcceptPause = milliseconds(100);  // when there is no descriptor left
 
@@ -47,11 +47,11 @@ Answer no_method(const std::string& name) {
 
 }  // namespace
 
-/// The one answer of a call that was handed to the subject: the first one counts, and if its reply is dropped without
+/// The one answer of a call that was handed to the backend: the first one counts, and if its reply is dropped without
 /// any, the caller is told.
 struct Door::Call {
-  Call(Door& opened, Session& from, const Request& asked, bool does_act)
-      : door(&opened), is_alive(opened.is_alive_), session(from.number()), request(asked), acts(does_act) {
+  Call(Door& opened, Connection& from, const Request& asked, bool does_act)
+      : door(&opened), is_alive(opened.is_alive_), connection(from.number()), request(asked), acts(does_act) {
     ++from.open_calls;
     from.open_acts += acts;
   }
@@ -62,8 +62,8 @@ struct Door::Call {
   }
   void take(const Answer& said) {
     if (std::exchange(is_answered, true) || !*is_alive) return;
-    const auto found = door->sessions_.find(session);
-    if (found == door->sessions_.end()) return;
+    const auto found = door->connections_.find(connection);
+    if (found == door->connections_.end()) return;
     --found->second->open_calls;
     found->second->open_acts -= acts;
     door->answer(*found->second, request, said);
@@ -71,14 +71,15 @@ struct Door::Call {
 
   Door* door;
   std::shared_ptr<bool> is_alive;
-  std::uint64_t session;
+  std::uint64_t connection;
   Request request;
   bool acts;
   bool is_answered = false;
 };
 
-Result<std::unique_ptr<Door>> Door::open(int listening, Subject& subject, uid_t owner, const RoleGroups& groups) {
-  std::unique_ptr<Door> door(new Door(subject, owner, groups));
+Result<std::unique_ptr<Door>> Door::open(int listening, ControlBackend& backend, uid_t owner,
+                                         const RoleGroups& groups) {
+  std::unique_ptr<Door> door(new Door(backend, owner, groups));
   door->listening_ = OwnedDescriptor(listening);
   door->epoll_ = OwnedDescriptor(::epoll_create1(EPOLL_CLOEXEC));
   const bool is_watched = listening < 0 || watch(door->epoll_.fd, EPOLL_CTL_ADD, listening, EPOLLIN, kListening);
@@ -100,50 +101,50 @@ void Door::serve(Nanoseconds now) {
   bool has_callers = false;
   for (int i = 0; i < n; ++i) {
     const std::uint64_t number = events[i].data.u64;  // a copy: the event itself is packed
-    const auto found = sessions_.find(number);
+    const auto found = connections_.find(number);
     has_callers = has_callers || number == kListening;
-    if (found == sessions_.end() || (events[i].events & (EPOLLIN | EPOLLHUP | EPOLLERR)) == 0) continue;
+    if (found == connections_.end() || (events[i].events & (EPOLLIN | EPOLLHUP | EPOLLERR)) == 0) continue;
     found->second->receive(now);
     if ((events[i].events & (EPOLLHUP | EPOLLERR)) != 0) found->second->is_gone = true;
   }
   take_turn(now);
   if (has_callers) accept(now);  // when those inside have been heard: who has just asked is not idle
-  subscriptions_.notify([this](std::uint64_t number) -> Session& { return *sessions_.at(number); }, now);
+  subscriptions_.notify([this](std::uint64_t number) -> Connection& { return *connections_.at(number); }, now);
   settle(now);
 }
 
-Standing Door::standing(Session& session, Nanoseconds now) const {
-  if (session.open_acts > 0) return Standing::kActs;
-  const bool listens = subscriptions_.count_of(session.number()) > 0 && session.is_read(now);
-  if (listens && !session.is_gone) return Standing::kListens;
-  if (session.open_calls > 0 || session.has_line() || session.has_output()) return Standing::kAsks;
-  return session.half_since() != kNever ? Standing::kHalfLine : Standing::kIdle;
+Standing Door::standing(Connection& connection, Nanoseconds now) const {
+  if (connection.open_acts > 0) return Standing::kActs;
+  const bool listens = subscriptions_.count_of(connection.number()) > 0 && connection.is_read(now);
+  if (listens && !connection.is_gone) return Standing::kListens;
+  if (connection.open_calls > 0 || connection.has_line() || connection.has_output()) return Standing::kAsks;
+  return connection.half_since() != kNever ? Standing::kHalfLine : Standing::kIdle;
 }
 
 /// A place for one more, or why there is none.
 Answer Door::admit(const PeerIdentity& peer, Nanoseconds now) {
   if (peer.role == Role::kNone) return no_role();
   std::vector<Occupant> all;
-  for (const auto& [number, session] : sessions_) {
-    const Standing has = standing(*session, now);
-    all.push_back({number, session->peer().user, rank_of(session->peer(), owner_), has,
-                   has == Standing::kHalfLine ? session->half_since() : session->active_at});
+  for (const auto& [number, connection] : connections_) {
+    const Standing has = standing(*connection, now);
+    all.push_back({number, connection->peer().user, rank_of(connection->peer(), owner_), has,
+                   has == Standing::kHalfLine ? connection->half_since() : connection->active_at});
   }
-  const Placement placement = find_place(all, peer.user, rank_of(peer, owner_));
+  const PlaceGrant placement = find_place(all, peer.user, rank_of(peer, owner_));
   if (!placement.is_granted) return Answer::error(kTooMany, "too many connections: " + placement.refusal);
   if (placement.in_place_of == 0) return {};
-  Session& first = *sessions_.at(placement.in_place_of);
+  Connection& first = *connections_.at(placement.in_place_of);
   turn_out(first, idle_text(first, now) + "; its place was needed", now);
   end(first.number());
   return {};
 }
 
-std::string Door::idle_text(Session& session, Nanoseconds now) const {
-  switch (standing(session, now)) {
+std::string Door::idle_text(Connection& connection, Nanoseconds now) const {
+  switch (standing(connection, now)) {
     case Standing::kHalfLine:
-      return "a line without an end for " + time_text(now - session.half_since());
+      return "a line without an end for " + time_text(now - connection.half_since());
     case Standing::kIdle:
-      return "idle for " + time_text(now - session.active_at);
+      return "idle for " + time_text(now - connection.active_at);
     case Standing::kAsks:
       return "it had only asked";
     case Standing::kListens:
@@ -155,10 +156,10 @@ std::string Door::idle_text(Session& session, Nanoseconds now) const {
 }
 
 /// Tells the peer, if that can be done at once, and whoever wants to know what was closed.
-void Door::turn_out(Session& session, const std::string& why, Nanoseconds now) {
-  session.say(answer_line(nullptr, Answer::error(kClosed, "closed: " + why)), now);
-  (void)session.flush(now);
-  const PeerIdentity& peer = session.peer();
+void Door::turn_out(Connection& connection, const std::string& why, Nanoseconds now) {
+  connection.say(answer_line(nullptr, Answer::error(kClosed, "closed: " + why)), now);
+  (void)connection.flush(now);
+  const PeerIdentity& peer = connection.peer();
   const std::string process = peer.process > 0 ? "process " + std::to_string(peer.process) + ", " : "";
   closings_.add(
       peer.user,
@@ -181,136 +182,139 @@ void Door::accept(Nanoseconds now) {
 }
 
 void Door::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now) {
-  auto session = std::make_unique<Session>(++last_session_, std::move(connected), peer, now);
-  if (peer.role != Role::kNone) session->receive(now);  // whoever has only one question has asked it by now
-  if (session->has_ended() && !session->has_line()) return;
+  auto connection = std::make_unique<Connection>(++last_connection_, std::move(connected), peer, now);
+  if (peer.role != Role::kNone) connection->receive(now);  // whoever has only one question has asked it by now
+  if (connection->has_ended() && !connection->has_line()) return;
   if (const Answer refusal = admit(peer, now); !refusal.is_good()) {
-    session->say(answer_line(nullptr, refusal), now);
-    (void)session->flush(now);
+    connection->say(answer_line(nullptr, refusal), now);
+    (void)connection->flush(now);
     return;
   }
-  session->watched = EPOLLIN;
-  if (!watch(epoll_.fd, EPOLL_CTL_ADD, session->descriptor(), EPOLLIN, session->number())) return;
-  Session& entered = *sessions_.emplace(session->number(), std::move(session)).first->second;
+  connection->watched = EPOLLIN;
+  if (!watch(epoll_.fd, EPOLL_CTL_ADD, connection->descriptor(), EPOLLIN, connection->number())) return;
+  Connection& entered = *connections_.emplace(connection->number(), std::move(connection)).first->second;
   take_first(entered, now);  // the next one in the queue may need its place
   (void)entered.flush(now);
 }
 
-/// Reads a line: what is no request, or may not be one now, is answered; else it is the session's next.
-void Door::take(Session& session, const std::string& line, Nanoseconds now) {
-  session.active_at = now;
+/// Reads a line: what is no request, or may not be one now, is answered; else it is the connection's next.
+void Door::take(Connection& connection, const std::string& line, Nanoseconds now) {
+  connection.active_at = now;
   const std::size_t pieces = 1 + std::min(line.size(), kMaxLine) / kLongLine;
-  const bool may = session.requests.take(now, static_cast<std::int64_t>(pieces));
-  const Answer refusal = may ? Answer{} : too_fast(session.requests.wait(now, static_cast<std::int64_t>(pieces)));
+  const bool may = connection.requests.take(now, static_cast<std::int64_t>(pieces));
+  const Answer refusal = may ? Answer{} : too_fast(connection.requests.wait(now, static_cast<std::int64_t>(pieces)));
   const bool is_long = pieces > 1 && line.size() <= kMaxLine;
-  if (!may && is_long) return session.say(answer_line(nullptr, refusal), now);  // its id is not worth the search
+  if (!may && is_long) return connection.say(answer_line(nullptr, refusal), now);  // its id is not worth the search
   const Request request = read_request(line);
   if (!request.refusal.is_good()) {
-    session.say(answer_line(*request.id, request.refusal), now);
-    if (request.must_close) session.close_after();
+    connection.say(answer_line(*request.id, request.refusal), now);
+    if (request.must_close) connection.close_after();
   } else if (!may) {
-    answer(session, request, refusal);
+    answer(connection, request, refusal);
   } else {
-    session.next = std::make_unique<const Request>(request);
+    connection.next = std::make_unique<const Request>(request);
   }
 }
 
-void Door::carry_out(Session& session, const Request& request, Nanoseconds now) {
+void Door::carry_out(Connection& connection, const Request& request, Nanoseconds now) {
   const MethodRule* rule = find_method(request.method);
-  const Answer judged = judge(session, request, rule, now);
-  if (!judged.is_good()) return answer(session, request, judged);
-  if (request.method == "subscribe") return answer(session, request, subscribe(session, *request.parameters, now));
-  if (request.method == "unsubscribe")
-    return answer(session, request, subscriptions_.close(session.number(), *request.parameters));
-  auto call = std::make_shared<Call>(*this, session, request, rule->role > Role::kObserve);
-  subject_.call(*rule, *request.parameters, {session.peer().role, session.number()},
+  const Answer judged = judge(connection, request, rule, now);
+  if (!judged.is_good()) return answer(connection, request, judged);
+  if (rule->id == MethodId::kSubscribe)
+    return answer(connection, request, subscribe(connection, *request.parameters, now));
+  if (rule->id == MethodId::kUnsubscribe)
+    return answer(connection, request, subscriptions_.close(connection.number(), *request.parameters));
+  auto call = std::make_shared<Call>(*this, connection, request, rule->is_act);
+  backend_.call(*rule, *request.parameters, {connection.peer().role, connection.number()},
                 [call = std::move(call)](const Answer& said) { call->take(said); });
 }
 
-Answer Door::judge(Session& session, const Request& request, const MethodRule* rule, Nanoseconds now) {
+Answer Door::judge(Connection& connection, const Request& request, const MethodRule* rule, Nanoseconds now) {
   if (rule == nullptr) return no_method(request.method);
-  const Role has = session.peer().role;
+  const Role has = connection.peer().role;
   if (has < rule->role)
     return Answer::error(
         kNoRight,
         std::string("'") + rule->name + "' needs the role " + role_name(rule->role) + ", you have " + role_name(has),
         {{"needs", role_name(rule->role)}, {"has", role_name(has)}});
-  if (rule->is_act && !session.acts.take(now)) return too_fast(session.acts.wait(now));
+  if ((rule->is_act || rule->is_costly) && !connection.acts.take(now)) return too_fast(connection.acts.wait(now));
   return check_parameters(*rule, *request.parameters);
 }
 
 /// Of a user's places some are kept for who comes with one question or act.
-Answer Door::subscribe(Session& session, const Json& parameters, Nanoseconds now) {
+Answer Door::subscribe(Connection& connection, const Json& parameters, Nanoseconds now) {
   const auto is_one = [&](const auto& one) {
-    return one.second->peer().user == session.peer().user && subscriptions_.count_of(one.first) > 0;
+    return one.second->peer().user == connection.peer().user && subscriptions_.count_of(one.first) > 0;
   };
-  const auto listeners = std::count_if(sessions_.begin(), sessions_.end(), is_one);
-  if (subscriptions_.count_of(session.number()) == 0 && listeners >= static_cast<long>(kMaxListenersOfUser))
+  const auto listeners = std::count_if(connections_.begin(), connections_.end(), is_one);
+  if (subscriptions_.count_of(connection.number()) == 0 && listeners >= static_cast<long>(kMaxListenersOfUser))
     return Answer::error(kTooMany, "too many connections: " + std::to_string(kMaxListenersOfUser) + " of user " +
-                                       std::to_string(session.peer().user) + " have subscriptions");
-  return subscriptions_.open(session.number(), parameters, now);
+                                       std::to_string(connection.peer().user) + " have subscriptions");
+  return subscriptions_.open(connection.number(), parameters, now);
 }
 
-void Door::answer(Session& session, const Request& request, const Answer& answer) {
-  session.active_at = now_;
+void Door::answer(Connection& connection, const Request& request, const Answer& answer) {
+  connection.active_at = now_;
   if (!request.wants_answer) return;
-  session.say(answer_line(*request.id, answer), now_);
+  connection.say(answer_line(*request.id, answer), now_);
   has_more_ = true;  // outside of serve(): to be sent
 }
 
 /// What a peer said before it went is still carried out. One that says nothing more but listens is told what it asked
 /// for and subscribed to.
-bool Door::is_over(Session& session, Nanoseconds now) {
-  if (session.is_gone && !session.has_line()) return true;
-  const bool wants_more = session.open_calls > 0 || session.has_line() || subscriptions_.count_of(session.number()) > 0;
-  if (session.has_ended() && !wants_more) session.close_after();
-  const bool has_more_to_do = session.has_ended() && session.has_line() && session.has_room() && !session.is_closing();
-  return !session.flush(now) && !has_more_to_do;
+bool Door::is_over(Connection& connection, Nanoseconds now) {
+  if (connection.is_gone && !connection.has_line()) return true;
+  const bool wants_more =
+      connection.open_calls > 0 || connection.has_line() || subscriptions_.count_of(connection.number()) > 0;
+  if (connection.has_ended() && !wants_more) connection.close_after();
+  const bool has_more_to_do =
+      connection.has_ended() && connection.has_line() && connection.has_room() && !connection.is_closing();
+  return !connection.flush(now) && !has_more_to_do;
 }
 
 /// For which it is closed now; null: none.
-const char* Door::fault_of(Session& session, Nanoseconds now) const {
-  if (session.is_closing() || session.is_gone) return nullptr;
-  if (session.patience_ends() <= now) return "it took nothing for 5 s";
-  const Nanoseconds half = session.has_line() ? kNever : session.half_since();
+const char* Door::fault_of(Connection& connection, Nanoseconds now) const {
+  if (connection.is_closing() || connection.is_gone) return nullptr;
+  if (connection.patience_ends() <= now) return "it took nothing for 5 s";
+  const Nanoseconds half = connection.has_line() ? kNever : connection.half_since();
   return half != kNever && now - half >= kPatience ? "its line did not end within 5 s" : nullptr;
 }
 
 void Door::settle(Nanoseconds now) {
   std::vector<std::uint64_t> over;
   bool waits = false;
-  for (const auto& [number, session] : sessions_) {
-    const bool is_gone = is_over(*session, now);
-    const char* fault = fault_of(*session, now);
-    if (fault != nullptr) turn_out(*session, fault, now);
+  for (const auto& [number, connection] : connections_) {
+    const bool is_gone = is_over(*connection, now);
+    const char* fault = fault_of(*connection, now);
+    if (fault != nullptr) turn_out(*connection, fault, now);
     if (is_gone || fault != nullptr) {
       over.push_back(number);
       continue;
     }
-    const bool listens = session->has_room() && !session->is_closing() && !session->has_ended();
-    if (!listens) session->excuse(now);
-    const std::uint32_t wanted = (listens ? EPOLLIN : 0u) | (session->has_output() ? EPOLLOUT : 0u);
-    if (wanted != session->watched) watch(epoll_.fd, EPOLL_CTL_MOD, session->descriptor(), wanted, number);
-    session->watched = wanted;
-    waits = waits || (!session->is_closing() && session->has_room() && session->has_line());
+    const bool listens = connection->has_room() && !connection->is_closing() && !connection->has_ended();
+    if (!listens) connection->excuse(now);
+    const std::uint32_t wanted = (listens ? EPOLLIN : 0u) | (connection->has_output() ? EPOLLOUT : 0u);
+    if (wanted != connection->watched) watch(epoll_.fd, EPOLL_CTL_MOD, connection->descriptor(), wanted, number);
+    connection->watched = wanted;
+    waits = waits || (!connection->is_closing() && connection->has_room() && connection->has_line());
   }
   for (const std::uint64_t number : over) end(number);
   closings_.look(now);
   has_more_ = waits;
 }
 
-void Door::end(std::uint64_t session) {
-  subscriptions_.end(session);
-  sessions_.erase(session);
-  subject_.forget(session);
+void Door::end(std::uint64_t connection) {
+  subscriptions_.end(connection);
+  connections_.erase(connection);
+  backend_.forget(connection);
 }
 
 Nanoseconds Door::next_due() const noexcept {
   if (has_more_) return now_;
   Nanoseconds next = std::min({subscriptions_.next_due(), accepts_again_, closings_.next_due()});
-  for (const auto& [number, session] : sessions_) {
-    const bool has_half = session->half_since() != kNever && !session->has_line();
-    next = std::min({next, session->patience_ends(), has_half ? session->half_since() + kPatience : kNever});
+  for (const auto& [number, connection] : connections_) {
+    const bool has_half = connection->half_since() != kNever && !connection->has_line();
+    next = std::min({next, connection->patience_ends(), has_half ? connection->half_since() + kPatience : kNever});
   }
   return next;
 }

@@ -12,8 +12,8 @@
 #include "chimera/control/closings.h"
 #include "chimera/control/places.h"
 #include "chimera/control/request.h"
-#include "chimera/control/session.h"
-#include "chimera/control/subject.h"
+#include "chimera/control/connection.h"
+#include "chimera/control/control_backend.h"
 #include "chimera/control/subscriptions.h"
 
 namespace chimera::control {
@@ -21,9 +21,10 @@ namespace chimera::control {
 /// Context: setup.
 class Door {
  public:
-  /// Takes over `listening` (-1: connections only come by enter()). `owner` is the user of the keeper; `subject`
+  /// Takes over `listening` (-1: connections only come by enter()). `owner` is the user of the keeper; `backend`
   /// outlives the door.
-  static Result<std::unique_ptr<Door>> open(int listening, Subject& subject, uid_t owner, const RoleGroups& groups);
+  static Result<std::unique_ptr<Door>> open(int listening, ControlBackend& backend, uid_t owner,
+                                            const RoleGroups& groups);
   Door(const Door&) = delete;
   Door& operator=(const Door&) = delete;
   ~Door();
@@ -40,43 +41,43 @@ class Door {
   /// Takes over a connected socket whose other end is known; refuses it with words when it has no role or finds no
   /// place. Another one may have to give way to it.
   void enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now);
-  std::size_t connections() const noexcept { return sessions_.size(); }
+  std::size_t connections() const noexcept { return connections_.size(); }
 
  private:
   struct Call;
 
-  Door(Subject& subject, uid_t owner, const RoleGroups& groups)
-      : subject_(subject), subscriptions_(subject), owner_(owner), groups_(groups) {}
+  Door(ControlBackend& backend, uid_t owner, const RoleGroups& groups)
+      : backend_(backend), subscriptions_(backend), owner_(owner), groups_(groups) {}
   void accept(Nanoseconds now);
   Answer admit(const PeerIdentity& peer, Nanoseconds now);
-  Standing standing(Session& session, Nanoseconds now) const;
-  std::string idle_text(Session& session, Nanoseconds now) const;
-  void turn_out(Session& session, const std::string& why, Nanoseconds now);
+  Standing standing(Connection& connection, Nanoseconds now) const;
+  std::string idle_text(Connection& connection, Nanoseconds now) const;
+  void turn_out(Connection& connection, const std::string& why, Nanoseconds now);
   // door_turn.cc
   void take_turn(Nanoseconds now);
   bool act(Nanoseconds now);
-  bool act_of(Session& session, Nanoseconds now);
+  bool act_of(Connection& connection, Nanoseconds now);
   bool ask(Nanoseconds now);
-  void take_first(Session& session, Nanoseconds now);
-  void carry_out_next(Session& session, Nanoseconds now);
+  void take_first(Connection& connection, Nanoseconds now);
+  void carry_out_next(Connection& connection, Nanoseconds now);
   // door.cc
-  void take(Session& session, const std::string& line, Nanoseconds now);
-  void carry_out(Session& session, const Request& request, Nanoseconds now);
-  Answer judge(Session& session, const Request& request, const MethodRule* rule, Nanoseconds now);
-  Answer subscribe(Session& session, const Json& parameters, Nanoseconds now);
-  void answer(Session& session, const Request& request, const Answer& answer);
-  const char* fault_of(Session& session, Nanoseconds now) const;
-  bool is_over(Session& session, Nanoseconds now);
+  void take(Connection& connection, const std::string& line, Nanoseconds now);
+  void carry_out(Connection& connection, const Request& request, Nanoseconds now);
+  Answer judge(Connection& connection, const Request& request, const MethodRule* rule, Nanoseconds now);
+  Answer subscribe(Connection& connection, const Json& parameters, Nanoseconds now);
+  void answer(Connection& connection, const Request& request, const Answer& answer);
+  const char* fault_of(Connection& connection, Nanoseconds now) const;
+  bool is_over(Connection& connection, Nanoseconds now);
   void settle(Nanoseconds now);
-  void end(std::uint64_t session);
+  void end(std::uint64_t connection);
 
-  Subject& subject_;
+  ControlBackend& backend_;
   Subscriptions subscriptions_;
   uid_t owner_;
   RoleGroups groups_;
   OwnedDescriptor listening_, epoll_;
-  std::map<std::uint64_t, std::unique_ptr<Session>> sessions_;
-  std::uint64_t last_session_ = 0;
+  std::map<std::uint64_t, std::unique_ptr<Connection>> connections_;
+  std::uint64_t last_connection_ = 0;
   Closings closings_;
   std::uint64_t last_asked_ = 0;                                   // whose question was answered last
   Nanoseconds now_;                                                // of the last serve()

@@ -29,7 +29,7 @@ void require(bool holds, const char* what) {
 }
 
 /// Tasks with the real state machine; every method succeeds. Every other signal is answered later.
-class Model final : public Subject {
+class Model final : public ControlBackend {
  public:
   void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) override {
     require(caller.role >= method.role, "nobody calls what its role does not open");

@@ -80,7 +80,7 @@ TEST_F(DoorLimits, ActsHaveARateOfTheirOwn) {
   for (int i = 0; i < 60; ++i) flood += request("flag", R"({"up":true})");
   EXPECT_EQ(count(ask(fd, flood), R"("code":-32003,"data":{"retry_ms":10})"), 10u);
   EXPECT_NE(ask(fd, request("hello")).find("\"result\""), std::string::npos);
-  EXPECT_EQ(subject.calls, 51);
+  EXPECT_EQ(backend.calls, 51);
   ::close(fd);
 }
 
@@ -135,23 +135,23 @@ TEST_F(DoorLimits, TakesThirtyTwoSubscriptionsOfAConnection) {
 
 TEST_F(DoorLimits, ASlowReaderSkipsToTheLatestAndAStuckOneIsDropped) {
   const int fd = plain(), other = plain();
-  subject.ballast = 200'000;
+  backend.ballast = 200'000;
   ask(fd, request("subscribe", R"({"to":"values","period_ms":20})"));
   for (int i = 0; i < 2000; ++i) serve();
-  EXPECT_LT(subject.pulls, 10) << "what the peer does not take is not made";
+  EXPECT_LT(backend.pulls, 10) << "what the peer does not take is not made";
   EXPECT_EQ(door->connections(), 2u);
   EXPECT_NE(ask(other, request("hello")).find("\"result\""), std::string::npos) << "others do not notice";
   for (int i = 0; i < 400 && door->connections() == 2; ++i) serve(milliseconds(10));
   EXPECT_EQ(door->connections(), 1u);
   EXPECT_GE(now, seconds(6)) << "not before 5 s without a byte";
-  EXPECT_EQ(subject.closed.size(), 1u);
+  EXPECT_EQ(backend.closed.size(), 1u);
   ::close(fd);
   ::close(other);
 }
 
 TEST_F(DoorLimits, AnIdleDoorIsDueWhenThePatienceWithAPeerEnds) {
   const int fd = plain();
-  subject.ballast = 900'000;
+  backend.ballast = 900'000;
   ask(fd, "");
   say(fd, request("hello"));
   serve();
@@ -164,19 +164,19 @@ TEST_F(DoorLimits, AnIdleDoorIsDueWhenThePatienceWithAPeerEnds) {
 
 TEST_F(DoorLimits, NothingMoreIsReadFromAPeerThatDoesNotTakeItsAnswers) {
   const int fd = plain();
-  subject.ballast = 600'000;
+  backend.ballast = 600'000;
   std::string flood;
   for (int i = 0; i < 100; ++i) flood += request("hello");
   say(fd, flood);
   serve();
-  EXPECT_LE(subject.calls, 5);
+  EXPECT_LE(backend.calls, 5);
   std::size_t got = 0;
   for (int i = 0; i < 2000 && got < 100; ++i) {
     got += count(take(fd), "\"result\"");
     serve();
   }
   EXPECT_EQ(got, 100u) << "all of them are answered when it does";
-  EXPECT_EQ(subject.calls, 100);
+  EXPECT_EQ(backend.calls, 100);
   ::close(fd);
 }
 

@@ -69,7 +69,7 @@ TEST_F(DoorPlaces, WhoseRequestIsUnderWayStaysAndWhoHasAskedJustNowIsAnswered) {
   say(fds[0], request("signal", kOff));  // comes in the same turn as the newcomer
   const int late = more();
   serve();
-  EXPECT_EQ(subject.later.size(), 16u);
+  EXPECT_EQ(backend.later.size(), 16u);
   EXPECT_EQ(take(late),
             error("null", -32002,
                   ("too many connections: the 16 of user " + std::to_string(::getuid()) + " are all in use").c_str()));
@@ -163,7 +163,7 @@ TEST_F(DoorPlaces, ALineThatDoesNotEndWithinFiveSecondsIsClosedInAnyCase) {
 
 TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileNobodyReadsIt) {
   const int fd = more();
-  subject.ballast = 2'000'000;
+  backend.ballast = 2'000'000;
   serve();
   say(fd, request("hello") + request("hello").substr(0, 20));
   serve();
@@ -179,7 +179,7 @@ TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileNobodyReadsIt) {
 
 TEST_F(DoorPlaces, WhoTakesNothingForFiveSecondsIsToldOf) {
   const int fd = more();
-  subject.ballast = 900'000;
+  backend.ballast = 900'000;
   serve();
   say(fd, request("hello"));
   serve();

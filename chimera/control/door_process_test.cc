@@ -13,7 +13,7 @@
 
 namespace chimera::control {
 
-void FakeSubject::call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) {
+void FakeBackend::call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) {
   ++calls;
   called.emplace_back(method.name);
   if (called.back() == "status" && busy_us > 0) ::usleep(static_cast<useconds_t>(busy_us));
@@ -25,14 +25,14 @@ void FakeSubject::call(const MethodRule& method, const Json& parameters, const C
                       {"ballast", std::string(ballast, 'x')}}));
 }
 
-Answer FakeSubject::open(std::uint64_t subscription, const Json& parameters) {
+Answer FakeBackend::open(std::uint64_t subscription, const Json& parameters) {
   if (parameters.contains("variables") && parameters["variables"][0] == "nothing")
     return Answer::unknown("no state variable 'nothing'", "variables", "something");
   opened.push_back(subscription);
   return {};
 }
 
-std::shared_ptr<const Json> FakeSubject::pull(std::uint64_t) {
+std::shared_ptr<const Json> FakeBackend::pull(std::uint64_t) {
   if (news == 0) return nullptr;
   --news;
   return std::make_shared<const Json>(Json{{"n", ++pulls}, {"ballast", std::string(ballast, 'x')}});
@@ -85,14 +85,14 @@ TEST_F(DoorTest, NamesTheNearestMethod) {
   EXPECT_EQ(ask(fd, request("flag", R"({"up":1})")),
             R"({"error":{"code":-32602,"data":{"where":"up"},"message":"'up' must be true or false"},"id":1,)"
             R"("jsonrpc":"2.0"})" "\n");
-  EXPECT_EQ(subject.calls, 0);
+  EXPECT_EQ(backend.calls, 0);
   ::close(fd);
 }
 
 TEST_F(DoorTest, ARequestWithoutIdIsCarriedOutAndNotAnswered) {
   const int fd = plain();
   EXPECT_EQ(ask(fd, R"({"jsonrpc":"2.0","method":"flag","params":{"up":true}})" "\n"), "");
-  EXPECT_EQ(subject.calls, 1);
+  EXPECT_EQ(backend.calls, 1);
   EXPECT_EQ(ask(fd, R"({"jsonrpc":"2.0","method":"flog"})" "\n"), "");
   ::close(fd);
 }
@@ -101,9 +101,9 @@ TEST_F(DoorTest, AnAnswerMayComeLaterAndOnlyOnce) {
   const int fd = plain();
   const std::string off = request("signal", R"({"signal":"off","tasks":["a"]})", 9);
   EXPECT_EQ(ask(fd, off), "");
-  ASSERT_EQ(subject.later.size(), 1u);
-  subject.later[0](Answer::error(kRefused, "not now"));
-  subject.later[0](Answer::error(kRefused, "still not"));
+  ASSERT_EQ(backend.later.size(), 1u);
+  backend.later[0](Answer::error(kRefused, "not now"));
+  backend.later[0](Answer::error(kRefused, "still not"));
   EXPECT_LE(door->next_due(), now) << "an answer given between two turns is sent at once";
   serve();
   EXPECT_EQ(take(fd), error("9", -32000, "not now"));
@@ -111,10 +111,10 @@ TEST_F(DoorTest, AnAnswerMayComeLaterAndOnlyOnce) {
   ::close(fd);
   serve();
   EXPECT_EQ(door->connections(), 0u);
-  subject.later[1](Answer::good(Json::object()));  // nobody there any more: harmless
+  backend.later[1](Answer::good(Json::object()));  // nobody there any more: harmless
   door.reset();
-  subject.later[1](Answer::good(Json::object()));
-  subject.later.clear();
+  backend.later[1](Answer::good(Json::object()));
+  backend.later.clear();
 }
 
 TEST_F(DoorTest, AReplyThatIsDroppedIsAnAnswerToo) {
@@ -130,7 +130,7 @@ TEST_F(DoorTest, APeerThatSaysNothingMoreIsStillAnswered) {
   serve();
   EXPECT_EQ(door->connections(), 1u);
   EXPECT_EQ(door->next_due(), kNever) << "it is waited for, not asked again and again";
-  subject.later.at(0)(Answer::good(Json::object()));
+  backend.later.at(0)(Answer::good(Json::object()));
   serve();
   EXPECT_EQ(take(fd), R"({"id":1,"jsonrpc":"2.0","result":{}})" "\n");
   EXPECT_TRUE(is_closed(fd));
@@ -145,24 +145,24 @@ TEST_F(DoorTest, WhatAPeerAskedForBeforeItWentIsCarriedOut) {
   say(fd, acts);
   ::close(fd);
   serve();
-  EXPECT_GE(subject.calls, 32);
+  EXPECT_GE(backend.calls, 32);
   EXPECT_EQ(door->connections(), 0u);
 }
 
 TEST_F(DoorTest, ActsComeBeforeTheQuestionsOfOthersAndATurnEnds) {
   const int loud = plain(), quiet = plain();
   serve();
-  subject.busy_us = 2000;
+  backend.busy_us = 2000;
   for (int i = 0; i < 30; ++i) say(loud, request("status"));
   say(quiet, request("flag", R"({"up":true})"));
   door->serve(now = now + milliseconds(1));
-  ASSERT_FALSE(subject.called.empty());
-  EXPECT_EQ(subject.called[0], "flag");
-  EXPECT_LE(subject.called.size(), 4u) << "of 30 questions that take 2 ms each two or three are a turn";
+  ASSERT_FALSE(backend.called.empty());
+  EXPECT_EQ(backend.called[0], "flag");
+  EXPECT_LE(backend.called.size(), 4u) << "of 30 questions that take 2 ms each two or three are a turn";
   EXPECT_NE(take(quiet).find("\"result\""), std::string::npos) << "answered in the same turn";
   EXPECT_LE(door->next_due(), now) << "there is more to do";
   serve();
-  EXPECT_EQ(subject.called.size(), 31u);
+  EXPECT_EQ(backend.called.size(), 31u);
   ::close(loud);
   ::close(quiet);
 }
@@ -170,11 +170,11 @@ TEST_F(DoorTest, ActsComeBeforeTheQuestionsOfOthersAndATurnEnds) {
 TEST_F(DoorTest, QuestionsOfConnectionsAreAnsweredInTurnAndEachInItsOrder) {
   const int a = plain(), b = plain();
   serve();
-  subject.busy_us = 1;
+  backend.busy_us = 1;
   say(a, request("status") + request("hello") + request("flag", R"({"up":true})") + request("hello"));
   say(b, request("get") + request("profile"));
   serve();
-  EXPECT_EQ(subject.called, (std::vector<std::string>{"status", "get", "hello", "flag", "profile", "hello"}))
+  EXPECT_EQ(backend.called, (std::vector<std::string>{"status", "get", "hello", "flag", "profile", "hello"}))
       << "an act waits for what its own connection asked before, not for others";
   ::close(a);
   ::close(b);
@@ -183,10 +183,10 @@ TEST_F(DoorTest, QuestionsOfConnectionsAreAnsweredInTurnAndEachInItsOrder) {
 TEST_F(DoorTest, TheSubjectIsToldThatAConnectionIsOver) {
   const int fd = plain();
   serve();
-  EXPECT_TRUE(subject.forgotten.empty());
+  EXPECT_TRUE(backend.forgotten.empty());
   ::close(fd);
   serve();
-  EXPECT_EQ(subject.forgotten, std::vector<std::uint64_t>{1});
+  EXPECT_EQ(backend.forgotten, std::vector<std::uint64_t>{1});
 }
 
 TEST_F(DoorTest, SubscriptionsComeWithTheirPeriodAndEndWithTheConnection) {
@@ -194,15 +194,15 @@ TEST_F(DoorTest, SubscriptionsComeWithTheirPeriodAndEndWithTheConnection) {
   EXPECT_NE(ask(fd, request("subscribe", R"({"to":"status","period_ms":50})")).find(R"("subscription":1)"),
             std::string::npos);
   for (int i = 0; i < 200; ++i) serve();
-  EXPECT_GE(subject.pulls, 4);
-  EXPECT_LE(subject.pulls, 5);
+  EXPECT_GE(backend.pulls, 4);
+  EXPECT_LE(backend.pulls, 5);
   EXPECT_NE(take(fd).find(R"({"jsonrpc":"2.0","method":"status","params":{"ballast":"","n":2,"subscription":1}})"),
             std::string::npos);
   EXPECT_NE(ask(fd, request("subscribe", R"({"to":"tap","variables":["nothing"]})")).find(R"("nearest":"something")"),
             std::string::npos);
   ::close(fd);
   serve();
-  EXPECT_EQ(subject.closed, subject.opened);
+  EXPECT_EQ(backend.closed, backend.opened);
   EXPECT_EQ(door->next_due(), kNever);
 }
 
@@ -212,16 +212,16 @@ TEST_F(DoorTest, TheFirstNotificationComesWithTheAnswerNotAfterAPeriod) {
   const std::size_t answer = got.find(R"("result":{"subscription":1})"), note = got.find(R"("method":"status")");
   EXPECT_NE(note, std::string::npos);
   EXPECT_LT(answer, note) << "the answer first, so that the number is known";
-  EXPECT_EQ(subject.pulls, 1);
+  EXPECT_EQ(backend.pulls, 1);
   ::close(fd);
 }
 
 TEST_F(DoorTest, WhatALateTurnMissedIsNotMadeUpFor) {
   const int fd = plain();
   ask(fd, request("subscribe", R"({"to":"status","period_ms":50})"));
-  const int before = subject.pulls;
+  const int before = backend.pulls;
   serve(seconds(1));
-  EXPECT_EQ(subject.pulls, before + 1);
+  EXPECT_EQ(backend.pulls, before + 1);
   ::close(fd);
 }
 
@@ -229,16 +229,16 @@ TEST_F(DoorTest, ASubscriptionIsEndedByItsOwnConnectionOnly) {
   const int a = plain(), b = plain();
   ask(a, request("subscribe", R"({"to":"status"})"));
   EXPECT_NE(ask(b, request("unsubscribe", R"({"subscription":1})")).find("no subscription 1"), std::string::npos);
-  EXPECT_TRUE(subject.closed.empty());
+  EXPECT_TRUE(backend.closed.empty());
   EXPECT_NE(ask(a, request("unsubscribe", R"({"subscription":1})")).find(R"("result":{})"), std::string::npos);
-  EXPECT_EQ(subject.closed.size(), 1u);
+  EXPECT_EQ(backend.closed.size(), 1u);
   ::close(a);
   ::close(b);
 }
 
 TEST_F(DoorTest, NewsWithoutPeriodComeAllOfThemInOrder) {
   const int fd = plain();
-  subject.news = 150;
+  backend.news = 150;
   std::string got = ask(fd, request("subscribe", R"({"to":"events"})"));
   for (int i = 0; i < 60; ++i, got += take(fd)) serve();
   EXPECT_EQ(count(got, R"("method":"events")"), 150u);
@@ -287,7 +287,7 @@ TEST_F(StrangerTest, IsToldThatItHasNoRightAndNothingElse) {
   EXPECT_EQ(got, R"({"error":{"code":-32004,"data":{"has":"nothing","needs":"observe"},"message":"you have no right )"
                  R"(here: you are neither the user of the subsystem nor in a group with a role"},"id":null,)"
                  R"("jsonrpc":"2.0"})" "\n");
-  EXPECT_EQ(subject.calls, 0);
+  EXPECT_EQ(backend.calls, 0);
   EXPECT_EQ(door->connections(), 0u);
 }
 
@@ -298,7 +298,7 @@ TEST_F(StrangerTest, OfAGroupWithARoleHasThatRoleAndNoMore) {
   EXPECT_EQ(as_stranger(path, 4242, request("flag", R"({"up":true})"), [&] { serve(); }),
             R"({"error":{"code":-32004,"data":{"has":"observe","needs":"operate"},"message":"'flag' needs the role )"
             R"(operate, you have observe"},"id":1,"jsonrpc":"2.0"})" "\n");
-  EXPECT_EQ(subject.calls, 1);
+  EXPECT_EQ(backend.calls, 1);
 }
 
 }  // namespace

@@ -8,20 +8,20 @@
 namespace chimera::control {
 namespace {
 
-bool is_open(const Session& session) { return !session.is_closing() && session.has_room(); }
+bool is_open(const Connection& connection) { return !connection.is_closing() && connection.has_room(); }
 
-/// Changes something, if it is legal: somebody may depend on it being done.
+/// May change something: somebody may depend on it being done.
 bool is_act(const Request& request) {
   const MethodRule* rule = find_method(request.method);
-  return rule != nullptr && rule->role > Role::kObserve;
+  return rule != nullptr && rule->is_act;
 }
 
 }  // namespace
 
 void Door::take_turn(Nanoseconds now) {
   const Turn turn;
-  for (const auto& [number, session] : sessions_)
-    if (session->has_output()) (void)session->flush(now);  // answers that came since the last turn
+  for (const auto& [number, connection] : connections_)
+    if (connection->has_output()) (void)connection->flush(now);  // answers that came since the last turn
   do {
     while (act(now) && !turn.is_over()) {
     }
@@ -32,48 +32,48 @@ void Door::take_turn(Nanoseconds now) {
 bool Door::act(Nanoseconds now) {
   bool did = false;
   for (const Role role : {Role::kConfigure, Role::kOperate})
-    for (const auto& [number, session] : sessions_)
-      if (session->peer().role == role) did = act_of(*session, now) || did;
+    for (const auto& [number, connection] : connections_)
+      if (connection->peer().role == role) did = act_of(*connection, now) || did;
   return did;
 }
 
-bool Door::act_of(Session& session, Nanoseconds now) {
-  if (!is_open(session)) return false;
+bool Door::act_of(Connection& connection, Nanoseconds now) {
+  if (!is_open(connection)) return false;
   std::string line;
-  const bool reads = session.next == nullptr && session.has_short_line() && session.take_line(line);
-  if (reads) take(session, line, now);
-  if (session.next == nullptr || !is_act(*session.next)) return reads;
-  carry_out_next(session, now);
-  (void)session.flush(now);
+  const bool reads = connection.next == nullptr && connection.has_short_line() && connection.take_line(line);
+  if (reads) take(connection, line, now);
+  if (connection.next == nullptr || !is_act(*connection.next)) return reads;
+  carry_out_next(connection, now);
+  (void)connection.flush(now);
   return true;
 }
 
 /// One question of the connection whose turn it is. False: there was none.
 bool Door::ask(Nanoseconds now) {
-  auto at = sessions_.upper_bound(last_asked_);
-  for (std::size_t n = sessions_.size(); n > 0; --n, ++at) {
-    if (at == sessions_.end()) at = sessions_.begin();
-    Session& session = *at->second;
+  auto at = connections_.upper_bound(last_asked_);
+  for (std::size_t n = connections_.size(); n > 0; --n, ++at) {
+    if (at == connections_.end()) at = connections_.begin();
+    Connection& connection = *at->second;
     std::string line;
-    if (!is_open(session) || (session.next == nullptr && !session.take_line(line))) continue;
+    if (!is_open(connection) || (connection.next == nullptr && !connection.take_line(line))) continue;
     last_asked_ = at->first;
-    if (session.next == nullptr) take(session, line, now);
-    if (session.next != nullptr) carry_out_next(session, now);
+    if (connection.next == nullptr) take(connection, line, now);
+    if (connection.next != nullptr) carry_out_next(connection, now);
     return true;
   }
   return false;
 }
 
 /// What a new connection has brought, so that it is answered before its place is wanted.
-void Door::take_first(Session& session, Nanoseconds now) {
+void Door::take_first(Connection& connection, Nanoseconds now) {
   std::string line;
-  if (is_open(session) && session.take_line(line)) take(session, line, now);
-  if (session.next != nullptr) carry_out_next(session, now);
+  if (is_open(connection) && connection.take_line(line)) take(connection, line, now);
+  if (connection.next != nullptr) carry_out_next(connection, now);
 }
 
-void Door::carry_out_next(Session& session, Nanoseconds now) {
-  const std::unique_ptr<const Request> request = std::move(session.next);
-  carry_out(session, *request, now);
+void Door::carry_out_next(Connection& connection, Nanoseconds now) {
+  const std::unique_ptr<const Request> request = std::move(connection.next);
+  carry_out(connection, *request, now);
 }
 
 }  // namespace chimera::control

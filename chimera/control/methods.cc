@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The table of methods, and the judgement of the parameters of a call by its row.
 #include "chimera/control/methods.h"
 
 #include <algorithm>
@@ -17,29 +18,37 @@ constexpr Parameter count(const char* name, std::uint64_t least, std::uint64_t m
   return {name, Kind::kCount, is_required, nullptr, least, most};
 }
 
+constexpr MethodRule question(MethodId id, const char* name) { return {id, name, Role::kObserve, false, false, {}}; }
+
+constexpr Parameter kTasks = {"tasks", Kind::kTexts, true};
+constexpr Parameter kText = {"text", Kind::kText, true}, kFile = {"file", Kind::kText, false};
+
+// clang-format off
 constexpr MethodRule kMethods[] = {
-    {"hello", Role::kObserve, false, {}},
-    {"status", Role::kObserve, false, {}},
-    {"describe", Role::kObserve, false, {}},
-    {"get", Role::kObserve, false, {{"variables", Kind::kTexts, false}}},
-    {"profile", Role::kObserve, false, {}},
-    {"events", Role::kObserve, false, {count("since", 0, INT64_MAX), count("limit", 1, 1000)}},
-    {"why", Role::kObserve, false, {{"variable", Kind::kText, true}}},
-    {"subscribe", Role::kObserve, false,
+    question(MethodId::kHello, "hello"),
+    question(MethodId::kStatus, "status"),
+    question(MethodId::kDescribe, "describe"),
+    {MethodId::kGet, "get", Role::kObserve, false, false, {{"variables", Kind::kTexts, false}}},
+    question(MethodId::kProfile, "profile"),
+    {MethodId::kEvents, "events", Role::kObserve, false, false,
+     {count("since", 0, INT64_MAX), count("limit", 1, 1000)}},
+    {MethodId::kWhy, "why", Role::kObserve, false, false, {{"variable", Kind::kText, true}}},
+    {MethodId::kSubscribe, "subscribe", Role::kObserve, false, false,
      {{"to", Kind::kText, true, "status events values tap"}, count("period_ms", 20, 60'000),
       {"variables", Kind::kTexts, false}, count("since", 0, INT64_MAX)}},
-    {"unsubscribe", Role::kObserve, false, {count("subscription", 1, INT64_MAX, true)}},
-    {"check", Role::kObserve, true, {{"text", Kind::kText, true}, {"file", Kind::kText, false}}},
-    {"schedule", Role::kObserve, true, {{"text", Kind::kText, true}, {"file", Kind::kText, false}}},
-    {"library", Role::kObserve, false, {}},
-    {"signal", Role::kOperate, true,
-     {{"signal", Kind::kText, true, "spawn on off kill clear reinit"}, {"tasks", Kind::kTexts, true}}},
-    {"ring", Role::kOperate, true, {{"tasks", Kind::kTexts, true}}},
-    {"set", Role::kOperate, true, {{"values", Kind::kObject, true}}},
-    {"flag", Role::kOperate, true, {{"up", Kind::kBool, true}}},
-    {"save", Role::kConfigure, true, {}},
-    {"end", Role::kConfigure, true, {count("code", 0, 255)}},
+    {MethodId::kUnsubscribe, "unsubscribe", Role::kObserve, false, false, {count("subscription", 1, INT64_MAX, true)}},
+    {MethodId::kCheck, "check", Role::kObserve, false, true, {kText, kFile}},
+    {MethodId::kSchedule, "schedule", Role::kObserve, false, true, {kText, kFile}},
+    question(MethodId::kLibrary, "library"),
+    {MethodId::kSignal, "signal", Role::kOperate, true, false,
+     {{"signal", Kind::kText, true, "spawn on off kill clear reinit"}, kTasks}},
+    {MethodId::kRing, "ring", Role::kOperate, true, false, {kTasks}},
+    {MethodId::kSet, "set", Role::kOperate, true, false, {{"values", Kind::kObject, true}}},
+    {MethodId::kFlag, "flag", Role::kOperate, true, false, {{"up", Kind::kBool, true}}},
+    {MethodId::kSave, "save", Role::kConfigure, true, false, {}},
+    {MethodId::kEnd, "end", Role::kConfigure, true, false, {count("code", 0, 255)}},
 };
+// clang-format on
 
 bool is_texts(const Json& value) {
   return value.is_array() && std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_string(); });

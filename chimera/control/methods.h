@@ -21,13 +21,22 @@ struct Parameter {
   std::uint64_t least = 0, most = INT64_MAX;  ///< of a count
 };
 
+/// Which function carries a method out: the key of a ControlBackend's table.
+enum class MethodId : unsigned char {
+  kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kWhy, kSubscribe, kUnsubscribe, kCheck, kSchedule, kLibrary,
+  kSignal, kRing, kSet, kFlag, kSave, kEnd
+};
+
 struct MethodRule {
+  MethodId id = MethodId::kHello;
   const char* name = nullptr;
   Role role = Role::kObserve;
-  bool is_act = false;  ///< changes something: has a rate of its own
+  bool is_act = false;     ///< an act of the document: goes before questions, and a client never sends it twice
+  bool is_costly = false;  ///< a question that takes long: counts as an act in the rate of its connection
   Parameter parameters[5];
 };
 
+/// Every method once, in the order of MethodId.
 std::span<const MethodRule> methods() noexcept;
 /// The rule of that name; nullptr: there is none.
 const MethodRule* find_method(std::string_view name) noexcept;

@@ -52,11 +52,15 @@ TEST(Methods, QuoteNoMoreThanAMessageNeeds) {
   EXPECT_LT(judged("hello", {{std::string(100'000, 'x'), 1}}).size(), 200u);
 }
 
-TEST(Methods, ActAndAreForOperatorsOrNeither) {
+TEST(Methods, ThatActAreForOperatorsAndNeverSentTwice) {
+  std::string acts;
   for (const MethodRule& rule : methods()) {
     EXPECT_EQ(find_method(rule.name), &rule);
-    EXPECT_TRUE(rule.is_act || rule.role == Role::kObserve) << rule.name;
+    EXPECT_EQ(rule.is_act, rule.role > Role::kObserve) << rule.name;
+    acts += rule.is_act ? std::string(" ") + rule.name : "";
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(rule.id), &rule - methods().data()) << rule.name << ": keys of a table";
   }
+  EXPECT_EQ(acts, " signal ring set flag save end");
   EXPECT_EQ(find_method("nothing"), nullptr);
 }
 

@@ -41,7 +41,7 @@ Rank rank_of(const PeerIdentity& peer, uid_t owner) noexcept {
   return is_owner ? Rank::kOwner : static_cast<Rank>(peer.role);
 }
 
-Placement find_place(std::span<const Occupant> all, uid_t user, Rank rank) {
+PlaceGrant find_place(std::span<const Occupant> all, uid_t user, Rank rank) {
   const auto is_users = [user](const Occupant& one) { return one.user == user; };
   const bool user_is_short =
       std::count_if(all.begin(), all.end(), is_users) >= static_cast<std::ptrdiff_t>(kMaxConnectionsOfUser);

@@ -32,7 +32,7 @@ struct Occupant {
   Nanoseconds since;  ///< of a half line its first byte, else when it last said anything
 };
 
-struct Placement {
+struct PlaceGrant {
   bool is_granted = false;
   std::uint64_t in_place_of = 0;  ///< 0: nobody
   std::string refusal;            ///< which places are taken
@@ -42,6 +42,6 @@ struct Placement {
 /// way who leaves the place that is wanted: never of a higher rank; whoever reads a subscription only to a higher one;
 /// first of all those who do nothing, of the lowest rank, half lines before whole ones, the longest first.
 /// Context: setup.
-Placement find_place(std::span<const Occupant> all, uid_t user, Rank rank);
+PlaceGrant find_place(std::span<const Occupant> all, uid_t user, Rank rank);
 
 }  // namespace chimera::control

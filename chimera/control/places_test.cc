@@ -21,7 +21,7 @@ struct PlacesTest : ::testing::Test {
   }
   std::string refusal(uid_t user, Rank rank) const { return find_place(all, user, rank).refusal; }
   std::uint64_t in_place_of(uid_t user, Rank rank) const {
-    const Placement placement = find_place(all, user, rank);
+    const PlaceGrant placement = find_place(all, user, rank);
     EXPECT_TRUE(placement.is_granted) << placement.refusal;
     return placement.in_place_of;
   }

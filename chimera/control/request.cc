@@ -41,8 +41,8 @@ bool is_id(const Json& id) { return id.is_string() || id.is_number_integer() || 
 
 }  // namespace
 
-Extent extent_of(std::string_view text) noexcept {
-  Extent extent;
+TextCost text_cost(std::string_view text) noexcept {
+  TextCost cost;
   std::size_t depth = 0;
   bool in_text = false, escaped = false;
   for (const char c : text) {
@@ -52,21 +52,21 @@ Extent extent_of(std::string_view text) noexcept {
     } else if (c == '"') {
       in_text = true;
     } else if (c == '[' || c == '{') {
-      extent.depth = std::max(extent.depth, ++depth);
+      cost.depth = std::max(cost.depth, ++depth);
     } else if ((c == ']' || c == '}') && depth > 0) {
       --depth;
     } else if (c == ',') {
-      ++extent.commas;
+      ++cost.commas;
     }
   }
-  return extent;
+  return cost;
 }
 
 Request read_request(std::string_view line) {
   if (line.size() > kMaxLine) return refused(nullptr, kTooLarge, "a line may have 1 MiB", true);
-  const Extent extent = extent_of(line);
-  if (extent.depth > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32", true);
-  if (extent.commas >= kMaxValues) return refused(nullptr, kTooLarge, "a line may have 10,000 values", true);
+  const TextCost cost = text_cost(line);
+  if (cost.depth > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32", true);
+  if (cost.commas >= kMaxValues) return refused(nullptr, kTooLarge, "a line may have 10,000 values", true);
   std::optional<std::string> twice;
   const Json message = parse(line, twice);
   if (message.is_discarded()) return refused(nullptr, kParseError, "this is no JSON");

@@ -29,10 +29,10 @@ std::string note_line(std::string_view method, std::uint64_t subscription, const
 std::string request_line(std::uint64_t id, std::string_view method, const Json& parameters);
 
 /// What a text costs its reader, as far as brackets and commas outside of texts tell.
-struct Extent {
+struct TextCost {
   std::size_t depth = 0;   ///< how deep arrays and objects are nested
   std::size_t commas = 0;  ///< one less than the values of a list
 };
-Extent extent_of(std::string_view text) noexcept;
+TextCost text_cost(std::string_view text) noexcept;
 
 }  // namespace chimera::control

@@ -52,11 +52,11 @@ TEST(Request, BeyondALimitItEndsTheConnection) {
 }
 
 TEST(Request, DepthCountsBracketsOutsideOfTexts) {
-  EXPECT_EQ(extent_of("").depth, 0u);
-  EXPECT_EQ(extent_of("[[]]{}").depth, 2u);
-  EXPECT_EQ(extent_of(R"(["[[[[\"[[["])").depth, 1u);
-  EXPECT_EQ(extent_of(R"(["\\",[]])").depth, 2u);
-  EXPECT_EQ(extent_of("]]][").depth, 1u);
+  EXPECT_EQ(text_cost("").depth, 0u);
+  EXPECT_EQ(text_cost("[[]]{}").depth, 2u);
+  EXPECT_EQ(text_cost(R"(["[[[[\"[[["])").depth, 1u);
+  EXPECT_EQ(text_cost(R"(["\\",[]])").depth, 2u);
+  EXPECT_EQ(text_cost("]]][").depth, 1u);
 }
 
 TEST(Request, ALineOfTooManyValuesIsNotRead) {
@@ -70,7 +70,7 @@ TEST(Request, ALineOfTooManyValuesIsNotRead) {
   EXPECT_EQ(refused.refusal.code, kTooLarge);
   EXPECT_EQ(refused.refusal.message, "a line may have 10,000 values");
   EXPECT_TRUE(refused.must_close);
-  EXPECT_EQ(extent_of(R"({"a,b": "c,d", "e": [1, 2]})").commas, 2u) << "commas in texts do not count";
+  EXPECT_EQ(text_cost(R"({"a,b": "c,d", "e": [1, 2]})").commas, 2u) << "commas in texts do not count";
 }
 
 TEST(Request, LinesThatGoBackAreOneLineOfUtf8) {

@@ -15,43 +15,43 @@ constexpr int kNewsAtOnce = 64;                        // messages of one subscr
 
 }  // namespace
 
-Answer Subscriptions::open(std::uint64_t session, const Json& parameters, Nanoseconds now) {
-  if (count_of(session) >= kMaxSubscriptions)
+Answer Subscriptions::open(std::uint64_t connection, const Json& parameters, Nanoseconds now) {
+  if (count_of(connection) >= kMaxSubscriptions)
     return Answer::error(kBadParameters, "a connection may have 32 subscriptions", {{"where", "to"}});
   const std::uint64_t number = ++last_;
-  Answer opened = subject_.open(number, parameters);
+  Answer opened = backend_.open(number, parameters);
   if (!opened.is_good()) return opened;
   const std::string to = parameters.at("to").get<std::string>();
   const bool skips = to == "status" || to == "values";
   const Nanoseconds period = skips ? milliseconds(parameters.value("period_ms", std::int64_t{100})) : kLookAtNews;
-  all_[number] = {session, to, period, skips, now};
+  all_[number] = {connection, to, period, skips, now};
   return Answer::good({{"subscription", number}});
 }
 
-Answer Subscriptions::close(std::uint64_t session, const Json& parameters) {
+Answer Subscriptions::close(std::uint64_t connection, const Json& parameters) {
   const auto number = parameters.at("subscription").get<std::uint64_t>();
   const auto found = all_.find(number);
-  if (found == all_.end() || found->second.session != session)
+  if (found == all_.end() || found->second.connection != connection)
     return Answer::unknown("no subscription " + std::to_string(number), "subscription", "");
-  subject_.close(number);
+  backend_.close(number);
   all_.erase(found);
   return Answer::good(Json::object());
 }
 
-void Subscriptions::end(std::uint64_t session) {
+void Subscriptions::end(std::uint64_t connection) {
   std::erase_if(all_, [&](const auto& one) {
-    if (one.second.session != session) return false;
-    subject_.close(one.first);
+    if (one.second.connection != connection) return false;
+    backend_.close(one.first);
     return true;
   });
 }
 
-std::size_t Subscriptions::count_of(std::uint64_t session) const noexcept {
-  const auto is_of = [session](const auto& one) { return one.second.session == session; };
+std::size_t Subscriptions::count_of(std::uint64_t connection) const noexcept {
+  const auto is_of = [connection](const auto& one) { return one.second.connection == connection; };
   return static_cast<std::size_t>(std::count_if(all_.begin(), all_.end(), is_of));
 }
 
-void Subscriptions::notify(const std::function<Session&(std::uint64_t)>& session_of, Nanoseconds now) {
+void Subscriptions::notify(const std::function<Connection&(std::uint64_t)>& connection_of, Nanoseconds now) {
   const Turn turn;
   auto at = all_.upper_bound(last_told_);  // whoever had to wait in the last turn comes first
   for (std::size_t n = all_.size(); n > 0 && !turn.is_over(); --n, ++at) {
@@ -60,14 +60,16 @@ void Subscriptions::notify(const std::function<Session&(std::uint64_t)>& session
     if (now < one.due) continue;
     last_told_ = number;
     one.due = one.due + one.period > now ? one.due + one.period : now + one.period;  // what was missed stays so
-    Session& session = session_of(one.session);
-    if (session.is_closing()) continue;
-    if (one.skips) (void)session.flush(now);  // an answer that can go at once is no reason to skip
-    const auto may = [&session, skips = one.skips] { return skips ? !session.has_output() : session.has_room(); };
+    Connection& connection = connection_of(one.connection);
+    if (connection.is_closing()) continue;
+    if (one.skips) (void)connection.flush(now);  // an answer that can go at once is no reason to skip
+    const auto may = [&connection, skips = one.skips] {
+      return skips ? !connection.has_output() : connection.has_room();
+    };
     for (int told = 0; told < (one.skips ? 1 : kNewsAtOnce) && may() && (told == 0 || !turn.is_over()); ++told) {
-      const auto news = subject_.pull(number);
+      const auto news = backend_.pull(number);
       if (news == nullptr) break;
-      session.say(note_line(one.to, number, *news), now);
+      connection.say(note_line(one.to, number, *news), now);
     }
   }
 }

@@ -7,40 +7,40 @@
 #include <map>
 #include <string>
 
-#include "chimera/control/session.h"
-#include "chimera/control/subject.h"
+#include "chimera/control/connection.h"
+#include "chimera/control/control_backend.h"
 
 namespace chimera::control {
 
 /// Context: setup.
 class Subscriptions {
  public:
-  explicit Subscriptions(Subject& subject) : subject_(subject) {}
+  explicit Subscriptions(ControlBackend& backend) : backend_(backend) {}
 
-  /// Answers `subscribe` and `unsubscribe` of a session; `parameters` have been checked.
-  Answer open(std::uint64_t session, const Json& parameters, Nanoseconds now);
-  Answer close(std::uint64_t session, const Json& parameters);
-  /// The session is over.
-  void end(std::uint64_t session);
-  std::size_t count_of(std::uint64_t session) const noexcept;
+  /// Answers `subscribe` and `unsubscribe` of a connection; `parameters` have been checked.
+  Answer open(std::uint64_t connection, const Json& parameters, Nanoseconds now);
+  Answer close(std::uint64_t connection, const Json& parameters);
+  /// The connection is over.
+  void end(std::uint64_t connection);
+  std::size_t count_of(std::uint64_t connection) const noexcept;
 
-  /// Tells every session what is due and it has room for. What has a period is made when the peer has taken all that
-  /// came before: who is slow skips to the latest. `session_of` finds a session by number. Ends with the turn: who is
-  /// left is due at once, and first next time.
-  void notify(const std::function<Session&(std::uint64_t)>& session_of, Nanoseconds now);
+  /// Tells every connection what is due and it has room for. What has a period is made when the peer has taken all that
+  /// came before: who is slow skips to the latest. `connection_of` finds a connection by number. Ends with the turn:
+  /// who is left is due at once, and first next time.
+  void notify(const std::function<Connection&(std::uint64_t)>& connection_of, Nanoseconds now);
   /// When notify() is due; kNever: nobody wants anything.
   Nanoseconds next_due() const noexcept;
 
  private:
   struct Subscription {
-    std::uint64_t session = 0;
+    std::uint64_t connection = 0;
     std::string to;
     Nanoseconds period;
     bool skips = false;  ///< to the latest
     Nanoseconds due;
   };
 
-  Subject& subject_;
+  ControlBackend& backend_;
   std::map<std::uint64_t, Subscription> all_;
   std::uint64_t last_ = 0;
   std::uint64_t last_told_ = 0;

@@ -26,7 +26,7 @@ using control::Answer;
 using control::Json;
 
 /// One task `pid` on two rtpus; what it answers may be changed before it is asked.
-class MadeUp final : public control::Subject {
+class MadeUp final : public control::ControlBackend {
  public:
   void call(const control::MethodRule& method, const Json& parameters, const control::Caller&,
             control::Reply reply) override {
@@ -107,8 +107,8 @@ class Attend : public ::testing::Test {
     ASSERT_EQ(::listen(listening_, 8), 0);
     request_.socket = folder_ + "/arm.sock";
     request_.run.duration = milliseconds(60);
-    subject_.started_ns = LinuxClock().now().count;
-    subject_.values = {{"q", reading(Json::array({1.5, -2.0}), "[1.5 -2] rad")}, {"x", {{"value", nullptr}}}};
+    backend_.started_ns = LinuxClock().now().count;
+    backend_.values = {{"q", reading(Json::array({1.5, -2.0}), "[1.5 -2] rad")}, {"x", {{"value", nullptr}}}};
   }
   void TearDown() override {
     ::close(listening_);
@@ -117,7 +117,7 @@ class Attend : public ::testing::Test {
   static Json reading(const Json& value, const std::string& text) {
     return {{"value", value}, {"text", text}, {"unit", "rad"}, {"valid", true}};
   }
-  void open_door() { door_ = *control::Door::open(::dup(listening_), subject_, ::geteuid(), {}); }
+  void open_door() { door_ = *control::Door::open(::dup(listening_), backend_, ::geteuid(), {}); }
 
   /// The exit code; out_ and err_ are what it printed. `meanwhile` is called again and again on the door's thread.
   int attend(RecordSink* sink = nullptr, std::function<void()> meanwhile = [] {}) {
@@ -150,7 +150,7 @@ class Attend : public ::testing::Test {
 
   std::string folder_, out_, err_;
   int listening_ = -1;
-  MadeUp subject_;
+  MadeUp backend_;
   std::unique_ptr<control::Door> door_;
   AttendRequest request_;
 };
@@ -192,7 +192,7 @@ TEST_F(Attend, IsASuccessWhenEveryExpectationHolds) {
 }
 
 TEST_F(Attend, ANumberThatIsNoneSatisfiesNothing) {
-  subject_.values["q"] = reading(Json::array({1.0, nullptr}), "[1 nan] rad");
+  backend_.values["q"] = reading(Json::array({1.0, nullptr}), "[1 nan] rad");
   request_.run.expect = {"q < 3 rad"};
   request_.bounds = {3};
   EXPECT_EQ(attend(), kRefused);
@@ -201,19 +201,19 @@ TEST_F(Attend, ANumberThatIsNoneSatisfiesNothing) {
 
 TEST_F(Attend, ActsAtTheirTimeAndTellsWhatWasRefused) {
   request_.run.at = {"20 ms: on pid", "10 ms: flag up"};
-  const std::int64_t started = subject_.started_ns;
-  subject_.events = {{{"number", 1}, {"at_ns", started + 30'000'000}, {"kind", "refused"}, {"task", "pid"},
+  const std::int64_t started = backend_.started_ns;
+  backend_.events = {{{"number", 1}, {"at_ns", started + 30'000'000}, {"kind", "refused"}, {"task", "pid"},
                       {"rtpu", nullptr}, {"text", "kill sent by other: not legal in state ON"}}};
   EXPECT_EQ(attend(), kOk);
-  EXPECT_LT(subject_.asked.find("flag\n"), subject_.asked.find("signal{\"signal\":\"on\",\"tasks\":[\"pid\"]}\n"));
+  EXPECT_LT(backend_.asked.find("flag\n"), backend_.asked.find("signal{\"signal\":\"on\",\"tasks\":[\"pid\"]}\n"));
   EXPECT_NE(out_.find("refused at 0.030 s: pid: kill sent by other: not legal in state ON\n"), std::string::npos)
       << out_;
   EXPECT_NE(out_.find("s: on pid: on is not legal for pid in state ON\n"), std::string::npos) << out_;
 }
 
 TEST_F(Attend, AStartThatFailsIsRefusedInTheWordsOfItsTask) {
-  subject_.started_ns = nullptr;
-  subject_.events = {{{"number", 1}, {"at_ns", 1}, {"kind", "fault"}, {"task", "pid"}, {"rtpu", "servo"},
+  backend_.started_ns = nullptr;
+  backend_.events = {{{"number", 1}, {"at_ns", 1}, {"kind", "fault"}, {"task", "pid"}, {"rtpu", "servo"},
                       {"text", "init: no model"}}};
   EXPECT_EQ(attend(), kRefused);
   EXPECT_EQ(err_, "pid: error: init: no model\n");
@@ -221,7 +221,7 @@ TEST_F(Attend, AStartThatFailsIsRefusedInTheWordsOfItsTask) {
 }
 
 TEST_F(Attend, TheReactionStopOfATaskIsNoSuccess) {
-  subject_.events = {{{"number", 1}, {"at_ns", 1}, {"kind", "stop"}, {"task", "pid"}, {"rtpu", "servo"},
+  backend_.events = {{{"number", 1}, {"at_ns", 1}, {"kind", "stop"}, {"task", "pid"}, {"rtpu", "servo"},
                       {"text", "stopped by its reaction"}}};
   request_.run.duration = kNever;
   EXPECT_EQ(attend(), kRefused);
@@ -229,7 +229,7 @@ TEST_F(Attend, TheReactionStopOfATaskIsNoSuccess) {
 }
 
 TEST_F(Attend, WhatFailsWhenAllIsTurnedOffIsToldAndIsNoSuccess) {
-  subject_.fault_at_end = "884 rows were not written";
+  backend_.fault_at_end = "884 rows were not written";
   EXPECT_EQ(attend(), kRefused);
   EXPECT_NE(out_.find("\npid: last fault in kill at "), std::string::npos) << out_;
   EXPECT_NE(out_.find("not clean: 1 fault (pid 1)\nFAILED: pid: kill failed: 884 rows were not written: "
@@ -239,9 +239,9 @@ TEST_F(Attend, WhatFailsWhenAllIsTurnedOffIsToldAndIsNoSuccess) {
 }
 
 TEST_F(Attend, ARestartIsToldAndFailsAStrictRunOnly) {
-  subject_.servo["restarts"] = 1;
-  subject_.events = {{{"number", 1},
-                      {"at_ns", subject_.started_ns.get<std::int64_t>() + 30'000'000},
+  backend_.servo["restarts"] = 1;
+  backend_.events = {{{"number", 1},
+                      {"at_ns", backend_.started_ns.get<std::int64_t>() + 30'000'000},
                       {"kind", "rtpu-restarted"},
                       {"rtpu", "servo"},
                       {"text", "servo is restarted"}}};
@@ -256,8 +256,8 @@ TEST_F(Attend, ARestartIsToldAndFailsAStrictRunOnly) {
 }
 
 TEST_F(Attend, AUnitThatWasGivenUpIsNoSuccess) {
-  subject_.servo["restarts"] = 3;
-  subject_.servo["given_up"] = true;
+  backend_.servo["restarts"] = 3;
+  backend_.servo["given_up"] = true;
   EXPECT_EQ(attend(), kRefused);
   EXPECT_NE(out_.find("FAILED: servo was given up"), std::string::npos) << out_;
 }
@@ -297,15 +297,15 @@ TEST_F(Attend, HandsTheRecordsOfTheTapOn) {
     Nanoseconds origin;
   } sink;
   constexpr std::int64_t kOrigin = 5;
-  subject_.records = {
+  backend_.records = {
       {{"rtpu", "spare"}, {"first", 0}, {"lost", 2}, {"records", Json::array()}},
       {{"rtpu", "spare"}, {"first", 2}, {"lost", 3},
        {"records", {{kOrigin + 7, "run", "pid", 2, 900}, {kOrigin + 8, "flag", nullptr, 1, 0}}}}};
   EXPECT_EQ(attend(&sink), kOk);
   EXPECT_EQ(sink.text, "arm pid spare | 7 1 0 2 900 1 | 8 8 " + std::to_string(TaskId().index) +
                            " 1 0 1 | lost 3 missed 2");
-  EXPECT_NE(subject_.asked.find(R"(subscribe{"since":0,"to":"tap","variables":[]})"), std::string::npos)
-      << "from the oldest record on: " << subject_.asked;
+  EXPECT_NE(backend_.asked.find(R"(subscribe{"since":0,"to":"tap","variables":[]})"), std::string::npos)
+      << "from the oldest record on: " << backend_.asked;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A connection to a running subsystem that outlives its manager: lost, it is made again.
+// What a run asks of its own subsystem, as results; a lost connection is control::Client's affair.
 #pragma once
 
 #include <optional>
@@ -13,21 +13,19 @@ namespace chimera::desk {
 class ControlLine {
  public:
   /// Connects at its first question. `path` is the socket's.
-  explicit ControlLine(std::string path) : path_(std::move(path)) {}
+  explicit ControlLine(std::string path) : client_(control::Client::at(std::move(path))) {}
 
-  /// The result of one request. When the manager dies meanwhile it is sent again to the next one, for at most
-  /// `patience`, and not much longer once request_stop() was called. An error of the door comes with its words, its
-  /// `where` as place.
+  /// The result of one request within `limit`. A refusal comes with its words, its `where` as place; without an answer
+  /// the place is the socket.
   Result<control::Json> ask(std::string_view method, const control::Json& parameters,
-                            Nanoseconds patience = seconds(5));
+                            Nanoseconds limit = control::kCallLimit);
   /// The parameters of the next notification; nothing when none comes until `instant` (CLOCK_MONOTONIC), or when the
   /// connection is lost: is_connected() tells.
   std::optional<control::Json> notification(Nanoseconds instant);
-  bool is_connected() const noexcept { return client_.has_value(); }
+  bool is_connected() const noexcept { return client_.is_connected(); }
 
  private:
-  std::string path_;
-  std::optional<control::Client> client_;
+  control::Client client_;
 };
 
 }  // namespace chimera::desk

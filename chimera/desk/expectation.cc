@@ -12,9 +12,7 @@
 namespace chimera::desk {
 namespace {
 
-Error wrong_expectation(const std::string& text, const std::string& why) {
-  return {ErrorCode::kBadInput, {"--expect '" + text + "': " + why}, {}};
-}
+Error wrong_expectation(const std::string& why) { return {ErrorCode::kBadInput, std::string_view(why), {}}; }
 
 bool compare(double value, const std::string& op, double bound) {
   if (op == "<") return value < bound;
@@ -45,7 +43,7 @@ Result<const ConfiguredVariable*> find_variable(const Configuration& configurati
 
 Result<Expectation> Expectation::with_bound(const std::string& text, double bound) {
   const std::size_t at = text.find_first_of("<>");
-  if (at == std::string::npos) return wrong_expectation(text, "write 'VARIABLE <= QUANTITY', with < <= > or >=");
+  if (at == std::string::npos) return wrong_expectation("write 'VARIABLE <= QUANTITY', with < <= > or >=");
   Expectation made;
   made.text_ = text;
   made.bound_ = bound;
@@ -60,20 +58,27 @@ Result<Expectation> Expectation::with_bound(const std::string& text, double boun
 
 Result<Expectation> Expectation::parse(const std::string& text, const Configuration& configuration,
                                        const UnitSystem& units) {
+  auto made = read(text, configuration, units);
+  if (made) return made;
+  return wrong_expectation("--expect '" + text + "': " + made.error().message.c_str());
+}
+
+Result<Expectation> Expectation::read(const std::string& text, const Configuration& configuration,
+                                      const UnitSystem& units) {
   auto made = with_bound(text, 0);
   if (!made) return made;
   const auto found = find_variable(configuration, made->variable_);
-  if (!found) return wrong_expectation(text, found.error().message.c_str());
+  if (!found) return wrong_expectation(found.error().message.c_str());
   const ConfiguredVariable& variable = **found;
   constexpr std::array kNumbers = {"bool", "int32", "int64", "float32", "float64"};
   if (std::find(kNumbers.begin(), kNumbers.end(), variable.type) == kNumbers.end())
-    return wrong_expectation(text, variable.name + " is not a number or a list of numbers");
+    return wrong_expectation(variable.name + " is not a number or a list of numbers");
   const auto quantity = parse_quantity(quantity_of(text, made->op_), units);
-  if (!quantity) return wrong_expectation(text, quantity.error().message.c_str());
+  if (!quantity) return wrong_expectation(quantity.error().message.c_str());
   const auto unit = units.parse(variable.unit);
-  if (!unit) return wrong_expectation(text, unit.error().message.c_str());
+  if (!unit) return wrong_expectation(unit.error().message.c_str());
   const auto bound = value_in(*quantity, *unit, variable.unit);
-  if (!bound) return wrong_expectation(text, bound.error().message.c_str());
+  if (!bound) return wrong_expectation(bound.error().message.c_str());
   made->bound_ = *bound;
   return made;
 }

@@ -27,6 +27,9 @@ class Expectation {
   /// Refuses an unknown variable, a unit that measures something else, and what is no comparison. Context: setup.
   static Result<Expectation> parse(const std::string& text, const Configuration& configuration,
                                    const UnitSystem& units);
+  /// As parse(), but a refusal does not repeat `text`.
+  static Result<Expectation> read(const std::string& text, const Configuration& configuration,
+                                  const UnitSystem& units);
   /// One that parse() has accepted elsewhere, whose bound was `bound`. Refuses what is no comparison. Context: setup.
   static Result<Expectation> with_bound(const std::string& text, double bound);
 

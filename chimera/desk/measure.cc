@@ -69,11 +69,8 @@ Result<Measure> Measure::read(const std::string& text, const Configuration& conf
 Result<void> Measure::read_bound(const std::string& comparison, const Configuration& configuration,
                                  const UnitSystem& units) {
   const std::string bars = magnitude_ ? "|" : "";
-  auto bound = Expectation::parse(bars + variable_ + bars + " " + comparison, configuration, units);
-  if (!bound) {
-    const std::string why = bound.error().message.c_str();  // "--expect 'q <= 2': why"
-    return wrong(text_, why.substr(why.find("': ") + 3));
-  }
+  auto bound = Expectation::read(bars + variable_ + bars + " " + comparison, configuration, units);
+  if (!bound) return wrong(text_, bound.error().message.c_str());
   bound_ = *std::move(bound);
   return {};
 }

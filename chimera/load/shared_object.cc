@@ -15,7 +15,7 @@ constexpr std::size_t kMostObjectBytes = std::size_t{256} << 20;  // the copy st
 /// "gain.so is empty (0 bytes). Rebuild the component."
 Error unfit(const std::string& path, std::string_view clause, ErrorCode code = ErrorCode::kBadInput) {
   const std::string_view name = std::string_view(path).substr(path.rfind('/') + 1);
-  return (Message() << name << " " << clause << ". Rebuild the component.").error(code, path);
+  return (Message() << name << " " << clause << kRebuild).error(code, path);
 }
 
 /// A sealed copy of the file.

@@ -18,6 +18,9 @@
 
 namespace chimera {
 
+/// How every refusal of an object ends that would be another one after a build.
+inline constexpr std::string_view kRebuild = ". Rebuild the component.";
+
 /// An open object and the components it offers. Cheap to copy; what it points at lives as long as the process.
 /// Opening one file twice gives two objects that share nothing, static variables included.
 class SharedObject {

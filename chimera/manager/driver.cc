@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The loop of the manager: inventory first, then messages of the keeper, posts of the units, what is due.
 #include "chimera/manager/driver.h"
 
 #include <poll.h>
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <array>
 
-#include "chimera/manager/command_text.h"
 #include "chimera/platform/doorbell.h"
 
 namespace chimera::manager {
@@ -114,25 +114,12 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
   auto bell = BellWatch::start(Doorbell(mapped_->decision_page().bells[world_->own.peer()].word));
   if (!bell) return bell.error();
   bell_ = *std::move(bell);
-  begin();
+  steps_ = std::make_unique<StepRunner>(*world_, *fleet_, mapped_->channel);
+  begun_ = counters_due_ = now();
+  say_hello();
+  steps_->begin();
   for (const auto& [message, passed] : inventory) take(message, passed);
   return true;
-}
-
-void Driver::begin() {
-  const ManagerMemory& memory = world_->own.block().memory();
-  begun_ = counters_due_ = now();
-  subsystem::Begun begun;
-  for (std::uint32_t t = 0; t < world_->peers.n_tasks(); ++t)
-    begun.goals.push_back(world_->own.block().view().goal(TaskId(t)));
-  for (std::uint32_t r = 0; r < world_->peers.n_rtpus(); ++r) {
-    begun.handled.push_back(memory.handled[r]);
-    auto& instants = begun.restarts.emplace_back();
-    for (std::size_t i = 0; i < instants.size(); ++i) instants[i] = {memory.restarts[r][i]};
-  }
-  begun.started = memory.started != 0;
-  say_hello();
-  feed(begun);
 }
 
 /// The first event of every manager; the numbers of its predecessors' are not kept by anybody.
@@ -173,69 +160,20 @@ void Driver::take(const KeeperMessage& message, int passed) {
     watch_->told(message, now());
   }
   if (passed >= 0) ::close(passed);
-  feed(events);
+  steps_->step(events);
 }
 
 void Driver::look() {
   Events events;
   fleet_->look(events);
   health_->look(now());  // before a task of a unit that came up is ON
-  feed(events);
+  steps_->step(events);
   if (!is_ready_ && (fleet_->all_up() || now() - begun_ > kPatience)) become_ready();
 }
 
 void Driver::become_ready() {
   is_ready_ = true;
-  feed(subsystem::InventoryComplete{});
-}
-
-void Driver::feed(Events& events) {
-  for (const subsystem::Event& event : events) feed(event);
-  events.clear();
-}
-
-void Driver::feed(const subsystem::Event& event) {
-  std::vector<subsystem::Action> actions;
-  world_->logic.step(event, now(), actions);
-  for (const subsystem::Action& action : actions) carry_out(action);
-}
-
-void Driver::carry_out(const subsystem::Action& action) {
-  using namespace subsystem;  // NOLINT: the names of the actions
-  ManagerMemory& memory = world_->own.block().memory();
-  if (const auto* send = std::get_if<Send>(&action)) {
-    fleet_->send(*send, now());  // what found no room is not reported on, so it fails in time
-  } else if (const auto* start = std::get_if<StartRtpu>(&action)) {
-    KeeperMessage message;
-    message.kind = KeeperMessage::Kind::kStart;
-    message.index = start->rtpu.index;
-    [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: the keeper is gone
-  } else if (const auto* goal = std::get_if<RememberGoal>(&action)) {
-    world_->own.block().set_goal(goal->task, goal->goal);
-  } else if (const auto* handled = std::get_if<RememberHandled>(&action)) {
-    memory.handled[handled->rtpu.index] = handled->incarnation;
-  } else if (const auto* restart = std::get_if<RememberRestart>(&action)) {
-    for (std::size_t i = 0; i < restart->instants.size(); ++i)
-      memory.restarts[restart->rtpu.index][i] = restart->instants[i].count;
-  } else if (std::holds_alternative<RememberStarted>(action)) {
-    memory.started = 1;
-  } else if (const auto* answer = std::get_if<subsystem::Answer>(&action)) {
-    if (auto found = waiting_.extract(answer->id); !found.empty()) found.mapped()(*answer);
-  } else if (const auto* tell = std::get_if<Tell>(&action)) {
-    if (tell->kind == "started" && memory.started_at == 0) memory.started_at = now().count;
-    world_->tell(tell->kind, tell->task, tell->rtpu, tell->text, now());
-  }
-}
-
-void Driver::command(Signal signal, std::vector<TaskId> tasks, Answered answered) {
-  const std::uint64_t id = ++last_command_;
-  waiting_[id] = [this, words = command_text(world_->spec(), signal, tasks),
-                  answered = std::move(answered)](const subsystem::Answer& answer) {
-    world_->tell("command", answer.accepted ? TaskId{} : answer.at, RtpuId{},
-                 words + (answer.accepted ? ": done" : ": refused: " + answer.text), now());
-    answered(answer);
-  };
-  feed(subsystem::Commanded{id, signal, std::move(tasks)});
+  steps_->step(subsystem::InventoryComplete{});
 }
 
 RtpuId Driver::ring(std::span<const TaskId> tasks) { return fleet_->ring(tasks, now()); }
@@ -256,7 +194,7 @@ int Driver::take_listening() noexcept { return std::exchange(mapped_->listening,
 
 void Driver::look_at_keeper() {
   face_watch_.look(*world_, now());
-  if (is_ending_ || world_->keeper.ending.load(std::memory_order_acquire) == 0) return;
+  if (is_ending_ || !world_->is_ending()) return;
   is_ending_ = true;
   world_->tell("ending", TaskId{}, RtpuId{}, "everything ends", now());
 }
@@ -278,7 +216,7 @@ void Driver::watch() {
 }
 
 Nanoseconds Driver::next_due() const noexcept {
-  Nanoseconds due = std::min({world_->logic.next_due(), counters_due_, watch_->due()});
+  Nanoseconds due = std::min({steps_->next_due(), counters_due_, watch_->due()});
   if (!is_ready_ || !fleet_->all_up()) due = std::min(due, now() + kLookEvery);
   return due;
 }
@@ -306,7 +244,7 @@ bool Driver::step(Nanoseconds at_most, int also, int or_else) {
     fleet_->look_at_counters(now());
     counters_due_ = now() + kCountersEvery;
   }
-  if (world_->logic.next_due() <= now()) feed(subsystem::Tick{});
+  steps_->look(now());
   return true;
 }
 

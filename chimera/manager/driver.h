@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Linux driver of a subsystem: feeds its step function with what the keeper, the real-time units and the faces
-// say, and carries out what it decides. Killed at any moment, its successor picks everything up from the segments.
+// The Linux driver of a subsystem: waits for what the keeper, the real-time units and the clock have for its step
+// function. Killed at any moment, its successor picks everything up from the segments.
 #pragma once
 
-#include <functional>
-#include <map>
 #include <memory>
 
 #include "chimera/manager/bell_watch.h"
 #include "chimera/manager/face_watch.h"
 #include "chimera/manager/fleet.h"
+#include "chimera/manager/step_runner.h"
 #include "chimera/manager/unit_health.h"
 #include "chimera/manager/unit_watch.h"
 #include "chimera/manager/world.h"
@@ -30,9 +29,6 @@ struct Inherited {
   int bundle = kBundleDescriptor;
 };
 
-/// What became of a command.
-using Answered = std::function<void(const subsystem::Answer&)>;
-
 /// Context: setup. Single-threaded but for the bell watch.
 class Driver {
  public:
@@ -48,7 +44,9 @@ class Driver {
   /// everything that is the driver's. False when the keeper is gone.
   bool step(Nanoseconds at_most = kNever, int also = -1, int or_else = -1);
   /// Asks for a signal; `answered` is called when it is over, maybe at once.
-  void command(Signal signal, std::vector<TaskId> tasks, Answered answered);
+  void command(Signal signal, std::vector<TaskId> tasks, Answered answered) {
+    steps_->command(signal, std::move(tasks), std::move(answered));
+  }
   /// Rings doorbells, as Fleet::ring.
   RtpuId ring(std::span<const TaskId> tasks);
   /// Has the keeper end everything; it is told in the next step(), when whoever asked has been answered.
@@ -66,15 +64,11 @@ class Driver {
   struct Mapped;
   explicit Driver(std::unique_ptr<Mapped> mapped);
   Result<bool> take_inventory(std::uint32_t incarnation, std::int32_t keeper_pid);
-  void begin();
   void say_hello();
   bool take_messages();
   void take(const KeeperMessage& message, int passed);
   void look();
   void become_ready();
-  void feed(const subsystem::Event& event);
-  void feed(Events& events);
-  void carry_out(const subsystem::Action& action);
   void pass_end_on();
   void look_at_keeper();
   void watch();
@@ -84,12 +78,11 @@ class Driver {
   std::unique_ptr<Mapped> mapped_;
   std::unique_ptr<World> world_;
   std::unique_ptr<Fleet> fleet_;
+  std::unique_ptr<StepRunner> steps_;
   std::unique_ptr<UnitWatch> watch_;
   std::uint64_t keeper_beats_ = 0;  // that were answered
   std::unique_ptr<UnitHealth> health_;
   std::unique_ptr<BellWatch> bell_;
-  std::map<std::uint64_t, Answered> waiting_;
-  std::uint64_t last_command_ = 0;
   Nanoseconds begun_;
   Nanoseconds counters_due_;
   bool is_ready_ = false;

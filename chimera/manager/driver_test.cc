@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "chimera/manager/testing/fake_subsystem.h"
-#include "chimera/manager/subject_values.h"
+#include "chimera/manager/value_json.h"
 
 namespace chimera::manager {
 namespace {
@@ -24,10 +24,11 @@ TEST(Driver, CarriesOutACommandAndSaysWhatBecameOfIt) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
-  std::optional<subsystem::Answer> got;
-  fake.driver().command(Signal::kOff, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  std::optional<subsystem::CommandAnswer> got;
+  fake.driver().command(Signal::kOff, {fake.task("law")},
+                        [&](const subsystem::CommandAnswer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
-  EXPECT_TRUE(got->accepted) << got->text;
+  EXPECT_TRUE(got->is_accepted()) << got->refusal.text();
   ASSERT_EQ(got->outcomes.size(), 1u);
   EXPECT_EQ(got->outcomes[0].before, State::kOn);
   EXPECT_EQ(got->outcomes[0].after, State::kOff);
@@ -38,10 +39,11 @@ TEST(Driver, ARefusedCommandChangesNothing) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
-  std::optional<subsystem::Answer> got;
-  fake.driver().command(Signal::kClear, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  std::optional<subsystem::CommandAnswer> got;
+  fake.driver().command(Signal::kClear, {fake.task("law")},
+                        [&](const subsystem::CommandAnswer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
-  EXPECT_FALSE(got->accepted);
+  EXPECT_FALSE(got->is_accepted());
   EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOn);
 }
 
@@ -75,13 +77,14 @@ TEST(Driver, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   EXPECT_EQ(fake.told("manager-started"),
             "manager started again, incarnation 2; events 1 to " + std::to_string(last) + " are not kept\n");
   EXPECT_EQ(fake.told("started"), "");
-  const Reading kp = world.readings->read(*world.readings->find("kp"));
+  const VariableReading kp = world.readings->read(*world.readings->find("kp"));
   EXPECT_EQ(numbers(kp.form, kp.value), (std::vector<double>{7, 8}));
   EXPECT_EQ(world.state(fake.task("law")), State::kOn);
-  std::optional<subsystem::Answer> got;
-  fake.driver().command(Signal::kOff, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  std::optional<subsystem::CommandAnswer> got;
+  fake.driver().command(Signal::kOff, {fake.task("law")},
+                        [&](const subsystem::CommandAnswer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
-  EXPECT_TRUE(got->accepted) << got->text;
+  EXPECT_TRUE(got->is_accepted()) << got->refusal.text();
 }
 
 TEST(Driver, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
@@ -157,11 +160,12 @@ TEST(Driver, ADeafRtpuFailsTheCommandInTime) {
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
   fake.rtpu(1).is_deaf = true;
-  std::optional<subsystem::Answer> got;
-  fake.driver().command(Signal::kOff, {fake.task("law")}, [&](const subsystem::Answer& answer) { got = answer; });
+  std::optional<subsystem::CommandAnswer> got;
+  fake.driver().command(Signal::kOff, {fake.task("law")},
+                        [&](const subsystem::CommandAnswer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
-  EXPECT_FALSE(got->accepted);
-  EXPECT_EQ(got->text, "no answer from rtpu spare");
+  EXPECT_FALSE(got->is_accepted());
+  EXPECT_EQ(got->refusal.text(), "no answer from rtpu spare");
 }
 
 TEST(Driver, WithoutTasksItIsReadyAtOnce) {

@@ -6,7 +6,7 @@
 #include "chimera/manager/cause.h"
 #include "chimera/manager/credible.h"
 #include "chimera/manager/post_text.h"
-#include "chimera/manager/subject_status.h"
+#include "chimera/manager/status_json.h"
 #include "chimera/manager/unfinished.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/runtime/making.h"
@@ -80,7 +80,7 @@ void Fleet::ended(const KeeperMessage& message, Events& events) {
   if (left_words && !is_known)
     for (const Unfinished& one : unfinished(world_, rtpu, left, record.last_end))
       world_.tell("not-off", one.task, rtpu, one.text, message.at);
-  const bool is_end = world_.keeper.ending.load(std::memory_order_acquire) != 0;
+  const bool is_end = world_.is_ending();
   const bool is_orderly = left_words && left.head().phase == PeerPhase::kEnded;
   events.push_back(subsystem::RtpuDown{rtpu, message.incarnation, record.last_end, is_end, is_orderly});
 }

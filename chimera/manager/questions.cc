@@ -22,30 +22,29 @@ constexpr Nanoseconds kPatienceWithEnd = seconds(1);  // of a process that was s
 Answer too_many(const char* what) { return Answer::error(control::kTooFast, what, {{"retry_ms", 100}}); }
 
 Answer given_up(const std::string& why) {
-  return Answer::error(control::kRefused, why,
-                       {{"where", "text"}, {"remedy", "ask `chimera check` or `chimera schedule` with the file"}});
+  return Answer::refused("analysis", why, "text", "ask `chimera check` or `chimera schedule` with the file");
 }
 
 }  // namespace
 
 Questions::~Questions() { end_analyst(); }
 
-void Questions::ask(Question question, std::uint64_t session, control::Reply reply, Nanoseconds now) {
+void Questions::ask(Question question, std::uint64_t connection, control::Reply reply, Nanoseconds now) {
   std::size_t own = 0, bytes = question.text.size();
   for (const Waiting& one : waiting_) {
-    own += one.session == session ? 1 : 0;
+    own += one.connection == connection ? 1 : 0;
     bytes += one.question.text.size();
   }
   if (own >= kMaxQuestionsOfConnection) return reply(too_many("4 analyses of this connection are under way"));
   if (waiting_.size() >= kMaxQuestions) return reply(too_many("64 analyses are under way"));
   if (bytes > kMaxQuestionBytes) return reply(too_many("analyses of 16 MiB of text are under way"));
-  waiting_.push_back({std::move(question), session, std::move(reply)});
+  waiting_.push_back({std::move(question), connection, std::move(reply)});
   pass_on(now);
 }
 
-void Questions::forget(std::uint64_t session) {
-  if (is_under_way_ && waiting_.front().session == session) end_analyst();
-  std::erase_if(waiting_, [session](const Waiting& one) { return one.session == session; });
+void Questions::forget(std::uint64_t connection) {
+  if (is_under_way_ && waiting_.front().connection == connection) end_analyst();
+  std::erase_if(waiting_, [connection](const Waiting& one) { return one.connection == connection; });
 }
 
 Nanoseconds Questions::next_due() const noexcept {
@@ -99,9 +98,9 @@ void Questions::answer_first(const Answer& answer, Nanoseconds now) {
 /// The oldest of the connection whose turn it is: a connection with many questions waits for itself.
 std::deque<Questions::Waiting>::iterator Questions::next_question() {
   auto best = waiting_.begin();
-  const auto rank = [this](std::uint64_t session) { return std::pair(session <= last_session_, session); };
+  const auto rank = [this](std::uint64_t connection) { return std::pair(connection <= last_connection_, connection); };
   for (auto at = waiting_.begin(); at != waiting_.end(); ++at)
-    if (rank(at->session) < rank(best->session)) best = at;
+    if (rank(at->connection) < rank(best->connection)) best = at;
   return best;
 }
 
@@ -109,7 +108,7 @@ void Questions::pass_on(Nanoseconds now) {
   if (is_under_way_ || waiting_.empty()) return;
   if (!channel_.is_open() && !start(now)) return;
   const auto next = next_question();
-  last_session_ = next->session;
+  last_connection_ = next->connection;
   std::rotate(waiting_.begin(), next, next + 1);  // those before it keep their order
   since_ = now;
   is_under_way_ = true;

@@ -34,9 +34,9 @@ class Questions {
   ~Questions();
 
   /// Queues a question of a connection; `reply` takes its one answer, maybe at once: a refusal when too many wait.
-  void ask(Question question, std::uint64_t session, control::Reply reply, Nanoseconds now);
+  void ask(Question question, std::uint64_t connection, control::Reply reply, Nanoseconds now);
   /// Nobody waits for the answers to that connection: its questions are taken out, one under way is given up.
-  void forget(std::uint64_t session);
+  void forget(std::uint64_t connection);
 
   /// Readable when serve() has something to do; -1: there is no analyst.
   int descriptor() const noexcept { return channel_.descriptor(); }
@@ -50,7 +50,7 @@ class Questions {
  private:
   struct Waiting {
     Question question;
-    std::uint64_t session;
+    std::uint64_t connection;
     control::Reply reply;
   };
 
@@ -69,7 +69,7 @@ class Questions {
   std::deque<Waiting> waiting_;  // the first is the one under way, if any is
   bool is_under_way_ = false;
   std::uint64_t number_ = 0;  // of the question under way
-  std::uint64_t last_session_ = 0;
+  std::uint64_t last_connection_ = 0;
   Nanoseconds since_;  // the question is under way, or nobody asked
   Process analyst_;
   Channel channel_;

@@ -26,9 +26,9 @@ struct QuestionsTest : testing::Test {
     questions_ = std::make_unique<Questions>(program, bundle_.descriptor(),
                                              [this](const std::string& text) { told_ += text + "\n"; });
   }
-  void ask(const std::string& name, std::uint64_t session, const std::string& text = kFakeText) {
+  void ask(const std::string& name, std::uint64_t connection, const std::string& text = kFakeText) {
     questions_->ask(
-        {Question::Kind::kCheck, name, text}, session,
+        {Question::Kind::kCheck, name, text}, connection,
         [this, name](const Answer& answer) {
           order_ += name + " ";
           answers_[name] = answer;

@@ -63,7 +63,7 @@ TaskId Readings::producer(VariableId variable) const {
   std::int64_t latest = INT64_MIN;
   for (const PortOf& port : v.producers) {
     if (state_of_(port.task) == State::kOn) return port.task;
-    Reading reading;
+    VariableReading reading;
     if (!read_output(port, reading) || reading.slot.sequence == 0 || reading.slot.published_ns <= latest) continue;
     latest = reading.slot.published_ns;
     last = port.task;
@@ -71,9 +71,9 @@ TaskId Readings::producer(VariableId variable) const {
   return last;
 }
 
-Reading Readings::read(VariableId variable) const {
+VariableReading Readings::read(VariableId variable) const {
   const Variable& v = variables_.all()[variable.index];
-  Reading reading;
+  VariableReading reading;
   reading.form = form(variable);
   if (is_operators(variable)) {
     const GroupReader reader = own_.operator_reader(v.operator_index);
@@ -92,7 +92,7 @@ Reading Readings::read(VariableId variable) const {
   return reading;
 }
 
-bool Readings::read_output(const PortOf& port, Reading& reading) const {
+bool Readings::read_output(const PortOf& port, VariableReading& reading) const {
   const PeerSegment& segment = peers_.of(port.task);
   if (!segment.is_there()) return false;
   const PeerLayout& layout = peers_.layout(peers_.spec().tasks[port.task.index].rtpu);

@@ -20,7 +20,7 @@
 namespace chimera::manager {
 
 /// A variable at one instant.
-struct Reading {
+struct VariableReading {
   std::vector<std::byte> value;  ///< as many elements as its extents have now
   chimera_slot slot{};           ///< of the publication it came with; sequence 0: never published
   TaskId producer;               ///< invalid: the operator, or nobody
@@ -54,7 +54,7 @@ class Readings {
   }
   /// Who produces it now, or did last; invalid: the operator, or no task that does was ever created.
   TaskId producer(VariableId variable) const;
-  Reading read(VariableId variable) const;
+  VariableReading read(VariableId variable) const;
   /// How a value of the variable is to be read, with its present extents.
   ValueForm form(VariableId variable) const;
 
@@ -67,7 +67,7 @@ class Readings {
   Form form_of(std::size_t variable, const Configuration& configuration, const Library& library) const;
   std::uint32_t extent(const ExtentSpec& extent) const;
   std::optional<std::int64_t> constant(std::string_view name) const;
-  bool read_output(const PortOf& port, Reading& reading) const;
+  bool read_output(const PortOf& port, VariableReading& reading) const;
 
   const Peers& peers_;
   const OwnSegment& own_;

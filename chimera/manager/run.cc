@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "chimera/control/door.h"
+#include "chimera/manager/manager_backend.h"
 #include "chimera/manager/questions.h"
-#include "chimera/manager/subject.h"
 
 namespace chimera::manager {
 
@@ -25,8 +25,8 @@ Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int3
   Questions questions(
       std::filesystem::read_symlink("/proc/self/exe", error).string(), driver.bundle(),
       [&driver](const std::string& text) { driver.world().tell("note", TaskId{}, RtpuId{}, text, now()); });
-  Subject subject(driver, &questions);
-  auto door = control::Door::open(driver.take_listening(), subject, ::getuid(),
+  ManagerBackend backend(driver, &questions);
+  auto door = control::Door::open(driver.take_listening(), backend, ::getuid(),
                                   {bundle.observe_group, bundle.operate_group, bundle.configure_group});
   if (!door) return door.error();
   (*door)->tell_closings_by(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole manager: driver, subject and door in one loop.
+// The whole manager: driver, backend and door in one loop.
 #pragma once
 
 #include "chimera/manager/driver.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/manager/subject_values.h"
+#include "chimera/manager/value_json.h"
 
 namespace chimera::manager {
 namespace {

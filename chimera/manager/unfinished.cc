@@ -18,7 +18,7 @@ std::vector<Unfinished> unfinished(const World& world, RtpuId rtpu, const BlockV
   std::vector<Unfinished> found;
   const BlockHead& head = left.head();
   if (head.phase == PeerPhase::kEnded) return found;
-  const bool is_end = world.keeper.ending.load(std::memory_order_acquire) != 0;
+  const bool is_end = world.is_ending();
   const std::string name = world.name(rtpu);
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) {
     const TaskId task(t);

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "chimera/platform/realtime.h"
+
 namespace chimera::manager {
 namespace {
 
@@ -68,7 +70,7 @@ int number_behind(std::string_view report, std::string_view word, int none) {
   int value = none;
   const char* begin = report.data() + at + word.size();
   const auto [end, error] = std::from_chars(begin, report.data() + report.size(), value);
-  const bool is_refused = std::string_view(end, report.data() + report.size()).starts_with(" refused");
+  const bool is_refused = std::string_view(end, report.data() + report.size()).starts_with(kRefusedWords);
   return error == std::errc() && !is_refused ? value : none;
 }
 
@@ -83,9 +85,9 @@ bool has_its_level(const GrantedRights& granted, bool preemptive, const ThreadRi
 
 GrantedRights GrantedRights::of(std::string_view report) {
   GrantedRights granted;
-  granted.level = number_behind(report, "SCHED_FIFO ", 0);
-  granted.cpu = number_behind(report, "pinned to CPU ", -1);
-  granted.is_locked = report.find("memory locked") != report.npos;
+  granted.level = number_behind(report, kLevelWords, 0);
+  granted.cpu = number_behind(report, kPinnedWords, -1);
+  granted.is_locked = report.find(kLockedWords) != report.npos;
   return granted;
 }
 

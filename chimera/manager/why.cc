@@ -7,15 +7,15 @@
 namespace chimera::manager {
 namespace {
 
-Trouble trouble_of(const VariableFacts& facts) {
-  if (facts.is_rtpu_dead) return Trouble::kRtpuDead;
-  if (facts.producer.empty() || facts.state == State::kNotCreated) return Trouble::kProducerMissing;
-  if (facts.state == State::kError) return Trouble::kProducerError;
-  if (facts.state == State::kOff) return Trouble::kProducerOff;
-  if (!facts.is_written) return Trouble::kNeverWritten;
-  if (!facts.is_finite) return Trouble::kNotFinite;
+VariableTrouble trouble_of(const VariableFacts& facts) {
+  if (facts.is_rtpu_dead) return VariableTrouble::kRtpuDead;
+  if (facts.producer.empty() || facts.state == State::kNotCreated) return VariableTrouble::kProducerMissing;
+  if (facts.state == State::kError) return VariableTrouble::kProducerError;
+  if (facts.state == State::kOff) return VariableTrouble::kProducerOff;
+  if (!facts.is_written) return VariableTrouble::kNeverWritten;
+  if (!facts.is_finite) return VariableTrouble::kNotFinite;
   const Nanoseconds limit = facts.stale_after.count > 0 ? facts.stale_after : facts.period * 3;
-  return limit.count > 0 && facts.age > limit ? Trouble::kStale : Trouble::kNone;
+  return limit.count > 0 && facts.age > limit ? VariableTrouble::kStale : VariableTrouble::kNone;
 }
 
 std::string time_text(Nanoseconds t) {
@@ -40,20 +40,20 @@ std::string with_timing(const VariableFacts& facts) { return facts.timing.empty(
 std::string complaint(const WhyLink& link) {
   const VariableFacts& f = link.facts;
   switch (link.trouble) {
-    case Trouble::kRtpuDead:
+    case VariableTrouble::kRtpuDead:
       return with_words("the real-time unit " + f.rtpu + " of " + producer_text(f) + " is dead", f);
-    case Trouble::kProducerMissing:
+    case VariableTrouble::kProducerMissing:
       return f.producer.empty() ? "no task that produces it was created" : producer_text(f) + " was not created";
-    case Trouble::kProducerError: return with_words(producer_text(f) + " is in ERROR", f);
-    case Trouble::kProducerOff: return producer_text(f) + " is OFF";
-    case Trouble::kNeverWritten:
+    case VariableTrouble::kProducerError: return with_words(producer_text(f) + " is in ERROR", f);
+    case VariableTrouble::kProducerOff: return producer_text(f) + " is OFF";
+    case VariableTrouble::kNeverWritten:
       return "never written, though " + producer_text(f) + " is ON" +
              (f.waits_for_events ? ": it waits for an event" : with_timing(f));
-    case Trouble::kNotFinite: return f.producer + " published " + f.value;
-    case Trouble::kStale:
+    case VariableTrouble::kNotFinite: return f.producer + " published " + f.value;
+    case VariableTrouble::kStale:
       return "stale: " + f.producer + " wrote it " + time_text(f.age) + " ago, its period is " + time_text(f.period) +
              with_timing(f);
-    case Trouble::kNone: break;
+    case VariableTrouble::kNone: break;
   }
   return "";
 }
@@ -79,7 +79,7 @@ const WhyLink& source_of(const std::vector<WhyLink>& chain, const WhyLink& link,
   seen.push_back(&link);
   for (const std::string& input : link.facts.inputs) {
     const WhyLink* above = find(chain, input);
-    if (above == nullptr || above->trouble == Trouble::kNone) continue;
+    if (above == nullptr || above->trouble == VariableTrouble::kNone) continue;
     if (std::find(seen.begin(), seen.end(), above) == seen.end()) return source_of(chain, *above, seen);
   }
   return link;
@@ -87,7 +87,7 @@ const WhyLink& source_of(const std::vector<WhyLink>& chain, const WhyLink& link,
 
 }  // namespace
 
-const char* trouble_name(Trouble trouble) noexcept {
+const char* trouble_name(VariableTrouble trouble) noexcept {
   constexpr const char* kNames[] = {"rtpu-dead",     "producer-missing", "producer-error", "producer-off",
                                     "never-written", "not-finite",       "stale",          "ok"};
   return kNames[static_cast<std::size_t>(trouble)];
@@ -97,7 +97,7 @@ Why why(std::string_view variable, const FactsOf& facts_of) {
   Why why;
   const auto add = [&](std::string_view name, std::uint32_t depth) {
     if (find(why.chain, name) != nullptr) return;
-    WhyLink link{depth, facts_of(name), Trouble::kNone};
+    WhyLink link{depth, facts_of(name), VariableTrouble::kNone};
     link.trouble = trouble_of(link.facts);
     why.chain.push_back(std::move(link));
   };
@@ -107,7 +107,7 @@ Why why(std::string_view variable, const FactsOf& facts_of) {
     for (const std::string& input : inputs) add(input, why.chain[i].depth + 1);
   }
   const auto bad = std::find_if(why.chain.begin(), why.chain.end(),
-                                [](const WhyLink& link) { return link.trouble != Trouble::kNone; });
+                                [](const WhyLink& link) { return link.trouble != VariableTrouble::kNone; });
   if (bad == why.chain.end()) {
     why.verdict = praise(why.chain);
     return why;

@@ -14,11 +14,11 @@
 namespace chimera::manager {
 
 /// In order of gravity; what is found first in this order is the verdict on a variable.
-enum class Trouble : std::uint8_t {
+enum class VariableTrouble : std::uint8_t {
   kRtpuDead, kProducerMissing, kProducerError, kProducerOff, kNeverWritten, kNotFinite, kStale, kNone
 };
 /// "rtpu-dead" ... "ok", as in docs/formats/control.md.
-const char* trouble_name(Trouble trouble) noexcept;
+const char* trouble_name(VariableTrouble trouble) noexcept;
 
 /// What is known about a variable at one instant.
 struct VariableFacts {
@@ -46,7 +46,7 @@ using FactsOf = std::function<VariableFacts(std::string_view variable)>;
 struct WhyLink {
   std::uint32_t depth = 0;  ///< steps from the variable that was asked for
   VariableFacts facts;
-  Trouble trouble = Trouble::kNone;
+  VariableTrouble trouble = VariableTrouble::kNone;
 };
 
 /// Every variable that the first one depends on, nearest first, each once; and one sentence.

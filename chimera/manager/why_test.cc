@@ -59,9 +59,9 @@ TEST_F(WhyTest, FindsTheStaleAncestor) {
 
 TEST_F(WhyTest, ThreePeriodsAreNotYetStaleAndADeclaredLimitCounts) {
   facts_["x"].age = milliseconds(3);
-  EXPECT_EQ(ask("x").chain[0].trouble, Trouble::kNone);
+  EXPECT_EQ(ask("x").chain[0].trouble, VariableTrouble::kNone);
   facts_["x"].stale_after = milliseconds(2);
-  EXPECT_EQ(ask("x").chain[0].trouble, Trouble::kStale);
+  EXPECT_EQ(ask("x").chain[0].trouble, VariableTrouble::kStale);
 }
 
 TEST_F(WhyTest, FollowsWrongNumbersToTheirSourceAndLeavesALoopWhereItEnteredIt) {
@@ -95,7 +95,7 @@ TEST_F(WhyTest, EveryTroubleHasItsSentence) {
 TEST_F(WhyTest, WhatFailedInTimeIsToldWithWhatIsLate) {
   VariableFacts& x = facts_["x"];
   x.timing = "3 missed, 1 demoted";
-  EXPECT_EQ(ask("x").chain[0].trouble, Trouble::kNone);
+  EXPECT_EQ(ask("x").chain[0].trouble, VariableTrouble::kNone);
   x.age = milliseconds(12);
   EXPECT_EQ(verdict("x"), "x: stale: arm wrote it 12 ms ago, its period is 1 ms (3 missed, 1 demoted)");
   x.is_written = false;
@@ -105,9 +105,9 @@ TEST_F(WhyTest, WhatFailedInTimeIsToldWithWhatIsLate) {
 }
 
 TEST_F(WhyTest, TroublesHaveTheirWords) {
-  EXPECT_STREQ(trouble_name(Trouble::kRtpuDead), "rtpu-dead");
-  EXPECT_STREQ(trouble_name(Trouble::kStale), "stale");
-  EXPECT_STREQ(trouble_name(Trouble::kNone), "ok");
+  EXPECT_STREQ(trouble_name(VariableTrouble::kRtpuDead), "rtpu-dead");
+  EXPECT_STREQ(trouble_name(VariableTrouble::kStale), "stale");
+  EXPECT_STREQ(trouble_name(VariableTrouble::kNone), "ok");
 }
 
 }  // namespace

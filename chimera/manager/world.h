@@ -59,6 +59,8 @@ struct World {
     const bool is_away = rtpus[spec().tasks[task.index].rtpu.index].is_away;
     return is_away && state != State::kNotCreated ? State::kError : state;
   }
+  /// Has the keeper begun to end everything? Acquire: pairs with the keeper's store of KeeperPage::ending.
+  bool is_ending() const noexcept { return keeper.ending.load(std::memory_order_acquire) != 0; }
   std::string name(TaskId task) const { return std::string(spec().tasks[task.index].name); }
   std::string name(RtpuId rtpu) const { return std::string(spec().rtpus[rtpu.index].name); }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "chimera/base/fixed.h"
 #include "chimera/base/time.h"
@@ -15,6 +16,10 @@ struct RealtimeRequest {
   int cpu = -1;             ///< the only CPU to run on; -1: any
   bool lock_memory = true;  ///< no page of the process is ever fetched again
 };
+
+/// The words of RealtimeGrant::report behind which other processes read what was granted.
+inline constexpr std::string_view kLevelWords = "SCHED_FIFO ", kPinnedWords = "pinned to CPU ",
+                                  kLockedWords = "memory locked", kRefusedWords = " refused";
 
 /// What of a RealtimeRequest is in force now. What was not asked for counts as granted.
 struct RealtimeGrant {

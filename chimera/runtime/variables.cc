@@ -56,6 +56,11 @@ bool Variables::is_legal(const std::vector<bool>& on) const noexcept {
 }
 
 std::string Variables::explain(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
+  const std::string text = fault(on, tasks), help = text.empty() ? "" : remedy(on, tasks);
+  return text + (help.empty() ? "" : "; " + help);
+}
+
+std::string Variables::fault(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
   std::string text;
   const auto add = [&text](std::string part) { text += (text.empty() ? "" : "; ") + std::move(part); };
   for (const Variable& variable : variables_) {
@@ -69,9 +74,12 @@ std::string Variables::explain(const std::vector<bool>& on, std::span<const Task
       add(std::string(variable.name) + " would have no producer");
     }
   }
-  if (text.empty()) return text;
-  const std::string remedy = smallest_legal(on, tasks);
-  return text + (remedy.empty() ? "" : "; the smallest legal set is: " + remedy);
+  return text;
+}
+
+std::string Variables::remedy(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
+  const std::string names = smallest_legal(on, tasks);
+  return names.empty() ? "" : "the smallest legal set is: " + names;
 }
 
 namespace {

@@ -43,6 +43,9 @@ class Variables {
   /// Says what is illegal and names the smallest legal set that holds `on`, where there is one. Empty when `on` is
   /// legal.
   std::string explain(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const;
+  /// The two halves of explain(): what is illegal, and "the smallest legal set is: servo hold". Each may be empty.
+  std::string fault(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const;
+  std::string remedy(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const;
 
  private:
   std::size_t index_of(std::string_view name);

@@ -37,7 +37,7 @@ Result<std::int64_t> period_ms(const Call& call, std::int64_t otherwise) {
 
 /// Somebody ended a command that goes on: a connection without subscriptions is what the next command of a shell wants.
 int end_of_notes(Session& session) {
-  session.reopen();
+  session.client().drop();
   return kOk;
 }
 
@@ -65,12 +65,14 @@ std::string drawn(const std::vector<TopLine>& lines) {
 std::string printed(const Json& status) {
   ScreenSize size = screen_size(STDOUT_FILENO);
   size.height = std::max<std::size_t>(5 + field(status, "rtpus").size() + field(status, "tasks").size(), 6);
+  std::vector<TopLine> lines = top_lines(status, nullptr, {.width = size.width, .height = size.height});
+  lines.pop_back();  // the keys
   std::string text;
-  for (TopLine& line : top_lines(status, nullptr, {.width = size.width, .height = size.height})) {
+  for (TopLine& line : lines) {
     line.text.erase(line.text.find_last_not_of(' ') + 1);
     text += line.text + "\n";
   }
-  return text.substr(0, text.find("q quit"));
+  return text;
 }
 
 /// Moves the view as a key asks; false when it asks for the end.
@@ -98,7 +100,7 @@ std::optional<Error> top_on_screen(Session& session, const Json& first, const Js
     screen.show(drawn(view.is_help ? help_lines(view) : top_lines(now, before, view)));
     Woken woken = attention.wait(&session.client(), seconds(60));
     if (woken.by == By::kStop || (woken.by == By::kKey && !obey(woken.key, view, now))) return std::nullopt;
-    if (woken.by == By::kLost && !(session.reopen() && session.ask("subscribe", subscription).is_good()))
+    if (woken.by == By::kLost && !session.ask("subscribe", subscription).is_good())
       return woken.error;
     if (woken.by == By::kNote && woken.note.method == "status") before = std::move(now), now = *woken.note.parameters;
   }
@@ -154,7 +156,7 @@ int follow(Session& session, const Call& call, Json subscription, std::FILE* out
   for (;;) {
     const Woken woken = attention.wait(&session.client(), seconds(60));
     if (woken.by == By::kStop) return end_of_notes(session);
-    if (woken.by == By::kLost && !(session.reopen() && session.ask("subscribe", subscription).is_good()))
+    if (woken.by == By::kLost && !session.ask("subscribe", subscription).is_good())
       return print(refused(woken.error, call.json), out, err);
     if (woken.by != By::kNote) continue;
     show(woken.note, subscription);

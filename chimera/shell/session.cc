@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the subsystem that is meant, and gives each method the time that it may take.
 #include "chimera/shell/session.h"
 
 #include <cstdlib>
@@ -74,20 +75,7 @@ Result<void> Session::may_act() {
 control::Answer Session::ask(std::string_view method) { return ask(method, nlohmann::json::object()); }
 
 control::Answer Session::ask(std::string_view method, const nlohmann::json& parameters) {
-  const Nanoseconds limit = limit_of(method, parameters);
-  control::Answer answer = client_.call(method, parameters, limit, control::kCallLimit);
-  if (answer.code != control::kNoConnection) return answer;
-  // The manager died. Its successor answers at the same door; what may have been carried out is not asked for twice.
-  const bool may_repeat = method != "signal" && method != "ring" && method != "end" && method != "unsubscribe";
-  return reopen() && may_repeat ? client_.call(method, parameters, limit, control::kCallLimit) : answer;
-}
-
-bool Session::reopen() {
-  constexpr Nanoseconds kReopenLimit = seconds(3);
-  auto client = control::Client::connect_to(client_.path(), kReopenLimit);
-  if (!client || !client->call("hello", nlohmann::json::object(), kReopenLimit).is_good()) return false;
-  client_ = std::move(*client);
-  return true;
+  return client_.call(method, parameters, limit_of(method, parameters), control::kCallLimit);
 }
 
 }  // namespace chimera::shell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A connection to one subsystem, asked the way commands ask.
+// One subsystem, asked the way commands ask: which one it is, whether an act may go to it, how long an answer may take.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -41,9 +41,7 @@ class Session {
   const std::string& subsystem();
   /// May an act go to it? Named, or of this terminal or folder: else refused, with what is to be typed.
   Result<void> may_act();
-  /// A new connection to the same subsystem, whose manager may have been restarted; false when nobody answers at its
-  /// door within 3 s. Subscriptions have to be made again.
-  bool reopen();
+  /// As control::Client::call, with the time that the method may take.
   control::Answer ask(std::string_view method);
   control::Answer ask(std::string_view method, const nlohmann::json& parameters);
 

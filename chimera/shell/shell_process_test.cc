@@ -37,7 +37,7 @@ using control::Answer;
 using control::Json;
 
 /// Two tasks and the variables of test_answers.h; `error` rises by 1 mrad a row.
-struct FakeSubject final : control::Subject {
+struct FakeSubject final : control::ControlBackend {
   void call(const control::MethodRule& method, const Json& parameters, const control::Caller&,
             control::Reply reply) override {
     const std::string name = method.name;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sends the spawns that goals ask for, in the order of constants, and gives up the goals that cannot be reached.
 #include "chimera/subsystem/goals.h"
 
 #include <algorithm>
@@ -9,12 +10,13 @@ void Goals::recall(std::span<const std::uint32_t> remembered) {
   for (std::size_t t = 0; t < std::min(goals_.size(), remembered.size()); ++t) goals_[t].bits = remembered[t];
 }
 
-void Goals::set(TaskId task, std::uint32_t goal) {
+bool Goals::set(TaskId task, std::uint32_t goal) {
   Goal& mine = goals_[task.index];
-  if ((goal & kGoalSpawn) != 0 && (mine.bits & kGoalSpawn) == 0) mine.failure.clear();
-  if (mine.bits == goal) return;
+  if ((goal & kGoalSpawn) != 0 && (mine.bits & kGoalSpawn) == 0) mine.failure = {};
+  if (mine.bits == goal) return false;
   mine.bits = goal;
-  at_.act(RememberGoal{task, goal});
+  state_.emit(RememberGoal{task, goal});
+  return true;
 }
 
 bool Goals::any(std::uint32_t bits) const noexcept {
@@ -23,55 +25,62 @@ bool Goals::any(std::uint32_t bits) const noexcept {
 
 std::vector<TaskId> Goals::with(std::uint32_t bits) const {
   std::vector<TaskId> tasks;
-  for (TaskId task : at_.order)
+  for (TaskId task : state_.order)
     if (has(task, bits)) tasks.push_back(task);
   return tasks;
 }
 
-void Goals::fail(TaskId task, const char* kind, std::string why) {
+void Goals::fail(TaskId task, const SignalRefusal& why) {
   goals_[task.index].failure = why;
-  if (at_.roster.life_of(task) == Life::kUp) at_.roster.forget(task);
-  at_.tell(kind, task, at_.roster.rtpu(task), std::move(why));
+  if (state_.observed.life_of(task) == RtpuLife::kUp) state_.observed.forget(task);
+  const char* kind = why.kind == RefusalKind::kFault ? "fault" : "refused";
+  state_.log(kind, task, state_.observed.rtpu(task), why.text());
   clear(task, kGoalSpawn | kGoalOn);
 }
 
-void Goals::pursue() {
-  for (TaskId task : at_.spec.init_order)
-    if (is_pursued(task)) pursue(task);
+bool Goals::advance() {
+  bool changed = false;
+  for (TaskId task : state_.spec.init_order) changed = (is_pursued(task) && advance(task)) || changed;
+  return changed;
 }
 
-void Goals::pursue(TaskId task) {
-  const Life life = at_.roster.life_of(task);
-  if (life != Life::kUp) {
-    if (at_.now >= at_.roster.since(at_.roster.rtpu(task)) + kStartLimit) fail(task, "refused", at_.no_answer(task));
-    return;
+bool Goals::advance(TaskId task) {
+  if (state_.observed.life_of(task) != RtpuLife::kUp) {
+    if (state_.now < state_.observed.since(state_.observed.rtpu(task)) + kStartLimit) return false;
+    fail(task, state_.no_answer(task));
+    return true;
   }
-  if (!has(task, kGoalSpawn)) return;
-  if (at_.roster.is_created(task)) return clear(task, kGoalSpawn);
-  if (at_.is_busy(task) || !has_constants(task)) return;
-  goals_[task.index].command = at_.send(Signal::kSpawn, {&task, 1});
+  if (!has(task, kGoalSpawn)) return false;
+  if (state_.observed.is_created(task)) return clear(task, kGoalSpawn);
+  if (state_.is_busy(task) || !has_constants(task)) return false;
+  goals_[task.index].command = state_.send(Signal::kSpawn, {&task, 1});
+  return true;
 }
 
 bool Goals::has_constants(TaskId task) const noexcept {
-  const auto& makers = at_.makers[task.index];
-  return std::all_of(makers.begin(), makers.end(),
-                     [this](TaskId maker) { return at_.roster.is_created(maker) || !has(maker, kGoalSpawn); });
+  const auto& producers = state_.constant_producers[task.index];
+  return std::all_of(producers.begin(), producers.end(), [this](TaskId producer) {
+    return state_.observed.is_created(producer) || !has(producer, kGoalSpawn);
+  });
 }
 
-void Goals::take(const Reply& reply) {
-  if (reply.signal != Signal::kSpawn || goals_[reply.task.index].command != reply.command || reply.is_death) return;
-  goals_[reply.task.index].command = 0;
-  if (!has(reply.task, kGoalSpawn)) return;
-  if (reply.is_done) clear(reply.task, kGoalSpawn);
-  else fail(reply.task, reply.is_fault ? "fault" : "refused", at_.sentence(reply));
+// What becomes of the goals of a task whose process ended is up to RestartPolicy.
+void Goals::on_result(const SignalResult& result) {
+  const TaskId task = result.task;
+  if (result.signal != Signal::kSpawn || goals_[task.index].command != result.command) return;
+  if (result.refusal.kind == RefusalKind::kEnded) return;
+  goals_[task.index].command = 0;
+  if (!has(task, kGoalSpawn)) return;
+  if (result.is_done()) clear(task, kGoalSpawn);
+  else fail(task, state_.named(result));
 }
 
 Nanoseconds Goals::next_due() const noexcept {
   Nanoseconds next = kNever;
   for (std::size_t t = 0; t < goals_.size(); ++t) {
     const TaskId task(t);
-    if (!is_pursued(task) || at_.roster.life_of(task) == Life::kUp) continue;
-    next = std::min(next, at_.roster.since(at_.roster.rtpu(task)) + kStartLimit);
+    if (!is_pursued(task) || state_.observed.life_of(task) == RtpuLife::kUp) continue;
+    next = std::min(next, state_.observed.since(state_.observed.rtpu(task)) + kStartLimit);
   }
   return next;
 }

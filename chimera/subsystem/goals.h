@@ -2,10 +2,9 @@
 // What tasks are to be brought to. Remembered by the driver, so that a goal outlives the manager.
 #pragma once
 
-#include <string>
 #include <vector>
 
-#include "chimera/subsystem/situation.h"
+#include "chimera/subsystem/subsystem_state.h"
 
 namespace chimera::subsystem {
 
@@ -17,39 +16,41 @@ inline constexpr Nanoseconds kStartLimit = seconds(10);
 /// Context: setup.
 class Goals {
  public:
-  Goals(Situation& situation) : at_(situation), goals_(situation.spec.tasks.size()) {}
+  Goals(SubsystemState& state) : state_(state), goals_(state.spec.tasks.size()) {}
 
   void recall(std::span<const std::uint32_t> remembered);
-  void set(TaskId task, std::uint32_t goal);
-  void add(TaskId task, std::uint32_t bits) { set(task, of(task) | bits); }
-  void clear(TaskId task, std::uint32_t bits) { set(task, of(task) & ~bits); }
+  /// False: the task had this goal already.
+  bool set(TaskId task, std::uint32_t goal);
+  bool add(TaskId task, std::uint32_t bits) { return set(task, of(task) | bits); }
+  bool clear(TaskId task, std::uint32_t bits) { return set(task, of(task) & ~bits); }
   std::uint32_t of(TaskId task) const noexcept { return goals_[task.index].bits; }
   bool has(TaskId task, std::uint32_t bits) const noexcept { return (of(task) & bits) != 0; }
   bool is_pursued(TaskId task) const noexcept { return has(task, kGoalSpawn | kGoalOn); }
   bool any(std::uint32_t bits) const noexcept;
   std::vector<TaskId> with(std::uint32_t bits) const;
 
-  /// Tells why and gives the goals of the task up, in this order: a manager that dies between the two lets the next one
-  /// tell again.
-  void fail(TaskId task, const char* kind, std::string why);
-  /// Why the last goals of the task were given up.
-  const std::string& failure(TaskId task) const noexcept { return goals_[task.index].failure; }
+  /// Logs why and gives the goals of the task up, in this order: a manager that dies between the two lets the next one
+  /// log it again.
+  void fail(TaskId task, const SignalRefusal& why);
+  /// Why the last goals of the task were given up; kNone when they were reached.
+  const SignalRefusal& failure(TaskId task) const noexcept { return goals_[task.index].failure; }
 
-  /// Sends every spawn that can be sent; notices goals that are reached or whose rtpu does not come.
-  void pursue();
-  void take(const Reply& reply);
+  /// Sends every spawn that can be sent; notices goals that are reached or whose rtpu does not come. False: nothing
+  /// changed.
+  bool advance();
+  void on_result(const SignalResult& result);
   Nanoseconds next_due() const noexcept;
 
  private:
   struct Goal {
     std::uint32_t bits = 0;
     std::uint64_t command = 0;  ///< of its spawn
-    std::string failure;
+    SignalRefusal failure;
   };
-  void pursue(TaskId task);
+  bool advance(TaskId task);
   bool has_constants(TaskId task) const noexcept;
 
-  Situation& at_;
+  SubsystemState& state_;
   std::vector<Goal> goals_;
 };
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the commands of a remedy: spawn what is not there, clear what is in ERROR, then the signal itself.
 #include "chimera/subsystem/remedy.h"
 
 namespace chimera::subsystem {
 namespace {
 
 /// Adds a command for these tasks, if there are any.
-void add(std::vector<std::string>& commands, const Situation& situation, const char* word,
+void add(std::vector<std::string>& commands, const SubsystemState& subsystem, const char* word,
          std::span<const TaskId> tasks) {
   if (tasks.empty()) return;
   std::string command = std::string("`chimera ") + word;
-  for (const TaskId task : tasks) command += " " + situation.name(task);
+  for (const TaskId task : tasks) command += " " + subsystem.name(task);
   commands.push_back(command + "`");
 }
 
@@ -29,11 +30,11 @@ bool takes(Signal signal, State state) noexcept {
 
 }  // namespace
 
-std::string remedy(const Situation& situation, Signal signal, std::span<const TaskId> tasks) {
+std::string remedy(const SubsystemState& subsystem, Signal signal, std::span<const TaskId> tasks) {
   const bool needs_all = signal == Signal::kOn || signal == Signal::kReinit;
   std::vector<TaskId> spawn, clear, rest;
   for (const TaskId task : tasks) {
-    const State state = situation.roster.state(task);
+    const State state = subsystem.observed.state(task);
     const bool is_in_error = state == State::kError && signal != Signal::kKill;
     if (is_in_error)
       clear.push_back(task);
@@ -43,16 +44,16 @@ std::string remedy(const Situation& situation, Signal signal, std::span<const Ta
       rest.push_back(task);
   }
   std::vector<std::string> commands;
-  add(commands, situation, "spawn", spawn);
-  add(commands, situation, "clear", clear);
-  add(commands, situation, signal_name(signal), rest);
+  add(commands, subsystem, "spawn", spawn);
+  add(commands, subsystem, "clear", clear);
+  add(commands, subsystem, signal_name(signal), rest);
   return joined(commands);
 }
 
-std::string way_back(const Situation& situation, std::span<const TaskId> lost, std::span<const TaskId> were_on) {
+std::string way_back(const SubsystemState& subsystem, std::span<const TaskId> lost, std::span<const TaskId> were_on) {
   std::vector<std::string> commands;
-  add(commands, situation, "clear", lost);
-  add(commands, situation, "on", were_on);
+  add(commands, subsystem, "clear", lost);
+  add(commands, subsystem, "on", were_on);
   return joined(commands);
 }
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// The step: one event is noted, then the parts advance until nothing changes any more.
 #include "chimera/subsystem/subsystem.h"
 
 #include <algorithm>
 
-#include "chimera/subsystem/acts.h"
-#include "chimera/subsystem/deaths.h"
+#include "chimera/subsystem/command_queue.h"
 #include "chimera/subsystem/goals.h"
-#include "chimera/subsystem/situation.h"
-#include "chimera/subsystem/transaction.h"
-#include "chimera/subsystem/wishes.h"
+#include "chimera/subsystem/on_queue.h"
+#include "chimera/subsystem/on_transaction.h"
+#include "chimera/subsystem/restart_policy.h"
+#include "chimera/subsystem/subsystem_state.h"
 
 namespace chimera::subsystem {
 namespace {
@@ -32,125 +33,125 @@ bool is_reached(const Reported& report) {
 
 struct Subsystem::Parts {
   explicit Parts(const ApplicationSpec& spec)
-      : at(spec), goals(at), transaction(at, goals), acts(at, goals, transaction), wishes(at, goals, transaction),
-        deaths(at, goals, transaction, acts) {}
+      : state(spec), goals(state), transaction(state, goals), commands(state, goals, transaction),
+        on_queue(state, goals, transaction), restarts(state, goals, transaction, commands) {}
 
-  void take(const Begun& begun);
-  void take(const InventoryComplete&) {
-    at.is_complete = true;
-    at.complete_since = at.now;
+  void on_event(const Begun& begun);
+  void on_event(const InventoryComplete&) {
+    state.is_complete = true;
+    state.complete_since = state.now;
   }
-  void take(const RtpuUp& up);
-  void take(const RtpuDown& down);
-  void take(const TaskSeen& seen);
-  void take(const Reported& report);
-  void take(const Requested& request) {
-    if (request.signal == Signal::kOn) wishes.add(request);
+  void on_event(const RtpuUp& up);
+  void on_event(const RtpuDown& down);
+  void on_event(const TaskSeen& seen) {
+    state.observed.see(seen.task, seen.status);
+    transaction.on_task_seen(seen.task);
   }
-  void take(const Commanded& command) {
-    if (command.signal == Signal::kOn) wishes.add(command);
-    else acts.add(command);
+  void on_event(const Reported& report);
+  void on_event(const Requested& request) {
+    if (request.signal == Signal::kOn) on_queue.add(request);
   }
-  void take(const Tick&) {}
+  void on_event(const Commanded& command) {
+    if (command.signal == Signal::kOn) on_queue.add(command);
+    else commands.add(command);
+  }
+  void on_event(const Tick&) {}
 
-  void give(const Reply& reply);
+  SignalRefusal refusal_of(const Reported& report) const;
+  void pass_on(const SignalResult& result);
   void expire();
   void settle();
 
-  Situation at;
+  SubsystemState state;
   Goals goals;
-  Transaction transaction;
-  Acts acts;
-  Wishes wishes;
-  Deaths deaths;
+  OnTransaction transaction;
+  CommandQueue commands;
+  OnQueue on_queue;
+  RestartPolicy restarts;
 };
 
-void Subsystem::Parts::take(const Begun& begun) {
-  at.mail.begin(at.now);
+void Subsystem::Parts::on_event(const Begun& begun) {
+  state.pending.begin(state.now);
   goals.recall(begun.goals);
-  deaths.recall(begun);
-  for (std::size_t r = 0; r < at.spec.rtpus.size(); ++r) at.roster.starting(RtpuId(r), at.now);
+  restarts.recall(begun);
+  for (std::size_t r = 0; r < state.spec.rtpus.size(); ++r) state.observed.starting(RtpuId(r), state.now);
   if (begun.started) return;
-  at.roster.begin_empty();
-  for (TaskId task : at.spec.init_order) {
-    const bool starts = std::find(at.spec.start.begin(), at.spec.start.end(), task) != at.spec.start.end();
+  state.observed.begin_empty();
+  for (TaskId task : state.spec.init_order) {
+    const bool starts = std::ranges::find(state.spec.start, task) != state.spec.start.end();
     goals.set(task, starts ? kGoalSpawn | kGoalOn : kGoalSpawn);
   }
-  at.act(RememberStarted{});
+  state.emit(RememberStarted{});
 }
 
-void Subsystem::Parts::take(const RtpuUp& up) {
-  at.roster.up(up.rtpu, up.incarnation);
-  for (TaskId task : at.order) {
-    if (at.roster.rtpu(task) != up.rtpu) continue;
-    if (!goals.has(task, kGoalSpawn)) at.roster.forget(task);
+void Subsystem::Parts::on_event(const RtpuUp& up) {
+  state.observed.up(up.rtpu, up.incarnation);
+  for (TaskId task : state.order) {
+    if (state.observed.rtpu(task) != up.rtpu) continue;
+    if (!goals.has(task, kGoalSpawn)) state.observed.forget(task);
     goals.clear(task, kGoalGone);
   }
 }
 
-void Subsystem::Parts::take(const RtpuDown& down) {
-  if (!deaths.take(down)) return;
-  for (TaskId task : at.order) {
-    if (at.roster.rtpu(task) != down.rtpu) continue;
-    const auto lost = at.mail.of(task);
-    at.mail.drop(task);
-    for (const Underway& entry : lost)
+void Subsystem::Parts::on_event(const RtpuDown& down) {
+  if (!restarts.on_rtpu_down(down)) return;
+  for (TaskId task : state.order) {
+    if (state.observed.rtpu(task) != down.rtpu) continue;
+    const auto lost = state.pending.of(task);
+    state.pending.drop(task);
+    for (const PendingSignal& entry : lost)
       if (entry.due != kNever)
-        give({entry.command, task, entry.signal, false, true, false, State::kError, State::kError,
-              at.name(down.rtpu) + " " + down.cause});
+        pass_on({entry.command, task, entry.signal, State::kError, State::kError, state.ended(down.rtpu, down.cause)});
   }
 }
 
-void Subsystem::Parts::take(const TaskSeen& seen) {
-  at.roster.see(seen.task, seen.status);
-  transaction.look(seen.task);
+void Subsystem::Parts::on_event(const Reported& report) {
+  if (!state.pending.settle(report.task, report.command)) return;
+  pass_on({report.command, report.task, report.signal, report.before, report.after, refusal_of(report)});
 }
 
-void Subsystem::Parts::take(const Reported& report) {
-  if (!at.mail.settle(report.task, report.command)) return;
-  Reply reply{report.command, report.task, report.signal, report.accepted && is_reached(report), false, false,
-              report.before, report.after, report.text};
-  if (!reply.is_done && report.accepted) {
-    reply.is_fault = true;
-    if (reply.why.empty()) reply.why = std::string("ended in state ") + state_name(report.after);
-  } else if (report.why == Refusal::kFault) {
-    reply.is_fault = true;
-    if (reply.why.empty()) reply.why = "a method failed";
-  } else if (report.why == Refusal::kState) {
-    reply.why = at.illegal(report.signal, report.task, report.before, {&report.task, 1});
+SignalRefusal Subsystem::Parts::refusal_of(const Reported& report) const {
+  if (report.accepted) {
+    if (is_reached(report)) return {};
+    const std::string end = std::string("ended in state ") + state_name(report.after);
+    return {RefusalKind::kFault, report.text.empty() ? end : report.text, {}};
   }
-  give(reply);
+  switch (report.why) {
+    case Refusal::kState: return state.illegal(report.signal, report.task, report.before, {&report.task, 1});
+    case Refusal::kIllegalSet: return {RefusalKind::kSet, report.text, {}};
+    case Refusal::kFault: return {RefusalKind::kFault, report.text.empty() ? "a method failed" : report.text, {}};
+    case Refusal::kNone: break;
+  }
+  return {RefusalKind::kOther, report.text, {}};
 }
 
-void Subsystem::Parts::give(const Reply& reply) {
-  transaction.take(reply);
-  goals.take(reply);
-  acts.take(reply);
+void Subsystem::Parts::pass_on(const SignalResult& result) {
+  transaction.on_result(result);
+  goals.on_result(result);
+  commands.on_result(result);
 }
 
 void Subsystem::Parts::expire() {
-  for (TaskId task : at.order) {
-    std::vector<Reply> expired;
-    for (Underway& entry : at.mail.of(task)) {
-      if (entry.due > at.now) continue;
-      const bool serves = at.roster.status(task).in_service && at.now < entry.sent + kServiceLimit;
-      entry.due = serves ? at.now + kAnswerLimit : kNever;
-      const State state = at.roster.state(task);
-      if (!serves)
-        expired.push_back({entry.command, task, entry.signal, false, false, false, state, state, at.no_answer(task)});
+  for (TaskId task : state.order) {
+    std::vector<SignalResult> expired;
+    for (PendingSignal& entry : state.pending.of(task)) {
+      if (entry.due > state.now) continue;
+      const bool serves = state.observed.status(task).in_service && state.now < entry.sent + kServiceLimit;
+      entry.due = serves ? state.now + kAnswerLimit : kNever;
+      const State now = state.observed.state(task);
+      if (!serves) expired.push_back({entry.command, task, entry.signal, now, now, state.no_answer(task)});
     }
-    for (const Reply& reply : expired) give(reply);
+    for (const SignalResult& result : expired) pass_on(result);
   }
 }
 
-// Each part may open the way for another; whatever happens shows as an action.
+// Each part may open the way for another.
 void Subsystem::Parts::settle() {
-  for (std::size_t before = SIZE_MAX; before != at.actions->size();) {
-    before = at.actions->size();
-    goals.pursue();
-    acts.advance();
-    transaction.advance();
-    wishes.advance();
+  for (bool changed = true; changed;) {
+    changed = goals.advance();
+    changed = commands.advance() || changed;
+    changed = transaction.advance() || changed;
+    changed = on_queue.advance() || changed;
   }
 }
 
@@ -158,30 +159,29 @@ Subsystem::Subsystem(const ApplicationSpec& spec) : parts_(std::make_unique<Part
 Subsystem::~Subsystem() = default;
 
 void Subsystem::step(const Event& event, Nanoseconds now, std::vector<Action>& actions) {
-  parts_->at.now = now;
-  parts_->at.actions = &actions;
-  std::visit([this](const auto& it) { parts_->take(it); }, event);
+  parts_->state.now = now;
+  parts_->state.actions = &actions;
+  std::visit([this](const auto& it) { parts_->on_event(it); }, event);
   parts_->expire();
-  if (parts_->at.is_complete) parts_->settle();
+  if (parts_->state.is_complete) parts_->settle();
 }
 
 Nanoseconds Subsystem::next_due() const noexcept {
-  const auto& parts = *parts_;
-  return std::min({parts.at.mail.next_due(), parts.goals.next_due(), parts.acts.next_due(), parts.wishes.next_due()});
+  const Nanoseconds next = std::min(parts_->state.pending.next_due(), parts_->goals.next_due());
+  if (!parts_->state.is_complete) return next;
+  return std::min({next, parts_->commands.next_due(), parts_->on_queue.next_due()});
 }
 
-State Subsystem::state(TaskId task) const noexcept { return parts_->at.roster.state(task); }
+State Subsystem::state(TaskId task) const noexcept { return parts_->state.observed.state(task); }
 
 bool Subsystem::is_settled() const noexcept {
   return !parts_->goals.any(kGoalSpawn | kGoalOn) && !parts_->transaction.is_under_way();
 }
 
-bool Subsystem::is_given_up(RtpuId rtpu) const noexcept { return parts_->at.roster.life(rtpu) == Life::kDown; }
+bool Subsystem::is_given_up(RtpuId rtpu) const noexcept { return parts_->state.observed.life(rtpu) == RtpuLife::kDown; }
 
-std::string Subsystem::way_back(RtpuId rtpu) const { return parts_->deaths.way_back(rtpu); }
+std::string Subsystem::way_back(RtpuId rtpu) const { return parts_->restarts.way_back(rtpu); }
 
-std::string Subsystem::missing() const { return parts_->at.missing(); }
-
-std::string Subsystem::judge_on(std::span<const TaskId> tasks) const { return parts_->at.judge_on(tasks); }
+std::string Subsystem::missing() const { return parts_->state.missing(); }
 
 }  // namespace chimera::subsystem

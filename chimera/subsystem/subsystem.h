@@ -5,6 +5,20 @@
 // What it knows of the processes it is told by events; what it must not forget it asks the driver to remember, and a
 // new Subsystem given that memory goes on where the old one died. The driver carries out actions in order.
 //
+//                                       step(event, now)
+//                                              |
+//        RtpuUp TaskSeen --> ObservedState     |     PendingSignals <-- Reported, RtpuDown, 2 s without a report
+//                                   |          |           |
+//                 RtpuDown --> RestartPolicy   |           +--> one SignalResult for each, to the three that sent it
+//                                   |          v
+//          +--> Goals::advance          spawns what has goals, in the order of constants
+//  until   |    CommandQueue::advance   judges, sends and answers `spawn off kill clear reinit` of clients
+//  nothing |    OnTransaction::advance  sends the next tasks of an `on`, or rolls it back
+//  changes +--- OnQueue::advance        begins the next transaction: goals first, then clients and tasks in turn
+//                                              |
+//                                              v
+//                                       actions, in order
+//
 // Goals. A task has a goal while it is to be brought up: at the start, and again after its rtpu died. Goals are
 // pursued in the order of constants (spawn) and then as one transaction in data-flow order (on).
 #pragma once
@@ -12,7 +26,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -20,7 +33,7 @@
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/refusal.h"
 #include "chimera/runtime/rtpu_block.h"
-#include "chimera/runtime/variables.h"
+#include "chimera/subsystem/signal_refusal.h"
 
 namespace chimera::subsystem {
 
@@ -80,29 +93,31 @@ struct RememberGoal { TaskId task; std::uint32_t goal = 0; };
 struct RememberHandled { RtpuId rtpu; std::uint32_t incarnation = 0; };
 struct RememberRestart { RtpuId rtpu; std::array<Nanoseconds, 4> instants{}; };
 struct RememberStarted {};
-/// A command is over.
-struct Outcome {
+/// What a command did to one of its tasks.
+struct TaskOutcome {
   TaskId task;
   State before{}, after{};
   bool is_already = false;  ///< there was nothing to do: `on` of a task that is ON, `off` of one that is OFF
 };
-struct Answer {
+/// A command is over.
+struct CommandAnswer {
   std::uint64_t id = 0;
-  bool accepted = false;
-  std::string text;
-  TaskId at;
-  std::vector<Outcome> outcomes;
+  SignalRefusal refusal;  ///< kNone: all of it was carried out
+  TaskId at;              ///< the task that was refused
+  std::vector<TaskOutcome> outcomes;
+
+  bool is_accepted() const noexcept { return !refusal.is_refused(); }
 };
 /// For the event log: kind as in docs/formats/control.md.
-struct Tell {
+struct LogEvent {
   std::string kind;
   TaskId task;
   RtpuId rtpu;
   std::string text;
 };
 
-using Action =
-    std::variant<Send, StartRtpu, RememberGoal, RememberHandled, RememberRestart, RememberStarted, Answer, Tell>;
+using Action = std::variant<Send, StartRtpu, RememberGoal, RememberHandled, RememberRestart, RememberStarted,
+                            CommandAnswer, LogEvent>;
 
 /// One subsystem. Single-threaded; no clock of its own. Context: setup; may allocate.
 class Subsystem {
@@ -126,8 +141,6 @@ class Subsystem {
   std::string way_back(RtpuId rtpu) const;
   /// Why the flag is up: "u (pi is OFF)"; "" when the tasks ON are a legal set.
   std::string missing() const;
-  /// Why the tasks that would be ON with `tasks` are no legal set; "" when they are.
-  std::string judge_on(std::span<const TaskId> tasks) const;
 
  private:
   struct Parts;

@@ -24,12 +24,11 @@ Report faulty_objects(const Configuration& configuration, const Library& library
     const auto& drafts = configuration.draft().tasks;
     const auto draft = std::ranges::find_if(drafts, [&](const DraftTask& d) { return d.name.text == task.name; });
     const std::string_view why = sound.error().message.view();
-    const std::string_view remedy = ". Rebuild the component.";
-    const bool has_remedy = why.ends_with(remedy);
+    const bool has_remedy = why.ends_with(kRebuild);
     report.add({.rule = "component-object",
                 .at = draft == drafts.end() ? task.at : draft->component.at,
                 .message = "task '" + task.name +
-                           "': " + std::string(why.substr(0, why.size() - (has_remedy ? remedy.size() : 0))),
+                           "': " + std::string(why.substr(0, why.size() - (has_remedy ? kRebuild.size() : 0))),
                 .found = entry->object_file,
                 .expected = "the shared object of '" + task.component + "'",
                 .nearest = {},

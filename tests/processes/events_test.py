@@ -123,11 +123,11 @@ class Events(unittest.TestCase):
 
             self.assertEqual(refusal("steady"), {
                 "code": -32000, "message": "steady is not behind a server: it has no doorbell",
-                "data": {"where": "steady", "remedy": "give it 'server:' in the description"}})
+                "data": {"kind": "no-server", "where": "steady", "remedy": "give it 'server:' in the description"}})
             system.signal("off", "alarm")
             self.assertEqual(refusal("alarm"), {
                 "code": -32000, "message": "alarm is OFF: nobody would answer the event",
-                "data": {"where": "alarm", "remedy": "turn it ON first"}})
+                "data": {"kind": "state", "where": "alarm", "remedy": "turn it ON first"}})
             alarm = system.task("alarm")
             self.assertEqual((alarm["events"], alarm["events_lost"], alarm["cycles"]), (8, 0, 8))
             self.assertEqual(client.faults, [])

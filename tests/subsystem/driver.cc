@@ -238,10 +238,10 @@ void Driver::carry_out(const Action& action) {
   } else if (std::holds_alternative<RememberStarted>(action)) {
     world_.tally.count("action started");
     memory.started = true;
-  } else if (const auto* answer_it = std::get_if<subsystem::Answer>(&action)) {
+  } else if (const auto* answer_it = std::get_if<subsystem::CommandAnswer>(&action)) {
     answer(*answer_it);
   } else {
-    tell(std::get<Tell>(action));
+    tell(std::get<LogEvent>(action));
   }
 }
 
@@ -263,9 +263,10 @@ void Driver::send(const Send& send) {
     world_.processes[send.rtpu.index]->receive({send.command, life_, send.signal, send.tasks});
 }
 
-void Driver::answer(const subsystem::Answer& answer) {
-  world_.tally.count(answer.accepted ? "action answer yes" : "action answer no");
-  world_.trace.note(world_.now(), "answer", {static_cast<std::int64_t>(answer.id), answer.accepted}, answer.text);
+void Driver::answer(const subsystem::CommandAnswer& answer) {
+  world_.tally.count(answer.is_accepted() ? "action answer yes" : "action answer no");
+  world_.trace.note(world_.now(), "answer", {static_cast<std::int64_t>(answer.id), answer.is_accepted()},
+                    answer.refusal.text());
   const auto is_it = [&](const auto& one) { return one.first == answer.id; };
   const auto asked = std::find_if(asked_.begin(), asked_.end(), is_it);
   if (asked == asked_.end()) return world_.fail("a command was answered that nobody asked, or twice");
@@ -275,7 +276,7 @@ void Driver::answer(const subsystem::Answer& answer) {
   world_.judge->answered(answer, face);
 }
 
-void Driver::tell(const Tell& tell) {
+void Driver::tell(const LogEvent& tell) {
   world_.tally.count("action tell");
   world_.tally.count("tell " + tell.kind);
   world_.trace.note(world_.now(), tell.kind, {}, tell.text);

@@ -50,8 +50,8 @@ class Driver {
   std::size_t cut(std::size_t n_actions);
   void carry_out(const subsystem::Action& action);
   void send(const subsystem::Send& send);
-  void answer(const subsystem::Answer& answer);
-  void tell(const subsystem::Tell& tell);
+  void answer(const subsystem::CommandAnswer& answer);
+  void tell(const subsystem::LogEvent& tell);
   void plan_tick();
 
   World& world_;

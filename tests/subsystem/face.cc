@@ -36,9 +36,9 @@ void Face::let_in(std::uint32_t manager) {
   asked_of_ = manager;
 }
 
-void Face::answered(const subsystem::Answer& answer) {
-  world_.tally.count(answer.accepted ? "command answered yes" : "command answered no");
-  if (answer.text.find("no answer from rtpu") != std::string::npos) world_.tally.count("no answer");
+void Face::answered(const subsystem::CommandAnswer& answer) {
+  world_.tally.count(answer.is_accepted() ? "command answered yes" : "command answered no");
+  if (answer.refusal.kind == subsystem::RefusalKind::kNoAnswer) world_.tally.count("no answer");
   is_waiting_ = false;
   last_ = answer;
 }

@@ -21,11 +21,11 @@ class Face {
   bool is_waiting_at_door(std::uint32_t manager) const noexcept { return is_waiting_ && asked_of_ != manager; }
   bool wants_down(TaskId task) const noexcept;
   void let_in(std::uint32_t manager);
-  void answered(const subsystem::Answer& answer);
+  void answered(const subsystem::CommandAnswer& answer);
   Nanoseconds asked_at() const noexcept { return asked_at_; }
   Signal signal() const noexcept { return signal_; }
   const std::vector<TaskId>& tasks() const noexcept { return tasks_; }
-  const subsystem::Answer& last() const noexcept { return last_; }
+  const subsystem::CommandAnswer& last() const noexcept { return last_; }
 
  private:
   void ask_by_chance();
@@ -39,7 +39,7 @@ class Face {
   Nanoseconds asked_at_;
   Signal signal_ = Signal::kOn;
   std::vector<TaskId> tasks_;
-  subsystem::Answer last_;
+  subsystem::CommandAnswer last_;
 };
 
 }  // namespace chimera::simulated

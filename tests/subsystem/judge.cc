@@ -76,7 +76,7 @@ void Judge::stepped(const Event& event, std::span<const Action> actions) {
   count_revivals(event, actions);
   bool says_something = std::holds_alternative<RtpuDown>(event);
   for (const Action& action : actions)
-    if (std::holds_alternative<Tell>(action) || std::holds_alternative<subsystem::Answer>(action))
+    if (std::holds_alternative<LogEvent>(action) || std::holds_alternative<subsystem::CommandAnswer>(action))
       says_something = true;
   if (says_something) return;
   const auto* report = std::get_if<Reported>(&event);
@@ -128,10 +128,10 @@ void Judge::goal(const RememberGoal& goal) {
   ended_[goal.task.index] = true;
 }
 
-void Judge::answered(const subsystem::Answer& answer, const Face& face) {
-  end_transaction(!answer.accepted);
+void Judge::answered(const subsystem::CommandAnswer& answer, const Face& face) {
+  end_transaction(!answer.is_accepted());
   promise(answer, face);
-  if (!answer.accepted) return;
+  if (!answer.is_accepted()) return;
   for (const auto& outcome : answer.outcomes) {
     if (face.signal() == Signal::kOn && outcome.after != State::kOn) world_.fail("on is accepted and a task is not ON");
     if (face.signal() == Signal::kKill && outcome.after != State::kNotCreated)
@@ -147,11 +147,11 @@ bool Judge::is_awaited(TaskId task, Signal signal) const {
 }
 
 // Whoever was told that a task is OFF or gone, or that its init ended the process, must not find it up again by itself.
-void Judge::promise(const subsystem::Answer& answer, const Face& face) {
-  const bool met_death = !answer.accepted && answer.text.find(" ended ") != std::string::npos;
+void Judge::promise(const subsystem::CommandAnswer& answer, const Face& face) {
+  const bool met_death = answer.refusal.kind == RefusalKind::kEnded;
   const bool was_deadly = met_death && face.signal() == Signal::kSpawn;
   for (TaskId task : face.tasks()) {
-    const bool is_done = answer.accepted || (met_death && rtpu_of(task) == rtpu_of(answer.at));
+    const bool is_done = answer.is_accepted() || (met_death && rtpu_of(task) == rtpu_of(answer.at));
     const bool goes_down = is_done && (face.signal() == Signal::kOff || face.signal() == Signal::kKill);
     const bool is_there = world_.process_of(task).word(task).state != State::kNotCreated;
     Debt& debt = debts_[task.index];
@@ -176,7 +176,7 @@ void Judge::check_constants(TaskId task) {
           world_.fail(name(task) + " is spawned before " + name(TaskId(m)) + ", which makes a constant of it");
 }
 
-void Judge::told(const Tell& tell) {
+void Judge::told(const LogEvent& tell) {
   if (tell.kind == "rtpu-given-up") given_up_[tell.rtpu.index] = world_.keeper->incarnation(tell.rtpu);
   for (std::size_t t = 0; t < debts_.size(); ++t) {
     const bool is_meant = tell.task == TaskId(t) || (tell.kind == "rtpu-given-up" && rtpu_of(TaskId(t)) == tell.rtpu);

@@ -27,7 +27,7 @@ class Judge {
   /// All its actions are carried out.
   void step_ended() { ended_.assign(ended_.size(), false); }
   void goal(const subsystem::RememberGoal& goal);
-  void answered(const subsystem::Answer& answer, const Face& face);
+  void answered(const subsystem::CommandAnswer& answer, const Face& face);
   /// Somebody wants it up: promises to the contrary are over.
   void asked_up(TaskId task) {
     debts_[task.index].no_on = debts_[task.index].no_spawn = false;
@@ -37,7 +37,7 @@ class Judge {
     asked_up(task);
     debts_[task.index].requested = world_.now();
   }
-  void told(const subsystem::Tell& tell);
+  void told(const subsystem::LogEvent& tell);
   /// True: it turns OFF what a transaction turned ON.
   bool sent(const subsystem::Send& send);
   /// A face or a task wants the task OFF or gone.
@@ -80,7 +80,7 @@ class Judge {
     Nanoseconds asked_up;   ///< when somebody wanted it up last
     Nanoseconds requested;  ///< when a task asked for it last
   };
-  void promise(const subsystem::Answer& answer, const Face& face);
+  void promise(const subsystem::CommandAnswer& answer, const Face& face);
   bool is_awaited(TaskId task, Signal signal) const;
   void check_constants(TaskId task);
   std::vector<Debt> debts_;

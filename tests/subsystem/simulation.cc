@@ -142,8 +142,8 @@ class Repair {
     Face& face = *world_.faces[0];
     face.ask(signal, std::move(tasks));
     run_out(world_);
-    if (world_.failure.empty() && (face.is_waiting() || !face.last().accepted))
-      world_.fail(std::string("repair: ") + signal_name(signal) + ": " + face.last().text);
+    if (world_.failure.empty() && (face.is_waiting() || !face.last().is_accepted()))
+      world_.fail(std::string("repair: ") + signal_name(signal) + ": " + face.last().refusal.text());
   }
 
   World& world_;

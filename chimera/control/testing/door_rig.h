@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: a door over a real socket, its clock stepped by the test, before a subject that is a test's.
+// For tests: a door over a real socket, its clock stepped by the test, before a backend that is a test's.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,11 +18,11 @@
 namespace chimera::control {
 
 /// Echoes; keeps the replies of `signal` until told, forgets that of `library`. In door_process_test.cc.
-struct FakeSubject final : Subject {
+struct FakeBackend final : ControlBackend {
   void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) override;
   Answer open(std::uint64_t subscription, const Json& parameters) override;
   void close(std::uint64_t subscription) override { closed.push_back(subscription); }
-  void forget(std::uint64_t session) override { forgotten.push_back(session); }
+  void forget(std::uint64_t connection) override { forgotten.push_back(connection); }
   std::shared_ptr<const Json> pull(std::uint64_t subscription) override;
 
   std::vector<Reply> later;
@@ -50,7 +50,7 @@ struct DoorTest : ::testing::Test {
       ASSERT_EQ(::bind(listening, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
       ASSERT_EQ(::listen(listening, 64), 0);
     }
-    door = *Door::open(::dup(listening), subject, ::getuid(), groups);
+    door = *Door::open(::dup(listening), backend, ::getuid(), groups);
   }
   static sockaddr_un address_of(const std::string& path) {
     sockaddr_un address{};
@@ -108,7 +108,7 @@ struct DoorTest : ::testing::Test {
   std::string folder, path;
   int listening = -1;
   RoleGroups groups;
-  FakeSubject subject;
+  FakeBackend backend;
   std::unique_ptr<Door> door;
   Nanoseconds now = seconds(1);
 };

@@ -52,12 +52,12 @@ void set_priority(const RealtimeRequest& request, RealtimeGrant& grant, Parts& r
   const int error = set_fifo(request.priority) ? 0 : errno;
   grant.priority = error == 0 && has_priority(request.priority);
   if (grant.priority) {
-    report.grant() << "SCHED_FIFO " << request.priority;
+    report.grant() << kLevelWords << request.priority;
     return;
   }
   rlimit limit{};
   ::getrlimit(RLIMIT_RTPRIO, &limit);
-  report.miss() << "SCHED_FIFO " << request.priority << " refused ("
+  report.miss() << kLevelWords << request.priority << kRefusedWords << " ("
                 << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards") << "): set RLIMIT_RTPRIO to "
                 << request.priority << " (is " << limit.rlim_cur << "; ulimit -r, LimitRTPRIO=) or give CAP_SYS_NICE";
 }
@@ -83,7 +83,7 @@ void set_cpu(const RealtimeRequest& request, RealtimeGrant& grant, Parts& report
   }
   grant.cpu = error == 0 && runs_only_on(request.cpu);
   if (grant.cpu) {
-    report.grant() << "pinned to CPU " << request.cpu;
+    report.grant() << kPinnedWords << request.cpu;
     return;
   }
   const long last = ::sysconf(_SC_NPROCESSORS_ONLN) - 1;
@@ -122,7 +122,7 @@ void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Parts& re
   const int error = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
   grant.memory = error == 0 && has_locked_memory();
   if (grant.memory) {
-    report.grant() << "memory locked";
+    report.grant() << kLockedWords;
     return;
   }
   report.miss() << "memory not locked (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")

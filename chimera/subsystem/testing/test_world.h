@@ -136,12 +136,12 @@ class TestWorld {
     } else if (std::holds_alternative<RememberStarted>(action)) {
       remembered.started = true;
       out << "remember started";
-    } else if (const auto* answer = std::get_if<Answer>(&action)) {
-      out << "answer " << answer->id << (answer->accepted ? " yes" : " no: ") << answer->text;
-      for (const Outcome& outcome : answer->outcomes)
+    } else if (const auto* answer = std::get_if<CommandAnswer>(&action)) {
+      out << "answer " << answer->id << (answer->is_accepted() ? " yes" : " no: ") << answer->refusal.text();
+      for (const TaskOutcome& outcome : answer->outcomes)
         out << " " << name(outcome.task) << " " << state_name(outcome.before) << ">" << state_name(outcome.after)
             << (outcome.is_already ? " already" : "");
-    } else if (const auto* tell = std::get_if<Tell>(&action)) {
+    } else if (const auto* tell = std::get_if<LogEvent>(&action)) {
       out << tell->kind << ": " << tell->text;
     }
     return out.str() + "\n";

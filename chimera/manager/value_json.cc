@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/manager/subject_values.h"
+#include "chimera/manager/value_json.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "chimera/catalogue/descriptor_value.h"
-#include "chimera/manager/subject_status.h"
+#include "chimera/manager/status_json.h"
 
 namespace chimera::manager {
 namespace {
@@ -97,7 +97,7 @@ Nanoseconds patience(const World& world, VariableId variable) {
 }
 
 VariableFacts facts_of(const World& world, VariableId variable, Nanoseconds at) {
-  const Reading reading = world.readings->read(variable);
+  const VariableReading reading = world.readings->read(variable);
   VariableFacts facts;
   facts.variable = world.readings->configured(variable).name;
   facts.stale_after = patience(world, variable);
@@ -145,7 +145,7 @@ Json value_of(const ValueForm& form, std::span<const std::byte> bytes) {
 }
 
 Json reading_json(const World& world, VariableId variable, Nanoseconds at) {
-  const Reading reading = world.readings->read(variable);
+  const VariableReading reading = world.readings->read(variable);
   const ConfiguredVariable& known = world.readings->configured(variable);
   return {{"value", reading.is_valid ? value_of(reading.form, reading.value) : Json()},
           {"text", reading.is_valid ? value_text(reading.form, reading.value) : "never written"},

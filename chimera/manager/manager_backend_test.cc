@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/manager/subject.h"
+#include "chimera/manager/manager_backend.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -16,13 +16,13 @@ namespace {
 using control::Json;
 using control::Role;
 
-class SubjectTest : public testing::Test {
+class ManagerBackendTest : public testing::Test {
  protected:
-  explicit SubjectTest(const std::string& text = kFakeText) : fake_(text) {}
+  explicit ManagerBackendTest(const std::string& text = kFakeText) : fake_(text) {}
   void SetUp() override {
     fake_.start_manager();
     ASSERT_TRUE(fake_.until([&] { return fake_.driver().is_ready(); }));
-    subject_ = std::make_unique<Subject>(fake_.driver());
+    backend_ = std::make_unique<ManagerBackend>(fake_.driver());
     ASSERT_TRUE(fake_.until([&] { return fake_.n_rtpus() == 0 || (!fake_.told("started").empty() && all_cycle()); }));
   }
   bool all_cycle() {
@@ -32,7 +32,7 @@ class SubjectTest : public testing::Test {
   }
   control::Answer ask(const char* method, const Json& parameters = Json::object()) {
     std::optional<control::Answer> got;
-    subject_->call(*control::find_method(method), parameters, {Role::kConfigure, 1},
+    backend_->call(*control::find_method(method), parameters, {Role::kConfigure, 1},
                    [&](const control::Answer& answer) { got = answer; });
     EXPECT_TRUE(fake_.until([&] { return got.has_value(); })) << method;
     return got.value_or(control::Answer{});
@@ -52,10 +52,27 @@ class SubjectTest : public testing::Test {
   World& world() { return fake_.driver().world(); }
 
   FakeSubsystem fake_;
-  std::unique_ptr<Subject> subject_;
+  std::unique_ptr<ManagerBackend> backend_;
 };
 
-TEST_F(SubjectTest, HelloSaysWhoSpeaks) {
+TEST_F(ManagerBackendTest, CarriesOutEveryMethodButThoseOfTheDoorItself) {
+  using Kind = control::ParameterKind;
+  for (const control::MethodRule& rule : control::methods()) {
+    const bool is_of_the_door =
+        rule.id == control::MethodId::kSubscribe || rule.id == control::MethodId::kUnsubscribe;
+    Json parameters = Json::object();
+    for (const control::Parameter& one : rule.parameters)
+      if (one.name != nullptr && one.is_required)
+        parameters[one.name] = one.kind == Kind::kTexts    ? Json::array()
+                               : one.kind == Kind::kObject ? Json::object()
+                               : one.kind == Kind::kBool   ? Json(false)
+                               : one.kind == Kind::kCount  ? Json(1)
+                                                           : Json("off");
+    EXPECT_EQ(ask(rule.name, parameters).code == control::kNoMethod, is_of_the_door) << rule.name;
+  }
+}
+
+TEST_F(ManagerBackendTest, HelloSaysWhoSpeaks) {
   const Json hello = good("hello");
   EXPECT_EQ(hello["protocol"], 1);
   EXPECT_EQ(hello["program"], "0.1.0");
@@ -68,7 +85,7 @@ TEST_F(SubjectTest, HelloSaysWhoSpeaks) {
   EXPECT_EQ(hello["manager"]["starts"], 1);
 }
 
-TEST_F(SubjectTest, StatusIsReadOutOfTheBlocks) {
+TEST_F(ManagerBackendTest, StatusIsReadOutOfTheBlocks) {
   fake_.rtpu(1).block().profile(fake_.task("law")).dropped = 5;
   const Json status = good("status");
   EXPECT_EQ(status["configuration"], "run");
@@ -98,7 +115,7 @@ TEST_F(SubjectTest, StatusIsReadOutOfTheBlocks) {
   EXPECT_EQ(law["inputs"][1], (Json{{"port", "kp"}, {"variable", "kp"}, {"age_ns", 0}})) << "never old";
 }
 
-TEST_F(SubjectTest, DescribeTellsWhatVerificationKnows) {
+TEST_F(ManagerBackendTest, DescribeTellsWhatVerificationKnows) {
   const Json described = good("describe");
   EXPECT_EQ(described["start"], "run");
   EXPECT_EQ(described["configurations"][1], (Json{{"name", "rest"}, {"tasks", {"sensor"}}}));
@@ -111,7 +128,7 @@ TEST_F(SubjectTest, DescribeTellsWhatVerificationKnows) {
   }
 }
 
-TEST_F(SubjectTest, GetReadsTheRegisters) {
+TEST_F(ManagerBackendTest, GetReadsTheRegisters) {
   ASSERT_TRUE(fake_.until([&] { return good("get")["values"]["tau"]["sequence"] > 2; }));
   const Json values = good("get", {{"variables", {"x", "kp"}}})["values"];
   EXPECT_EQ(values.size(), 2u);
@@ -131,7 +148,7 @@ TEST_F(SubjectTest, GetReadsTheRegisters) {
             "-32005 no state variable 'tua'; did you mean 'tau'? {\"nearest\":\"tau\",\"where\":\"tua\"}");
 }
 
-TEST_F(SubjectTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
+TEST_F(ManagerBackendTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
   EXPECT_EQ(good("signal", {{"signal", "off"}, {"tasks", {"law"}}})["tasks"],
             Json::array({Json{{"task", "law"}, {"before", "ON"}, {"after", "OFF"}}}));
   EXPECT_EQ(good("status")["configuration"], "");
@@ -144,19 +161,20 @@ TEST_F(SubjectTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
   const std::string refused = refusal("signal", {{"signal", "clear"}, {"tasks", {"law"}}});
   EXPECT_TRUE(refused.starts_with("-32000 ")) << refused;
   EXPECT_NE(refused.find("\"where\":\"law\""), std::string::npos) << refused;
+  EXPECT_NE(refused.find("\"kind\":\"state\""), std::string::npos) << refused;
   EXPECT_EQ(good("signal", {{"signal", "off"}, {"tasks", {"law"}}})["tasks"],
             Json::array({Json{{"task", "law"}, {"before", "OFF"}, {"after", "OFF"}, {"already", true}}}));
   EXPECT_EQ(good("signal", {{"signal", "on"}, {"tasks", {"law"}}})["tasks"][0]["after"], "ON");
 }
 
-TEST_F(SubjectTest, NoAnswerNamesTheRtpuAndWhatItWasDoing) {
+TEST_F(ManagerBackendTest, NoAnswerNamesTheRtpuAndWhatItWasDoing) {
   fake_.rtpu(1).block().head().running = (fake_.task("law").index + 1) << 8 | CHIMERA_CYCLE;
   fake_.rtpu(1).is_deaf = true;
   EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}),
             "-32006 no answer from rtpu spare {\"rtpu\":\"spare\",\"running\":\"law.cycle\"}");
 }
 
-TEST_F(SubjectTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescription) {
+TEST_F(ManagerBackendTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescription) {
   const Json answer = good("set", {{"values", {{"kp", "[100 90] N.m/rad"}}}});
   EXPECT_EQ(answer["values"]["kp"]["value"], Json::array({100.0, 90.0}));
   EXPECT_EQ(good("get", {{"variables", {"kp"}}})["values"]["kp"]["text"], "[100 90] N.m/rad");
@@ -164,11 +182,11 @@ TEST_F(SubjectTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescription) {
   EXPECT_EQ(fake_.told("set"), "kp = [100 90] N.m/rad\n");
   EXPECT_TRUE(refusal("set", {{"values", {{"kp", "3 m"}}}}).starts_with("-32602 operator variable 'kp': expected"));
   EXPECT_EQ(refusal("set", {{"values", {{"tau", 3}}}}),
-            "-32000 tau is produced by task law, not by the operator {\"where\":\"tau\"}");
+            "-32000 tau is produced by task law, not by the operator {\"kind\":\"not-operator\",\"where\":\"tau\"}");
   EXPECT_EQ(good("get", {{"variables", {"kp"}}})["values"]["kp"]["text"], "[100 90] N.m/rad");
 }
 
-TEST_F(SubjectTest, TheOperatorsFlagStaysUntilItIsLowered) {
+TEST_F(ManagerBackendTest, TheOperatorsFlagStaysUntilItIsLowered) {
   EXPECT_EQ(good("flag", {{"up", true}}), (Json{{"up", true}, {"by", {"operator"}}}));
   EXPECT_EQ(good("status")["flag"], (Json{{"up", true}, {"by", {"operator"}}}));
   EXPECT_EQ(world().own.block().head().flag, 4u);
@@ -177,7 +195,7 @@ TEST_F(SubjectTest, TheOperatorsFlagStaysUntilItIsLowered) {
   EXPECT_EQ(fake_.told("flag"), "the operator raised the flag\nthe operator lowered the flag\n");
 }
 
-TEST_F(SubjectTest, EventsAreNumberedWithoutAGap) {
+TEST_F(ManagerBackendTest, EventsAreNumberedWithoutAGap) {
   const Json events = good("events", {{"since", 0}, {"limit", 3}});
   EXPECT_EQ(events["first"], 1);
   ASSERT_EQ(events["events"].size(), 3u);
@@ -187,7 +205,7 @@ TEST_F(SubjectTest, EventsAreNumberedWithoutAGap) {
   EXPECT_EQ(good("events", {{"since", last + 1}})["events"].size(), 0u);
 }
 
-TEST_F(SubjectTest, WhyFindsTheProducerThatIsOff) {
+TEST_F(ManagerBackendTest, WhyFindsTheProducerThatIsOff) {
   const std::string before = good("why", {{"variable", "tau"}})["verdict"];
   EXPECT_TRUE(before.starts_with("tau is good: law wrote it")) << before;
   (void)good("signal", {{"signal", "off"}, {"tasks", {"sensor"}}});
@@ -197,86 +215,86 @@ TEST_F(SubjectTest, WhyFindsTheProducerThatIsOff) {
   EXPECT_EQ(why["chain"].back()["verdict"], "producer-off");
 }
 
-TEST_F(SubjectTest, WhySeesADeadRtpu) {
+TEST_F(ManagerBackendTest, WhySeesADeadRtpu) {
   fake_.kill_rtpu(0, SIGKILL);
   ASSERT_TRUE(fake_.until([&] { return !world().rtpus[0].is_alive; }));
   const std::string verdict = good("why", {{"variable", "x"}})["verdict"];
   EXPECT_TRUE(verdict.starts_with("x: the real-time unit servo of its producer sensor is dead: ")) << verdict;
 }
 
-TEST_F(SubjectTest, ProfileIsThatOfEveryOtherFace) {
+TEST_F(ManagerBackendTest, ProfileIsThatOfEveryOtherFace) {
   const Json profile = good("profile");
   ASSERT_EQ(profile["tasks"].size(), 3u);
   EXPECT_EQ(profile["tasks"][0]["task"], "sensor");
   EXPECT_GT(profile["tasks"][0]["execution_ns"]["cycle"]["count"], 0);
 }
 
-TEST_F(SubjectTest, EndGoesToTheKeeper) {
+TEST_F(ManagerBackendTest, EndGoesToTheKeeper) {
   EXPECT_EQ(good("end", {{"code", 3}}), Json::object());
   ASSERT_TRUE(fake_.until([&] { return fake_.end_asked.has_value(); }));
   EXPECT_EQ(*fake_.end_asked, 3);
 }
 
-TEST_F(SubjectTest, WhileEverythingEndsNoSignalIsTaken) {
+TEST_F(ManagerBackendTest, WhileEverythingEndsNoSignalIsTaken) {
   fake_.page().ending = 1;
   EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}), "-32007 everything ends");
   ASSERT_TRUE(fake_.until([&] { return !fake_.told("ending").empty(); }));
 }
 
-TEST_F(SubjectTest, SubscribersOfEventsMissNone) {
-  ASSERT_TRUE(subject_->open(7, {{"to", "events"}, {"since", 0}}).is_good());
+TEST_F(ManagerBackendTest, SubscribersOfEventsMissNone) {
+  ASSERT_TRUE(backend_->open(7, {{"to", "events"}, {"since", 0}}).is_good());
   (void)good("flag", {{"up", true}});
   std::uint64_t next = 1;
-  for (std::shared_ptr<const Json> news; (news = subject_->pull(7)) != nullptr;) {
+  for (std::shared_ptr<const Json> news; (news = backend_->pull(7)) != nullptr;) {
     EXPECT_EQ((*news)["lost"], 0);
     for (const Json& event : (*news)["events"]) EXPECT_EQ(event["number"], next++);
   }
   EXPECT_EQ(next, world().log.last() + 1);
-  subject_->close(7);
+  backend_->close(7);
 }
 
-TEST_F(SubjectTest, SubscribersOfEventsThatAreGoneAreToldHowMany) {
-  ASSERT_TRUE(subject_->open(7, {{"to", "events"}, {"since", 1}}).is_good());
+TEST_F(ManagerBackendTest, SubscribersOfEventsThatAreGoneAreToldHowMany) {
+  ASSERT_TRUE(backend_->open(7, {{"to", "events"}, {"since", 1}}).is_good());
   for (std::size_t i = 0; i < kEventsKept + 5; ++i) world().tell("command", TaskId{}, RtpuId{}, "x", now());
-  const auto news = subject_->pull(7);
+  const auto news = backend_->pull(7);
   ASSERT_NE(news, nullptr);
   EXPECT_EQ((*news)["lost"], world().log.first() - 1);
   EXPECT_EQ((*news)["events"][0]["number"], world().log.first());
 }
 
-TEST_F(SubjectTest, SubscriptionsOfStateGiveTheLatest) {
-  ASSERT_TRUE(subject_->open(1, {{"to", "status"}}).is_good());
-  ASSERT_TRUE(subject_->open(2, {{"to", "values"}, {"variables", {"x"}}}).is_good());
-  EXPECT_EQ((*subject_->pull(1))["subsystem"], "fake");
-  EXPECT_EQ((*subject_->pull(2))["values"].size(), 1u);
-  EXPECT_EQ(subject_->open(3, {{"to", "values"}, {"variables", {"nix"}}}).code, control::kUnknown);
+TEST_F(ManagerBackendTest, SubscriptionsOfStateGiveTheLatest) {
+  ASSERT_TRUE(backend_->open(1, {{"to", "status"}}).is_good());
+  ASSERT_TRUE(backend_->open(2, {{"to", "values"}, {"variables", {"x"}}}).is_good());
+  EXPECT_EQ((*backend_->pull(1))["subsystem"], "fake");
+  EXPECT_EQ((*backend_->pull(2))["values"].size(), 1u);
+  EXPECT_EQ(backend_->open(3, {{"to", "values"}, {"variables", {"nix"}}}).code, control::kUnknown);
 }
 
-TEST_F(SubjectTest, SubscriptionsOfTheTapGiveRows) {
-  ASSERT_TRUE(subject_->open(1, {{"to", "tap"}, {"variables", {"x"}}}).is_good());
+TEST_F(ManagerBackendTest, SubscriptionsOfTheTapGiveRows) {
+  ASSERT_TRUE(backend_->open(1, {{"to", "tap"}, {"variables", {"x"}}}).is_good());
   std::shared_ptr<const Json> news;
-  ASSERT_TRUE(fake_.until([&] { return (news = subject_->pull(1)) != nullptr; }));
+  ASSERT_TRUE(fake_.until([&] { return (news = backend_->pull(1)) != nullptr; }));
   EXPECT_EQ((*news)["task"], "sensor");
   EXPECT_EQ((*news)["first"], 0);
   EXPECT_GT((*news)["rows"].size(), 0u);
-  subject_->close(1);
+  backend_->close(1);
   EXPECT_FALSE(world().own.block().view().is_tapped(fake_.task("sensor")));
 }
 
-TEST_F(SubjectTest, SubscriptionsOfTheTapMayBeginWithTheOldestRecord) {
-  ASSERT_TRUE(subject_->open(1, {{"to", "tap"}, {"since", 0}}).is_good());
-  const auto news = subject_->pull(1);
+TEST_F(ManagerBackendTest, SubscriptionsOfTheTapMayBeginWithTheOldestRecord) {
+  ASSERT_TRUE(backend_->open(1, {{"to", "tap"}, {"since", 0}}).is_good());
+  const auto news = backend_->pull(1);
   ASSERT_NE(news, nullptr);
   EXPECT_EQ((*news)["records"][0][0], fake_.rtpu(0).block().tap().records[0].at.count);
 }
 
-TEST_F(SubjectTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {
-  ASSERT_TRUE(subject_->open(1, {{"to", "tap"}}).is_good());  // both rtpus: two messages of each reading
+TEST_F(ManagerBackendTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {
+  ASSERT_TRUE(backend_->open(1, {{"to", "tap"}}).is_good());  // both rtpus: two messages of each reading
   std::vector<Nanoseconds> pulled;
   for (std::int64_t last = 0; pulled.size() < 8;) {
     ASSERT_TRUE(fake_.until([&, from = now()] { return now() - from > milliseconds(250); }));  // both cycled
     pulled.push_back(now());
-    const auto news = subject_->pull(1);
+    const auto news = backend_->pull(1);
     ASSERT_NE(news, nullptr);
     last = news->at("records").back()[0];
     if (pulled.size() < 3) continue;
@@ -284,7 +302,7 @@ TEST_F(SubjectTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {
   }
 }
 
-TEST_F(SubjectTest, ChecksATextWithTheLibraryOfTheStart) {
+TEST_F(ManagerBackendTest, ChecksATextWithTheLibraryOfTheStart) {
   EXPECT_EQ(good("check", {{"text", kFakeText}, {"file", "mine.yaml"}})["legal"], true);
   const Json report = good("check", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}, {"file", "mine.yaml"}});
   EXPECT_EQ(report["legal"], false);
@@ -292,16 +310,16 @@ TEST_F(SubjectTest, ChecksATextWithTheLibraryOfTheStart) {
   EXPECT_EQ(report["faults"][0]["nearest"], "sensor");
 }
 
-TEST_F(SubjectTest, AnalysesATextWithTheLibraryOfTheStart) {
+TEST_F(ManagerBackendTest, AnalysesATextWithTheLibraryOfTheStart) {
   const Json analysis = good("schedule", {{"text", kFakeText}, {"file", "mine.yaml"}});
   EXPECT_EQ(analysis["fits"], true);
   EXPECT_FALSE(analysis["sets"][0]["cpus"].empty());
   EXPECT_EQ(good("schedule", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}})["legal"], false);
 }
 
-class ServedTest : public SubjectTest {
+class ServedTest : public ManagerBackendTest {
  protected:
-  ServedTest() : SubjectTest(kServedText) {}
+  ServedTest() : ManagerBackendTest(kServedText) {}
 };
 
 TEST_F(ServedTest, RingsReachTheUnitAsOftenAsTheTaskIsNamed) {
@@ -331,13 +349,14 @@ TEST_F(ServedTest, StatusTellsTheServerAndForHowLongTheTaskWasOn) {
 TEST_F(ServedTest, ARingThatNobodyWouldAnswerIsRefusedAndRingsNothing) {
   EXPECT_EQ(refusal("ring", {{"tasks", {"lamp", "sensor"}}}),
             "-32000 sensor is not behind a server: it has no doorbell "
-            "{\"remedy\":\"give it 'server:' in the description\",\"where\":\"sensor\"}");
+            "{\"kind\":\"no-server\",\"remedy\":\"give it 'server:' in the description\",\"where\":\"sensor\"}");
   EXPECT_EQ(refusal("ring", {{"tasks", {"lmp"}}}),
             "-32005 no task 'lmp'; did you mean 'lamp'? {\"nearest\":\"lamp\",\"where\":\"lmp\"}");
   EXPECT_EQ(refusal("ring", {{"tasks", Json::array()}}), "-32602 'tasks' must name at least one {\"where\":\"tasks\"}");
   (void)good("signal", {{"signal", "off"}, {"tasks", {"lamp"}}});
   EXPECT_EQ(refusal("ring", {{"tasks", {"lamp"}}}),
-            "-32000 lamp is OFF: nobody would answer the event {\"remedy\":\"turn it ON first\",\"where\":\"lamp\"}");
+            "-32000 lamp is OFF: nobody would answer the event "
+            "{\"kind\":\"state\",\"remedy\":\"turn it ON first\",\"where\":\"lamp\"}");
   EXPECT_EQ(fake_.rtpu(0).rings, 0);
   fake_.page().ending = 1;
   EXPECT_EQ(refusal("ring", {{"tasks", {"lamp"}}}), "-32007 everything ends");
@@ -352,9 +371,9 @@ TEST_F(ServedTest, MoreRingsThanAUnitTakesAreRefusedAsAWhole) {
   ASSERT_TRUE(fake_.until([&] { return fake_.rtpu(0).rings == 1; }));
 }
 
-class IdleTest : public SubjectTest {
+class IdleTest : public ManagerBackendTest {
  protected:
-  IdleTest() : SubjectTest("") {}
+  IdleTest() : ManagerBackendTest("") {}
 };
 
 TEST_F(IdleTest, ServesEditors) {

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/subsystem/roster.h"
+#include "chimera/subsystem/observed_state.h"
 
 namespace chimera::subsystem {
 
-void Roster::see(TaskId task, TaskStatus status) noexcept {
+void ObservedState::see(TaskId task, TaskStatus status) noexcept {
   tasks_[task.index].status = status;
   tasks_[task.index].is_seen = true;
   if (status.state != State::kNotCreated) tasks_[task.index].is_lost = false;
 }
 
-void Roster::up(RtpuId rtpu, std::uint32_t incarnation) noexcept {
-  rtpus_[rtpu.index].life = Life::kUp;
+void ObservedState::up(RtpuId rtpu, std::uint32_t incarnation) noexcept {
+  rtpus_[rtpu.index].life = RtpuLife::kUp;
   rtpus_[rtpu.index].incarnation = incarnation;
 }
 
-void Roster::down(RtpuId rtpu, std::uint32_t incarnation) noexcept {
-  rtpus_[rtpu.index].life = Life::kDown;
+void ObservedState::down(RtpuId rtpu, std::uint32_t incarnation) noexcept {
+  rtpus_[rtpu.index].life = RtpuLife::kDown;
   rtpus_[rtpu.index].incarnation = incarnation;
   for (std::size_t t = 0; t < tasks_.size(); ++t) {
     if (spec_.tasks[t].rtpu != rtpu) continue;
@@ -25,15 +25,15 @@ void Roster::down(RtpuId rtpu, std::uint32_t incarnation) noexcept {
   }
 }
 
-void Roster::begin_empty() noexcept {
+void ObservedState::begin_empty() noexcept {
   for (Task& task : tasks_) task.is_seen = true;
 }
 
-void Roster::starting(RtpuId rtpu, Nanoseconds now) noexcept {
-  if (life(rtpu) == Life::kDown) rtpus_[rtpu.index].life = Life::kStarting;
+void ObservedState::starting(RtpuId rtpu, Nanoseconds now) noexcept {
+  if (life(rtpu) == RtpuLife::kDown) rtpus_[rtpu.index].life = RtpuLife::kStarting;
   rtpus_[rtpu.index].since = now;
 }
 
-State Roster::state(TaskId task) const noexcept { return is_lost(task) ? State::kError : status(task).state; }
+State ObservedState::state(TaskId task) const noexcept { return is_lost(task) ? State::kError : status(task).state; }
 
 }  // namespace chimera::subsystem

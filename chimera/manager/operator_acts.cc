@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/manager/subject_acts.h"
+// Finds what names mean, judges acts that are no signals, and carries them out on the operator's part of the table.
+#include "chimera/manager/operator_acts.h"
 
 #include <nlohmann/json.hpp>
 
 #include "chimera/manager/operator_values.h"
-#include "chimera/manager/subject_status.h"
-#include "chimera/manager/subject_values.h"
+#include "chimera/manager/status_json.h"
+#include "chimera/manager/value_json.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::manager {
@@ -38,7 +39,7 @@ std::size_t columns(const World& world, VariableId variable) {
 Answer no_operators(const World& world, VariableId variable, const std::string& name) {
   const TaskId task = world.readings->producer(variable);
   const std::string who = task.is_valid() ? "task " + world.name(task) : "a task";
-  return Answer::error(control::kRefused, name + " is produced by " + who + ", not by the operator", {{"where", name}});
+  return Answer::refused("not-operator", name + " is produced by " + who + ", not by the operator", name);
 }
 
 }  // namespace
@@ -73,12 +74,12 @@ std::variant<std::vector<TaskId>, Answer> tasks_named(const World& world, const 
 Answer judge_ring(const World& world, TaskId task) {
   const std::string name = world.name(task);
   if (!world.spec().tasks[task.index].server)
-    return Answer::error(control::kRefused, name + " is not behind a server: it has no doorbell",
-                         {{"where", name}, {"remedy", "give it 'server:' in the description"}});
+    return Answer::refused("no-server", name + " is not behind a server: it has no doorbell", name,
+                           "give it 'server:' in the description");
   const State state = world.state(task);
   if (state == State::kOn) return {};
-  return Answer::error(control::kRefused, name + " is " + state_name(state) + ": nobody would answer the event",
-                       {{"where", name}, {"remedy", "turn it ON first"}});
+  return Answer::refused("state", name + " is " + state_name(state) + ": nobody would answer the event", name,
+                         "turn it ON first");
 }
 
 Answer set_values(World& world, const Json& values) {
@@ -123,7 +124,7 @@ Answer saved_values(const World& world) {
   for (std::size_t v = 0; world.readings && v < world.readings->size(); ++v) {
     const VariableId variable(v);
     if (!world.readings->is_operators(variable)) continue;
-    const Reading reading = world.readings->read(variable);
+    const VariableReading reading = world.readings->read(variable);
     saved[world.readings->configured(variable).name] =
         description_text(reading.form, reading.value, columns(world, variable));
   }

@@ -15,9 +15,9 @@
 namespace chimera::control {
 
 /// Context: setup; never blocks.
-class Session {
+class Connection {
  public:
-  Session(std::uint64_t number, OwnedDescriptor socket, PeerIdentity peer, Nanoseconds now)
+  Connection(std::uint64_t number, OwnedDescriptor socket, PeerIdentity peer, Nanoseconds now)
       : active_at(now), number_(number), socket_(std::move(socket)), peer_(peer), moved_(now), taken_at_(now) {}
 
   std::uint64_t number() const noexcept { return number_; }

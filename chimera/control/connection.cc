@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/control/session.h"
+#include "chimera/control/connection.h"
 
 #include <linux/sockios.h>
 #include <sys/ioctl.h>
@@ -16,7 +16,7 @@ constexpr std::size_t kReadAtOnce = std::size_t{1} << 16;
 
 }  // namespace
 
-void Session::receive(Nanoseconds now) {
+void Connection::receive(Nanoseconds now) {
   if (taken_ > 0) {  // once a turn, not once a line
     input_.erase(0, taken_);
     looked_ -= taken_;
@@ -40,15 +40,15 @@ void Session::receive(Nanoseconds now) {
   }
 }
 
-bool Session::has_line() const noexcept {
+bool Connection::has_line() const noexcept {
   return next != nullptr || input_.size() - taken_ > kMaxLine || input_.find('\n', looked_) != std::string::npos;
 }
 
-bool Session::has_short_line() const noexcept {
+bool Connection::has_short_line() const noexcept {
   return std::string_view(input_).substr(taken_, kLongLine).find('\n') != std::string_view::npos;
 }
 
-bool Session::take_line(std::string& line) {
+bool Connection::take_line(std::string& line) {
   const std::size_t end = input_.find('\n', looked_);
   if (end == std::string::npos && input_.size() - taken_ <= kMaxLine) {
     looked_ = input_.size();
@@ -59,12 +59,12 @@ bool Session::take_line(std::string& line) {
   return true;
 }
 
-void Session::say(const std::string& line, Nanoseconds now) {
+void Connection::say(const std::string& line, Nanoseconds now) {
   if (!has_output()) moved_ = now;
   output_ += line;
 }
 
-bool Session::is_read(Nanoseconds now) {
+bool Connection::is_read(Nanoseconds now) {
   int unread = 0;
   if (::ioctl(socket_.fd, SIOCOUTQ, &unread) != 0) return true;
   if (unread == 0 || unread < unread_) taken_at_ = now;
@@ -72,7 +72,7 @@ bool Session::is_read(Nanoseconds now) {
   return now - taken_at_ < kPatience;
 }
 
-bool Session::flush(Nanoseconds now) {
+bool Connection::flush(Nanoseconds now) {
   if (!has_output()) return !is_closing_;
   (void)is_read(now);  // before there is more to read
   const bool goes_on = send(now);
@@ -80,7 +80,7 @@ bool Session::flush(Nanoseconds now) {
   return goes_on;
 }
 
-bool Session::send(Nanoseconds now) {
+bool Connection::send(Nanoseconds now) {
   while (has_output()) {
     const std::size_t left = output_.size() - sent_;
     const ssize_t sent = ::send(socket_.fd, output_.data() + sent_, left, MSG_DONTWAIT | MSG_NOSIGNAL);

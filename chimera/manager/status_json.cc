@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/manager/subject_status.h"
+#include "chimera/manager/status_json.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -39,10 +39,9 @@ Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text
 /// What the rtpu says of itself, one that was cut short included.
 std::string grant_of(const BlockHead& head) { return {head.grant, ::strnlen(head.grant, sizeof head.grant)}; }
 
-bool is_ending(const World& world) { return world.keeper.ending.load(std::memory_order_acquire) != 0; }
 
 bool is_given_up(const World& world, RtpuId rtpu) {
-  return !world.rtpus[rtpu.index].is_alive && world.logic.is_given_up(rtpu) && !is_ending(world);
+  return !world.rtpus[rtpu.index].is_alive && world.logic.is_given_up(rtpu) && !world.is_ending();
 }
 
 bool has_lost_tasks(const World& world, RtpuId rtpu) {
@@ -53,7 +52,7 @@ bool has_lost_tasks(const World& world, RtpuId rtpu) {
 
 /// Nobody is left who could raise the flag for what its tasks do not produce any more.
 bool all_are_dead(const World& world) {
-  return !is_ending(world) &&
+  return !world.is_ending() &&
          std::none_of(world.rtpus.begin(), world.rtpus.end(), [](const RtpuRecord& rtpu) { return rtpu.is_alive; });
 }
 
@@ -100,7 +99,7 @@ Json inputs_json(const World& world, TaskId task, Nanoseconds at) {
     if (port.kind != CHIMERA_IN_VAR) continue;
     const auto variable = world.readings->find(port.variable);
     if (!variable) continue;
-    const Reading reading = world.readings->read(*variable);
+    const VariableReading reading = world.readings->read(*variable);
     const bool is_operators = world.readings->is_operators(*variable);  // holds until it is set: never old
     const bool is_there = reading.is_valid && reading.slot.sequence > 0;
     inputs.push_back({{"port", port.name},
@@ -253,7 +252,7 @@ Json status_json(const World& world, Nanoseconds at) {
           {"now_ns", at.count},
           {"origin_ns", world.keeper.origin.count},
           {"started_ns", started == 0 ? Json() : Json(started)},
-          {"ending", world.keeper.ending.load(std::memory_order_acquire) != 0},
+          {"ending", world.is_ending()},
           {"flag", flag_json(world)},
           {"keeper", {{"pid", world.keeper_pid}, {"hang", or_null(world.keeper_hang)}}},
           {"face", face_json(world)},

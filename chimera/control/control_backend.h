@@ -14,17 +14,17 @@ namespace chimera::control {
 /// Who asks.
 struct Caller {
   Role role = Role::kNone;
-  std::uint64_t session = 0;  ///< number of the connection; never used again for another one
+  std::uint64_t connection = 0;  ///< number of the connection; never used again for another one
 };
 
 /// Called by Door::serve() only, on its thread; must not throw and must not call the door back from within, but for
 /// the Reply it is given. Context: setup.
-class Subject {
+class ControlBackend {
  public:
   /// Carries out a call whose role and parameters have been checked; `reply` takes its one answer, now or later.
   virtual void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) = 0;
   /// The connection is over: nobody waits for the answers to its questions any more. What it told to do stays told.
-  virtual void forget(std::uint64_t /*session*/) {}
+  virtual void forget(std::uint64_t /*connection*/) {}
   /// Somebody subscribes; refuses what cannot be. `parameters` as those of `subscribe`.
   virtual Answer open(std::uint64_t subscription, const Json& parameters) = 0;
   virtual void close(std::uint64_t subscription) = 0;
@@ -34,7 +34,7 @@ class Subject {
   virtual std::shared_ptr<const Json> pull(std::uint64_t subscription) = 0;
 
  protected:
-  ~Subject() = default;
+  ~ControlBackend() = default;
 };
 
 }  // namespace chimera::control

@@ -12,7 +12,7 @@
 
 namespace chimera::subsystem {
 
-struct Underway {
+struct PendingSignal {
   std::uint64_t command = 0;
   Signal signal = Signal::kOn;
   Nanoseconds sent;
@@ -22,9 +22,9 @@ struct Underway {
 /// Posts of one sender to one rtpu are taken in their order: a report on one tells that all before it were taken, so
 /// that those given up are over too.
 /// Context: setup.
-class Mail {
+class PendingSignals {
  public:
-  explicit Mail(std::size_t n_tasks) : tasks_(n_tasks) {}
+  explicit PendingSignals(std::size_t n_tasks) : tasks_(n_tasks) {}
 
   /// Numbers never repeat, over managers too: each begins at its own instant of start.
   void begin(Nanoseconds now) noexcept { last_ = now.count > 0 ? static_cast<std::uint64_t>(now.count) : 0; }
@@ -34,7 +34,7 @@ class Mail {
   bool settle(TaskId task, std::uint64_t command);
   void drop(TaskId task) { tasks_[task.index].clear(); }
 
-  std::vector<Underway>& of(TaskId task) noexcept { return tasks_[task.index]; }
+  std::vector<PendingSignal>& of(TaskId task) noexcept { return tasks_[task.index]; }
   /// Is an answer awaited?
   bool is_awaited(TaskId task) const noexcept;
   bool is_awaited(TaskId task, Signal signal) const noexcept;
@@ -44,7 +44,7 @@ class Mail {
 
  private:
   std::uint64_t last_ = 0;
-  std::vector<std::vector<Underway>> tasks_;
+  std::vector<std::vector<PendingSignal>> tasks_;
 };
 
 }  // namespace chimera::subsystem

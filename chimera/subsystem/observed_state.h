@@ -12,7 +12,7 @@
 
 namespace chimera::subsystem {
 
-enum class Life : std::uint8_t {
+enum class RtpuLife : std::uint8_t {
   kUnknown,   ///< may live, does not serve us yet
   kUp,
   kStarting,  ///< dead; asked for
@@ -20,9 +20,10 @@ enum class Life : std::uint8_t {
 };
 
 /// Context: setup.
-class Roster {
+class ObservedState {
  public:
-  explicit Roster(const ApplicationSpec& spec) : spec_(spec), tasks_(spec.tasks.size()), rtpus_(spec.rtpus.size()) {}
+  explicit ObservedState(const ApplicationSpec& spec)
+      : spec_(spec), tasks_(spec.tasks.size()), rtpus_(spec.rtpus.size()) {}
 
   void see(TaskId task, TaskStatus status) noexcept;
   /// Nothing was ever asked for: no task is there.
@@ -45,8 +46,8 @@ class Roster {
   /// Has anybody told what it is?
   bool is_seen(TaskId task) const noexcept { return tasks_[task.index].is_seen; }
   bool is_created(TaskId task) const noexcept { return status(task).state != State::kNotCreated; }
-  Life life(RtpuId rtpu) const noexcept { return rtpus_[rtpu.index].life; }
-  Life life_of(TaskId task) const noexcept { return life(rtpu(task)); }
+  RtpuLife life(RtpuId rtpu) const noexcept { return rtpus_[rtpu.index].life; }
+  RtpuLife life_of(TaskId task) const noexcept { return life(rtpu(task)); }
   std::uint32_t incarnation(RtpuId rtpu) const noexcept { return rtpus_[rtpu.index].incarnation; }
   /// Since when it is awaited.
   Nanoseconds since(RtpuId rtpu) const noexcept { return rtpus_[rtpu.index].since; }
@@ -62,7 +63,7 @@ class Roster {
     bool is_seen = false;
   };
   struct Rtpu {
-    Life life = Life::kUnknown;
+    RtpuLife life = RtpuLife::kUnknown;
     std::uint32_t incarnation = 0;
     Nanoseconds since;
     std::array<Nanoseconds, 4> restarts{};

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What became of a signal, in the words of the control protocol.
+#pragma once
+
+#include <string>
+
+#include "chimera/control/answer.h"
+#include "chimera/manager/world.h"
+
+namespace chimera::manager {
+
+/// Context of both: setup.
+/// The states of the tasks before and after, or the refusal with its kind, place and remedy.
+control::Answer signal_answer(const World& world, const subsystem::CommandAnswer& answer);
+/// Error -32006 with what the real-time unit runs.
+control::Answer no_answer(const World& world, RtpuId rtpu, const std::string& text);
+
+}  // namespace chimera::manager

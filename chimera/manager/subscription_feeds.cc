@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens a feed for each subscription, and makes its next notification when it is asked.
+#include "chimera/manager/subscription_feeds.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "chimera/manager/operator_acts.h"
+#include "chimera/manager/parameters.h"
+#include "chimera/manager/status_json.h"
+#include "chimera/manager/value_json.h"
+
+namespace chimera::manager {
+
+using control::Answer;
+using control::Json;
+
+namespace {
+
+std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Json>(std::move(json)); }
+
+}  // namespace
+
+Answer SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameters) {
+  using To = Feed::To;
+  const std::string to = parameters.at("to");
+  const auto names = texts(parameters, "variables");
+  auto variables = variables_named(world_, names);
+  if (const auto* refused = std::get_if<Answer>(&variables)) return *refused;
+  Feed made;
+  made.to = to == "status" ? To::kStatus : to == "events" ? To::kEvents : to == "values" ? To::kValues : To::kTap;
+  if (made.to == To::kEvents) made.next = number(parameters, "since", world_.log.last() + 1);
+  if (made.to == To::kValues) made.variables = std::get<0>(std::move(variables));
+  else if (made.to == To::kTap)
+    made.tap = std::make_unique<TapFeed>(
+        world_, names.empty() ? std::vector<VariableId>() : std::get<0>(std::move(variables)),
+        number(parameters, "since", 1) == 0);
+  feeds_[subscription] = std::move(made);
+  return Answer{};
+}
+
+std::shared_ptr<const Json> SubscriptionFeeds::pull(std::uint64_t subscription) {
+  Feed& feed = feeds_.at(subscription);
+  const Nanoseconds at = now();
+  switch (feed.to) {
+    case Feed::To::kStatus:
+      return shared(status_json(world_, at));
+    case Feed::To::kValues:
+      return shared({{"at_ns", at.count}, {"values", readings_json(world_, feed.variables, at)}});
+    case Feed::To::kEvents:
+      return pull_events(feed);
+    case Feed::To::kTap:
+      break;
+  }
+  return pull_tap(feed);
+}
+
+std::shared_ptr<const Json> SubscriptionFeeds::pull_events(Feed& feed) const {
+  const EventLog& log = world_.log;
+  const std::uint64_t from = std::max<std::uint64_t>(feed.next, 1);
+  if (from > log.last()) return nullptr;
+  Json found = events_json(world_, from, kEventsAtOnce);
+  const std::uint64_t lost = log.first() > from ? log.first() - from : 0;
+  feed.next = std::max(from, log.first()) + found["events"].size();
+  return shared({{"events", std::move(found["events"])}, {"lost", lost}});
+}
+
+std::shared_ptr<const Json> SubscriptionFeeds::pull_tap(Feed& feed) const {
+  // The tap is read again when all of this is taken: what a slow reader leaves there is overwritten and counted.
+  if (feed.waiting.empty()) feed.tap->pump([&](Json message) { feed.waiting.push_back(shared(std::move(message))); });
+  if (feed.waiting.empty()) return nullptr;
+  auto message = std::move(feed.waiting.front());
+  feed.waiting.pop_front();
+  return message;
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each subscription of the control protocol is to be sent next: status, events, values or the tap.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "chimera/control/answer.h"
+#include "chimera/manager/tap_feed.h"
+
+namespace chimera::manager {
+
+/// Of one answer or notification.
+inline constexpr std::size_t kEventsAtOnce = 1000;
+
+/// Context: setup. As the functions of control::ControlBackend with these names.
+class SubscriptionFeeds {
+ public:
+  /// `world` outlives it.
+  explicit SubscriptionFeeds(World& world) : world_(world) {}
+
+  control::Answer open(std::uint64_t subscription, const control::Json& parameters);
+  void close(std::uint64_t subscription) { feeds_.erase(subscription); }
+  std::shared_ptr<const control::Json> pull(std::uint64_t subscription);
+
+ private:
+  struct Feed {
+    enum class To : std::uint8_t { kStatus, kEvents, kValues, kTap };
+    To to = To::kStatus;
+    std::uint64_t next = 0;             // event
+    std::vector<VariableId> variables;  // values
+    std::unique_ptr<TapFeed> tap;
+    std::deque<std::shared_ptr<const control::Json>> waiting;  // of the tap
+  };
+  std::shared_ptr<const control::Json> pull_events(Feed& feed) const;
+  std::shared_ptr<const control::Json> pull_tap(Feed& feed) const;
+
+  World& world_;
+  std::map<std::uint64_t, Feed> feeds_;
+};
+
+}  // namespace chimera::manager

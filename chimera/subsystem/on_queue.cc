@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Picks the next request for `on` that may begin, and refuses one that waited for its rtpu for too long.
+#include "chimera/subsystem/on_queue.h"
+
+#include <algorithm>
+
+namespace chimera::subsystem {
+
+void OnQueue::add(const Commanded& command) {
+  queue_.push_back({{command.id, state_.sorted(command.tasks), TaskId{}, false}, state_.now});
+}
+
+void OnQueue::add(const Requested& request) {
+  const std::size_t n = state_.spec.tasks.size();
+  if (request.task.index >= n || request.from.index >= n) return;
+  for (const Waiting& waiting : queue_)
+    if (waiting.request.from == request.from && waiting.request.tasks.front() == request.task) return;
+  queue_.push_back({{0, {request.task}, request.from, false}, state_.now});
+}
+
+bool OnQueue::advance() {
+  bool changed = false;
+  while (!transaction_.is_under_way()) {
+    if (goals_.any(kGoalOn) && !goals_.any(kGoalSpawn)) {
+      changed = fail_lost_goals() || changed;
+      if (!try_begin_goals()) return changed;
+    } else {
+      const auto begun = std::ranges::find_if(queue_, [this](Waiting& waiting) { return try_begin(waiting); });
+      if (begun == queue_.end()) return changed;
+      queue_.erase(begun);
+    }
+    changed = true;
+  }
+  return changed;
+}
+
+// One that was killed or failed since it was spawned is left out; whether the rest is legal is judged next.
+bool OnQueue::fail_lost_goals() {
+  bool changed = false;
+  for (TaskId task : goals_.with(kGoalOn)) {
+    const State state = state_.observed.state(task);
+    const bool is_known = state_.observed.life_of(task) == RtpuLife::kUp && !state_.is_busy(task);
+    if (!is_known || state == State::kOn || state == State::kOff) continue;
+    goals_.fail(task, state_.illegal(Signal::kOn, task, state, {&task, 1}));
+    changed = true;
+  }
+  return changed;
+}
+
+// True: begun, or no goal is left.
+bool OnQueue::try_begin_goals() {
+  OnRequest request{0, goals_.with(kGoalOn), TaskId{}, true};
+  const auto is_up = [this](TaskId task) { return state_.observed.life_of(task) == RtpuLife::kUp; };
+  if (!std::ranges::all_of(request.tasks, is_up) || (!request.tasks.empty() && must_wait(request.tasks))) return false;
+  if (!request.tasks.empty()) begin(std::move(request));
+  return true;
+}
+
+void OnQueue::begin(OnRequest request) {
+  transaction_.begin(std::move(request));
+  (void)transaction_.advance();
+}
+
+// A task on the way to OFF may still be a producer: `on` of its rival waits and is not refused.
+bool OnQueue::must_wait(const std::vector<TaskId>& tasks) const {
+  if (std::any_of(tasks.begin(), tasks.end(), [this](TaskId task) { return state_.is_busy(task); })) return true;
+  return std::any_of(state_.order.begin(), state_.order.end(), [this](TaskId task) {
+    return state_.may_be_on(task) &&
+           (state_.pending.is_awaited(task, Signal::kOff) || state_.pending.is_awaited(task, Signal::kKill));
+  });
+}
+
+// True: it is no longer in the queue, begun or refused.
+bool OnQueue::try_begin(Waiting& waiting) {
+  const auto& tasks = waiting.request.tasks;
+  if (tasks.empty()) {
+    accept(waiting);
+    return true;
+  }
+  if (std::any_of(tasks.begin(), tasks.end(), [this](TaskId task) { return goals_.is_pursued(task); })) {
+    waiting.has_waited = true;
+    return false;
+  }
+  if (waiting.has_waited && are_all_on(tasks)) {
+    accept(waiting);
+    return true;
+  }
+  const Nanoseconds limit = due(waiting);
+  if (limit <= state_.now) {
+    const auto mute = std::find_if(tasks.begin(), tasks.end(),
+                                   [this](TaskId task) { return state_.observed.life_of(task) == RtpuLife::kUnknown; });
+    transaction_.refuse(waiting.request, *mute, state_.no_answer(*mute));
+    return true;
+  }
+  if (limit != kNever || must_wait(tasks)) return false;
+  begin(waiting.request);
+  return true;
+}
+
+// Of a process that lives but does not serve; one that is dead has no task that may go ON.
+Nanoseconds OnQueue::due(const Waiting& waiting) const noexcept {
+  const auto& tasks = waiting.request.tasks;
+  const bool is_mute = std::any_of(tasks.begin(), tasks.end(),
+                                   [this](TaskId task) { return state_.observed.life_of(task) == RtpuLife::kUnknown; });
+  return is_mute ? std::max(waiting.arrived, state_.complete_since) + kAnswerLimit : kNever;
+}
+
+bool OnQueue::are_all_on(const std::vector<TaskId>& tasks) const noexcept {
+  return std::all_of(tasks.begin(), tasks.end(),
+                     [this](TaskId task) { return state_.observed.state(task) == State::kOn; });
+}
+
+void OnQueue::accept(const Waiting& waiting) const {
+  if (waiting.request.id == 0) return;
+  CommandAnswer answer{waiting.request.id, {}, TaskId{}, {}};
+  for (TaskId task : waiting.request.tasks)
+    answer.outcomes.push_back({task, State::kOff, state_.observed.state(task), false});
+  state_.emit(std::move(answer));
+}
+
+Nanoseconds OnQueue::next_due() const noexcept {
+  Nanoseconds next = kNever;
+  for (const Waiting& waiting : queue_) {
+    const bool waits_for_goals = std::any_of(waiting.request.tasks.begin(), waiting.request.tasks.end(),
+                                             [this](TaskId task) { return goals_.is_pursued(task); });
+    if (!waits_for_goals && !transaction_.is_under_way()) next = std::min(next, due(waiting));
+  }
+  return next;
+}
+
+}  // namespace chimera::subsystem

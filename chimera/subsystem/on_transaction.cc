@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// One transaction from its judgement to the answer, over its roll-back if it fails.
+#include "chimera/subsystem/on_transaction.h"
+
+#include <algorithm>
+
+namespace chimera::subsystem {
+
+bool OnTransaction::has(TaskId task) const noexcept {
+  return is_under_way_ && std::any_of(members_.begin(), members_.end(),
+                                      [task](const Member& member) { return member.task == task; });
+}
+
+OnTransaction::Member* OnTransaction::find(TaskId task) noexcept {
+  const auto found = std::find_if(members_.begin(), members_.end(),
+                                  [task](const Member& member) { return member.task == task; });
+  return is_under_way_ && found != members_.end() ? &*found : nullptr;
+}
+
+// Goals may find some of their tasks ON: an earlier manager did not get to the end. Where a person wants a task ON that
+// is ON, there is nothing to do.
+TaskId OnTransaction::first_wrong(const OnRequest& request) const {
+  for (TaskId task : request.tasks) {
+    const State state = state_.observed.state(task);
+    const bool may_be_on = request.is_goals || request.id != 0;
+    if (!is_legal(state, Signal::kOn) && !(may_be_on && state == State::kOn)) return task;
+  }
+  return TaskId{};
+}
+
+void OnTransaction::begin(OnRequest request) {
+  const TaskId wrong = first_wrong(request);
+  if (wrong.is_valid())
+    return refuse(request, wrong, state_.illegal(Signal::kOn, wrong, state_.observed.state(wrong), request.tasks));
+  request_ = std::move(request);
+  members_.clear();
+  already_.clear();
+  for (TaskId task : state_.sorted(request_.tasks)) {
+    const State before = state_.observed.state(task);
+    if (before == State::kOn && !request_.is_goals) {
+      already_.push_back(task);
+      continue;
+    }
+    members_.push_back({task, before, before == State::kOn ? Stage::kOn : Stage::kOpen, false, 0});
+  }
+  is_under_way_ = true;
+  is_final_ = is_rolling_back_ = false;
+  refusal_ = {};
+  if (SignalRefusal why = state_.judge_on(request_.tasks); why.is_refused())
+    return fail(state_.sorted(request_.tasks).front(), std::move(why), true);
+  for (const Member& member : members_) goals_.add(member.task, kGoalOn);
+}
+
+bool OnTransaction::is_waiting() const noexcept {
+  return std::any_of(members_.begin(), members_.end(),
+                     [](const Member& member) { return member.stage == Stage::kSent; });
+}
+
+bool OnTransaction::advance() {
+  if (!is_under_way_ || is_waiting()) return false;
+  if (!refusal_.is_refused()) send_next();
+  else if (!is_rolling_back_) roll_back();
+  if (!is_waiting()) finish();
+  return true;
+}
+
+// The open members up to the first of another rtpu: one list is judged and carried out by its rtpu as one step.
+void OnTransaction::send_next() {
+  const auto is_open = [](const Member& member) { return member.stage == Stage::kOpen; };
+  const auto first = std::find_if(members_.begin(), members_.end(), is_open);
+  if (first == members_.end()) return;
+  const RtpuId rtpu = state_.observed.rtpu(first->task);
+  const auto end = std::find_if(first, members_.end(), [&](const Member& member) {
+    return !is_open(member) || state_.observed.rtpu(member.task) != rtpu;
+  });
+  std::vector<TaskId> tasks;
+  for (auto member = first; member != end; ++member) tasks.push_back(member->task);
+  const std::uint64_t command = state_.send(Signal::kOn, tasks);
+  for (auto member = first; member != end; ++member) {
+    member->stage = Stage::kSent;
+    member->command = command;
+  }
+}
+
+void OnTransaction::on_result(const SignalResult& result) {
+  Member* member = find(result.task);
+  if (member == nullptr || member->command != result.command || member->stage != Stage::kSent) return;
+  // After a failed `on` it may be ON for all we know: it is turned OFF with the rest.
+  member->stage = is_rolling_back_ || member->is_withdrawn ? Stage::kOver : Stage::kOn;
+  if (!is_rolling_back_ && !result.is_done())
+    fail(result.task, result.refusal.behind(state_.name(result.task) + ": "),
+         result.refusal.kind != RefusalKind::kEnded);
+  on_task_seen(result.task);
+}
+
+void OnTransaction::on_task_seen(TaskId task) {
+  const Member* member = find(task);
+  if (member == nullptr || member->stage != Stage::kOn || refusal_.is_refused()) return;
+  const State state = state_.observed.state(task);
+  if (state == State::kOn) return;
+  fail(task, {RefusalKind::kFault, state_.name(task) + ": went from ON to " + state_name(state), {}}, true);
+}
+
+bool OnTransaction::withdraw(TaskId task, Signal signal) {
+  Member* member = find(task);
+  if (member == nullptr || member->is_withdrawn) return false;
+  fail(task, {RefusalKind::kOvertaken, state_.name(task) + ": " + signal_name(signal) + " was asked for meanwhile", {}},
+       !request_.is_goals);
+  member->is_withdrawn = true;
+  if (member->stage != Stage::kSent) member->stage = Stage::kOver;
+  return true;
+}
+
+void OnTransaction::on_rtpu_down(RtpuId rtpu, const std::string& cause) {
+  for (Member& member : members_) {
+    if (!has(member.task) || state_.observed.rtpu(member.task) != rtpu) continue;
+    fail(member.task, state_.ended(rtpu, cause).behind(state_.name(member.task) + ": "), !request_.is_goals);
+    member.stage = Stage::kOver;
+  }
+}
+
+// The first reason counts; a list that failed tells it with one of its tasks and nothing with the others.
+void OnTransaction::fail(TaskId task, SignalRefusal why, bool is_final) {
+  if (!refusal_.add(std::move(why))) return;
+  is_final_ = is_final;
+  failed_at_ = task;
+}
+
+// One signal each: a list would be refused whole if one of them went OFF by itself.
+void OnTransaction::roll_back() {
+  is_rolling_back_ = true;
+  for (auto m = members_.rbegin(); m != members_.rend(); ++m) {
+    const bool is_there = state_.observed.life_of(m->task) == RtpuLife::kUp;
+    if (m->stage != Stage::kOn || !is_there || !state_.may_be_on(m->task)) {
+      m->stage = Stage::kOver;
+      continue;
+    }
+    m->command = state_.send(Signal::kOff, {&m->task, 1});
+    m->stage = Stage::kSent;
+  }
+}
+
+// Goals are taken back before an answer, so that the next manager cannot undo it; but with the word about their
+// failure, not before.
+void OnTransaction::finish() {
+  is_under_way_ = false;
+  if (!refusal_.is_refused()) {
+    std::vector<TaskOutcome> outcomes;
+    for (const Member& member : members_)
+      outcomes.push_back({member.task, member.before, state_.observed.state(member.task), false});
+    for (const TaskId task : already_) outcomes.push_back({task, State::kOn, State::kOn, true});
+    for (const Member& member : members_) goals_.clear(member.task, kGoalOn);
+    return report_done(std::move(outcomes));
+  }
+  if (request_.is_goals && !is_final_) return;  // pursued again
+  if (!request_.is_goals)
+    for (const Member& member : members_) goals_.clear(member.task, kGoalOn);
+  if (refusal_.reason.empty()) refusal_.reason = state_.name(failed_at_) + ": on failed";
+  refuse(request_, failed_at_, refusal_);
+}
+
+void OnTransaction::refuse(const OnRequest& request, TaskId task, const SignalRefusal& why) {
+  const bool is_sent = request.from.is_valid();
+  const SignalRefusal named = is_sent ? why.behind("on sent by " + state_.name(request.from) + ": ") : why;
+  if (request.id == 0) state_.log("refused", task, state_.observed.rtpu(task), named.text());
+  else state_.emit(CommandAnswer{request.id, named, task, {}});
+  if (request.is_goals)
+    for (TaskId one : request.tasks) goals_.clear(one, kGoalOn);
+}
+
+void OnTransaction::report_done(std::vector<TaskOutcome> outcomes) const {
+  if (request_.id != 0) return state_.emit(CommandAnswer{request_.id, {}, TaskId{}, std::move(outcomes)});
+  std::string names;
+  for (const TaskOutcome& outcome : outcomes) names += (names.empty() ? "" : " ") + state_.name(outcome.task);
+  names += outcomes.size() == 1 ? " is ON" : " are ON";
+  if (request_.is_goals) return state_.log("started", TaskId{}, RtpuId{}, names);
+  const TaskId task = request_.tasks.front();
+  state_.log("signal", task, state_.observed.rtpu(task), "on sent by " + state_.name(request_.from) + ": " + names);
+}
+
+}  // namespace chimera::subsystem

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turning tasks ON, all or none, one transaction at a time: that there are never two producers rests on it.
+//
+// Judged against the tasks that are, or may be, ON; sent in data-flow order, neighbours of one rtpu together. After a
+// failure the tasks that the transaction turned ON are turned OFF backwards. Its tasks have the goal `on` until it is
+// over, so that the next manager goes on with it.
+//
+//   stage of a member:  kOpen --`on` sent--> kSent --reported--> kOn   (it may be ON: rolled back after a failure)
+//                                                     roll-back: kOn --`off` sent--> kSent --reported--> kOver
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/subsystem/goals.h"
+#include "chimera/subsystem/subsystem_state.h"
+
+namespace chimera::subsystem {
+
+/// Which tasks are to be ON, and by whose wish.
+struct OnRequest {
+  std::uint64_t id = 0;  ///< command of a face; 0: none
+  std::vector<TaskId> tasks;
+  TaskId from;           ///< the task that asked
+  bool is_goals = false; ///< the goals themselves
+};
+
+/// Context: setup.
+class OnTransaction {
+ public:
+  OnTransaction(SubsystemState& state, Goals& goals) : state_(state), goals_(goals) {}
+
+  bool is_under_way() const noexcept { return is_under_way_; }
+  bool has(TaskId task) const noexcept;
+
+  /// Judges and begins, or refuses. Requires: none is under way, no task of it is busy.
+  void begin(OnRequest request);
+  void on_result(const SignalResult& result);
+  /// A status word was read: has a member left ON by itself?
+  void on_task_seen(TaskId task);
+  /// A person wants the task OFF or killed and sees to that: the transaction fails; goals of the others stay. False:
+  /// nothing changed.
+  bool withdraw(TaskId task, Signal signal);
+  void on_rtpu_down(RtpuId rtpu, const std::string& cause);
+
+  /// Sends what is due, ends when all is over. False: nothing changed.
+  bool advance();
+
+  /// Answers a request that did not become a transaction, naming one of its tasks.
+  void refuse(const OnRequest& request, TaskId task, const SignalRefusal& why);
+
+ private:
+  enum class Stage : std::uint8_t { kOpen, kSent, kOn, kOver };
+  struct Member {
+    TaskId task;
+    State before = State::kOff;
+    Stage stage = Stage::kOpen;
+    bool is_withdrawn = false;  // somebody else turns it OFF
+    std::uint64_t command = 0;
+  };
+  Member* find(TaskId task) noexcept;
+  TaskId first_wrong(const OnRequest& request) const;
+  void fail(TaskId task, SignalRefusal why, bool is_final);
+  void send_next();
+  void roll_back();
+  bool is_waiting() const noexcept;
+  void finish();
+  void report_done(std::vector<TaskOutcome> outcomes) const;
+
+  SubsystemState& state_;
+  Goals& goals_;
+  OnRequest request_;
+  std::vector<Member> members_;
+  std::vector<TaskId> already_;  // ON when a person asked for them: neither sent nor rolled back
+  bool is_under_way_ = false;
+  bool is_final_ = false;  // the goals are given up with it
+  bool is_rolling_back_ = false;
+  TaskId failed_at_;
+  SignalRefusal refusal_;  // kNone: nothing went wrong so far
+};
+
+}  // namespace chimera::subsystem

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Questions about the tasks that several parts ask, and the refusals that several parts give.
+#include "chimera/subsystem/subsystem_state.h"
+
+#include <algorithm>
+
+#include "chimera/subsystem/order.h"
+#include "chimera/subsystem/remedy.h"
+
+namespace chimera::subsystem {
+
+SubsystemState::SubsystemState(const ApplicationSpec& application)
+    : spec(application), variables(application), order(data_flow_order(application)),
+      constant_producers(makers_of_constants(application)), observed(application), pending(application.tasks.size()) {}
+
+void SubsystemState::log(const char* kind, TaskId task, RtpuId rtpu, std::string text) const {
+  emit(LogEvent{kind, task, rtpu, std::move(text)});
+}
+
+std::uint64_t SubsystemState::send(Signal signal, std::span<const TaskId> tasks) {
+  const std::uint64_t command = pending.post(signal, tasks, now);
+  emit(Send{observed.rtpu(tasks.front()), command, signal, {tasks.begin(), tasks.end()}});
+  return command;
+}
+
+std::vector<TaskId> SubsystemState::sorted(std::span<const TaskId> tasks, bool backwards) const {
+  std::vector<TaskId> result;
+  for (TaskId task : order)
+    if (std::find(tasks.begin(), tasks.end(), task) != tasks.end()) result.push_back(task);
+  if (backwards) std::reverse(result.begin(), result.end());
+  return result;
+}
+
+// A process that does not serve us yet may still carry out what an earlier manager sent, or be mute.
+bool SubsystemState::may_be_on(TaskId task) const {
+  const State seen = observed.status(task).state;
+  return seen == State::kOn || pending.is_possible(task, Signal::kOn) ||
+         (observed.life_of(task) == RtpuLife::kUnknown && (seen == State::kOff || !observed.is_seen(task)));
+}
+
+bool SubsystemState::is_busy(TaskId task) const { return pending.is_awaited(task) || observed.status(task).in_service; }
+
+bool SubsystemState::is_spawning(TaskId task) const {
+  return pending.is_awaited(task, Signal::kSpawn) || observed.status(task).in_service;
+}
+
+SignalRefusal SubsystemState::judge_on(std::span<const TaskId> tasks) const {
+  std::vector<bool> on(spec.tasks.size());
+  for (std::size_t t = 0; t < on.size(); ++t) on[t] = may_be_on(TaskId(t));
+  for (TaskId task : tasks) on[task.index] = true;
+  if (variables.is_legal(on)) return {};
+  return {RefusalKind::kSet, variables.fault(on, spec.tasks), variables.remedy(on, spec.tasks)};
+}
+
+SignalRefusal SubsystemState::illegal(Signal signal, TaskId task, State state, std::span<const TaskId> tasks) const {
+  return {RefusalKind::kState,
+          name(task) + " is in state " + state_name(state) + ", where " + signal_name(signal) + " is not legal",
+          typed(remedy(*this, signal, tasks))};
+}
+
+SignalRefusal SubsystemState::no_answer(TaskId task) const {
+  return {RefusalKind::kNoAnswer, "no answer from rtpu " + name(observed.rtpu(task)), {}};
+}
+
+SignalRefusal SubsystemState::ended(RtpuId rtpu, const std::string& cause) const {
+  return {RefusalKind::kEnded, name(rtpu) + " " + cause, {}};
+}
+
+SignalRefusal SubsystemState::named(const SignalResult& result) const {
+  if (result.refusal.kind != RefusalKind::kFault) return result.refusal;
+  return result.refusal.behind(std::string(signal_name(result.signal)) + ": " + name(result.task) + ": ");
+}
+
+std::string SubsystemState::missing() const {
+  const auto is_on = [this](const PortOf& port) { return observed.state(port.task) == State::kOn; };
+  std::string text;
+  for (const Variable& variable : variables.all()) {
+    const auto writers = std::count_if(variable.producers.begin(), variable.producers.end(), is_on) +
+                         (variable.operator_index != UINT32_MAX ? 1 : 0);
+    const bool is_read = std::any_of(variable.consumers.begin(), variable.consumers.end(), is_on);
+    if (writers == 1 || (writers == 0 && !is_read)) continue;
+    std::string who;
+    for (const PortOf& port : variable.producers)
+      if (writers == 0 || is_on(port))
+        who += (who.empty() ? "" : ", ") + name(port.task) + " is " + state_name(observed.state(port.task));
+    text += (text.empty() ? "" : "; ") + std::string(variable.name) + (who.empty() ? "" : " (" + who + ")");
+  }
+  return text;
+}
+
+bool is_legal(State state, Signal signal) noexcept {
+  return next(state, signal, false).kind != Next::Kind::kImpossible;
+}
+
+}  // namespace chimera::subsystem

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the parts of a Subsystem share: the application, what is known of it, which signals are pending, where actions
+// go.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/runtime/variables.h"
+#include "chimera/subsystem/observed_state.h"
+#include "chimera/subsystem/pending_signals.h"
+#include "chimera/subsystem/subsystem.h"
+
+namespace chimera::subsystem {
+
+/// What became of one signal for one task, or why nothing will be heard of it.
+struct SignalResult {
+  std::uint64_t command = 0;
+  TaskId task;
+  Signal signal = Signal::kOn;
+  State before{}, after{};
+  SignalRefusal refusal;
+
+  /// Carried out, and ended in the state to which the signal leads.
+  bool is_done() const noexcept { return !refusal.is_refused(); }
+};
+
+/// Context: setup.
+struct SubsystemState {
+  explicit SubsystemState(const ApplicationSpec& application);
+
+  const ApplicationSpec& spec;
+  const Variables variables;
+  const std::vector<TaskId> order;                            ///< data flow
+  const std::vector<std::vector<TaskId>> constant_producers;  ///< by task: who produces its in-consts
+  ObservedState observed;
+  PendingSignals pending;
+  bool is_complete = false;                ///< InventoryComplete has come
+  Nanoseconds complete_since;              ///< when it came
+  Nanoseconds now;                         ///< of this step
+  std::vector<Action>* actions = nullptr;  ///< of this step
+
+  std::string name(TaskId task) const { return std::string(spec.tasks[task.index].name); }
+  std::string name(RtpuId rtpu) const { return std::string(spec.rtpus[rtpu.index].name); }
+  template <class OneAction>
+  void emit(OneAction action) const {
+    actions->emplace_back(std::move(action));
+  }
+  void log(const char* kind, TaskId task, RtpuId rtpu, std::string text) const;
+  /// Sends and returns the number of the command. The tasks are of one rtpu.
+  std::uint64_t send(Signal signal, std::span<const TaskId> tasks);
+
+  /// Each task once, in data-flow order, or against it.
+  std::vector<TaskId> sorted(std::span<const TaskId> tasks, bool backwards = false) const;
+
+  /// Is the task ON, or might it be: its process does not serve this manager, or an `on` is pending?
+  bool may_be_on(TaskId task) const;
+  /// Is a signal pending that may change the task, or does its init or kill run?
+  bool is_busy(TaskId task) const;
+  /// Is a spawn pending, or does init or kill run?
+  bool is_spawning(TaskId task) const;
+
+  /// Why the tasks that would be ON with `tasks` are no legal set; kNone when they are.
+  SignalRefusal judge_on(std::span<const TaskId> tasks) const;
+  /// "pi is in state ERROR, where on is not legal", "type `chimera clear pi`, then `chimera on pi motor`": of a signal
+  /// for `tasks`, one of them `task`.
+  SignalRefusal illegal(Signal signal, TaskId task, State state, std::span<const TaskId> tasks) const;
+  SignalRefusal no_answer(TaskId task) const;
+  /// "servo ended by signal 11".
+  SignalRefusal ended(RtpuId rtpu, const std::string& cause) const;
+  /// The refusal of a signal; that of a fault names signal and task: "spawn: pid: no memory".
+  SignalRefusal named(const SignalResult& result) const;
+  /// "u (pi is OFF)": what a task that is ON reads and nobody that is ON writes, and what two write; "" when all is
+  /// well.
+  std::string missing() const;
+};
+
+/// Is `signal` legal in `state`?
+bool is_legal(State state, Signal signal) noexcept;
+
+}  // namespace chimera::subsystem
