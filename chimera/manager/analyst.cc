@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/analyst.h"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <new>
 
 #include "chimera/manager/bundle.h"
 #include "chimera/manager/question.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/readiness.h"
 
 namespace chimera::manager {
 namespace {
 
 Result<Library> library_in(int descriptor) {
+  const OwnedDescriptor inherited(descriptor);
   const auto frozen = FrozenBytes::open(descriptor);
-  ::close(descriptor);
   if (!frozen) return frozen.error();
   const auto text = frozen->bytes();
   auto bundle = decode_bundle({reinterpret_cast<const char*>(text.data()), text.size()});
@@ -65,13 +64,12 @@ Result<int> run_analyst(int inherited_channel, int bundle) {
     const Channel::Got got = channel.receive(bytes_of(asked), passed);
     if (got == Channel::Got::kClosed) return 0;
     if (got == Channel::Got::kNothing) {
-      pollfd readable{channel.descriptor(), POLLIN, 0};
-      ::poll(&readable, 1, -1);
+      const int descriptors[] = {channel.descriptor()};
+      await_readable(descriptors, kNever);
       continue;
     }
-    const bool goes_on = answer(channel, asked, passed, *library);
-    if (passed >= 0) ::close(passed);
-    if (!goes_on) return 0;
+    const OwnedDescriptor question(passed);
+    if (!answer(channel, asked, passed, *library)) return 0;
   }
 }
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/bell_watch.h"
 
-#include <sys/eventfd.h>
-#include <unistd.h>
-
+#include <cerrno>
 #include <cstdint>
 #include <system_error>
 
@@ -12,9 +10,9 @@
 namespace chimera::manager {
 
 Result<std::unique_ptr<BellWatch>> BellWatch::start(Doorbell bell) {
-  OwnedDescriptor descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-  if (descriptor.fd < 0) return system_error(Message("watch of the bell"), "eventfd");
-  std::unique_ptr<BellWatch> made(new BellWatch(bell, descriptor.release()));
+  auto event = WakeEvent::open(Message("watch of the bell"));
+  if (!event) return event.error();
+  std::unique_ptr<BellWatch> made(new BellWatch(bell, *std::move(event)));
   try {
     made->thread_ = std::thread([watch = made.get()] { watch->watch(); });
   } catch (const std::system_error& error) {
@@ -28,7 +26,6 @@ BellWatch::~BellWatch() {
   stop_ = true;
   bell_.ring();
   if (thread_.joinable()) thread_.join();
-  ::close(descriptor_);
 }
 
 void BellWatch::watch() noexcept {
@@ -38,15 +35,8 @@ void BellWatch::watch() noexcept {
     const std::uint32_t now = bell_.read();
     if (now == seen) continue;
     seen = now;
-    const std::uint64_t one = 1;
-    // A full counter is readable already: nothing is lost by not adding to it.
-    [[maybe_unused]] const ssize_t written = ::write(descriptor_, &one, sizeof one);
+    event_.ring();
   }
-}
-
-void BellWatch::reset() const noexcept {
-  std::uint64_t count = 0;
-  [[maybe_unused]] const ssize_t got = ::read(descriptor_, &count, sizeof count);  // nothing to read: not rung
 }
 
 }  // namespace chimera::manager

@@ -8,6 +8,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/platform/doorbell.h"
+#include "chimera/platform/wake_event.h"
 
 namespace chimera::manager {
 
@@ -21,16 +22,16 @@ class BellWatch {
   ~BellWatch();
 
   /// Readable after the bell rang.
-  int descriptor() const noexcept { return descriptor_; }
+  int descriptor() const noexcept { return event_.descriptor(); }
   /// Until it rings again. To be called before looking at what the bell was rung for.
-  void reset() const noexcept;
+  void reset() const noexcept { event_.reset(); }
 
  private:
-  BellWatch(Doorbell bell, int descriptor) : bell_(bell), descriptor_(descriptor) {}
+  BellWatch(Doorbell bell, WakeEvent event) : bell_(bell), event_(std::move(event)) {}
   void watch() noexcept;
 
   Doorbell bell_;
-  int descriptor_;
+  WakeEvent event_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -2,13 +2,11 @@
 // The loop of the manager: inventory first, then messages of the keeper, posts of the units, what is due.
 #include "chimera/manager/driver.h"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 
 #include "chimera/platform/doorbell.h"
+#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/readiness.h"
 
 namespace chimera::manager {
 namespace {
@@ -30,7 +28,7 @@ struct Driver::Mapped {
   int listening = -1;
 
   ~Mapped() {
-    if (listening >= 0) ::close(listening);
+    const OwnedDescriptor ended(listening);
   }
   DecisionPage& decision_page() const noexcept { return *reinterpret_cast<DecisionPage*>(decision.bytes().data()); }
   const KeeperPage& keeper_page() const noexcept { return *reinterpret_cast<const KeeperPage*>(keeper.bytes().data()); }
@@ -42,7 +40,8 @@ struct Driver::Mapped {
     auto frozen_bundle = FrozenBytes::open(from.bundle);
     auto shared = SharedPages::open(from.decision_page, sizeof(DecisionPage));
     auto keepers = MemoryRegion::open_read_only(from.keeper_page, sizeof(KeeperPage));
-    for (const int descriptor : {from.image, from.bundle, from.decision_page, from.keeper_page}) ::close(descriptor);
+    for (const int descriptor : {from.image, from.bundle, from.decision_page, from.keeper_page})
+      const OwnedDescriptor inherited(descriptor);
     if (!frozen_image) return frozen_image.error();
     if (!frozen_bundle) return frozen_bundle.error();
     if (!shared) return shared.error();
@@ -87,8 +86,8 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
     if (got == Channel::Got::kMessage) {
       inventory.emplace_back(message, passed);
     } else {
-      pollfd readable{mapped_->channel.descriptor(), POLLIN, 0};
-      ::poll(&readable, 1, -1);
+      const int descriptors[] = {mapped_->channel.descriptor()};
+      await_readable(descriptors, kNever);
     }
   }
   auto peers = Peers::create(mapped_->image->spec());
@@ -159,7 +158,7 @@ void Driver::take(const KeeperMessage& message, int passed) {
   } else if (message.kind == Kind::kHung) {
     watch_->told(message, now());
   }
-  if (passed >= 0) ::close(passed);
+  const OwnedDescriptor unused(passed);
   steps_->step(events);
 }
 
@@ -223,13 +222,8 @@ Nanoseconds Driver::next_due() const noexcept {
 
 /// A negative descriptor is passed over.
 void Driver::wait(Nanoseconds until, int also, int or_else) {
-  std::array<pollfd, 4> watched = {{{mapped_->channel.descriptor(), POLLIN, 0},
-                                    {bell_->descriptor(), POLLIN, 0},
-                                    {also, POLLIN, 0},
-                                    {or_else, POLLIN, 0}}};
-  const std::int64_t left = std::clamp<std::int64_t>((until - now()).count, 0, seconds(1).count);
-  const timespec limit{left / 1'000'000'000, left % 1'000'000'000};
-  ::ppoll(watched.data(), watched.size(), &limit, nullptr);
+  const int descriptors[] = {mapped_->channel.descriptor(), bell_->descriptor(), also, or_else};
+  await_readable(descriptors, std::min(until - now(), seconds(1)));
 }
 
 bool Driver::step(Nanoseconds at_most, int also, int or_else) {

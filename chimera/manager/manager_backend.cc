@@ -2,12 +2,12 @@
 // Carries out the methods of the control protocol: docs/formats/control.md.
 #include "chimera/manager/manager_backend.h"
 
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "chimera/platform/process_id.h"
 #include "chimera/text/nearest.h"
 #include "chimera/manager/command_text.h"
 #include "chimera/manager/operator_acts.h"
@@ -81,9 +81,9 @@ void ManagerBackend::hello(const Request& request) {
                     {"role", control::role_name(request.caller.role)},
                     {"file", world().bundle.file},
                     {"keeper_pid", world().keeper_pid},
-                    {"session", ::getsid(0)},  // the keeper's, as is the folder: both are inherited
+                    {"session", own_session()},  // the keeper's, as is the folder: both are inherited
                     {"folder", working_folder()},
-                    {"manager", {{"pid", ::getpid()}, {"starts", world().own.incarnation()}}}}));
+                    {"manager", {{"pid", own_process_id()}, {"starts", world().own.incarnation()}}}}));
 }
 
 void ManagerBackend::status(const Request& request) { request.reply(Answer::good(status_json(world(), now()))); }

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/peers.h"
 
-#include <unistd.h>
-
 #include <cstring>
 
 #include "chimera/base/message.h"
+#include "chimera/platform/owned_descriptor.h"
 
 namespace chimera::manager {
 
 Result<PeerSegment> PeerSegment::open(int descriptor, const PeerLayout& layout, std::uint32_t n_tasks,
                                       std::uint32_t peer, std::uint32_t incarnation) {
+  const OwnedDescriptor passed(descriptor);
   auto region = MemoryRegion::open_read_only(descriptor, peer_segment_bytes(layout.table(), n_tasks));
-  ::close(descriptor);
   if (!region) return region.error();
   if (auto table = SegmentView::open(region->bytes(), layout.table().hash()); !table) return table.error();
   PeerSegment made;

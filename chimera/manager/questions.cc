@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/questions.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -11,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/process_id.h"
 
 namespace chimera::manager {
 namespace {
@@ -68,6 +68,7 @@ void Questions::take_answer(Nanoseconds now) {
   int passed = -1;
   const Channel::Got got = channel_.receive(bytes_of(told), passed);
   if (got == Channel::Got::kNothing) return;
+  const OwnedDescriptor received(passed);
   const bool is_asked = got == Channel::Got::kMessage && is_under_way_ && told.number == number_;
   if (is_asked && told.what == QuestionMessage::What::kNoMemory) {
     answer_first(given_up("the analysis was given up: it needs more than 1 GiB of memory, or its answer 32 MiB"), now);
@@ -84,7 +85,6 @@ void Questions::take_answer(Nanoseconds now) {
     tell_("the analyst of descriptions " + how);
     if (was_under_way) answer_first(given_up("the analysis failed: its process " + how), now);
   }
-  if (passed >= 0) ::close(passed);
 }
 
 void Questions::answer_first(const Answer& answer, Nanoseconds now) {
@@ -119,7 +119,7 @@ void Questions::pass_on(Nanoseconds now) {
 
 bool Questions::start(Nanoseconds now) {
   auto ends = Channel::pair();
-  const std::string parent = std::to_string(::getpid());
+  const std::string parent = std::to_string(own_process_id());
   const char* const words[] = {program_.c_str(), "--analyst", "--parent", parent.c_str()};
   auto started = ends ? Process::start(program_.c_str(), words, std::array{ends->second.descriptor(), bundle_})
                       : Result<Process>(ends.error());

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/manager/unit_health.h"
 
-#include <sched.h>
-#include <unistd.h>
-
 #include <charconv>
 #include <cstring>
 #include <filesystem>
@@ -23,7 +20,7 @@ std::string folder_of(pid_t pid) { return "/proc/" + std::to_string(pid) + "/"; 
 std::uint64_t resident_bytes(pid_t pid) {
   std::uint64_t total = 0, resident = 0;
   std::ifstream(folder_of(pid) + "statm") >> total >> resident;
-  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return resident * page_bytes();
 }
 
 bool has_locked_memory(pid_t pid) {
@@ -42,24 +39,10 @@ std::vector<pid_t> threads_of(pid_t pid) {
   return threads;
 }
 
-/// False when it is gone.
-bool rights_of(pid_t thread, ThreadRights& rights) {
-  sched_param param{};
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  const int policy = ::sched_getscheduler(thread);
-  if (policy < 0 || ::sched_getparam(thread, &param) != 0 || ::sched_getaffinity(thread, sizeof set, &set) != 0)
-    return false;
-  rights = {thread, policy & ~SCHED_RESET_ON_FORK, param.sched_priority, -1};
-  for (int cpu = 0; CPU_COUNT(&set) == 1 && cpu < CPU_SETSIZE; ++cpu)
-    if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) rights.only_cpu = cpu;
-  return true;
-}
-
 std::string policy_text(int policy, int level) {
-  if (policy == SCHED_FIFO || policy == SCHED_RR)
-    return (policy == SCHED_FIFO ? "SCHED_FIFO " : "SCHED_RR ") + std::to_string(level);
-  if (policy == SCHED_OTHER) return "SCHED_OTHER";
+  if (policy == kPolicyFifo || policy == kPolicyRoundRobin)
+    return (policy == kPolicyFifo ? "SCHED_FIFO " : "SCHED_RR ") + std::to_string(level);
+  if (policy == kPolicyOther) return "SCHED_OTHER";
   return "policy " + std::to_string(policy);
 }
 
@@ -77,8 +60,8 @@ int number_behind(std::string_view report, std::string_view word, int none) {
 std::string memory_text(std::uint64_t bytes) { return std::to_string(bytes / kMegabyte) + " MB"; }
 
 bool has_its_level(const GrantedRights& granted, bool preemptive, const ThreadRights& now) {
-  if (preemptive) return now.policy == SCHED_OTHER || (now.policy == SCHED_FIFO && now.level <= granted.level);
-  return granted.level == 0 ? now.policy == SCHED_OTHER : now.policy == SCHED_FIFO && now.level == granted.level;
+  if (preemptive) return now.policy == kPolicyOther || (now.policy == kPolicyFifo && now.level <= granted.level);
+  return granted.level == 0 ? now.policy == kPolicyOther : now.policy == kPolicyFifo && now.level == granted.level;
 }
 
 }  // namespace
@@ -95,7 +78,7 @@ std::string lost_rights(const GrantedRights& granted, bool preemptive, const std
                         bool is_locked) {
   std::string text;
   const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-  const std::string due = granted.level > 0 ? policy_text(SCHED_FIFO, granted.level) : policy_text(SCHED_OTHER, 0);
+  const std::string due = granted.level > 0 ? policy_text(kPolicyFifo, granted.level) : policy_text(kPolicyOther, 0);
   for (const ThreadRights& now : threads) {
     const std::string who = "thread " + std::to_string(now.thread);
     if (!has_its_level(granted, preemptive, now))
@@ -129,7 +112,7 @@ void UnitHealth::meet(std::size_t index, Nanoseconds now) {
   seen_[index] = {rtpu.incarnation, {}, now, 0, {}};
   for (const pid_t thread : threads_of(rtpu.pid)) {
     ThreadRights rights;
-    const bool is_special = rights_of(thread, rights) && (rights.policy != SCHED_OTHER || rights.only_cpu >= 0);
+    const bool is_special = look_up_rights(thread, rights) && (rights.policy != kPolicyOther || rights.only_cpu >= 0);
     if (is_special) seen_[index].threads.push_back(thread);
   }
 }
@@ -158,7 +141,7 @@ void UnitHealth::compare(std::size_t index, Nanoseconds now) {
   const BlockHead& head = world_.peers[id].block().head();
   std::vector<ThreadRights> threads;
   for (const pid_t thread : seen.threads)
-    if (ThreadRights rights; rights_of(thread, rights)) threads.push_back(rights);
+    if (ThreadRights rights; look_up_rights(thread, rights)) threads.push_back(rights);
   const auto granted = GrantedRights::of({head.grant, ::strnlen(head.grant, sizeof head.grant)});
   const bool is_preemptive = world_.spec().rtpus[index].preemptive;
   const std::string lost = lost_rights(granted, is_preemptive, threads, has_locked_memory(rtpu.pid));

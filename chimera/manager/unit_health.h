@@ -3,23 +3,14 @@
 // their real-time threads against what was granted. Jobs pay nothing for it.
 #pragma once
 
-#include <sys/types.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "chimera/manager/world.h"
+#include "chimera/platform/thread_rights.h"
 
 namespace chimera::manager {
-
-/// The rights of one thread, as the kernel has them.
-struct ThreadRights {
-  pid_t thread = 0;
-  int policy = 0, level = 0;  ///< SCHED_OTHER, SCHED_FIFO...; without SCHED_RESET_ON_FORK
-  int only_cpu = -1;          ///< the one CPU that it may run on; -1: several
-  bool operator==(const ThreadRights&) const noexcept = default;
-};
 
 /// What a unit was granted, read from what it says of itself (RealtimeGrant::report).
 struct GrantedRights {
