@@ -58,7 +58,7 @@ Inputs Inputs::generated(const InputForm& form, std::uint64_t seed, std::size_t 
     const std::span<std::byte> row = made.writable(i);
     std::ranges::copy(form.base, row.begin());
     for (std::size_t c = 0; c < form.channels.size(); ++c) {
-      const Channel& channel = form.channels[c];
+      const InputChannel& channel = form.channels[c];
       form.put(channel, channel.low + (channel.high - channel.low) * place(seed, c, i, rows), row);
     }
     for (const std::size_t at : form.quaternions) make_unit(row.data() + at);
@@ -69,7 +69,7 @@ Inputs Inputs::generated(const InputForm& form, std::uint64_t seed, std::size_t 
 bool spoil(const InputForm& form, std::size_t kind, std::span<std::byte> row) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   bool is_spoilt = false;
-  for (const Channel& channel : form.channels) {
+  for (const InputChannel& channel : form.channels) {
     const bool is_float = channel.type >= CHIMERA_FLOAT32;
     const bool is_whole = channel.type == CHIMERA_INT32 || channel.type == CHIMERA_INT64;
     const bool is_ranged = math::is_finite(channel.declared_high);

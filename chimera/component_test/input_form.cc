@@ -23,7 +23,7 @@ const ConfiguredPort* reader_of(const Configuration& configuration, std::string_
 bool is_number(std::uint32_t type) { return type <= CHIMERA_FLOAT64; }
 
 // Generated values lie in the declared range, cut to something finite; without one about the value of the setup.
-void set_limits(Channel& channel, const PortDescriptor& port) {
+void set_limits(InputChannel& channel, const PortDescriptor& port) {
   const double spread = std::max(std::abs(channel.base), 0.5);
   const bool has_low = port.has_range && std::isfinite(port.min), has_high = port.has_range && std::isfinite(port.max);
   channel.declared_high = has_high ? port.max : kInfinity;
@@ -46,7 +46,7 @@ struct Maker {
 
   void add(std::string name, std::string port_name, std::string unit, std::size_t offset, std::uint32_t type,
            const PortDescriptor& port) {
-    Channel channel{std::move(name), std::move(port_name), std::move(unit), offset, type};
+    InputChannel channel{std::move(name), std::move(port_name), std::move(unit), offset, type};
     channel.base = form.get(channel, form.base);
     set_limits(channel, port);
     form.channels.push_back(std::move(channel));
@@ -93,11 +93,11 @@ InputForm InputForm::of(const Configuration& configuration, const Descriptor& co
   return form;
 }
 
-double InputForm::get(const Channel& channel, std::span<const std::byte> row) const noexcept {
+double InputForm::get(const InputChannel& channel, std::span<const std::byte> row) const noexcept {
   return number_at(channel.type, row.data() + channel.offset);
 }
 
-void InputForm::put(const Channel& channel, double value, std::span<std::byte> row) const noexcept {
+void InputForm::put(const InputChannel& channel, double value, std::span<std::byte> row) const noexcept {
   std::byte* to = row.data() + channel.offset;
   const auto write = [to]<class T>(T converted) { std::memcpy(to, &converted, sizeof converted); };
   const auto whole = [value]<class T>(T least) {

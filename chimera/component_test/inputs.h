@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxRows = 100'000;
 inline constexpr std::size_t kMaxColumns = 256;
 
 /// One number of an in-var.
-struct Channel {
+struct InputChannel {
   std::string name;        ///< as a recording calls it: "q_ref[2]"
   std::string port_name;   ///< the same by the port, for a repeated one: "in[0][2]"
   std::string unit;        ///< of its values
@@ -37,14 +37,14 @@ struct InputForm {
   static InputForm of(const Configuration& configuration, const Descriptor& component);
 
   std::vector<std::size_t> offsets;  ///< by operator variable
-  std::vector<Channel> channels;
+  std::vector<InputChannel> channels;
   std::vector<std::size_t> quaternions;  ///< offsets of four numbers that stay a unit quaternion
   std::vector<std::byte> base;           ///< the row of the setup
 
   std::size_t bytes() const noexcept { return base.size(); }
-  double get(const Channel& channel, std::span<const std::byte> row) const noexcept;
+  double get(const InputChannel& channel, std::span<const std::byte> row) const noexcept;
   /// Rounded for whole numbers; a truth value is true above 0.5.
-  void put(const Channel& channel, double value, std::span<std::byte> row) const noexcept;
+  void put(const InputChannel& channel, double value, std::span<std::byte> row) const noexcept;
 };
 
 /// Context: setup.

@@ -26,7 +26,7 @@ std::string refusal(const std::string& text) {
 
 TEST(InputForm, NamesEveryNumber) {
   std::string names;
-  for (const Channel& channel : form_of(two_inputs()).channels) names += channel.name + " ";
+  for (const InputChannel& channel : form_of(two_inputs()).channels) names += channel.name + " ";
   EXPECT_EQ(names, "q[0] q[1] v ");
 }
 

@@ -229,7 +229,7 @@ struct Judge {
 }  // namespace
 
 bool TrialReport::passes() const noexcept {
-  return std::ranges::none_of(judgements, [](const Judgement& one) { return one.verdict == Finding::kFails; });
+  return std::ranges::none_of(judgements, [](const JudgedProperty& one) { return one.verdict == Finding::kFails; });
 }
 
 std::string how_it_ended(const PlayEnd& end, const Record& record) {

@@ -11,7 +11,7 @@ namespace chimera::component_test {
 
 enum class Finding : std::uint8_t { kOk, kFails, kNotJudged };
 
-struct Judgement {
+struct JudgedProperty {
   std::string name;  ///< "outputs"
   Finding verdict = Finding::kOk;
   std::string text;  ///< one sentence without a full stop
@@ -27,7 +27,7 @@ struct Measured {
 struct TrialReport {
   std::string component;
   std::string inputs;  ///< where they came from
-  std::vector<Judgement> judgements;
+  std::vector<JudgedProperty> judgements;
   Measured measured;
 
   bool passes() const noexcept;

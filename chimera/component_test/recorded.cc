@@ -21,7 +21,7 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-struct Place {
+struct RecordingPlace {
   const std::string& file;
   std::size_t line = 1, column = 1;
 
@@ -50,37 +50,37 @@ Heading heading_of(std::string_view word) {
   return {word.substr(0, open), word.substr(open + 1, word.size() - open - 2)};
 }
 
-const Channel* find(const InputForm& form, const std::string& name) {
-  for (const Channel& channel : form.channels)
+const InputChannel* find(const InputForm& form, const std::string& name) {
+  for (const InputChannel& channel : form.channels)
     if (channel.name == name || channel.port_name == name) return &channel;
   return nullptr;
 }
 
-Result<std::vector<const Channel*>> read_head(const InputForm& form, std::string_view line,
-                                              std::span<const std::string> names, Place place) {
+Result<std::vector<const InputChannel*>> read_head(const InputForm& form, std::string_view line,
+                                                   std::span<const std::string> names, RecordingPlace place) {
   const auto words = split(line);
   if (words[0] != "t(s)" && words[0] != "t")
     return place.refuse(Message() << "the first column is '" << words[0] << "', expected 't(s)', the time in s");
   if (words.size() > kMaxColumns)
     return place.refuse(Message() << words.size() << " columns, at most " << kMaxColumns << " are read");
-  std::vector<const Channel*> columns;
+  std::vector<const InputChannel*> columns;
   for (std::size_t i = 1; i < words.size(); ++i) {
     place.column += words[i - 1].size() + 1;
     const Heading heading = heading_of(words[i]);
     const std::string name = renamed(heading.name, names);
-    const Channel* channel = find(form, name);
+    const InputChannel* channel = find(form, name);
     if (channel == nullptr) return place.refuse(Message() << "no in-var of the component is called '" << name << "'");
     if (!heading.unit.empty() && heading.unit != channel->unit)
       return place.refuse(Message() << "'" << name << "' is in " << heading.unit << ", and the port takes "
                                     << channel->unit);
-    for (const Channel* other : columns)
+    for (const InputChannel* other : columns)
       if (other == channel) return place.refuse(Message() << "'" << name << "' is there twice");
     columns.push_back(channel);
   }
   return columns;
 }
 
-Result<std::optional<double>> read_number(std::string_view field, const Place& place) {
+Result<std::optional<double>> read_number(std::string_view field, const RecordingPlace& place) {
   if (field.empty()) return std::optional<double>{};
   double value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
@@ -90,13 +90,13 @@ Result<std::optional<double>> read_number(std::string_view field, const Place& p
 }
 
 /// The rows of the file as they stand, with their times.
-struct Reader {
+struct RecordingReader {
   const InputForm& form;
-  std::vector<const Channel*> columns;
+  std::vector<const InputChannel*> columns;
   std::vector<double> times{};
   std::vector<std::byte> rows{};
 
-  Result<void> read(std::string_view line, Place place) {
+  Result<void> read(std::string_view line, RecordingPlace place) {
     const auto fields = split(line);
     if (fields.size() != columns.size() + 1)
       return place.refuse(Message() << fields.size() << " fields, expected " << columns.size() + 1);
@@ -120,7 +120,8 @@ struct Reader {
   }
 };
 
-Result<void> read_all(Reader& reader, std::string_view text, std::span<const std::string> names, Place place) {
+Result<void> read_all(RecordingReader& reader, std::string_view text, std::span<const std::string> names,
+                      RecordingPlace place) {
   for (; !text.empty(); ++place.line) {
     std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
@@ -143,8 +144,9 @@ Result<void> read_all(Reader& reader, std::string_view text, std::span<const std
 Result<Inputs> Inputs::recorded(const InputForm& form, std::string_view text, const std::string& file,
                                 std::span<const std::string> names, Nanoseconds period, std::size_t least) {
   if (text.size() > kMaxRecordingBytes)
-    return Place{file}.refuse(Message() << text.size() << " bytes, at most " << kMaxRecordingBytes << " are read");
-  Reader reader{form, {}};
+    return RecordingPlace{file}.refuse(Message()
+                                       << text.size() << " bytes, at most " << kMaxRecordingBytes << " are read");
+  RecordingReader reader{form, {}};
   if (const auto read = read_all(reader, text, names, {file}); !read) return read.error();
   const double length = reader.times.back() - reader.times.front();
   const double cycles = length / to_seconds(period) + 1.5;

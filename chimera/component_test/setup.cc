@@ -91,10 +91,10 @@ Verdict judge_alone(const Draft& draft, const LibraryEntry& component, const Uni
 Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSystem& units) {
   const Descriptor& descriptor = component.descriptor;
   const std::string plain_text = default_setup(descriptor);
-  const Reading plain = read_description(plain_text, descriptor.name + ".test.yaml (made up)");
+  const ReadDescription plain = read_description(plain_text, descriptor.name + ".test.yaml (made up)");
   CHIMERA_ASSERT(plain.draft && plain.report.is_legal());
   if (setup.file.empty()) return judge_alone(*plain.draft, component, units);
-  Reading reading = read_description_file(setup.file);
+  ReadDescription reading = read_description_file(setup.file);
   if (!reading.draft || !reading.report.is_legal()) return verify(reading, Library::of_entries({component}, units));
   Draft& draft = *reading.draft;
   if (draft.tasks.size() != 1 || draft.tasks[0].component.text != descriptor.name) {

@@ -116,8 +116,8 @@ Draft read_root(const Node& root, std::string_view file, Report& report) {
   return draft;
 }
 
-Reading unreadable(const std::string& path, std::string_view rule, std::string message, std::string remedy) {
-  Reading reading{std::nullopt, Report(path), {}};
+ReadDescription unreadable(const std::string& path, std::string_view rule, std::string message, std::string remedy) {
+  ReadDescription reading{std::nullopt, Report(path), {}};
   reading.report.add({.rule = rule,
                       .at = {},
                       .message = std::move(message),
@@ -130,8 +130,8 @@ Reading unreadable(const std::string& path, std::string_view rule, std::string m
 
 }  // namespace
 
-Reading read_description(std::string_view text, std::string_view file) {
-  Reading reading{std::nullopt, Report(std::string(file)), std::string(text)};
+ReadDescription read_description(std::string_view text, std::string_view file) {
+  ReadDescription reading{std::nullopt, Report(std::string(file)), std::string(text)};
   const std::optional<Node> root = read_yaml(text, reading.report);
   if (root && root->is_none())
     reading.report.add({.rule = "value-kind",
@@ -147,7 +147,7 @@ Reading read_description(std::string_view text, std::string_view file) {
   return reading;
 }
 
-Reading read_description_file(const std::string& path) {
+ReadDescription read_description_file(const std::string& path) {
   const auto text = read_ordinary(path, kMaxTextBytes + 1);
   if (!text)
     return unreadable(path, "file-unreadable", "the file " + std::string(text.error().message.view()),

@@ -114,16 +114,16 @@ struct Draft {
 
 /// A draft, when the text can be read at all, and what is wrong with the text. A draft with faults in its report
 /// holds what could be read; verify it all the same, so that one report has everything.
-struct Reading {
+struct ReadDescription {
   std::optional<Draft> draft;
   Report report;
   std::string text;  ///< as it was read; empty when it could not be
 };
 
 /// Reads `text`, naming it `file` in messages. Context: setup.
-Reading read_description(std::string_view text, std::string_view file);
+ReadDescription read_description(std::string_view text, std::string_view file);
 
 /// Reads the file at `path`; one above the size limit is refused without being read. Context: setup; may block.
-Reading read_description_file(const std::string& path);
+ReadDescription read_description_file(const std::string& path);
 
 }  // namespace chimera

@@ -10,10 +10,10 @@
 namespace chimera {
 namespace {
 
-Reading read(std::string_view text) { return read_description(text, "demo.yaml"); }
+ReadDescription read(std::string_view text) { return read_description(text, "demo.yaml"); }
 
 Draft draft(std::string_view text) {
-  Reading reading = read(text);
+  ReadDescription reading = read(text);
   EXPECT_TRUE(reading.report.is_legal()) << reading.report.text();
   return reading.draft.value_or(Draft{});
 }
@@ -80,7 +80,7 @@ TEST(Draft, ReadsSizesInBytes) {
 }
 
 TEST(Draft, GoesOnAfterAFault) {
-  const Reading reading = read("subsystem: demo\ntasks: {pid: {rate: 5 km, budget: 40 us}, arm: {}}\n");
+  const ReadDescription reading = read("subsystem: demo\ntasks: {pid: {rate: 5 km, budget: 40 us}, arm: {}}\n");
   EXPECT_EQ(reading.report.errors(), 1u);
   ASSERT_TRUE(reading.draft);
   EXPECT_EQ(reading.draft->tasks.size(), 2u);

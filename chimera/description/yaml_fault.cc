@@ -87,13 +87,13 @@ class Brackets {
 };
 
 /// The line and where its first word begins: behind the indentation and the '-' of a list.
-struct Line {
+struct IndentedLine {
   std::string_view text;
   std::size_t first;
 };
 
-std::vector<Line> lines_to(std::string_view text, std::uint32_t last) {
-  std::vector<Line> lines;
+std::vector<IndentedLine> lines_to(std::string_view text, std::uint32_t last) {
+  std::vector<IndentedLine> lines;
   for (std::size_t start = 0; start < text.size() && lines.size() < last;) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
     const std::string_view line = text.substr(start, end - start);
@@ -104,7 +104,7 @@ std::vector<Line> lines_to(std::string_view text, std::uint32_t last) {
 }
 
 /// `kp:0.2`: a word, and the ':' without its space.
-std::optional<Fault> glued_key(const Line& line, std::uint32_t number) {
+std::optional<Fault> glued_key(const IndentedLine& line, std::uint32_t number) {
   const std::size_t colon = line.text.find(':', line.first);
   if (colon == std::string_view::npos || colon + 1 >= line.text.size()) return std::nullopt;
   const std::string_view key = line.text.substr(line.first, colon - line.first);
@@ -115,7 +115,7 @@ std::optional<Fault> glued_key(const Line& line, std::uint32_t number) {
 }
 
 /// A line that is deeper than the one before, which has its value already.
-bool is_deeper_below_a_value(const std::vector<Line>& lines, std::uint32_t at) {
+bool is_deeper_below_a_value(const std::vector<IndentedLine>& lines, std::uint32_t at) {
   if (at < 2 || at > lines.size()) return false;
   const std::string_view before = lines[at - 2].text.substr(0, lines[at - 2].text.find_last_not_of(" \r") + 1);
   return lines[at - 1].first > lines[at - 2].first && !before.empty() && before.back() != ':';
@@ -124,7 +124,7 @@ bool is_deeper_below_a_value(const std::vector<Line>& lines, std::uint32_t at) {
 }  // namespace
 
 Fault yaml_fault(std::string_view text, Place at, std::string_view reason) {
-  const std::vector<Line> lines = lines_to(text, at.line);
+  const std::vector<IndentedLine> lines = lines_to(text, at.line);
   for (std::size_t i = lines.size(); i > 0; --i)  // the nearest before the place where the parser gave up
     if (auto glued = glued_key(lines[i - 1], static_cast<std::uint32_t>(i))) return *std::move(glued);
   if (auto bracket = Brackets(text).find()) return *std::move(bracket);

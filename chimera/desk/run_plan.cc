@@ -159,7 +159,7 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& work
 std::optional<RunPlan> plan_run(const RunRequest& request, const Library& library, std::FILE* out, std::FILE* err,
                                 int* code) {
   if (code != nullptr) *code = kRefused;
-  Reading reading = read_description_file(request.file);
+  ReadDescription reading = read_description_file(request.file);
   Verdict verdict = verify(reading, library);
   if (verdict.configuration) {
     auto set = with_settings(*verdict.configuration, library, request.settings);

@@ -148,7 +148,7 @@ std::string text_of(const component_test::TrialReport& report) {
   std::string text = report.component + ": " + (report.passes() ? "passes" : "FAILS");
   if (!report.inputs.empty()) text += " (inputs: " + report.inputs + ")";
   text += "\n";
-  for (const component_test::Judgement& one : report.judgements) {
+  for (const component_test::JudgedProperty& one : report.judgements) {
     char head[64];
     std::snprintf(head, sizeof head, "  %-10s  %-12s  ", word(one.verdict), one.name.c_str());
     std::string body = one.text;
@@ -164,7 +164,7 @@ std::string text_of(const component_test::TrialReport& report) {
 
 std::string json_of(const component_test::TrialReport& report) {
   std::string rows;
-  for (const component_test::Judgement& one : report.judgements)
+  for (const component_test::JudgedProperty& one : report.judgements)
     rows += std::string(rows.empty() ? "" : ", ") + "{\"name\": " + json_string(one.name) + ", \"finding\": \"" +
             word(one.verdict) + "\", \"text\": " + json_string(one.text) + "}";
   return "{\"component\": " + json_string(report.component) + ", \"passes\": " + (report.passes() ? "true" : "false") +

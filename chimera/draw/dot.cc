@@ -30,17 +30,17 @@ bool is_output(PortKind kind) { return kind == PortKind::kOut || kind == PortKin
 bool is_constant(PortKind kind) { return kind == PortKind::kInConst || kind == PortKind::kOutConst; }
 
 /// Both ends of one variable, as node names.
-struct Line {
+struct VariableLine {
   std::vector<std::string> from, to;
   bool is_constant = false;
 };
 
-std::map<std::string, Line> lines_of(const Graph& graph) {
-  std::map<std::string, Line> lines;
+std::map<std::string, VariableLine> lines_of(const Graph& graph) {
+  std::map<std::string, VariableLine> lines;
   for (const Box& box : graph.boxes) {
     for (const Port& port : box.ports) {
       if (port.kind == PortKind::kResource || port.variable.empty()) continue;
-      Line& line = lines[port.variable];
+      VariableLine& line = lines[port.variable];
       (is_output(port.kind) ? line.from : line.to).push_back(quoted(box.name));
       line.is_constant = is_constant(port.kind);
     }
@@ -48,7 +48,7 @@ std::map<std::string, Line> lines_of(const Graph& graph) {
   return lines;
 }
 
-void append_line(std::string& out, const std::string& variable, const Line& line) {
+void append_line(std::string& out, const std::string& variable, const VariableLine& line) {
   const std::string style = line.is_constant ? ", style=dashed" : "";
   const std::string name = quoted("var " + variable);
   if (line.from.size() == 1 && line.to.size() == 1) {

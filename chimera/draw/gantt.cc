@@ -41,9 +41,9 @@ std::string line(double x1, double y1, double x2, double y2, const char* colour)
   return format("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\"/>\n", x1, y1, x2, y2, colour);
 }
 
-class Page {
+class GanttPage {
  public:
-  Page(const Gantt& picture, double top) : picture_(picture), top_(top) {}
+  GanttPage(const Gantt& picture, double top) : picture_(picture), top_(top) {}
 
   std::string draw() {
     said_ = label(kMargin, top_ + 20, picture_.title, "font-size=\"15\" font-weight=\"bold\"");
@@ -106,7 +106,7 @@ std::string svg(const std::vector<Gantt>& pictures) {
                            width, height);
   double top = 0;
   for (const Gantt& picture : pictures) {
-    all += Page(picture, top).draw();
+    all += GanttPage(picture, top).draw();
     top += height_of(picture);
   }
   return all + "</svg>\n";

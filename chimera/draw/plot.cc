@@ -16,7 +16,7 @@ constexpr double kInner = kWidth - kLeft - kRight;
 constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
 constexpr const char* kDashes[] = {"", "7 3", "2 3"};  // from the eighth curve of a panel on
 
-struct Span {
+struct ValueRange {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
 
   bool is_empty() const { return low > high; }
@@ -31,7 +31,7 @@ struct Panel {
   std::string unit;
   int number = 0;
   std::vector<const Curve*> curves;
-  Span values;
+  ValueRange values;
   double top = 0;
   std::size_t legend_rows = 0;
 };
@@ -51,7 +51,7 @@ std::string label(double value) {
   return text;
 }
 
-Span with_margin(Span span, double share) {
+ValueRange with_margin(ValueRange span, double share) {
   if (span.is_empty()) return {0, 1};
   double room = (span.high - span.low) * share;
   if (room <= 0) room = share == 0 ? 0.5 : std::max(std::fabs(span.high) * 0.1, 1e-9);  // a constant lies in the middle
@@ -86,14 +86,14 @@ std::vector<Panel> panels_of(const Plot& plot) {
 }
 
 /// One picture being drawn.
-class Page {
+class PlotPage {
  public:
-  explicit Page(const Plot& plot) : plot_(plot), panels_(panels_of(plot)) {
-    Span times;
+  explicit PlotPage(const Plot& plot) : plot_(plot), panels_(panels_of(plot)) {
+    ValueRange times;
     for (const Curve& curve : plot.curves)
       for (const PlotPoint& point : curve.points) times.take(point.at);
     for (const PlotGap& gap : plot.gaps) times.take(gap.from), times.take(gap.to);
-    const Span nothing = plot.is_over_frequency ? Span{1, 10} : Span{0, 1};
+    const ValueRange nothing = plot.is_over_frequency ? ValueRange{1, 10} : ValueRange{0, 1};
     times_ = times.is_empty() ? nothing : times.low == times.high ? with_margin(times, 0) : times;
   }
 
@@ -255,7 +255,7 @@ class Page {
 
   const Plot& plot_;
   std::vector<Panel> panels_;
-  Span times_;
+  ValueRange times_;
   std::string body_;
 };
 
@@ -291,6 +291,6 @@ std::vector<double> decade_marks(double low, double high) {
   return marks;
 }
 
-std::string svg(const Plot& plot) { return Page(plot).document(); }
+std::string svg(const Plot& plot) { return PlotPage(plot).document(); }
 
 }  // namespace chimera::draw

@@ -12,7 +12,7 @@ namespace {
 std::string n(int value) { return std::to_string(value); }
 
 /// One document being written.
-class Page {
+class SvgPage {
  public:
   void words(int x, int y, const std::string& what, const char* style, const char* anchor = "start") {
     body_ += "<text x=\"" + n(x) + "\" y=\"" + n(y) + "\" class=\"" + style + "\" text-anchor=\"" + anchor + "\">" +
@@ -52,7 +52,7 @@ std::string link_text(const Port& port, const char* between) {
   return port.variable.empty() || port.variable == port.name ? port.name : port.name + between + port.variable;
 }
 
-void draw_above(Page& page, const Placed& p) {
+void draw_above(SvgPage& page, const Placed& p) {
   // The leftmost line is the longest, so that its label runs over all others.
   for (std::size_t i = 0; i < p.above.size(); ++i) {
     const int x = p.x + static_cast<int>(i + 1) * kStep;
@@ -62,7 +62,7 @@ void draw_above(Page& page, const Placed& p) {
   }
 }
 
-void draw_below(Page& page, const Placed& p) {
+void draw_below(SvgPage& page, const Placed& p) {
   for (std::size_t i = 0; i < p.below.size(); ++i) {
     const int x = p.x + static_cast<int>(i + 1) * kStep;
     const int bottom = p.y + p.height + 6 + static_cast<int>(p.below.size() - i) * kStep;
@@ -71,7 +71,7 @@ void draw_below(Page& page, const Placed& p) {
   }
 }
 
-void draw_box(Page& page, const Graph& graph, const Placed& p) {
+void draw_box(SvgPage& page, const Graph& graph, const Placed& p) {
   page.box(p);
   const std::vector<std::string> head = head_of(graph.boxes[p.box]);
   for (std::size_t i = 0; i < head.size(); ++i) {
@@ -95,7 +95,7 @@ void draw_box(Page& page, const Graph& graph, const Placed& p) {
 
 std::string svg(const Graph& graph) {
   const Layout layout = lay_out(graph);
-  Page page;
+  SvgPage page;
   page.words(24, 26, graph.title, "title");
   for (const Piece& piece : layout.pieces) {
     if (piece.is_dot) page.dot(piece.x1, piece.y1);

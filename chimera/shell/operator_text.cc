@@ -151,7 +151,7 @@ bool add_edits(const Node& given, const Node& now, const std::string& words, con
 
 Result<std::string> with_operator_values(std::string_view text, const std::map<std::string, std::string>& values,
                                          const UnitSystem& units) {
-  const Reading reading = read_description(text, "");
+  const ReadDescription reading = read_description(text, "");
   if (!reading.draft) return no_edit("the description cannot be read");
   const Draft& draft = *reading.draft;
   std::vector<Edit> edits;
@@ -169,7 +169,7 @@ Result<std::string> with_operator_values(std::string_view text, const std::map<s
   std::string result(text);
   for (const Edit& edit : edits) result.replace(edit.from, edit.to - edit.from, edit.with);
   // The proof: what is read now has these values, and everything else where it was.
-  const Reading again = read_description(result, "");
+  const ReadDescription again = read_description(result, "");
   if (!again.draft || again.draft->operators.size() != draft.operators.size()) return no_edit("cannot be edited");
   for (const NamedNode& given : again.draft->operators) {
     const auto wanted = values.find(given.name.text);

@@ -134,7 +134,7 @@ inline bool leaves_out_a_member(const chimera_port_decl& port, std::size_t align
 }
 
 /// Where a port's live half lies; `instances` and `max` only for a repeated one.
-struct Place {
+struct PortPlace {
   const void* live;
   const void* instances = nullptr;
   std::uint32_t max = 1;
@@ -142,7 +142,7 @@ struct Place {
 
 /// Declares a port to the collector, when one is at work. Context: setup.
 template <class T, std::uint32_t Kind, class... Options>
-void declare_port(const char* name, const char* unit, const char* shape, Place place, const Options&... options) {
+void declare_port(const char* name, const char* unit, const char* shape, PortPlace place, const Options&... options) {
   using E = typename PortType<T>::Element;
   static_assert(check_element<E>());
   static_assert((check_option<Kind, Options>() && ...));

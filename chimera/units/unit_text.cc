@@ -40,9 +40,10 @@ bool is_bounded(const UnitExpression& expression, int limit) {
 }
 
 /// Recursive descent over one text. The first fault ends it: every function then returns false.
-class Reader {
+class UnitTextReader {
  public:
-  Reader(std::string_view text, const WordMeaning& meaning, const std::function<std::string(std::string_view)>& unknown)
+  UnitTextReader(std::string_view text, const WordMeaning& meaning,
+                 const std::function<std::string(std::string_view)>& unknown)
       : text_(text), meaning_(meaning), unknown_(unknown) {}
 
   Result<UnitExpression> read() {
@@ -148,7 +149,7 @@ Result<UnitExpression> read_unit_text(std::string_view text, const WordMeaning& 
   if (text.size() > kMaxUnitText) {
     return Error{ErrorCode::kBadInput, std::string_view("a unit text of more than 100 bytes"), {}};
   }
-  return Reader(plain(text), meaning, unknown).read();
+  return UnitTextReader(plain(text), meaning, unknown).read();
 }
 
 }  // namespace chimera

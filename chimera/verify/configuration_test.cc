@@ -64,7 +64,7 @@ const Library& library() {
 }
 
 Configuration legal(std::string_view text) {
-  const Reading reading = read_description(text, "demo.yaml");
+  const ReadDescription reading = read_description(text, "demo.yaml");
   Verdict verdict = verify(reading, library());
   EXPECT_TRUE(verdict.configuration) << verdict.report.text();
   return std::move(*verdict.configuration);

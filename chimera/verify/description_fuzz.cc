@@ -65,7 +65,7 @@ void planted(const Draft& draft) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
-  const Reading reading = read_description(text, "fuzz");
+  const ReadDescription reading = read_description(text, "fuzz");
 #ifdef CHIMERA_PLANTED_DEFECT
   if (reading.draft) planted(*reading.draft);
 #endif

@@ -71,7 +71,7 @@ Verdict verify(const Draft& draft, const Library& library) {
   return judge(draft, library, Report(draft.file), Overload::kRefused);
 }
 
-Verdict verify(const Reading& reading, const Library& library, Overload overload) {
+Verdict verify(const ReadDescription& reading, const Library& library, Overload overload) {
   if (!reading.draft) return {std::nullopt, reading.report};
   return judge(*reading.draft, library, reading.report, overload);
 }

@@ -26,7 +26,7 @@ enum class Overload : std::uint8_t { kRefused, kTold };
 Verdict verify(const Draft& draft, const Library& library);
 
 /// Judges what was read, faults of the text included: the one call of `check`, `run` and `schedule`. Context: setup.
-Verdict verify(const Reading& reading, const Library& library, Overload overload = Overload::kRefused);
+Verdict verify(const ReadDescription& reading, const Library& library, Overload overload = Overload::kRefused);
 
 /// The shared objects of its components that cannot be loaded, as far as can be seen without running code of them;
 /// empty: none. `library` is the one it was verified with. Context: setup; may block.

@@ -50,7 +50,7 @@ std::string name_of(const testing::TestParamInfo<fs::path>& info) { return info.
 
 /// What `check` prints, and below "run:" what `run` would refuse.
 std::string judged(const fs::path& path) {
-  Reading reading = read_description(contents(path), path.filename().string());
+  ReadDescription reading = read_description(contents(path), path.filename().string());
   const Verdict verdict = verify(reading, library());
   EXPECT_EQ(verdict.configuration.has_value(), verdict.report.is_legal());
   std::string out = verdict.report.text();

@@ -10,24 +10,10 @@
 #include <string_view>
 
 #include "chimera/base/message.h"
+#include "chimera/platform/linux/file_start.h"
 
 namespace chimera {
 namespace {
-
-// The start of a small file of /proc or /sys; "" when it cannot be read.
-struct FileStart {
-  explicit FileStart(const char* path) noexcept {
-    const int fd = ::open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0) return;
-    ssize_t got = 0;
-    while (size < sizeof bytes && (got = ::read(fd, bytes + size, sizeof bytes - size)) > 0)
-      size += static_cast<std::size_t>(got);
-    ::close(fd);
-  }
-  std::string_view view() const noexcept { return {bytes, size}; }
-  char bytes[8192];
-  std::size_t size = 0;
-};
 
 #if defined(__x86_64__)
 
@@ -55,7 +41,7 @@ Message objection() noexcept {
   return {};
 }
 
-struct Reading {
+struct CounterReading {
   std::uint64_t ticks = 0;
   Nanoseconds at;
 };
@@ -68,8 +54,8 @@ Nanoseconds monotonic() noexcept {
 
 // Counter and clock together: the try with the least between its two counter reads, of `tries` or fewer when one
 // was `close_enough` already. A reading with a preemption inside would be wrong by half of it.
-Reading read_both(int tries, std::uint64_t close_enough) noexcept {
-  Reading best;
+CounterReading read_both(int tries, std::uint64_t close_enough) noexcept {
+  CounterReading best;
   std::uint64_t least = UINT64_MAX;
   for (int i = 0; i < tries && least > close_enough; ++i) {
     unsigned cpu;
@@ -101,10 +87,10 @@ CycleCounter CycleCounter::calibrate() noexcept {
 #if defined(__x86_64__)
   const Message why_not = objection();
   if (why_not.empty()) {
-    const Reading first = read_both(20, 0);
+    const CounterReading first = read_both(20, 0);
     const timespec span{0, 10'000'000};
     ::clock_nanosleep(CLOCK_MONOTONIC, 0, &span, nullptr);
-    const Reading last = read_both(20, 0);
+    const CounterReading last = read_both(20, 0);
     const std::uint64_t ticks = last.ticks - first.ticks;
     const auto ns = static_cast<std::uint64_t>((last.at - first.at).count);
     __extension__ using Wide = unsigned __int128;
@@ -122,7 +108,7 @@ CycleCounter CycleCounter::calibrate() noexcept {
 void CycleCounter::compare() noexcept {
 #if defined(__x86_64__)
   if (source_ != Source::kCycleCounter) return;
-  const Reading both = read_both(4, 2000);
+  const CounterReading both = read_both(4, 2000);
   scale_.compare(both.ticks, both.at);
 #endif
 }

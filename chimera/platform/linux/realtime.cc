@@ -16,6 +16,7 @@
 #include <cstring>
 
 #include "chimera/base/message.h"
+#include "chimera/platform/linux/file_start.h"
 
 namespace chimera {
 namespace {
@@ -94,18 +95,6 @@ void set_cpu(const RealtimeRequest& request, RealtimeGrant& grant, Parts& report
     report.missing << " (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards") << ")";
   report.missing << ", runs unpinned";
 }
-
-// The start of a small file, zero-terminated; "" when it cannot be read.
-struct FileStart {
-  explicit FileStart(const char* path) noexcept {
-    const int fd = ::open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0) return;
-    const ssize_t got = ::read(fd, bytes, sizeof bytes - 1);
-    if (got > 0) bytes[got] = '\0';
-    ::close(fd);
-  }
-  char bytes[4096] = {};
-};
 
 // Memory counts as locked when the kernel says that some of it is.
 bool has_locked_memory() noexcept {

@@ -26,7 +26,7 @@ struct Arc {
 using Tasks = std::bitset<kMaxTasks>;
 
 /// The arcs of one variable from one producer: what one cut takes out, as far as it lies in one loop.
-struct Link {
+struct VariableArcs {
   std::pair<Cut, std::size_t> rank;  ///< the variable by its name; the least is cut first
   Tasks consumers;                   ///< positions in the set; those that were cut are gone
 };
@@ -169,7 +169,7 @@ class SetOrder {
       const Cut cut = port.own != nullptr               ? Cut::kByDescription
                       : !port.declared->initial.empty() ? Cut::kByComponent
                                                         : Cut::kNot;
-      Link link{{cut, by_name_[index]}, {}};
+      VariableArcs link{{cut, by_name_[index]}, {}};
       for (const PortRef consumer : variable.consumers) {
         const std::size_t to = position_[consumer.task];
         if (to == kMaxTasks) continue;
@@ -186,8 +186,9 @@ class SetOrder {
 
   /// The best to cut first.
   void rank_links() {
-    for (std::vector<Link>& of : links_)
-      std::stable_sort(of.begin(), of.end(), [](const Link& a, const Link& b) { return a.rank < b.rank; });
+    for (std::vector<VariableArcs>& of : links_)
+      std::stable_sort(of.begin(), of.end(),
+                       [](const VariableArcs& a, const VariableArcs& b) { return a.rank < b.rank; });
   }
 
   /// The shortest loop that starts with `first`, all of it in `component`; `arcs` by producer.
@@ -234,7 +235,7 @@ class SetOrder {
 
   /// The first link of `from` that is part of a loop; nullptr: none is, and none will be, because components only fall
   /// apart.
-  const Link* best_link(std::size_t from) {
+  const VariableArcs* best_link(std::size_t from) {
     std::size_t& at = first_link_[from];
     while (at < links_[from].size() && (links_[from][at].consumers & component_[from]).none()) ++at;
     return at < links_[from].size() ? &links_[from][at] : nullptr;
@@ -250,14 +251,14 @@ class SetOrder {
 
   /// Takes one variable out of a loop that waits for nothing but itself.
   void cut_a_loop() {
-    const Link* best = nullptr;
+    const VariableArcs* best = nullptr;
     std::size_t from = kMaxTasks;
     for (Tasks todo = looping_ &= left_; todo.any();) {
       const Tasks component = component_[todo._Find_first()];
       todo &= ~component;
       if (is_fed(component)) continue;
       for (std::size_t i = component._Find_first(); i < kMaxTasks; i = component._Find_next(i)) {
-        const Link* link = best_link(i);
+        const VariableArcs* link = best_link(i);
         if (link == nullptr) looping_.reset(i);
         if (link == nullptr || (best != nullptr && link->rank >= best->rank)) continue;
         best = link;
@@ -268,7 +269,7 @@ class SetOrder {
     cut(from, links_[from][first_link_[from]]);
   }
 
-  void cut(std::size_t from, Link& link) {
+  void cut(std::size_t from, VariableArcs& link) {
     const Tasks gone = link.consumers & component_[from];
     link.consumers &= ~gone;
     for (std::size_t to = gone._Find_first(); to < kMaxTasks; to = gone._Find_next(to)) {
@@ -298,7 +299,7 @@ class SetOrder {
   const std::vector<std::size_t>& by_name_;
   std::vector<std::size_t> position_;  // of a task in the set; kMaxTasks: it is not in it
   std::vector<Arc> arcs_;
-  std::vector<std::vector<Link>> links_;  // by producer
+  std::vector<std::vector<VariableArcs>> links_;  // by producer
   std::vector<std::size_t> first_link_;   // of those the first that may still be part of a loop
   std::vector<Tasks> next_, previous_;    // consumers and producers, cut arcs left out
   std::vector<Tasks> component_;          // of those that are not placed
