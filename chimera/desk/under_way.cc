@@ -8,6 +8,7 @@
 #include <new>
 
 #include "chimera/runtime/making.h"
+#include "chimera/runtime/task_word.h"
 #include "chimera/task/signal.h"
 #include "chimera/text/not_off.h"
 
@@ -53,10 +54,9 @@ std::string UnderWay::text() const {
 UnderWay::Method UnderWay::method() const {
   const std::size_t n = std::min<std::size_t>(n_tasks, kMostTasks);
   for (const std::uint32_t word : {running.load(), serving.load()}) {
-    const std::uint32_t task = (word >> 8) - 1, number = word & 255u;
-    if (word == 0 || task >= n || number >= CHIMERA_METHODS) continue;
-    const auto method = static_cast<chimera::Method>(number);
-    return {got(tasks[task].name), method_name(method), chimera::turns_off(method)};
+    const TaskWord found = TaskWord::found(word);
+    if (found.task().index >= n || !found.has_method()) continue;
+    return {got(tasks[found.task().index].name), method_name(found.method()), chimera::turns_off(found.method())};
   }
   return {};
 }

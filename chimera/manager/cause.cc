@@ -5,18 +5,18 @@
 
 #include "chimera/platform/lost_descriptor.h"
 #include "chimera/platform/process.h"
-#include "chimera/runtime/under_way.h"
+#include "chimera/runtime/task_word.h"
 #include "chimera/task/signal.h"
 
 namespace chimera::manager {
 
 std::string running_text(const ApplicationSpec& spec, std::uint32_t running) {
-  const std::uint32_t task = (running >> 8) - 1, method = running & 255u;
-  if (running == 0 || task >= spec.tasks.size()) return "";
-  if (method == kOpening) return "the opening of the object of " + std::string(spec.tasks[task].name);
-  if (method == kInBackground) return std::string(spec.tasks[task].name) + ".background";
-  if (method >= CHIMERA_METHODS) return "";
-  return std::string(spec.tasks[task].name) + "." + method_name(static_cast<Method>(method));
+  const TaskWord word = TaskWord::found(running);
+  if (word.task().index >= spec.tasks.size()) return "";
+  const std::string task(spec.tasks[word.task().index].name);
+  if (word.what() == TaskWord::kOpening) return "the opening of the object of " + task;
+  if (word.what() == TaskWord::kInBackground) return task + ".background";
+  return word.has_method() ? task + "." + method_name(word.method()) : "";
 }
 
 std::string hung_text(const ApplicationSpec& spec, const BlockHead& left) {

@@ -3,6 +3,7 @@
 #include "chimera/manager/driver.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/owned_descriptor.h"
@@ -95,9 +96,9 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
   PeerSegment predecessor;
   for (auto& [message, passed] : inventory) {
     if (message.kind != KeeperMessage::Kind::kPeer || message.index != peers->n_rtpus() || passed < 0) continue;
+    const OwnedDescriptor left(std::exchange(passed, -1));
     auto opened =
-        PeerSegment::open(passed, peers->manager_layout(), peers->n_tasks(), peers->n_rtpus(), message.incarnation);
-    passed = -1;
+        PeerSegment::open(left.fd, peers->manager_layout(), peers->n_tasks(), peers->n_rtpus(), message.incarnation);
     if (opened) predecessor = *std::move(opened);
   }
   auto own = OwnSegment::make(*peers, incarnation, predecessor.is_there() ? &predecessor : nullptr, now());

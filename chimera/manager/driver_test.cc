@@ -5,6 +5,7 @@
 
 #include "chimera/manager/testing/fake_subsystem.h"
 #include "chimera/manager/value_json.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera::manager {
 namespace {
@@ -51,7 +52,7 @@ TEST(Driver, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
-  fake.rtpu(0).block().head().running = (fake.task("filter").index + 1) << 8 | CHIMERA_CYCLE;
+  fake.rtpu(0).block().head().running = TaskWord(fake.task("filter"), Method::kCycle).word();
   fake.kill_rtpu(0, SIGSEGV);
   ASSERT_TRUE(fake.until([&] { return !fake.told("rtpu-ended").empty(); }));
   EXPECT_EQ(fake.told("rtpu-ended"), "servo ended by signal 11 (SIGSEGV) in filter.cycle\n");

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "chimera/manager/testing/fake_subsystem.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera::manager {
 namespace {
@@ -168,7 +169,7 @@ TEST_F(ManagerBackendTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
 }
 
 TEST_F(ManagerBackendTest, NoAnswerNamesTheRtpuAndWhatItWasDoing) {
-  fake_.rtpu(1).block().head().running = (fake_.task("law").index + 1) << 8 | CHIMERA_CYCLE;
+  fake_.rtpu(1).block().head().running = TaskWord(fake_.task("law"), Method::kCycle).word();
   fake_.rtpu(1).is_deaf = true;
   EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}),
             "-32006 no answer from rtpu spare {\"rtpu\":\"spare\",\"running\":\"law.cycle\"}");

@@ -17,7 +17,7 @@ struct MethodVerdict {
   std::uint32_t ended = 0;
 };
 
-/// Of one word: runtime/under_way.h. Context: setup.
+/// Of one word: runtime/task_word.h. Context: setup.
 class MethodWatch {
  public:
   /// `told`: how long one and the same is looked at until it is told; `head_start`: what it had taken before it was

@@ -1,36 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// The segments of all real-time units as the manager maps them.
 #include "chimera/manager/peers.h"
 
 #include <cstring>
 
-#include "chimera/base/message.h"
 #include "chimera/platform/owned_descriptor.h"
 
 namespace chimera::manager {
-
-Result<PeerSegment> PeerSegment::open(int descriptor, const PeerLayout& layout, std::uint32_t n_tasks,
-                                      std::uint32_t peer, std::uint32_t incarnation) {
-  const OwnedDescriptor passed(descriptor);
-  auto region = MemoryRegion::open_read_only(descriptor, peer_segment_bytes(layout.table(), n_tasks));
-  if (!region) return region.error();
-  if (auto table = SegmentView::open(region->bytes(), layout.table().hash()); !table) return table.error();
-  PeerSegment made;
-  made.block_ = BlockView(region->bytes().data() + block_offset(layout.table()), n_tasks);
-  const BlockHead& head = made.block_.head();
-  if (head.magic != kBlockMagic || head.peer != peer || head.incarnation != incarnation || head.n_tasks != n_tasks)
-    return (Message() << "segment says peer " << head.peer << " in incarnation " << head.incarnation << " with "
-                      << head.n_tasks << " tasks, expected " << peer << ", " << incarnation << ", " << n_tasks)
-        .error(ErrorCode::kBadInput);
-  made.region_ = *std::move(region);
-  made.layout_ = &layout;
-  made.incarnation_ = incarnation;
-  return made;
-}
-
-GroupReader PeerSegment::group(GroupId id) const noexcept {
-  const Link link = SegmentView::planned(layout_->table(), id, 0);
-  return GroupReader(region_.bytes().data() + link.offset, link.payload_bytes);
-}
 
 Result<Peers> Peers::create(const ApplicationSpec& spec) {
   Peers made(spec);
@@ -44,6 +20,7 @@ Result<Peers> Peers::create(const ApplicationSpec& spec) {
 }
 
 Result<void> Peers::map(RtpuId rtpu, std::uint32_t incarnation, int descriptor) {
+  const OwnedDescriptor passed(descriptor);
   auto segment = PeerSegment::open(descriptor, layout(rtpu), n_tasks(), rtpu.index, incarnation);
   if (!segment) return segment.error();
   segments_[rtpu.index] = std::make_shared<const PeerSegment>(*std::move(segment));

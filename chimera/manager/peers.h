@@ -7,34 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "chimera/platform/memory_region.h"
-#include "chimera/runtime/peer_layout.h"
-#include "chimera/runtime/rtpu_block.h"
-#include "chimera/table/segment.h"
+#include "chimera/runtime/peer_segment.h"
 #include "chimera/task/fault_record.h"
 
 namespace chimera::manager {
-
-/// A segment of peer number `peer`, checked and mapped. Move-only.
-class PeerSegment {
- public:
-  PeerSegment() noexcept = default;
-  /// Refuses what is not the segment of that incarnation of that peer, laid out as `layout` (which outlives it).
-  /// Takes over `descriptor` in any case. Context: setup; may block.
-  static Result<PeerSegment> open(int descriptor, const PeerLayout& layout, std::uint32_t n_tasks, std::uint32_t peer,
-                                  std::uint32_t incarnation);
-
-  bool is_there() const noexcept { return block_.is_there(); }
-  const BlockView& block() const noexcept { return block_; }
-  std::uint32_t incarnation() const noexcept { return incarnation_; }
-  GroupReader group(GroupId id) const noexcept;
-
- private:
-  MemoryRegion region_;
-  BlockView block_;
-  const PeerLayout* layout_ = nullptr;
-  std::uint32_t incarnation_ = 0;
-};
 
 /// All real-time units. Context: setup.
 class Peers {
@@ -50,7 +26,7 @@ class Peers {
   const PeerSegment& operator[](RtpuId rtpu) const noexcept { return *segments_[rtpu.index]; }
   /// The same to be kept: it stays mapped as long as somebody holds it.
   std::shared_ptr<const PeerSegment> hold(RtpuId rtpu) const noexcept { return segments_[rtpu.index]; }
-  /// Puts another incarnation in the place of the present one.
+  /// Puts another incarnation in the place of the present one. Closes `descriptor` in any case.
   Result<void> map(RtpuId rtpu, std::uint32_t incarnation, int descriptor);
 
   /// The segment of the task's rtpu; not there before it came.

@@ -2,14 +2,15 @@
 #include "chimera/manager/unfinished.h"
 
 #include "chimera/manager/cause.h"
+#include "chimera/runtime/task_word.h"
 #include "chimera/text/not_off.h"
 
 namespace chimera::manager {
 namespace {
 
 bool is_of(std::uint32_t word, TaskId task) {
-  const std::uint32_t method = word & 255u;
-  return (word >> 8) == task.index + 1 && method < CHIMERA_METHODS && turns_off(static_cast<Method>(method));
+  const TaskWord found = TaskWord::found(word);
+  return found.has_method() && found.task() == task && turns_off(found.method());
 }
 
 }  // namespace

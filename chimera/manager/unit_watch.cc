@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "chimera/manager/cause.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera::manager {
 namespace {
@@ -100,7 +101,7 @@ void UnitWatch::tell(RtpuId rtpu, const MethodVerdict& verdict, Nanoseconds at) 
   std::string& hang = world_.rtpus[rtpu.index].hang;
   const std::string text = what + (verdict.ended == 0 ? " for " : " ended after ") + seconds_text(verdict.since);
   if (verdict.ended == 0) hang += (hang.empty() ? "" : "; ") + text;
-  if (verdict.is_news) world_.tell("hang", TaskId((word >> 8) - 1), rtpu, text, at);
+  if (verdict.is_news) world_.tell("hang", TaskWord::found(word).task(), rtpu, text, at);
 }
 
 void UnitWatch::look_at_keeper(Nanoseconds at) {

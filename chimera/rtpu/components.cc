@@ -6,7 +6,7 @@
 
 #include "chimera/load/descriptor.h"
 #include "chimera/load/shared_object.h"
-#include "chimera/runtime/under_way.h"
+#include "chimera/runtime/task_word.h"
 #include "chimera/runtime/making.h"
 
 namespace chimera {
@@ -35,7 +35,7 @@ Result<std::vector<const chimera_component*>> load_components(const ApplicationI
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     if (tasks[t].rtpu != rtpu) continue;
     const ComponentPlace& place = image.places()[t];
-    serving.store(under_way(TaskId(t), kOpening), std::memory_order_release);
+    serving.store(TaskWord(TaskId(t), TaskWord::kOpening).word(), std::memory_order_release);
     show_making(making, t, Making::kLoads);
     auto found = opened.find(place.object_file);
     if (found == opened.end()) {

@@ -7,29 +7,13 @@
 
 #include "chimera/rtpu/ending.h"
 #include "chimera/runtime/release.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera {
 namespace {
 
 constexpr std::size_t kShownAtOnce = 4;
 constexpr Nanoseconds kLookWhileEnding = milliseconds(1);
-
-// Did the signal lead where it should?
-bool has_arrived(Signal signal, const SignalReport& report) noexcept {
-  if (!report.is_accepted) return false;
-  switch (signal) {
-    case Signal::kSpawn:
-    case Signal::kOff:
-    case Signal::kClear:
-      return report.after == State::kOff;
-    case Signal::kOn:
-      return report.after == State::kOn;
-    case Signal::kKill:
-      return report.after == State::kNotCreated;
-    default:
-      return report.after == report.before;
-  }
-}
 
 // The first that a signal calls.
 Method method_of(Signal signal) noexcept {
@@ -166,7 +150,7 @@ void Edge::turn_on(std::span<const Post> step, Releases& releases, Nanoseconds n
 }
 
 void Edge::report(const Post& signal, const SignalReport& done, Nanoseconds now) noexcept {
-  const bool arrived = has_arrived(done.signal, done);
+  const bool arrived = done.is_accepted && has_arrived(done.signal, done.before, done.after);
   const Refusal why = arrived || done.why != Refusal::kNone ? done.why : Refusal::kFault;
   report(signal, done.before, done.after, why, arrived, now);
 }
@@ -221,7 +205,7 @@ void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
   hangs_[task.index] = true;
   others_.keep_last_words(true);
   hanging_used_ = used.count;
-  hanging_job_ = (task.index + 1) << 8 | CHIMERA_CYCLE;
+  hanging_job_ = TaskWord(task, Method::kCycle).word();
   hanging_ = true;
   wake_supervisor();
 }
@@ -229,7 +213,7 @@ void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
 // Carries out a signal in sight of whoever supervises: its method may not come to its end.
 SignalReport Edge::carry_out(Releases& releases, std::span<const TaskId> tasks, Signal signal,
                              Nanoseconds now) noexcept {
-  acting_ = (tasks[0].index + 1) << 8 | static_cast<std::uint32_t>(method_of(signal));
+  acting_ = TaskWord(tasks[0], method_of(signal)).word();
   ++progress_;
   const SignalReport done = releases.signal(tasks, signal, now);
   acting_ = 0;

@@ -100,7 +100,7 @@ TEST_F(EdgeNoHeap, AnotherUnitAndAnotherManagerAreAdoptedWithoutAllocation) {
   EXPECT_EQ(run(milliseconds(2)), 0u);
   units_->start_manager(2);
   EXPECT_EQ(run(milliseconds(2)), 0u);
-  EXPECT_EQ(units_->units[1]->peers->at(0)->block.head().incarnation, 2u);
+  EXPECT_EQ(units_->units[1]->peers->at(0)->block().head().incarnation, 2u);
 }
 
 TEST_F(EdgeNoHeap, AComponentThatAllocatesIsSeen) {

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "chimera/runtime/task_word.h"
+
 namespace chimera {
 namespace {
 
-constexpr std::uint32_t kCycleOfFirst = 1 << 8 | 3, kOffOfFirst = 1 << 8 | 5;
+constexpr std::uint32_t kCycleOfFirst = TaskWord(TaskId(0u), Method::kCycle).word(),
+                        kOffOfFirst = TaskWord(TaskId(0u), Method::kOff).word();
 
 struct HangWatchTest : ::testing::Test {
   HangWatch watch{milliseconds(500)};

@@ -14,7 +14,7 @@ constexpr std::uint32_t kFlagIllegalSet = 1, kFlagRaised = 2;
 }  // namespace
 
 Others::Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
-               DecisionPage& decision, const KeeperPage& keeper, Peers& peers)
+               DecisionPage& decision, const KeeperPage& keeper, MappedPeers& peers)
     : spec_(&spec), me_(me), segment_(segment), block_(block), decision_(&decision), keeper_(&keeper), peers_(&peers),
       faults_(spec.tasks.size()), notes_(spec.tasks.size()), inboxes_(peers.count()), is_read_(peers.count()) {
   for (std::uint32_t peer = 0; peer < peers.count(); ++peer)
@@ -23,31 +23,29 @@ Others::Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byt
 }
 
 bool Others::lives(std::uint32_t peer) const noexcept {
-  const MappedPeer* mapped = peers_->at(peer);
-  return mapped != nullptr && keeper_->alive[peer].load(std::memory_order_acquire) == mapped->incarnation;
+  const PeerSegment* mapped = peers_->at(peer);
+  return mapped != nullptr && keeper_->alive[peer].load(std::memory_order_acquire) == mapped->incarnation();
 }
 
 State Others::state(TaskId task) const noexcept {
   const std::uint32_t peer = spec_->tasks[task.index].rtpu.index;
-  const MappedPeer* mapped = peers_->at(peer);
+  const PeerSegment* mapped = peers_->at(peer);
   if (mapped == nullptr) return State::kNotCreated;
-  const TaskStatus status = mapped->block.status(task);
+  const TaskStatus status = mapped->block().status(task);
   if (!lives(peer)) return status.state == State::kNotCreated ? State::kNotCreated : State::kError;
   return status.in_service && status.state == State::kOn ? State::kOff : status.state;
 }
 
 GroupReader Others::group(std::uint32_t peer, GroupId id) const noexcept {
-  const MappedPeer* mapped = peers_->at(peer);
-  if (mapped == nullptr) return {};
-  const GroupPlace& place = peers_->layout(peer).place(id);
-  return GroupReader(mapped->groups() + place.offset, place.payload_bytes);
+  const PeerSegment* mapped = peers_->at(peer);
+  return mapped == nullptr ? GroupReader() : mapped->group(id);
 }
 
 GroupReader Others::outputs(TaskId task) const noexcept {
   const std::uint32_t peer = spec_->tasks[task.index].rtpu.index;
-  const MappedPeer* mapped = peers_->at(peer);
+  const PeerSegment* mapped = peers_->at(peer);
   if (mapped == nullptr) return {};
-  return group(peer, peers_->layout(peer).outputs(task, mapped->block.status(task).incarnation));
+  return group(peer, peers_->layout(peer).outputs(task, mapped->block().status(task).incarnation));
 }
 
 GroupReader Others::constants(TaskId task) const noexcept {
@@ -125,8 +123,8 @@ void Others::keep_last_words(bool keeps) noexcept {
 void Others::watch_flags() noexcept {
   flags_.clear();
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
-    const MappedPeer* mapped = peer == me_ ? nullptr : peers_->at(peer);
-    if (mapped != nullptr && (peer == manager() || lives(peer))) flags_.push_back(&mapped->block.head().flag);
+    const PeerSegment* mapped = peer == me_ ? nullptr : peers_->at(peer);
+    if (mapped != nullptr && (peer == manager() || lives(peer))) flags_.push_back(&mapped->block().head().flag);
   }
   tasks_->watch_flags(flags_);
 }
@@ -150,9 +148,9 @@ bool Others::adopt() noexcept {
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
     if (peer == me_ || is_read_[peer] || !peers_->adopt(peer)) continue;
     any = true;
-    const MappedPeer& mapped = *peers_->at(peer);
-    outboxes_[peer].set_reader(&mapped.block.progress(me_));
-    inboxes_[peer] = Inbox(mapped.block.outbox(me_), block_.progress(peer), mapped.incarnation);
+    const PeerSegment& mapped = *peers_->at(peer);
+    outboxes_[peer].set_reader(&mapped.block().progress(me_));
+    inboxes_[peer] = Inbox(mapped.block().outbox(me_), block_.progress(peer), mapped.incarnation());
     if (peer == manager()) tasks_->let_go(TaskId());
     for (const TaskSpec& task : spec_->tasks)
       if (task.rtpu.index == peer) tasks_->let_go(TaskId(static_cast<std::size_t>(&task - spec_->tasks.data())));

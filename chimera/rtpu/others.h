@@ -18,7 +18,7 @@ class Others final : public Neighbours {
  public:
   /// `segment` is the unit's own, writable; `block` lies in it.
   Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
-         DecisionPage& decision, const KeeperPage& keeper, Peers& peers);
+         DecisionPage& decision, const KeeperPage& keeper, MappedPeers& peers);
   /// By whom the states to publish are known. Context: setup.
   void attach(TaskSet& tasks) noexcept { tasks_ = &tasks; }
   /// While it keeps them nobody is told of states: what was ON when the unit began to end alone comes back with its
@@ -46,8 +46,8 @@ class Others final : public Neighbours {
   std::uint32_t changes() const noexcept { return decision_->changes.load(std::memory_order_acquire); }
   /// Does the manager want the task's publications on the tap? Not while there is no manager. Context: edge; wait-free.
   bool is_wanted_on_tap(TaskId task) const noexcept {
-    const MappedPeer* there = peers_->at(manager());
-    return there != nullptr && there->block.is_tapped(task);
+    const PeerSegment* there = peers_->at(manager());
+    return there != nullptr && there->block().is_tapped(task);
   }
   std::uint32_t manager() const noexcept { return static_cast<std::uint32_t>(spec_->rtpus.size()); }
   const BlockOwner& block() const noexcept { return block_; }
@@ -67,7 +67,7 @@ class Others final : public Neighbours {
   BlockOwner block_;
   DecisionPage* decision_;
   const KeeperPage* keeper_;
-  Peers* peers_;
+  MappedPeers* peers_;
   TaskSet* tasks_ = nullptr;
   bool keeps_last_words_ = false;
   std::vector<std::uint64_t> faults_, notes_;  // by task: of those that were told

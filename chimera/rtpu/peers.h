@@ -9,30 +9,18 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/platform/memory_region.h"
-#include "chimera/runtime/peer_layout.h"
-#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/peer_segment.h"
 
 namespace chimera {
 
-/// One incarnation of a peer, mapped read-only.
-struct MappedPeer {
-  MemoryRegion region;
-  std::uint32_t incarnation = 0;
-  BlockView block;
-  MappedPeer* next = nullptr;  ///< in the list of those let go
-
-  const std::byte* groups() const noexcept { return region.bytes().data() + sizeof(SegmentHeader); }
-};
-
 /// Owns all mappings. Peer numbers as in docs/formats/processes.md.
-class Peers {
+class MappedPeers {
  public:
   /// Computes the layouts of all peers. Context: setup.
-  static Result<std::unique_ptr<Peers>> create(const ApplicationSpec& spec);
-  Peers(const Peers&) = delete;
-  Peers& operator=(const Peers&) = delete;
-  ~Peers();
+  static Result<std::unique_ptr<MappedPeers>> create(const ApplicationSpec& spec);
+  MappedPeers(const MappedPeers&) = delete;
+  MappedPeers& operator=(const MappedPeers&) = delete;
+  ~MappedPeers();
 
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(slots_.size()); }
   const PeerLayout& layout(std::uint32_t peer) const noexcept { return *layouts_[peer]; }
@@ -49,20 +37,29 @@ class Peers {
   /// Nothing reads the predecessor of the adopted segment any more. Context: edge; wait-free.
   void let_go(std::uint32_t peer) noexcept;
   /// The adopted segment; nullptr: none yet. Context: edge; wait-free.
-  const MappedPeer* at(std::uint32_t peer) const noexcept { return slots_[peer]->present; }
+  const PeerSegment* at(std::uint32_t peer) const noexcept {
+    const Mapping* present = slots_[peer]->present;
+    return present == nullptr ? nullptr : &present->segment;
+  }
 
  private:
+  struct Mapping {
+    PeerSegment segment;
+    Mapping* next = nullptr;  // in the list of those let go
+  };
   struct Slot {
-    std::atomic<MappedPeer*> offered{nullptr};
-    MappedPeer* present = nullptr;
-    MappedPeer* previous = nullptr;
+    // SYNC: offer() (main thread) releases a mapping that is whole; adopt() (thread that cycles) acquires it.
+    std::atomic<Mapping*> offered{nullptr};
+    Mapping* present = nullptr;   // by the thread that cycles
+    Mapping* previous = nullptr;  // by the thread that cycles
   };
 
-  Peers() = default;
+  MappedPeers() = default;
   const ApplicationSpec* spec_ = nullptr;
   std::vector<std::unique_ptr<PeerLayout>> layouts_;
   std::vector<std::unique_ptr<Slot>> slots_;
-  std::atomic<MappedPeer*> released_{nullptr};
+  // SYNC: let_go() (thread that cycles) releases the list; clear() (main thread) acquires it and unmaps.
+  std::atomic<Mapping*> released_{nullptr};
 };
 
 }  // namespace chimera

@@ -29,6 +29,7 @@
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/service_thread.h"
 #include "chimera/runtime/making.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera {
 namespace {
@@ -68,7 +69,7 @@ class Rtpu {
   bool hangs();
   bool loop_hangs();
   bool give_up(std::uint32_t method, Nanoseconds waited);
-  std::uint64_t jobs_of(std::uint32_t task) const;
+  std::uint64_t jobs_of(TaskId task) const;
 
   std::atomic<std::uint32_t>& bell() { return decision_->bells[start_.peer].word; }
   const RtpuSpec& self() const { return image_->spec().rtpus[start_.peer]; }
@@ -83,7 +84,7 @@ class Rtpu {
   std::unique_ptr<ApplicationImage> image_;
   DecisionPage* decision_ = nullptr;
   const KeeperPage* keeper_ = nullptr;
-  std::unique_ptr<Peers> peers_;
+  std::unique_ptr<MappedPeers> peers_;
   MemoryRegion segment_;
   BlockOwner block_;
   std::vector<const chimera_component*> components_;
@@ -142,7 +143,7 @@ Result<void> Rtpu::map() {
   if (!keeper) return keeper.error();
   keeper_pages_ = *std::move(keeper);
   keeper_ = reinterpret_cast<const KeeperPage*>(keeper_pages_.bytes().data());
-  auto peers = Peers::create(image_->spec());
+  auto peers = MappedPeers::create(image_->spec());
   if (!peers) return peers.error();
   peers_ = *std::move(peers);
   return {};
@@ -221,8 +222,9 @@ bool Rtpu::hangs() {
   const BlockHead& head = block_.head();
   const std::uint32_t running = head.running, serving = is_ending_ ? head.serving.load() : 0;
   const std::uint32_t acting = edge_->acting() != 0 ? edge_->acting() : serving;
+  const bool is_same_task = TaskWord::found(running).task() == TaskWord::found(acting).task();
   if (hang_watch_->method_hangs(acting, edge_->progress(), now))
-    return give_up(running >> 8 == acting >> 8 ? running : acting, limit);  // error, after the one that was called
+    return give_up(is_same_task ? running : acting, limit);  // `running` is error, after the method that was called
   if (loop_hangs()) return give_up(running, limit);
   const bool end_hangs = is_ending_ && hang_watch_->end_hangs(edge_->progress(), now);
   return end_hangs && give_up(running != 0 ? running : serving, limit);
@@ -238,7 +240,7 @@ bool Rtpu::give_up(std::uint32_t method, Nanoseconds waited) {
 // For whoever watches this process: BlockHead.
 void Rtpu::attend() {
   BlockHead& head = block_.head();
-  head.jobs.store(static_cast<std::uint32_t>(jobs_of((head.running >> 8) - 1)), std::memory_order_relaxed);
+  head.jobs.store(static_cast<std::uint32_t>(jobs_of(TaskWord::found(head.running).task())), std::memory_order_relaxed);
   head.background.store(writer_.longest(kLongBackground), std::memory_order_relaxed);
   head.attended.fetch_add(1, std::memory_order_release);
 }
@@ -296,16 +298,16 @@ void Rtpu::end(bool is_alone) {
 }
 
 // Jobs of that task that have ended, as far as the loop's own thread has counted.
-std::uint64_t Rtpu::jobs_of(std::uint32_t task) const {
-  if (task >= tasks_->tasks().size()) return 0;
-  return __atomic_load_n(&tasks_->tasks()[task].profile.execution[CHIMERA_CYCLE].count, __ATOMIC_RELAXED);
+std::uint64_t Rtpu::jobs_of(TaskId task) const {
+  if (task.index >= tasks_->tasks().size()) return 0;
+  return __atomic_load_n(&tasks_->tasks()[task.index].profile.execution[CHIMERA_CYCLE].count, __ATOMIC_RELAXED);
 }
 
 // The preemptive executor has a supervisor of its own for this.
 bool Rtpu::loop_hangs() {
   if (self().preemptive) return false;
   const std::uint32_t running = block_.head().running;
-  return hang_watch_->loop_hangs(running, block_.head().beats + jobs_of((running >> 8) - 1), wall_.now());
+  return hang_watch_->loop_hangs(running, block_.head().beats + jobs_of(TaskWord::found(running).task()), wall_.now());
 }
 
 // What components left behind is the keeper's to end, as long as there is one.

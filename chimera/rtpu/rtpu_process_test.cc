@@ -47,7 +47,7 @@ struct RtpuProcess : ::testing::Test {
     own = *MemoryRegion::create("manager", peer_segment_bytes(layout->table(), 1));
     ASSERT_TRUE(SegmentOwner::format(own.writable(), layout->table()));
     block = BlockOwner(own.writable().data() + block_offset(layout->table()), 1, 1, 1, 2);
-    peers = *Peers::create(app.spec);
+    peers = *MappedPeers::create(app.spec);
     start();
   }
   void start() {
@@ -86,8 +86,8 @@ struct RtpuProcess : ::testing::Test {
     message.index = 1;
     message.incarnation = 1;
     ASSERT_TRUE(channel.send(bytes_of(message), own.descriptor()));
-    outbox = Outbox(block.outbox(0), &peers->at(0)->block.progress(1), 1);
-    inbox = Inbox(peers->at(0)->block.outbox(1), block.progress(0), 1);
+    outbox = Outbox(block.outbox(0), &peers->at(0)->block().progress(1), 1);
+    inbox = Inbox(peers->at(0)->block().outbox(1), block.progress(0), 1);
     ASSERT_TRUE(soon([&] { return outbox.is_followed(); }));
   }
   Post signal(Signal signal) {
@@ -105,10 +105,10 @@ struct RtpuProcess : ::testing::Test {
     return post;
   }
   std::int64_t count() {
-    const GroupPlace& place = peers->layout(0).place(peers->layout(0).outputs(kCounter, 1));
-    std::vector<std::byte> values(place.payload_bytes);
+    const GroupReader group = peers->at(0)->group(peers->layout(0).outputs(kCounter, 1));
+    std::vector<std::byte> values(group.payload_bytes());
     chimera_slot slot;
-    EXPECT_TRUE(GroupReader(peers->at(0)->groups() + place.offset, place.payload_bytes).try_read(slot, values.data()));
+    EXPECT_TRUE(group.try_read(slot, values.data()));
     std::int64_t n;
     std::memcpy(&n, values.data(), sizeof n);
     return n;
@@ -127,7 +127,7 @@ struct RtpuProcess : ::testing::Test {
   DecisionPage* decision = nullptr;
   KeeperPage* keeper = nullptr;
   BlockOwner block;
-  std::unique_ptr<Peers> peers;
+  std::unique_ptr<MappedPeers> peers;
   Channel channel;
   Process process;
   Outbox outbox;
@@ -143,8 +143,8 @@ TEST_F(RtpuProcess, CyclesWhatItsManagerTurnsOnAndGoesOnWithoutOne) {
   keeper->alive[1] = 0;  // the manager is dead
   const std::int64_t then = count();
   EXPECT_TRUE(soon([&] { return count() > then + 20; }));
-  EXPECT_TRUE(soon([&] { return peers->at(0)->block.profile(kCounter).cycles > 20; }));
-  EXPECT_TRUE(std::string_view(peers->at(0)->block.head().grant).starts_with("WARNING: not real time\n"));
+  EXPECT_TRUE(soon([&] { return peers->at(0)->block().profile(kCounter).cycles > 20; }));
+  EXPECT_TRUE(std::string_view(peers->at(0)->block().head().grant).starts_with("WARNING: not real time\n"));
 }
 
 TEST_F(RtpuProcess, EndsItsTasksWhenTold) {
@@ -157,8 +157,8 @@ TEST_F(RtpuProcess, EndsItsTasksWhenTold) {
   const ProcessEnd ended = end();
   EXPECT_FALSE(ended.by_signal);
   EXPECT_EQ(ended.code, 0);
-  EXPECT_EQ(peers->at(0)->block.status(kCounter).state, State::kNotCreated);
-  EXPECT_EQ(peers->at(0)->block.head().phase, PeerPhase::kEnded);
+  EXPECT_EQ(peers->at(0)->block().status(kCounter).state, State::kNotCreated);
+  EXPECT_EQ(peers->at(0)->block().head().phase, PeerPhase::kEnded);
 }
 
 TEST_F(RtpuProcess, EndsItsTasksWhenItsKeeperIsGone) {
@@ -167,7 +167,7 @@ TEST_F(RtpuProcess, EndsItsTasksWhenItsKeeperIsGone) {
   signal(Signal::kOn);
   channel = Channel();
   EXPECT_EQ(end().code, 0);
-  EXPECT_EQ(peers->at(0)->block.status(kCounter).state, State::kNotCreated);
+  EXPECT_EQ(peers->at(0)->block().status(kCounter).state, State::kNotCreated);
 }
 
 TEST_F(RtpuProcess, ItsLastWordsSayWhatRanWhenItDies) {
@@ -177,7 +177,7 @@ TEST_F(RtpuProcess, ItsLastWordsSayWhatRanWhenItDies) {
   EXPECT_TRUE(soon([&] { return count() > 3; }));
   process.signal(SIGKILL);
   EXPECT_TRUE(end().by_signal);
-  EXPECT_EQ(peers->at(0)->block.status(kCounter).state, State::kOn);
+  EXPECT_EQ(peers->at(0)->block().status(kCounter).state, State::kOn);
 }
 
 struct RtpuWithAnotherComponent : RtpuProcess {
@@ -187,7 +187,7 @@ struct RtpuWithAnotherComponent : RtpuProcess {
 TEST_F(RtpuWithAnotherComponent, SaysWhyItCannotStart) {
   ASSERT_TRUE(soon([&] { return take_segment(); }));
   EXPECT_EQ(end().code, 1);
-  EXPECT_STREQ(peers->at(0)->block.head().grant,
+  EXPECT_STREQ(peers->at(0)->block().head().grant,
                "component t_counter was built anew since it was verified; run again");
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "chimera/runtime/job_step.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera::cycle_step {
 
@@ -30,7 +31,7 @@ namespace chimera::cycle_step {
 
 /// Says which method runs, for whoever finds the process dead.
 [[gnu::always_inline]] inline void show_running(Task& task, std::uint32_t method) noexcept {
-  task.running->store((task.id.index + 1) << 8 | method, std::memory_order_relaxed);
+  task.running->store(TaskWord(task.id, method).word(), std::memory_order_relaxed);
 }
 
 /// sync() of an aperiodic task: kOk when there is an event.

@@ -4,14 +4,14 @@
 namespace chimera {
 
 std::uint32_t task_of_making(std::uint32_t word, std::size_t n_tasks) noexcept {
-  const std::uint32_t task = (word >> 8) - 1, what = word & 255u;
+  const std::uint32_t task = TaskWord::found(word).task().index, what = TaskWord::found(word).what();
   const bool is_known = what == static_cast<std::uint32_t>(Making::kLoads) ||
                         what == static_cast<std::uint32_t>(Making::kConstructs);
   return is_known && task < n_tasks ? task : UINT32_MAX;
 }
 
 std::string making_text(std::uint32_t word, std::string_view task, std::string_view object) {
-  const bool loads = (word & 255u) == static_cast<std::uint32_t>(Making::kLoads);
+  const bool loads = TaskWord::found(word).what() == static_cast<std::uint32_t>(Making::kLoads);
   return std::string(loads ? "while it loaded " : "while it constructed a state of ") + std::string(object) +
          ", the component of task '" + std::string(task) + "'";
 }

@@ -8,13 +8,15 @@
 #include <string>
 #include <string_view>
 
+#include "chimera/runtime/task_word.h"
+
 namespace chimera {
 
 enum class Making : std::uint32_t { kNothing, kLoads, kConstructs };
 
 /// From here on `what` is done for the task of that index. Context: setup; wait-free.
 inline void show_making(std::atomic<std::uint32_t>& cell, std::size_t task, Making what) noexcept {
-  cell.store(static_cast<std::uint32_t>(task + 1) << 8 | static_cast<std::uint32_t>(what), std::memory_order_relaxed);
+  cell.store(TaskWord(TaskId(task), static_cast<std::uint32_t>(what)).word(), std::memory_order_relaxed);
 }
 /// From here on nothing is made. Context: setup; wait-free.
 inline void show_made(std::atomic<std::uint32_t>& cell) noexcept { cell.store(0, std::memory_order_relaxed); }

@@ -4,7 +4,7 @@
 
 #include "chimera/runtime/making.h"
 #include "chimera/runtime/task_set.h"
-#include "chimera/runtime/under_way.h"
+#include "chimera/runtime/task_word.h"
 #include "chimera/task/background.h"
 #include "chimera/task/event_source.h"
 
@@ -171,7 +171,7 @@ Answer TaskSet::run_method(Task& task, Method method, Nanoseconds now, JobClock*
   MethodGate* gate = clock == clock_ ? gate_ : nullptr;  // not on the service thread
   const bool is_at_edge = task.running != place_.serving;
   if (is_at_edge)
-    place_.at_edge->store(under_way(task.id, static_cast<std::uint32_t>(method)), std::memory_order_relaxed);
+    place_.at_edge->store(TaskWord(task.id, method).word(), std::memory_order_relaxed);
   if (gate != nullptr) gate->open(task.id);
   Answer answer = call_method(task, method, now);
   if (gate != nullptr) gate->close(task.id);
@@ -193,7 +193,7 @@ Answer TaskSet::construct(Task& task, Nanoseconds now) {
 
 bool TaskSet::begin_background(Task& task, Nanoseconds now) {
   task.background = background_of(*task.component);
-  const std::uint32_t tag = under_way(task.id, kInBackground);
+  const std::uint32_t tag = TaskWord(task.id, TaskWord::kInBackground).word();
   if (task.background == nullptr || writer_ == nullptr) return true;
   if (writer_->add(task.instance, task.background, tag)) return true;
   task.background = nullptr;
@@ -232,7 +232,7 @@ void TaskSet::serve(TaskId id, JobClock& clock) {
   contexts_[id.index].clock = &clock;
   task.running = place_.serving;
   if (serving.constructs) {
-    task.running->store(under_way(id, CHIMERA_INIT), std::memory_order_relaxed);
+    task.running->store(TaskWord(id, Method::kInit).word(), std::memory_order_relaxed);
     serving.answer = construct(task, clock.now());
   } else {
     const Method method = rule(serving.step).method;

@@ -17,18 +17,6 @@ namespace {
 /// `init` and `kill` may take longer than an answer: while one is under way, it is waited for at most this long.
 constexpr Nanoseconds kServiceLimit = seconds(60);
 
-/// Did the signal lead where it should?
-bool is_reached(const Reported& report) {
-  switch (report.signal) {
-    case Signal::kSpawn:
-    case Signal::kOff:
-    case Signal::kClear: return report.after == State::kOff;
-    case Signal::kOn: return report.after == State::kOn;
-    case Signal::kKill: return report.after == State::kNotCreated;
-    default: return report.after == report.before;
-  }
-}
-
 }  // namespace
 
 struct Subsystem::Parts {
@@ -112,7 +100,7 @@ void Subsystem::Parts::on_event(const Reported& report) {
 
 SignalRefusal Subsystem::Parts::refusal_of(const Reported& report) const {
   if (report.accepted) {
-    if (is_reached(report)) return {};
+    if (has_arrived(report.signal, report.before, report.after)) return {};
     const std::string end = std::string("ended in state ") + state_name(report.after);
     return {RefusalKind::kFault, report.text.empty() ? end : report.text, {}};
   }

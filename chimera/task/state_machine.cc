@@ -60,6 +60,17 @@ Answer answer_of(Method method, std::int32_t value) noexcept {
   return Answer::kFault;
 }
 
+bool has_arrived(Signal signal, State before, State after) noexcept {
+  switch (signal) {
+    case Signal::kSpawn:
+    case Signal::kOff:
+    case Signal::kClear: return after == State::kOff;
+    case Signal::kOn: return after == State::kOn;
+    case Signal::kKill: return after == State::kNotCreated;
+    default: return after == before;
+  }
+}
+
 const char* state_name(State state) noexcept {
   constexpr const char* kNames[kStates] = {"NOT-CREATED", "OFF", "ON", "ERROR"};
   return kNames[static_cast<int>(state)];

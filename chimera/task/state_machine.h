@@ -65,6 +65,10 @@ Next next(State state, Signal signal, bool aperiodic) noexcept;
 /// Context: any; wait-free.
 Answer answer_of(Method method, std::int32_t value) noexcept;
 
+/// True when `signal`, sent in state `before`, has done what it is for by state `after`: spawn, off and clear lead to
+/// OFF, on to ON, kill to NOT-CREATED; any other signal leaves the state as it was. Context: any; wait-free.
+bool has_arrived(Signal signal, State before, State after) noexcept;
+
 /// The word of shell, JSON and messages: "NOT-CREATED". Context: any; wait-free.
 const char* state_name(State state) noexcept;
 

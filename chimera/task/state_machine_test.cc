@@ -172,5 +172,22 @@ TEST(StateMachine, TakesAnAnswerThatIsNotOneForAFault) {
   EXPECT_EQ(answer_of(Method::kError, -1), Answer::kFault);
 }
 
+TEST(StateMachine, ASignalHasArrivedWhereItLeadsAndNowhereElse) {
+  struct {
+    Signal signal;
+    State before, after;
+  } const arrived[] = {
+      {Signal::kSpawn, State::kNotCreated, State::kOff}, {Signal::kOn, State::kOff, State::kOn},
+      {Signal::kOff, State::kOn, State::kOff},           {Signal::kClear, State::kError, State::kOff},
+      {Signal::kKill, State::kOn, State::kNotCreated},   {Signal::kKill, State::kOff, State::kNotCreated},
+      {Signal::kReinit, State::kOn, State::kOn},         {Signal::kReinit, State::kOff, State::kOff}};
+  for (const auto& story : arrived)
+    for (int s = 0; s < kStates; ++s) {
+      const auto after = static_cast<State>(s);
+      EXPECT_EQ(has_arrived(story.signal, story.before, after), after == story.after)
+          << signal_name(story.signal) << " ended in " << state_name(after);
+    }
+}
+
 }  // namespace
 }  // namespace chimera

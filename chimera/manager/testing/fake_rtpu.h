@@ -16,6 +16,7 @@
 #include "chimera/manager/peers.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/linux_clock.h"
+#include "chimera/platform/owned_descriptor.h"
 #include "chimera/task/fault_record.h"
 
 namespace chimera::manager {
@@ -52,6 +53,7 @@ class FakeRtpu {
   std::uint32_t manager() const noexcept { return static_cast<std::uint32_t>(spec_.rtpus.size()); }
   /// Takes over the descriptor of a manager's segment.
   void meet(int descriptor, std::uint32_t incarnation) {
+    const OwnedDescriptor passed(descriptor);
     auto segment = PeerSegment::open(descriptor, manager_layout_, tasks(), manager(), incarnation);
     ASSERT_TRUE(segment) << segment.error().message.c_str();
     const std::scoped_lock lock(mutex_);

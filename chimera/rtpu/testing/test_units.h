@@ -46,8 +46,8 @@ struct OwnSegment {
 struct Unit {
   Unit(const ApplicationSpec& spec, std::span<const chimera_component* const> components, std::uint32_t me,
        std::uint32_t incarnation, DecisionPage& decision, KeeperPage& keeper)
-      : bell(decision.bells[me].word), segment(spec, me, incarnation), peers(*Peers::create(spec)), clock(decision_now),
-        others(spec, me, segment.region.writable(), segment.block, decision, keeper, *peers) {
+      : bell(decision.bells[me].word), segment(spec, me, incarnation), peers(*MappedPeers::create(spec)),
+        clock(decision_now), others(spec, me, segment.region.writable(), segment.block, decision, keeper, *peers) {
     const ContextPlace place{RtpuId(me), segment.region.writable().subspan(sizeof(SegmentHeader)), &others, &service,
                              &segment.block.head().running, &segment.block.head().serving};
     auto made = TaskSet::create(spec, components, place);
@@ -84,7 +84,7 @@ struct Unit {
   static inline Nanoseconds decision_now{};
   Doorbell bell;
   OwnSegment segment;
-  std::unique_ptr<Peers> peers;
+  std::unique_ptr<MappedPeers> peers;
   VirtualClock clock;
   ComputingClock job_clock{clock};
   HandService service;

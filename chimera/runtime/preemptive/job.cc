@@ -205,7 +205,7 @@ void PreemptiveExecutor::show(JobThread& job, Nanoseconds now) noexcept {
 void PreemptiveExecutor::show_running() noexcept {
   const JobThread* top = on_processor_;
   const bool is_begun = top != nullptr && top->phase == JobPhase::kBegun;
-  const std::uint32_t word = is_begun ? (top->task.index + 1) << 8 | CHIMERA_CYCLE : 0;
+  const std::uint32_t word = is_begun ? TaskWord(top->task, Method::kCycle).word() : 0;
   tasks_[0].running->store(word, std::memory_order_relaxed);
 }
 
