@@ -4,7 +4,7 @@
 #include "bench/bench.h"
 #include "bench/tasks.h"
 #include "chimera/platform/linux_clock.h"
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/releases.h"
 #include "chimera/runtime/executive/executive.h"
 
 namespace chimera::bench {
@@ -16,8 +16,7 @@ void run(int repetitions) {
   Axes axes(2, [](std::uint32_t) { return milliseconds(1); }, form);
   LinuxClock clock;
   ComputingClock job_clock(clock);
-  axes.set().attach(job_clock);
-  Releases releases(axes.set(), {});
+  Releases releases(axes.set(), job_clock, {});
   if (!axes.set().start(clock.now())) std::exit(1);
   releases.begin(clock.now());
   Comparison cycles(repetitions);

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "chimera/desk/run.h"
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/releases.h"
 
 namespace chimera::desk {
 

@@ -9,7 +9,7 @@
 #include "chimera/analysis/task_profile.h"
 #include "chimera/desk/expectation.h"
 #include "chimera/desk/run_verdict.h"
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/releases.h"
 
 namespace chimera::desk {
 

@@ -83,13 +83,16 @@ void CyclingThread::make_loop() {
   executive_ = std::make_unique<Executive>(place_.tasks, *clock_, *job_clock_, options());
 }
 
+// The reaction `stop` of a task: all tasks of the unit go OFF, and the unit goes on.
+void CyclingThread::answer_stop(Releases& releases, Nanoseconds now) noexcept {
+  place_.edge.stop_all(releases.signals(), releases.settlement().stopped_by(), now);
+  releases.settlement().forget_stop();
+}
+
 void CyclingThread::run_loop() {
   executive_->start(place_.origin);
   place_.others.changed();
-  while (executive_->run(kNever) == RunEnd::kTaskStopped) {
-    place_.edge.stop_all(executive_->releases(), clock_->now());
-    executive_->releases().forget_stop();
-  }
+  while (executive_->run(kNever) == RunEnd::kTaskStopped) answer_stop(executive_->releases(), clock_->now());
 }
 
 void CyclingThread::make_threads(int ceiling) {
@@ -109,10 +112,7 @@ void CyclingThread::run_threads() {
   preemptive_->start(place_.origin);
   place_.others.changed();
   while (preemptive_->run(kNever) == RunEnd::kTaskStopped)
-    preemptive_->at_edge([this] {
-      place_.edge.stop_all(preemptive_->releases(), wall_.now());
-      preemptive_->releases().forget_stop();
-    });
+    preemptive_->at_edge([this] { answer_stop(preemptive_->releases(), wall_.now()); });
 }
 
 }  // namespace chimera

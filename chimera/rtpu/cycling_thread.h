@@ -53,6 +53,7 @@ class CyclingThread {
   const RtpuSpec& self() const { return place_.spec.rtpus[place_.me]; }
   BlockHead& head() const { return place_.others.block().head(); }
   RunOptions options();
+  void answer_stop(Releases& releases, Nanoseconds now) noexcept;
   void make_loop();
   void run_loop();
   void make_threads(int ceiling);

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "chimera/rtpu/ending.h"
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/edge_signals.h"
 #include "chimera/runtime/task_word.h"
 
 namespace chimera {
@@ -38,15 +38,15 @@ Edge::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service&
   set_due({});  // the first edge looks around
 }
 
-void Edge::take(Releases& releases, Nanoseconds now) noexcept {
+void Edge::take(EdgeSignals& signals, Nanoseconds now) noexcept {
   listen();
   set_due(kNever);
   others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
   look_around();
-  take_served(releases, now);
-  if (ending_) return go_on_ending(releases, now);  // nothing is begun any more
+  take_served(signals, now);
+  if (ending_) return go_on_ending(signals, now);  // nothing is begun any more
   take_posts();
-  act_on_waiting(releases, now);
+  act_on_waiting(signals, now);
 }
 
 void Edge::look_around() noexcept {
@@ -69,9 +69,9 @@ void Edge::take_posts() noexcept {
   }
 }
 
-void Edge::take_served(Releases& releases, Nanoseconds now) noexcept {
+void Edge::take_served(EdgeSignals& signals, Nanoseconds now) noexcept {
   for (TaskId task; service_.take_served(task);) {
-    const SignalReport served = releases.served(task, now);
+    const SignalReport served = signals.served(task, now);
     if (!served.is_deferred) report(commands_[task.index], served, now);
     if (!served.is_deferred) commands_[task.index] = {};
   }
@@ -85,26 +85,26 @@ std::size_t Edge::step_length(std::size_t first) const noexcept {
 }
 
 // A task keeps the order of its signals: one that is being served, or that has an earlier signal waiting, waits.
-bool Edge::may_act(std::span<const Post> step, Releases& releases) noexcept {
+bool Edge::may_act(std::span<const Post> step, EdgeSignals& signals) noexcept {
   bool may = true;
   for (const Post& post : step) {
     const Task& task = tasks_.tasks()[post.task.index];
-    may = may && !task.in_service && !blocked_[post.task.index] && releases.may_touch(post.task);
+    may = may && !task.in_service && !blocked_[post.task.index] && signals.may_touch(post.task);
   }
   if (!may)
     for (const Post& post : step) blocked_[post.task.index] = true;
   return may;
 }
 
-void Edge::act_on_waiting(Releases& releases, Nanoseconds now) noexcept {
+void Edge::act_on_waiting(EdgeSignals& signals, Nanoseconds now) noexcept {
   std::fill(blocked_.begin(), blocked_.end(), false);
   std::size_t kept = 0, at = 0;
   while (at < waiting_.size()) {
     const std::size_t n = step_length(at);
     const std::span<const Post> step(waiting_.begin() + at, n == 0 ? waiting_.size() - at : n);
     at += step.size();
-    if (n != 0 && may_act(step, releases)) {
-      act(step, releases, now);
+    if (n != 0 && may_act(step, signals)) {
+      act(step, signals, now);
       continue;
     }
     for (const Post& post : step) waiting_[kept++] = post;
@@ -126,22 +126,22 @@ bool Edge::refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept 
   return true;
 }
 
-void Edge::act(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept {
+void Edge::act(std::span<const Post> step, EdgeSignals& signals, Nanoseconds now) noexcept {
   if (refuse_illegal(step, now)) return;
-  if (step[0].signal == Signal::kOn) return turn_on(step, releases, now);
+  if (step[0].signal == Signal::kOn) return turn_on(step, signals, now);
   for (const Post& post : step) {
     const bool is_echo = post.signal == Signal::kReinit && post.detail != 0;
     if (is_echo && !tasks_.uses_changed_constants(post.task)) continue;
-    const SignalReport done = carry_out(releases, {&post.task, 1}, post.signal, now);
+    const SignalReport done = carry_out(signals, {&post.task, 1}, post.signal, now);
     if (done.is_deferred) commands_[post.task.index] = post;
     else report(post, done, now);
   }
 }
 
-void Edge::turn_on(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept {
+void Edge::turn_on(std::span<const Post> step, EdgeSignals& signals, Nanoseconds now) noexcept {
   FixedVector<TaskId, kWaiting> tasks;
   for (const Post& post : step) (void)tasks.try_push(post.task);
-  const SignalReport done = carry_out(releases, {tasks.begin(), tasks.size()}, Signal::kOn, now);
+  const SignalReport done = carry_out(signals, {tasks.begin(), tasks.size()}, Signal::kOn, now);
   for (const Post& post : step) {
     const State after = tasks_.tasks()[post.task.index].state;
     const Refusal why = post.task == done.task ? done.why : Refusal::kNone;
@@ -185,7 +185,7 @@ void Edge::told(const SignalReport& done, Nanoseconds now) noexcept {
   others_.tell(post);
 }
 
-void Edge::missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept {
+void Edge::missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept {
   Post post;
   post.at = now;
   post.task = task;
@@ -211,11 +211,11 @@ void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
 }
 
 // Carries out a signal in sight of whoever supervises: its method may not come to its end.
-SignalReport Edge::carry_out(Releases& releases, std::span<const TaskId> tasks, Signal signal,
+SignalReport Edge::carry_out(EdgeSignals& signals, std::span<const TaskId> tasks, Signal signal,
                              Nanoseconds now) noexcept {
   acting_ = TaskWord(tasks[0], method_of(signal)).word();
   ++progress_;
-  const SignalReport done = releases.signal(tasks, signal, now);
+  const SignalReport done = signals.signal(tasks, signal, now);
   acting_ = 0;
   ++progress_;
   return done;
@@ -226,12 +226,12 @@ void Edge::wake_supervisor() noexcept {
   if (supervisor_ >= 0 && ::write(supervisor_, &one, sizeof one) < 0) return;  // it looks now and then anyway
 }
 
-void Edge::stop_all(Releases& releases, Nanoseconds now) noexcept {
-  others_.tell(Happening::kStop, releases.stopped_by(), 0, now);
+void Edge::stop_all(EdgeSignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {
+  others_.tell(Happening::kStop, stopped_by, 0, now);
   for (const TaskId id : ending_order_) {
     Task& task = tasks_.tasks()[id.index];
     if (!tasks_.is_mine(id) || task.state != State::kOn) continue;
-    if (releases.may_touch(id)) (void)carry_out(releases, {&id, 1}, Signal::kOff, now);
+    if (signals.may_touch(id)) (void)carry_out(signals, {&id, 1}, Signal::kOff, now);
     else tasks_.defer(task, Signal::kOff);  // its job is late, and is not waited for
   }
 }
@@ -247,14 +247,14 @@ void Edge::show_profiles() noexcept {
   }
 }
 
-void Edge::go_on_ending(Releases& releases, Nanoseconds now) noexcept {
+void Edge::go_on_ending(EdgeSignals& signals, Nanoseconds now) noexcept {
   others_.keep_last_words(ends_alone_);
   if (!has_begun_ending_) {
     has_begun_ending_ = true;
     patience_ = now + method_limit_;
     others_.block().head().phase.store(PeerPhase::kEnding, std::memory_order_release);
   }
-  if (!turn_off_next(releases, now) || !kill_next(releases, now)) return set_due(now + kLookWhileEnding);
+  if (!turn_off_next(signals, now) || !kill_next(signals, now)) return set_due(now + kLookWhileEnding);
   others_.block().head().phase.store(PeerPhase::kEnded, std::memory_order_release);
   over_ = true;
   wake_supervisor();
@@ -262,7 +262,7 @@ void Edge::go_on_ending(Releases& releases, Nanoseconds now) noexcept {
 }
 
 // True when none of ours is ON any more. Tasks of others that come first are waited for, not for ever.
-bool Edge::turn_off_next(Releases& releases, Nanoseconds now) noexcept {
+bool Edge::turn_off_next(EdgeSignals& signals, Nanoseconds now) noexcept {
   for (; next_off_ < ending_order_.size(); ++next_off_) {
     const TaskId id = ending_order_[next_off_];
     if (!tasks_.is_mine(id)) {
@@ -270,29 +270,29 @@ bool Edge::turn_off_next(Releases& releases, Nanoseconds now) noexcept {
       continue;
     }
     if (tasks_.tasks()[id.index].state != State::kOn) continue;
-    if (!releases.may_touch(id)) {  // its job ends, or hangs
+    if (!signals.may_touch(id)) {  // its job ends, or hangs
       if (now < patience_ && !hangs_[id.index]) return false;
       continue;
     }
-    (void)carry_out(releases, {&id, 1}, Signal::kOff, now);
+    (void)carry_out(signals, {&id, 1}, Signal::kOff, now);
     patience_ = now + method_limit_;
   }
   return true;
 }
 
 // True when all of ours are killed.
-bool Edge::kill_next(Releases& releases, Nanoseconds now) noexcept {
+bool Edge::kill_next(EdgeSignals& signals, Nanoseconds now) noexcept {
   bool is_done = true;
   for (const TaskId id : ending_order_) {
     if (!tasks_.is_mine(id)) continue;
     const Task& task = tasks_.tasks()[id.index];
     if (task.in_service) return false;
     if (task.state == State::kNotCreated) continue;
-    if (!releases.may_touch(id)) {
+    if (!signals.may_touch(id)) {
       is_done = is_done && hangs_[id.index];
       continue;
     }
-    if (carry_out(releases, {&id, 1}, Signal::kKill, now).is_deferred) return false;
+    if (carry_out(signals, {&id, 1}, Signal::kKill, now).is_deferred) return false;
   }
   return is_done;
 }

@@ -22,10 +22,10 @@ class Edge final : public EdgeGuest {
   Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
        std::uint32_t me, Nanoseconds method_limit);
 
-  void take(Releases& releases, Nanoseconds now) noexcept override;
+  void take(EdgeSignals& signals, Nanoseconds now) noexcept override;
   void told(const SignalReport& report, Nanoseconds now) noexcept override;
   void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
-  void missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept override;
+  void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept override;
   void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
   void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
   /// An event descriptor that is written to when a job hangs and when all is over. Setup.
@@ -33,7 +33,7 @@ class Edge final : public EdgeGuest {
   /// A job of some task does not end. Any thread.
   bool has_hanging() const noexcept { return hanging_; }
   /// The reaction `stop` of a task: turns all tasks of the unit OFF.
-  void stop_all(Releases& releases, Nanoseconds now) noexcept;
+  void stop_all(EdgeSignals& signals, TaskId stopped_by, Nanoseconds now) noexcept;
   /// Before a wait: shows what the tasks cost, a few of them at a time.
   void show_profiles() noexcept;
 
@@ -56,19 +56,19 @@ class Edge final : public EdgeGuest {
  private:
   void look_around() noexcept;
   void take_posts() noexcept;
-  void take_served(Releases& releases, Nanoseconds now) noexcept;
-  void act_on_waiting(Releases& releases, Nanoseconds now) noexcept;
+  void take_served(EdgeSignals& signals, Nanoseconds now) noexcept;
+  void act_on_waiting(EdgeSignals& signals, Nanoseconds now) noexcept;
   std::size_t step_length(std::size_t first) const noexcept;
-  bool may_act(std::span<const Post> step, Releases& releases) noexcept;
-  void act(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept;
-  void turn_on(std::span<const Post> step, Releases& releases, Nanoseconds now) noexcept;
+  bool may_act(std::span<const Post> step, EdgeSignals& signals) noexcept;
+  void act(std::span<const Post> step, EdgeSignals& signals, Nanoseconds now) noexcept;
+  void turn_on(std::span<const Post> step, EdgeSignals& signals, Nanoseconds now) noexcept;
   bool refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept;
   void report(const Post& signal, const SignalReport& report, Nanoseconds now) noexcept;
   void report(const Post& signal, State before, State after, Refusal why, bool accepted, Nanoseconds now) noexcept;
-  void go_on_ending(Releases& releases, Nanoseconds now) noexcept;
-  SignalReport carry_out(Releases& releases, std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
-  bool turn_off_next(Releases& releases, Nanoseconds now) noexcept;
-  bool kill_next(Releases& releases, Nanoseconds now) noexcept;
+  void go_on_ending(EdgeSignals& signals, Nanoseconds now) noexcept;
+  SignalReport carry_out(EdgeSignals& signals, std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
+  bool turn_off_next(EdgeSignals& signals, Nanoseconds now) noexcept;
+  bool kill_next(EdgeSignals& signals, Nanoseconds now) noexcept;
   void wake_supervisor() noexcept;
 
   const ApplicationSpec& spec_;

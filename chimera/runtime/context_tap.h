@@ -8,6 +8,7 @@
 
 #include "chimera/base/fixed.h"
 #include "chimera/runtime/tap_ring.h"
+#include "chimera/schedule/ready_queue.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -25,10 +26,19 @@ class ContextTap {
   void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept {
     if (tap_ != nullptr) append(kind, at, task, a, b);
   }
-  /// The same, past those that are kept.
+  /// Writes one record at once, before those that are kept for the task's thread.
   void record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
+  /// The release of a job, when the job is about to begin or will not run.
+  void record_release(const Job& job) noexcept {
+    const std::int64_t left = job.deadline == kNever ? 0 : (job.deadline - job.release).count;
+    record(TapKind::kRelease, job.release, job.task, tasks_[job.task.index].call.cycle, left);
+  }
   /// Hands over what the task's thread kept, and its latest publication if it is tapped.
   void flush(TaskId id) noexcept;
+  /// A job of the task has published: its row, now, or with flush() where records are kept.
+  void job_published(const Task& task) noexcept {
+    if (kept_.empty()) append_row(task);
+  }
   /// The latest publication of the task, once.
   void append_row(const Task& task) noexcept;
 

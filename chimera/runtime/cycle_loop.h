@@ -3,7 +3,7 @@
 // One loop for real and for virtual time; `Time` says what the clock shows and how long a job took.
 #pragma once
 
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/releases.h"
 
 namespace chimera {
 
@@ -21,7 +21,7 @@ RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
   for (Nanoseconds now = time.now();;) {
     if (releases.must_look(now)) {
       if (releases.stop_requested()) return RunEnd::kStopped;
-      if (releases.task_stopped()) return RunEnd::kTaskStopped;
+      if (releases.settlement().task_stopped()) return RunEnd::kTaskStopped;
       if (now >= until) return RunEnd::kTime;
       if (releases.edge_is_due(now)) {
         releases.take_edge(now);

@@ -5,12 +5,12 @@
 #include <atomic>
 #include <cstdint>
 
-#include "chimera/runtime/blame.h"
+#include "chimera/runtime/miss_cause.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
 
-class Releases;
+class EdgeSignals;
 
 /// Rings a bell or names an instant when it wants an edge. Used by the executor's thread only.
 class EdgeGuest {
@@ -24,11 +24,11 @@ class EdgeGuest {
   std::uint32_t heard() const noexcept { return heard_; }
 
   /// Does what is due. Context: edge.
-  virtual void take(Releases& releases, Nanoseconds now) noexcept = 0;
+  virtual void take(EdgeSignals& signals, Nanoseconds now) noexcept = 0;
   /// A signal that a task of this context sent to one of this context was carried out or refused. Context: edge.
   virtual void told(const SignalReport& report, Nanoseconds now) noexcept = 0;
-  /// The task missed a deadline, maybe with a job that is under way; the verdict says by whose fault. Context: edge.
-  virtual void missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept = 0;
+  /// The task missed a deadline, maybe with a job that is under way; the verdict says why. Context: edge.
+  virtual void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept = 0;
   /// A job of the task has used `used` and does not end by itself. Context: edge.
   virtual void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
   /// Jobs here used `used` of the time that the kernel looks back to, about all it lets real-time threads have: one of

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who runs the jobs, where that is not the executor's own thread.
+// Who runs the jobs of a context: threads of their own, or the thread that takes the edges.
 #pragma once
+
+#include <span>
 
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
+#include "chimera/task/task.h"
 
 namespace chimera {
 
-/// Every task has a thread.
+/// What edges ask of whoever runs the jobs.
 class JobThreads {
  public:
   /// Keeps the task's thread from beginning a job until the edge is over; a job that waits is put back. False while a
@@ -21,6 +24,21 @@ class JobThreads {
 
  protected:
   ~JobThreads() = default;
+};
+
+/// Jobs run in the thread that takes the edges: between two jobs none is under way, but for one that virtual time has
+/// begun and not ended.
+class JobsInLoop final : public JobThreads {
+ public:
+  /// The tasks outlive this. Context: setup.
+  explicit JobsInLoop(std::span<const Task> tasks) noexcept : tasks_(tasks) {}
+
+  bool claim(TaskId task) noexcept override { return !tasks_[task.index].is_busy; }
+  Nanoseconds used_by_job(TaskId) noexcept override { return {}; }
+  bool is_blocked(TaskId) noexcept override { return false; }
+
+ private:
+  std::span<const Task> tasks_;
 };
 
 }  // namespace chimera

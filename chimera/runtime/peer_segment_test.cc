@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "chimera/runtime/test_application.h"
+#include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
 namespace {

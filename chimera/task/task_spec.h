@@ -46,7 +46,7 @@ struct PortSpec {
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }
 };
 
-/// The reactions to a failure of time; chimera/runtime/release.h says what each does.
+/// The reactions to a failure of time; chimera/runtime/miss_policy.h says what each does.
 enum class OnMiss : std::uint8_t { kContinue, kHold, kSkip, kAbort, kDemote, kError, kSwitch, kFlag, kStop };
 
 /// One task. Times are zero or positive; period > 0.

@@ -64,7 +64,7 @@ TEST_F(Late, IsToldOnceAndBlamedForWaiting) {
   spec->period = milliseconds(600);
   spec->deadline = milliseconds(100);
   std::vector<bool> was_under_way;
-  listener.on_miss = [&](TaskId task, const Blame::Verdict&) {
+  listener.on_miss = [&](TaskId task, const MissCause::Verdict&) {
     if (task == app.id("late")) was_under_way.push_back(stays);
   };
   wait = [this] {
@@ -131,12 +131,12 @@ TEST_F(Late, StopsTheRunWhileItIsUnderWay) {
   spec->on_overrun = OnMiss::kDemote;
   EXPECT_EQ(run(30'000), RunEnd::kTaskStopped);
   EXPECT_TRUE(stays) << "it is not waited for";
-  EXPECT_EQ(executor->releases().stopped_by(), app.id("late"));
+  EXPECT_EQ(executor->releases().settlement().stopped_by(), app.id("late"));
   (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(300));
   executor->at_edge([this] {
     EXPECT_LT(executor->counts().supervised, 300u) << "nobody is released now: no reason to look again and again";
   });
-  executor->at_edge([this] { executor->releases().forget_stop(); });
+  executor->at_edge([this] { executor->releases().settlement().forget_stop(); });
   has_seen = true;
   EXPECT_EQ(executor->run(LinuxClock().now() - executor->origin() + milliseconds(50)), RunEnd::kTime)
       << "its end does not stop once more";
@@ -156,11 +156,11 @@ TEST_F(Late, TakesSignalsAlsoWhenItAlwaysIs) {
     (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(25));
     return CHIMERA_OK;
   };
-  listener.on_take = [&](Releases& releases, Nanoseconds now) {
+  listener.on_take = [&](EdgeSignals& signals, Nanoseconds now) {
     const TaskId late = app.id("late");
-    if (!wants_off || !releases.may_touch(late)) return;
+    if (!wants_off || !signals.may_touch(late)) return;
     wants_off = false;
-    EXPECT_TRUE(releases.signal({&late, 1}, Signal::kOff, now).is_accepted);
+    EXPECT_TRUE(signals.signal({&late, 1}, Signal::kOff, now).is_accepted);
   };
   run(1'000);
   EXPECT_EQ(app.task("late").state, chimera::State::kOff);

@@ -7,7 +7,7 @@
 
 #include "chimera/platform/linux_clock.h"
 #include "chimera/runtime/edge_guest.h"
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/releases.h"
 
 namespace chimera::toy {
 
@@ -28,12 +28,12 @@ class Listener final : public EdgeGuest {
     return found;
   }
 
-  void take(Releases& releases, Nanoseconds now) noexcept override {
+  void take(EdgeSignals& signals, Nanoseconds now) noexcept override {
     listen();
-    if (on_take) on_take(releases, now);
+    if (on_take) on_take(signals, now);
   }
   void told(const SignalReport&, Nanoseconds) noexcept override {}
-  void missed(TaskId task, const Blame::Verdict& verdict, Nanoseconds now) noexcept override {
+  void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept override {
     misses.push_back({task, verdict.culprit, verdict.is_blocked, now});
     if (on_miss) on_miss(task, verdict);
   }
@@ -42,8 +42,8 @@ class Listener final : public EdgeGuest {
   void show(const Task&) noexcept override {}
 
   std::vector<Miss> misses;
-  std::function<void(TaskId, const Blame::Verdict&)> on_miss;
-  std::function<void(Releases&, Nanoseconds)> on_take;
+  std::function<void(TaskId, const MissCause::Verdict&)> on_miss;
+  std::function<void(EdgeSignals&, Nanoseconds)> on_take;
 };
 
 }  // namespace chimera::toy

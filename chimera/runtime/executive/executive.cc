@@ -19,9 +19,7 @@ struct RealTime {
 }  // namespace
 
 Executive::Executive(TaskSet& set, Clock& clock, JobClock& job_clock, const RunOptions& options)
-    : set_(set), clock_(clock), releases_(set, options) {
-  set.attach(job_clock);
-}
+    : set_(set), clock_(clock), releases_(set, job_clock, options) {}
 
 Result<void> Executive::start() {
   Result<void> started = set_.start(clock_.now());

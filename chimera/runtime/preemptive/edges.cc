@@ -20,12 +20,11 @@ RunOptions with_threads(RunOptions options, JobThreads* threads) noexcept {
 
 PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, const ProcessorPlace& place)
     : set_(set), tasks_(set.tasks()), place_(place), guest_(options.guest),
-      releases_(set, with_threads(options, this)),
+      releases_(set, clock_, with_threads(options, this)),
       labels_(options.policy, set.tasks().size(), place.ceiling > 0 ? place.base : 0,
               place.ceiling > 0 ? place.ceiling : 20),
       of_task_(set.tasks().size()), bell_(place.bell != nullptr ? place.bell : &own_bell_), use_(place.window),
       use_by_less_(place.window) {
-  set.attach(clock_);
   set.attach(static_cast<MethodGate&>(*this));
   has_levels_ = place.ceiling > 0 && may_be_realtime(place.ceiling);
   for (const Task& task : tasks_) {
@@ -100,9 +99,10 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
 // True when the run is over.
 bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
   const Nanoseconds now = clock_.now();
+  Settlement& settlement = releases_.settlement();
   for (JobThread& job : threads_) {
-    if (releases_.is_unsettled(job.task)) releases_.settle_at_once(job.task, now);
-    if (releases_.is_unsettled(job.task) && claim(job.task)) releases_.settle_job(job.task, now);
+    if (settlement.is_unsettled(job.task)) settlement.settle_at_once(job.task, now);
+    if (settlement.is_unsettled(job.task) && claim(job.task)) settlement.settle_job(job.task, now);
   }
   for (JobThread& job : threads_) {
     if (!job.is_hanging || guest_ == nullptr) continue;
@@ -111,13 +111,13 @@ bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
   }
   if (gave_way_.is_valid() && guest_ != nullptr) guest_->gave_way(gave_way_, use_.used(now), now);
   gave_way_ = TaskId();
-  if (releases_.has_lost_patience()) releases_.give_up_starved(now);
+  if (releases_.misses().has_lost_patience()) releases_.settlement().give_up_starved(now);
   if (releases_.edge_is_due(now)) releases_.take_edge(now);
   for (JobThread& job : threads_)  // events are counted also while no job is run
     if ((job.served || !job.is_shown) && job.phase == JobPhase::kNone) show(job, now);
   tell_threads(false);
   end = releases_.stop_requested() ? RunEnd::kStopped
-        : releases_.task_stopped() ? RunEnd::kTaskStopped
+        : releases_.settlement().task_stopped() ? RunEnd::kTaskStopped
         : now >= until             ? RunEnd::kTime
                                    : RunEnd::kNothingLeft;
   return end != RunEnd::kNothingLeft || (!releases_.anything_left() && is_idle());
@@ -126,7 +126,7 @@ bool PreemptiveExecutor::take_edge(RunEnd& end, Nanoseconds until) noexcept {
 // Threads follow the states of their tasks. Those for which nothing is new sleep on.
 void PreemptiveExecutor::tell_threads(bool all) noexcept {
   for (JobThread& job : threads_) {
-    const bool is_on = releases_.is_on(job.task), has_event = job.served && task(job).events > 0;
+    const bool is_on = releases_.members().is_on(job.task), has_event = job.served && task(job).events > 0;
     const bool is_new = all || is_on != job.is_joined || job.is_held || has_event;
     if (is_on && !job.is_joined && !job.served) job.next = releases_.queue().first_release(job.task);
     if (!is_on) job.next = kNever;
@@ -146,15 +146,16 @@ bool PreemptiveExecutor::is_idle() const noexcept {
 // never end.
 void PreemptiveExecutor::stop_jobs(RunEnd end) noexcept {
   const auto is_over = [this, end](const JobThread& job) {
-    return job.phase == JobPhase::kNone || (end == RunEnd::kTaskStopped && releases_.is_told_late(job.task));
+    const bool is_left = end == RunEnd::kTaskStopped && releases_.misses().is_reported_late(job.task);
+    return job.phase == JobPhase::kNone || is_left;
   };
   enter();
   is_paused_ = true;
   for (JobThread& job : threads_) (void)claim(job.task);
   for (;;) {
     for (JobThread& job : threads_)
-      if (job.phase == JobPhase::kNone && releases_.is_unsettled(job.task))
-        releases_.settle_job(job.task, clock_.now());
+      if (job.phase == JobPhase::kNone && releases_.settlement().is_unsettled(job.task))
+        releases_.settlement().settle_job(job.task, clock_.now());
     const bool all_are = std::all_of(threads_.begin(), threads_.end(), is_over);
     const std::uint32_t heard = Doorbell(*bell_).read();
     leave();

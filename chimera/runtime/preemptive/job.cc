@@ -65,8 +65,8 @@ bool PreemptiveExecutor::release(JobThread& me, Nanoseconds now) noexcept {
   }
   const std::int64_t passed = (newest_instant(now) - me.next) / s.period;
   const Nanoseconds release = me.next + s.period * passed;
-  if (passed > 0) releases_.drop({me.task, release - s.period, static_cast<std::uint32_t>(passed)});
-  if (releases_.has_lost_patience()) {
+  if (passed > 0) releases_.misses().drop({me.task, release - s.period, static_cast<std::uint32_t>(passed)});
+  if (releases_.misses().has_lost_patience()) {
     me.is_held = true;  // until the edge has looked at it
     ring_edge();
     return false;
@@ -81,7 +81,7 @@ void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
   me.cycle = task(me).call.cycle;
   me.illegal = releases_.is_illegal();
   me.is_demoted = false;
-  releases_.forget_told(me.task);
+  releases_.jobs().open(me.task);
   me.seen_at = job.release;
   me.slept = {};
   task(me).give_up.store(false, std::memory_order_relaxed);
@@ -92,7 +92,6 @@ void PreemptiveExecutor::prepare(JobThread& me, const Job& job) noexcept {
 int PreemptiveExecutor::enter_label(JobThread& me, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(me);
   me.phase = JobPhase::kWaiting;
-  task(me).is_busy = true;
   LabelledJob job;
   job.task = me.task;
   job.urgency = urgency_of(me, s.budget);
@@ -126,13 +125,13 @@ Nanoseconds PreemptiveExecutor::run_body(JobThread& me) noexcept {
   me.slice.store(start.count, std::memory_order_relaxed);
   if (me.served) me.served->halt.open();
   Nanoseconds end = start;
-  if (releases_.may_start(job, start)) {
+  if (releases_.jobs().may_start(job, start)) {
     CycleTime time;
-    const BodyEnd body = releases_.begin_job(job, time, me.illegal);
+    const BodyEnd body = releases_.jobs().begin(job, time, me.illegal);
     end = clock_.now();
     const bool kept_processor = sees_switches_ && SwitchWatch::end();
     const Nanoseconds used = kept_processor ? end - start : used_by_this_thread() - before;
-    releases_.conclude_job(job, time, body, start, end, used);
+    releases_.jobs().conclude(job, time, body, start, end, used);
   }
   if (me.served) me.served->halt.close();
   me.phase = JobPhase::kDone;
@@ -150,7 +149,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   me.is_demoted = me.is_given_up = false;
   me.check = kNever;
   Task& t = task(me);
-  t.is_busy = false;
+  releases_.jobs().close(me.task);
   releases_.tap().flush(me.task);
   processor_goes_on(now);
   put_off_alarm(now);
@@ -158,7 +157,7 @@ void PreemptiveExecutor::end(JobThread& me, Nanoseconds now) noexcept {
   if (me.served || now - me.shown >= kShowEvery) show(me, now);  // another event may never come
   if (t.state != State::kOn) me.is_joined = false;  // the edge will say so too
   if (me.is_awaited) me.is_held = true;  // until the edge has looked: the next job may be due already
-  if (me.is_awaited || releases_.is_unsettled(me.task) || !t.pending.empty() || is_paused_) ring_edge();
+  if (me.is_awaited || releases_.settlement().is_unsettled(me.task) || !t.pending.empty() || is_paused_) ring_edge();
   me.is_awaited = false;
 }
 

@@ -23,7 +23,7 @@
 #include "chimera/runtime/preemptive/job_thread.h"
 #include "chimera/runtime/preemptive/label_list.h"
 #include "chimera/runtime/preemptive/thread_clock.h"
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/releases.h"
 #include "chimera/schedule/recent_use.h"
 
 namespace chimera {
@@ -89,7 +89,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   void shut_down() noexcept;
 
   Nanoseconds origin() const noexcept { return releases_.origin(); }
-  std::span<const RefusedSignal> refused() const noexcept { return releases_.refused(); }
+  std::span<const RefusedSignal> refused() const noexcept { return releases_.signals().refused(); }
   /// Context: between runs.
   ProcessorCounts counts() const noexcept;
 

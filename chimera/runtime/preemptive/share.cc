@@ -57,7 +57,8 @@ JobThread* PreemptiveExecutor::who_gives_way(bool anybody, const JobThread* own)
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     JobThread& job = *of_task_[jobs[i].task.index];
     const bool is_there = job.phase == JobPhase::kWaiting || job.phase == JobPhase::kBegun;
-    const bool may = job.is_less_important || (anybody && (releases_.is_told_overrun(job.task) || i + 1 < jobs.size()));
+    const bool is_over = releases_.misses().is_reported_overrun(job.task);
+    const bool may = job.is_less_important || (anybody && (is_over || i + 1 < jobs.size()));
     if (&job != own && is_there && may) return &job;
   }
   return nullptr;

@@ -52,7 +52,8 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
   const Nanoseconds spent = all - Nanoseconds{job.used_before.load(std::memory_order_relaxed)};
   const Nanoseconds allowed = s.budget > Nanoseconds{} ? s.budget : s.period;
   if (spent > allowed * kHangsAfter || sleeps_for_ever(job, spent, now)) return hang(job, spent, now);
-  if (s.budget > Nanoseconds{} && spent > s.budget && !releases_.is_told_overrun(job.task)) return overrun(job, now);
+  const bool is_reported = releases_.misses().is_reported_overrun(job.task);
+  if (s.budget > Nanoseconds{} && spent > s.budget && !is_reported) return overrun(job, now);
   if (!by_laxity || job.is_demoted) return;
   (void)apply(labels_.rekey(job.task, urgency_of(job, std::max(s.budget - spent, Nanoseconds{}))), nullptr);
   processor_goes_on(now);
@@ -60,17 +61,17 @@ void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
 
 // Seen while the job still runs: what can be done at once is done at once; the rest at its end.
 void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
-  if (!releases_.tell_overrun(job.task, job.cycle, used(job), now)) return;
+  if (!releases_.misses().report_overrun(job.task, job.cycle, used(job), now)) return;
   const OnMiss reaction = spec(job).on_overrun;
   if (reaction == OnMiss::kDemote) demote(job, now);
   if (reaction == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
-  if (releases_.is_unsettled(job.task)) ring_edge();
+  if (releases_.settlement().is_unsettled(job.task)) ring_edge();
 }
 
 // Its deadline has come; how late it is, is for its end to say.
 void PreemptiveExecutor::tell_late(const JobThread& job, bool has_begun) noexcept {
-  releases_.tell_late(job.job, has_begun);
-  if (releases_.is_unsettled(job.task)) ring_edge();
+  releases_.misses().report_late(job.job, has_begun);
+  if (releases_.settlement().is_unsettled(job.task)) ring_edge();
 }
 
 // It used nothing since the last look, and nobody more urgent had the processor.
@@ -89,7 +90,7 @@ void PreemptiveExecutor::bury(JobThread& job, Nanoseconds now) noexcept {
   job.phase = JobPhase::kNone;
   job.check = kNever;
   job.is_hanging = true;
-  task(job).is_busy = false;
+  releases_.jobs().close(job.task);
   (void)apply(labels_.remove(job.task), nullptr);
   processor_goes_on(now);
   releases_.tap().record_now(TapKind::kHang, now, job.task, job.cycle);
@@ -120,7 +121,7 @@ void PreemptiveExecutor::demote(JobThread& job, Nanoseconds now) noexcept {
 void PreemptiveExecutor::cancel(JobThread& job, Nanoseconds now) noexcept {
   job.phase = JobPhase::kCancelled;
   job.check = kNever;
-  task(job).is_busy = false;
+  releases_.jobs().close(job.task);
   (void)apply(labels_.remove(job.task), nullptr);
   processor_goes_on(now);
   if (has_levels_) set_level(job.carrier, place_.ceiling);
@@ -217,20 +218,20 @@ void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexce
   }
   if (now >= job.job.deadline) tell_late(job, false);
   if (s.on_miss == OnMiss::kAbort && now >= job.job.deadline) {
-    releases_.expire_waiting(job.job);
+    releases_.misses().expire_unstarted(job.job);
     cancel(job, now);
   } else if (now >= job.next && job.next < until_) {
     const std::int64_t passed = (newest_instant(now) - job.next) / s.period;
     const Nanoseconds release = job.next + s.period * passed;
-    releases_.drop({job.task, release - s.period, static_cast<std::uint32_t>(passed + 1)});
+    releases_.misses().drop({job.task, release - s.period, static_cast<std::uint32_t>(passed + 1)});
     job.job = {job.task, release, release + s.deadline};
-    releases_.forget_told(job.task);
+    releases_.misses().forget_reports(job.task);
     job.next = release + s.period;
     (void)apply(labels_.rekey(job.task, urgency_of(job, s.budget)), nullptr);
     processor_goes_on(now);
   }
-  if (releases_.has_lost_patience() && job.phase != JobPhase::kCancelled) cancel(job, now);
-  if (releases_.has_lost_patience()) {
+  if (releases_.misses().has_lost_patience() && job.phase != JobPhase::kCancelled) cancel(job, now);
+  if (releases_.misses().has_lost_patience()) {
     job.is_held = true;
     ring_edge();
   }
@@ -257,7 +258,8 @@ void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept
 // used nothing since the last look sleeps in a system call: nobody waits for that at every instant.
 Nanoseconds PreemptiveExecutor::end_of_budget(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = spec(job);
-  if (!acts_at_once(s.on_overrun) || s.budget == Nanoseconds{} || releases_.is_told_overrun(job.task)) return kNever;
+  const bool is_reported = releases_.misses().is_reported_overrun(job.task);
+  if (!acts_at_once(s.on_overrun) || s.budget == Nanoseconds{} || is_reported) return kNever;
   const Nanoseconds spent = used(job), last = job.charged;
   job.charged = spent;
   return now + std::max(s.budget - spent, spent == last ? kSeldom : kSoonest);

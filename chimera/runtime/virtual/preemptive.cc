@@ -29,7 +29,7 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
     if (has_demotion_) demote_due(now);
     if (releases_.must_look(now)) {
       if (releases_.stop_requested()) return RunEnd::kStopped;
-      if (releases_.task_stopped()) return RunEnd::kTaskStopped;
+      if (releases_.settlement().task_stopped()) return RunEnd::kTaskStopped;
       if (now >= until) {
         leave_processor();
         return RunEnd::kTime;
@@ -66,7 +66,7 @@ Nanoseconds Preemptive::next_deadline() noexcept {
   Nanoseconds next = kNever;
   for (const std::uint32_t i : abandoners_) {
     Active& a = active_[i];
-    const bool on = releases_.is_on(TaskId(i));
+    const bool on = releases_.members().is_on(TaskId(i));
     if (!on) a.next_deadline = kNever;
     else if (a.next_deadline == kNever)
       a.next_deadline = releases_.queue().first_release(TaskId(i)) + tasks_[i].deadline;
@@ -146,7 +146,7 @@ void Preemptive::expire(TaskId task) noexcept {
   const Nanoseconds deadline = a.next_deadline;
   Job waiting;
   if (!a.has_begun) {
-    if (releases_.queue().remove(task, waiting)) releases_.expire_waiting(waiting);
+    if (releases_.queue().remove(task, waiting)) releases_.misses().expire_unstarted(waiting);
     return;
   }
   if (a.job.deadline != deadline) return;
@@ -156,7 +156,7 @@ void Preemptive::expire(TaskId task) noexcept {
   } else {
     (void)releases_.queue().remove(task, waiting);
   }
-  releases_.abandon(a.job);
+  releases_.misses().abandon(a.job);
   if (!a.body.is_partial) a.body.answer = Answer::kAborted;
   end(a, deadline);
 }
@@ -165,7 +165,7 @@ void Preemptive::expire(TaskId task) noexcept {
 void Preemptive::demote_due(Nanoseconds now) noexcept {
   if (running_.is_valid() && budget_left(running_) == Nanoseconds{}) {
     const Active& a = active_[running_.index];
-    (void)releases_.tell_overrun(running_, releases_.task(running_).call.cycle, a.used, now);
+    (void)releases_.misses().report_overrun(running_, releases_.task(running_).call.cycle, a.used, now);
     demote(running_);
   }
   for (const std::uint32_t i : demoters_) {

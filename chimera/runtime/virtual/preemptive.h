@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/releases.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 #include "chimera/schedule/server_state.h"
 

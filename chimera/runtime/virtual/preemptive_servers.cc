@@ -41,7 +41,7 @@ void Preemptive::follow_servers(Nanoseconds now) noexcept {
 bool Preemptive::take_event(Served& s, Nanoseconds now) noexcept {
   Task& task = releases_.task(s.task);
   if (active_[s.task.index].is_demoted) return false;  // below all others no server counts
-  if (!releases_.is_on(s.task)) {
+  if (!releases_.members().is_on(s.task)) {
     Job forgotten;
     if (s.is_ready) (void)releases_.queue().remove(s.task, forgotten);
     if (s.has_job) ++task.profile.events_lost;

@@ -47,11 +47,10 @@ RunOptions with_demotion(RunOptions options, bool can_demote) noexcept {
 }  // namespace
 
 VirtualExecutor::VirtualExecutor(TaskSet& set, const RunOptions& options, const VirtualOptions& how)
-    : set_(set), how_(how), releases_(set, with_demotion(options, how.preemptive)),
+    : set_(set), how_(how), releases_(set, clock_, with_demotion(options, how.preemptive)),
       preemptive_(releases_, set.spec().tasks, clock_, {how.seed, how.quantum}) {
   CHIMERA_ASSERT(how.quantum > Nanoseconds{});
   for (const TaskSpec& task : set.spec().tasks) CHIMERA_ASSERT(how.preemptive || !task.server);
-  set.attach(clock_);
 }
 
 Result<void> VirtualExecutor::start() {

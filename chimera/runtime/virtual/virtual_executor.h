@@ -3,7 +3,7 @@
 // execution times (virtual/modelled_clock.h). Time starts at 0 and a run repeats exactly.
 #pragma once
 
-#include "chimera/runtime/release.h"
+#include "chimera/runtime/releases.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 #include "chimera/runtime/virtual/preemptive.h"
 
@@ -36,7 +36,7 @@ class VirtualExecutor {
   Nanoseconds now() const noexcept { return now_; }
   Nanoseconds origin() const noexcept { return releases_.origin(); }
   /// Context: setup, between runs.
-  std::span<const RefusedSignal> refused() const noexcept { return releases_.refused(); }
+  std::span<const RefusedSignal> refused() const noexcept { return releases_.signals().refused(); }
 
  private:
   TaskSet& set_;

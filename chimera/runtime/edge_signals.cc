@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Carries out signals at an edge and records them.
+#include "chimera/runtime/edge_signals.h"
+
+namespace chimera {
+
+void EdgeSignals::begin(Nanoseconds origin) noexcept {
+  origin_ = origin;
+  look_at_script();
+}
+
+void EdgeSignals::look_at_script() noexcept {
+  const Nanoseconds at = script_.next_at();
+  next_act_ = at == kNever ? kNever : origin_ + at;
+}
+
+void EdgeSignals::act(Nanoseconds now) noexcept {
+  while (const ScriptAct* next = script_.take(now - origin_)) act(*next, now);
+  look_at_script();
+}
+
+void EdgeSignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
+  if (act.kind == ScriptAct::Kind::kSet) return set_.set_operator(act.operator_index, act.value, now);
+  if (act.kind != ScriptAct::Kind::kSignal) {
+    const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
+    set_.raise_flag(up);
+    tap_.record(TapKind::kFlag, now, TaskId(), up ? 1 : 0);
+    return;
+  }
+  Task& task = set_.tasks()[act.task.index];
+  if (act.signal == Signal::kWakeup) return ring(task, now);
+  if (may_touch(act.task)) return carry_out(task, act.signal, now);
+  // A task with a job under way takes the signal like one that it sent itself: after the job and its error handling.
+  task.has_news = true;
+  if (!task.outbox.try_push({act.signal, act.task})) tap_.record(TapKind::kSignal, now, task.id, 0, 0);
+}
+
+void EdgeSignals::carry_out_pending(Nanoseconds now) noexcept {
+  for (Task& task : set_.tasks()) {
+    Signal signal;
+    while (!task.pending.empty() && !task.in_service && may_touch(task.id) && set_.take_pending(task, signal))
+      carry_out(task, signal, now);
+  }
+}
+
+void EdgeSignals::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
+  const SignalReport report = this->signal({&task.id, 1}, signal, now);
+  if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before});
+  if (guest_ != nullptr) guest_->told(report, now);
+}
+
+void EdgeSignals::ring(Task& task, Nanoseconds now) noexcept {
+  const bool counts = set_.ring(task.id);
+  if (!counts) (void)refused_.try_push({now, task.id, Signal::kWakeup, Refusal::kState, task.state});
+  tap_.record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(Signal::kWakeup), counts ? 1 : 0);
+}
+
+SignalReport EdgeSignals::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
+  const bool was_illegal = set_.is_illegal();
+  const SignalReport report = set_.signal(tasks, signal, now);
+  record(report, was_illegal, now);
+  return report;
+}
+
+SignalReport EdgeSignals::served(TaskId task, Nanoseconds now) noexcept {
+  const bool was_illegal = set_.is_illegal();
+  const SignalReport report = set_.served(task, now);
+  record_outcome(task, was_illegal, now);
+  return report;
+}
+
+void EdgeSignals::record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept {
+  const int accepted = report.is_accepted ? 1 : 0;
+  tap_.record(TapKind::kSignal, now, report.task, static_cast<std::uint64_t>(report.signal), accepted);
+  record_outcome(report.task, was_illegal, now);
+}
+
+void EdgeSignals::record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept {
+  settlement_.record_faults(set_.tasks()[task.index]);
+  if (set_.is_illegal() != was_illegal) tap_.record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
+}
+
+}  // namespace chimera

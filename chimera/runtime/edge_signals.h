@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The signals that an edge carries out: of the script, of tasks, and of whoever takes part in the edge. All of them are
+// recorded on the tap.
+#pragma once
+
+#include <span>
+
+#include "chimera/base/fixed.h"
+#include "chimera/runtime/context_tap.h"
+#include "chimera/runtime/edge_guest.h"
+#include "chimera/runtime/job_threads.h"
+#include "chimera/runtime/script.h"
+#include "chimera/runtime/settlement.h"
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+/// A signal that was refused, from the script or from a task.
+struct RefusedSignal {
+  Nanoseconds at;  ///< on the executor's clock
+  TaskId task;
+  Signal signal = Signal::kOn;
+  Refusal why = Refusal::kNone;
+  State state = State::kNotCreated;  ///< of the task, then
+};
+
+inline constexpr std::size_t kRefusedKept = 64;
+
+/// Context of everything not marked: edge; as long as the methods of components take; no allocation but theirs.
+class EdgeSignals {
+ public:
+  /// Everything given outlives this; `guest` null: nobody is told. Context: setup.
+  EdgeSignals(TaskSet& set, const Script& script, ContextTap& tap, Settlement& settlement, JobThreads& threads,
+              EdgeGuest* guest) noexcept
+      : set_(set), script_(script), tap_(tap), settlement_(settlement), threads_(threads), guest_(guest) {}
+
+  /// The script counts from `origin`.
+  void begin(Nanoseconds origin) noexcept;
+  /// When the next act of the script is due; kNever after the last. Context: cycle; wait-free.
+  Nanoseconds next_act() const noexcept { return next_act_; }
+  /// Carries out the acts of the script that are due.
+  void act(Nanoseconds now) noexcept;
+  /// Carries out the signals that tasks sent to tasks of this context; those for a task with an unfinished job wait.
+  void carry_out_pending(Nanoseconds now) noexcept;
+
+  /// True when an edge may touch the task now: no job of it is under way.
+  bool may_touch(TaskId task) noexcept { return threads_.claim(task); }
+  /// As TaskSet::signal. Requires: may_touch() of all.
+  SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
+  /// As TaskSet::served.
+  SignalReport served(TaskId task, Nanoseconds now) noexcept;
+
+  /// The first kRefusedKept signals that were refused. Context: setup.
+  std::span<const RefusedSignal> refused() const noexcept { return {refused_.begin(), refused_.end()}; }
+
+ private:
+  void act(const ScriptAct& act, Nanoseconds now) noexcept;
+  void look_at_script() noexcept;
+  void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
+  void ring(Task& task, Nanoseconds now) noexcept;
+  void record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;
+  void record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept;
+
+  TaskSet& set_;
+  Script script_;
+  ContextTap& tap_;
+  Settlement& settlement_;
+  JobThreads& threads_;
+  EdgeGuest* guest_;
+  Nanoseconds origin_;
+  Nanoseconds next_act_ = kNever;
+  FixedVector<RefusedSignal, kRefusedKept> refused_;
+};
+
+}  // namespace chimera

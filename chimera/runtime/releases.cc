@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Builds the common half of an executor and takes the edges of its context.
+#include "chimera/runtime/releases.h"
+
+#include "chimera/base/assert.h"
+
+namespace chimera {
+namespace {
+
+// How long before its deadline a job of the task must start. `abort` refuses a start at the deadline itself.
+Nanoseconds start_margin(const TaskSpec& spec) noexcept {
+  if (spec.min_time > Nanoseconds{}) return spec.min_time;
+  return spec.on_miss == OnMiss::kAbort ? Nanoseconds{1} : Nanoseconds{INT64_MIN / 2};
+}
+
+bool is_built(OnMiss reaction, bool can_demote) noexcept {
+  return reaction != OnMiss::kSwitch && (can_demote || reaction != OnMiss::kDemote);
+}
+
+}  // namespace
+
+Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
+    : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
+      records_(set.tasks().size()), tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr),
+      in_loop_(set.tasks()), threads_(options.threads != nullptr ? *options.threads : in_loop_),
+      queue_members_(records_.size()), queue_classes_(records_.size()), queue_tasks_(records_.size()),
+      loose_(records_.size()), pauses_(records_.size()), runs_(records_.size()),
+      queue_(options.policy, set.spec().tasks,
+             {queue_members_, queue_classes_, queue_tasks_, loose_, pauses_, runs_}),
+      misses_(set.tasks(), records_, tap_, guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_) : nullptr, clock),
+      jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock, tap_.is_on() || guest_ != nullptr),
+      members_(set.tasks(), records_, queue_, tap_, guest_),
+      settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
+      signals_(set, options.script, tap_, settlement_, threads_, guest_) {
+  for (Task& task : set.tasks()) {
+    const TaskSpec& spec = *task.spec;
+    const bool can = options.can_demote || !set.is_mine(task.id);
+    CHIMERA_ASSERT(is_built(spec.on_miss, can) && is_built(spec.on_overrun, can));
+    JobRecord& record = records_[task.id.index];
+    record.task = &task;
+    record.start_margin = start_margin(spec);
+    record.is_plain = spec.tolerated_of == 0;
+    record.budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
+  }
+  set.attach(clock);
+}
+
+void Releases::begin(Nanoseconds origin) noexcept {
+  origin_ = origin;
+  queue_.set_origin(origin);
+  signals_.begin(origin);
+  members_.follow_all(origin);
+}
+
+void Releases::take_edge(Nanoseconds now) noexcept {
+  signals_.act(now);
+  if (guest_ != nullptr) guest_->take(signals_, now);
+  signals_.carry_out_pending(now);
+  members_.follow_all(now);
+}
+
+bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
+  const bool starts = misses_.decide_start(job, now);
+  if (settlement_.is_unsettled(job.task)) settle_job(job.task, now);
+  return starts;
+}
+
+void Releases::settle_job(TaskId task, Nanoseconds now) noexcept {
+  look_again();
+  settlement_.settle_job(task, now);
+}
+
+void Releases::give_up_starved(Nanoseconds now) noexcept {
+  look_again();
+  settlement_.give_up_starved(now);
+}
+
+}  // namespace chimera

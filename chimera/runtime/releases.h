@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// The common half of all executors of one context: when what is due, and the order in which the parts act.
+//
+//   edge: inputs of the guest, script acts, signals   -> tasks join and leave the queue     EdgeSignals, Members
+//   release_due: releases                             -> ready queue; what is dropped is counted
+//   may_start: last chance to say no                  -> begin: inputs and body
+//                                                     -> end: failures, publication, profile JobCycle, MissPolicy
+//   settle: what jobs left for others to see                                                Settlement
+//
+// Executors differ in how long a job takes, in how they wait, and in who runs a job. Those whose jobs run in the thread
+// that takes the edges use may_start(), begin_job() and end_job() of this class, which settle at once; those with a
+// thread for each task use jobs() and misses() by that thread, and settlement() at edges.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "chimera/runtime/edge_signals.h"
+#include "chimera/runtime/job_cycle.h"
+#include "chimera/runtime/job_threads.h"
+#include "chimera/runtime/members.h"
+#include "chimera/runtime/miss_policy.h"
+#include "chimera/runtime/run_options.h"
+#include "chimera/runtime/settlement.h"
+#include "chimera/runtime/task_set.h"
+#include "chimera/schedule/ready_queue.h"
+
+namespace chimera {
+
+/// Owns the parts and their memory. Context of everything not marked: cycle; no allocation, no system call.
+class Releases {
+ public:
+  /// `clock` is what methods see, and is made the clock of the set. Requires: no task of this context with the reaction
+  /// switch, nor demote unless that can be done. Everything given outlives this. Context: setup.
+  Releases(TaskSet& set, JobClock& clock, const RunOptions& options);
+  Releases(const Releases&) = delete;
+  Releases& operator=(const Releases&) = delete;
+
+  /// The grid of releases starts at `origin`; whoever is ON by now is released from there on. Context: edge.
+  void begin(Nanoseconds origin) noexcept;
+  Nanoseconds origin() const noexcept { return origin_; }
+
+  /// True when something else than the next job may be due: an edge, a release, the end of the run. False for most
+  /// jobs of a row. Whoever gets true looks at all of them and then calls rest().
+  bool must_look(Nanoseconds now) const noexcept {
+    return now >= calm_until_ || stop_requested() || (guest_ != nullptr && guest_->is_due(now));
+  }
+  /// Everything that is due by now was looked at; the run ends at `until`.
+  void rest(Nanoseconds until) noexcept {
+    const bool is_calm = !set_.has_pending() && !settlement_.task_stopped();
+    calm_until_ = is_calm ? std::min({queue_.next_release(), signals_.next_act(), until}) : kAtOnce;
+  }
+  /// The next must_look() is true.
+  void look_again() noexcept { calm_until_ = kAtOnce; }
+  /// True when take_edge has something to do.
+  bool edge_is_due(Nanoseconds now) const noexcept {
+    return set_.has_pending() || signals_.next_act() <= now || (guest_ != nullptr && guest_->is_due(now));
+  }
+  /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
+  void take_edge(Nanoseconds now) noexcept;
+  /// The next instant at which an edge or a release may be due.
+  Nanoseconds next_event() const noexcept { return std::min(queue_.next_release(), next_edge()); }
+  /// The same for edges alone, where releases have threads of their own.
+  Nanoseconds next_edge() const noexcept {
+    return guest_ == nullptr ? signals_.next_act() : std::min(signals_.next_act(), guest_->next_due());
+  }
+  /// True while a task is ON or may yet be turned ON.
+  bool anything_left() const noexcept {
+    return members_.is_any_on() || set_.has_pending() || signals_.next_act() != kNever || guest_ != nullptr;
+  }
+  bool stop_requested() const noexcept { return stop_->load(std::memory_order_relaxed); }
+
+  void release_due(Nanoseconds now) noexcept {
+    if (queue_.next_release() > now) return;
+    queue_.release_due(now, [this](const DroppedRelease& d) { misses_.drop(d); });
+    if (misses_.has_lost_patience()) give_up_starved(now);
+  }
+
+  /// The illegal-configuration flag, to be read once for each job.
+  bool is_illegal() const noexcept { return set_.is_illegal(); }
+
+  // Where jobs run in the thread that takes the edges.
+
+  /// False when the job must not start: its release is then counted as dropped, with all that follows.
+  [[gnu::always_inline]] bool may_start(const Job& job, Nanoseconds now) noexcept {
+    return jobs_.can_start(job, now) || decide_start(job, now);
+  }
+  /// Runs the body: inputs are read at this moment, nothing is published. `time` is for end_job().
+  [[gnu::always_inline]] BodyEnd begin_job(const Job& job, CycleTime& time, bool illegal) noexcept {
+    return jobs_.open_and_begin(job, time, illegal);
+  }
+  /// The job ended at `end`, begun at `start`, having used `used` of execution time.
+  [[gnu::always_inline]] void end_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start,
+                                      Nanoseconds end, Nanoseconds used) noexcept {
+    if (jobs_.close_and_conclude(job, time, body, start, end, used)) settle_job(job.task, end);
+  }
+  /// What jobs of the task left for others to see. Requires: none is under way. Context: edge.
+  void settle_job(TaskId task, Nanoseconds now) noexcept;
+
+  ReadyQueue& queue() noexcept { return queue_; }
+  Task& task(TaskId id) noexcept { return *records_[id.index].task; }
+  JobCycle& jobs() noexcept { return jobs_; }
+  MissPolicy& misses() noexcept { return misses_; }
+  Members& members() noexcept { return members_; }
+  EdgeSignals& signals() noexcept { return signals_; }
+  const EdgeSignals& signals() const noexcept { return signals_; }
+  Settlement& settlement() noexcept { return settlement_; }
+  /// What happens is recorded here.
+  ContextTap& tap() noexcept { return tap_; }
+
+ private:
+  static constexpr Nanoseconds kAtOnce{INT64_MIN};
+  static constexpr std::atomic<bool> kNoStop{false};
+
+  bool decide_start(const Job& job, Nanoseconds now) noexcept;
+  void give_up_starved(Nanoseconds now) noexcept;
+
+  TaskSet& set_;
+  EdgeGuest* guest_;
+  const std::atomic<bool>* stop_;  // set by other threads and by signal handlers; relaxed, pairs with nothing
+  Nanoseconds origin_;
+  Nanoseconds calm_until_ = kAtOnce;
+  std::vector<JobRecord> records_;
+  ContextTap tap_;
+  JobsInLoop in_loop_;
+  JobThreads& threads_;
+  std::optional<MissCause> cause_;  // with a guest, which reports it
+  std::vector<QueueMember> queue_members_;
+  std::vector<QueueClass> queue_classes_;
+  std::vector<QueueTask> queue_tasks_;
+  std::vector<LooseJob> loose_;
+  std::vector<std::uint32_t> pauses_, runs_;
+  ReadyQueue queue_;
+  MissPolicy misses_;
+  JobCycle jobs_;
+  Members members_;
+  Settlement settlement_;
+  EdgeSignals signals_;
+};
+
+}  // namespace chimera

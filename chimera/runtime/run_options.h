@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the tasks of a context are to be run, and why a run ended.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "chimera/runtime/edge_guest.h"
+#include "chimera/runtime/job_threads.h"
+#include "chimera/runtime/script.h"
+#include "chimera/runtime/tap_ring.h"
+#include "chimera/schedule/policy.h"
+
+namespace chimera {
+
+/// What it points at outlives the executor. Context: setup.
+struct RunOptions {
+  Policy policy = Policy::kEdf;
+  Script script;
+  Tap* tap = nullptr;                        ///< null: nothing is recorded
+  std::uint8_t rtpu = 0;                     ///< for the records
+  EdgeGuest* guest = nullptr;                ///< null: nobody else takes part in the edges
+  const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
+  JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
+  bool can_demote = false;                   ///< jobs may go on below all others
+};
+
+/// Why a run ended.
+enum class RunEnd : std::uint8_t {
+  kTime,         ///< the stated time is over
+  kStopped,      ///< RunOptions::stop was set
+  kNothingLeft,  ///< no task is ON and no act or signal can change that
+  kTaskStopped,  ///< the reaction `stop` of a task
+};
+
+}  // namespace chimera

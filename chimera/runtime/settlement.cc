@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Deals with what jobs left for others to see.
+#include "chimera/runtime/settlement.h"
+
+namespace chimera {
+
+void Settlement::settle_job(TaskId id, Nanoseconds now) noexcept {
+  settle_at_once(id, now);
+  parts_.records[id.index].left.store(0, std::memory_order_relaxed);
+  settle(parts_.set.tasks()[id.index], now);
+}
+
+void Settlement::settle_at_once(TaskId id, Nanoseconds now) noexcept {
+  const std::uint8_t left = parts_.records[id.index].left.fetch_and(JobRecord::kSettle, std::memory_order_relaxed);
+  if (left & JobRecord::kRaiseFlag) raise_flag(id, now);
+  if ((left & JobRecord::kStop) && !task_stopped_) {
+    task_stopped_ = true;
+    stopped_by_ = id;
+  }
+  if (!(left & JobRecord::kFindCause)) return;
+  if (const auto verdict = parts_.cause->judge(id, now)) parts_.guest->missed(id, *verdict, now);
+}
+
+void Settlement::settle(Task& task, Nanoseconds now) noexcept {
+  record_faults(task);
+  if (task.is_tapped) parts_.tap.append_row(task);
+  if (!task.outbox.empty()) parts_.set.deliver(task);
+  if (task.state == State::kOn) return;
+  parts_.set.on_set_changed();
+  parts_.members.follow(task, now);
+}
+
+void Settlement::record_faults(Task& task) noexcept {
+  JobRecord& record = parts_.records[task.id.index];
+  if (task.faults.told == record.told_seen) return;
+  record.told_seen = task.faults.told;
+  parts_.set.told(task);
+  if (task.faults.count == record.faults_seen) return;
+  record.faults_seen = task.faults.count;
+  parts_.tap.record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
+}
+
+void Settlement::raise_flag(TaskId by, Nanoseconds at) noexcept {
+  if (parts_.set.raises_flag(by)) return;
+  if (!parts_.set.is_illegal()) parts_.tap.record(TapKind::kFlag, at, TaskId(), 1);
+  parts_.set.raise_flag_for(by);
+}
+
+void Settlement::give_up_starved(Nanoseconds now) noexcept {
+  parts_.misses.clear_lost_patience();
+  for (Task& task : parts_.set.tasks()) {
+    if (!parts_.members.is_on(task.id) || task.is_busy || !MissPolicy::is_out_of_patience(task)) continue;
+    parts_.misses.give_up(task, now);
+    settle(task, now);
+  }
+}
+
+}  // namespace chimera
