@@ -17,7 +17,7 @@ void run(int repetitions) {
   LinuxClock clock;
   ComputingClock job_clock(clock);
   Releases releases(axes.set(), job_clock, {});
-  if (!axes.set().start(clock.now())) std::exit(1);
+  if (!axes.set().life().start(clock.now())) std::exit(1);
   releases.begin(clock.now());
   Comparison cycles(repetitions);
   alignas(64) std::array<double, 16> in{}, local{}, out{}, published{};

@@ -44,7 +44,7 @@ class Path:
 
 PATHS = (
     Path('loops', [r'chimera::Executive::run\(', r'chimera::VirtualExecutor::run\(', r'chimera::LinuxClock::',
-                   r'chimera::CycleCounter::(now|compare)\(', r'chimera::TaskSet::host_',
+                   r'chimera::CycleCounter::(now|compare)\(', r'chimera::.anonymous namespace.::host_',
                    r'chimera::Tap::append(_row)?\('],
          PLAIN, ASSERTS | SIGNALS),
     Path('preemptive jobs',
@@ -52,7 +52,7 @@ PATHS = (
          PLAIN + WAKES + LEVELS,
          ASSERTS | SIGNALS | RESERVED | {r'chimera::enter_realtime\(': 'the start of a thread',
                                          r'chimera::PreemptiveExecutor::check(_holder)?\(': 'in tests only'}),
-    Path('edges of an rtpu', [r'chimera::Edge::(take|told|show|show_profiles|missed|gave_way|hangs|stop_all)\(',
+    Path('edges of an rtpu', [r'chimera::Edge::(take|publish|told|show|show_profiles|missed|gave_way|hangs|stop_all)\(',
                               r'chimera::(Doorbell|Outbox)::'],
          PLAIN + WAKES,
          ASSERTS | SIGNALS | SIGNALS_OF_OTHERS | RESERVED),

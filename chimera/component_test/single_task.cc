@@ -29,7 +29,7 @@ Result<void> SingleTask::build(const LibraryEntry& entry) {
   auto set = TaskSet::create(spec, components, place);
   if (!set) return set.error();
   set_ = *std::move(set);
-  set_->attach(clock_);
+  set_->methods().run_by({&clock_});
   for (std::size_t o = 0; o < spec.operators.size(); ++o) {
     const GroupPlace& group = layout->place(layout->operator_group(o));
     writers_.emplace_back(table_.span().subspan(group.offset, group_bytes(group.payload_bytes)), group.payload_bytes);
@@ -50,7 +50,7 @@ void SingleTask::feed(std::span<const std::byte> row) noexcept {
 State SingleTask::signal(Signal signal) {
   clock_.set(now_);
   const State before = state();
-  set_->signal(task().id, signal, now_);
+  set_->life().signal(task().id, signal, now_);
   now_ = clock_.now();
   Task& task = set_->tasks()[0];
   if (before != State::kOn && task.state == State::kOn) task.last_release = now_;
@@ -62,7 +62,7 @@ RowRecord SingleTask::cycle() noexcept {
   const Nanoseconds period = task.spec->period;
   now_ += period;
   clock_.set(now_);
-  const CycleTime time{now_, now_ + task.spec->deadline, 0, set_->is_illegal()};
+  const CycleTime time{now_, now_ + task.spec->deadline, 0, set_->flag().is_up()};
   const std::uint64_t faults = task.faults.count, rejected = task.profile.rejected;
   const BodyEnd body = begin_cycle(task, time);
   RowRecord row;

@@ -36,8 +36,8 @@ class Application {
 
   const Configuration& configuration() const noexcept { return configuration_; }
   TaskSet& tasks() noexcept { return *tasks_; }
-  /// For real time: what components do beside their cycles gets threads. Before anything is signalled.
-  void use_background_threads() { tasks_->attach(*writer_); }
+  /// For real time: threads for what components do beside their cycles (RunOptions::writer).
+  BackgroundWriter& background_writer() noexcept { return *writer_; }
   /// A probe for the state variable of that name; refuses an unknown name with the nearest one.
   /// Extents that constants fix are read when the tasks have been initialised.
   Result<Probe> probe(const std::string& variable) const;

@@ -70,13 +70,17 @@ class VirtualLoop final : public RunLoop {
   VirtualExecutor executor_;
 };
 
+RunOptions with_threads(RunOptions options, BackgroundWriter& writer) {
+  options.writer = &writer;
+  return options;
+}
+
 // The executive has a thread of its own; this side sleeps and looks on.
 class RealTimeLoop final : public RunLoop {
  public:
   RealTimeLoop(Application& application, const RunRequest& request, const RunOptions& options)
       : request_(request), cpu_(static_cast<int>(application.configuration().rtpus()[0].cpu)), job_clock_(clock_),
-        executive_(application.tasks(), clock_, job_clock_, options) {
-    application.use_background_threads();
+        executive_(application.tasks(), clock_, job_clock_, with_threads(options, application.background_writer())) {
     const auto rtpus = application.configuration().rtpus();
     if (rtpus.size() > 1)
       grant_ =

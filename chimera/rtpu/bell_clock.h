@@ -13,22 +13,22 @@ namespace chimera {
 class BellClock final : public Clock {
  public:
   /// Context: setup; blocks about 10 ms.
-  BellClock(Doorbell bell, std::atomic<std::uint32_t>& running) noexcept : bell_(bell), running_(running) {}
-  void attach(Edge& edge) noexcept { edge_ = &edge; }
+  BellClock(Doorbell bell, std::atomic<std::uint32_t>& running, Edge& edge) noexcept
+      : bell_(bell), running_(running), edge_(edge) {}
 
   Nanoseconds now() noexcept override { return counter_.now(); }
   WaitEnd wait_until(Nanoseconds instant) noexcept override {
     running_.store(0, std::memory_order_relaxed);
-    edge_->show_profiles();
-    const WaitEnd end = bell_.wait_until(edge_->heard(), instant);
+    edge_.show_profiles();
+    const WaitEnd end = bell_.wait_until(edge_.heard(), instant);
     counter_.compare();
     return end;
   }
 
  private:
   Doorbell bell_;
-  std::atomic<std::uint32_t>& running_;
-  Edge* edge_ = nullptr;
+  std::atomic<std::uint32_t>& running_;  // BlockHead::running; relaxed, pairs with nothing
+  Edge& edge_;
   CounterClock counter_;
 };
 

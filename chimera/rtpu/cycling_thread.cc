@@ -73,12 +73,12 @@ RunOptions CyclingThread::options() {
   options.rtpu = static_cast<std::uint8_t>(place_.me);
   options.guest = &place_.edge;
   options.stop = &place_.edge.is_over();
+  options.writer = &place_.writer;
   return options;
 }
 
 void CyclingThread::make_loop() {
-  clock_ = std::make_unique<BellClock>(Doorbell(place_.bell), head().running);
-  clock_->attach(place_.edge);
+  clock_ = std::make_unique<BellClock>(Doorbell(place_.bell), head().running, place_.edge);
   job_clock_ = std::make_unique<ComputingClock>(*clock_);
   executive_ = std::make_unique<Executive>(place_.tasks, *clock_, *job_clock_, options());
 }
@@ -91,7 +91,7 @@ void CyclingThread::answer_stop(Releases& releases, Nanoseconds now) noexcept {
 
 void CyclingThread::run_loop() {
   executive_->start(place_.origin);
-  place_.others.changed();
+  place_.edge.begin();
   while (executive_->run(kNever) == RunEnd::kTaskStopped) answer_stop(executive_->releases(), clock_->now());
 }
 
@@ -110,7 +110,7 @@ void CyclingThread::make_threads(int ceiling) {
 
 void CyclingThread::run_threads() {
   preemptive_->start(place_.origin);
-  place_.others.changed();
+  place_.edge.begin();
   while (preemptive_->run(kNever) == RunEnd::kTaskStopped)
     preemptive_->at_edge([this] { answer_stop(preemptive_->releases(), wall_.now()); });
 }

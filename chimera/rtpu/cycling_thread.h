@@ -28,6 +28,7 @@ struct CyclingPlace {
   TaskSet& tasks;
   Edge& edge;
   Others& others;
+  BackgroundWriter& writer;  ///< runs what components do beside their cycles
   Nanoseconds origin;  ///< of the grid of releases that all units share
   std::atomic<std::uint32_t>& bell;
   int over;  ///< eventfd, written to when the thread has ended
@@ -66,7 +67,7 @@ class CyclingThread {
   std::unique_ptr<ComputingClock> job_clock_;
   std::unique_ptr<Executive> executive_;
   std::unique_ptr<PreemptiveExecutor> preemptive_;  // one of the two
-  std::atomic<bool> has_ended_{false};
+  std::atomic<bool> has_ended_{false};  // stored last by the thread, loaded by the main thread before it joins
   std::thread thread_;
 };
 

@@ -38,42 +38,51 @@ Edge::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service&
   set_due({});  // the first edge looks around
 }
 
+void Edge::begin() noexcept {
+  others_.watch_flags(tasks_.flag());
+  others_.publish_all(tasks_);
+}
+
 void Edge::take(EdgeSignals& signals, Nanoseconds now) noexcept {
   listen();
   set_due(kNever);
   others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
   look_around();
-  take_served(signals, now);
+  take_slow(signals, now);
   if (ending_) return go_on_ending(signals, now);  // nothing is begun any more
   take_posts();
   act_on_waiting(signals, now);
 }
 
 void Edge::look_around() noexcept {
-  const bool is_new = others_.adopt();
+  const bool is_new = others_.adopt(tasks_);
   const std::uint32_t changes = others_.changes();
   if (!is_new && changes == seen_changes_) return;
   seen_changes_ = changes;
+  others_.watch_flags(tasks_.flag());  // others may live now, or be dead
   tasks_.follow_others();
   for (Task& task : tasks_.tasks()) task.is_tapped = tasks_.is_mine(task.id) && others_.is_wanted_on_tap(task.id);
+  publish();
   others_.block().head().seen_changes.store(changes, std::memory_order_release);
 }
 
 void Edge::take_posts() noexcept {
   for (Post post; !waiting_.is_full() && others_.take(post);) {
-    const bool is_ring = post.kind == PostKind::kSignal && post.signal == Signal::kWakeup;
-    if (is_ring && post.task.index < spec_.tasks.size() && tasks_.is_mine(post.task)) (void)tasks_.ring(post.task);
     const bool is_for_us = post.kind == PostKind::kSignal && post.task.index < spec_.tasks.size() &&
-                           tasks_.is_mine(post.task) && post.signal != Signal::kWakeup;
-    if (is_for_us) (void)waiting_.try_push(post);
+                           tasks_.is_mine(post.task);
+    if (!is_for_us) continue;
+    if (post.signal == Signal::kWakeup) (void)tasks_.sent().ring(post.task);
+    else (void)waiting_.try_push(post);
   }
 }
 
-void Edge::take_served(EdgeSignals& signals, Nanoseconds now) noexcept {
+void Edge::take_slow(EdgeSignals& signals, Nanoseconds now) noexcept {
   for (TaskId task; service_.take_served(task);) {
-    const SignalReport served = signals.served(task, now);
-    if (!served.is_deferred) report(commands_[task.index], served, now);
-    if (!served.is_deferred) commands_[task.index] = {};
+    const SignalReport done = signals.finish_slow(task, now);
+    publish();
+    if (done.is_deferred) continue;
+    report(commands_[task.index], done, now);
+    commands_[task.index] = {};
   }
 }
 
@@ -169,7 +178,18 @@ void Edge::report(const Post& signal, State before, State after, Refusal why, bo
     post.kind = PostKind::kEvent;
     post.happening = accepted ? Happening::kSignalled : Happening::kRefused;
   }
+  this->post(post);
+}
+
+// What the manager's log says comes after what it is about.
+void Edge::post(const Post& post) noexcept {
+  publish();
   others_.tell(post);
+}
+
+void Edge::post_event(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
+  publish();
+  others_.tell(happening, task, detail, at);
 }
 
 void Edge::told(const SignalReport& done, Nanoseconds now) noexcept {
@@ -182,7 +202,7 @@ void Edge::told(const SignalReport& done, Nanoseconds now) noexcept {
   post.why = static_cast<std::uint8_t>(done.why);
   post.before = done.before;
   post.after = done.after;
-  others_.tell(post);
+  this->post(post);
 }
 
 void Edge::missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept {
@@ -193,17 +213,17 @@ void Edge::missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds no
   post.kind = PostKind::kEvent;
   post.happening = verdict.is_blocked ? Happening::kBlocked : Happening::kMissed;
   post.detail = static_cast<std::uint64_t>(verdict.used.count);
-  others_.tell(post);
+  this->post(post);
 }
 
 void Edge::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
-  others_.tell(Happening::kGaveWay, task, static_cast<std::uint64_t>(used.count), now);
+  post_event(Happening::kGaveWay, task, static_cast<std::uint64_t>(used.count), now);
 }
 
 void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
-  others_.tell(Happening::kHang, task, static_cast<std::uint64_t>(used.count), now);
+  post_event(Happening::kHang, task, static_cast<std::uint64_t>(used.count), now);
   hangs_[task.index] = true;
-  others_.keep_last_words(true);
+  others_.keep_last_words(true, tasks_);
   hanging_used_ = used.count;
   hanging_job_ = TaskWord(task, Method::kCycle).word();
   hanging_ = true;
@@ -216,6 +236,7 @@ SignalReport Edge::carry_out(EdgeSignals& signals, std::span<const TaskId> tasks
   acting_ = TaskWord(tasks[0], method_of(signal)).word();
   ++progress_;
   const SignalReport done = signals.signal(tasks, signal, now);
+  publish();
   acting_ = 0;
   ++progress_;
   return done;
@@ -227,12 +248,12 @@ void Edge::wake_supervisor() noexcept {
 }
 
 void Edge::stop_all(EdgeSignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {
-  others_.tell(Happening::kStop, stopped_by, 0, now);
+  post_event(Happening::kStop, stopped_by, 0, now);
   for (const TaskId id : ending_order_) {
     Task& task = tasks_.tasks()[id.index];
     if (!tasks_.is_mine(id) || task.state != State::kOn) continue;
     if (signals.may_touch(id)) (void)carry_out(signals, {&id, 1}, Signal::kOff, now);
-    else tasks_.defer(task, Signal::kOff);  // its job is late, and is not waited for
+    else tasks_.sent().defer(task, Signal::kOff);  // its job is late, and is not waited for
   }
 }
 
@@ -248,7 +269,7 @@ void Edge::show_profiles() noexcept {
 }
 
 void Edge::go_on_ending(EdgeSignals& signals, Nanoseconds now) noexcept {
-  others_.keep_last_words(ends_alone_);
+  others_.keep_last_words(ends_alone_, tasks_);
   if (!has_begun_ending_) {
     has_begun_ending_ = true;
     patience_ = now + method_limit_;

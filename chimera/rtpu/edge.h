@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a real-time unit does at its edges beside its own tasks' signals: posts of others, tasks that were served,
-// changes elsewhere, the end. docs/formats/processes.md.
+// The control of a real-time unit: what comes from other processes is taken in at its edges, and what its edges changed
+// is shown to them. docs/formats/processes.md.
+//
+//   inputs, in this order           each is looked at by one function of take()
+//     other processes               new segments, who lives, states and flags elsewhere; wishes of the manager
+//     methods that are over         init and kill, run by the service thread
+//     the end of the unit           from then on no signal is begun
+//     signals                       from tasks elsewhere and from the manager
+//   step                            one signal, or one transaction of several: EdgeSignals::signal()
+//   list of changes                 TaskSet::changes(): nothing below this class publishes anything
+//   publication                     publish(), in one place: after every step, because the next method may hang or end
+//                                   the process, and at the end of the edge
+//
+// A change at one instant (a switch) is one more input: a plan that take() looks at before the signals, whose steps are
+// carried out by EdgeSignals and published once, after the last of them.
 #pragma once
 
 #include <atomic>
@@ -24,10 +37,13 @@ class Edge final : public EdgeGuest {
 
   void take(EdgeSignals& signals, Nanoseconds now) noexcept override;
   void told(const SignalReport& report, Nanoseconds now) noexcept override;
+  void publish() noexcept override { others_.publish(tasks_); }
   void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
   void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept override;
   void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
   void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
+  /// Shows the others how the unit is before its first edge. Setup.
+  void begin() noexcept;
   /// An event descriptor that is written to when a job hangs and when all is over. Setup.
   void set_supervisor(int descriptor) noexcept { supervisor_ = descriptor; }
   /// A job of some task does not end. Any thread.
@@ -56,7 +72,7 @@ class Edge final : public EdgeGuest {
  private:
   void look_around() noexcept;
   void take_posts() noexcept;
-  void take_served(EdgeSignals& signals, Nanoseconds now) noexcept;
+  void take_slow(EdgeSignals& signals, Nanoseconds now) noexcept;
   void act_on_waiting(EdgeSignals& signals, Nanoseconds now) noexcept;
   std::size_t step_length(std::size_t first) const noexcept;
   bool may_act(std::span<const Post> step, EdgeSignals& signals) noexcept;
@@ -69,6 +85,8 @@ class Edge final : public EdgeGuest {
   SignalReport carry_out(EdgeSignals& signals, std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
   bool turn_off_next(EdgeSignals& signals, Nanoseconds now) noexcept;
   bool kill_next(EdgeSignals& signals, Nanoseconds now) noexcept;
+  void post(const Post& post) noexcept;
+  void post_event(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
   void wake_supervisor() noexcept;
 
   const ApplicationSpec& spec_;
@@ -87,12 +105,16 @@ class Edge final : public EdgeGuest {
   bool has_begun_ending_ = false;
   std::size_t next_off_ = 0;       // in ending_order_
   Nanoseconds patience_;           // with the tasks of others, while ending
+  // end() by the main thread, read at edges: sequentially consistent, so that ends_alone_ is seen with ending_.
   std::atomic<bool> ending_{false};
   std::atomic<bool> ends_alone_{false};
+  // hangs() at an edge, read by the main thread: hanging_ is stored last and loaded first, so that the others are seen.
   std::atomic<bool> hanging_{false};
   std::atomic<std::uint32_t> hanging_job_{0};
   std::atomic<std::int64_t> hanging_used_{0};
+  // Stored at an edge, loaded by the loop (RunOptions::stop) and by the main thread; pairs with nothing.
   std::atomic<bool> over_{false};
+  // Counted and told at edges, watched by the main thread (HangWatch); pair with nothing.
   std::atomic<std::uint32_t> progress_{0}, acting_{0};
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Shows other processes what changed here, and reads what they show.
 #include "chimera/rtpu/others.h"
 
 #include <cstring>
@@ -70,66 +71,65 @@ bool Others::post(Signal signal, TaskId target, TaskId from, bool is_echo) noexc
   return true;
 }
 
-std::uint32_t Others::flag_word() const noexcept {
-  return (tasks_->is_on_set_legal() ? 0 : kFlagIllegalSet) | (tasks_->is_flag_raised() ? kFlagRaised : 0);
+void Others::publish(TaskSet& tasks) noexcept {
+  bool is_for_all = false;
+  for (const Change& change : tasks.changes().list()) {
+    if (change.kind == Change::Kind::kFault) publish_fault(tasks.tasks()[change.task.index]);
+    if (keeps_last_words_) continue;
+    if (change.kind == Change::Kind::kStatus)
+      is_for_all |= publish_status(tasks.tasks()[change.task.index], change.before, change.now);
+    if (change.kind == Change::Kind::kFlag) is_for_all |= publish_flag(tasks.flag());
+  }
+  tasks.changes().clear();
+  if (is_for_all) ring_all();
 }
 
-void Others::changed() noexcept {
-  if (tasks_ == nullptr || keeps_last_words_) return;  // set-up; the last words are said
-  bool any = false;
-  for (const Task& task : tasks_->tasks()) {
-    if (!tasks_->is_mine(task.id)) continue;
-    const TaskStatus before = block_.view().status(task.id);
-    const TaskStatus now{task.state, task.in_service, tasks_->incarnation(task.id)};
-    if (now == before) continue;
-    block_.set_status(task.id, now);
-    any = true;
-    if (now.state == before.state) continue;
-    Post post;
-    post.at = {task.call.now_ns};
-    post.task = task.id;
-    post.kind = PostKind::kEvent;
-    post.happening = Happening::kState;
-    post.before = before.state;
-    post.after = now.state;
-    tell(post);
+void Others::publish_all(TaskSet& tasks) noexcept {
+  tasks.on_set_changed();  // whoever died or came meanwhile counts
+  publish(tasks);
+  bool is_for_all = publish_flag(tasks.flag());
+  for (const Task& task : tasks.tasks()) {
+    if (!tasks.is_mine(task.id)) continue;
+    const TaskStatus now{task.state, task.in_service, tasks.memory(task.id).incarnation()};
+    is_for_all |= publish_status(task, block_.view().status(task.id), now);
   }
+  if (is_for_all) ring_all();
+}
+
+// True when the others are to look.
+bool Others::publish_status(const Task& task, TaskStatus before, TaskStatus now) noexcept {
+  if (now == before) return false;
+  block_.set_status(task.id, now);
+  if (now.state == before.state) return true;
+  Post post;
+  post.at = {task.call.now_ns};
+  post.task = task.id;
+  post.kind = PostKind::kEvent;
+  post.happening = Happening::kState;
+  post.before = before.state;
+  post.after = now.state;
+  tell(post);
+  return true;
+}
+
+bool Others::publish_flag(const IllegalFlag& flag) noexcept {
+  const std::uint32_t judged = (flag.is_on_set_legal() ? 0 : kFlagIllegalSet) | (flag.is_raised() ? kFlagRaised : 0);
   const std::uint32_t before = block_.head().flag.load(std::memory_order_relaxed);
-  // Whoever ends raises no flag any more: what its tasks lack is what was told to go.
-  const std::uint32_t flag = is_told_to_end() ? flag_word() & before : flag_word();
-  if (before != flag) {
-    block_.head().flag.store(flag, std::memory_order_release);
-    Post post;
-    post.at = LinuxClock().now();
-    post.from = tasks_->raised_by();
-    post.kind = PostKind::kEvent;
-    post.happening = Happening::kFlag;
-    post.detail = flag;
-    tell(post);
-    any = true;
-  }
-  watch_flags();
-  if (!any) return;
-  decision_->changes.fetch_add(1, std::memory_order_release);  // pairs with changes(): the words above are seen
-  for (std::uint32_t peer = 0; peer < peers_->count(); ++peer)
-    if (peer != me_) ring(peer);
+  // A unit that ends raises no flag any more: what its tasks lack is what was told to go.
+  const std::uint32_t now = is_told_to_end() ? judged & before : judged;
+  if (before == now) return false;
+  block_.head().flag.store(now, std::memory_order_release);  // pairs with the acquire of the manager's World
+  Post post;
+  post.at = LinuxClock().now();
+  post.from = flag.raised_by();
+  post.kind = PostKind::kEvent;
+  post.happening = Happening::kFlag;
+  post.detail = now;
+  tell(post);
+  return true;
 }
 
-void Others::keep_last_words(bool keeps) noexcept {
-  if (std::exchange(keeps_last_words_, keeps) && !keeps) changed();
-}
-
-// The flags of those who live; that of the manager also while it is being restarted.
-void Others::watch_flags() noexcept {
-  flags_.clear();
-  for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
-    const PeerSegment* mapped = peer == me_ ? nullptr : peers_->at(peer);
-    if (mapped != nullptr && (peer == manager() || lives(peer))) flags_.push_back(&mapped->block().head().flag);
-  }
-  tasks_->watch_flags(flags_);
-}
-
-void Others::told(const Task& task) noexcept {
+void Others::publish_fault(const Task& task) noexcept {
   const PeerLayout& layout = peers_->layout(me_);
   const GroupPlace& place = layout.place(layout.fault(task.id));
   GroupWriter writer(segment_.subspan(sizeof(SegmentHeader) + place.offset, group_bytes(place.payload_bytes)),
@@ -142,27 +142,46 @@ void Others::told(const Task& task) noexcept {
     tell(Happening::kNote, task.id, 0, LinuxClock().now());
 }
 
-bool Others::adopt() noexcept {
+void Others::ring_all() noexcept {
+  decision_->changes.fetch_add(1, std::memory_order_release);  // pairs with changes(): the words above are seen
+  for (std::uint32_t peer = 0; peer < peers_->count(); ++peer)
+    if (peer != me_) ring(peer);
+}
+
+void Others::keep_last_words(bool keeps, TaskSet& tasks) noexcept {
+  if (std::exchange(keeps_last_words_, keeps) && !keeps) publish_all(tasks);
+}
+
+void Others::watch_flags(IllegalFlag& flag) noexcept {
+  flags_.clear();
+  for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
+    const PeerSegment* mapped = peer == me_ ? nullptr : peers_->at(peer);
+    if (mapped != nullptr && (peer == manager() || lives(peer))) flags_.push_back(&mapped->block().head().flag);
+  }
+  flag.watch(flags_);
+}
+
+bool Others::adopt(TaskSet& tasks) noexcept {
   bool any = false;
-  let_go_unread();
+  let_go_unread(tasks.sources());
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
     if (peer == me_ || is_read_[peer] || !peers_->adopt(peer)) continue;
     any = true;
     const PeerSegment& mapped = *peers_->at(peer);
     outboxes_[peer].set_reader(&mapped.block().progress(me_));
     inboxes_[peer] = Inbox(mapped.block().outbox(me_), block_.progress(peer), mapped.incarnation());
-    if (peer == manager()) tasks_->let_go(TaskId());
-    for (const TaskSpec& task : spec_->tasks)
-      if (task.rtpu.index == peer) tasks_->let_go(TaskId(static_cast<std::size_t>(&task - spec_->tasks.data())));
-    watch_flags();
+    if (peer == manager()) tasks.sources().let_go(TaskId());
+    for (std::size_t t = 0; t < spec_->tasks.size(); ++t)
+      if (spec_->tasks[t].rtpu.index == peer) tasks.sources().let_go(TaskId(t));
+    watch_flags(tasks.flag());
     is_read_[peer] = true;
   }
-  let_go_unread();
+  let_go_unread(tasks.sources());
   return any;
 }
 
-void Others::let_go_unread() noexcept {
-  if (tasks_->is_any_behind()) return;
+void Others::let_go_unread(const Sources& sources) noexcept {
+  if (sources.is_any_behind()) return;
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
     if (is_read_[peer]) peers_->let_go(peer);
     is_read_[peer] = false;

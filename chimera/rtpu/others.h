@@ -19,23 +19,28 @@ class Others final : public Neighbours {
   /// `segment` is the unit's own, writable; `block` lies in it.
   Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
          DecisionPage& decision, const KeeperPage& keeper, MappedPeers& peers);
-  /// By whom the states to publish are known. Context: setup.
-  void attach(TaskSet& tasks) noexcept { tasks_ = &tasks; }
-  /// While it keeps them nobody is told of states: what was ON when the unit began to end alone comes back with its
-  /// successor. When it does not any more, everybody is told. Context: edge.
-  void keep_last_words(bool keeps) noexcept;
+  /// Shows the others what is listed in tasks.changes() and clears the list: for each change, in order, the word or the
+  /// fault group and then the event for the manager's log; after the last of them all bells are rung, once.
+  /// Context: edge; wait-free.
+  void publish(TaskSet& tasks) noexcept;
+  /// The same for all that is not shown as it is, listed or not: at the start. Context: edge.
+  void publish_all(TaskSet& tasks) noexcept;
+  /// While it keeps them nobody is shown states: what was ON when the unit began to end alone comes back with its
+  /// successor. When it does not any more, all are shown. Context: edge.
+  void keep_last_words(bool keeps, TaskSet& tasks) noexcept;
 
   State state(TaskId task) const noexcept override;
   GroupReader outputs(TaskId task) const noexcept override;
   GroupReader constants(TaskId task) const noexcept override;
   GroupReader operator_variable(std::size_t index) const noexcept override;
   bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept override;
-  void changed() noexcept override;
-  void told(const Task& task) noexcept override;
 
   /// Takes over segments that the main thread offered; true when there was one. One that follows another waits until
   /// no task reads that any more. Context: edge.
-  bool adopt() noexcept;
+  bool adopt(TaskSet& tasks) noexcept;
+  /// From here on `flag` reads the flag words of those who live; that of the manager also while it is being restarted.
+  /// Context: edge.
+  void watch_flags(IllegalFlag& flag) noexcept;
   /// The next post of any peer. Context: edge; wait-free.
   bool take(Post& post) noexcept;
   /// To the manager; what finds no room is counted. Context: edge; wait-free.
@@ -56,10 +61,12 @@ class Others final : public Neighbours {
   bool lives(std::uint32_t peer) const noexcept;
   bool is_told_to_end() const noexcept { return keeper_->ending.load(std::memory_order_acquire) != 0; }
   GroupReader group(std::uint32_t peer, GroupId id) const noexcept;
-  void watch_flags() noexcept;
-  void let_go_unread() noexcept;
+  void let_go_unread(const Sources& sources) noexcept;
+  bool publish_status(const Task& task, TaskStatus before, TaskStatus now) noexcept;
+  bool publish_flag(const IllegalFlag& flag) noexcept;
+  void publish_fault(const Task& task) noexcept;
+  void ring_all() noexcept;
   void ring(std::uint32_t peer) noexcept { Doorbell(decision_->bells[peer].word).ring(); }
-  std::uint32_t flag_word() const noexcept;
 
   const ApplicationSpec* spec_;
   std::uint32_t me_;
@@ -68,7 +75,6 @@ class Others final : public Neighbours {
   DecisionPage* decision_;
   const KeeperPage* keeper_;
   MappedPeers* peers_;
-  TaskSet* tasks_ = nullptr;
   bool keeps_last_words_ = false;
   std::vector<std::uint64_t> faults_, notes_;  // by task: of those that were told
   std::vector<Outbox> outboxes_;  // by peer

@@ -171,22 +171,26 @@ Result<void> Rtpu::make_tasks() {
   components_ = *std::move(components);
   service_ = std::make_unique<ServiceThread>(spec.tasks.size(), Doorbell(bell()));
   others_ = std::make_unique<Others>(spec, start_.peer, segment_.writable(), block_, *decision_, *keeper_, *peers_);
-  const ContextPlace place{RtpuId(start_.peer), segment_.writable().subspan(sizeof(SegmentHeader)),
-                           others_.get(),       service_.get(),
-                           &head.running,       &head.serving,
-                           self().preemptive,   &head.at_edge,
-                           &making};
+  ContextPlace place;
+  place.rtpu = RtpuId(start_.peer);
+  place.table = segment_.writable().subspan(sizeof(SegmentHeader));
+  place.others = others_.get();
+  place.service = service_.get();
+  place.running = &head.running;
+  place.serving = &head.serving;
+  place.preemptive = self().preemptive;
+  place.at_edge = &head.at_edge;
+  place.making = &making;
   auto tasks = TaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);
-  tasks_->attach(writer_);
-  others_->attach(*tasks_);
   edge_ = std::make_unique<Edge>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
                                  image_->settings().method_limit);
   edge_->set_supervisor(over_.fd);
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
   cycling_ = std::make_unique<CyclingThread>(CyclingPlace{spec, start_.peer, image_->settings().priority, *tasks_,
-                                                          *edge_, *others_, keeper_->origin, bell(), over_.fd});
+                                                          *edge_, *others_, writer_, keeper_->origin, bell(),
+                                                          over_.fd});
   return {};
 }
 

@@ -23,8 +23,12 @@ class EdgeGuest {
   /// What has rung by now is dealt with by the take() that follows. Context: edge; wait-free.
   std::uint32_t heard() const noexcept { return heard_; }
 
-  /// Does what is due. Context: edge.
+  /// Deals with the inputs that are due: what comes from other processes. Signals are carried out by `signals`; what
+  /// they change is listed in TaskSet::changes(), and published by publish(). Context: edge.
   virtual void take(EdgeSignals& signals, Nanoseconds now) noexcept = 0;
+  /// Shows other processes what is listed in TaskSet::changes(), and clears the list: at the end of every edge, and
+  /// after jobs that left something to settle. Context: edge.
+  virtual void publish() noexcept = 0;
   /// A signal that a task of this context sent to one of this context was carried out or refused. Context: edge.
   virtual void told(const SignalReport& report, Nanoseconds now) noexcept = 0;
   /// The task missed a deadline, maybe with a job that is under way; the verdict says why. Context: edge.

@@ -23,7 +23,7 @@ void EdgeSignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
   if (act.kind == ScriptAct::Kind::kSet) return set_.set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
-    set_.raise_flag(up);
+    set_.flag().raise(up);
     tap_.record(TapKind::kFlag, now, TaskId(), up ? 1 : 0);
     return;
   }
@@ -38,7 +38,7 @@ void EdgeSignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
 void EdgeSignals::carry_out_pending(Nanoseconds now) noexcept {
   for (Task& task : set_.tasks()) {
     Signal signal;
-    while (!task.pending.empty() && !task.in_service && may_touch(task.id) && set_.take_pending(task, signal))
+    while (!task.pending.empty() && !task.in_service && may_touch(task.id) && set_.sent().take_pending(task, signal))
       carry_out(task, signal, now);
   }
 }
@@ -50,21 +50,21 @@ void EdgeSignals::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept
 }
 
 void EdgeSignals::ring(Task& task, Nanoseconds now) noexcept {
-  const bool counts = set_.ring(task.id);
+  const bool counts = set_.sent().ring(task.id);
   if (!counts) (void)refused_.try_push({now, task.id, Signal::kWakeup, Refusal::kState, task.state});
   tap_.record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(Signal::kWakeup), counts ? 1 : 0);
 }
 
 SignalReport EdgeSignals::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
-  const bool was_illegal = set_.is_illegal();
-  const SignalReport report = set_.signal(tasks, signal, now);
+  const bool was_illegal = set_.flag().is_up();
+  const SignalReport report = set_.life().signal(tasks, signal, now);
   record(report, was_illegal, now);
   return report;
 }
 
-SignalReport EdgeSignals::served(TaskId task, Nanoseconds now) noexcept {
-  const bool was_illegal = set_.is_illegal();
-  const SignalReport report = set_.served(task, now);
+SignalReport EdgeSignals::finish_slow(TaskId task, Nanoseconds now) noexcept {
+  const bool was_illegal = set_.flag().is_up();
+  const SignalReport report = set_.life().finish_slow(task, now);
   record_outcome(task, was_illegal, now);
   return report;
 }
@@ -77,7 +77,7 @@ void EdgeSignals::record(const SignalReport& report, bool was_illegal, Nanosecon
 
 void EdgeSignals::record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept {
   settlement_.record_faults(set_.tasks()[task.index]);
-  if (set_.is_illegal() != was_illegal) tap_.record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
+  if (set_.flag().is_up() != was_illegal) tap_.record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
 }
 
 }  // namespace chimera

@@ -45,10 +45,10 @@ class EdgeSignals {
 
   /// True when an edge may touch the task now: no job of it is under way.
   bool may_touch(TaskId task) noexcept { return threads_.claim(task); }
-  /// As TaskSet::signal. Requires: may_touch() of all.
+  /// As TaskLife::signal. Requires: may_touch() of all.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
-  /// As TaskSet::served.
-  SignalReport served(TaskId task, Nanoseconds now) noexcept;
+  /// As TaskLife::finish_slow.
+  SignalReport finish_slow(TaskId task, Nanoseconds now) noexcept;
 
   /// The first kRefusedKept signals that were refused. Context: setup.
   std::span<const RefusedSignal> refused() const noexcept { return {refused_.begin(), refused_.end()}; }

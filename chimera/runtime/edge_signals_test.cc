@@ -34,6 +34,7 @@ struct Guest final : EdgeGuest {
     listen();
     if (turns_off_sender) (void)signals.signal({&kSender, 1}, Signal::kOff, now);
   }
+  void publish() noexcept override {}
   void told(const SignalReport& report, Nanoseconds) noexcept override { reports.push_back(report); }
   void missed(TaskId task, const MissCause::Verdict&, Nanoseconds) noexcept override { misses.push_back(task); }
   void hangs(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
@@ -57,7 +58,7 @@ struct EdgeSignalsTest : ::testing::Test {
   }
   void begin() {
     releases.emplace(*set, clock, options);
-    ASSERT_TRUE(set->start({}));
+    ASSERT_TRUE(set->life().start({}));
     releases->begin({});
     guest.shown.clear();
   }

@@ -106,10 +106,10 @@ TEST_F(ExecutionTime, OfAMethodHoldsItsTransfers) {
   app.add("wide", component<Wide>("wide"));
   app.port(0, 0).extent[0].max = 16;
   make();
-  set->attach(job_clock);
-  ASSERT_TRUE(set->start({}));
+  set->methods().run_by({&job_clock});
+  ASSERT_TRUE(set->life().start({}));
   clock.looks.clear();
-  set->signal(TaskId(0u), Signal::kOff, {});
+  set->life().signal(TaskId(0u), Signal::kOff, {});
   ASSERT_EQ(clock.looks.size(), 2u) << "its begin and its end";
   EXPECT_NE(clock.looks[0].staged[1], 100) << "staged within the time";
   EXPECT_EQ(clock.looks[1].latest[1], 100);

@@ -6,6 +6,7 @@
 
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
+#include "chimera/runtime/job_step.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -21,6 +22,9 @@ class JobThreads {
   /// True while a job of the task that is under way waits for something in a system call. A look into the kernel's
   /// files, meanwhile others may act: what the caller knows of jobs may be over. Context: edge; some microseconds.
   virtual bool is_blocked(TaskId task) noexcept = 0;
+  /// Calls a method of a task at an edge, as call_method(): where jobs preempt each other at the urgency of the task,
+  /// and what the edge may touch may change meanwhile. Context: edge; as long as the method takes.
+  virtual Answer call(Task& task, Method method, Nanoseconds now) noexcept { return call_method(task, method, now); }
 
  protected:
   ~JobThreads() = default;

@@ -10,7 +10,8 @@
 
 namespace chimera {
 
-/// Asked and told by the thread of the context, at edges. What it answers is good until the next edge.
+/// Asked by the thread of the context, at edges; an answer is good until the next edge. What this context changes is
+/// not told here: runtime/changes.h.
 class Neighbours {
  public:
   /// State of a task of another context; ERROR when its process is dead. Context: edge; wait-free.
@@ -23,10 +24,6 @@ class Neighbours {
   /// Passes a signal on: to the rtpu of `target`; `on` to the manager, who alone turns tasks ON. `is_echo`: a
   /// reinit because a constant changed. False when there is no room. Context: edge; wait-free.
   virtual bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept = 0;
-  /// The state of some task of this context, or its legality, changed. Context: edge; wait-free.
-  virtual void changed() noexcept = 0;
-  /// A method of the task failed, or left a note: its fault record is new. Context: edge; wait-free.
-  virtual void told(const Task& task) noexcept = 0;
 
  protected:
   ~Neighbours() = default;

@@ -42,7 +42,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     record.is_plain = spec.tolerated_of == 0;
     record.budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
-  set.attach(clock);
+  set.methods().run_by({&clock, options.threads, options.writer});
 }
 
 void Releases::begin(Nanoseconds origin) noexcept {
@@ -57,6 +57,7 @@ void Releases::take_edge(Nanoseconds now) noexcept {
   if (guest_ != nullptr) guest_->take(signals_, now);
   signals_.carry_out_pending(now);
   members_.follow_all(now);
+  settlement_.publish();
 }
 
 bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {

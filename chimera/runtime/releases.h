@@ -50,14 +50,14 @@ class Releases {
   }
   /// Everything that is due by now was looked at; the run ends at `until`.
   void rest(Nanoseconds until) noexcept {
-    const bool is_calm = !set_.has_pending() && !settlement_.task_stopped();
+    const bool is_calm = !set_.sent().has_pending() && !settlement_.task_stopped();
     calm_until_ = is_calm ? std::min({queue_.next_release(), signals_.next_act(), until}) : kAtOnce;
   }
   /// The next must_look() is true.
   void look_again() noexcept { calm_until_ = kAtOnce; }
   /// True when take_edge has something to do.
   bool edge_is_due(Nanoseconds now) const noexcept {
-    return set_.has_pending() || signals_.next_act() <= now || (guest_ != nullptr && guest_->is_due(now));
+    return set_.sent().has_pending() || signals_.next_act() <= now || (guest_ != nullptr && guest_->is_due(now));
   }
   /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
   void take_edge(Nanoseconds now) noexcept;
@@ -69,7 +69,7 @@ class Releases {
   }
   /// True while a task is ON or may yet be turned ON.
   bool anything_left() const noexcept {
-    return members_.is_any_on() || set_.has_pending() || signals_.next_act() != kNever || guest_ != nullptr;
+    return members_.is_any_on() || set_.sent().has_pending() || signals_.next_act() != kNever || guest_ != nullptr;
   }
   bool stop_requested() const noexcept { return stop_->load(std::memory_order_relaxed); }
 
@@ -80,7 +80,7 @@ class Releases {
   }
 
   /// The illegal-configuration flag, to be read once for each job.
-  bool is_illegal() const noexcept { return set_.is_illegal(); }
+  bool is_illegal() const noexcept { return set_.flag().is_up(); }
 
   // Where jobs run in the thread that takes the edges.
 

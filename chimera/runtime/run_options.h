@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "chimera/runtime/background_writer.h"
 #include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
@@ -22,6 +23,7 @@ struct RunOptions {
   EdgeGuest* guest = nullptr;                ///< null: nobody else takes part in the edges
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
   JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
+  BackgroundWriter* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer
   bool can_demote = false;                   ///< jobs may go on below all others
 };
 

@@ -6,8 +6,8 @@
 
 namespace chimera {
 
-/// A thread of ordinary priority beside the context. It calls TaskSet::serve(task); then the context's thread calls
-/// TaskSet::served(task) at an edge.
+/// A thread of ordinary priority beside the context. It calls SlowMethods::run(task); then the context's thread
+/// calls TaskLife::finish_slow(task) at an edge.
 class Service {
  public:
   /// Takes over the task until it is served. Context: edge; wait-free.

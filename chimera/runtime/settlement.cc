@@ -17,32 +17,39 @@ void Settlement::settle_at_once(TaskId id, Nanoseconds now) noexcept {
     task_stopped_ = true;
     stopped_by_ = id;
   }
+  publish();
   if (!(left & JobRecord::kFindCause)) return;
   if (const auto verdict = parts_.cause->judge(id, now)) parts_.guest->missed(id, *verdict, now);
+}
+
+void Settlement::publish() noexcept {
+  if (parts_.guest != nullptr && !parts_.set.changes().is_empty()) parts_.guest->publish();
 }
 
 void Settlement::settle(Task& task, Nanoseconds now) noexcept {
   record_faults(task);
   if (task.is_tapped) parts_.tap.append_row(task);
-  if (!task.outbox.empty()) parts_.set.deliver(task);
-  if (task.state == State::kOn) return;
-  parts_.set.on_set_changed();
-  parts_.members.follow(task, now);
+  if (!task.outbox.empty()) parts_.set.sent().deliver(task);
+  if (task.state != State::kOn) {
+    parts_.set.on_set_changed();
+    parts_.members.follow(task, now);
+  }
+  publish();
 }
 
 void Settlement::record_faults(Task& task) noexcept {
   JobRecord& record = parts_.records[task.id.index];
   if (task.faults.told == record.told_seen) return;
   record.told_seen = task.faults.told;
-  parts_.set.told(task);
+  parts_.set.changes().add_fault(task.id);
   if (task.faults.count == record.faults_seen) return;
   record.faults_seen = task.faults.count;
   parts_.tap.record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
 }
 
 void Settlement::raise_flag(TaskId by, Nanoseconds at) noexcept {
-  if (parts_.set.raises_flag(by)) return;
-  if (!parts_.set.is_illegal()) parts_.tap.record(TapKind::kFlag, at, TaskId(), 1);
+  if (parts_.set.flag().raises(by)) return;
+  if (!parts_.set.flag().is_up()) parts_.tap.record(TapKind::kFlag, at, TaskId(), 1);
   parts_.set.raise_flag_for(by);
 }
 

@@ -42,6 +42,9 @@ class Settlement {
   /// Reports a new fault or note of the task.
   void record_faults(Task& task) noexcept;
 
+  /// Has what changed published, if anything did.
+  void publish() noexcept;
+
   bool task_stopped() const noexcept { return task_stopped_; }
   /// The first task whose reaction was `stop`. Requires: task_stopped().
   TaskId stopped_by() const noexcept { return stopped_by_; }

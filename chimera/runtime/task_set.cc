@@ -6,9 +6,6 @@
 
 namespace chimera {
 
-const chimera_host TaskSet::kHost = {&TaskSet::host_expired, &TaskSet::host_signal,   &TaskSet::host_spend,
-                                     &TaskSet::host_note,    &TaskSet::host_variable, &TaskSet::host_unit};
-
 Result<std::unique_ptr<TaskSet>> TaskSet::create(const ApplicationSpec& spec,
                                                  std::span<const chimera_component* const> components,
                                                  const ContextPlace& place) {
@@ -21,8 +18,8 @@ Result<std::unique_ptr<TaskSet>> TaskSet::create(const ApplicationSpec& spec,
 TaskSet::~TaskSet() {
   for (std::size_t t = 0; t < memories_.size(); ++t) {
     if (!memories_[t].is_planned()) continue;
-    (void)end_background(tasks_[t], {});
-    memories_[t].destroy(tasks_[t]);
+    (void)methods_.end_background(tasks_[t], {});
+    methods_.destroy(tasks_[t]);
   }
 }
 
@@ -40,11 +37,15 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
   }
   variables_ = std::make_unique<Variables>(spec_);
   tasks_.resize(n);
-  contexts_.resize(n);
-  serving_.resize(n);
+  hosts_.resize(n);
   on_.assign(n, false);
-  raises_.assign(n, false);
-  wanted_.assign(n, false);
+  listed_.resize(n);
+  methods_.prepare(memories_, {place_.at_edge, place_.making});
+  slow_.prepare(tasks_, hosts_, methods_, place_.service, *place_.serving);
+  sent_.prepare(tasks_, memories_, place_.others);
+  flag_.prepare(*variables_, tasks_);
+  life_.prepare(n);
+  if (!is_alone()) changes_.prepare(n);
   for (std::size_t t = 0; t < n; ++t) prepare_task(t);
   for (std::size_t t = 0; t < n; ++t) tasks_[t].component = components[t];
   for (const Variable& variable : variables_->all()) {
@@ -56,7 +57,7 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
   set_constants();
   plan_foreign_constants();
   place_operators();
-  bindings_.prepare(*variables_, *everything_, tasks_, memories_, operators_, place_.others,
+  sources_.prepare(*variables_, *everything_, tasks_, memories_, operators_, place_.others,
                     place_.preemptive);
   return {};
 }
@@ -65,10 +66,10 @@ void TaskSet::prepare_task(std::size_t t) {
   Task& task = tasks_[t];
   task.spec = &spec_.tasks[t];
   task.id = TaskId(t);
-  contexts_[t] = {this, &task, nullptr};
+  hosts_[t] = {this, &task, nullptr};
   task.call.fault = &task.said;
-  task.call.host = &kHost;
-  task.call.context = &contexts_[t];
+  task.call.host = &TaskHost::kCalls;
+  task.call.context = &hosts_[t];
   task.inputs = memories_[t].inputs();
   task.running = place_.running;
 }
@@ -153,7 +154,7 @@ TaskId TaskSet::find(std::string_view name) const noexcept {
 }
 
 VariableView TaskSet::view(std::size_t index) const noexcept {
-  const Source& source = bindings_.source(VariableId(index));
+  const Source& source = sources_.source(VariableId(index));
   const bool is_operators = !source.task.is_valid();
   const GroupReader reader = is_operators ? operators_[source.operator_index] : source.here;
   const chimera_slot* slot = reader.published();
@@ -189,115 +190,27 @@ std::vector<VariableReader> TaskSet::readers_of(std::size_t index) const {
 }
 
 void TaskSet::follow_others() noexcept {
-  bindings_.follow_others();
+  sources_.follow_others();
   on_set_changed();
 }
 
-bool TaskSet::ring(TaskId id) noexcept {
-  Task& task = tasks_[id.index];
-  const bool counts = task.spec->server && task.state == State::kOn && task.events < UINT32_MAX;
-  if (counts) ++task.events;
-  if (task.spec->server) ++(counts ? task.profile.events : task.profile.events_lost);
-  return counts;
-}
-
-void TaskSet::deliver(Task& task) noexcept {
-  for (const SentSignal& sent : task.outbox) {
-    Task& target = tasks_[sent.target.index];
-    if (sent.signal == Signal::kWakeup && is_mine(sent.target)) {
-      (void)ring(sent.target);
-      continue;
-    }
-    const bool is_asked_of_manager = sent.signal == Signal::kOn;
-    if (place_.others != nullptr && (!is_mine(sent.target) || is_asked_of_manager)) {
-      const bool is_sent = place_.others->post(sent.signal, sent.target, task.id, false);
-      if (!is_sent && sent.signal == Signal::kWakeup) ++task.profile.events_lost;
-      continue;
-    }
-    defer(target, sent.signal);
-  }
-  task.outbox.clear();
-}
-
-void TaskSet::defer(Task& task, Signal signal) noexcept {
-  if (task.pending.try_push(signal)) ++n_pending_;
-  else if (signal == Signal::kKill) task.pending[task.pending.size() - 1] = Signal::kKill;
-}
-
-bool TaskSet::take_pending(Task& task, Signal& signal) noexcept {
-  if (task.pending.empty()) return false;
-  signal = task.pending[0];
-  for (std::size_t i = 1; i < task.pending.size(); ++i) task.pending[i - 1] = task.pending[i];
-  task.pending.pop_back();
-  --n_pending_;
-  return true;
-}
-
-// What tasks raised that are no longer ON, or all did.
-void TaskSet::lower_flags(bool of_all) noexcept {
-  raised_by_ = TaskId();
-  for (const Task& task : tasks_) {
-    raises_[task.id.index] = raises_[task.id.index] && task.state == State::kOn && !of_all;
-    if (raises_[task.id.index]) raised_by_ = task.id;
-  }
+void TaskSet::raise_flag_for(TaskId task) noexcept {
+  flag_.raise_for(task);
+  on_set_changed();
 }
 
 void TaskSet::on_set_changed() noexcept {
   for (const Task& task : tasks_)
     on_[task.id.index] = (is_mine(task.id) ? task.state : place_.others->state(task.id)) == State::kOn;
-  on_set_legal_ = variables_->is_legal(on_);
-  if (raised_by_.is_valid()) lower_flags(false);
-  judge_flag();
-  if (place_.others != nullptr) place_.others->changed();
-}
-
-std::int32_t TaskSet::host_expired(void* context) {
-  const auto* host = static_cast<HostContext*>(context);
-  JobClock& clock = host->clock != nullptr ? *host->clock : *host->set->clock_;
-  if (host->task->give_up.load(std::memory_order_relaxed)) return 1;
-  return clock.now().count > host->task->call.deadline_ns ? 1 : 0;
-}
-
-std::int32_t TaskSet::host_signal(void* context, std::uint32_t signal, const char* name) {
-  const auto* host = static_cast<HostContext*>(context);
-  const TaskId target = name == nullptr ? host->task->id : host->set->find(name);
-  if (!target.is_valid() || signal > CHIMERA_SIGNAL_WAKEUP) return CHIMERA_FAULT;
-  // Only a task behind a server has a doorbell: others are woken by time.
-  if (signal == CHIMERA_SIGNAL_WAKEUP && !host->set->spec_.tasks[target.index].server) return CHIMERA_FAULT;
-  host->task->has_news = true;
-  return host->task->outbox.try_push({static_cast<Signal>(signal), target}) ? CHIMERA_OK : CHIMERA_FAULT;
-}
-
-void TaskSet::host_spend(void* context, std::int64_t ns) {
-  const auto* host = static_cast<HostContext*>(context);
-  (host->clock != nullptr ? *host->clock : *host->set->clock_).spend(Nanoseconds{ns});
-}
-
-// The executor sees it as it sees a fault: nobody else is told by a job.
-void TaskSet::host_note(void* context, const char* text) {
-  Task& task = *static_cast<HostContext*>(context)->task;
-  FaultRecord& record = task.faults;
-  task.has_news = true;
-  std::strncpy(record.note, text, sizeof record.note - 1);
-  ++record.notes;
-  ++record.told;
-}
-
-const PortSpec* TaskSet::joined(void* context, const chimera_port* port) noexcept {
-  const auto* host = static_cast<HostContext*>(context);
-  return host->set->memories_[host->task->id.index].spec_of(port);
-}
-
-chimera_text TaskSet::host_variable(void* context, const chimera_port* port) {
-  const PortSpec* spec = joined(context, port);
-  if (spec == nullptr) return {"", 0};
-  return {spec->variable.data(), static_cast<std::uint32_t>(spec->variable.size())};
-}
-
-chimera_text TaskSet::host_unit(void* context, const chimera_port* port) {
-  const PortSpec* spec = joined(context, port);
-  if (spec == nullptr) return {"", 0};
-  return {spec->unit.data(), static_cast<std::uint32_t>(spec->unit.size())};
+  flag_.follow(on_);
+  for (const Task& task : tasks_) {
+    if (!is_mine(task.id)) continue;
+    const TaskStatus now{task.state, task.in_service, memories_[task.id.index].incarnation()};
+    TaskStatus& listed = listed_[task.id.index];
+    if (now != listed) changes_.add_status(task.id, listed, now);
+    listed = now;
+  }
+  changes_.add_flag();
 }
 
 }  // namespace chimera

@@ -73,10 +73,10 @@ struct TaskSetBackground : ::testing::Test {
 
 TEST_F(TaskSetBackground, RunsInAThreadFromInitToKill) {
   make();
-  set->attach(writer);
-  EXPECT_TRUE(set->signal(TaskId{0u}, Signal::kSpawn, {}).is_accepted);
+  set->methods().run_by({nullptr, nullptr, &writer});
+  EXPECT_TRUE(set->life().signal(TaskId{0u}, Signal::kSpawn, {}).is_accepted);
   await(3);
-  EXPECT_TRUE(set->signal(TaskId{0u}, Signal::kKill, {}).is_accepted);
+  EXPECT_TRUE(set->life().signal(TaskId{0u}, Signal::kKill, {}).is_accepted);
   const int at_kill = told.backgrounds;
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_EQ(told.backgrounds, at_kill);
@@ -86,17 +86,17 @@ TEST_F(TaskSetBackground, RunsInAThreadFromInitToKill) {
 
 TEST_F(TaskSetBackground, WithoutAThreadItRunsOnceBeforeKill) {
   make();
-  set->signal(TaskId{0u}, Signal::kSpawn, {});
+  set->life().signal(TaskId{0u}, Signal::kSpawn, {});
   EXPECT_EQ(told.backgrounds, 0);
-  set->signal(TaskId{0u}, Signal::kKill, {});
+  set->life().signal(TaskId{0u}, Signal::kKill, {});
   EXPECT_EQ(told.backgrounds, 1);
   EXPECT_EQ(told.letters, "ikd");
 }
 
 TEST_F(TaskSetBackground, ATaskThatIsNeverKilledIsLeftByItsThreadBeforeItGoes) {
   make();
-  set->attach(writer);
-  set->signal(TaskId{0u}, Signal::kSpawn, {});
+  set->methods().run_by({nullptr, nullptr, &writer});
+  set->life().signal(TaskId{0u}, Signal::kSpawn, {});
   await(1);
   set.reset();
   EXPECT_EQ(told.letters, "id");
@@ -107,10 +107,10 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   make();
   story = &for_ever;
   for_ever.is_stalled = true;
-  set->attach(writer);
-  set->signal(TaskId{0u}, Signal::kSpawn, {});
+  set->methods().run_by({nullptr, nullptr, &writer});
+  set->life().signal(TaskId{0u}, Signal::kSpawn, {});
   while (for_ever.backgrounds == 0) std::this_thread::yield();
-  const SignalReport report = set->signal(TaskId{0u}, Signal::kKill, {});
+  const SignalReport report = set->life().signal(TaskId{0u}, Signal::kKill, {});
   EXPECT_EQ(report.after, State::kNotCreated);
   EXPECT_EQ(for_ever.letters, "i");  // neither killed nor destroyed
   EXPECT_STREQ(task().faults.last.text, "its background did not return within 0.1 s: what it holds is lost");
@@ -119,18 +119,18 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_EQ(for_ever.backgrounds, begun) << "what was left alone is not asked again";
   for_ever.letters.clear();
-  EXPECT_TRUE(set->signal(TaskId{0u}, Signal::kSpawn, {}).is_accepted);
-  EXPECT_TRUE(set->signal(TaskId{0u}, Signal::kKill, {}).is_accepted);
+  EXPECT_TRUE(set->life().signal(TaskId{0u}, Signal::kSpawn, {}).is_accepted);
+  EXPECT_TRUE(set->life().signal(TaskId{0u}, Signal::kKill, {}).is_accepted);
   EXPECT_EQ(for_ever.letters, "ikd");
 }
 
 TEST_F(TaskSetBackground, AFaultIsToldAtKillAndNotAskedForAgain) {
   make();
   told.throws = true;
-  set->attach(writer);
-  set->signal(TaskId{0u}, Signal::kSpawn, {});
+  set->methods().run_by({nullptr, nullptr, &writer});
+  set->life().signal(TaskId{0u}, Signal::kSpawn, {});
   await(3);
-  set->signal(TaskId{0u}, Signal::kKill, {});
+  set->life().signal(TaskId{0u}, Signal::kKill, {});
   EXPECT_EQ(told.backgrounds, 3);
   EXPECT_EQ(told.letters, "ikd");
   EXPECT_STREQ(task().faults.last.text, "the disk burns");

@@ -48,9 +48,9 @@ void TaskSet::reinit_users(TaskId of, Nanoseconds now) {
     }
     Task& user = tasks_[id.index];
     const bool waits = user.in_service || user.is_busy;
-    if (waits && uses_constant_of(id, of) && user.pending.try_push(Signal::kReinit)) ++n_pending_;
+    if (waits && uses_constant_of(id, of)) sent_.defer(user, Signal::kReinit);
     if (waits || (user.state != State::kOff && user.state != State::kOn)) continue;
-    if (memories_[id.index].uses_changed(constants_)) carry_out(id, Signal::kReinit, now);
+    if (memories_[id.index].uses_changed(constants_)) life_.reinit(id, now);
   }
 }
 

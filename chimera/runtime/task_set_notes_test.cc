@@ -48,7 +48,7 @@ struct TaskSetNotes : ::testing::Test {
 };
 
 TEST_F(TaskSetNotes, AComponentLearnsTheNamesAndUnitsOfWhatItIsJoinedTo) {
-  ASSERT_TRUE(set->start({}));
+  ASSERT_TRUE(set->life().start({}));
   EXPECT_EQ(Teller::names, "q rad; ; sum");
 }
 

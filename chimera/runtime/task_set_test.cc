@@ -71,11 +71,11 @@ double number(const TaskSet& set, const char* variable) {
 }
 
 State run_cycle(TaskSet& set, std::size_t task, Nanoseconds at) {
-  const CycleTime time{at, at + milliseconds(1), 0, set.is_illegal()};
+  const CycleTime time{at, at + milliseconds(1), 0, set.flag().is_up()};
   Task& t = set.tasks()[task];
   const BodyEnd body = begin_cycle(t, time);
   const State state = end_cycle(t, body, time, at + microseconds(10), true, nullptr);
-  set.deliver(t);
+  set.sent().deliver(t);
   return state;
 }
 
@@ -97,7 +97,7 @@ struct CounterAndReader : ::testing::Test {
 };
 
 TEST_F(CounterAndReader, SpawnsTurnsOnAndMovesValues) {
-  ASSERT_TRUE(set->start({}));
+  ASSERT_TRUE(set->life().start({}));
   EXPECT_EQ(set->tasks()[0].state, State::kOn);
   EXPECT_FALSE(set->view(set->variables().find("seen")).is_valid);
   EXPECT_TRUE(std::isnan(number(*set, "seen")));  // never written
@@ -108,7 +108,7 @@ TEST_F(CounterAndReader, SpawnsTurnsOnAndMovesValues) {
 }
 
 TEST_F(CounterAndReader, AFailingCyclePublishesNothingAndSaysWhy) {
-  ASSERT_TRUE(set->start({}));
+  ASSERT_TRUE(set->life().start({}));
   for (int i = 1; i <= 12; ++i) run_cycle(*set, 0, milliseconds(i));
   EXPECT_EQ(number(*set, "n"), 12);
   EXPECT_EQ(run_cycle(*set, 0, milliseconds(13)), State::kOn);  // error() recovers
@@ -127,42 +127,42 @@ TEST_F(CounterAndReader, AFailingCyclePublishesNothingAndSaysWhy) {
 }
 
 TEST_F(CounterAndReader, AFaultThatIsNotRecoveredEndsInErrorAndClearLeadsToOff) {
-  ASSERT_TRUE(set->start({}));
+  ASSERT_TRUE(set->life().start({}));
   static_cast<Counter*>(set->tasks()[0].instance)->recovers_ = false;
   static_cast<Counter*>(set->tasks()[0].instance)->sum_ = 12;
   EXPECT_EQ(run_cycle(*set, 0, milliseconds(1)), State::kError);
   set->on_set_changed();
-  EXPECT_TRUE(set->is_illegal());  // the reader has no producer that is ON
-  EXPECT_TRUE(set->signal(TaskId{std::size_t{0}}, Signal::kClear, {}).is_accepted);
+  EXPECT_TRUE(set->flag().is_up());  // the reader has no producer that is ON
+  EXPECT_TRUE(set->life().signal(TaskId{std::size_t{0}}, Signal::kClear, {}).is_accepted);
   EXPECT_EQ(set->tasks()[0].state, State::kOff);
-  EXPECT_TRUE(set->signal(TaskId{std::size_t{0}}, Signal::kOn, {}).is_accepted);
-  EXPECT_FALSE(set->is_illegal());
+  EXPECT_TRUE(set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, {}).is_accepted);
+  EXPECT_FALSE(set->flag().is_up());
 }
 
 TEST_F(CounterAndReader, RefusesWhatIsNotLegalAndChangesNothing) {
-  ASSERT_TRUE(set->start({}));
-  const SignalReport again = set->signal(TaskId{std::size_t{0}}, Signal::kOn, {});
+  ASSERT_TRUE(set->life().start({}));
+  const SignalReport again = set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, {});
   EXPECT_FALSE(again.is_accepted);
-  EXPECT_EQ(set->explain(again), "on is not legal for counter in state ON");
-  set->signal(TaskId{std::size_t{0}}, Signal::kOff, {});
-  EXPECT_TRUE(set->is_illegal());
-  set->signal(TaskId{std::size_t{1}}, Signal::kOff, {});
-  EXPECT_FALSE(set->is_illegal());
-  const SignalReport alone = set->signal(TaskId{std::size_t{1}}, Signal::kOn, {});
-  EXPECT_EQ(set->explain(alone), "n would have no producer; the smallest legal set is: counter reader");
+  EXPECT_EQ(set->life().explain(again), "on is not legal for counter in state ON");
+  set->life().signal(TaskId{std::size_t{0}}, Signal::kOff, {});
+  EXPECT_TRUE(set->flag().is_up());
+  set->life().signal(TaskId{std::size_t{1}}, Signal::kOff, {});
+  EXPECT_FALSE(set->flag().is_up());
+  const SignalReport alone = set->life().signal(TaskId{std::size_t{1}}, Signal::kOn, {});
+  EXPECT_EQ(set->life().explain(alone), "n would have no producer; the smallest legal set is: counter reader");
   EXPECT_EQ(set->tasks()[1].state, State::kOff);
 }
 
 TEST_F(CounterAndReader, ARespawnedProducerTakesOverWhatItsPredecessorLeft) {
-  ASSERT_TRUE(set->start({}));
+  ASSERT_TRUE(set->life().start({}));
   for (int i = 1; i <= 5; ++i) run_cycle(*set, 0, milliseconds(i));
   const TaskId counter{std::size_t{0}};
-  set->signal(counter, Signal::kKill, {});
+  set->life().signal(counter, Signal::kKill, {});
   EXPECT_EQ(set->tasks()[0].state, State::kNotCreated);
   EXPECT_EQ(number(*set, "n"), 5);
-  ASSERT_TRUE(set->signal(counter, Signal::kSpawn, {}).is_accepted);
+  ASSERT_TRUE(set->life().signal(counter, Signal::kSpawn, {}).is_accepted);
   EXPECT_EQ(number(*set, "n"), 5) << "consumers stay with the old incarnation until the new one is ON";
-  ASSERT_TRUE(set->signal(counter, Signal::kOn, {}).is_accepted);
+  ASSERT_TRUE(set->life().signal(counter, Signal::kOn, {}).is_accepted);
   EXPECT_EQ(number(*set, "n"), 5) << "bumpless";
   run_cycle(*set, 0, milliseconds(6));
   EXPECT_EQ(number(*set, "n"), 6);
@@ -174,9 +174,9 @@ TEST(TaskSet, TwoProducersOfOneVariableCannotBothBeOn) {
   app.add("b", component<Counter>("counter"));
   app.make({TaskId{std::size_t{0}}}, false);
   auto set = make(app);
-  ASSERT_TRUE(set->start({}));
-  const SignalReport both = set->signal(TaskId{std::size_t{1}}, Signal::kOn, {});
-  EXPECT_EQ(set->explain(both), "n would have two producers: a and b");
+  ASSERT_TRUE(set->life().start({}));
+  const SignalReport both = set->life().signal(TaskId{std::size_t{1}}, Signal::kOn, {});
+  EXPECT_EQ(set->life().explain(both), "n would have two producers: a and b");
 }
 
 TEST(TaskSet, ConstantsFixExtentsAndReinitialiseExactlyTheirUsers) {
@@ -188,14 +188,14 @@ TEST(TaskSet, ConstantsFixExtentsAndReinitialiseExactlyTheirUsers) {
   app.port(1, 1).extent[0] = {10, "ndof"};
   app.make();
   auto set = make(app);
-  ASSERT_TRUE(set->start({}));
+  ASSERT_TRUE(set->life().start({}));
   run_cycle(*set, 1, milliseconds(1));
   std::int32_t inits;
   std::memcpy(&inits, set->view(set->variables().find("inits")).value, sizeof inits);
   EXPECT_EQ(inits, 103);  // one init, three elements
   EXPECT_EQ(set->tasks()[2].profile.execution[CHIMERA_REINIT].count, 0u);
   static_cast<Arm*>(set->tasks()[0].instance)->wanted_ = 4;
-  ASSERT_TRUE(set->signal(TaskId{std::size_t{0}}, Signal::kReinit, {}).is_accepted);
+  ASSERT_TRUE(set->life().signal(TaskId{std::size_t{0}}, Signal::kReinit, {}).is_accepted);
   run_cycle(*set, 1, milliseconds(2));
   std::memcpy(&inits, set->view(set->variables().find("inits")).value, sizeof inits);
   EXPECT_EQ(inits, 204);
@@ -208,7 +208,7 @@ TEST(TaskSet, AnExtentAboveItsMaximumIsAFaultOfInit) {
   app.port(0, 1).extent[0] = {2, "ndof"};
   app.make();
   auto set = make(app);
-  const auto started = set->start({});
+  const auto started = set->life().start({});
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().message.view(), "init: extent ndof = 3 of port q is outside 1 to 2");
   EXPECT_EQ(set->tasks()[0].state, State::kNotCreated);
@@ -223,7 +223,7 @@ TEST(TaskSet, AListMustBeAsLongAsTheConstantSays) {
   app.port(1, 1).listed[0] = 4;
   app.make();
   auto set = make(app);
-  const auto started = set->start({});
+  const auto started = set->life().start({});
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().message.view(), "init: q has a list of 4 values, but ndof is 3");
 }
@@ -235,20 +235,20 @@ TEST(TaskSet, SignalsOfATaskWaitForTheEdge) {
   app.add("boss", component<Boss>("boss"));
   app.make();
   auto set = make(app);
-  ASSERT_TRUE(set->start({}));
+  ASSERT_TRUE(set->life().start({}));
   EXPECT_EQ(run_cycle(*set, 2, milliseconds(1)), State::kOn);
-  EXPECT_TRUE(set->has_pending());
+  EXPECT_TRUE(set->sent().has_pending());
   EXPECT_EQ(set->tasks()[1].state, State::kOn);
   Signal signal{};
-  ASSERT_TRUE(set->take_pending(set->tasks()[1], signal));
+  ASSERT_TRUE(set->sent().take_pending(set->tasks()[1], signal));
   EXPECT_EQ(signal, Signal::kOff);
-  EXPECT_FALSE(set->has_pending());
+  EXPECT_FALSE(set->sent().has_pending());
   for (int i = 0; i < 40; ++i) run_cycle(*set, 2, milliseconds(i));
   set->tasks()[2].outbox.clear();
   (void)set->tasks()[2].outbox.try_push({Signal::kKill, TaskId{std::size_t{1}}});
-  set->deliver(set->tasks()[2]);
+  set->sent().deliver(set->tasks()[2]);
   Signal last{};
-  while (set->take_pending(set->tasks()[1], signal)) last = signal;
+  while (set->sent().take_pending(set->tasks()[1], signal)) last = signal;
   EXPECT_EQ(last, Signal::kKill) << "kill is never dropped";
 }
 
@@ -258,7 +258,7 @@ TEST(TaskSet, OperatorVariablesHoldTheirInitialValue) {
   app.give(app.operators, "n", CHIMERA_FLOAT64, testing::bytes_of(2.5));
   app.make();
   auto set = make(app);
-  ASSERT_TRUE(set->start({}));
+  ASSERT_TRUE(set->life().start({}));
   run_cycle(*set, 0, milliseconds(1));
   EXPECT_EQ(number(*set, "seen"), 2.5);
 }

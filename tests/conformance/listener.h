@@ -32,6 +32,7 @@ class Listener final : public EdgeGuest {
     listen();
     if (on_take) on_take(signals, now);
   }
+  void publish() noexcept override {}
   void told(const SignalReport&, Nanoseconds) noexcept override {}
   void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept override {
     misses.push_back({task, verdict.culprit, verdict.is_blocked, now});

@@ -46,8 +46,9 @@ class Logging {
     auto made = TaskSet::create(app_.make(), app_.components);
     if (!made) ADD_FAILURE() << made.error().message.c_str();
     set_ = *std::move(made);
-    set_->attach(writer_);
-    executive_ = std::make_unique<Executive>(*set_, clock_, job_clock_, RunOptions{});
+    RunOptions options;
+    options.writer = &writer_;
+    executive_ = std::make_unique<Executive>(*set_, clock_, job_clock_, options);
   }
   void run() {
     std::thread loop([&] {

@@ -53,7 +53,6 @@ struct Unit {
     auto made = TaskSet::create(spec, components, place);
     EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message.c_str());
     tasks = *std::move(made);
-    others.attach(*tasks);
     edge = std::make_unique<Edge>(spec, *tasks, others, service, decision, me, seconds(1));
     RunOptions options;
     options.policy = spec.rtpus[me].policy;
@@ -61,7 +60,7 @@ struct Unit {
     options.stop = &edge->is_over();
     executive = std::make_unique<Executive>(*tasks, clock, job_clock, options);
     executive->start(keeper.origin);
-    others.changed();
+    edge->begin();
     keeper.alive[me] = incarnation;
   }
 
@@ -69,7 +68,7 @@ struct Unit {
     while (!service.asked.empty()) {
       const TaskId task = service.asked.front();
       service.asked.pop_front();
-      tasks->serve(task, job_clock);
+      tasks->slow().run(task, job_clock);
       service.done.push_back(task);
       bell.ring();
     }

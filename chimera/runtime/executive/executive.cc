@@ -22,7 +22,7 @@ Executive::Executive(TaskSet& set, Clock& clock, JobClock& job_clock, const RunO
     : set_(set), clock_(clock), releases_(set, job_clock, options) {}
 
 Result<void> Executive::start() {
-  Result<void> started = set_.start(clock_.now());
+  Result<void> started = set_.life().start(clock_.now());
   if (started) releases_.begin(clock_.now());
   return started;
 }

@@ -31,7 +31,7 @@ class Executive {
   Executive(TaskSet& set, Clock& clock, JobClock& job_clock, const RunOptions& options);
 
   /// Spawns all tasks and turns the start set ON; the grid of releases begins when that is done. Refuses as
-  /// TaskSet::start. Context: setup; as long as init and on take.
+  /// TaskLife::start. Context: setup; as long as init and on take.
   Result<void> start();
   /// Begins with nothing spawned, on a grid of releases that others share. Context: setup.
   void start(Nanoseconds origin) { releases_.begin(origin); }
@@ -40,7 +40,7 @@ class Executive {
   /// Context: cycle; returns when RunEnd says so.
   RunEnd run(Nanoseconds duration) noexcept;
   /// off and kill for every task. Context: setup.
-  void shut_down() { set_.shut_down(clock_.now()); }
+  void shut_down() { set_.life().shut_down(clock_.now()); }
 
   /// When the grid of releases began. Context: any.
   Nanoseconds origin() const noexcept { return releases_.origin(); }

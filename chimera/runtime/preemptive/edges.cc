@@ -25,7 +25,6 @@ PreemptiveExecutor::PreemptiveExecutor(TaskSet& set, const RunOptions& options, 
               place.ceiling > 0 ? place.ceiling : 20),
       of_task_(set.tasks().size()), bell_(place.bell != nullptr ? place.bell : &own_bell_), use_(place.window),
       use_by_less_(place.window) {
-  set.attach(static_cast<MethodGate&>(*this));
   has_levels_ = place.ceiling > 0 && may_be_realtime(place.ceiling);
   for (const Task& task : tasks_) {
     if (!set.is_mine(task.id)) continue;
@@ -55,7 +54,7 @@ PreemptiveExecutor::~PreemptiveExecutor() {
 }
 
 Result<void> PreemptiveExecutor::start() {
-  Result<void> started = set_.start(clock_.now());
+  Result<void> started = set_.life().start(clock_.now());
   if (started) start(clock_.now());
   return started;
 }
@@ -69,7 +68,7 @@ void PreemptiveExecutor::start(Nanoseconds origin) {
 
 void PreemptiveExecutor::shut_down() noexcept {
   enter();
-  set_.shut_down(clock_.now());
+  set_.life().shut_down(clock_.now());
   leave();
 }
 
@@ -192,6 +191,14 @@ bool PreemptiveExecutor::is_blocked(TaskId id) noexcept {
   return asleep;
 }
 
+Answer PreemptiveExecutor::call(Task& task, Method method, Nanoseconds now) noexcept {
+  open(task.id);
+  const Answer answer = call_method(task, method, now);
+  close(task.id);
+  return answer;
+}
+
+// The method runs at the label of its task, outside of the section.
 void PreemptiveExecutor::open(TaskId id) noexcept {
   JobThread* job = of_task_[id.index];
   if (job == nullptr || edge_thread_ == 0) return;  // nobody runs yet

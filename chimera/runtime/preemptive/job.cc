@@ -32,7 +32,7 @@ void PreemptiveExecutor::follow_releases(JobThread& me) {
     const bool has_come = descriptor >= 0 && me.served->bell.await(descriptor, kNever);
     if (descriptor < 0) (void)me.bell.wait_until(heard, until);
     enter();
-    if (has_come && listens(me)) (void)set_.ring(me.task);
+    if (has_come && listens(me)) (void)set_.sent().ring(me.task);
   }
   leave();
 }

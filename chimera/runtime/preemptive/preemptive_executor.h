@@ -60,7 +60,7 @@ struct ProcessorCounts {
 
 /// Runs the tasks of `set`, which was made with ContextPlace::preemptive. The set and what the options point at
 /// outlive it.
-class PreemptiveExecutor final : private JobThreads, private MethodGate {
+class PreemptiveExecutor final : private JobThreads {
  public:
   /// Starts the threads, asleep. Context: setup; may block.
   PreemptiveExecutor(TaskSet& set, const RunOptions& options, const ProcessorPlace& place);
@@ -70,7 +70,7 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   ~PreemptiveExecutor();
 
   /// Spawns all tasks and turns the start set ON; the grid of releases begins when that is done. Refuses as
-  /// TaskSet::start. Context: setup.
+  /// TaskLife::start. Context: setup.
   Result<void> start();
   /// Begins with nothing spawned, on a grid of releases that others share. Context: setup.
   void start(Nanoseconds origin);
@@ -98,8 +98,9 @@ class PreemptiveExecutor final : private JobThreads, private MethodGate {
   bool claim(TaskId task) noexcept override;
   Nanoseconds used_by_job(TaskId task) noexcept override;
   bool is_blocked(TaskId task) noexcept override;
-  void open(TaskId task) noexcept override;
-  void close(TaskId task) noexcept override;
+  Answer call(Task& task, Method method, Nanoseconds now) noexcept override;
+  void open(TaskId task) noexcept;
+  void close(TaskId task) noexcept;
   bool take_edge(RunEnd& end, Nanoseconds until) noexcept;
   void tell_threads(bool all) noexcept;
   void stop_jobs(RunEnd end) noexcept;

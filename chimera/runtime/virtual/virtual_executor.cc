@@ -55,7 +55,7 @@ VirtualExecutor::VirtualExecutor(TaskSet& set, const RunOptions& options, const 
 
 Result<void> VirtualExecutor::start() {
   clock_.set(now_);
-  Result<void> started = set_.start(now_);
+  Result<void> started = set_.life().start(now_);
   now_ = clock_.now();
   if (started) releases_.begin(now_);
   return started;

@@ -23,14 +23,14 @@ class VirtualExecutor {
   VirtualExecutor(TaskSet& set, const RunOptions& options, const VirtualOptions& how);
 
   /// Spawns all tasks and turns the start set ON; what their methods spend is the origin of the grid, else 0.
-  /// Refuses as TaskSet::start. Context: setup.
+  /// Refuses as TaskLife::start. Context: setup.
   Result<void> start();
   /// Runs for `duration` from the origin of the grid; kNever: until nothing is left. No job starts at or after the
   /// end; one under way there is finished (non-preemptive) or cut (preemptive). May be called again to go on.
   /// Context: cycle.
   RunEnd run(Nanoseconds duration) noexcept;
   /// off and kill for every task. Context: setup.
-  void shut_down() { set_.shut_down(now_); }
+  void shut_down() { set_.life().shut_down(now_); }
 
   /// Context: any.
   Nanoseconds now() const noexcept { return now_; }

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an edge changed, as a list: what other processes are to see of it. Nothing is published where something changes;
+// whoever takes part in the edges (EdgeGuest) publishes the list and clears it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chimera/base/ids.h"
+#include "chimera/runtime/task_status.h"
+
+namespace chimera {
+
+/// One thing that changed.
+struct Change {
+  enum class Kind : std::uint8_t {
+    kStatus,  ///< of the task: from `before` to `now`
+    kFault,   ///< the fault record of the task has a new fault or note
+    kFlag,    ///< the illegal-configuration flag was judged anew, and may be another
+  };
+  Kind kind = Kind::kFlag;
+  TaskId task;  ///< invalid for kFlag
+  TaskStatus before, now;
+};
+
+/// In the order in which things changed first; what changes again before the list is published stands in its first
+/// place with its latest status. Context of everything not marked: edge; O(changes); no allocation.
+class Changes {
+ public:
+  /// Room for everything that `n_tasks` tasks can change. Nothing is listed before that. Context: setup.
+  void prepare(std::size_t n_tasks) { places_.resize(2 * n_tasks + 1); }
+
+  void add_status(TaskId task, TaskStatus before, TaskStatus now) noexcept {
+    if (Change* listed = add(Change::Kind::kStatus, task, before)) listed->now = now;
+  }
+  void add_fault(TaskId task) noexcept { (void)add(Change::Kind::kFault, task, {}); }
+  void add_flag() noexcept { (void)add(Change::Kind::kFlag, TaskId(), {}); }
+
+  bool is_empty() const noexcept { return n_ == 0; }
+  std::span<const Change> list() const noexcept { return {places_.data(), n_}; }
+  /// All of them are published.
+  void clear() noexcept { n_ = 0; }
+
+ private:
+  // The place in the list; null before prepare().
+  Change* add(Change::Kind kind, TaskId task, TaskStatus before) noexcept {
+    for (std::size_t i = 0; i < n_; ++i)
+      if (places_[i].kind == kind && places_[i].task == task) return &places_[i];
+    if (n_ == places_.size()) return nullptr;
+    places_[n_] = {kind, task, before, before};
+    return &places_[n_++];
+  }
+
+  std::vector<Change> places_;
+  std::size_t n_ = 0;  // of them are listed
+};
+
+}  // namespace chimera

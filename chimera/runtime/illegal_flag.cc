@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judges the illegal-configuration flag of one context.
+#include "chimera/runtime/illegal_flag.h"
+
+namespace chimera {
+
+void IllegalFlag::prepare(const Variables& variables, std::span<const Task> tasks) {
+  variables_ = &variables;
+  tasks_ = tasks;
+  raises_.assign(tasks.size(), false);
+}
+
+void IllegalFlag::raise(bool up) noexcept {
+  is_raised_ = up;
+  if (!up) lower(true);
+  judge();
+}
+
+void IllegalFlag::raise_for(TaskId task) noexcept {
+  raised_by_ = task;
+  raises_[task.index] = true;
+  judge();
+}
+
+void IllegalFlag::follow(const std::vector<bool>& on) noexcept {
+  is_on_set_legal_ = variables_->is_legal(on);
+  if (raised_by_.is_valid()) lower(false);
+  judge();
+}
+
+// What tasks raised that are no longer ON, or all did.
+void IllegalFlag::lower(bool for_all) noexcept {
+  raised_by_ = TaskId();
+  for (const Task& task : tasks_) {
+    raises_[task.id.index] = raises_[task.id.index] && task.state == State::kOn && !for_all;
+    if (raises_[task.id.index]) raised_by_ = task.id;
+  }
+}
+
+}  // namespace chimera

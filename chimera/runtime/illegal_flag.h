@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The illegal-configuration flag as one context sees it: up while the tasks that are ON are no legal set, while
+// somebody holds it up, or while it is up in another process.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chimera/base/ids.h"
+#include "chimera/runtime/variables.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+/// Context of everything not marked: edge; no allocation.
+class IllegalFlag {
+ public:
+  /// Down until the first follow(). Everything given outlives this. Context: setup.
+  void prepare(const Variables& variables, std::span<const Task> tasks);
+
+  /// To be read once for each job. Context: cycle; wait-free; O(other processes).
+  bool is_up() const noexcept {
+    if (is_up_here_) return true;
+    for (const std::atomic<std::uint32_t>* flag : foreign_)
+      if (flag->load(std::memory_order_relaxed) != 0) return true;
+    return false;
+  }
+  /// The tasks that are ON over all contexts obey the two set equations, as of the last follow(). Wait-free.
+  bool is_on_set_legal() const noexcept { return is_on_set_legal_; }
+  /// Somebody of this context holds it up, legal or not. Wait-free.
+  bool is_raised() const noexcept { return is_raised_ || raised_by_.is_valid(); }
+  /// Raises or lowers the part of the flag that does not follow from the ON set. Lowered, it is also for the tasks
+  /// that hold it up.
+  void raise(bool up) noexcept;
+  /// The reaction of the task, of this context, holds it up until that task is no longer ON.
+  void raise_for(TaskId task) noexcept;
+  bool raises(TaskId task) const noexcept { return raises_[task.index]; }
+  /// The task whose reaction raised it last; invalid: no task does.
+  TaskId raised_by() const noexcept { return raised_by_; }
+  /// The flag words of the other processes, read from here on by is_up(). The words and the span outlive this.
+  void watch(std::span<const std::atomic<std::uint32_t>* const> flags) noexcept { foreign_ = flags; }
+  /// `on[t]`: task t is ON, over all contexts.
+  void follow(const std::vector<bool>& on) noexcept;
+
+ private:
+  void lower(bool for_all) noexcept;
+  void judge() noexcept { is_up_here_ = is_raised() || !is_on_set_legal_; }
+
+  const Variables* variables_ = nullptr;
+  std::span<const Task> tasks_;
+  // Relaxed, pair with nothing: a job that reads one a cycle late is a job that ran a cycle earlier.
+  std::span<const std::atomic<std::uint32_t>* const> foreign_;
+  std::vector<bool> raises_;  // by task: its reaction holds the flag up
+  TaskId raised_by_;          // one of them
+  bool is_raised_ = false;
+  bool is_on_set_legal_ = true;
+  bool is_up_here_ = false;  // what these come to, for every job
+};
+
+}  // namespace chimera

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Signals between tasks: from the method that sent one to the edge that carries it out, or to another process.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/runtime/neighbours.h"
+#include "chimera/runtime/task_memory.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+/// Context of everything not marked: edge; wait-free.
+class SentSignals {
+ public:
+  /// `memories[t]` is planned for the tasks of this context; `others` null: there is no other. Context: setup.
+  void prepare(std::span<Task> tasks, std::span<const TaskMemory> memories, Neighbours* others) noexcept {
+    tasks_ = tasks;
+    memories_ = memories;
+    others_ = others;
+  }
+
+  /// Hands the signals that `task` sent during its last method to their targets.
+  void deliver(Task& task) noexcept;
+  /// The signal waits for the present method of the task to end.
+  void defer(Task& task, Signal signal) noexcept;
+  /// True when some task has signals waiting. Context: cycle; wait-free.
+  bool has_pending() const noexcept { return n_pending_ != 0; }
+  /// Takes the oldest waiting signal of `task`; false when there is none.
+  bool take_pending(Task& task, Signal& signal) noexcept;
+  /// Rings the doorbell of a task behind a server: one job for each ring, none is lost. False, with nothing done, when
+  /// the task is not ON or has no server.
+  bool ring(TaskId task) noexcept;
+
+ private:
+  bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
+
+  std::span<Task> tasks_;
+  std::span<const TaskMemory> memories_;
+  Neighbours* others_ = nullptr;
+  std::uint32_t n_pending_ = 0;
+};
+
+}  // namespace chimera

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The methods that may take long and may block, init and kill, and the construction of a task before init: run by the
+// service thread (runtime/service.h), where there is one.
+#pragma once
+
+#include <atomic>
+#include <span>
+#include <vector>
+
+#include "chimera/runtime/service.h"
+#include "chimera/runtime/task_host.h"
+#include "chimera/runtime/task_methods.h"
+
+namespace chimera {
+
+/// One thing at a time for each task: asked for at an edge, run by the service thread, finished at an edge. The queues
+/// of the service thread order what both threads touch.
+class SlowMethods {
+ public:
+  /// What came of it.
+  struct Outcome {
+    bool is_construction = false;  ///< else a method
+    Answer answer = Answer::kOk;
+    Nanoseconds used;              ///< by the method
+  };
+
+  /// `service` null: there is no such thread. `serving` is told which task and method it runs, as BlockHead::serving;
+  /// `hosts[t]` is what task t asks of the framework. Everything given outlives this. Context: setup.
+  void prepare(std::span<Task> tasks, std::span<TaskHost> hosts, TaskMethods& methods, Service* service,
+               std::atomic<std::uint32_t>& serving);
+
+  /// True when there is a service thread.
+  bool is_there() const noexcept { return service_ != nullptr; }
+  /// True when the method is run by the service thread.
+  bool takes(Method method) const noexcept {
+    return service_ != nullptr && (method == Method::kInit || method == Method::kKill);
+  }
+  /// Hands the task over; nobody else touches it before finish(). A task that is being killed is ON no more, whatever
+  /// its kill does. Context: edge; wait-free.
+  void ask_construction(Task& task) noexcept { ask(task, {true, Method::kInit, {}}); }
+  void ask(Task& task, Method method) noexcept { ask(task, {false, method, {}}); }
+  /// Runs what was asked for with the task. Context: the service thread; may block.
+  void run(TaskId task, JobClock& clock);
+  /// The task is back. Requires: run() is over. Context: edge; wait-free.
+  Outcome finish(Task& task) noexcept;
+
+ private:
+  struct Asked {
+    bool is_construction = false;
+    Method method = Method::kInit;
+    Outcome outcome;
+  };
+  void ask(Task& task, const Asked& asked) noexcept;
+
+  std::span<Task> tasks_;
+  std::span<TaskHost> hosts_;
+  TaskMethods* methods_ = nullptr;
+  Service* service_ = nullptr;
+  std::atomic<std::uint32_t>* serving_ = nullptr;  // relaxed, pairs with nothing: as TaskMethods::Words
+  std::vector<Asked> asked_;                       // by task
+};
+
+}  // namespace chimera

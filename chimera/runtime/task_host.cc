@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers what a component asks while one of its methods runs.
+#include "chimera/runtime/task_host.h"
+
+#include <cstring>
+
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+namespace {
+
+const TaskHost& host_of(void* context) noexcept { return *static_cast<const TaskHost*>(context); }
+
+JobClock& clock_of(const TaskHost& host) noexcept {
+  return host.clock != nullptr ? *host.clock : *host.set->methods().clock();
+}
+
+std::int32_t host_expired(void* context) {
+  const TaskHost& host = host_of(context);
+  if (host.task->give_up.load(std::memory_order_relaxed)) return 1;
+  return clock_of(host).now().count > host.task->call.deadline_ns ? 1 : 0;
+}
+
+std::int32_t host_signal(void* context, std::uint32_t signal, const char* name) {
+  const TaskHost& host = host_of(context);
+  const TaskId target = name == nullptr ? host.task->id : host.set->find(name);
+  if (!target.is_valid() || signal > CHIMERA_SIGNAL_WAKEUP) return CHIMERA_FAULT;
+  // Only a task behind a server has a doorbell: others are woken by time.
+  if (signal == CHIMERA_SIGNAL_WAKEUP && !host.set->spec().tasks[target.index].server) return CHIMERA_FAULT;
+  host.task->has_news = true;
+  return host.task->outbox.try_push({static_cast<Signal>(signal), target}) ? CHIMERA_OK : CHIMERA_FAULT;
+}
+
+void host_spend(void* context, std::int64_t ns) { clock_of(host_of(context)).spend(Nanoseconds{ns}); }
+
+// The next edge sees the note as it sees a fault: a job reports nothing to other processes itself.
+void host_note(void* context, const char* text) {
+  Task& task = *host_of(context).task;
+  FaultRecord& record = task.faults;
+  task.has_news = true;
+  std::strncpy(record.note, text, sizeof record.note - 1);
+  ++record.notes;
+  ++record.told;
+}
+
+const PortSpec* spec_of(void* context, const chimera_port* port) noexcept {
+  const TaskHost& host = host_of(context);
+  return host.set->memory(host.task->id).spec_of(port);
+}
+
+chimera_text host_variable(void* context, const chimera_port* port) {
+  const PortSpec* spec = spec_of(context, port);
+  if (spec == nullptr) return {"", 0};
+  return {spec->variable.data(), static_cast<std::uint32_t>(spec->variable.size())};
+}
+
+chimera_text host_unit(void* context, const chimera_port* port) {
+  const PortSpec* spec = spec_of(context, port);
+  if (spec == nullptr) return {"", 0};
+  return {spec->unit.data(), static_cast<std::uint32_t>(spec->unit.size())};
+}
+
+}  // namespace
+
+const chimera_host TaskHost::kCalls = {&host_expired, &host_signal,   &host_spend,
+                                       &host_note,    &host_variable, &host_unit};
+
+}  // namespace chimera

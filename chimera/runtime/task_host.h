@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a component may ask of the framework while one of its methods runs: chimera_host of chimera/task/abi.h.
+#pragma once
+
+#include <cstdint>
+
+#include "chimera/runtime/job_clock.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+class TaskSet;
+
+/// Of one task; chimera_call::context points at it.
+struct TaskHost {
+  const TaskSet* set = nullptr;
+  Task* task = nullptr;
+  JobClock* clock = nullptr;  ///< of the thread that runs the method; null: that of the context
+
+  /// The functions behind chimera_call::host.
+  static const chimera_host kCalls;
+};
+
+}  // namespace chimera

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// Carries out signals by the rules of the state machine.
+#include "chimera/runtime/task_life.h"
+
+#include <cstring>
+
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+void TaskLife::prepare(std::size_t n_tasks) {
+  progress_.resize(n_tasks);
+  wanted_.assign(n_tasks, false);
+}
+
+Result<void> TaskLife::start(Nanoseconds now) {
+  const ApplicationSpec& spec = set_.spec();
+  for (TaskId id : spec.init_order) {
+    carry_out(id, Signal::kSpawn, now);
+    const Task& task = set_.tasks()[id.index];
+    if (task.state != State::kOff)
+      return Error{ErrorCode::kRefused, {std::string("init: ") + task.faults.last.text}, {task.spec->name}};
+  }
+  const SignalReport report = signal(spec.start, Signal::kOn, now);
+  if (!report.is_accepted) return Error{ErrorCode::kRefused, {explain(report)}, {spec.name}};
+  return {};
+}
+
+void TaskLife::shut_down(Nanoseconds now) {
+  const ApplicationSpec& spec = set_.spec();
+  const auto tasks = set_.tasks();
+  for (std::size_t i = spec.start.size(); i-- > 0;)
+    if (tasks[spec.start[i].index].state == State::kOn) carry_out(spec.start[i], Signal::kOff, now);
+  for (Task& task : tasks)
+    if (task.state == State::kOn) carry_out(task.id, Signal::kOff, now);
+  for (std::size_t i = spec.init_order.size(); i-- > 0;)
+    if (tasks[spec.init_order[i].index].state != State::kNotCreated) carry_out(spec.init_order[i], Signal::kKill, now);
+  set_.on_set_changed();
+}
+
+SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) {
+  SignalReport report;
+  report.signal = signal;
+  for (TaskId id : tasks) {
+    const Task& task = set_.tasks()[id.index];
+    report.task = id;
+    report.before = report.after = task.state;
+    if (next(task.state, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
+    report.why = Refusal::kState;
+    return report;
+  }
+  // With other contexts only the manager turns tasks ON: it has judged the whole set.
+  if (signal == Signal::kOn && set_.is_alone() && !would_be_legal(tasks)) {
+    report.why = Refusal::kIllegalSet;
+    return report;
+  }
+  for (TaskId id : tasks) {
+    report = carry_out(id, signal, now);
+    if (signal != Signal::kOn || report.after == State::kOn) continue;
+    for (TaskId done : tasks) {  // one transaction: tasks that are ON already go OFF again
+      if (done == id) break;
+      carry_out(done, Signal::kOff, now);
+    }
+    report.is_accepted = false;
+    report.why = Refusal::kFault;
+    break;
+  }
+  set_.on_set_changed();
+  return report;
+}
+
+bool TaskLife::would_be_legal(std::span<const TaskId> tasks) noexcept {
+  for (const Task& task : set_.tasks()) wanted_[task.id.index] = task.state == State::kOn;
+  for (TaskId id : tasks) wanted_[id.index] = true;
+  return set_.variables().is_legal(wanted_);
+}
+
+std::string TaskLife::explain(const SignalReport& report) const {
+  if (report.is_accepted) return {};
+  if (report.why == Refusal::kIllegalSet) return set_.variables().explain(wanted_, set_.spec().tasks);
+  const Task& task = set_.tasks()[report.task.index];
+  const std::string what = signal_name(report.signal);
+  if (report.why == Refusal::kFault) return what + ": " + std::string(task.spec->name) + ": " + task.faults.last.text;
+  return what + " is not legal for " + std::string(task.spec->name) + " in state " + state_name(report.before);
+}
+
+SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
+  Task& task = set_.tasks()[id.index];
+  Progress& progress = progress_[id.index];
+  progress = Progress{};
+  progress.report = {true, false, Refusal::kNone, signal, id, task.state, task.state};
+  task.call.now_ns = now.count;
+  task.call.illegal = set_.flag().is_up() ? 1u : 0u;
+  if (signal == Signal::kSpawn) {
+    if (!set_.slow().is_there()) return go_on_constructed(task, set_.methods().construct(task, now), now);
+    set_.slow().ask_construction(task);
+    progress.report.is_deferred = true;
+    return progress.report;
+  }
+  if (signal == Signal::kOn) {
+    task.call.cycle = 0;
+    task.call.dropped = 0;
+    task.call.dt_ns = task.spec->period.count;
+  }
+  return advance(task, next(task.state, signal, false), now);
+}
+
+SignalReport TaskLife::finish_slow(TaskId id, Nanoseconds now) {
+  Task& task = set_.tasks()[id.index];
+  Progress& progress = progress_[id.index];
+  const SlowMethods::Outcome outcome = set_.slow().finish(task);
+  if (outcome.is_construction) {
+    (void)go_on_constructed(task, outcome.answer, now);
+  } else {
+    progress.used += outcome.used;
+    advance(task, conclude(task, rule(progress.step), outcome.answer, now, read_clock(now)), now);
+  }
+  set_.on_set_changed();
+  return progress.report;
+}
+
+// The state of the component is constructed, or is not: init is next.
+SignalReport TaskLife::go_on_constructed(Task& task, Answer answer, Nanoseconds now) {
+  SignalReport& report = progress_[task.id.index].report;
+  if (answer == Answer::kOk) return advance(task, next(State::kNotCreated, Signal::kSpawn, false), now);
+  report.is_accepted = report.is_deferred = false;
+  report.why = Refusal::kFault;
+  return report;
+}
+
+SignalReport TaskLife::advance(Task& task, Next at, Nanoseconds now) {
+  SignalReport& report = progress_[task.id.index].report;
+  report.is_deferred = !follow(task, at, now);
+  report.after = task.state;
+  if (!report.is_deferred && !set_.slow().is_there() && task.state == State::kNotCreated) set_.methods().destroy(task);
+  set_.sent().deliver(task);
+  return report;
+}
+
+// Runs the steps that `at` starts until a state is reached (true), or until the service thread has the next one.
+bool TaskLife::follow(Task& task, Next at, Nanoseconds now) {
+  Progress& progress = progress_[task.id.index];
+  while (at.kind == Next::Kind::kStep) {
+    const StepRule& step = rule(at.step);
+    const Nanoseconds began = read_clock(now);
+    progress.used = {};
+    if (!before_step(task, step, now)) {
+      at = step.next[static_cast<int>(Answer::kFault)];
+      continue;
+    }
+    if (set_.slow().takes(step.method)) {
+      progress.used = read_clock(now) - began;
+      progress.step = at.step;
+      set_.slow().ask(task, step.method);
+      return false;
+    }
+    at = conclude(task, step, set_.methods().call_at_edge(task, step.method, now), now, began);
+  }
+  task.state = at.state;
+  return true;
+}
+
+// The step `began` here, or here again after the service thread had it.
+Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began) {
+  Progress& progress = progress_[task.id.index];
+  progress.has_new_constants = false;
+  if (answer == Answer::kOk) answer = after_ok(task, step, now);
+  task.profile.execution[static_cast<int>(step.method)].add(progress.used + (read_clock(now) - began));
+  if (progress.has_new_constants) set_.reinit_users(task.id, now);
+  return step.next[static_cast<int>(answer)];
+}
+
+bool TaskLife::before_step(Task& task, const StepRule& step, Nanoseconds now) {
+  if (step.before & kReadIn) read_inputs(task);
+  stage_outputs(task);
+  if (step.before & kReadOut) take_over(task);
+  if (step.before & kReadConst) {
+    set_.read_foreign_constants();
+    FixedString<160> why;
+    if (!set_.memories_[task.id.index].read_constants(set_.constants_, why) || !set_.lists_fit(task, why)) {
+      record_fault(task, step.method, why.c_str(), now);
+      return false;
+    }
+  }
+  return true;
+}
+
+Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
+  TaskMemory& memory = set_.memories_[task.id.index];
+  if (step.after_ok & kWriteConst) {
+    const int changed = memory.write_constants(set_.constants_, task.id);
+    FixedString<160> why;
+    if (!memory.fix_extents(set_.constants_, why) || !set_.lists_fit(task, why)) {
+      record_fault(task, step.method, why.c_str(), now);
+      return Answer::kFault;
+    }
+    if (!set_.is_alone()) set_.publish_constants(task);
+    progress_[task.id.index].has_new_constants = changed > 0;
+  }
+  if (step.after_ok & kWriteOut) {
+    const bool turns_on = step.step == Step::kOn;
+    const Answer answer = publish(task, step.method, turns_on ? valid_after_on(task) : task.valid, now);
+    if (answer == Answer::kOk && turns_on) set_.sources().take_outputs_of(task);
+    return answer;
+  }
+  return Answer::kOk;
+}
+
+// >out-var: what a predecessor left is where this task starts from (2000 paper 5.1).
+void TaskLife::take_over(Task& task) noexcept {
+  taken_over_valid_ = 0;
+  for (std::uint32_t i = 0; i < task.outputs.size(); ++i) {
+    const VariableId variable = set_.variables().output(task.id, i);
+    const Source& source = set_.sources().source(variable);
+    const chimera_slot* slot = set_.sources().latest(variable);
+    if (slot == nullptr || !((slot->valid >> source.bit) & 1u)) continue;
+    std::memcpy(task.group.staging() + task.outputs[i].offset,
+                reinterpret_cast<const std::byte*>(slot + 1) + source.offset, task.outputs[i].bytes);
+    taken_over_valid_ |= std::uint64_t{1} << i;
+  }
+}
+
+std::uint64_t TaskLife::valid_after_on(const Task& task) const noexcept {
+  const TaskMemory& memory = set_.memory(task.id);
+  std::uint64_t valid = taken_over_valid_ | memory.initial_valid();
+  for (std::size_t i = 0; i < task.outputs.size(); ++i)
+    if (!memory.is_unwritten(task, i)) valid |= std::uint64_t{1} << i;
+  return valid;
+}
+
+Nanoseconds TaskLife::read_clock(Nanoseconds otherwise) const noexcept {
+  JobClock* clock = set_.methods().clock();
+  return clock == nullptr ? otherwise : clock->now();
+}
+
+}  // namespace chimera

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The life of the tasks of one context: one signal, the steps of the state machine that it starts
+// (chimera/task/state_machine.h), and what follows for the other tasks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chimera/base/result.h"
+#include "chimera/runtime/job_clock.h"
+#include "chimera/runtime/refusal.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+class TaskSet;
+
+/// What became of a signal. Plain data: no text is made on the cycle path; explain() makes it.
+struct SignalReport {
+  bool is_accepted = false;
+  bool is_deferred = false;  ///< the service thread has it: the rest comes from TaskLife::finish_slow()
+  Refusal why = Refusal::kNone;
+  Signal signal = Signal::kOn;
+  TaskId task;  ///< the one it failed at, else the last
+  State before = State::kNotCreated;
+  State after = State::kNotCreated;
+};
+
+/// Acts on the tasks that a TaskSet holds. Context of everything not marked: edge; as long as the methods take.
+class TaskLife {
+ public:
+  explicit TaskLife(TaskSet& set) noexcept : set_(set) {}
+  /// For as many tasks as the set has. Context: setup.
+  void prepare(std::size_t n_tasks);
+
+  /// Spawns all tasks in the order of their constants and turns the start set ON as one transaction.
+  /// Refuses with the first task that said no; whatever was spawned stays as it is.
+  Result<void> start(Nanoseconds now);
+  /// off (reverse of the start order), then kill, for every task that is there.
+  void shut_down(Nanoseconds now);
+  /// Carries out one signal and all that follows from it (re-initialisation of users of a changed constant, the
+  /// illegal-configuration flag). Nothing changes when it is refused.
+  SignalReport signal(TaskId task, Signal signal, Nanoseconds now) { return this->signal({&task, 1}, signal, now); }
+  /// Turns tasks ON (or OFF) as one transaction: refused as a whole when the set would be illegal.
+  SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now);
+  /// Goes on with the signal of which the service thread has run a method; deferred again while there is more.
+  SignalReport finish_slow(TaskId task, Nanoseconds now);
+  /// Reinitialises the task, which uses a constant that has changed, within the signal that changed it.
+  void reinit(TaskId task, Nanoseconds now) { (void)carry_out(task, Signal::kReinit, now); }
+
+  /// A refused report in words, with the smallest legal set where that helps; "" when it was accepted. For a report of
+  /// the last call of signal(). Context: setup; may block.
+  std::string explain(const SignalReport& report) const;
+
+ private:
+  /// The signal that a task is carrying out.
+  struct Progress {
+    SignalReport report;
+    Step step = Step::kInit;
+    Nanoseconds used;  // by the present step so far, transfers included
+    bool has_new_constants = false;
+  };
+
+  SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
+  SignalReport go_on_constructed(Task& task, Answer answer, Nanoseconds now);
+  SignalReport advance(Task& task, Next at, Nanoseconds now);
+  bool follow(Task& task, Next at, Nanoseconds now);
+  Next conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began);
+  bool before_step(Task& task, const StepRule& step, Nanoseconds now);
+  Answer after_ok(Task& task, const StepRule& step, Nanoseconds now);
+  void take_over(Task& task) noexcept;
+  std::uint64_t valid_after_on(const Task& task) const noexcept;
+  bool would_be_legal(std::span<const TaskId> tasks) noexcept;
+  Nanoseconds read_clock(Nanoseconds otherwise) const noexcept;
+
+  TaskSet& set_;
+  std::vector<Progress> progress_;  // by task
+  std::vector<bool> wanted_;        // the ON set that was asked for last
+  std::uint64_t taken_over_valid_ = 0;
+};
+
+}  // namespace chimera

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls the methods of tasks but their cycles, and begins and ends what components do beside them: construction of a
+// state, background methods, event sources.
+#pragma once
+
+#include <atomic>
+#include <span>
+
+#include "chimera/runtime/background_writer.h"
+#include "chimera/runtime/job_clock.h"
+#include "chimera/runtime/job_step.h"
+#include "chimera/runtime/job_threads.h"
+#include "chimera/runtime/task_memory.h"
+
+namespace chimera {
+
+/// By whom the methods of a context are run. What it points at outlives the tasks.
+struct MethodRunner {
+  JobClock* clock = nullptr;    ///< what methods see; null: methods are not timed
+  JobThreads* threads = nullptr;  ///< calls methods at edges; null: the caller does
+  /// Whose threads run what components do beside their cycles. Null: that is done before kill alone (and by executors
+  /// of virtual time).
+  BackgroundWriter* writer = nullptr;
+};
+
+/// Context of everything not marked: edge, or the service thread; as long as the methods of components take.
+class TaskMethods {
+ public:
+  /// Words that tell other processes what is under way (TaskWord, making.h): written here, relaxed; pair with nothing,
+  /// whoever reads them has found the process dead or hanging.
+  struct Words {
+    std::atomic<std::uint32_t>* at_edge = nullptr;
+    std::atomic<std::uint32_t>* making = nullptr;
+  };
+  /// Everything given outlives this. Context: setup.
+  void prepare(std::span<TaskMemory> memories, const Words& words) noexcept {
+    memories_ = memories;
+    words_ = words;
+  }
+  /// By the executor, before anything is signalled. Context: setup.
+  void run_by(const MethodRunner& runner) noexcept { runner_ = runner; }
+  /// Null before run_by().
+  JobClock* clock() const noexcept { return runner_.clock; }
+
+  /// Makes the state of the component anew. A refusal is recorded as a fault of init.
+  Answer construct(Task& task, Nanoseconds now);
+  /// The state is gone.
+  void destroy(Task& task) noexcept { memories_[task.id.index].destroy(task); }
+  /// Calls the method at an edge: in sight of other processes, and by JobThreads::call().
+  Answer call_at_edge(Task& task, Method method, Nanoseconds now);
+  /// Calls the method in the present thread.
+  Answer call(Task& task, Method method, Nanoseconds now);
+  /// Nothing runs beside the task any more. False: it hangs; then the instance must not be touched again, not even by
+  /// kill. May block.
+  bool end_background(Task& task, Nanoseconds now);
+
+ private:
+  Answer run(Task& task, Method method, Nanoseconds now, JobThreads* threads);
+  bool begin_background(Task& task, Nanoseconds now);
+
+  std::span<TaskMemory> memories_;
+  Words words_;
+  MethodRunner runner_;
+};
+
+}  // namespace chimera
