@@ -118,7 +118,7 @@ bool Others::publish_flag(const IllegalFlag& flag) noexcept {
   // A unit that ends raises no flag any more: what its tasks lack is what was told to go.
   const std::uint32_t now = is_told_to_end() ? judged & before : judged;
   if (before == now) return false;
-  block_.head().flag.store(now, std::memory_order_release);  // pairs with the acquire of the manager's World
+  block_.head().flag.store(now, std::memory_order_release);  // BlockHead
   Post post;
   post.at = LinuxClock().now();
   post.from = flag.raised_by();

@@ -33,8 +33,8 @@ class ServiceThread final : public Service {
 
   TaskQueue asked_, served_;
   Doorbell cycling_;
-  std::atomic<std::uint32_t> word_{0};
-  std::atomic<bool> stopping_{false};
+  std::atomic<std::uint32_t> word_{0};  // a bell: the ring pairs with Doorbell::read()
+  std::atomic<bool> stopping_{false};   // by stop(), which rings afterwards: seen by the thread after the bell
   std::thread thread_;
 };
 

@@ -32,8 +32,8 @@ class TaskQueue {
 
  private:
   std::vector<TaskId> tasks_;
-  alignas(64) std::atomic<std::size_t> head_{0};
-  alignas(64) std::atomic<std::size_t> tail_{0};
+  alignas(64) std::atomic<std::size_t> head_{0};  // store-release by push() pairs with the acquire of pop()
+  alignas(64) std::atomic<std::size_t> tail_{0};  // of the reader alone: pairs with nothing
 };
 
 }  // namespace chimera

@@ -28,7 +28,8 @@ struct BackgroundWriter::Worker {
   chimera_background background = nullptr;
   Nanoseconds every;
   std::uint32_t tag = 0;
-  std::atomic<std::int64_t> began{INT64_MAX};  // the call that is under way
+  // The call that is under way. By the worker, read by the main thread for a figure: pairs with nothing.
+  std::atomic<std::int64_t> began{INT64_MAX};
 
   std::mutex mutex;
   std::condition_variable changed;

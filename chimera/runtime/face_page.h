@@ -10,7 +10,8 @@ namespace chimera {
 
 inline constexpr int kFacePageDescriptor = 3;  ///< of a face at its start
 
-/// Zeroed at the start of a run. Each word has one writer. Plain memory, mapped by the keeper and the face.
+/// Zeroed at the start of a run. Each word has one writer, and is read by the other process between two lives of the
+/// face: they pair with nothing. Plain memory, mapped by the keeper and the face.
 struct FacePage {
   std::atomic<std::uint32_t> deaths{0};      ///< by the keeper: faces before this one that ended by a signal
   std::atomic<std::int32_t> last_signal{0};  ///< by the keeper: of which the last of them died

@@ -62,14 +62,14 @@ inline constexpr std::size_t kPosts = 256;  ///< of one ring
 
 /// In the sender's segment.
 struct PostRing {
-  std::atomic<std::uint64_t> posted{0};
+  std::atomic<std::uint64_t> posted{0};  ///< store-release of Outbox::try_post() pairs with the acquire of Inbox::take
   std::uint64_t reserved[7] = {};
   Post posts[kPosts];
 };
 
 /// In the reader's segment: the incarnation of the sender in the upper 24 bits, posts taken in the lower 40.
 struct PostProgress {
-  std::atomic<std::uint64_t> word{0};
+  std::atomic<std::uint64_t> word{0};  ///< store-release by the Inbox pairs with the acquire of Outbox::room()
 };
 
 /// The writing side: own ring, progress of the one reader.

@@ -13,6 +13,8 @@ inline constexpr std::uint32_t kMaxRtpus = 16;             // description/draft.
 inline constexpr std::uint32_t kMaxPeers = kMaxRtpus + 1;  // the manager is peer number n_rtpus
 
 /// One word on a cache line of its own, so that ringing one bell does not slow the reader of another.
+/// Doorbell::ring() adds one with release; Doorbell::read() and EdgeGuest::listen() load with acquire: what was stored
+/// before the ring is seen after it.
 struct alignas(64) BellWord {
   std::atomic<std::uint32_t> word{0};
 };
@@ -20,13 +22,16 @@ struct alignas(64) BellWord {
 /// Writable by all: nothing here decides anything but when somebody looks.
 struct DecisionPage {
   BellWord bells[kMaxPeers];  ///< one for each peer
-  /// Counted up after every change of a status word, of who lives, or of a wish of the manager.
+  /// Counted up after every change of a status word, of who lives, or of a wish of the manager: with release, loaded
+  /// with acquire by whoever then looks at those words.
   alignas(64) std::atomic<std::uint32_t> changes{0};
-  /// By peer: what it makes before it shows a block of its own, as show_making() writes it.
+  /// By peer: what it makes before it shows a block of its own, as show_making() writes it. Relaxed, pairs with
+  /// nothing: read when the peer is dead or hangs.
   alignas(64) std::atomic<std::uint32_t> making[kMaxPeers];
 };
 
-/// Writable by the keeper alone.
+/// Writable by the keeper alone. `alive` and `ending` are stored with release and loaded with acquire: what the keeper
+/// did before is seen with them. The others are figures that pair with nothing.
 struct KeeperPage {
   std::atomic<std::uint64_t> beats{0};  ///< how often the keeper came round: four times a second, or it hangs
   Nanoseconds origin;                   ///< of the grid of releases, CLOCK_MONOTONIC

@@ -16,6 +16,7 @@ namespace {
 
 // What the manager wants of a task.
 struct Wish {
+  // By the manager: the store-release of BlockOwner pairs with the acquire of BlockView.
   std::atomic<std::uint32_t> goal{0};
   std::atomic<std::uint32_t> is_tapped{0};
 };

@@ -25,7 +25,9 @@ enum class PeerPhase : std::uint32_t { kStarting, kServing, kEnding, kEnded };
 
 inline constexpr std::uint32_t kOperatorFlag = 4;  ///< bit 2 of BlockHead::flag: an operator raised it
 
-/// At the start of a block.
+/// At the start of a block. Words of one writer, the owner; other processes read.
+/// `phase`, `flag`, `seen_changes` and `attended` are stored with release and loaded with acquire: what the owner wrote
+/// before is seen with them. All others are figures: relaxed where they are written in a cycle, and pair with nothing.
 struct alignas(64) BlockHead {
   std::uint64_t magic = 0;                     ///< kBlockMagic
   std::uint32_t peer = 0;
@@ -34,7 +36,7 @@ struct alignas(64) BlockHead {
   std::uint32_t n_peers = 0;
   std::atomic<PeerPhase> phase{PeerPhase::kStarting};
   std::atomic<std::uint32_t> flag{0};          ///< bit 0: the ON set is not legal; 1: a task raised it; kOperatorFlag
-  std::atomic<std::uint32_t> running{0};       ///< (task + 1) << 8 | method; 0: between jobs
+  std::atomic<std::uint32_t> running{0};       ///< TaskWord of the task and method; 0: between jobs
   std::atomic<std::uint32_t> serving{0};       ///< the same for the service thread: init and kill
   std::atomic<std::uint32_t> seen_changes{0};
   std::atomic<std::uint64_t> lost_posts{0};  ///< events that found no room in the manager's ring
@@ -49,7 +51,8 @@ struct alignas(64) BlockHead {
 };
 inline constexpr std::uint64_t kBlockMagic = 0x314b4c42'4d494843;  // "CHIMBLK1" in memory
 
-/// What the manager must not forget when it dies. In the manager's block only.
+/// What the manager must not forget when it dies. In the manager's block only. Read by its successor, when the process
+/// is known to be dead: pair with nothing.
 struct ManagerMemory {
   std::atomic<std::uint64_t> events{0};                         ///< number of the last event
   std::atomic<std::uint32_t> handled[kMaxRtpus];                ///< incarnation whose death was dealt with

@@ -20,7 +20,7 @@ inline constexpr std::size_t kTapRecords = 1u << 15;  // 1 MiB: 0.3 s at 100 rec
 
 /// In the writer's segment; zeroed memory is an empty ring.
 struct TapRing {
-  std::atomic<std::uint64_t> head{0};
+  std::atomic<std::uint64_t> head{0};  ///< store-release by Tap::append() pairs with the acquire of TapReader::read()
   std::uint64_t reserved[7] = {};
   TapRecord records[kTapRecords];
 };
