@@ -26,8 +26,7 @@ WAKES = r'|syscall|write'  # futex; the descriptor of a bell
 LEVELS = r'|sched_setscheduler|timerfd_settime|read|ppoll|__libc_current_sigrtmin|getpid|__rseq_offset|__tls_get_addr'
 ASSERTS = {r'chimera::(assertion_failed|end_without_descriptor)\(': 'ends the program'}
 # on and off begin and end background methods, spawn runs init; for the others no_heap_test.cc counts
-SIGNALS = {r'chimera::EdgeSignals::carry_out\(': 'a signal at an edge'}
-SIGNALS_OF_OTHERS = {r'chimera::EdgeSignals::(signal|served)\(': 'the same'}
+SIGNALS = {r'chimera::EdgeSignals::(carry_out|signal|finish_slow)\(': 'a signal at an edge'}
 # Vectors within the room reserved at setup, which cannot be seen here; no_heap_test.cc and edge_no_heap_test.cc count.
 RESERVED = {r'(chimera::LabelList::set\(|std::vector<chimera::LabelledJob)': 'a place for every task of the context',
             r'chimera::Sources::collect_copies\(': 'a place for every variable that the task reads',
@@ -55,7 +54,7 @@ PATHS = (
     Path('edges of an rtpu', [r'chimera::Edge::(take|publish|told|show|show_profiles|missed|gave_way|hangs|stop_all)\(',
                               r'chimera::(Doorbell|Outbox)::'],
          PLAIN + WAKES,
-         ASSERTS | SIGNALS | SIGNALS_OF_OTHERS | RESERVED),
+         ASSERTS | SIGNALS | RESERVED),
 )
 
 

@@ -85,7 +85,6 @@ void Others::publish(TaskSet& tasks) noexcept {
 }
 
 void Others::publish_all(TaskSet& tasks) noexcept {
-  tasks.on_set_changed();  // whoever died or came meanwhile counts
   publish(tasks);
   bool is_for_all = publish_flag(tasks.flag());
   for (const Task& task : tasks.tasks()) {
