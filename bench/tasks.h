@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "chimera/runtime/task_set.h"
+#include "chimera/runtime/testing/named_links.h"
 
 namespace chimera::bench {
 
@@ -92,8 +93,8 @@ class Axes {
         ports_[i][p].element_bytes = 8;
         ports_[i][p].extent[0].max = kAxes;
       }
-      ports_[i][0].variable = *names_[(i + n - 1) % n];
-      ports_[i][1].variable = *names_[i];
+      ports_[i][0].variable = links_.variable(*names_[(i + n - 1) % n]);
+      ports_[i][1].variable = links_.variable(*names_[i]);
       ports_[i][1].kind = CHIMERA_OUT_VAR;
       ports_[i][1].value = zeros_;
       TaskSpec task;
@@ -112,6 +113,7 @@ class Axes {
     spec_.rtpus = rtpus_;
     spec_.tasks = tasks_;
     spec_.init_order = spec_.start = ids_;
+    links_.finish(spec_);
     ContextPlace place;
     place.preemptive = form.preemptive;
     auto made = TaskSet::create(spec_, components_, place);
@@ -128,6 +130,7 @@ class Axes {
   std::array<std::byte, kAxes * sizeof(double)> zeros_{};
   std::vector<RtpuSpec> rtpus_{RtpuSpec{"only", 0, Policy::kEdf}};
   std::vector<TaskSpec> tasks_;
+  chimera::testing::NamedLinks links_;
   ApplicationSpec spec_;
   std::unique_ptr<TaskSet> set_;
 };

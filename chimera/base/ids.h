@@ -22,6 +22,7 @@ struct Id {
 
 using TaskId = Id<struct TaskTag>;
 using VariableId = Id<struct VariableTag>;
+using ConstantId = Id<struct ConstantTag>;
 using GroupId = Id<struct GroupTag>;
 using RtpuId = Id<struct RtpuTag>;
 

@@ -34,13 +34,10 @@ Readings::Form Readings::form_of(std::size_t variable, const Configuration& conf
   const Variable& v = variables_.all()[variable];
   const ApplicationSpec& spec = peers_.spec();
   Form made;
-  const auto known = configuration.variables();
-  const auto at = std::find_if(known.begin(), known.end(),
-                               [&](const ConfiguredVariable& c) { return !c.is_constant && c.name == v.name; });
-  CHIMERA_ASSERT(at != known.end());  // both come from one verification
-  made.configured = &*at;
-  made.form.unit = at->unit;
-  made.form.is_scalar = at->shape.empty();
+  made.configured = &configuration.variable(VariableId(variable));
+  CHIMERA_ASSERT(made.configured->name == v.name);  // image and configuration come from the same description
+  made.form.unit = made.configured->unit;
+  made.form.is_scalar = made.configured->shape.empty();
   const bool is_operators = v.producers.empty();
   const PortOf& from = is_operators ? v.consumers[0] : v.producers[0];
   const PortSpec& port = port_of(spec, from, is_operators ? CHIMERA_IN_VAR : CHIMERA_OUT_VAR);
@@ -112,37 +109,32 @@ ValueForm Readings::form(VariableId variable) const {
 }
 
 std::uint32_t Readings::extent(const ExtentSpec& extent) const {
-  if (extent.constant.empty()) return extent.max;
+  if (!extent.constant.is_valid()) return extent.max;
   const auto value = constant(extent.constant);
   return value && *value >= 1 && *value <= extent.max ? static_cast<std::uint32_t>(*value) : extent.max;
 }
 
-std::optional<std::int64_t> Readings::constant(std::string_view name) const {
-  const auto whole = [](std::uint32_t type, std::uint32_t bytes, std::span<const std::byte> at) {
+std::optional<std::int64_t> Readings::constant(ConstantId id) const {
+  const ConstantSpec& constant = peers_.spec().constants[id.index];
+  const auto whole = [&constant](std::span<const std::byte> at) {
     ValueForm form;
-    form.type = type;
-    form.element_bytes = bytes;
-    const std::vector<double> value = numbers(form, at);
+    form.type = constant.type;
+    form.element_bytes = constant.element_bytes;
+    const std::vector<double> value = numbers(form, at.first(constant.element_bytes));
     return value.empty() ? std::nullopt : std::optional(static_cast<std::int64_t>(value[0]));
   };
-  const ApplicationSpec& spec = peers_.spec();
-  for (const GivenSpec& given : spec.constants)
-    if (given.name == name) return whole(given.type, given.element_bytes, given.value);
-  for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
-    std::uint32_t index = 0;
-    for (const PortSpec& port : spec.tasks[t].ports) {
-      if (port.kind != CHIMERA_OUT_CONST) continue;
-      const std::uint32_t mine = index++;
-      const PeerSegment& segment = peers_.of(TaskId(t));
-      if (port.variable != name || !segment.is_there()) continue;
-      const PeerLayout& layout = peers_.layout(spec.tasks[t].rtpu);
-      const GroupId group = layout.constants(TaskId(t));
-      std::vector<std::byte> payload(layout.place(group).payload_bytes);
-      chimera_slot slot;
-      if (segment.group(group).try_read(slot, payload.data()) && slot.sequence > 0)
-        return whole(port.type, port.element_bytes,
-                     std::span(payload).subspan(layout.variables(group)[mine].offset, port.element_bytes));
-    }
+  if (!constant.value.empty()) return whole(constant.value);
+  for (const PortOf& producer : constant.producers) {
+    const PeerSegment& segment = peers_.of(producer.task);
+    if (!segment.is_there()) continue;
+    const PeerLayout& layout = peers_.layout(peers_.spec().tasks[producer.task.index].rtpu);
+    const GroupId group = layout.constants(producer.task);
+    const VariablePlace& place = layout.variables(group)[producer.index];
+    std::vector<std::byte> payload(layout.place(group).payload_bytes);
+    chimera_slot slot;
+    if (place.bytes >= constant.element_bytes && segment.group(group).try_read(slot, payload.data()) &&
+        slot.sequence > 0)
+      return whole(std::span(payload).subspan(place.offset, place.bytes));
   }
   return std::nullopt;
 }

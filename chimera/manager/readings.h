@@ -66,7 +66,7 @@ class Readings {
   };
   Form form_of(std::size_t variable, const Configuration& configuration, const Library& library) const;
   std::uint32_t extent(const ExtentSpec& extent) const;
-  std::optional<std::int64_t> constant(std::string_view name) const;
+  std::optional<std::int64_t> constant(ConstantId id) const;
   bool read_output(const PortOf& port, VariableReading& reading) const;
 
   const Peers& peers_;

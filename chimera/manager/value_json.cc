@@ -83,7 +83,7 @@ void add_producer(const World& world, TaskId task, VariableFacts& facts) {
     facts.waits_for_events = spec.server && profile.events == 0;
   }
   for (const PortSpec& port : spec.ports)
-    if (port.kind == CHIMERA_IN_VAR) facts.inputs.emplace_back(port.variable);
+    if (port.kind == CHIMERA_IN_VAR) facts.inputs.emplace_back(world.spec().link_name(port));
 }
 
 /// The shortest stale_after of the tasks that read it; 0: none says so.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "chimera/rtpu/ending.h"
 #include "chimera/runtime/edge_signals.h"
 #include "chimera/runtime/task_word.h"
 
@@ -34,7 +33,7 @@ Edge::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service&
            std::uint32_t me, Nanoseconds method_limit)
     : EdgeGuest(decision.bells[me].word), spec_(spec), tasks_(tasks), others_(others), service_(service),
       method_limit_(method_limit), seen_changes_(others.changes() - 1), blocked_(spec.tasks.size()),
-      commands_(spec.tasks.size()), hangs_(spec.tasks.size()), ending_order_(ending_order(spec)) {
+      commands_(spec.tasks.size()), hangs_(spec.tasks.size()) {
   set_due({});  // the first edge looks around
 }
 
@@ -249,7 +248,7 @@ void Edge::wake_supervisor() noexcept {
 
 void Edge::stop_all(EdgeSignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {
   post_event(Happening::kStop, stopped_by, 0, now);
-  for (const TaskId id : ending_order_) {
+  for (const TaskId id : spec_.end_order) {
     Task& task = tasks_.tasks()[id.index];
     if (!tasks_.is_mine(id) || task.state != State::kOn) continue;
     if (signals.may_touch(id)) (void)carry_out(signals, {&id, 1}, Signal::kOff, now);
@@ -284,8 +283,8 @@ void Edge::go_on_ending(EdgeSignals& signals, Nanoseconds now) noexcept {
 
 // True when none of ours is ON any more. Tasks of others that come first are waited for, not for ever.
 bool Edge::turn_off_next(EdgeSignals& signals, Nanoseconds now) noexcept {
-  for (; next_off_ < ending_order_.size(); ++next_off_) {
-    const TaskId id = ending_order_[next_off_];
+  for (; next_off_ < spec_.end_order.size(); ++next_off_) {
+    const TaskId id = spec_.end_order[next_off_];
     if (!tasks_.is_mine(id)) {
       if (others_.state(id) == State::kOn && now < patience_ && !hanging_) return false;
       continue;
@@ -304,7 +303,7 @@ bool Edge::turn_off_next(EdgeSignals& signals, Nanoseconds now) noexcept {
 // True when all of ours are killed.
 bool Edge::kill_next(EdgeSignals& signals, Nanoseconds now) noexcept {
   bool is_done = true;
-  for (const TaskId id : ending_order_) {
+  for (const TaskId id : spec_.end_order) {
     if (!tasks_.is_mine(id)) continue;
     const Task& task = tasks_.tasks()[id.index];
     if (task.in_service) return false;

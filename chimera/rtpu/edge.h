@@ -100,10 +100,9 @@ class Edge final : public EdgeGuest {
   std::vector<Post> commands_;     // by task: the signal that is being served
   std::vector<bool> hangs_;        // by task: nobody waits for its job
   int supervisor_ = -1;
-  const std::vector<TaskId> ending_order_;
   std::size_t shown_ = 0;          // the task whose profile is shown next
   bool has_begun_ending_ = false;
-  std::size_t next_off_ = 0;       // in ending_order_
+  std::size_t next_off_ = 0;       // in spec_.end_order
   Nanoseconds patience_;           // with the tasks of others, while ending
   // end() by the main thread, read at edges: sequentially consistent, so that ends_alone_ is seen with ending_.
   std::atomic<bool> ending_{false};

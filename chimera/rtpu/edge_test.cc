@@ -63,7 +63,7 @@ struct EdgeTest : ::testing::Test {
     app.add("follower", component<Follower>("follower")).rtpu = RtpuId(1u);
     app.add("killer", component<Killer>("killer")).rtpu = RtpuId(0u);
     app.add("spare", component<Source>("source")).rtpu = RtpuId(1u);
-    app.port(3, 1).variable = "spare_scale";
+    app.link(3, 1, "spare_scale");
     app.make({kSource, kFollower, kKiller}, false);
     units = std::make_unique<Units>(app);
     units->run(milliseconds(1));

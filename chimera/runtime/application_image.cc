@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Encoding and decoding of an image: the fields are listed once, and the reader judges each of them.
 #include "chimera/runtime/application_image.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <deque>
@@ -8,6 +10,7 @@
 
 #include "chimera/base/assert.h"
 #include "chimera/runtime/image_archive.h"
+#include "chimera/runtime/links.h"
 #include "chimera/runtime/pages.h"
 #include "chimera/table/layout.h"
 
@@ -19,8 +22,11 @@ struct ApplicationImage::Parts {
   std::vector<RtpuSpec> rtpus;
   std::vector<TaskSpec> tasks;
   std::deque<std::vector<PortSpec>> ports;  // of one task each
-  std::vector<GivenSpec> constants, operators;
-  std::vector<TaskId> init_order, start;
+  std::vector<Variable> variables;
+  std::vector<ConstantSpec> constants;
+  std::vector<GivenSpec> operators;
+  std::vector<TaskId> init_order, start, on_order, end_order;
+  Links links;
   std::vector<ComponentPlace> places;
 };
 
@@ -29,7 +35,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -55,14 +61,21 @@ bool is_valued(const T& item) {
   return fits && (item.value.empty() || item.element_bytes == 0 || item.value.size() == count * item.element_bytes);
 }
 
+/// Lengths of the lists that ids point into; known before the first id is read.
+struct Counts {
+  std::size_t variables = 0, constants = 0;
+};
+
 // What a PortSpec and a GivenSpec have in common.
 template <class Archive, class Item>
-void value_fields(Archive& archive, Item& item) {
+void value_fields(Archive& archive, Item& item, const Counts& counts) {
   archive.number(item.type);
   archive.number(item.element_bytes);
   for (auto& extent : item.extent) {
     archive.number(extent.max);
-    archive.text(extent.constant);
+    archive.number(extent.constant);
+    archive.require(!extent.constant.is_valid() || extent.constant.index < counts.constants,
+                    "an extent of a constant that does not exist");
   }
   archive.values(item.value);
   for (auto& listed : item.listed) archive.number(listed);
@@ -70,20 +83,49 @@ void value_fields(Archive& archive, Item& item) {
   archive.require(is_valued(item), "a value that does not fill its variable");
 }
 
+// An in-const alone may be linked to nothing: then its value is its own.
 template <class Archive, class Port>
-void port_fields(Archive& archive, Port& port) {
+void link_fields(Archive& archive, Port& port, const Counts& counts) {
+  archive.number(port.variable);
+  archive.number(port.constant);
+  const bool is_variable = port.kind == CHIMERA_IN_VAR || port.kind == CHIMERA_OUT_VAR;
+  const bool is_constant =
+      port.kind == CHIMERA_OUT_CONST || (port.kind == CHIMERA_IN_CONST && port.constant.is_valid());
+  archive.require(is_variable ? port.variable.index < counts.variables : !port.variable.is_valid(),
+                  "a variable that does not exist");
+  archive.require(is_constant ? port.constant.index < counts.constants : !port.constant.is_valid(),
+                  "a constant that does not exist");
+}
+
+template <class Archive, class Port>
+void port_fields(Archive& archive, Port& port, const Counts& counts) {
   archive.number(port.declared);
   archive.number(port.kind);
   archive.number(port.instance);
-  archive.text(port.variable);
+  archive.require(port.declared < CHIMERA_MAX_PORTS && port.kind <= CHIMERA_OUT_STREAM &&
+                      port.instance < CHIMERA_MAX_INSTANCES, "a port that cannot be declared");
+  link_fields(archive, port, counts);
   archive.text(port.unit);
   archive.choice(port.safety, true);
   archive.choice(port.has_range, true);
   archive.number(port.min);
   archive.number(port.max);
-  value_fields(archive, port);
-  archive.require(port.declared < CHIMERA_MAX_PORTS && port.kind <= CHIMERA_OUT_STREAM &&
-                      port.instance < CHIMERA_MAX_INSTANCES, "a port that cannot be declared");
+  value_fields(archive, port, counts);
+}
+
+// Its producers are the out-consts that carry its id.
+template <class Archive, class Constant>
+void constant_fields(Archive& archive, Constant& constant) {
+  archive.text(constant.name);
+  archive.number(constant.type);
+  archive.number(constant.element_bytes);
+  archive.values(constant.value);
+  for (auto& listed : constant.listed) archive.number(listed);
+  archive.require(constant.type < CHIMERA_ANY, "a type that does not exist");
+  archive.require(constant.value.size() <= kMaxPayloadBytes &&
+                      (constant.element_bytes == 0 ? constant.value.empty()
+                                                   : constant.value.size() % constant.element_bytes == 0),
+                  "a value that does not fill its constant");
 }
 
 template <class Archive, class Task>
@@ -101,7 +143,8 @@ void server_fields(Archive& archive, Task& task) {
 }
 
 template <class Archive, class Task>
-void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std::size_t n_rtpus) {
+void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std::size_t n_rtpus,
+                 const Counts& counts) {
   archive.text(task.name);
   archive.text(task.component);
   for (auto* time : {&task.period, &task.offset, &task.deadline, &task.budget, &task.min_time}) archive.number(*time);
@@ -117,7 +160,8 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   archive.choice(task.is_hardware, true);
   server_fields(archive, task);
   archive.number(task.rtpu);
-  archive.list(task.ports, ports, CHIMERA_MAX_PORTS, "too many ports", [&](auto& port) { port_fields(archive, port); });
+  archive.list(task.ports, ports, CHIMERA_MAX_PORTS, "too many ports",
+               [&](auto& port) { port_fields(archive, port, counts); });
   const Nanoseconds zero;
   archive.require(task.period > zero && task.deadline > zero && task.deadline <= task.period && task.offset >= zero &&
                       task.budget >= zero && task.min_time >= zero, "times that are not in order");
@@ -134,7 +178,26 @@ void task_ids(Archive& archive, std::span<const TaskId>& ids, std::vector<TaskId
 }
 
 // Far beyond what a description of 256 KiB can hold.
-constexpr std::size_t kMostTasks = 4096, kMostGiven = 65536;
+constexpr std::size_t kMostTasks = 4096, kMostLinks = 65536;
+
+// The lists that ids point into come before the ids.
+template <class Archive>
+Counts linked_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationSpec& spec) {
+  archive.list(spec.variables, parts.variables, kMostLinks, "too many variables",
+               [&](auto& variable) { archive.text(variable.name); });
+  archive.list(spec.constants, parts.constants, kMostLinks, "too many constants",
+               [&](auto& constant) { constant_fields(archive, constant); });
+  return {spec.variables.size(), spec.constants.size()};
+}
+
+template <class Archive>
+void operator_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationSpec& spec, const Counts& counts) {
+  archive.list(spec.operators, parts.operators, kMostLinks, "too many operator variables", [&](auto& given) {
+    archive.number(given.variable);
+    value_fields(archive, given, counts);
+    archive.require(given.variable.index < counts.variables, "a variable that does not exist");
+  });
+}
 
 // `parts` holds what an ImageReader makes; an ImageWriter only looks at what spec and places point at.
 template <class Archive>
@@ -151,22 +214,42 @@ void image_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationS
     archive.choice(rtpu.policy, Policy::kMufLaxity);
     archive.choice(rtpu.preemptive, true);
   });
+  const Counts counts = linked_fields(archive, parts, spec);
   archive.list(spec.tasks, parts.tasks, kMostTasks, "too many tasks", [&](auto& task) {
-    task_fields(archive, task, parts.ports.emplace_back(), spec.rtpus.size());
+    task_fields(archive, task, parts.ports.emplace_back(), spec.rtpus.size(), counts);
   });
   archive.list(places, parts.places, kMostTasks, "too many places", [&](auto& place) {
     archive.text(place.object_file);
     archive.number(place.fingerprint);
   });
   archive.require(places.size() == spec.tasks.size(), "not one place for each task");
-  const auto given = [&](auto& item) {
-    archive.text(item.name);
-    value_fields(archive, item);
-  };
-  archive.list(spec.constants, parts.constants, kMostGiven, "too many constants", given);
-  archive.list(spec.operators, parts.operators, kMostGiven, "too many operator variables", given);
+  operator_fields(archive, parts, spec, counts);
   task_ids(archive, spec.init_order, parts.init_order, spec.tasks.size());
   task_ids(archive, spec.start, parts.start, spec.tasks.size());
+  task_ids(archive, spec.on_order, parts.on_order, spec.tasks.size());
+  task_ids(archive, spec.end_order, parts.end_order, spec.tasks.size());
+}
+
+bool holds_every_task_once(std::span<const TaskId> order, std::size_t n_tasks) {
+  std::vector<bool> seen(n_tasks, false);
+  for (const TaskId id : order) seen[id.index] = true;
+  return order.size() == n_tasks && std::find(seen.begin(), seen.end(), false) == seen.end();
+}
+
+// Collects who is linked to what, and refuses links that verification never makes.
+void link(ApplicationImage::Parts& parts, ImageReader& reader) {
+  for (GivenSpec& given : parts.operators) given.name = parts.variables[given.variable.index].name;
+  parts.links.fill(parts.tasks, parts.operators, parts.variables, parts.constants);
+  for (std::size_t o = 0; o < parts.operators.size(); ++o)
+    reader.require(parts.variables[parts.operators[o].variable.index].operator_index == o,
+                   "a variable with two operator values");
+  for (const Variable& variable : parts.variables)
+    reader.require(!variable.consumers.empty() || !variable.producers.empty(), "a variable without a port");
+  for (const ConstantSpec& constant : parts.constants)
+    reader.require(constant.value.empty() != constant.producers.empty(),
+                   "a constant that is not either given or produced");
+  for (const auto* order : {&parts.init_order, &parts.on_order, &parts.end_order})
+    reader.require(holds_every_task_once(*order, parts.tasks.size()), "an order that does not hold every task once");
 }
 
 Error refusal(std::string text) { return {ErrorCode::kBadInput, {std::move(text)}, {}}; }
@@ -211,6 +294,7 @@ Result<ApplicationImage> ApplicationImage::decode(std::span<const std::byte> byt
   std::span<const ComponentPlace> places;
   image_fields(reader, *parts, parts->spec, places, parts->settings);
   reader.require(reader.position() == body.size(), "more than there should be");
+  if (reader.is_good()) link(*parts, reader);
   if (!reader.is_good()) {
     return refusal("damaged image: " + std::string(reader.why()) + ", before byte " +
                    std::to_string(sizeof header + reader.position()));

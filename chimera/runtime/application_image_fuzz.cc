@@ -15,7 +15,7 @@ using namespace chimera;
 /// The bytes behind a header that is right: otherwise the hash would refuse nearly everything.
 std::vector<std::byte> with_header(const std::uint8_t* bytes, std::size_t size) {
   const std::uint64_t magic = 0x31474d49'4d494843, total = size + 32;
-  const std::uint32_t version = 2, header_bytes = 32;
+  const std::uint32_t version = 3, header_bytes = 32;
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
   std::vector<std::byte> image(total);
@@ -36,6 +36,35 @@ unsigned sum(std::span<const std::byte> bytes) {
 
 unsigned sum(std::string_view text) { return sum(std::as_bytes(std::span(text.data(), text.size()))); }
 
+/// Ports number `port.index` of a kind exist and are linked to what lists them.
+void check_ports(const ApplicationSpec& spec, std::span<const PortOf> ports, std::uint32_t kind, VariableId variable,
+                 ConstantId constant) {
+  for (const PortOf& port : ports) {
+    std::uint32_t index = 0;
+    const PortSpec* found = nullptr;
+    for (const PortSpec& each : spec.tasks[port.task.index].ports)
+      if (each.kind == kind && index++ == port.index) found = &each;
+    require(found != nullptr && found->variable == variable && found->constant == constant, "links hold both ways");
+  }
+}
+
+unsigned check_links(const ApplicationSpec& spec) {
+  unsigned all = 0;
+  for (std::size_t v = 0; v < spec.variables.size(); ++v) {
+    const Variable& variable = spec.variables[v];
+    require(variable.operator_index == UINT32_MAX || variable.operator_index < spec.operators.size(),
+            "operators exist");
+    check_ports(spec, variable.producers, CHIMERA_OUT_VAR, VariableId(v), {});
+    check_ports(spec, variable.consumers, CHIMERA_IN_VAR, VariableId(v), {});
+    all += sum(variable.name);
+  }
+  for (std::size_t c = 0; c < spec.constants.size(); ++c) {
+    check_ports(spec, spec.constants[c].producers, CHIMERA_OUT_CONST, {}, ConstantId(c));
+    all += sum(spec.constants[c].name) + sum(spec.constants[c].value);
+  }
+  return all;
+}
+
 /// Touches everything it points at.
 unsigned check_spec(const ApplicationSpec& spec) {
   unsigned all = sum(spec.name);
@@ -46,18 +75,22 @@ unsigned check_spec(const ApplicationSpec& spec) {
     for (const PortSpec& port : task.ports) {
       require(port.element_bytes == 0 || port.value.empty() || port.value.size() == port.max_bytes(),
               "values fill their ports");
-      all += sum(port.variable) + sum(port.value) + sum(port.extent[0].constant) + sum(port.extent[1].constant);
+      all += sum(spec.link_name(port)) + sum(port.value);
+      for (const ExtentSpec& extent : port.extent)
+        if (extent.constant.is_valid()) all += sum(spec.constants[extent.constant.index].name);
     }
 #ifdef CHIMERA_PLANTED_DEFECT
     volatile char marks[17] = {};  // beyond the end for a user priority of more than 16
     marks[task.user_priority < 17 ? task.user_priority : 17] = 1;
 #endif
   }
-  for (const auto items : {spec.constants, spec.operators})
-    for (const GivenSpec& given : items) all += sum(given.name) + sum(given.value);
-  for (const auto ids : {spec.init_order, spec.start})
+  for (const GivenSpec& given : spec.operators) {
+    require(spec.variables[given.variable.index].name == given.name, "an operator value has the name of its variable");
+    all += sum(given.value);
+  }
+  for (const auto ids : {spec.init_order, spec.start, spec.on_order, spec.end_order})
     for (const TaskId id : ids) require(id.index < spec.tasks.size(), "every task in an order is there");
-  return all;
+  return all + check_links(spec);
 }
 
 void check(std::span<const std::byte> bytes) {

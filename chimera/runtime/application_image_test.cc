@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "chimera/runtime/links.h"
 #include "chimera/runtime/testing/spec_equal.h"
 
 namespace chimera {
@@ -21,28 +22,52 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 // An application in which no field has its default and no two fields of a kind are alike.
 struct Sample {
   Sample() {
-    ports[0] = {3, CHIMERA_OUT_VAR, 2, "x", "rad", 8, {{1, "n"}, {2, "m"}}, true, -1.5, 2.5, true, CHIMERA_INT64,
+    ports[0] = {3, CHIMERA_OUT_VAR, 2, kX, {}, "rad", 8, {{1, kN}, {2, kM}}, true, -1.5, 2.5, true, CHIMERA_INT64,
                 bytes_of("0123456789abcdef"), {1, 2}};
-    ports[1] = {4, CHIMERA_RESOURCE, 0, "", "", 0, {}, false, 0, 0, false, CHIMERA_STRING, bytes_of("arm.xml"), {}};
+    ports[1] = {4, CHIMERA_RESOURCE, 0, {}, {}, "", 0, {}, false, 0, 0, false, CHIMERA_STRING, bytes_of("arm.xml"), {}};
+    more_ports[0].kind = CHIMERA_IN_VAR;
+    more_ports[0].variable = kKp;
+    more_ports[1].kind = CHIMERA_OUT_CONST;
+    more_ports[1].constant = kM;
+    more_ports[2].kind = CHIMERA_IN_CONST;
+    more_ports[2].constant = kN;
+    more_ports[3].kind = CHIMERA_IN_CONST;
+    more_ports[4].kind = CHIMERA_IN_VAR;
+    more_ports[4].variable = kX;
+    more_ports[5].kind = CHIMERA_IN_VAR;
+    more_ports[5].variable = kKi;
     tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
                 .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
                 .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kStop, .max_consecutive = 5,
                 .aperiodic = true, .is_hardware = true, .rtpu = RtpuId{1u}, .ports = ports,
                 .server = ServerSpec{ServerKind::kSporadic, Nanoseconds{3}, Nanoseconds{10}}};
     tasks[1] = {.name = "plain", .component = "gain", .period = Nanoseconds{20}, .offset = {},
-                .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .rtpu = RtpuId{0u}, .ports = {},
+                .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .rtpu = RtpuId{0u}, .ports = more_ports,
                 .server = {}};
-    constants[0] = {"n", CHIMERA_INT32, 4, {{2, ""}, {1, ""}}, bytes_of("abcdefgh"), {2, 0}};
-    operators[0] = {"kp", CHIMERA_FLOAT32, 4, {}, bytes_of("abcd"), {}};
-    operators[1] = {"ki", CHIMERA_FLOAT64, 8, {}, bytes_of("abcdefgh"), {}};
-    spec = {"arm", rtpus, tasks, constants, operators, init_order, start};
+    variables[kKp.index].name = "kp";
+    variables[kKi.index].name = "ki";
+    variables[kX.index].name = "x";
+    constants[0] = {"n", CHIMERA_INT32, 4, bytes_of("abcdefgh"), {2, 0}, {}};
+    constants[1] = {"m", CHIMERA_INT64, 8, {}, {}, {}};
+    operators[0] = {"kp", kKp, CHIMERA_FLOAT32, 4, {}, bytes_of("abcd"), {}};
+    operators[1] = {"ki", kKi, CHIMERA_FLOAT64, 8, {}, bytes_of("abcdefgh"), {}};
+    spec = {"arm",     rtpus,      tasks, variables, constants,
+            operators, init_order, start, on_order,  end_order};
+    links.fill(tasks, operators, variables, constants);
   }
 
+  static constexpr VariableId kKi{0u}, kX{1u}, kKp{2u};
+  static constexpr ConstantId kN{0u}, kM{1u};
+
   RtpuSpec rtpus[2] = {{"spare", 3, Policy::kMuf}, {"servo", 1, Policy::kRm}};
-  PortSpec ports[2];
+  PortSpec ports[2], more_ports[6];
   TaskSpec tasks[2];
-  GivenSpec constants[1], operators[2];
+  Variable variables[3];
+  ConstantSpec constants[2];
+  GivenSpec operators[2];
+  Links links;
   TaskId init_order[2] = {TaskId{1u}, TaskId{0u}}, start[1] = {TaskId{1u}};
+  TaskId on_order[2] = {TaskId{1u}, TaskId{0u}}, end_order[2] = {TaskId{0u}, TaskId{1u}};
   ComponentPlace places[2] = {{"/usr/lib/pid.so", 0x123456789abcdef0}, {"gain.so", 2}};
   RunSettings settings{40, milliseconds(5)};
   ApplicationSpec spec;
@@ -83,6 +108,12 @@ TEST(ApplicationImage, ADifferenceInAnySpecIsSeen) {  // so that the test above 
   EXPECT_EQ(first_difference(a.spec, b.spec), "tasks[0].ports[0].listed");
   a.operators[1].value = bytes_of("abcdefgi");
   EXPECT_EQ(first_difference(a.spec, Sample().spec), "operators[1].value");
+  Sample c, d;
+  c.more_ports[4].variable = Sample::kKi;
+  c.links.fill(c.tasks, c.operators, c.variables, c.constants);
+  EXPECT_EQ(first_difference(c.spec, Sample().spec), "tasks[1].ports[4].variable");
+  d.end_order[0] = TaskId{1u};
+  EXPECT_EQ(first_difference(d.spec, Sample().spec), "end_order");
 }
 
 TEST(ApplicationImage, StrangersAreRefusedByName) {
@@ -94,7 +125,7 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
   bytes[kVersionAt] = std::byte{7};
-  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 2");
+  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 3");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +
@@ -135,6 +166,30 @@ TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
     s.ports[0].value = {};
     s.ports[0].extent[0].max = s.ports[0].extent[1].max = 1u << 31;
   }), unfilled));
+  const char *no_variable = "a variable that does not exist", *no_constant = "a constant that does not exist";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].variable = VariableId{3u}; }), no_variable));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].variable = {}; }), no_variable));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[1].variable = VariableId{0u}; }), no_variable));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.operators[1].variable = VariableId{3u}; }), no_variable));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.operators[1].variable = {}; }), no_variable));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.more_ports[2].constant = ConstantId{2u}; }), no_constant));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.more_ports[1].constant = {}; }), no_constant));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].constant = ConstantId{0u}; }), no_constant));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].extent[0].constant = ConstantId{2u}; }),
+                   "an extent of a constant that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.operators[1].variable = Sample::kKp; }),
+                   "a variable with two operator values"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.more_ports[5].variable = Sample::kX; }), "a variable without a port"));
+  const char* unsettled = "a constant that is not either given or produced";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.constants[0].value = {}; }), unsettled));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.constants[1].value = bytes_of("abcdefgh"); }), unsettled));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.constants[0].value = bytes_of("abc"); }),
+                   "a value that does not fill its constant"));
+  const char* unordered = "an order that does not hold every task once";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.on_order[0] = TaskId{0u}; }), unordered));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.end_order[0] = TaskId{1u}; }), unordered));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.spec.init_order = s.spec.init_order.first(1); }), unordered));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.on_order[0] = TaskId{2u}; }), "a task that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.rtpus[0].policy = static_cast<Policy>(9); }),
                    "a choice that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.settings.priority = 100; }), "settings out of range"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole application as handed down to the runtime. Made by Configuration::spec(), or baked into an image.
+// A whole application as handed down to the runtime. Made by Configuration::spec(), or baked into an image. Links are
+// ids: verification has resolved every name, and a name in a spec is for messages only.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +13,36 @@
 
 namespace chimera {
 
-/// A value that the description itself produces: a constant, or an operator variable's initial value.
-struct GivenSpec {
+/// Port number `index` of a task among its ports of one kind: of an out-var also its bit in chimera_slot::valid.
+struct PortOf {
+  TaskId task;
+  std::uint32_t index = 0;
+  constexpr bool operator==(const PortOf&) const noexcept = default;
+};
+
+/// A state variable and every port that is linked to it. Several tasks may produce it: at most one of them, or the
+/// operator instead of all, in each configuration.
+struct Variable {
   std::string_view name;
+  std::span<const PortOf> producers;          ///< out-vars, in the order of the tasks
+  std::span<const PortOf> consumers;          ///< in-vars, in the order of the tasks
+  std::uint32_t operator_index = UINT32_MAX;  ///< in ApplicationSpec::operators; UINT32_MAX: not an operator's
+};
+
+/// A constant: its value stands in the description, or tasks produce it at init, one of them in each configuration.
+struct ConstantSpec {
+  std::string_view name;
+  std::uint32_t type = CHIMERA_FLOAT64;
+  std::uint32_t element_bytes = 8;
+  std::span<const std::byte> value;                ///< given by the description; empty: tasks produce it
+  std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};  ///< of `value`, as PortSpec::listed
+  std::span<const PortOf> producers;               ///< out-consts, in the order of the tasks
+};
+
+/// The initial value of an operator variable.
+struct GivenSpec {
+  std::string_view name;  ///< of `variable`
+  VariableId variable;
   std::uint32_t type = CHIMERA_FLOAT64;
   std::uint32_t element_bytes = 8;
   ExtentSpec extent[CHIMERA_MAX_EXTENTS];
@@ -35,10 +63,28 @@ struct ApplicationSpec {
   std::string_view name;
   std::span<const RtpuSpec> rtpus;
   std::span<const TaskSpec> tasks;
-  std::span<const GivenSpec> constants;
+  std::span<const Variable> variables;      ///< by VariableId
+  std::span<const ConstantSpec> constants;  ///< by ConstantId
   std::span<const GivenSpec> operators;
   std::span<const TaskId> init_order;  ///< every task, producers of constants before their users
   std::span<const TaskId> start;       ///< the tasks that go ON, in data-flow order, hardware inputs first
+  std::span<const TaskId> on_order;    ///< every task in the order of going ON; OFF goes backwards: task_orders.h
+  std::span<const TaskId> end_order;   ///< every task in the order in which the end turns OFF and kills: task_orders.h
+
+  /// Name of what the port is linked to; "" when it is not linked. Context: any; wait-free.
+  std::string_view link_name(const PortSpec& port) const noexcept {
+    if (port.variable.is_valid()) return variables[port.variable.index].name;
+    return port.constant.is_valid() ? constants[port.constant.index].name : std::string_view{};
+  }
+  /// Does `user` read a constant that `producer` makes? Context: any; wait-free.
+  bool uses_constant_of(TaskId user, TaskId producer) const noexcept {
+    for (const PortSpec& port : tasks[user.index].ports) {
+      if (port.kind != CHIMERA_IN_CONST || !port.constant.is_valid()) continue;
+      for (const PortOf& made : constants[port.constant.index].producers)
+        if (made.task == producer) return true;
+    }
+    return false;
+  }
 };
 
 }  // namespace chimera

@@ -1,57 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
+// ConstantStore: values by id, compared when they are set.
 #include "chimera/runtime/constant_store.h"
 
 #include <algorithm>
 #include <cstring>
 
 namespace chimera {
+namespace {
 
-std::size_t ConstantStore::declare(std::string_view name, std::uint32_t type, std::size_t bytes) {
-  for (std::size_t i = 0; i < constants_.size(); ++i) {
-    if (constants_[i].name != name) continue;
-    if (constants_[i].value.size() < bytes) constants_[i].value.resize(bytes);
-    return i;
-  }
-  Constant made;
-  made.name = name;
-  made.type = type;
-  made.value.resize(bytes);
-  constants_.push_back(std::move(made));
-  return constants_.size() - 1;
+template <class Whole>
+std::int64_t whole(const Constant& constant, std::int64_t fallback) noexcept {
+  Whole n;
+  if (constant.value.size() < sizeof n) return fallback;
+  std::memcpy(&n, constant.value.data(), sizeof n);
+  return n;
 }
 
-const Constant* ConstantStore::find(std::string_view name) const noexcept {
-  for (const Constant& c : constants_)
-    if (c.name == name) return &c;
-  return nullptr;
+}  // namespace
+
+ConstantStore::ConstantStore(const ApplicationSpec& spec) : constants_(spec.constants.size()) {
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    constants_[c].spec = &spec.constants[c];
+    constants_[c].value.resize(spec.constants[c].value.size());
+  }
+  for (const TaskSpec& task : spec.tasks) {
+    for (const PortSpec& port : task.ports) {
+      if (!port.constant.is_valid()) continue;
+      std::vector<std::byte>& value = constants_[port.constant.index].value;
+      value.resize(std::max<std::size_t>(value.size(), port.max_bytes()));
+    }
+  }
+  for (std::size_t c = 0; c < constants_.size(); ++c)
+    if (!spec.constants[c].value.empty()) set(ConstantId(c), spec.constants[c].value);
 }
 
-bool ConstantStore::set(std::string_view name, std::span<const std::byte> value, TaskId producer) noexcept {
-  for (Constant& c : constants_) {
-    if (c.name != name) continue;
-    const std::size_t bytes = std::min(value.size(), c.value.size());
-    const bool differs = !c.is_known || std::memcmp(c.value.data(), value.data(), bytes) != 0;
-    std::memcpy(c.value.data(), value.data(), bytes);
-    c.is_known = true;
-    c.producer = producer;
-    return differs;
-  }
-  return false;
+bool ConstantStore::set(ConstantId id, std::span<const std::byte> value) noexcept {
+  Constant& c = constants_[id.index];
+  const std::size_t bytes = std::min(value.size(), c.value.size());
+  const bool differs = !c.is_known || std::memcmp(c.value.data(), value.data(), bytes) != 0;
+  std::memcpy(c.value.data(), value.data(), bytes);
+  c.is_known = true;
+  return differs;
 }
 
-std::int64_t ConstantStore::integer(std::string_view name, std::int64_t fallback) const noexcept {
-  const Constant* c = find(name);
-  if (c == nullptr || !c->is_known) return fallback;
-  if (c->type == CHIMERA_INT32) {
-    std::int32_t n;
-    std::memcpy(&n, c->value.data(), sizeof n);
-    return n;
-  }
-  if (c->type == CHIMERA_INT64) {
-    std::int64_t n;
-    std::memcpy(&n, c->value.data(), sizeof n);
-    return n;
-  }
+std::int64_t ConstantStore::integer(ConstantId id, std::int64_t fallback) const noexcept {
+  const Constant& c = constants_[id.index];
+  if (c.is_known && c.spec->type == CHIMERA_INT32) return whole<std::int32_t>(c, fallback);
+  if (c.is_known && c.spec->type == CHIMERA_INT64) return whole<std::int64_t>(c, fallback);
   return fallback;
 }
 

@@ -8,31 +8,30 @@
 #include <string_view>
 #include <vector>
 
-#include "chimera/base/ids.h"
-#include "chimera/task/task_spec.h"
+#include "chimera/runtime/application_spec.h"
 
 namespace chimera {
 
-/// One constant variable with its present value.
+/// One constant with its present value.
 struct Constant {
-  std::string_view name;
-  std::uint32_t type = CHIMERA_FLOAT64;
-  std::vector<std::byte> value;  ///< at its maximum size
+  const ConstantSpec* spec = nullptr;
+  std::vector<std::byte> value;  ///< at the size of the largest port that is linked to it
   bool is_known = false;
-  TaskId producer;               ///< invalid: given by the description
 };
 
-/// Context: setup and edge; never cycle.
+/// By ConstantId of the specs, which outlive it. Context: setup and edge; never cycle.
 class ConstantStore {
  public:
-  /// Makes room for a constant; a second call with the same name keeps the larger size. Returns its index.
-  std::size_t declare(std::string_view name, std::uint32_t type, std::size_t bytes);
-  /// The constant of that name; nullptr when nobody declared it.
-  const Constant* find(std::string_view name) const noexcept;
+  ConstantStore() = default;
+  /// Makes room for every constant and sets those that the description gives. Context: setup.
+  explicit ConstantStore(const ApplicationSpec& spec);
+
+  /// Requires: a valid id.
+  const Constant& operator[](ConstantId id) const noexcept { return constants_[id.index]; }
   /// Sets the value; true when it differs from the one before or was not known.
-  bool set(std::string_view name, std::span<const std::byte> value, TaskId producer) noexcept;
-  /// The value as a whole number, for extents. `fallback` when it is not known or not a number.
-  std::int64_t integer(std::string_view name, std::int64_t fallback) const noexcept;
+  bool set(ConstantId id, std::span<const std::byte> value) noexcept;
+  /// The value as a whole number, for extents. `fallback` when it is not known or not a whole number.
+  std::int64_t integer(ConstantId id, std::int64_t fallback) const noexcept;
 
  private:
   std::vector<Constant> constants_;

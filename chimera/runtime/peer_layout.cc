@@ -21,10 +21,10 @@ Result<PeerLayout> PeerLayout::of(const ApplicationSpec& spec, std::uint32_t pee
 
 Result<PeerLayout> PeerLayout::of_everything(const ApplicationSpec& spec) { return make(spec, true, 0); }
 
-void PeerLayout::plan_task(const TaskSpec& task, Storage& storage) {
+void PeerLayout::plan_task(const ApplicationSpec& spec, const TaskSpec& task, Storage& storage) {
   std::vector<VariableSpec> outputs, constants;
   for (const PortSpec& port : task.ports) {
-    const VariableSpec variable{port.variable, port.element_bytes, port.max_count()};
+    const VariableSpec variable{spec.link_name(port), port.element_bytes, port.max_count()};
     if (port.kind == CHIMERA_OUT_VAR) outputs.push_back(variable);
     if (port.kind == CHIMERA_OUT_CONST) constants.push_back(variable);
   }
@@ -42,7 +42,7 @@ Result<PeerLayout> PeerLayout::make(const ApplicationSpec& spec, bool everything
   for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
     if (!everything && spec.tasks[t].rtpu.index != peer) continue;
     made.first_group_[t] = static_cast<std::uint32_t>(storage.specs.size());
-    made.plan_task(spec.tasks[t], storage);
+    plan_task(spec, spec.tasks[t], storage);
   }
   made.first_operator_ = storage.specs.size();
   if (everything || peer == spec.rtpus.size())

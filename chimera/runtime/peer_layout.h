@@ -43,7 +43,7 @@ class PeerLayout {
  private:
   struct Storage;
   static Result<PeerLayout> make(const ApplicationSpec& spec, bool everything, std::uint32_t peer);
-  void plan_task(const TaskSpec& task, Storage& storage);
+  static void plan_task(const ApplicationSpec& spec, const TaskSpec& task, Storage& storage);
 
   std::shared_ptr<const TableLayout> table_;
   std::shared_ptr<Storage> storage_;

@@ -132,7 +132,7 @@ void Sources::bind_input(Input& input, TaskId consumer, const Source& source) no
 
 void Sources::take_outputs_of(const Task& task) noexcept {
   for (std::uint32_t i = 0; i < task.outputs.size(); ++i)
-    bind(variables_->output(task.id, i), source_from({task.id, i}));
+    bind(task.outputs[i].spec->variable, source_from({task.id, i}));
   if (!preemptive_) return everybody_follows();
   for (Copy& copy : copies_) {
     if (copy.of.task != task.id) continue;
@@ -176,7 +176,7 @@ void Sources::adopt(TaskId consumer) noexcept {
   for (Copy& copy : copies_)
     if (copy.consumer == consumer) refresh_reader(copy, false);
   for (std::uint32_t i = 0; preemptive_ && i < task.inputs.size(); ++i) {
-    const Source& source = sources_[variables_->input(consumer, i).index];
+    const Source& source = sources_[memories_[consumer.index].input_spec(i).variable.index];
     if (!task.inputs[i].group.follows(copy_for(consumer, source)->group)) bind_input(task.inputs[i], consumer, source);
   }
   collect_copies(consumer);

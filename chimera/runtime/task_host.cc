@@ -51,7 +51,8 @@ const PortSpec* spec_of(void* context, const chimera_port* port) noexcept {
 chimera_text host_variable(void* context, const chimera_port* port) {
   const PortSpec* spec = spec_of(context, port);
   if (spec == nullptr) return {"", 0};
-  return {spec->variable.data(), static_cast<std::uint32_t>(spec->variable.size())};
+  const std::string_view name = host_of(context).set->spec().link_name(*spec);
+  return {name.data(), static_cast<std::uint32_t>(name.size())};
 }
 
 chimera_text host_unit(void* context, const chimera_port* port) {

@@ -188,7 +188,7 @@ bool TaskLife::before_step(Task& task, const StepRule& step, Nanoseconds now) {
 Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
   TaskMemory& memory = set_.memories_[task.id.index];
   if (step.after_ok & kWriteConst) {
-    const int changed = memory.write_constants(set_.constants_, task.id);
+    const int changed = memory.write_constants(set_.constants_);
     FixedString<160> why;
     if (!memory.fix_extents(set_.constants_, why) || !set_.lists_fit(task, why)) {
       record_fault(task, step.method, why.c_str(), now);
@@ -210,7 +210,7 @@ Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
 void TaskLife::take_over(Task& task) noexcept {
   taken_over_valid_ = 0;
   for (std::uint32_t i = 0; i < task.outputs.size(); ++i) {
-    const VariableId variable = set_.variables().output(task.id, i);
+    const VariableId variable = task.outputs[i].spec->variable;
     const Source& source = set_.sources().source(variable);
     const chimera_slot* slot = set_.sources().latest(variable);
     if (slot == nullptr || !((slot->valid >> source.bit) & 1u)) continue;

@@ -182,7 +182,7 @@ void TaskMemory::wire(Task& task) noexcept {
   for (ConstantPort& constant : constants_) {
     constant.port = live(*constant.spec);
     constant.local = next;
-    const bool can_be_given = constant.decl->kind == CHIMERA_OUT_CONST || !constant.spec->variable.empty() ||
+    const bool can_be_given = constant.decl->kind == CHIMERA_OUT_CONST || constant.spec->constant.is_valid() ||
                               !constant.spec->value.empty();
     constant.port->value = can_be_given ? next : nullptr;
     next += round_up(constant.spec->max_bytes());
@@ -217,15 +217,15 @@ void TaskMemory::abandon(Task& task) {
 
 bool TaskMemory::read_constants(const ConstantStore& store, FixedString<160>& why) noexcept {
   for (ConstantPort& constant : constants_) {
-    if (constant.decl->kind != CHIMERA_IN_CONST || constant.spec->variable.empty()) continue;
-    const Constant* found = store.find(constant.spec->variable);
-    if (found != nullptr && found->is_known) {
-      std::memcpy(constant.local, found->value.data(),
-                  std::min<std::size_t>(found->value.size(), constant.spec->max_bytes()));
+    if (constant.decl->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
+    const Constant& found = store[constant.spec->constant];
+    if (found.is_known) {
+      std::memcpy(constant.local, found.value.data(),
+                  std::min<std::size_t>(found.value.size(), constant.spec->max_bytes()));
     } else if (constant.spec->value.empty()) {
       char text[160];
       std::snprintf(text, sizeof text, "constant %.*s has no value: its producer was not initialised",
-                    static_cast<int>(constant.spec->variable.size()), constant.spec->variable.data());
+                    static_cast<int>(found.spec->name.size()), found.spec->name.data());
       why.assign(text);
       return false;
     }
@@ -235,20 +235,20 @@ bool TaskMemory::read_constants(const ConstantStore& store, FixedString<160>& wh
 
 bool TaskMemory::uses_changed(const ConstantStore& store) const noexcept {
   for (const ConstantPort& constant : constants_) {
-    if (constant.decl->kind != CHIMERA_IN_CONST || constant.spec->variable.empty()) continue;
-    const Constant* found = store.find(constant.spec->variable);
-    if (found == nullptr || !found->is_known) continue;
-    const std::size_t bytes = std::min<std::size_t>(found->value.size(), constant.spec->max_bytes());
-    if (std::memcmp(constant.local, found->value.data(), bytes) != 0) return true;
+    if (constant.decl->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
+    const Constant& found = store[constant.spec->constant];
+    if (!found.is_known) continue;
+    const std::size_t bytes = std::min<std::size_t>(found.value.size(), constant.spec->max_bytes());
+    if (std::memcmp(constant.local, found.value.data(), bytes) != 0) return true;
   }
   return false;
 }
 
-int TaskMemory::write_constants(ConstantStore& store, TaskId self) noexcept {
+int TaskMemory::write_constants(ConstantStore& store) noexcept {
   int changed = 0;
   for (const ConstantPort& constant : constants_) {
     if (constant.decl->kind != CHIMERA_OUT_CONST) continue;
-    changed += store.set(constant.spec->variable, {constant.local, constant.spec->max_bytes()}, self) ? 1 : 0;
+    changed += store.set(constant.spec->constant, {constant.local, constant.spec->max_bytes()}) ? 1 : 0;
   }
   return changed;
 }
@@ -259,11 +259,12 @@ bool TaskMemory::fix_extents(const ConstantStore& store, FixedString<160>& why) 
     to.count = 1;
     for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
       const ExtentSpec& extent = port.extent[d];
-      const std::int64_t n = extent.constant.empty() ? extent.max : store.integer(extent.constant, extent.max);
+      const std::int64_t n = !extent.constant.is_valid() ? extent.max : store.integer(extent.constant, extent.max);
       if (n < 1 || n > extent.max) {
+        const std::string_view name = extent.constant.is_valid() ? store[extent.constant].spec->name : "";
         char text[160];
         std::snprintf(text, sizeof text, "extent %.*s = %lld of port %s is outside 1 to %u",
-                      static_cast<int>(extent.constant.size()), extent.constant.data(), static_cast<long long>(n),
+                      static_cast<int>(name.size()), name.data(), static_cast<long long>(n),
                       component_->ports[port.declared].name, extent.max);
         why.assign(text);
         return false;

@@ -44,7 +44,7 @@ class TaskMemory {
   /// Copies constants in; false with `why` when one has no value. Sets extents that constants fix.
   bool read_constants(const ConstantStore& store, FixedString<160>& why) noexcept;
   /// Copies out-consts to the store; calls are counted: the number of constants that changed.
-  int write_constants(ConstantStore& store, TaskId self) noexcept;
+  int write_constants(ConstantStore& store) noexcept;
   /// Fixes the extents of all ports from known constants; false with `why` when one is out of range.
   bool fix_extents(const ConstantStore& store, FixedString<160>& why) noexcept;
 
@@ -59,6 +59,7 @@ class TaskMemory {
   std::uint64_t initial_valid() const noexcept { return initial_valid_; }
   /// Where output `i` lies in the payload, what was specified for it, and its live half (nullptr: not constructed).
   std::uint32_t output_offset(std::size_t i) const noexcept { return outputs_[i].offset; }
+  const PortSpec& input_spec(std::size_t i) const noexcept { return *input_specs_[i]; }
   const PortSpec* output_spec(std::size_t i) const noexcept { return outputs_[i].spec; }
   const chimera_port* output_port(std::size_t i) const noexcept { return is_constructed_ ? outputs_[i].port : nullptr; }
   /// What was specified for the port with this live half; nullptr: there is none. Context: any; wait-free; O(ports).

@@ -54,7 +54,7 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
     return Error{ErrorCode::kBadInput, {"nobody produces state variable " + std::string(variable.name)}, {reader}};
   }
   if (auto laid = lay_out(); !laid) return laid;
-  set_constants();
+  constants_ = ConstantStore(spec_);
   plan_foreign_constants();
   place_operators();
   sources_.prepare(*variables_, *everything_, tasks_, memories_, operators_, place_.others,
@@ -102,17 +102,6 @@ std::span<std::byte> TaskSet::group_memory(GroupId group) const noexcept {
   return table_.subspan(place.offset, group_bytes(place.payload_bytes));
 }
 
-void TaskSet::set_constants() {
-  for (const TaskSpec& task : spec_.tasks)
-    for (const PortSpec& port : task.ports)
-      if ((port.kind == CHIMERA_IN_CONST || port.kind == CHIMERA_OUT_CONST) && !port.variable.empty())
-        constants_.declare(port.variable, port.type, port.max_bytes());
-  for (const GivenSpec& given : spec_.constants) {
-    constants_.declare(given.name, given.type, given.value.size());
-    constants_.set(given.name, given.value, TaskId{});
-  }
-}
-
 void TaskSet::plan_foreign_constants() {
   std::uint32_t largest = 0;
   for (std::size_t t = 0; t < tasks_.size(); ++t) {
@@ -123,7 +112,7 @@ void TaskSet::plan_foreign_constants() {
     for (const PortSpec& port : spec_.tasks[t].ports) {
       if (port.kind != CHIMERA_OUT_CONST) continue;
       foreign_constants_.push_back(
-          {TaskId(t), port.variable, everything_->variables(group)[i].offset, port.max_bytes()});
+          {TaskId(t), port.constant, everything_->variables(group)[i].offset, port.max_bytes()});
       ++i;
     }
   }

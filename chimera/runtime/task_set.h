@@ -134,7 +134,7 @@ class TaskSet {
   /// A constant of another context.
   struct ForeignConstant {
     TaskId producer;
-    std::string_view name;
+    ConstantId id;
     std::uint32_t offset = 0, bytes = 0;
   };
 
@@ -144,14 +144,12 @@ class TaskSet {
   Result<void> lay_out();
   std::span<std::byte> group_memory(GroupId group) const noexcept;
   void place_operators();
-  void set_constants();
   void plan_foreign_constants();
   void read_foreign_constants() noexcept;
   void publish_constants(const Task& task) noexcept;
-  const GivenSpec* given(std::string_view variable) const noexcept;
+  std::span<const std::uint32_t> listed(const PortSpec& port) const noexcept;
   bool lists_fit(const Task& task, FixedString<160>& why) const noexcept;
   void reinit_users(TaskId of, Nanoseconds now);
-  bool uses_constant_of(TaskId user, TaskId producer) const noexcept;
 
   const ApplicationSpec& spec_;
   ContextPlace place_;

@@ -7,27 +7,30 @@
 
 namespace chimera {
 
-const GivenSpec* TaskSet::given(std::string_view variable) const noexcept {
-  for (const auto& list : {spec_.constants, spec_.operators})
-    for (const GivenSpec& given : list)
-      if (given.name == variable) return &given;
-  return nullptr;
+// The entries, by dimension, of the list that the description gives for what the port is linked to: its constant, or
+// its operator variable; else of the port's own value.
+std::span<const std::uint32_t> TaskSet::listed(const PortSpec& port) const noexcept {
+  if (!port.value.empty()) return port.listed;
+  if (port.constant.is_valid()) return spec_.constants[port.constant.index].listed;
+  if (!port.variable.is_valid()) return port.listed;
+  const std::uint32_t given = spec_.variables[port.variable.index].operator_index;
+  return given == UINT32_MAX ? port.listed : spec_.operators[given].listed;
 }
 
 // A value written as a list has as many entries as the constant says that fixes the extent.
 bool TaskSet::lists_fit(const Task& task, FixedString<160>& why) const noexcept {
   for (const PortSpec& port : task.spec->ports) {
-    const GivenSpec* from = port.value.empty() && !port.variable.empty() ? given(port.variable) : nullptr;
-    const std::uint32_t* listed = from != nullptr ? from->listed : port.listed;
+    const std::span<const std::uint32_t> entries = listed(port);
     for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
       const ExtentSpec& extent = port.extent[d];
-      if (extent.constant.empty() || listed[d] == 0) continue;
-      const std::int64_t n = constants_.integer(extent.constant, listed[d]);
-      if (n == listed[d]) continue;
+      if (!extent.constant.is_valid() || entries[d] == 0) continue;
+      const std::int64_t n = constants_.integer(extent.constant, entries[d]);
+      if (n == entries[d]) continue;
+      const std::string_view link = spec_.link_name(port), constant = spec_.constants[extent.constant.index].name;
       char text[160];
-      std::snprintf(text, sizeof text, "%.*s has a list of %u values, but %.*s is %lld",
-                    static_cast<int>(port.variable.size()), port.variable.data(), listed[d],
-                    static_cast<int>(extent.constant.size()), extent.constant.data(), static_cast<long long>(n));
+      std::snprintf(text, sizeof text, "%.*s has a list of %u values, but %.*s is %lld", static_cast<int>(link.size()),
+                    link.data(), entries[d], static_cast<int>(constant.size()), constant.data(),
+                    static_cast<long long>(n));
       why.assign(text);
       return false;
     }
@@ -42,24 +45,16 @@ void TaskSet::reinit_users(TaskId of, Nanoseconds now) {
     if (id == of) continue;
     if (!is_mine(id)) {
       const State there = place_.others->state(id);
-      if ((there == State::kOff || there == State::kOn) && uses_constant_of(id, of))
+      if ((there == State::kOff || there == State::kOn) && spec_.uses_constant_of(id, of))
         (void)place_.others->post(Signal::kReinit, id, of, true);
       continue;
     }
     Task& user = tasks_[id.index];
     const bool waits = user.in_service || user.is_busy;
-    if (waits && uses_constant_of(id, of)) sent_.defer(user, Signal::kReinit);
+    if (waits && spec_.uses_constant_of(id, of)) sent_.defer(user, Signal::kReinit);
     if (waits || (user.state != State::kOff && user.state != State::kOn)) continue;
     if (memories_[id.index].uses_changed(constants_)) life_.reinit(id, now);
   }
-}
-
-bool TaskSet::uses_constant_of(TaskId user, TaskId producer) const noexcept {
-  for (const PortSpec& made : spec_.tasks[producer.index].ports)
-    for (const PortSpec& used : spec_.tasks[user.index].ports)
-      if (made.kind == CHIMERA_OUT_CONST && used.kind == CHIMERA_IN_CONST && made.variable == used.variable)
-        return true;
-  return false;
 }
 
 void TaskSet::read_foreign_constants() noexcept {
@@ -67,7 +62,7 @@ void TaskSet::read_foreign_constants() noexcept {
     const GroupReader reader = place_.others->constants(constant.producer);
     chimera_slot slot;
     if (!reader.is_bound() || !reader.try_read(slot, constant_scratch_.data()) || slot.sequence == 0) continue;
-    constants_.set(constant.name, {constant_scratch_.data() + constant.offset, constant.bytes}, constant.producer);
+    constants_.set(constant.id, {constant_scratch_.data() + constant.offset, constant.bytes});
   }
 }
 
@@ -85,8 +80,7 @@ void TaskSet::publish_constants(const Task& task) noexcept {
   std::size_t i = 0;
   for (const PortSpec& port : task.spec->ports) {
     if (port.kind != CHIMERA_OUT_CONST) continue;
-    const Constant* constant = constants_.find(port.variable);
-    std::memcpy(writer.staging() + places[i].offset, constant->value.data(), places[i].bytes);
+    std::memcpy(writer.staging() + places[i].offset, constants_[port.constant].value.data(), places[i].bytes);
     ++i;
   }
   writer.publish(Nanoseconds{}, ~std::uint64_t{0});

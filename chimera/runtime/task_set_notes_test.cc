@@ -36,10 +36,10 @@ struct TaskSetNotes : ::testing::Test {
   TaskSetNotes() {
     app.add("teller", chimera::testing::component<Teller>("teller"));
     // The first port stands for one instance; another is added behind the last.
-    app.port(0, 0).variable = "q";
+    app.link(0, 0, "q");
     app.port(0, 0).unit = "rad";
-    app.port(0, 1).variable = {};
-    app.port(0, 3).variable = "sum";
+    app.link(0, 1, {});
+    app.link(0, 3, "sum");
     app.give(app.operators, "q", CHIMERA_FLOAT64, chimera::testing::bytes_of(0.5));
     auto made = TaskSet::create(app.make(), app.components);
     if (made) set = *std::move(made);

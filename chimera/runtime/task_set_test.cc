@@ -184,8 +184,8 @@ TEST(TaskSet, ConstantsFixExtentsAndReinitialiseExactlyTheirUsers) {
   app.add("arm", component<Arm>("arm"));
   app.add("user", component<User>("user"));
   app.add("counter", component<Counter>("counter"));
-  app.port(0, 1).extent[0] = {10, "ndof"};
-  app.port(1, 1).extent[0] = {10, "ndof"};
+  app.extend(0, 1, 10, "ndof");
+  app.extend(1, 1, 10, "ndof");
   app.make();
   auto set = make(app);
   ASSERT_TRUE(set->life().start({}));
@@ -205,7 +205,7 @@ TEST(TaskSet, ConstantsFixExtentsAndReinitialiseExactlyTheirUsers) {
 TEST(TaskSet, AnExtentAboveItsMaximumIsAFaultOfInit) {
   TestApplication app;
   app.add("arm", component<Arm>("arm"));
-  app.port(0, 1).extent[0] = {2, "ndof"};
+  app.extend(0, 1, 2, "ndof");
   app.make();
   auto set = make(app);
   const auto started = set->life().start({});
@@ -218,8 +218,8 @@ TEST(TaskSet, AListMustBeAsLongAsTheConstantSays) {
   TestApplication app;
   app.add("arm", component<Arm>("arm"));
   app.add("user", component<User>("user"));
-  app.port(0, 1).extent[0] = {10, "ndof"};
-  app.port(1, 1).extent[0] = {10, "ndof"};
+  app.extend(0, 1, 10, "ndof");
+  app.extend(1, 1, 10, "ndof");
   app.port(1, 1).listed[0] = 4;
   app.make();
   auto set = make(app);

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+// Variables: legality of a set of tasks, and the search for the smallest legal set around one.
 #include "chimera/runtime/variables.h"
 
 #include <algorithm>
 
 namespace chimera {
+namespace {
+
+SetFault fault_of(const Variable& variable, const std::vector<bool>& on) noexcept {
+  const auto is_on = [&on](const PortOf& port) -> bool { return on[port.task.index]; };
+  return set_fault(variable.producers, variable.consumers, variable.operator_index != UINT32_MAX, is_on, is_on);
+}
+
+}  // namespace
 
 std::size_t Variables::find(std::string_view name) const noexcept {
   for (std::size_t i = 0; i < variables_.size(); ++i)
@@ -11,47 +20,9 @@ std::size_t Variables::find(std::string_view name) const noexcept {
   return variables_.size();
 }
 
-std::size_t Variables::index_of(std::string_view name) {
-  const std::size_t found = find(name);
-  if (found == variables_.size()) variables_.push_back({name, {}, {}, UINT32_MAX});
-  return found;
-}
-
-Variables::Variables(const ApplicationSpec& spec) {
-  for (std::size_t o = 0; o < spec.operators.size(); ++o)
-    variables_[index_of(spec.operators[o].name)].operator_index = static_cast<std::uint32_t>(o);
-  inputs_.resize(spec.tasks.size());
-  outputs_.resize(spec.tasks.size());
-  for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
-    for (std::size_t p = 0; p < spec.tasks[t].ports.size(); ++p) {
-      const std::uint32_t kind = spec.tasks[t].ports[p].kind;
-      if (kind != CHIMERA_IN_VAR && kind != CHIMERA_OUT_VAR) continue;
-      const std::size_t v = index_of(spec.tasks[t].ports[p].variable);
-      auto& mine = kind == CHIMERA_IN_VAR ? inputs_[t] : outputs_[t];
-      auto& theirs = kind == CHIMERA_IN_VAR ? variables_[v].consumers : variables_[v].producers;
-      theirs.push_back({TaskId(t), static_cast<std::uint32_t>(mine.size())});
-      mine.push_back(VariableId(v));
-    }
-  }
-}
-
-std::size_t Variables::writers(const Variable& variable, const std::vector<bool>& on) const noexcept {
-  std::size_t n = variable.operator_index == UINT32_MAX ? 0 : 1;
-  for (const PortOf& producer : variable.producers) n += on[producer.task.index] ? 1 : 0;
-  return n;
-}
-
-bool Variables::is_read(const Variable& variable, const std::vector<bool>& on) const noexcept {
-  for (const PortOf& consumer : variable.consumers)
-    if (on[consumer.task.index]) return true;
-  return false;
-}
-
 bool Variables::is_legal(const std::vector<bool>& on) const noexcept {
-  for (const Variable& variable : variables_) {
-    const std::size_t n = writers(variable, on);
-    if (n > 1 || (n == 0 && is_read(variable, on))) return false;
-  }
+  for (const Variable& variable : variables_)
+    if (fault_of(variable, on) != SetFault::kNone) return false;
   return true;
 }
 
@@ -64,13 +35,13 @@ std::string Variables::fault(const std::vector<bool>& on, std::span<const TaskSp
   std::string text;
   const auto add = [&text](std::string part) { text += (text.empty() ? "" : "; ") + std::move(part); };
   for (const Variable& variable : variables_) {
-    const std::size_t n = writers(variable, on);
-    if (n > 1) {
+    const SetFault fault = fault_of(variable, on);
+    if (fault == SetFault::kTwoProducers) {
       std::string who;
       for (const PortOf& p : variable.producers)
         if (on[p.task.index]) who += (who.empty() ? "" : " and ") + std::string(tasks[p.task.index].name);
       add(std::string(variable.name) + " would have two producers: " + who);
-    } else if (n == 0 && is_read(variable, on)) {
+    } else if (fault == SetFault::kNoProducer) {
       add(std::string(variable.name) + " would have no producer");
     }
   }
@@ -106,9 +77,9 @@ void Variables::complete(std::vector<bool>& on, std::vector<bool>& best, int& tr
   if (--tries < 0 || (!best.empty() && count(on) >= count(best))) return;
   const Variable* missing = nullptr;
   for (const Variable& variable : variables_) {
-    const std::size_t n = writers(variable, on);
-    if (n > 1) return;
-    if (n == 0 && missing == nullptr && is_read(variable, on)) missing = &variable;
+    const SetFault fault = fault_of(variable, on);
+    if (fault == SetFault::kTwoProducers) return;
+    if (fault == SetFault::kNoProducer && missing == nullptr) missing = &variable;
   }
   if (missing == nullptr) {
     best = on;

@@ -29,12 +29,12 @@ class SmallestLegalSet : public ::testing::Test {
  protected:
   void origin(const char* name, const char* out) {
     app_.add(name, component<Origin>("origin"));
-    app_.port(app_.tasks.size() - 1, 0).variable = out;
+    app_.link(app_.tasks.size() - 1, 0, out);
   }
   void passing(const char* name, const char* in, const char* out) {
     app_.add(name, component<Passing>("passing"));
-    app_.port(app_.tasks.size() - 1, 0).variable = in;
-    app_.port(app_.tasks.size() - 1, 1).variable = out;
+    app_.link(app_.tasks.size() - 1, 0, in);
+    app_.link(app_.tasks.size() - 1, 1, out);
   }
   /// What is said when exactly these tasks are ON.
   std::string explain(std::vector<std::string_view> names) {
@@ -70,7 +70,7 @@ TEST_F(SmallestLegalSet, LeavesOutAProducerThatWouldGiveAnotherVariableASecondOn
   passing("servo", "ref", "u");
   passing("both", "u", "ref");  // reads what servo gives: legal, though in a ring
   EXPECT_EQ(explain({"servo"}), "ref would have no producer; the smallest legal set is: servo both");
-  app_.port(1, 0).variable = "nobody";
+  app_.link(1, 0, "nobody");
   EXPECT_EQ(explain({"servo"}), "ref would have no producer") << "nothing legal holds it";
 }
 

@@ -162,7 +162,7 @@ void CommandQueue::revive(const Command& command, Part& part) {
   const RtpuId rtpu = state_.observed.rtpu(part.task);
   if (state_.observed.life(rtpu) != RtpuLife::kDown) return;
   // One that is cleared brings what was lost with it back, so that `on` of all of them finds them OFF.
-  for (const TaskId task : state_.order)
+  for (const TaskId task : state_.spec.on_order)
     if (command.signal == Signal::kClear && state_.observed.rtpu(task) == rtpu && state_.observed.is_wanted_back(task))
       goals_.set(task, kGoalSpawn);
   state_.observed.restarts(rtpu) = {};

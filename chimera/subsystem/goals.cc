@@ -25,7 +25,7 @@ bool Goals::any(std::uint32_t bits) const noexcept {
 
 std::vector<TaskId> Goals::with(std::uint32_t bits) const {
   std::vector<TaskId> tasks;
-  for (TaskId task : state_.order)
+  for (TaskId task : state_.spec.on_order)
     if (has(task, bits)) tasks.push_back(task);
   return tasks;
 }
@@ -58,10 +58,12 @@ bool Goals::advance(TaskId task) {
 }
 
 bool Goals::has_constants(TaskId task) const noexcept {
-  const auto& producers = state_.constant_producers[task.index];
-  return std::all_of(producers.begin(), producers.end(), [this](TaskId producer) {
-    return state_.observed.is_created(producer) || !has(producer, kGoalSpawn);
-  });
+  for (const PortSpec& port : state_.spec.tasks[task.index].ports) {
+    if (port.kind != CHIMERA_IN_CONST || !port.constant.is_valid()) continue;
+    for (const auto& [producer, index] : state_.spec.constants[port.constant.index].producers)
+      if (producer != task && !state_.observed.is_created(producer) && has(producer, kGoalSpawn)) return false;
+  }
+  return true;
 }
 
 // What becomes of the goals of a task whose process ended is up to RestartPolicy.

@@ -64,7 +64,7 @@ void OnQueue::begin(OnRequest request) {
 // A task on the way to OFF may still be a producer: `on` of its rival waits and is not refused.
 bool OnQueue::must_wait(const std::vector<TaskId>& tasks) const {
   if (std::any_of(tasks.begin(), tasks.end(), [this](TaskId task) { return state_.is_busy(task); })) return true;
-  return std::any_of(state_.order.begin(), state_.order.end(), [this](TaskId task) {
+  return std::any_of(state_.spec.on_order.begin(), state_.spec.on_order.end(), [this](TaskId task) {
     return state_.may_be_on(task) &&
            (state_.pending.is_awaited(task, Signal::kOff) || state_.pending.is_awaited(task, Signal::kKill));
   });

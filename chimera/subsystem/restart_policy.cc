@@ -90,10 +90,10 @@ void RestartPolicy::give_up(const RtpuDown& down) {
                                  std::to_string(kRestartWindow / seconds(1)) + " s and is not restarted: it " +
                                  down.cause,
                              typed(way_back(down.rtpu))};
-  for (TaskId task : state_.order)
+  for (TaskId task : state_.spec.on_order)
     if (is_of(task, down.rtpu) && goals_.is_pursued(task)) goals_.fail(task, why);
   state_.log("rtpu-given-up", TaskId{}, down.rtpu, why.text());
-  for (TaskId task : state_.order)
+  for (TaskId task : state_.spec.on_order)
     if (is_of(task, down.rtpu) && was_on_[task.index] && !down.is_orderly)
       state_.log("not-off", task, down.rtpu,
                state_.name(down.rtpu) + " " + down.cause + ", is not restarted, and this task was not turned off: its "
@@ -104,7 +104,7 @@ void RestartPolicy::give_up(const RtpuDown& down) {
 
 std::string RestartPolicy::way_back(RtpuId rtpu) const {
   std::vector<TaskId> lost, were_on;
-  for (const TaskId task : state_.order) {
+  for (const TaskId task : state_.spec.on_order) {
     if (!is_of(task, rtpu) || !state_.observed.is_lost(task)) continue;
     lost.push_back(task);
     if (was_on_[task.index]) were_on.push_back(task);

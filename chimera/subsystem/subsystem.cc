@@ -74,7 +74,7 @@ void Subsystem::Parts::on_event(const Begun& begun) {
 
 void Subsystem::Parts::on_event(const RtpuUp& up) {
   state.observed.up(up.rtpu, up.incarnation);
-  for (TaskId task : state.order) {
+  for (TaskId task : state.spec.on_order) {
     if (state.observed.rtpu(task) != up.rtpu) continue;
     if (!goals.has(task, kGoalSpawn)) state.observed.forget(task);
     goals.clear(task, kGoalGone);
@@ -83,7 +83,7 @@ void Subsystem::Parts::on_event(const RtpuUp& up) {
 
 void Subsystem::Parts::on_event(const RtpuDown& down) {
   if (!restarts.on_rtpu_down(down)) return;
-  for (TaskId task : state.order) {
+  for (TaskId task : state.spec.on_order) {
     if (state.observed.rtpu(task) != down.rtpu) continue;
     const auto lost = state.pending.of(task);
     state.pending.drop(task);
@@ -120,7 +120,7 @@ void Subsystem::Parts::pass_on(const SignalResult& result) {
 }
 
 void Subsystem::Parts::expire() {
-  for (TaskId task : state.order) {
+  for (TaskId task : state.spec.on_order) {
     std::vector<SignalResult> expired;
     for (PendingSignal& entry : state.pending.of(task)) {
       if (entry.due > state.now) continue;

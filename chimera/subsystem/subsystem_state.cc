@@ -4,14 +4,12 @@
 
 #include <algorithm>
 
-#include "chimera/subsystem/order.h"
 #include "chimera/subsystem/remedy.h"
 
 namespace chimera::subsystem {
 
 SubsystemState::SubsystemState(const ApplicationSpec& application)
-    : spec(application), variables(application), order(data_flow_order(application)),
-      constant_producers(makers_of_constants(application)), observed(application), pending(application.tasks.size()) {}
+    : spec(application), variables(application), observed(application), pending(application.tasks.size()) {}
 
 void SubsystemState::log(const char* kind, TaskId task, RtpuId rtpu, std::string text) const {
   emit(LogEvent{kind, task, rtpu, std::move(text)});
@@ -25,7 +23,7 @@ std::uint64_t SubsystemState::send(Signal signal, std::span<const TaskId> tasks)
 
 std::vector<TaskId> SubsystemState::sorted(std::span<const TaskId> tasks, bool backwards) const {
   std::vector<TaskId> result;
-  for (TaskId task : order)
+  for (TaskId task : spec.on_order)
     if (std::find(tasks.begin(), tasks.end(), task) != tasks.end()) result.push_back(task);
   if (backwards) std::reverse(result.begin(), result.end());
   return result;
@@ -75,13 +73,12 @@ std::string SubsystemState::missing() const {
   const auto is_on = [this](const PortOf& port) { return observed.state(port.task) == State::kOn; };
   std::string text;
   for (const Variable& variable : variables.all()) {
-    const auto writers = std::count_if(variable.producers.begin(), variable.producers.end(), is_on) +
-                         (variable.operator_index != UINT32_MAX ? 1 : 0);
-    const bool is_read = std::any_of(variable.consumers.begin(), variable.consumers.end(), is_on);
-    if (writers == 1 || (writers == 0 && !is_read)) continue;
+    const bool is_given = variable.operator_index != UINT32_MAX;
+    const SetFault fault = set_fault(variable.producers, variable.consumers, is_given, is_on, is_on);
+    if (fault == SetFault::kNone) continue;
     std::string who;
     for (const PortOf& port : variable.producers)
-      if (writers == 0 || is_on(port))
+      if (fault == SetFault::kNoProducer || is_on(port))
         who += (who.empty() ? "" : ", ") + name(port.task) + " is " + state_name(observed.state(port.task));
     text += (text.empty() ? "" : "; ") + std::string(variable.name) + (who.empty() ? "" : " (" + who + ")");
   }

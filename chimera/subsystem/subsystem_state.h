@@ -31,8 +31,6 @@ struct SubsystemState {
 
   const ApplicationSpec& spec;
   const Variables variables;
-  const std::vector<TaskId> order;                            ///< data flow
-  const std::vector<std::vector<TaskId>> constant_producers;  ///< by task: who produces its in-consts
   ObservedState observed;
   PendingSignals pending;
   bool is_complete = false;                ///< InventoryComplete has come

@@ -18,8 +18,8 @@ namespace chimera {
 
 /// One dimension of a port of this task, after verification.
 struct ExtentSpec {
-  std::uint32_t max = 1;      ///< storage reserved; the extent itself when `constant` is empty
-  std::string_view constant;  ///< name of the constant variable that fixes the extent at init, in 1..max
+  std::uint32_t max = 1;  ///< storage reserved; the extent itself when `constant` is invalid
+  ConstantId constant;    ///< fixes the extent at init, in 1..max
 };
 
 /// One port instance of this task, with every unit, extent and type variable solved.
@@ -27,7 +27,8 @@ struct PortSpec {
   std::uint32_t declared = 0;   ///< index in the component's declaration
   std::uint32_t kind = CHIMERA_IN_VAR;  ///< as declared
   std::uint32_t instance = 0;   ///< of a repeated port; 0 otherwise
-  std::string_view variable;    ///< name in the table after aliases; resource: "" ; unbound in-const: ""
+  VariableId variable;          ///< in-var, out-var: the state variable it is linked to; invalid for other kinds
+  ConstantId constant;          ///< in-const, out-const: the constant it is linked to; invalid: an in-const of its own
   std::string_view unit;        ///< of the values, as solved; "1" for none; resource: ""
   std::uint32_t element_bytes = 0;
   ExtentSpec extent[CHIMERA_MAX_EXTENTS];

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// What clients read of a legal model: the names, types and links that were solved, as texts.
 #include "chimera/verify/configuration.h"
 
 #include "chimera/verify/parts.h"
@@ -63,7 +64,7 @@ ConfiguredVariable configured(const Model& model, const VariableModel& variable)
 
 }  // namespace
 
-std::shared_ptr<const Configuration::Parts> make_parts(Model& model) {
+std::shared_ptr<const Configuration::Parts> make_parts(const Model& model) {
   auto parts = std::make_shared<Configuration::Parts>();
   parts->draft = model.draft;
   parts->start = model.start;
@@ -80,6 +81,9 @@ const std::string& Configuration::file() const noexcept { return parts_->draft.f
 const std::string& Configuration::subsystem() const noexcept { return parts_->draft.subsystem.text; }
 std::span<const ConfiguredTask> Configuration::tasks() const noexcept { return parts_->tasks; }
 std::span<const ConfiguredVariable> Configuration::variables() const noexcept { return parts_->variables; }
+const ConfiguredVariable& Configuration::variable(VariableId id) const noexcept {
+  return parts_->variables[parts_->configured[id.index]];
+}
 std::span<const ConfiguredSet> Configuration::sets() const noexcept { return parts_->sets; }
 std::size_t Configuration::start() const noexcept { return parts_->start; }
 std::span<const RtpuSpec> Configuration::rtpus() const noexcept { return parts_->rtpus; }

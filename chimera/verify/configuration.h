@@ -76,6 +76,8 @@ class Configuration {
   const std::string& subsystem() const noexcept;
   std::span<const ConfiguredTask> tasks() const noexcept;
   std::span<const ConfiguredVariable> variables() const noexcept;
+  /// The state variable that the runtime knows by `id`. Requires: an id of spec().
+  const ConfiguredVariable& variable(VariableId id) const noexcept;
   std::span<const ConfiguredSet> sets() const noexcept;
   /// Index in sets() of the one that goes ON at the start.
   std::size_t start() const noexcept;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "chimera/catalogue/library.h"
@@ -116,7 +117,7 @@ TEST(Configuration, HandsTheTimesDown) {
 TEST(Configuration, SolvesGenericPorts) {
   const Configuration made = legal(kLine);
   const PortSpec &in = made.spec().tasks[1].ports[0], &out = made.spec().tasks[1].ports[2];
-  EXPECT_EQ(in.variable, "x");
+  EXPECT_EQ(made.spec().link_name(in), "x");
   EXPECT_EQ(in.extent[0].max, 3u);
   EXPECT_EQ(out.max_bytes(), 24u);
   EXPECT_EQ(made.tasks()[1].ports[2].unit, "rad");
@@ -134,7 +135,7 @@ TEST(Configuration, ConvertsValuesToTheUnitOfThePort) {
 TEST(Configuration, GivesAnUnlinkedConstantItsDefaultAndAResourceItsText) {
   const Configuration made = legal(kLine);
   const PortSpec& k = made.spec().tasks[1].ports[1];
-  EXPECT_EQ(k.variable, "");
+  EXPECT_EQ(made.spec().link_name(k), "");
   EXPECT_EQ(numbers(k.value), std::vector<double>{2});
   const std::span<const std::byte> text = made.spec().tasks[2].ports[1].value;
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(text.data()), text.size()), "/dev/null");
@@ -181,20 +182,58 @@ TEST(Configuration, LaysAllPortsOfAVariableOutAtTheLeastMaximum) {
   const Configuration made = legal(kRobot);
   for (const TaskSpec& task : made.spec().tasks)
     for (const PortSpec& p : task.ports) {
-      if (p.variable != "q" && p.variable != "tau") continue;
-      EXPECT_EQ(p.extent[0].max, 6u) << task.name << ' ' << p.variable;
-      EXPECT_EQ(p.extent[0].constant, "ndof");
+      const std::string_view name = made.spec().link_name(p);
+      if (name != "q" && name != "tau") continue;
+      EXPECT_EQ(p.extent[0].max, 6u) << task.name << ' ' << name;
+      ASSERT_TRUE(p.extent[0].constant.is_valid());
+      EXPECT_EQ(made.spec().constants[p.extent[0].constant.index].name, "ndof");
     }
 }
 
 TEST(Configuration, FillsGivenVectorsToTheirMaximum) {
   const Configuration made = legal(kRobot);
-  ASSERT_EQ(made.spec().constants.size(), 1u);
-  const GivenSpec& kp = made.spec().constants[0];
+  const PortSpec& port = made.spec().tasks[0].ports[2];
+  ASSERT_TRUE(port.constant.is_valid());
+  EXPECT_EQ(port.extent[0].max, 6u);
+  const ConstantSpec& kp = made.spec().constants[port.constant.index];
   EXPECT_EQ(kp.name, "kp");
-  EXPECT_EQ(kp.extent[0].max, 6u);
+  EXPECT_TRUE(kp.producers.empty());
+  EXPECT_EQ(kp.listed[0], 3u);
   EXPECT_EQ(numbers(kp.value), (std::vector<double>{1000, 2000, 3000, 0, 0, 0}));
   EXPECT_EQ(numbers(made.spec().tasks[0].ports[3].value), std::vector<double>(6, 4.0));
+}
+
+TEST(Configuration, HandsLinksDownById) {
+  const Configuration made = legal(kRobot);
+  const ApplicationSpec& spec = made.spec();
+  Names constants, variables;
+  for (const ConstantSpec& constant : spec.constants) constants.emplace_back(constant.name);
+  EXPECT_EQ(constants, (Names{"kp", "ndof"}));
+  EXPECT_EQ(spec.constants[1].type, CHIMERA_INT32);
+  EXPECT_EQ(std::vector(spec.constants[1].producers.begin(), spec.constants[1].producers.end()),
+            (std::vector<PortOf>{{TaskId(1u), 0}}));
+  for (std::size_t v = 0; v < spec.variables.size(); ++v) {
+    variables.emplace_back(spec.variables[v].name);
+    EXPECT_EQ(made.variable(VariableId(v)).name, spec.variables[v].name);
+    for (const PortOf& port : spec.variables[v].producers) {  // these components have one output each
+      ASSERT_EQ(port.index, 0u);
+      const auto is_output = [](const PortSpec& p) { return p.kind == CHIMERA_OUT_VAR; };
+      EXPECT_EQ(std::ranges::find_if(spec.tasks[port.task.index].ports, is_output)->variable, VariableId(v));
+    }
+  }
+  EXPECT_EQ(variables, (Names{"q", "tau"}));
+}
+
+TEST(Configuration, OrdersTasksOutsideTheStartSetToo) {
+  const Configuration made = legal(
+      "subsystem: line\ntasks:\n"
+      "  sink: {component: sink, alias: {x: y}}\n"
+      "  gain: {component: gain}\n"
+      "  source: {component: source, resources: {device: /dev/null}}\n"
+      "configurations: {only: [source], all: [sink, gain, source]}\nstart: only\n");
+  EXPECT_EQ(names(made, made.spec().start), (Names{"source"}));
+  EXPECT_EQ(names(made, made.spec().on_order), (Names{"source", "gain", "sink"}));
+  EXPECT_EQ(names(made, made.spec().end_order), (Names{"sink", "gain", "source"}));
 }
 
 TEST(Configuration, TellsWhoProducesAndWhoUsesAVariable) {
@@ -232,7 +271,7 @@ TEST(Configuration, OutlivesWhatItWasMadeOfAndItsCopies) {
   std::optional<Configuration> first = legal(kRobot);
   const Configuration second = *first;
   first.reset();
-  EXPECT_EQ(second.spec().tasks[0].ports[1].variable, "q");
+  EXPECT_EQ(second.spec().link_name(second.spec().tasks[0].ports[1]), "q");
   EXPECT_EQ(second.spec().name, "arm");
 }
 

@@ -50,7 +50,7 @@ struct LinkedPort {
   std::string unit_text;
   std::vector<SolvedExtent> extents;
   bool has_extents = false;
-  /// In-const: its written or default value, elements at their maxima; empty where only init will know it.
+  /// Written, default or initial value, elements at their maxima; empty: none, or only init will know it.
   std::vector<std::byte> value;
 
   bool is(std::uint32_t kind) const noexcept { return declared->kind == kind; }
@@ -80,6 +80,7 @@ struct VariableModel {
   std::string name;
   bool is_constant = false;
   const NamedNode* given = nullptr;  ///< by `operator` or `constants`
+  std::vector<std::byte> value;      ///< what `given` says, as its first consumer reads it
   std::vector<PortRef> producers, consumers;
   // The agreement of its ports, each with the port that settled it (nullopt: the given value did).
   std::optional<std::uint32_t> type;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/runtime/links.h"
 #include "chimera/verify/configuration.h"
 #include "chimera/verify/model.h"
 
@@ -24,14 +25,18 @@ struct Configuration::Parts {
   std::vector<RtpuSpec> rtpus;
   std::vector<std::vector<PortSpec>> ports;
   std::vector<TaskSpec> task_specs;
-  std::vector<GivenSpec> constants, operators;
-  std::vector<TaskId> init_order;
+  std::vector<Variable> state_variables;
+  std::vector<std::size_t> configured;  // index in `variables`, by VariableId
+  std::vector<ConstantSpec> constants;
+  std::vector<GivenSpec> operators;
+  Links links;
+  std::vector<TaskId> init_order, on_order, end_order;
   ApplicationSpec spec;
 };
 
 /// The parts of a model without faults. Context: setup.
-std::shared_ptr<const Configuration::Parts> make_parts(Model& model);
+std::shared_ptr<const Configuration::Parts> make_parts(const Model& model);
 /// The half that the runtime reads; `parts` has its tasks already. Context: setup.
-void fill_spec(Model& model, Configuration::Parts& parts);
+void fill_spec(const Model& model, Configuration::Parts& parts);
 
 }  // namespace chimera

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A verified model as the plain specs of the runtime: every value as bytes, every name a view into Parts.
+// A verified model as the plain specs of the runtime: every link an id, every value the bytes that the rules accepted,
+// every name a view into Parts.
 #include <cstring>
 
-#include "chimera/base/assert.h"
+#include "chimera/runtime/task_orders.h"
 #include "chimera/verify/parts.h"
-#include "chimera/verify/values.h"
 
 namespace chimera {
 namespace {
@@ -17,18 +17,10 @@ std::span<const std::byte> keep(Parts& parts, std::vector<std::byte> bytes) {
   return parts.values.emplace_back(std::move(bytes));
 }
 
-void fill_extents(Parts& parts, const LinkedPort& port, ExtentSpec (&out)[CHIMERA_MAX_EXTENTS]) {
-  for (std::size_t i = 0; i < port.extents.size(); ++i) {
-    out[i].max = port.extents[i].max;
-    if (!port.extents[i].constant.empty()) out[i].constant = keep(parts, port.extents[i].constant);
-  }
-}
-
-/// A value that check_values has accepted.
-std::vector<std::byte> accepted(Model& model, const Node& node, const LinkedPort& port) {
-  auto bytes = value_bytes(model, node, {port, {}});
-  CHIMERA_ASSERT(bytes.has_value());
-  return std::move(*bytes);
+std::vector<std::byte> bytes_of(const std::string& text) {
+  std::vector<std::byte> bytes(text.size());
+  std::memcpy(bytes.data(), text.data(), bytes.size());
+  return bytes;
 }
 
 void count_list(const Node& node, std::uint32_t (&listed)[CHIMERA_MAX_EXTENTS]) {
@@ -38,41 +30,6 @@ void count_list(const Node& node, std::uint32_t (&listed)[CHIMERA_MAX_EXTENTS]) 
     entries = static_cast<std::uint32_t>(at->items.size());
     at = &at->items[0];
   }
-}
-
-std::span<const std::byte> value_of(Model& model, Parts& parts, const LinkedPort& port) {
-  if (port.is(CHIMERA_RESOURCE)) {
-    std::vector<std::byte> bytes(port.own->text.size());
-    std::memcpy(bytes.data(), port.own->text.data(), bytes.size());
-    return keep(parts, std::move(bytes));
-  }
-  if (port.own != nullptr) return keep(parts, accepted(model, *port.own, port));
-  if (port.is(CHIMERA_OUT_VAR) || port.source == ConstSource::kDefault) return keep(parts, declared_bytes(port));
-  return {};
-}
-
-PortSpec port_spec(Model& model, Parts& parts, const LinkedPort& port, const ConfiguredPort& configured) {
-  PortSpec spec;
-  spec.declared = port.index;
-  spec.kind = port.declared->kind;
-  spec.instance = port.instance;
-  spec.variable = configured.variable;
-  if (!port.is(CHIMERA_RESOURCE)) {
-    spec.unit = configured.unit;
-    spec.element_bytes = port.element_bytes;
-    spec.type = *port.type;
-    fill_extents(parts, port, spec.extent);
-  } else {
-    spec.type = CHIMERA_STRING;
-    spec.element_bytes = 0;
-  }
-  spec.safety = port.declared->safety;
-  spec.has_range = port.declared->has_range;
-  spec.min = port.declared->min;
-  spec.max = port.declared->max;
-  spec.value = value_of(model, parts, port);
-  if (port.own != nullptr) count_list(*port.own, spec.listed);
-  return spec;
 }
 
 TaskSpec task_spec(const TaskModel& task, const ConfiguredTask& configured, std::span<const PortSpec> ports) {
@@ -105,40 +62,138 @@ TaskSpec task_spec(const TaskModel& task, const ConfiguredTask& configured, std:
   return spec;
 }
 
-void add_given(Model& model, Parts& parts, const VariableModel& variable, const ConfiguredVariable& configured) {
-  if (variable.given == nullptr || variable.consumers.empty()) return;
-  const LinkedPort& port = model.port(variable.consumers[0]);
-  GivenSpec spec;
-  spec.name = configured.name;
-  spec.type = *port.type;
-  spec.element_bytes = port.element_bytes;
-  fill_extents(parts, port, spec.extent);
-  spec.value = keep(parts, accepted(model, variable.given->value, port));
-  count_list(variable.given->value, spec.listed);
-  (variable.is_constant ? parts.constants : parts.operators).push_back(spec);
-}
+/// Gives every variable that a port is linked to its id, and each port the id of what it is linked to.
+class SpecMaker {
+ public:
+  SpecMaker(const Model& model, Parts& parts)
+      : model_(model), parts_(parts), ids_(model.variables.size(), UINT32_MAX) {}
+
+  void make() {
+    number_variables();
+    for (const DraftRtpu& rtpu : model_.rtpus)
+      parts_.rtpus.push_back({keep(parts_, rtpu.name.text), rtpu.cpu.value, rtpu.policy.value, rtpu.preemptive.value});
+    make_ports();
+    for (std::size_t t = 0; t < model_.tasks.size(); ++t)
+      parts_.task_specs.push_back(task_spec(model_.tasks[t], parts_.tasks[t], parts_.ports[t]));
+    for (std::size_t v = 0; v < model_.variables.size(); ++v) add_given(v);
+    parts_.links.fill(parts_.task_specs, parts_.operators, parts_.state_variables, parts_.constants);
+  }
+
+ private:
+  /// State variables and constants are counted apart, in the order of the model.
+  void number_variables() {
+    for (std::size_t v = 0; v < model_.variables.size(); ++v) {
+      const VariableModel& variable = model_.variables[v];
+      const PortRef* first = !variable.producers.empty()   ? &variable.producers[0]
+                             : !variable.consumers.empty() ? &variable.consumers[0]
+                                                           : nullptr;
+      if (first == nullptr) continue;
+      if (variable.is_constant) {
+        ids_[v] = static_cast<std::uint32_t>(parts_.constants.size());
+        ConstantSpec& spec = parts_.constants.emplace_back();
+        spec.name = parts_.variables[v].name;
+        spec.type = *model_.port(*first).type;
+        spec.element_bytes = model_.port(*first).element_bytes;
+      } else {
+        ids_[v] = static_cast<std::uint32_t>(parts_.state_variables.size());
+        parts_.state_variables.emplace_back().name = parts_.variables[v].name;
+        parts_.configured.push_back(v);
+      }
+    }
+  }
+
+  void make_ports() {
+    parts_.ports.resize(model_.tasks.size());
+    for (std::size_t t = 0; t < model_.tasks.size(); ++t) {
+      const std::vector<LinkedPort>& ports = model_.tasks[t].ports;
+      for (std::size_t p = 0; p < ports.size(); ++p)
+        parts_.ports[t].push_back(port_spec(ports[p], parts_.tasks[t].ports[p]));
+    }
+    for (std::size_t v = 0; v < model_.variables.size(); ++v)
+      for (const auto* refs : {&model_.variables[v].producers, &model_.variables[v].consumers})
+        for (const PortRef ref : *refs) {
+          PortSpec& port = parts_.ports[ref.task][ref.port];
+          if (model_.variables[v].is_constant) port.constant = ConstantId(ids_[v]);
+          else port.variable = VariableId(ids_[v]);
+        }
+  }
+
+  PortSpec port_spec(const LinkedPort& port, const ConfiguredPort& configured) {
+    PortSpec spec;
+    spec.declared = port.index;
+    spec.kind = port.declared->kind;
+    spec.instance = port.instance;
+    if (!port.is(CHIMERA_RESOURCE)) {
+      spec.unit = configured.unit;
+      spec.element_bytes = port.element_bytes;
+      spec.type = *port.type;
+      fill_extents(port, spec.extent);
+      // A linked in-const has the value of its constant.
+      if (port.source != ConstSource::kVariable && !port.value.empty()) spec.value = keep(parts_, port.value);
+    } else {
+      spec.type = CHIMERA_STRING;
+      spec.element_bytes = 0;
+      spec.value = keep(parts_, bytes_of(port.own->text));
+    }
+    spec.safety = port.declared->safety;
+    spec.has_range = port.declared->has_range;
+    spec.min = port.declared->min;
+    spec.max = port.declared->max;
+    if (port.own != nullptr) count_list(*port.own, spec.listed);
+    return spec;
+  }
+
+  void fill_extents(const LinkedPort& port, ExtentSpec (&out)[CHIMERA_MAX_EXTENTS]) const {
+    for (std::size_t i = 0; i < port.extents.size(); ++i) {
+      out[i].max = port.extents[i].max;
+      const auto constant = model_.variable_index.find(port.extents[i].constant);
+      if (constant != model_.variable_index.end()) out[i].constant = ConstantId(ids_[constant->second]);
+    }
+  }
+
+  /// What the description itself says of a constant or an operator variable, where a task reads it.
+  void add_given(std::size_t v) {
+    const VariableModel& variable = model_.variables[v];
+    if (variable.given == nullptr || variable.consumers.empty()) return;
+    const std::span<const std::byte> value = keep(parts_, variable.value);
+    if (variable.is_constant) {
+      ConstantSpec& spec = parts_.constants[ids_[v]];
+      spec.value = value;
+      count_list(variable.given->value, spec.listed);
+      return;
+    }
+    const LinkedPort& port = model_.port(variable.consumers[0]);
+    GivenSpec& spec = parts_.operators.emplace_back();
+    spec.name = parts_.variables[v].name;
+    spec.variable = VariableId(ids_[v]);
+    spec.type = *port.type;
+    spec.element_bytes = port.element_bytes;
+    fill_extents(port, spec.extent);
+    spec.value = value;
+    count_list(variable.given->value, spec.listed);
+  }
+
+  const Model& model_;
+  Parts& parts_;
+  std::vector<std::uint32_t> ids_;  // of state variables or constants, by index in Model::variables
+};
 
 }  // namespace
 
-void fill_spec(Model& model, Parts& parts) {
-  for (const DraftRtpu& rtpu : model.rtpus)
-    parts.rtpus.push_back({keep(parts, rtpu.name.text), rtpu.cpu.value, rtpu.policy.value, rtpu.preemptive.value});
-  parts.ports.resize(model.tasks.size());
-  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
-    const TaskModel& task = model.tasks[t];
-    for (std::size_t p = 0; p < task.ports.size(); ++p)
-      parts.ports[t].push_back(port_spec(model, parts, task.ports[p], parts.tasks[t].ports[p]));
-    parts.task_specs.push_back(task_spec(task, parts.tasks[t], parts.ports[t]));
-  }
-  for (std::size_t v = 0; v < model.variables.size(); ++v)
-    add_given(model, parts, model.variables[v], parts.variables[v]);
+void fill_spec(const Model& model, Parts& parts) {
+  SpecMaker(model, parts).make();
   parts.spec.name = parts.draft.subsystem.text;
   parts.spec.rtpus = parts.rtpus;
   parts.spec.tasks = parts.task_specs;
+  parts.spec.variables = parts.state_variables;
   parts.spec.constants = parts.constants;
   parts.spec.operators = parts.operators;
   parts.spec.init_order = parts.init_order;
   parts.spec.start = parts.sets[parts.start].order;
+  parts.on_order = make_on_order(parts.spec);
+  parts.spec.on_order = parts.on_order;
+  parts.end_order = make_end_order(parts.spec);
+  parts.spec.end_order = parts.end_order;
 }
 
 }  // namespace chimera

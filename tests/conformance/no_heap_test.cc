@@ -86,6 +86,7 @@ Counted count(const ContextPlace& place, Run run) {
   constexpr std::uint32_t kTasks = 5;
   const char* names[kTasks] = {"a", "b", "c", "d", "e"};
   const double zero = 0;
+  chimera::testing::NamedLinks links;
   std::array<std::array<PortSpec, 2>, kTasks> ports;
   std::array<TaskSpec, kTasks> tasks;
   std::array<const chimera_component*, kTasks> components;
@@ -94,7 +95,7 @@ Counted count(const ContextPlace& place, Run run) {
     for (std::uint32_t p = 0; p < 2; ++p) {
       ports[i][p].declared = p, ports[i][p].kind = decls[p].kind;
       ports[i][p].element_bytes = 8;
-      ports[i][p].variable = names[(i + (p == 0 ? 0 : kTasks - 1)) % kTasks];
+      ports[i][p].variable = links.variable(names[(i + (p == 0 ? 0 : kTasks - 1)) % kTasks]);
     }
     ports[i][0].value = std::as_bytes(std::span(&zero, 1));
     tasks[i].name = names[i];
@@ -111,6 +112,7 @@ Counted count(const ContextPlace& place, Run run) {
   spec.rtpus = {&rtpu, 1};
   spec.tasks = tasks;
   spec.init_order = spec.start = ids;
+  links.finish(spec);
   auto set = TaskSet::create(spec, components, place);
   EXPECT_TRUE(set);
   const std::array<ScriptAct, 6> acts = {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "chimera/runtime/task_set.h"
+#include "chimera/runtime/testing/named_links.h"
 
 namespace chimera::toy {
 
@@ -150,9 +151,9 @@ class Application {
     one->ports[1].kind = CHIMERA_OUT_VAR;
     one->ports[0].type = CHIMERA_INT64;
     one->ports[0].value = one->address;
-    one->ports[1].variable = one->out_name;
+    one->ports[1].variable = links_.variable(one->out_name);
     one->ports[1].value = one->zero;
-    if (!reads.empty()) one->ports[2].variable = one->in_name;
+    if (!reads.empty()) one->ports[2].variable = links_.variable(one->in_name);
     one->spec.name = one->toy.name;
     one->spec.component = "toy";
     one->spec.period = one->spec.deadline = period;
@@ -183,6 +184,7 @@ class Application {
     spec_.tasks = specs_;
     spec_.init_order = order_;
     spec_.start = start_;
+    links_.finish(spec_);
     auto made = TaskSet::create(spec_, components_, place);
     if (!made) {
       ADD_FAILURE() << made.error().message.c_str();
@@ -234,6 +236,7 @@ class Application {
   std::vector<const chimera_component*> components_;
   std::vector<TaskId> order_, start_;
   std::vector<RtpuSpec> rtpus_{RtpuSpec{"only", 0, Policy::kEdf}};
+  chimera::testing::NamedLinks links_;
   ApplicationSpec spec_;
   std::unique_ptr<TaskSet> set_;
 };

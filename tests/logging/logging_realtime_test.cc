@@ -42,7 +42,7 @@ class Logging {
   explicit Logging(const std::string& path) : path_(path) {
     app_.add("counter", testing::component<Counter>("counter"), milliseconds(2));
     app_.add("logger", csv_log(), milliseconds(2));
-    for (std::size_t p = 0; p < csv_log()->n_ports; ++p) fill(app_.port(1, p), csv_log()->ports[p].name);
+    for (std::size_t p = 0; p < csv_log()->n_ports; ++p) fill(p, csv_log()->ports[p].name);
     auto made = TaskSet::create(app_.make(), app_.components);
     if (!made) ADD_FAILURE() << made.error().message.c_str();
     set_ = *std::move(made);
@@ -68,14 +68,15 @@ class Logging {
   }
 
  private:
-  void fill(PortSpec& port, std::string_view name) {
+  void fill(std::size_t p, std::string_view name) {
+    PortSpec& port = app_.port(1, p);
     if (name == "in") {
-      port.variable = "x";
+      app_.link(1, p, "x");
       port.type = CHIMERA_FLOAT64;
     }
     if (name == "capacity") port.value = std::as_bytes(std::span(&capacity_, 1));
     if (name == "file") port.value = std::as_bytes(std::span(path_));
-    if (port.kind == CHIMERA_IN_CONST) port.variable = {};
+    if (port.kind == CHIMERA_IN_CONST) app_.link(1, p, {});
   }
 
   std::string path_;

@@ -170,7 +170,7 @@ void Judge::check_constants(TaskId task) {
   for (const PortSpec& in : tasks[task.index].ports)
     for (std::size_t m = 0; in.kind == CHIMERA_IN_CONST && m < tasks.size(); ++m)
       for (const PortSpec& out : tasks[m].ports)
-        if (out.kind == CHIMERA_OUT_CONST && out.variable == in.variable && TaskId(m) != task &&
+        if (out.kind == CHIMERA_OUT_CONST && out.constant == in.constant && TaskId(m) != task &&
             (world_.keeper->memory.goals[m] & kGoalSpawn) != 0 && world_.defect != Defect::kForgetsGoals &&
             world_.process_of(TaskId(m)).word(TaskId(m)).state == State::kNotCreated)
           world_.fail(name(task) + " is spawned before " + name(TaskId(m)) + ", which makes a constant of it");

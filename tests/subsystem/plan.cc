@@ -24,7 +24,7 @@ std::string_view Plan::name(std::string text) { return names_.emplace_back(std::
 void Plan::add_port(std::size_t task, std::uint32_t kind, std::string_view variable) {
   PortSpec port;
   port.kind = kind;
-  port.variable = variable;
+  links_.link(port, variable);
   ports_[task].push_back(port);
 }
 
@@ -90,7 +90,9 @@ void Plan::finish() {
   spec.tasks = tasks_;
   spec.init_order = init_order_;
   spec.start = start_;
+  links_.finish(spec);
   blind = spec;
+  blind.variables = {};
   blind.tasks = blind_tasks_;
 }
 

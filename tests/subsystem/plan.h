@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/testing/named_links.h"
 #include "tests/subsystem/chance.h"
 
 namespace chimera::simulated {
@@ -40,6 +40,7 @@ class Plan {
   std::vector<std::vector<PortSpec>> blind_ports_;
   std::vector<TaskId> init_order_;
   std::vector<TaskId> start_;
+  chimera::testing::NamedLinks links_;
 };
 
 }  // namespace chimera::simulated

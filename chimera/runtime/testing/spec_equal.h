@@ -56,6 +56,7 @@ inline void compare_ports(SpecDifference& d, const PortSpec& a, const PortSpec& 
   d.compare(a.kind, b.kind, "kind");
   d.compare(a.instance, b.instance, "instance");
   d.compare(a.variable, b.variable, "variable");
+  d.compare(a.constant, b.constant, "constant");
   d.compare(a.unit, b.unit, "unit");
   d.compare(a.safety, b.safety, "safety");
   d.compare(a.min, b.min, "min");
@@ -91,6 +92,22 @@ inline void compare_tasks(SpecDifference& d, const TaskSpec& a, const TaskSpec& 
   d.list(a.ports, b.ports, "ports", [&](const PortSpec& p, const PortSpec& q) { compare_ports(d, p, q); });
 }
 
+inline void compare_variables(SpecDifference& d, const Variable& a, const Variable& b) {
+  d.compare(a.name, b.name, "name");
+  d.compare(a.operator_index, b.operator_index, "operator_index");
+  d.values(a.producers, b.producers, "producers");
+  d.values(a.consumers, b.consumers, "consumers");
+}
+
+inline void compare_constants(SpecDifference& d, const ConstantSpec& a, const ConstantSpec& b) {
+  d.compare(a.name, b.name, "name");
+  d.compare(a.type, b.type, "type");
+  d.compare(a.element_bytes, b.element_bytes, "element_bytes");
+  d.values(a.value, b.value, "value");
+  for (std::size_t i = 0; i < CHIMERA_MAX_EXTENTS; ++i) d.compare(a.listed[i], b.listed[i], "listed");
+  d.values(a.producers, b.producers, "producers");
+}
+
 /// "tasks[1].ports[0].value", or "".
 inline std::string first_difference(const ApplicationSpec& a, const ApplicationSpec& b) {
   SpecDifference d;
@@ -104,12 +121,18 @@ inline std::string first_difference(const ApplicationSpec& a, const ApplicationS
   d.list(a.tasks, b.tasks, "tasks", [&](const TaskSpec& p, const TaskSpec& q) { compare_tasks(d, p, q); });
   const auto given = [&](const GivenSpec& p, const GivenSpec& q) {
     d.compare(p.name, q.name, "name");
+    d.compare(p.variable, q.variable, "variable");
     compare_values(d, p, q);
   };
-  d.list(a.constants, b.constants, "constants", given);
+  d.list(a.variables, b.variables, "variables",
+         [&](const Variable& p, const Variable& q) { compare_variables(d, p, q); });
+  d.list(a.constants, b.constants, "constants",
+         [&](const ConstantSpec& p, const ConstantSpec& q) { compare_constants(d, p, q); });
   d.list(a.operators, b.operators, "operators", given);
   d.values(a.init_order, b.init_order, "init_order");
   d.values(a.start, b.start, "start");
+  d.values(a.on_order, b.on_order, "on_order");
+  d.values(a.end_order, b.end_order, "end_order");
   return d.said();
 }
 

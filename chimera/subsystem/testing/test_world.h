@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/runtime/testing/named_links.h"
 #include "chimera/subsystem/subsystem.h"
 
 namespace chimera::subsystem {
@@ -26,6 +27,7 @@ class TestWorld {
     spec.tasks = tasks_;
     spec.init_order = init_order_;
     spec.start = start_;
+    links_.finish(spec);
     remembered.goals.resize(tasks_.size());
     remembered.handled.resize(rtpus_.size());
     remembered.restarts.resize(rtpus_.size());
@@ -97,7 +99,7 @@ class TestWorld {
     for (const auto& [kind, variable] : ports) {
       PortSpec port;
       port.kind = kind;
-      port.variable = variable;
+      links_.link(port, variable);
       mine.push_back(port);
     }
     TaskSpec& task = tasks_.emplace_back();
@@ -150,6 +152,7 @@ class TestWorld {
   std::vector<RtpuSpec> rtpus_{{"servo", 0, Policy::kEdf}, {"spare", 1, Policy::kEdf}};
   std::vector<TaskSpec> tasks_;
   std::vector<std::vector<PortSpec>> ports_;
+  chimera::testing::NamedLinks links_;
   std::vector<TaskId> init_order_{kArm, kPid, kTraj, kReserve};
   std::vector<TaskId> start_{kArm, kTraj, kPid};
 };

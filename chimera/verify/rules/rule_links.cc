@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "chimera/runtime/set_equations.h"
 #include "chimera/text/nearest.h"
 #include "chimera/verify/rules/rules.h"
 
@@ -119,13 +120,47 @@ bool is_standby_pair(const Model& model, const std::vector<PortRef>& producers) 
   return false;
 }
 
-/// ON when the set is ON, or in place of one that is: a standby's inputs have to be met too.
-bool counts_in(const Model& model, const SetModel& set, std::size_t task) {
-  if (set.has(task)) return true;
-  const auto& primary = model.tasks[task].draft->standby_for;
-  if (!primary) return false;
-  const auto index = model.task_named(primary->text);
-  return index && set.has(*index);
+using Members = std::vector<bool>;  // by task
+
+Members members(const Model& model, const SetModel& set) {
+  Members tasks(model.tasks.size());
+  for (const std::size_t task : set.tasks) tasks[task] = true;
+  return tasks;
+}
+
+std::vector<Members> members_of_sets(const Model& model) {
+  std::vector<Members> all;
+  for (const SetModel& set : model.sets) all.push_back(members(model, set));
+  return all;
+}
+
+/// Those that are ON when the set is ON, or in place of one that is: a standby's inputs have to be met too.
+Members readers(const Model& model, const Members& on) {
+  Members tasks = on;
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const auto& primary = model.tasks[t].draft->standby_for;
+    const auto index = primary ? model.task_named(primary->text) : std::nullopt;
+    if (index && on[*index]) tasks[t] = true;
+  }
+  return tasks;
+}
+
+void report_two(Model& model, const VariableModel& variable, const SetModel& set) {
+  const std::vector<PortRef> producers = producers_in(variable, set);
+  if (variable.given != nullptr)
+    model.error("operator-produced", variable.given->name.at,
+                "operator variable '" + variable.name + "' is produced by task '" +
+                    model.tasks[producers[0].task].name() + "' in configuration '" + set.name + "'",
+                variable.name, "a variable without a producing task", {},
+                "take it out of 'operator', or link the output elsewhere by alias");
+  if (producers.size() < 2 || is_standby_pair(model, producers)) return;
+  const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
+  model.error("two-producers", second.at,
+              "'" + variable.name + "' has two producers in configuration '" + set.name + "': " + model.say(first) +
+                  " at " + Model::say(first.at) + " and " + model.say(second),
+              variable.name, "one producer", {},
+              "rename both by alias (" + variable.name + "_1, " + variable.name +
+                  "_2) and join them with a component such as join_mean");
 }
 
 }  // namespace
@@ -139,24 +174,15 @@ void collect_variables(Model& model) {
 }
 
 void refuse_two_producers(Model& model) {
+  const std::vector<Members> all = members_of_sets(model);
   for (const VariableModel& variable : model.variables) {
     if (variable.is_constant) continue;
-    for (const SetModel& set : model.sets) {
-      const std::vector<PortRef> producers = producers_in(variable, set);
-      if (variable.given != nullptr && !producers.empty())
-        model.error("operator-produced", variable.given->name.at,
-                    "operator variable '" + variable.name + "' is produced by task '" +
-                        model.tasks[producers[0].task].name() + "' in configuration '" + set.name + "'",
-                    variable.name, "a variable without a producing task", {},
-                    "take it out of 'operator', or link the output elsewhere by alias");
-      if (producers.size() < 2 || is_standby_pair(model, producers)) continue;
-      const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
-      model.error("two-producers", second.at,
-                  "'" + variable.name + "' has two producers in configuration '" + set.name + "': " + model.say(first) +
-                      " at " + Model::say(first.at) + " and " + model.say(second),
-                  variable.name, "one producer", {},
-                  "rename both by alias (" + variable.name + "_1, " + variable.name +
-                      "_2) and join them with a component such as join_mean");
+    for (std::size_t s = 0; s < model.sets.size(); ++s) {
+      const auto produces = [&on = all[s]](const PortRef ref) -> bool { return on[ref.task]; };
+      const auto reads = [](PortRef) { return false; };
+      const bool is_given = variable.given != nullptr;
+      if (set_fault(variable.producers, variable.consumers, is_given, produces, reads) == SetFault::kTwoProducers)
+        report_two(model, variable, model.sets[s]);
     }
   }
 }
@@ -165,11 +191,17 @@ void refuse_unmet_inputs(Model& model) {
   std::set<const LinkedPort*> reported;
   for (const SetModel& set : model.sets) {
     if (!set.is_whole || model.draft.is_partial) continue;
+    const Members on = members(model, set), reading = readers(model, on);
+    const auto produces = [&on](const PortRef ref) -> bool { return on[ref.task]; };
+    const auto reads = [&reading](const PortRef ref) -> bool { return reading[ref.task]; };
     for (const VariableModel& variable : model.variables) {
-      if (variable.is_constant || variable.given != nullptr || !producers_in(variable, set).empty()) continue;
+      const bool is_given = variable.given != nullptr;
+      if (variable.is_constant || set_fault(variable.producers, variable.consumers, is_given, produces, reads) !=
+                                      SetFault::kNoProducer)
+        continue;
       for (const PortRef ref : variable.consumers) {
         const LinkedPort& port = model.port(ref);
-        if (counts_in(model, set, ref.task) && reported.insert(&port).second) report_unmet(model, port, variable, set);
+        if (reads(ref) && reported.insert(&port).second) report_unmet(model, port, variable, set);
       }
     }
   }

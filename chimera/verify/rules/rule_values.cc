@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Every written value is parsed here, once: its bytes stay in the model for the specs of the runtime.
 #include "chimera/verify/rules/rules.h"
 #include "chimera/verify/solve.h"
 #include "chimera/verify/values.h"
@@ -11,11 +12,11 @@ void check_own(Model& model, LinkedPort& port) {
   auto bytes = value_bytes(
       model, *port.own,
       {port, std::string(key) + " '" + port.declared->name + "' of task '" + model.tasks[port.task].name() + "'"});
-  if (bytes && port.is(CHIMERA_IN_CONST)) port.value = *std::move(bytes);
+  if (bytes) port.value = *std::move(bytes);
 }
 
 /// A given value must fit everybody who uses it; the first who refuses it speaks.
-void check_given(Model& model, const VariableModel& variable) {
+void check_given(Model& model, VariableModel& variable) {
   const char* key = variable.is_constant ? "constant" : "operator variable";
   for (const PortRef ref : variable.consumers) {
     LinkedPort& port = model.port(ref);
@@ -23,6 +24,7 @@ void check_given(Model& model, const VariableModel& variable) {
     if (!is_solved(port)) continue;
     auto bytes = value_bytes(model, variable.given->value, {port, what});
     if (!bytes) return;
+    if (variable.value.empty()) variable.value = *bytes;
     if (port.is(CHIMERA_IN_CONST)) port.value = *std::move(bytes);
   }
 }
@@ -53,10 +55,10 @@ void check_values(Model& model) {
     if (!is_solved(port)) return;
     if (port.own != nullptr)
       check_own(model, port);
-    else if (port.source == ConstSource::kDefault)
+    else if (port.is(CHIMERA_OUT_VAR) || port.source == ConstSource::kDefault)
       port.value = declared_bytes(port);
   });
-  for (const VariableModel& variable : model.variables)
+  for (VariableModel& variable : model.variables)
     if (variable.given != nullptr) check_given(model, variable);
   for (const TaskModel& task : model.tasks) {
     check_steps(model, task);

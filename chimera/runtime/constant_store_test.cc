@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/constant_store.h"
+
+#include <gtest/gtest.h>
+
+namespace chimera {
+namespace {
+
+template <class T>
+std::span<const std::byte> bytes_of(const T& value) {
+  return std::as_bytes(std::span(&value, 1));
+}
+
+struct ConstantStoreTest : ::testing::Test {
+  ConstantStoreTest() {
+    constants[0].name = "given";
+    constants[0].type = CHIMERA_INT32;
+    constants[0].value = bytes_of(seven);
+    constants[1].name = "made";
+    constants[1].type = CHIMERA_INT64;
+    for (PortSpec& port : ports) {
+      port.kind = CHIMERA_IN_CONST;
+      port.constant = kMade;
+      port.element_bytes = 8;
+    }
+    ports[1].extent[0].max = 3;
+    task.ports = ports;
+    spec.tasks = {&task, 1};
+    spec.constants = constants;
+  }
+
+  static constexpr ConstantId kGiven{0u}, kMade{1u};
+  const std::int32_t seven = 7;
+  ConstantSpec constants[2];
+  PortSpec ports[2];
+  TaskSpec task;
+  ApplicationSpec spec;
+};
+
+TEST_F(ConstantStoreTest, KnowsWhatTheDescriptionGives) {
+  const ConstantStore store(spec);
+  EXPECT_TRUE(store[kGiven].is_known);
+  EXPECT_EQ(store.integer(kGiven, -1), 7);
+  EXPECT_FALSE(store[kMade].is_known);
+  EXPECT_EQ(store.integer(kMade, -1), -1);
+}
+
+TEST_F(ConstantStoreTest, HasRoomForTheLargestPort) { EXPECT_EQ(ConstantStore(spec)[kMade].value.size(), 24u); }
+
+TEST_F(ConstantStoreTest, TellsWhetherAValueIsAnother) {
+  ConstantStore store(spec);
+  const std::int64_t one[3] = {1, 2, 3}, other[3] = {1, 2, 4};
+  EXPECT_TRUE(store.set(kMade, bytes_of(one)));
+  EXPECT_FALSE(store.set(kMade, bytes_of(one)));
+  EXPECT_TRUE(store.set(kMade, bytes_of(other)));
+  EXPECT_EQ(store.integer(kMade, -1), 1);
+}
+
+TEST_F(ConstantStoreTest, ANumberThatDoesNotFitItsBytesIsNone) {  // an image may say so
+  constants[0].type = CHIMERA_INT64;
+  EXPECT_EQ(ConstantStore(spec).integer(kGiven, -1), -1);
+}
+
+}  // namespace
+}  // namespace chimera

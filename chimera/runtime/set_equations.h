@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two set equations of the 1994 paper, section 3.2, over one state variable and the tasks of a set: verification
+// asks them of each configuration, the runtime of the tasks that are (or would be) ON.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace chimera {
+
+/// What is wrong with a variable in a set of tasks.
+enum class SetFault : std::uint8_t {
+  kNone,
+  kTwoProducers,  ///< equation 1: two tasks of the set produce it, or one does beside the operator
+  kNoProducer     ///< equation 2: a task of the set reads it and nobody produces it
+};
+
+/// Judges one variable. `producers` and `consumers` are its ports, `is_given` says whether the operator produces it;
+/// `produces(port)` and `reads(port)` tell whether the task of a port is in the set. Context: any; O(ports).
+template <class Ports, class Produces, class Reads>
+SetFault set_fault(const Ports& producers, const Ports& consumers, bool is_given, Produces produces, Reads reads) {
+  std::size_t n = is_given ? 1 : 0;
+  for (const auto& port : producers)
+    if (produces(port) && ++n > 1) return SetFault::kTwoProducers;
+  if (n == 1) return SetFault::kNone;
+  for (const auto& port : consumers)
+    if (reads(port)) return SetFault::kNoProducer;
+  return SetFault::kNone;
+}
+
+}  // namespace chimera
