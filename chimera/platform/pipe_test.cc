@@ -54,5 +54,19 @@ TEST(Readiness, AClosedPipeEndsTheWait) {
   EXPECT_TRUE(await_readable(descriptors, seconds(100)));
 }
 
+TEST(Readiness, SaysWhichAreReadyAndWhichAreLost) {
+  const auto pipe = Pipe::open();
+  ASSERT_TRUE(pipe);
+  Watched watched[] = {{pipe->reading.fd}, {pipe->writing.fd, true}, {-1}, {1'000'000}};
+  EXPECT_EQ(await_ready(watched, seconds(1)), 2);
+  EXPECT_FALSE(watched[0].is_ready);
+  EXPECT_TRUE(watched[1].is_ready);
+  EXPECT_FALSE(watched[1].is_lost);
+  EXPECT_FALSE(watched[2].is_ready);
+  EXPECT_TRUE(watched[3].is_lost);
+  EXPECT_EQ(await_ready(std::span(watched).first(1), milliseconds(1)), 0);
+  EXPECT_FALSE(watched[0].is_ready);
+}
+
 }  // namespace
 }  // namespace chimera

@@ -61,6 +61,13 @@ bool adopt_orphans() noexcept;
 /// the caller should end. Context: setup.
 bool follow_parent(pid_t parent, int signal) noexcept;
 
+/// Ends this process by the default action of `signal`, even where it is blocked or ignored. Returns only where that
+/// action ends nothing. Context: setup.
+void end_by_signal(int signal) noexcept;
+
+/// What this process starts by exec from now on does not have `descriptor`. Context: setup.
+void close_at_exec(int descriptor) noexcept;
+
 /// By a child: sends `signal` to its parent, by pidfd. False when that is not `parent` (any more). Context: setup.
 bool signal_parent(pid_t parent, int signal) noexcept;
 

@@ -29,6 +29,8 @@ class SignalQueue {
   SignalQueue& operator=(SignalQueue&&) noexcept;
   ~SignalQueue();
 
+  /// Its end restores nothing: what comes until the process ends stays unread.
+  void stay_blocked() noexcept;
   /// The next signal that arrived; false when there is none.
   bool take(Arrived& arrived) noexcept;
   /// Readable when there is one; -1 of an empty queue.

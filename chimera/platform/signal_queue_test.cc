@@ -53,6 +53,20 @@ TEST(SignalQueue, RestoresTheMaskAtItsEndOnce) {
   EXPECT_FALSE(is_blocked(SIGUSR1));
 }
 
+TEST(SignalQueue, MayLeaveItsSignalsBlocked) {
+  const int numbers[] = {SIGUSR2};
+  {
+    auto queue = SignalQueue::open(numbers);
+    ASSERT_TRUE(queue);
+    queue->stay_blocked();
+  }
+  EXPECT_TRUE(is_blocked(SIGUSR2));
+  sigset_t set;
+  ::sigemptyset(&set);
+  ::sigaddset(&set, SIGUSR2);
+  ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
 TEST(SignalQueue, EmptyBlocksNothingAndTellsNothing) {
   SignalQueue queue;
   SignalQueue::Arrived arrived;

@@ -14,6 +14,7 @@ void ring_event(int descriptor) noexcept;
 /// Rings are not counted: readable since the first of them, until reset(). Movable; closes.
 class WakeEvent {
  public:
+  WakeEvent() noexcept = default;  ///< never readable
   /// Refuses with the system's reason, said of `what`. Context: setup.
   static Result<WakeEvent> open(const Message& what) noexcept;
 

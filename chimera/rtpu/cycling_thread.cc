@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/rtpu/cycling_thread.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstring>
 #include <vector>
 
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/wake_event.h"
 #include "chimera/schedule/bands.h"
 #include "chimera/schedule/shares.h"
 #include "chimera/schedule/utilisation.h"
@@ -62,8 +61,7 @@ void CyclingThread::run() {
   else
     run_loop();
   has_ended_ = true;
-  const std::uint64_t one = 1;
-  if (::write(place_.over, &one, sizeof one) < 0) return;  // then the main thread finds it at its next look
+  ring_event(place_.over);
 }
 
 RunOptions CyclingThread::options() {

@@ -31,7 +31,7 @@ struct CyclingPlace {
   BackgroundWriter& writer;  ///< runs what components do beside their cycles
   Nanoseconds origin;  ///< of the grid of releases that all units share
   std::atomic<std::uint32_t>& bell;
-  int over;  ///< eventfd, written to when the thread has ended
+  int over;  ///< descriptor of a WakeEvent, rung when the thread has ended
 };
 
 /// Started and joined by the main thread.

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/rtpu/edge.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 
+#include "chimera/platform/wake_event.h"
 #include "chimera/runtime/edge_signals.h"
 #include "chimera/runtime/task_word.h"
 
@@ -242,8 +241,7 @@ SignalReport Edge::carry_out(EdgeSignals& signals, std::span<const TaskId> tasks
 }
 
 void Edge::wake_supervisor() noexcept {
-  const std::uint64_t one = 1;
-  if (supervisor_ >= 0 && ::write(supervisor_, &one, sizeof one) < 0) return;  // it looks now and then anyway
+  if (supervisor_ >= 0) ring_event(supervisor_);
 }
 
 void Edge::stop_all(EdgeSignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {

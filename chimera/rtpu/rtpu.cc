@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/rtpu/rtpu.h"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <pthread.h>
-#include <sys/eventfd.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
-
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -17,12 +10,15 @@
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/owned_descriptor.h"
 #include "chimera/platform/lost_descriptor.h"
 #include "chimera/platform/origin.h"
 #include "chimera/platform/process.h"
+#include "chimera/platform/readiness.h"
 #include "chimera/platform/shared_pages.h"
+#include "chimera/platform/signal_queue.h"
+#include "chimera/platform/thread_stack.h"
 #include "chimera/platform/undertaker.h"
+#include "chimera/platform/wake_event.h"
 #include "chimera/rtpu/components.h"
 #include "chimera/rtpu/cycling_thread.h"
 #include "chimera/rtpu/hang_watch.h"
@@ -38,15 +34,6 @@ constexpr int kCouldNotStart = 1, kMethodHangs = 3, kTerminated = 5;
 constexpr Nanoseconds kLongBackground = seconds(1);  // what takes less is no news
 constexpr int kSuperviseEveryMs = 50;
 constexpr std::size_t kStackBytes = 256 * 1024;  // locked whole, and given back whole when it dies
-
-// Of all threads that are started from here on.
-void limit_stacks() noexcept {
-  pthread_attr_t attributes;
-  ::pthread_attr_init(&attributes);
-  ::pthread_attr_setstacksize(&attributes, kStackBytes);
-  ::pthread_setattr_default_np(&attributes);
-  ::pthread_attr_destroy(&attributes);
-}
 
 /// Everything a unit has, in the order in which it is made.
 class Rtpu {
@@ -76,8 +63,9 @@ class Rtpu {
 
   const RtpuStart start_;
   Channel channel_;
-  int signals_ = -1;
-  OwnedDescriptor over_{::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};  // written to when there is something to look at
+  ThreadStack stacks_{start_.parent != 0 ? kStackBytes : 0};  // of all threads that are started from here on
+  SignalQueue signals_;
+  WakeEvent over_;  // rung when there is something to look at
   FrozenBytes image_bytes_;
   SharedPages decision_pages_;
   MemoryRegion keeper_pages_;
@@ -102,20 +90,20 @@ class Rtpu {
 };
 
 Result<void> Rtpu::prepare() {
-  sigset_t set;
-  ::sigemptyset(&set);
-  ::sigaddset(&set, SIGTERM);  // a SIGINT or SIGHUP of the terminal is the keeper's to answer
   if (start_.parent != 0) {
-    limit_stacks();
     for (const int fd : {start_.channel, start_.image, start_.decision_page, start_.keeper_page})
-      ::fcntl(fd, F_SETFD, FD_CLOEXEC);  // what a component starts by exec has none of them
-    ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
-    signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
-    if (signals_ < 0) return system_error(Message("rtpu"), "signalfd");
+      close_at_exec(fd);  // what a component starts by exec has none of them
+    constexpr int kTaken[] = {SIGTERM};  // a SIGINT or SIGHUP of the terminal is the keeper's to answer
+    auto signals = SignalQueue::open(kTaken);
+    if (!signals) return signals.error();
+    signals_ = *std::move(signals);
+    signals_.stay_blocked();  // one that comes while everything is taken down changes nothing
     if (!follow_parent(start_.parent, SIGTERM)) return Error{ErrorCode::kRefused, {"the keeper is gone"}, {}};
     start_undertaker();  // refused: its death is seen later, and nothing else is different
   }
-  if (over_.fd < 0) return Error{ErrorCode::kSystem, {"rtpu: eventfd failed"}, {}};
+  auto over = WakeEvent::open(Message("rtpu"));
+  if (!over) return over.error();
+  over_ = *std::move(over);
   if (auto mapped = map(); !mapped) return mapped;
   if (auto made = make_segment(); !made) return made;
   announce();  // whoever watches sees from here on what it is at
@@ -186,11 +174,11 @@ Result<void> Rtpu::make_tasks() {
   tasks_ = *std::move(tasks);
   edge_ = std::make_unique<Edge>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
                                  image_->settings().method_limit);
-  edge_->set_supervisor(over_.fd);
+  edge_->set_supervisor(over_.descriptor());
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
   cycling_ = std::make_unique<CyclingThread>(CyclingPlace{spec, start_.peer, image_->settings().priority, *tasks_,
                                                           *edge_, *others_, writer_, keeper_->origin, bell(),
-                                                          over_.fd});
+                                                          over_.descriptor()});
   return {};
 }
 
@@ -250,18 +238,14 @@ void Rtpu::attend() {
 }
 
 void Rtpu::listen(int timeout_ms) {
-  pollfd fds[] = {{channel_.descriptor(), POLLIN, 0}, {over_.fd, POLLIN, 0}, {signals_, POLLIN, 0}};
-  if (::poll(fds, 3, timeout_ms) <= 0) return peers_->clear();
-  for (const pollfd& one : fds)
-    if ((one.revents & POLLNVAL) != 0) end_without_descriptor();
-  std::uint64_t times = 0;
-  if (fds[1].revents != 0 && ::read(over_.fd, &times, sizeof times) < 0) return;
-  if (fds[0].revents != 0) take_messages();
-  if (fds[2].revents != 0) {
-    signalfd_siginfo info;
-    while (::read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info))
-      end(keeper_->ending.load(std::memory_order_acquire) == 0 && ::getppid() == start_.parent);
-  }
+  Watched watched[] = {{channel_.descriptor()}, {over_.descriptor()}, {signals_.descriptor()}};
+  if (await_ready(watched, milliseconds(timeout_ms)) <= 0) return peers_->clear();
+  for (const Watched& one : watched)
+    if (one.is_lost) end_without_descriptor();
+  over_.reset();
+  if (watched[0].is_ready) take_messages();
+  for (SignalQueue::Arrived signal; watched[2].is_ready && signals_.take(signal);)
+    end(keeper_->ending.load(std::memory_order_acquire) == 0 && parent_process_id() == start_.parent);
 }
 
 void Rtpu::take_messages() {
@@ -317,20 +301,10 @@ bool Rtpu::loop_hangs() {
 // What components left behind is the keeper's to end, as long as there is one.
 void end_children_without_keeper(const RtpuStart& start) {
   const char* mine = std::getenv(kOriginVariable);
-  if (start.parent != 0 && ::getppid() != start.parent && mine != nullptr) (void)end_all_from(mine, seconds(1));
+  if (start.parent != 0 && parent_process_id() != start.parent && mine != nullptr) (void)end_all_from(mine, seconds(1));
 }
 
 }  // namespace
-
-// As somebody wished who is not the keeper: seen by the keeper as what it was.
-static void leave_by_sigterm() {
-  sigset_t set;
-  ::sigemptyset(&set);
-  ::sigaddset(&set, SIGTERM);
-  ::signal(SIGTERM, SIG_DFL);
-  ::raise(SIGTERM);
-  ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
-}
 
 int run_rtpu(const RtpuStart& start) {
   Rtpu rtpu(start);
@@ -340,8 +314,8 @@ int run_rtpu(const RtpuStart& start) {
   }
   const int code = rtpu.run();
   end_children_without_keeper(start);
-  if (code == kTerminated) leave_by_sigterm();
-  if (code == kMethodHangs) ::_exit(kMethodHangs);  // threads are still in components: nothing can be taken down
+  if (code == kTerminated) end_by_signal(SIGTERM);  // as somebody wished who is not the keeper, who sees it as such
+  if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads are still in components: nothing can be taken down
   return code;
 }
 

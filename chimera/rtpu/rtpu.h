@@ -3,9 +3,9 @@
 // the keeper and supervises, one cycles, one serves init and kill.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
+
+#include "chimera/platform/process_id.h"
 
 namespace chimera {
 

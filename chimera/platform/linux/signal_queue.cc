@@ -15,10 +15,13 @@ struct SignalQueue::Content {
   Content() = default;
   Content(const Content&) = delete;
   Content& operator=(const Content&) = delete;
-  ~Content() { ::pthread_sigmask(SIG_SETMASK, &before, nullptr); }
+  ~Content() {
+    if (is_restored) ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
 
   OwnedDescriptor file;
   sigset_t before{};
+  bool is_restored = true;
 };
 
 SignalQueue::SignalQueue() noexcept = default;
@@ -38,6 +41,10 @@ Result<SignalQueue> SignalQueue::open(std::span<const int> numbers, std::span<co
   queue.content_->file = OwnedDescriptor(::signalfd(-1, &taken, SFD_CLOEXEC | SFD_NONBLOCK));
   if (queue.content_->file.fd < 0) return system_error(Message("signals"), "signalfd");
   return queue;
+}
+
+void SignalQueue::stay_blocked() noexcept {
+  if (content_ != nullptr) content_->is_restored = false;
 }
 
 bool SignalQueue::take(Arrived& arrived) noexcept {
