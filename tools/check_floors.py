@@ -46,7 +46,7 @@ SYSTEM = re.compile(r"^(aio|dirent|dlfcn|execinfo|fcntl|ftw|glob|grp|ifaddrs|lib
 SEES_THE_SYSTEM = {
     "chimera/platform/": "the floor for it",
     "chimera/base/hosted/ordinary_file.h": "components read files too, and they see chimera/base only",
-    "chimera/control/": "to be moved", "chimera/desk/": "to be moved",
+    "chimera/desk/": "to be moved",
     "chimera/runtime/": "to be moved", "chimera/shell/": "to be moved",
     "library/csv_log/": "writes a file, whose loss it must tell",
     "library/device/": "reasons why a device cannot be opened",

@@ -2,11 +2,6 @@
 // Finds a subsystem, and exchanges lines with its manager within a limit of time.
 #include "chimera/control/client.h"
 
-#include <poll.h>
-#include <sys/socket.h>
-#include <sys/time.h>
-#include <sys/un.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
@@ -19,6 +14,8 @@
 #include "chimera/control/request.h"
 #include "chimera/control/running.h"
 #include "chimera/platform/linux_clock.h"
+#include "chimera/platform/local_socket.h"
+#include "chimera/platform/readiness.h"
 #include "chimera/platform/socket_folder.h"
 #include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"
@@ -33,13 +30,11 @@ constexpr std::size_t kMaxInput = std::size_t{64} << 20;  // of one line: whoeve
 
 Nanoseconds now() { return LinuxClock().now(); }
 
-bool wait_for(int descriptor, short events, Nanoseconds until) {
+bool wait_for(Watched watched, Nanoseconds until) {
   for (;;) {
-    const std::int64_t left_ms = (until - now()).count / 1'000'000 + 1;
-    pollfd one{descriptor, events, 0};
-    const int n = ::poll(&one, 1, left_ms <= 0 ? 0 : static_cast<int>(std::min<std::int64_t>(left_ms, 60'000)));
+    const int n = await_ready({&watched, 1}, std::min(until - now(), seconds(60)));
     if (n > 0) return true;
-    if ((n == 0 || errno != EINTR) && now() >= until) return false;
+    if (n == 0 && now() >= until) return false;
   }
 }
 
@@ -59,26 +54,12 @@ bool may_be_sent_twice(std::string_view method) {
   return rule != nullptr && !rule->is_act;
 }
 
-/// Waits for a place in the queue of the socket, as whoever else waits does: in turn, not by trying again and again.
-bool connect_within(int socket, const sockaddr_un& address, Nanoseconds until) {
-  for (;;) {
-    const std::int64_t left_us = std::max<std::int64_t>((until - now()).count / 1000, 1);
-    const timeval limit{left_us / 1'000'000, left_us % 1'000'000};
-    if (::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) != 0) return false;
-    if (::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return true;
-    if (errno != EINTR || now() >= until) return false;
-  }
-}
-
 std::string silent(const std::string& path, Nanoseconds limit) { return silence_text(path, listeners_at(path), limit); }
 
 Result<OwnedDescriptor> connected(const std::string& path, Nanoseconds limit) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) return refusal("the path of the socket is too long", path);
-  std::memcpy(address.sun_path, path.c_str(), path.size());
-  OwnedDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (socket.fd >= 0 && connect_within(socket.fd, address, now() + limit)) return socket;
+  auto socket = connect_to_path(path, limit);
+  if (socket.fd >= 0) return socket;
+  if (errno == ENAMETOOLONG) return refusal("the path of the socket is too long", path);
   if (errno == EAGAIN || errno == EINTR) return refusal(silent(path, limit));
   const bool is_closed = errno == EACCES || errno == EPERM;
   return refusal(is_closed ? "you may not talk to this subsystem" : "no subsystem listens here", path);
@@ -164,10 +145,10 @@ Result<Client> Client::connect(const std::string& subsystem, Nanoseconds limit) 
 
 Client::Got Client::send(std::string_view line, Nanoseconds until) {
   while (!line.empty()) {
-    const ssize_t sent = ::send(socket_.fd, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    const std::int64_t sent = send_now(socket_.fd, line);
     if (sent >= 0)
       line.remove_prefix(static_cast<std::size_t>(sent));
-    else if (errno == EAGAIN && !wait_for(socket_.fd, POLLOUT, until))
+    else if (errno == EAGAIN && !wait_for({socket_.fd, true}, until))
       return Got::kLate;
     else if (errno != EAGAIN && errno != EINTR)
       return Got::kReset;
@@ -185,12 +166,12 @@ Client::Got Client::receive(std::string& line, Nanoseconds until) {
     }
     looked = input_.size();
     char bytes[1 << 16];
-    const ssize_t got = ::recv(socket_.fd, bytes, sizeof bytes, MSG_DONTWAIT);
+    const std::int64_t got = receive_now(socket_.fd, bytes);
     if (got > 0)
       input_.append(bytes, static_cast<std::size_t>(got));
     else if (got == 0 || input_.size() > kMaxInput)
       return Got::kClosed;
-    else if (errno == EAGAIN && !wait_for(socket_.fd, POLLIN, until))
+    else if (errno == EAGAIN && !wait_for({socket_.fd}, until))
       return Got::kLate;
     else if (errno != EAGAIN && errno != EINTR)
       return Got::kReset;  // the other end closed with our line unread
@@ -240,7 +221,7 @@ Answer Client::call(std::string_view method) { return call(method, Json::object(
 
 /// After the door closed this connection without having carried out what it did not answer, or had no place: another.
 bool Client::comes_again(int code, Nanoseconds until) {
-  if (code == kTooMany && until - now() > kTryAgain) ::poll(nullptr, 0, static_cast<int>(kTryAgain.count / 1'000'000));
+  if (code == kTooMany && until - now() > kTryAgain) await_readable({}, kTryAgain);
   return !has_subscribed_ && until - now() > kTryAgain && reconnect(until);
 }
 

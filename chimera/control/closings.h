@@ -3,14 +3,13 @@
 // everything else out of the log.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
 
 #include "chimera/control/allowance.h"
+#include "chimera/platform/process_id.h"
 
 namespace chimera::control {
 

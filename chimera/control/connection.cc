@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/control/connection.h"
 
-#include <linux/sockios.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+
+#include "chimera/platform/local_socket.h"
 
 namespace chimera::control {
 namespace {
@@ -24,7 +22,7 @@ void Connection::receive(Nanoseconds now) {
   }
   char bytes[kReadAtOnce];
   while (input_.size() <= kMaxLine) {
-    const ssize_t got = ::recv(socket_.fd, bytes, sizeof bytes, MSG_DONTWAIT);
+    const std::int64_t got = receive_now(socket_.fd, bytes);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) {
       has_ended_ = got == 0 || errno != EAGAIN;
@@ -65,8 +63,8 @@ void Connection::say(const std::string& line, Nanoseconds now) {
 }
 
 bool Connection::is_read(Nanoseconds now) {
-  int unread = 0;
-  if (::ioctl(socket_.fd, SIOCOUTQ, &unread) != 0) return true;
+  const int unread = unread_by_other_end(socket_.fd);
+  if (unread < 0) return true;
   if (unread == 0 || unread < unread_) taken_at_ = now;
   unread_ = unread;
   return now - taken_at_ < kPatience;
@@ -76,14 +74,13 @@ bool Connection::flush(Nanoseconds now) {
   if (!has_output()) return !is_closing_;
   (void)is_read(now);  // before there is more to read
   const bool goes_on = send(now);
-  (void)::ioctl(socket_.fd, SIOCOUTQ, &unread_);
+  if (const int unread = unread_by_other_end(socket_.fd); unread >= 0) unread_ = unread;
   return goes_on;
 }
 
 bool Connection::send(Nanoseconds now) {
   while (has_output()) {
-    const std::size_t left = output_.size() - sent_;
-    const ssize_t sent = ::send(socket_.fd, output_.data() + sent_, left, MSG_DONTWAIT | MSG_NOSIGNAL);
+    const std::int64_t sent = send_now(socket_.fd, std::string_view(output_).substr(sent_));
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && errno != EAGAIN) return false;
     if (sent < 0) return now - moved_ < kPatience;

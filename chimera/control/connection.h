@@ -60,7 +60,7 @@ class Connection {
   std::size_t open_calls = 0;  ///< whose answers are still to come
   std::size_t open_acts = 0;   ///< those of them that change something
   bool is_gone = false;        ///< the peer closed: nobody will read
-  std::uint32_t watched = 0;   ///< events of epoll asked for, kept by the door
+  std::uint32_t watched = 0;   ///< what the door asks its DescriptorSet for
   /// The request that is read and not carried out yet: what it is decides whether it waits. Null: none.
   std::unique_ptr<const Request> next;
 

@@ -1,30 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/control/door.h"
 
-#include <sys/epoll.h>
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::control {
 namespace {
 
-constexpr std::uint64_t kListening = 0;                  // of epoll; connections count from 1
+constexpr std::uint64_t kListening = 0;                  // in watched_; connections count from 1
 constexpr int kAcceptAtOnce = 64;                        // a crowd of strangers must not stop the others
 constexpr Nanoseconds kAcceptPause = milliseconds(100);  // when there is no descriptor left
-
-bool watch(int epoll, int operation, int descriptor, std::uint32_t events, std::uint64_t number) {
-  epoll_event event{};
-  event.events = events;
-  event.data.u64 = number;
-  return ::epoll_ctl(epoll, operation, descriptor, &event) == 0;
-}
 
 Answer too_fast(Nanoseconds wait) {
   return Answer::error(kTooFast, "too many requests", {{"retry_ms", (wait.count + 999'999) / 1'000'000}});
@@ -81,9 +71,11 @@ Result<std::unique_ptr<Door>> Door::open(int listening, ControlBackend& backend,
                                          const RoleGroups& groups) {
   std::unique_ptr<Door> door(new Door(backend, owner, groups));
   door->listening_ = OwnedDescriptor(listening);
-  door->epoll_ = OwnedDescriptor(::epoll_create1(EPOLL_CLOEXEC));
-  const bool is_watched = listening < 0 || watch(door->epoll_.fd, EPOLL_CTL_ADD, listening, EPOLLIN, kListening);
-  if (door->epoll_.fd < 0 || !is_watched) return system_error(Message("the control socket cannot be watched"), "epoll");
+  const Message what("the control socket cannot be watched");
+  auto watched = DescriptorSet::open(what);
+  if (!watched) return watched.error();
+  door->watched_ = *std::move(watched);
+  if (listening >= 0 && !door->watched_.add(listening, kToRead, kListening)) return system_error(what, "epoll");
   return door;
 }
 
@@ -94,18 +86,18 @@ void Door::serve(Nanoseconds now) {
   has_more_ = false;
   if (now >= accepts_again_) {
     accepts_again_ = kNever;
-    watch(epoll_.fd, EPOLL_CTL_MOD, listening_.fd, EPOLLIN, kListening);
+    watched_.change(listening_.fd, kToRead, kListening);
   }
-  epoll_event events[kMaxConnections + 1];
-  const int n = ::epoll_wait(epoll_.fd, events, static_cast<int>(std::size(events)), 0);
+  DescriptorSet::Ready ready[kMaxConnections + 1];
+  const std::size_t n = watched_.take(ready);
   bool has_callers = false;
-  for (int i = 0; i < n; ++i) {
-    const std::uint64_t number = events[i].data.u64;  // a copy: the event itself is packed
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint64_t number = ready[i].number;
     const auto found = connections_.find(number);
     has_callers = has_callers || number == kListening;
-    if (found == connections_.end() || (events[i].events & (EPOLLIN | EPOLLHUP | EPOLLERR)) == 0) continue;
+    if (found == connections_.end() || !ready[i].is_readable) continue;
     found->second->receive(now);
-    if ((events[i].events & (EPOLLHUP | EPOLLERR)) != 0) found->second->is_gone = true;
+    if (ready[i].has_ended) found->second->is_gone = true;
   }
   take_turn(now);
   if (has_callers) accept(now);  // when those inside have been heard: who has just asked is not idle
@@ -168,12 +160,13 @@ void Door::turn_out(Connection& connection, const std::string& why, Nanoseconds 
 
 void Door::accept(Nanoseconds now) {
   for (int n = 0; n < kAcceptAtOnce; ++n) {
-    const int connected = ::accept4(listening_.fd, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (connected >= 0) {
-      enter(OwnedDescriptor(connected), identify(connected, owner_, groups_), now);
+    OwnedDescriptor connected = accept_now(listening_.fd);
+    if (connected.fd >= 0) {
+      const PeerIdentity peer = identify(connected.fd, owner_, groups_);
+      enter(std::move(connected), peer, now);
     } else if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
       accepts_again_ = now + kAcceptPause;  // the socket stays readable: not to be woken by it all the time
-      watch(epoll_.fd, EPOLL_CTL_MOD, listening_.fd, 0, kListening);
+      watched_.change(listening_.fd, 0, kListening);
       return;
     } else if (errno != EINTR && errno != ECONNABORTED) {
       return;
@@ -190,8 +183,8 @@ void Door::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanosecond
     (void)connection->flush(now);
     return;
   }
-  connection->watched = EPOLLIN;
-  if (!watch(epoll_.fd, EPOLL_CTL_ADD, connection->descriptor(), EPOLLIN, connection->number())) return;
+  connection->watched = kToRead;
+  if (!watched_.add(connection->descriptor(), kToRead, connection->number())) return;
   Connection& entered = *connections_.emplace(connection->number(), std::move(connection)).first->second;
   take_first(entered, now);  // the next one in the queue may need its place
   (void)entered.flush(now);
@@ -293,8 +286,8 @@ void Door::settle(Nanoseconds now) {
     }
     const bool listens = connection->has_room() && !connection->is_closing() && !connection->has_ended();
     if (!listens) connection->excuse(now);
-    const std::uint32_t wanted = (listens ? EPOLLIN : 0u) | (connection->has_output() ? EPOLLOUT : 0u);
-    if (wanted != connection->watched) watch(epoll_.fd, EPOLL_CTL_MOD, connection->descriptor(), wanted, number);
+    const std::uint32_t wanted = (listens ? kToRead : 0u) | (connection->has_output() ? kToWrite : 0u);
+    if (wanted != connection->watched) watched_.change(connection->descriptor(), wanted, number);
     connection->watched = wanted;
     waits = waits || (!connection->is_closing() && connection->has_room() && connection->has_line());
   }

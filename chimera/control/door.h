@@ -15,6 +15,7 @@
 #include "chimera/control/connection.h"
 #include "chimera/control/control_backend.h"
 #include "chimera/control/subscriptions.h"
+#include "chimera/platform/descriptor_set.h"
 
 namespace chimera::control {
 
@@ -30,7 +31,7 @@ class Door {
   ~Door();
 
   /// Readable when serve() has something to do: for the owner's poll or epoll.
-  int descriptor() const noexcept { return epoll_.fd; }
+  int descriptor() const noexcept { return watched_.descriptor(); }
   /// Accepts, reads, answers, notifies, sends. `now` never goes back.
   void serve(Nanoseconds now);
   /// When serve() is due though nothing came; kNever: not before something comes. Never later than `now` of the last
@@ -75,7 +76,8 @@ class Door {
   Subscriptions subscriptions_;
   uid_t owner_;
   RoleGroups groups_;
-  OwnedDescriptor listening_, epoll_;
+  OwnedDescriptor listening_;
+  DescriptorSet watched_;
   std::map<std::uint64_t, std::unique_ptr<Connection>> connections_;
   std::uint64_t last_connection_ = 0;
   Closings closings_;

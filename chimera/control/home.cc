@@ -2,10 +2,10 @@
 // Commands of one terminal have one session, whose number nobody else gets while a process of it lives.
 #include "chimera/control/home.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <nlohmann/json.hpp>
+
+#include "chimera/platform/process_id.h"
 
 namespace chimera::control {
 namespace {
@@ -34,7 +34,7 @@ Home home_of(const Json& hello) {
 }
 
 bool is_here(const Home& home) {
-  if (home.session == ::getsid(0)) return true;
+  if (home.session == own_session()) return true;
   if (home.folder.empty()) return false;
   const std::filesystem::path folder = home.folder;
   return is_working_folder(folder) || (!home.file.empty() && is_working_folder((folder / home.file).parent_path()));

@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/control/listeners.h"
 
-#include <sys/stat.h>
-
 #include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "chimera/platform/local_socket.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::control {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_same_file(const std::string& a, const std::string& b) {  // std::filesystem::equivalent takes no sockets
-  struct stat of_a {
-  }, of_b{};
-  return ::stat(a.c_str(), &of_a) == 0 && ::stat(b.c_str(), &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
-         of_a.st_ino == of_b.st_ino;
-}
 
 /// "socket:[4711]", as the descriptors of its holders are called; "" when nobody listens there.
 std::string link_of(const std::string& path) {
@@ -35,7 +27,7 @@ std::string link_of(const std::string& path) {
     in >> number >> count >> protocol >> std::hex >> flags >> type >> state >> inode >> std::ws;
     std::getline(in, bound);
     if ((flags & kAccepts) == 0 || bound.empty() || bound[0] != '/') continue;
-    if (bound == path || (fs::path(bound).filename() == fs::path(path).filename() && is_same_file(bound, path)))
+    if (bound == path || (fs::path(bound).filename() == fs::path(path).filename() && are_one_file(bound, path)))
       return "socket:[" + inode + "]";
   }
   return {};

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/control/rights.h"
 
-#include <sys/socket.h>
-
 #include <algorithm>
-#include <vector>
+
+#include "chimera/platform/local_socket.h"
 
 namespace chimera::control {
 
@@ -19,18 +18,9 @@ Role role_of(uid_t user, std::span<const gid_t> groups, uid_t owner, const RoleG
 }
 
 PeerIdentity identify(int descriptor, uid_t owner, const RoleGroups& rules) {
-  ucred peer{};
-  socklen_t size = sizeof peer;
-  if (::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return {};
-  std::vector<gid_t> groups(64);
-  socklen_t bytes = static_cast<socklen_t>(groups.size() * sizeof(gid_t));
-  if (::getsockopt(descriptor, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &bytes) != 0) {
-    groups.resize(bytes / sizeof(gid_t));  // says how many there are
-    if (::getsockopt(descriptor, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &bytes) != 0) bytes = 0;
-  }
-  groups.resize(bytes / sizeof(gid_t));
-  groups.push_back(peer.gid);
-  return {peer.uid, role_of(peer.uid, groups, owner, rules), peer.pid};
+  const auto peer = peer_of(descriptor);
+  if (!peer) return {};
+  return {peer->user, role_of(peer->user, peer->groups, owner, rules), peer->process};
 }
 
 }  // namespace chimera::control

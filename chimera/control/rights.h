@@ -2,12 +2,11 @@
 // Who is at the other end of a connection and what it may do: docs/formats/control.md, "Rights".
 #pragma once
 
-#include <sys/types.h>
-
 #include <optional>
 #include <span>
 
 #include "chimera/control/answer.h"
+#include "chimera/platform/process_id.h"
 
 namespace chimera::control {
 

@@ -1,30 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/control/running.h"
 
-#include <sys/socket.h>
-#include <sys/un.h>
-
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
 
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/local_socket.h"
 
 namespace chimera::control {
-namespace {
-
-bool listens(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) return false;
-  std::memcpy(address.sun_path, path.c_str(), path.size());
-  const OwnedDescriptor asking(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  const auto* plain = reinterpret_cast<const sockaddr*>(&address);
-  return ::connect(asking.fd, plain, sizeof address) == 0 || errno == EAGAIN;
-}
-
-}  // namespace
-
 std::string socket_path(const std::string& folder, const std::string& subsystem) {
   return folder + "/" + subsystem + ".sock";
 }
@@ -35,7 +18,7 @@ std::vector<std::string> running_subsystems(const std::string& folder) {
   std::filesystem::directory_iterator entries(folder, error);
   for (; !error && entries != std::filesystem::directory_iterator(); entries.increment(error)) {
     const std::filesystem::path path = entries->path();
-    if (path.extension() == ".sock" && listens(path.string())) names.push_back(path.stem().string());
+    if (path.extension() == ".sock" && is_listened_at(path.string())) names.push_back(path.stem().string());
   }
   std::sort(names.begin(), names.end());
   return names;
