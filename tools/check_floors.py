@@ -47,7 +47,7 @@ SEES_THE_SYSTEM = {
     "chimera/platform/": "the floor for it",
     "chimera/base/hosted/ordinary_file.h": "components read files too, and they see chimera/base only",
     "chimera/desk/": "to be moved",
-    "chimera/runtime/": "to be moved", "chimera/shell/": "to be moved",
+    "chimera/shell/": "to be moved",
     "library/csv_log/": "writes a file, whose loss it must tell",
     "library/device/": "reasons why a device cannot be opened",
     "library/serial_frame/": "a serial line",

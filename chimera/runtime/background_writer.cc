@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/runtime/background_writer.h"
 
-#include <pthread.h>
-#include <sched.h>
-#include <signal.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
-#include <cstring>
 #include <mutex>
 
 #include "chimera/base/assert.h"
+#include "chimera/platform/ordinary_thread.h"
 
 namespace chimera {
 namespace {
@@ -62,32 +58,6 @@ struct BackgroundWriter::Worker {
   }
 };
 
-namespace {
-
-template <class Worker>
-void* run_worker(void* shared) {
-  sigset_t all;
-  sigfillset(&all);
-  pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals are for the threads that wait for them
-  const std::unique_ptr<std::shared_ptr<Worker>> worker(static_cast<std::shared_ptr<Worker>*>(shared));
-  (*worker)->run();
-  return nullptr;
-}
-
-// An ordinary thread on any CPU, whatever the thread is that makes it.
-void make_ordinary(pthread_attr_t& attributes) {
-  const sched_param none{.sched_priority = 0};
-  cpu_set_t any;
-  std::memset(&any, 0xff, sizeof any);
-  pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
-  pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
-  pthread_attr_setschedparam(&attributes, &none);
-  pthread_attr_setaffinity_np(&attributes, sizeof any, &any);
-  pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
-}
-
-}  // namespace
-
 BackgroundWriter::BackgroundWriter(Nanoseconds every, Nanoseconds limit) noexcept : every_(every), limit_(limit) {}
 
 BackgroundWriter::~BackgroundWriter() {
@@ -101,14 +71,7 @@ bool BackgroundWriter::add(void* instance, chimera_background background, std::u
   worker->background = background;
   worker->every = every_;
   worker->tag = tag;
-  pthread_attr_t attributes;
-  if (pthread_attr_init(&attributes) != 0) return false;
-  make_ordinary(attributes);
-  auto* shared = new std::shared_ptr<Worker>(worker);
-  pthread_t thread;
-  const bool made = pthread_create(&thread, &attributes, &run_worker<Worker>, shared) == 0;
-  pthread_attr_destroy(&attributes);
-  if (!made) delete shared;
+  const bool made = start_ordinary_thread([worker] { worker->run(); });
   const std::lock_guard lock(mutex_);
   if (made) workers_.push_back(std::move(worker));
   return made;

@@ -2,8 +2,6 @@
 // What a preemptive context keeps of one task and its thread.
 #pragma once
 
-#include <sys/types.h>
-
 #include <atomic>
 #include <cstdint>
 #include <optional>
@@ -12,6 +10,7 @@
 #include "chimera/platform/descriptor_bell.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/halt.h"
+#include "chimera/platform/process_id.h"
 #include "chimera/schedule/ready_queue.h"
 #include "chimera/schedule/server_state.h"
 
