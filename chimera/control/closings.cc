@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Counts closed connections by user and tells of each user at most once in a while.
 #include "chimera/control/closings.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads lines from a connection and writes lines to it, within limits of size and time.
 #include "chimera/control/connection.h"
 
 #include <algorithm>

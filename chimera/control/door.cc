@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Accepts connections, takes requests in turn, judges them, and sends answers and notifications.
 #include "chimera/control/door.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds in /proc the processes that hold a control socket, and says why none of them answers.
 #include "chimera/control/listeners.h"
 
 #include <charconv>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Ranks the connections of a subsystem and chooses which gives way to a new one.
 #include "chimera/control/places.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses one line of JSON as a request, and writes answers and notifications as lines.
 #include "chimera/control/request.h"
 
 #include <algorithm>

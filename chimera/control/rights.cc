@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Derives the role of a connection from the user and groups of its process.
 #include "chimera/control/rights.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keeps the subscriptions of connections and sends what is due.
 #include "chimera/control/subscriptions.h"
 
 #include <algorithm>
