@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The loop of the analyst: takes one question after the other and answers it within bounds of memory.
 #include "chimera/manager/analyst.h"
 
 #include <new>

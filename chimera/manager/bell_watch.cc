@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// A thread that waits on a doorbell and rings an event for it.
 #include "chimera/manager/bell_watch.h"
 
 #include <cerrno>

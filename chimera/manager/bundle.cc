@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Packs a description, its descriptors and its settings into one JSON text, and unpacks it.
 #include "chimera/manager/bundle.h"
 
 #include <nlohmann/json.hpp>

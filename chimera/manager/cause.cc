@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes why a process ended: signal, exit code, and the method that ran.
 #include "chimera/manager/cause.h"
 
 #include <cstdio>

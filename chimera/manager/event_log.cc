@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Numbers events, keeps the last ten thousand, and gives them out.
 #include "chimera/manager/event_log.h"
 
 namespace chimera::manager {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Tells of deaths and lost output of the client of a run.
 #include "chimera/manager/face_watch.h"
 
 #include <nlohmann/json.hpp>

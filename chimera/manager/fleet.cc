@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Maps the segments of real-time units, reads their state and messages, and sends them signals.
 #include "chimera/manager/fleet.h"
 
 #include <utility>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Judges from samples of a unit's words whether a method takes longer than its limit.
 #include "chimera/manager/method_watch.h"
 
 #include <utility>

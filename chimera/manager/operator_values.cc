@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads values for operator variables by the rules of the description, and writes them back with their unit.
 #include "chimera/manager/operator_values.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the manager's segment, or takes over what its predecessor left in one.
 #include "chimera/manager/own_segment.h"
 
 namespace chimera::manager {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Answers a question about a description: is it legal, and does it keep its deadlines.
 #include "chimera/manager/question.h"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Queues questions by connection, and starts, watches and ends the analyst.
 #include "chimera/manager/questions.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the producer of a variable and reads its value, form and extent.
 #include "chimera/manager/readings.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The manager's loop over the control socket, the questions and the driver.
 #include "chimera/manager/run.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes real-time units, tasks, profiles and events as JSON.
 #include "chimera/manager/status_json.h"
 
 #include <algorithm>

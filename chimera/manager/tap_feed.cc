@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Follows the taps of real-time units and packs their rows for a subscriber, with every gap counted.
 #include "chimera/manager/tap_feed.h"
 
 #include <algorithm>

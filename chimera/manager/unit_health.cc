@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads memory and scheduling rights of real-time units from the system and tells of changes for the worse.
 #include "chimera/manager/unit_health.h"
 
 #include <charconv>

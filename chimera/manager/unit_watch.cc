@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Samples the units and the keeper, tells of what hangs, and ends units that stay silent.
 #include "chimera/manager/unit_watch.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the values of variables as JSON.
 #include "chimera/manager/value_json.h"
 
 #include <algorithm>

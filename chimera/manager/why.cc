@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Walks from a variable to its sources and names the first that explains its value.
 #include "chimera/manager/why.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes events, and keeps the clocks of the manager.
 #include "chimera/manager/world.h"
 
 #include <ctime>
