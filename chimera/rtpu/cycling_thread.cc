@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Gives the cycling thread its real-time rights and runs the executive or the preemptive executor in it.
 #include "chimera/rtpu/cycling_thread.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Takes messages of other processes between two cycles, and carries out the signals in them step by step.
 #include "chimera/rtpu/edge.h"
 
 #include <algorithm>

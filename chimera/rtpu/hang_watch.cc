@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Judges from counters whether the loop or a method of the unit hangs.
 #include "chimera/rtpu/hang_watch.h"
 
 namespace chimera {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Maps what the keeper handed down, makes the tasks, supervises their thread, and ends in order.
 #include "chimera/rtpu/rtpu.h"
 
 #include <csignal>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs the slow methods init and kill one after the other.
 #include "chimera/rtpu/service_thread.h"
 
 #include "chimera/platform/linux_clock.h"
