@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Calls each background method at its interval in an ordinary thread, and ends it within a limit.
 #include "chimera/runtime/background_writer.h"
 
 #include <algorithm>

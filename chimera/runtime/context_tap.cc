@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Fills in the records of a context's tap and appends them.
 #include "chimera/runtime/context_tap.h"
 
 namespace chimera {

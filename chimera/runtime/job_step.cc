@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads inputs, calls a method, takes its faults, checks safety ports and publishes the outputs.
 #include "chimera/runtime/job_step.h"
 
 #include <cstring>

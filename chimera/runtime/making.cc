@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Puts into words at which step of making a task a process died.
 #include "chimera/runtime/making.h"
 
 namespace chimera {

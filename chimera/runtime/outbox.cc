@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes messages into the ring of their receiver and reads them from the rings of others.
 #include "chimera/runtime/outbox.h"
 
 #include <cstring>

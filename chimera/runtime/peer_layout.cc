@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Plans the groups of a peer's segment: outputs, constants, faults and operator variables.
 #include "chimera/runtime/peer_layout.h"
 
 #include "chimera/task/fault_record.h"

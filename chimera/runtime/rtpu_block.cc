@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Computes the places of the parts of a block, and reads and writes them.
 #include "chimera/runtime/rtpu_block.h"
 
 #include <array>

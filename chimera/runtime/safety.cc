@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks each element of a safety port for being finite and within its range.
 #include "chimera/runtime/safety.h"
 
 #include <cmath>

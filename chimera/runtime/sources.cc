@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the present producer of each variable and points the inputs of tasks at it, directly or by a local copy.
 #include "chimera/runtime/sources.h"
 
 #include <algorithm>

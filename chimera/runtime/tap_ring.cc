@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Appends records to the ring of the tap, and reads them with a count of those that were lost.
 #include "chimera/runtime/tap_ring.h"
 
 #include <algorithm>

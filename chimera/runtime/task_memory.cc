@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Allocates the memory of a task and connects each port to its place in it.
 #include "chimera/runtime/task_memory.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the tasks of a context from their specs and wires them.
 #include "chimera/runtime/task_set.h"
 
 #include <algorithm>

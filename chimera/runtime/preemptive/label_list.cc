@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keeps ready jobs in order of urgency and finds a free priority level between two of them.
 #include "chimera/runtime/preemptive/label_list.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Simulates preemptive scheduling event by event: releases, completions, deadlines, budgets and servers.
 #include "chimera/runtime/virtual/preemptive.h"
 
 #include <algorithm>

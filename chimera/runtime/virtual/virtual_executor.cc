@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs the cycle loop on a modelled clock.
 #include "chimera/runtime/virtual/virtual_executor.h"
 
 #include "chimera/base/assert.h"
