@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keeps the last reported state of each process and task.
 #include "chimera/subsystem/observed_state.h"
 
 namespace chimera::subsystem {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Keeps the signals whose reports have not come, and the times at which they are given up.
 #include "chimera/subsystem/pending_signals.h"
 
 #include <algorithm>
