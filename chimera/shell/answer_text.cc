@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes answers of the manager as sentences and tables.
 #include "chimera/shell/answer_text.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the subsystem of a command and hands the command to what carries it out.
 #include "chimera/shell/carry_out.h"
 
 #include <unistd.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses the name of a channel and takes its numbers out of a value.
 #include "chimera/shell/channel.h"
 
 #include <cctype>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Measures cells and writes a table.
 #include "chimera/shell/columns.h"
 
 #include <algorithm>

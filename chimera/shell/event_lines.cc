@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes events as lines, and joins deadlines that were missed one after the other.
 #include "chimera/shell/event_lines.h"
 
 #include <algorithm>

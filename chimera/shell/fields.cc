@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads typed fields of JSON objects with defaults.
 #include "chimera/shell/fields.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes times, rates and counts with three digits and a unit.
 #include "chimera/shell/figures.h"
 
 #include <cmath>

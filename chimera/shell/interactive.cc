@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads commands from the terminal with history and completion, or from a script, and carries them out.
 #include "chimera/shell/interactive.h"
 
 #include <histedit.h>

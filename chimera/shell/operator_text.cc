@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the values under `operator:` in the text of a description and replaces them in place.
 #include "chimera/shell/operator_text.h"
 
 #include <algorithm>

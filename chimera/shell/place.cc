@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds and makes the folder in which the shell keeps its state.
 #include "chimera/shell/place.h"
 
 #include <sys/stat.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the present operator values into the description that the subsystem was started from.
 #include "chimera/shell/save_file.h"
 
 #include <fcntl.h>

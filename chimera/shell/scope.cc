@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Collects rows before and after a trigger and counts gaps.
 #include "chimera/shell/scope.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the words of `chimera scope`, records, and writes a table and a picture.
 #include "chimera/shell/scope_command.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws a plot in characters.
 #include "chimera/shell/sketch.h"
 
 #include <algorithm>

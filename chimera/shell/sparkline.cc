@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Draws a few values as a line of block characters.
 #include "chimera/shell/sparkline.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the answers `status` and `profile` as tables.
 #include "chimera/shell/status_text.h"
 
 #include <algorithm>

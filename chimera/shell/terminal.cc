@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Switches the terminal to single keys and the alternate screen, and waits for keys, signals and notifications.
 #include "chimera/shell/terminal.h"
 
 #include <poll.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lays out the tables of `chimera top` for the size of the screen.
 #include "chimera/shell/top.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses a trigger and detects when its comparison becomes true.
 #include "chimera/shell/trigger.h"
 
 #include <cmath>

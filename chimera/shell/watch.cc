@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lays out a line for each watched variable with its value, range and sparkline.
 #include "chimera/shell/watch.h"
 
 #include <algorithm>

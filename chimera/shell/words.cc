@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Splits a line into words and finds completions.
 #include "chimera/shell/words.h"
 
 #include <algorithm>
