@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Verifies a description, loads its components, makes its tasks, and reads their variables.
 #include "chimera/desk/application.h"
 
 #include <algorithm>

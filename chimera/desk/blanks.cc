@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Adds and removes blanks at the ends of a text.
 #include "chimera/desk/blanks.h"
 
 #include <algorithm>

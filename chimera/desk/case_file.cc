@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads a file of cases.
 #include "chimera/desk/case_file.h"
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the outcome of cases as text, JSON and JUnit XML.
 #include "chimera/desk/case_report.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads and verifies a description and prints its verdict, its order of tasks, or its picture.
 #include "chimera/desk/check.h"
 
 #include <cstdio>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the ports of a component as a table, and the sections of its README.md without their markup.
 #include "chimera/desk/data_sheet.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses a comparison of a variable with a bound and judges it.
 #include "chimera/desk/expectation.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the graph of a configuration: a box a task, a line a variable.
 #include "chimera/desk/graph_of.h"
 
 #include <cstdio>

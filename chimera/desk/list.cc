@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lists components and prints the data sheet of one.
 #include "chimera/desk/list.h"
 
 #include <algorithm>

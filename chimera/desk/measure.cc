@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses measures such as a maximum, a root mean square and a settling time, and computes them sample by sample.
 #include "chimera/desk/measure.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs an application once in virtual time, takes its measures, and packs the outcome into a text.
 #include "chimera/desk/measured_run.h"
 
 #include <unistd.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Copies a template and fills in names.
 #include "chimera/desk/new.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Names the tasks and units that a starting subsystem waits for.
 #include "chimera/desk/not_ready.h"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Queues what is printed and writes it from a thread of its own.
 #include "chimera/desk/outlet.h"
 
 #include <poll.h>

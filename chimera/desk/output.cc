@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the output of a command that refuses.
 #include "chimera/desk/output.h"
 
 #include "chimera/base/hosted/terminal_text.h"

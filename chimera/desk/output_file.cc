@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Tries whether a file can be written, and writes it.
 #include "chimera/desk/output_file.h"
 
 #include <unistd.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Forks a child for work that may crash or hang, waits with limits of time, and says how the child ended.
 #include "chimera/desk/own_process.h"
 
 #include <sys/wait.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Prints and wipes a line with the number of finished pieces.
 #include "chimera/desk/piece_progress.h"
 
 #include <unistd.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Names each number of a variable by index and field, with its unit.
 #include "chimera/desk/probe_numbers.h"
 
 namespace chimera::desk {

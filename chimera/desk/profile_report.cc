@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the profiles of tasks as a table.
 #include "chimera/desk/profile_report.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes how far a run is and how long it will take.
 #include "chimera/desk/progress.h"
 
 #include <cstdio>

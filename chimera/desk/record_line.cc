@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Subscribes to the scheduling records of a subsystem and converts them.
 #include "chimera/desk/record_line.h"
 
 #include <algorithm>

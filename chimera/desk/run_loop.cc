@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs an application in slices, by the virtual executor or by the real-time executive in this process.
 #include "chimera/desk/run_loop.h"
 
 #include <chrono>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks the words of `chimera run` against the description and decides which executor runs it.
 #include "chimera/desk/run_plan.h"
 
 #include <algorithm>

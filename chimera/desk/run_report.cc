@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Prints the report of a run as text or JSON and derives its exit code.
 #include "chimera/desk/run_report.h"
 
 #include <algorithm>

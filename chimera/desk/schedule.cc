@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Analyses the schedule of a description and prints text, JSON or a picture.
 #include "chimera/desk/schedule.h"
 
 #include <cerrno>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a schedule report as tables, verdicts and a timeline.
 #include "chimera/desk/schedule_text.h"
 
 #include <algorithm>

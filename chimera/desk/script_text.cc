@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses timed acts and finds the tasks and variables that they name.
 #include "chimera/desk/script_text.h"
 
 #include <algorithm>

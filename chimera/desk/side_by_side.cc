@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Forks a child for each piece of work, reads their answers, and ends those that take too long.
 #include "chimera/desk/side_by_side.h"
 
 #include <fcntl.h>

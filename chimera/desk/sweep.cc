@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs a description once for each combination of values and collects the figures.
 #include "chimera/desk/sweep.h"
 
 #include <utility>

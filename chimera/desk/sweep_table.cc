@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the outcome of a sweep as a table, JSON, CSV or a plot.
 #include "chimera/desk/sweep_table.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the files of cases in folders, runs their cases side by side, and reports.
 #include "chimera/desk/test_application.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the components to be tested, runs the test of each, and reports.
 #include "chimera/desk/test_component.h"
 
 #include <algorithm>

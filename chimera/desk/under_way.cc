@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes into shared memory which component is being loaded or which method runs.
 #include "chimera/desk/under_way.h"
 
 #include <sys/mman.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses lists and ranges of values with their unit.
 #include "chimera/desk/value_list.h"
 
 #include <cmath>

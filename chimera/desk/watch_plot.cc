@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Collects samples of watched variables and draws them.
 #include "chimera/desk/watch_plot.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the installed components, units and templates from the place of the program and from the environment.
 #include "chimera/desk/workplace.h"
 
 #include <climits>
