@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads and writes the file of a recorded profile, with limits on every value that is read.
 #include "chimera/analysis/recorded_profile.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes a schedule report as JSON.
 #include <nlohmann/json.hpp>
 
 #include "chimera/analysis/schedule_report.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the paths from sensors to actuators in a set of tasks, and the worst age of data on each.
 #include <algorithm>
 
 #include "chimera/analysis/schedule_parts.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Turns a schedule that does not hold into faults of the description, with what would help.
 #include <algorithm>
 
 #include "chimera/analysis/schedule_report.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Tries longer periods, other shares and other CPUs until the deadlines of a CPU hold.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Runs the schedulability analysis for each set of tasks and each CPU, and names the tasks.
 #include "chimera/analysis/schedule_report.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the profile of a task as JSON and reads that JSON back.
 #include "chimera/analysis/task_profile.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Counts the groups and bytes that a task copies at each cycle.
 #include "chimera/analysis/transfer_cost.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes descriptors as JSON and reads them back, refusing everything that a component could not have declared.
 #include "chimera/catalogue/descriptor_json.h"
 
 #include <cmath>

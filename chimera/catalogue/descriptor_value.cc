@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Converts the bytes of a value of each type to JSON and back.
 #include "chimera/catalogue/descriptor_value.h"
 
 #include <cstring>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the folders of components and answers questions about what they hold.
 #include "chimera/catalogue/library.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the top level of a description into a draft.
 #include "chimera/description/draft.h"
 
 #include <array>

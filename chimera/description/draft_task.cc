@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the keys of a task, each by a function of its own.
 #include "chimera/description/draft_task.h"
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads names, texts, whole numbers, times and values, with the fault for each kind of mistake.
 #include "chimera/description/draft_values.h"
 
 #include <algorithm>

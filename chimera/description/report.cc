@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Collects, sorts and writes out the faults of a description.
 #include "chimera/description/report.h"
 
 #include <algorithm>

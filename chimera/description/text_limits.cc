@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks size, encoding, tabs, nesting and number of entries of a text before it is parsed.
 #include "chimera/description/text_limits.h"
 
 #include <cstdio>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the mistake behind a message of the YAML parser: a missing quote, bracket or space, a wrong indent.
 #include "chimera/description/yaml_fault.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses a decimal number into digits and an exponent, without rounding.
 #include "chimera/text/decimal.h"
 
 #include <charconv>

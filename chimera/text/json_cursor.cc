@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Walks a JSON tree with the path of each refusal.
 #include "chimera/text/json_cursor.h"
 
 #include <algorithm>

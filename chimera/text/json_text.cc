@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Escapes strings for JSON and writes numbers so that they are read back exactly.
 #include "chimera/text/json_text.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Computes edit distances in which a swap counts one, and finds the nearest name.
 #include "chimera/text/nearest.h"
 
 #include <algorithm>

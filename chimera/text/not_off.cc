@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes what a failed `off` or `kill` means for the device behind a task.
 #include "chimera/text/not_off.h"
 
 namespace chimera {

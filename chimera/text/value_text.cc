@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the bytes of a value as text and JSON, element by element and field by field.
 #include "chimera/text/value_text.h"
 
 #include <cstdio>

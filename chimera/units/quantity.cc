@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses numbers with a unit, durations and rates.
 #include "chimera/units/quantity.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Multiplies, compares and converts units.
 #include "chimera/units/unit.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Solves and substitutes the unit variables of generic ports.
 #include "chimera/units/unit_expression.h"
 
 #include <algorithm>

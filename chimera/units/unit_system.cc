@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads the units by UDUNITS-2, and names the unit that was probably meant by a wrong one.
 #include "chimera/units/unit_system.h"
 
 #include <udunits2.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parses the text of a unit into words and powers.
 #include "chimera/units/unit_text.h"
 
 #include <cstdlib>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds tasks and variables of the model and adds faults to its report.
 #include "chimera/verify/model.h"
 
 #include <algorithm>

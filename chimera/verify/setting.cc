@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Puts values from the command line into a draft or a configuration.
 #include "chimera/verify/setting.h"
 
 #include <algorithm>

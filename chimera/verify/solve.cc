@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Binds the type, unit and extent variables of a task, and names what bound them.
 #include "chimera/verify/solve.h"
 
 namespace chimera {

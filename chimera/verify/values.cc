@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Converts written values to bytes: units, broadcast to the shape, and the range of the port.
 #include "chimera/verify/values.h"
 
 #include <algorithm>

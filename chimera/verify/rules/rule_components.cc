@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rules on components: each is known, built, and of a kind that can be run.
 #include "chimera/verify/rules/rules.h"
 
 namespace chimera {

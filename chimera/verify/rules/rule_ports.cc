@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rules on ports: each key names a port of the component, of the kind that the key takes.
 #include <optional>
 #include <string_view>
 

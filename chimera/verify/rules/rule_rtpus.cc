@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rules on real-time units: each task has one, and the priority bands of those on one CPU do not overlap.
 #include <algorithm>
 
 #include "chimera/description/criticality.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rules on configurations: the tasks they name, and the reactions that lead from one to another.
 #include <optional>
 
 #include "chimera/description/draft_values.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rules on standby tasks: same outputs as the primary, and never in one configuration with it.
 #include <algorithm>
 #include <set>
 

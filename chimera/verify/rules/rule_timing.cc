@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rules on rates, deadlines, budgets, offsets and servers.
 #include <cmath>
 #include <cstdio>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rules on units: linked ports can be converted into each other, and unit variables are solved.
 #include <algorithm>
 #include <cstdio>
 

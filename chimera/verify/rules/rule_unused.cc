@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Warnings about values, tasks and real-time units that nothing uses.
 #include <algorithm>
 
 #include "chimera/verify/rules/rules.h"
