@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Verifies a description, claims its CPUs, and runs its processes as their keeper.
 #include "apps/chimera/keep.h"
 
 #include <unistd.h>

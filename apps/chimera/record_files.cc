@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes the trace file and the timelines of a run from the records of the tap.
 #include "apps/chimera/record_files.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds out which word of a command line is wrong, and puts that into a sentence with a remedy.
 #include "apps/chimera/wrong_usage.h"
 
 #include <CLI/CLI.hpp>
