@@ -50,8 +50,7 @@ def is_known(name):
 
 
 def wants_purpose(name):
-    floors = "base|platform|table|task|schedule|load|keeper|component_test|record|draw"
-    return (re.match(rf"(chimera/({floors})|library)/.*\.cc$", name)
+    return (re.match(r"(chimera/(?!desk/|shell/)|library/).*\.cc$", name)
             and not re.search(r"/testing/|_(test|fuzz|stress)\.cc$", name))
 
 

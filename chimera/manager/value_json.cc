@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the values of variables as JSON.
+// Writes the values of variables as JSON, and why they are what they are.
 #include "chimera/manager/value_json.h"
 
 #include <algorithm>
