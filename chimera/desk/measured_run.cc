@@ -157,7 +157,7 @@ class Measuring {
       judged.holds = expectation.holds(judged.said);
       made.expectations.push_back(std::move(judged));
     }
-    add_remarks(application_.tasks(), application_.tasks().is_illegal(), made.remarks);
+    add_remarks(application_.tasks(), application_.tasks().flag().is_up(), made.remarks);
     for (const RefusedSignal& refused : loop_->refused())
       made.remarks.push_back(refused_line(refused, application_.tasks().tasks()[refused.task.index], loop_->origin()));
     for (std::string& remark : made.remarks)

@@ -181,7 +181,7 @@ RunEnd Session::run() {
 int Session::report(RunEnd end) {
   RunReport report{.end = end,
                    .stopped_by = {},
-                   .is_flag_up = application_.tasks().is_illegal(),
+                   .is_flag_up = application_.tasks().flag().is_up(),
                    .ran = ran_,
                    .subsystem = plan_.configuration.subsystem(),
                    .executor = loop_->description(),

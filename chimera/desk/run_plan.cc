@@ -57,7 +57,7 @@ Result<void> judge_throttling(const RunRequest& request, const Configuration& co
 /// A list is as long as the one before it where its length is a constant that only `init` may know.
 bool is_as_long(const GivenSpec& now, const GivenSpec& before) {
   for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d)
-    if (!now.extent[d].constant.empty() && now.listed[d] != 0 && now.listed[d] != before.listed[d]) return false;
+    if (now.extent[d].constant.is_valid() && now.listed[d] != 0 && now.listed[d] != before.listed[d]) return false;
   return true;
 }
 
