@@ -46,8 +46,10 @@ SYSTEM = re.compile(r"^(aio|dirent|dlfcn|execinfo|fcntl|ftw|glob|grp|ifaddrs|lib
 SEES_THE_SYSTEM = {
     "chimera/platform/": "the floor for it",
     "chimera/base/hosted/ordinary_file.h": "components read files too, and they see chimera/base only",
-    "chimera/desk/": "to be moved",
-    "chimera/shell/": "to be moved",
+    "chimera/desk/outlet.cc": "a stream that never waits for its reader",
+    "chimera/desk/own_process.cc": "forks, waits and passes signals on: one piece of code with its limits of time",
+    "chimera/desk/side_by_side.cc": "the same of many children",
+    "chimera/desk/under_way.cc": "memory shared with both of these",
     "library/csv_log/": "writes a file, whose loss it must tell",
     "library/device/": "reasons why a device cannot be opened",
     "library/serial_frame/": "a serial line",

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/attend.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <csignal>
 #include <limits>

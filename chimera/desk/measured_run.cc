@@ -2,12 +2,11 @@
 // Runs an application once in virtual time, takes its measures, and packs the outcome into a text.
 #include "chimera/desk/measured_run.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "chimera/desk/blanks.h"
@@ -190,14 +189,16 @@ MeasuredRun measured_run(const MeasuredRequest& request, const Library& library)
   const auto planned = plan(request, library, refused.failure);
   if (!planned) return refused;
   auto words = words_of(request, *planned);
-  if (!request.folder.empty() && ::chdir(request.folder.c_str()) != 0) {
-    refused.failure = request.folder + ": " + std::strerror(errno);
+  std::error_code error;
+  if (!request.folder.empty()) std::filesystem::current_path(request.folder, error);
+  if (error) {
+    refused.failure = request.folder + ": " + error.message();
     return refused;
   }
   auto application = Application::load(planned->configuration, planned->library);
   if (words && application) return Measuring(request, *planned, *std::move(application), *std::move(words)).run();
-  const Error& error = words ? application.error() : words.error();
-  refused.failure = error.message.c_str();
+  const Error& why = words ? application.error() : words.error();
+  refused.failure = why.message.c_str();
   return refused;
 }
 

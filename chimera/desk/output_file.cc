@@ -2,10 +2,9 @@
 // Tries whether a file can be written, and writes it.
 #include "chimera/desk/output_file.h"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 namespace chimera::desk {
@@ -19,10 +18,11 @@ Error not_written(const std::string& path, int why) {
 
 Result<void> may_write(const std::string& path) {
   if (path.empty()) return {};
-  const bool existed = ::access(path.c_str(), F_OK) == 0;
+  std::error_code error;
+  const bool existed = std::filesystem::exists(path, error);
   const bool may = static_cast<bool>(std::ofstream(path, std::ios::binary | std::ios::app));
   if (!may) return not_written(path, errno);
-  if (!existed) ::unlink(path.c_str());
+  if (!existed) std::filesystem::remove(path, error);
   return {};
 }
 

@@ -2,7 +2,7 @@
 // Prints and wipes a line with the number of finished pieces.
 #include "chimera/desk/piece_progress.h"
 
-#include <unistd.h>
+#include "chimera/platform/terminal.h"
 
 namespace chimera::desk {
 
@@ -16,7 +16,7 @@ std::string pieces_text(std::size_t done, std::size_t all, const std::string& no
 }
 
 PieceProgress::PieceProgress(std::size_t all, std::string noun, std::FILE* err)
-    : all_(all), noun_(std::move(noun)), err_(err), is_on_(::isatty(::fileno(err)) == 1) {}
+    : all_(all), noun_(std::move(noun)), err_(err), is_on_(is_terminal(::fileno(err))) {}
 
 void PieceProgress::look(std::size_t done) {
   const auto now = std::chrono::steady_clock::now();

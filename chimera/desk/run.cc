@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/desk/run.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -20,6 +18,7 @@
 #include "chimera/desk/under_way.h"
 #include "chimera/desk/watch_plot.h"
 #include "chimera/platform/standard_output.h"
+#include "chimera/platform/terminal.h"
 #include "chimera/runtime/tap_ring.h"
 
 namespace chimera::desk {
@@ -35,7 +34,7 @@ constexpr Nanoseconds kTellEvery = seconds(3);          // of wall time
 class ProgressLine {
  public:
   ProgressLine(const RunRequest& request, std::FILE* err)
-      : all_(request.duration), err_(err), is_on_(request.virtual_time && ::isatty(::fileno(err)) == 1) {}
+      : all_(request.duration), err_(err), is_on_(request.virtual_time && is_terminal(::fileno(err))) {}
 
   bool is_on() const noexcept { return is_on_; }
   void look(Nanoseconds done) {

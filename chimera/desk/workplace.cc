@@ -2,9 +2,7 @@
 // Finds the installed components, units and templates from the place of the program and from the environment.
 #include "chimera/desk/workplace.h"
 
-#include <climits>
 #include <filesystem>
-#include <unistd.h>
 
 #include "chimera/units/unit_system.h"
 
@@ -43,9 +41,9 @@ Error no_component(const std::string& name, const Library& library) {
 }
 
 std::string program_path() {
-  char path[PATH_MAX];
-  const ssize_t n = ::readlink("/proc/self/exe", path, sizeof path);
-  return n > 0 ? std::string(path, static_cast<std::size_t>(n)) : std::string("chimera");
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::string("chimera") : path.string();
 }
 
 }  // namespace chimera::desk

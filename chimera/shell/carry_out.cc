@@ -2,8 +2,6 @@
 // Finds the subsystem of a command and hands the command to what carries it out.
 #include "chimera/shell/carry_out.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -52,10 +50,10 @@ int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err
     if (const auto may = session.may_act(); !may) return print(refused(may.error(), call.json), out, err);
   (void)session.subsystem();  // known before the act: after an `end` nobody can be asked
   if (is_live(call)) return live(session, call, out, err);
-  const std::size_t width = is_terminal(STDOUT_FILENO) ? screen_size(STDOUT_FILENO).width : 0;
+  const std::size_t width = is_terminal(kStandardOutput) ? screen_size(kStandardOutput).width : 0;
   Said said = std::string_view(call.command->name) == "scope" ? scope(session, call, width, err)
               : call.has("--write")                           ? save_to_file(session, call)
-                                    : one_shot(session, call, {.height = screen_size(STDOUT_FILENO).height});
+                                    : one_shot(session, call, {.height = screen_size(kStandardOutput).height});
   return print(named(std::move(said), session, call), out, err);
 }
 

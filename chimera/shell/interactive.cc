@@ -3,11 +3,10 @@
 #include "chimera/shell/interactive.h"
 
 #include <histedit.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <clocale>
+#include <csignal>
 #include <cstring>
 #include <sstream>
 #include <iostream>
@@ -142,9 +141,9 @@ int typed(Session& session) {
   Editor editor(text_of(*hello.result, "subsystem"), described.is_good() ? names_of(*described.result) : Names{});
   for (std::string line;;) {
     // The editor takes Ctrl-C as a key, but for the moments in which it sets the terminal up.
-    ::signal(SIGINT, SIG_IGN);
+    std::signal(SIGINT, SIG_IGN);
     const bool is_there = editor.read(line);
-    ::signal(SIGINT, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);
     if (!is_there) return kOk;
     if (carry_out_line(session, line, stdout, stderr).is_quit) return kOk;
   }
@@ -177,7 +176,7 @@ int interactive(const Surroundings& surroundings, const std::string& script, boo
   auto session = Session::open(known);
   if (!session) return print(refused(session.error(), false), stdout, stderr);
   if (is_file) return run_script(*session, file, script, keeps_going, stdout, stderr);
-  if (script == "-" || !is_terminal(STDIN_FILENO))
+  if (script == "-" || !is_terminal(kStandardInput))
     return run_script(*session, std::cin, "-", keeps_going, stdout, stderr);
   return typed(*session);
 }

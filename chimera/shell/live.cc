@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/shell/live.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -63,7 +61,7 @@ std::string drawn(const std::vector<TopLine>& lines) {
 
 /// One screen for what is no terminal: without the keys and what is empty at its end.
 std::string printed(const Json& status) {
-  ScreenSize size = screen_size(STDOUT_FILENO);
+  ScreenSize size = screen_size(kStandardOutput);
   size.height = std::max<std::size_t>(5 + field(status, "rtpus").size() + field(status, "tasks").size(), 6);
   std::vector<TopLine> lines = top_lines(status, nullptr, {.width = size.width, .height = size.height});
   lines.pop_back();  // the keys
@@ -94,7 +92,7 @@ std::optional<Error> top_on_screen(Session& session, const Json& first, const Js
   Json now = first, before;
   TopView view;
   for (;;) {
-    const ScreenSize size = screen_size(STDOUT_FILENO);
+    const ScreenSize size = screen_size(kStandardOutput);
     view.width = size.width;
     view.height = size.height;
     screen.show(drawn(view.is_help ? help_lines(view) : top_lines(now, before, view)));
@@ -111,7 +109,7 @@ int top(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
   const control::Answer first = session.ask("status");
   if (!first.is_good()) return print(refused(first, call.json), out, err);
-  const bool is_live = is_terminal(STDOUT_FILENO) && is_terminal(STDIN_FILENO) && !call.json;
+  const bool is_live = is_terminal(kStandardOutput) && is_terminal(kStandardInput) && !call.json;
   if (!is_live) return print({call.json ? first.result->dump() + "\n" : printed(*first.result), "", kOk}, out, err);
   const Json subscription = {{"to", "status"}, {"period_ms", period.value()}};
   const control::Answer subscribed = session.ask("subscribe", subscription);
@@ -166,7 +164,7 @@ int follow(Session& session, const Call& call, Json subscription, std::FILE* out
 }
 
 int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
-  const bool is_live = is_terminal(STDOUT_FILENO);
+  const bool is_live = is_terminal(kStandardOutput);
   const auto period = period_ms(call, is_live ? 100 : 1000);
   if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
   const auto channels = channels_of(call);
@@ -177,7 +175,7 @@ int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   return follow(session, call, wanted, out, err, [&](const control::Note& note, Json&) {
     if (call.json) return;
     shown.take(field(*note.parameters, "values"));
-    const std::size_t width = screen_size(STDOUT_FILENO).width;
+    const std::size_t width = screen_size(kStandardOutput).width;
     if (is_live)
       redraw(shown.lines(width > 1 ? width - 1 : 1, writes_unicode()), is_first, out);
     else

@@ -2,10 +2,10 @@
 // Finds and makes the folder in which the shell keeps its state.
 #include "chimera/shell/place.h"
 
-#include <sys/stat.h>
-
 #include <cstdlib>
 #include <filesystem>
+
+#include "chimera/platform/file_state.h"
 
 namespace chimera::shell {
 
@@ -21,7 +21,7 @@ bool make_state_folder() {
   if (folder.empty()) return false;
   std::error_code error;
   std::filesystem::create_directories(folder.parent_path(), error);
-  return ::mkdir(folder.c_str(), 0700) == 0 || std::filesystem::is_directory(folder, error);
+  return make_private_folder(folder.string());
 }
 
 }  // namespace chimera::shell

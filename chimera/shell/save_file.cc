@@ -2,10 +2,6 @@
 // Writes the present operator values into the description that the subsystem was started from.
 #include "chimera/shell/save_file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
@@ -15,6 +11,7 @@
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/platform/file_state.h"
 #include "chimera/shell/fields.h"
 #include "chimera/shell/operator_text.h"
 #include "chimera/shell/place.h"
@@ -32,12 +29,8 @@ Error refusal(const std::string& message, const std::string& where = {}) {
 
 struct File {
   std::string path, text;
-  struct stat state{};
+  FileState state;
 };
-
-std::int64_t changed_ns(const struct stat& state) {
-  return state.st_ctim.tv_sec * 1'000'000'000 + state.st_ctim.tv_nsec;
-}
 
 Result<File> read_file(const std::string& path) {
   char real[PATH_MAX];
@@ -46,41 +39,26 @@ Result<File> read_file(const std::string& path) {
   file.path = real;
   auto text = read_ordinary(file.path, kMostBytes);
   if (!text) return refusal(std::string(text.error().message.view()), path);
-  if (::stat(real, &file.state) != 0) return refusal("cannot be read", path);
+  const auto state = state_of_file(real);
+  if (!state) return refusal("cannot be read", path);
+  file.state = *state;
   file.text = *std::move(text);
   return file;
 }
 
 std::string own_record(const File& file) {
-  return file.path + "\n" + std::to_string(file.state.st_ino) + " " + std::to_string(changed_ns(file.state)) + "\n";
+  return file.path + "\n" + std::to_string(file.state.inode) + " " + std::to_string(file.state.changed_ns) + "\n";
 }
 
 std::string record_path(const std::string& subsystem) { return state_folder() + "/saved-" + subsystem; }
 
 /// The file is as it was when the subsystem read it, or as this command left it.
 bool is_as_known(const File& file, std::int64_t started_wall_ns, const std::string& subsystem) {
-  if (changed_ns(file.state) < started_wall_ns) return true;
+  if (file.state.changed_ns < started_wall_ns) return true;
   std::ifstream record(record_path(subsystem), std::ios::binary);
   std::ostringstream text;
   text << record.rdbuf();
   return text.str() == own_record(file);
-}
-
-Result<void> replace(const File& file, const std::string& text) {
-  std::string made = file.path + ".XXXXXX";
-  const int descriptor = ::mkstemp(made.data());
-  if (descriptor < 0) return refusal(std::string("cannot be written: ") + std::strerror(errno), file.path);
-  bool is_good = ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-                 ::fchmod(descriptor, file.state.st_mode & 07777) == 0 && ::fsync(descriptor) == 0;
-  ::close(descriptor);
-  struct stat now{};
-  const bool is_same = ::stat(file.path.c_str(), &now) == 0 && now.st_ino == file.state.st_ino &&
-                       changed_ns(now) == changed_ns(file.state);
-  is_good = is_good && is_same && ::rename(made.c_str(), file.path.c_str()) == 0;
-  if (is_good) return {};
-  const std::string why = is_same ? std::string("cannot be written: ") + std::strerror(errno) : "changed just now";
-  ::unlink(made.c_str());
-  return refusal(why, file.path);
 }
 
 /// Where the keeper found the file: its name may be relative to the folder in which it was started.
@@ -92,11 +70,7 @@ std::string file_of(const Json& hello) {
 
 /// Nanoseconds since 1970 at which the subsystem started, from CLOCK_MONOTONIC.
 std::int64_t started_wall_ns(const Json& status) {
-  timespec wall{}, monotonic{};
-  ::clock_gettime(CLOCK_REALTIME, &wall);
-  ::clock_gettime(CLOCK_MONOTONIC, &monotonic);
-  const std::int64_t shift = (wall.tv_sec - monotonic.tv_sec) * 1'000'000'000 + wall.tv_nsec - monotonic.tv_nsec;
-  return whole_of(status, "origin_ns") + shift;
+  return whole_of(status, "origin_ns") + wall_clock_shift();
 }
 
 std::string first_fault(const Json& report) {
@@ -136,10 +110,12 @@ Said save_to_file(Session& session, const Call& call) {
   if (!text) return refused(text.error(), call.json);
   const bool is_new = text.value() != file->text;
   if (is_new) {
-    if (const auto replaced = replace(file.value(), text.value()); !replaced)
+    if (const auto replaced = replace_file(file->path, file->state, text.value()); !replaced)
       return refused(replaced.error(), call.json);
     File written = file.value();
-    if (::stat(written.path.c_str(), &written.state) == 0 && make_state_folder())
+    const auto state = state_of_file(written.path);
+    if (state) written.state = *state;
+    if (state && make_state_folder())
       std::ofstream(record_path(subsystem), std::ios::binary) << own_record(written);
   }
   if (call.json) return {Json{{"file", file->path}, {"changed", is_new}, {"operator", values}}.dump() + "\n", "", kOk};

@@ -3,24 +3,15 @@
 // exception all leave the terminal as it was found.
 #pragma once
 
-#include <signal.h>
-#include <termios.h>
-
 #include <cstddef>
 #include <optional>
 #include <string>
 
 #include "chimera/control/client.h"
+#include "chimera/platform/signal_queue.h"
+#include "chimera/platform/terminal.h"
 
 namespace chimera::shell {
-
-bool is_terminal(int descriptor);
-
-struct ScreenSize {
-  std::size_t width = 80, height = 24;
-};
-/// Of the terminal at `descriptor`; COLUMNS and LINES, else 80 by 24, where there is none.
-ScreenSize screen_size(int descriptor);
 
 /// The whole screen, keys one by one and without echo. Context of all: setup.
 class FullScreen {
@@ -34,8 +25,7 @@ class FullScreen {
   void show(const std::string& text);
 
  private:
-  termios before_{};
-  bool has_before_ = false;
+  SingleKeys keys_;
 };
 
 /// What a wait ended with.
@@ -62,11 +52,9 @@ class Attention {
 
  private:
   std::optional<Woken> take_signal();
-  void read_keys();
   Woken take_key();
 
-  sigset_t before_{};
-  OwnedDescriptor signals_;
+  SignalQueue signals_;
   bool keys_;
   std::string typed_;  ///< read and not yet taken
 };
