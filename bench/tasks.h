@@ -130,7 +130,7 @@ class Axes {
   std::array<std::byte, kAxes * sizeof(double)> zeros_{};
   std::vector<RtpuSpec> rtpus_{RtpuSpec{"only", 0, Policy::kEdf}};
   std::vector<TaskSpec> tasks_;
-  chimera::testing::NamedLinks links_;
+  chimera::NamedLinks links_;
   ApplicationSpec spec_;
   std::unique_ptr<TaskSet> set_;
 };

@@ -48,7 +48,7 @@ struct TaskOrders : ::testing::Test {
   std::vector<std::vector<PortSpec>> ports_;
   std::vector<TaskSpec> tasks_;
   std::vector<TaskId> start_;
-  testing::NamedLinks links_;
+  NamedLinks links_;
   ApplicationSpec spec_;
 };
 

@@ -86,7 +86,7 @@ Counted count(const ContextPlace& place, Run run) {
   constexpr std::uint32_t kTasks = 5;
   const char* names[kTasks] = {"a", "b", "c", "d", "e"};
   const double zero = 0;
-  chimera::testing::NamedLinks links;
+  chimera::NamedLinks links;
   std::array<std::array<PortSpec, 2>, kTasks> ports;
   std::array<TaskSpec, kTasks> tasks;
   std::array<const chimera_component*, kTasks> components;

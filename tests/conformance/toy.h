@@ -236,7 +236,7 @@ class Application {
   std::vector<const chimera_component*> components_;
   std::vector<TaskId> order_, start_;
   std::vector<RtpuSpec> rtpus_{RtpuSpec{"only", 0, Policy::kEdf}};
-  chimera::testing::NamedLinks links_;
+  chimera::NamedLinks links_;
   ApplicationSpec spec_;
   std::unique_ptr<TaskSet> set_;
 };

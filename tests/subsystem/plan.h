@@ -40,7 +40,7 @@ class Plan {
   std::vector<std::vector<PortSpec>> blind_ports_;
   std::vector<TaskId> init_order_;
   std::vector<TaskId> start_;
-  chimera::testing::NamedLinks links_;
+  chimera::NamedLinks links_;
 };
 
 }  // namespace chimera::simulated

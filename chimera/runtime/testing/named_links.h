@@ -9,7 +9,7 @@
 #include "chimera/runtime/links.h"
 #include "chimera/runtime/task_orders.h"
 
-namespace chimera::testing {
+namespace chimera {
 
 /// Owns what finish() makes a spec point at. Names outlive it.
 class NamedLinks {
@@ -56,4 +56,4 @@ class NamedLinks {
   std::vector<TaskId> on_order_, end_order_;
 };
 
-}  // namespace chimera::testing
+}  // namespace chimera

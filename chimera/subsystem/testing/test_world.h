@@ -152,7 +152,7 @@ class TestWorld {
   std::vector<RtpuSpec> rtpus_{{"servo", 0, Policy::kEdf}, {"spare", 1, Policy::kEdf}};
   std::vector<TaskSpec> tasks_;
   std::vector<std::vector<PortSpec>> ports_;
-  chimera::testing::NamedLinks links_;
+  chimera::NamedLinks links_;
   std::vector<TaskId> init_order_{kArm, kPid, kTraj, kReserve};
   std::vector<TaskId> start_{kArm, kTraj, kPid};
 };
