@@ -19,8 +19,8 @@ class JobThreads {
   virtual bool claim(TaskId task) noexcept = 0;
   /// Execution time of the job of the task that is under way; 0 without one. Context: edge; wait-free.
   virtual Nanoseconds used_by_job(TaskId task) noexcept = 0;
-  /// True while a job of the task that is under way waits for something in a system call. A look into the kernel's
-  /// files, meanwhile others may act: what the caller knows of jobs may be over. Context: edge; some microseconds.
+  /// True when the job of the task that is under way was found waiting in a system call, before this edge.
+  /// Context: edge; wait-free.
   virtual bool is_blocked(TaskId task) noexcept = 0;
   /// Calls a method of a task at an edge, as call_method(): where jobs preempt each other at the urgency of the task,
   /// and what the edge may touch may change meanwhile. Context: edge; as long as the method takes.

@@ -49,9 +49,9 @@ std::optional<MissCause::Verdict> MissCause::by_itself(TaskId missed, Nanosecond
 }
 
 std::optional<MissCause::Verdict> MissCause::judge(TaskId missed, Nanoseconds now) noexcept {
-  constexpr Nanoseconds kSeldom = milliseconds(100), kAway = milliseconds(1);
+  constexpr Nanoseconds kAway = milliseconds(1);
   const Nanoseconds waited_since{waits_[missed.index].since.exchange(kNever.count, std::memory_order_relaxed)};
-  if (now - judged_[missed.index] < kSeldom) return std::nullopt;  // 1
+  if (!may_judge(missed, now)) return std::nullopt;  // 1
   judged_[missed.index] = now;
   const TaskSpec& spec = *tasks_[missed.index].spec;
   const Nanoseconds since = now - spec.deadline - spec.period;

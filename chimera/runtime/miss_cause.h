@@ -45,10 +45,14 @@ class MissCause {
     if (release.count < waits.load(std::memory_order_relaxed)) waits.store(release.count, std::memory_order_relaxed);
   }
   /// The cause of what the task missed since the last verdict, by the cases above.
-  /// Asks JobThreads::is_blocked, with what that means for the caller. Context: edge; O(tasks).
+  /// Context: edge; O(tasks).
   std::optional<Verdict> judge(TaskId task, Nanoseconds now) noexcept;
+  /// A verdict on the task may be given at `now`. Context: edge; wait-free.
+  bool may_judge(TaskId task, Nanoseconds now) const noexcept { return now - judged_[task.index] >= kSeldom; }
 
  private:
+  static constexpr Nanoseconds kSeldom = milliseconds(100);
+
   // What the last jobs of a task used and when they ended: it may have had several since the release that was missed.
   class Recent {
    public:

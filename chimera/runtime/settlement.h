@@ -34,9 +34,13 @@ class Settlement {
   }
   /// Everything that jobs of the task left. Requires: none is under way.
   void settle_job(TaskId task, Nanoseconds now) noexcept;
-  /// Only what does not wait for the end of a job: the flag, stop, the cause of a missed deadline. Others may act
-  /// meanwhile (MissCause::judge): look at the task anew afterwards.
+  /// Only what does not wait for the end of a job: the flag, stop, the cause of a missed deadline.
   void settle_at_once(TaskId task, Nanoseconds now) noexcept;
+  /// settle_at_once() at `now` reports a missed deadline of the task with its cause. Wait-free.
+  bool has_unreported_miss(TaskId task, Nanoseconds now) const noexcept {
+    const std::uint8_t left = parts_.records[task.index].left.load(std::memory_order_relaxed);
+    return (left & JobRecord::kFindCause) != 0 && parts_.cause->may_judge(task, now);
+  }
   /// Ends tasks that missed too many deadlines because others never let them start: no job of theirs would do it.
   void give_up_starved(Nanoseconds now) noexcept;
   /// Reports a new fault or note of the task.

@@ -1,268 +1,262 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who looks after jobs that use too much, come too late or never end.
-#include <algorithm>
+// Checks of jobs while they wait and run: deadlines, budgets, capacities, the share of the processor, hanging threads.
+#include "chimera/runtime/preemptive/supervisor.h"
 
-#include "chimera/platform/realtime.h"
-#include "chimera/runtime/preemptive/preemptive_executor.h"
+#include <algorithm>
+#include <utility>
 
 namespace chimera {
 namespace {
 
-// A job that has used so many times its budget (without one: its period) does not end by itself.
-constexpr std::int64_t kHangsAfter = 10;
-// Nor does one that sleeps in system calls for so long, and for so many periods.
-constexpr Nanoseconds kSleepsAtMost = seconds(2);
-// The supervisor never comes again at once: at the ceiling it would keep everybody else from running.
-constexpr Nanoseconds kSoonest = microseconds(5), kSeldom = microseconds(25);
-// A job that is late may be seen so much later, where nobody waits for it; the alarm is put off a little before that.
-constexpr Nanoseconds kLax = microseconds(600), kMargin = microseconds(150);
+// A job that has used ten times its budget (without one: its period) does not end by itself.
+constexpr std::int64_t kBudgetsOfAHangingJob = 10;
+// Nor does one that sleeps in system calls for 2 s, and for ten periods.
+constexpr Nanoseconds kSleepOfAHangingJob = seconds(2);
+constexpr std::int64_t kPeriodsOfAHangingJob = 10;
+// Least time between two alarms: the supervisor runs at the ceiling and keeps every job from running.
+constexpr Nanoseconds kMinAlarmGap = microseconds(5);
+// How often the share is checked while no job is found that may be demoted.
+constexpr Nanoseconds kMinShareGap = milliseconds(1);
 
 }  // namespace
 
-Nanoseconds PreemptiveExecutor::next_quantum(Nanoseconds now) const noexcept {
-  const Nanoseconds first = origin() + Nanoseconds{place_.quantum.count / 8};  // after what is released there
-  return first + place_.quantum * ((now - first) / place_.quantum + 1);
+Supervisor::Supervisor(Releases& releases, ReadyJobs& ready, ProcessorShare& share, JobChecks& checks,
+                       Processor& processor, JobClock& clock)
+    : releases_(releases), ready_(ready), share_(share), checks_(checks), processor_(processor), clock_(clock) {
+  for (const JobThread& job : ready.threads()) seen_.resize(std::max<std::size_t>(seen_.size(), job.id.index + 1));
 }
 
-bool PreemptiveExecutor::acts_at_once(OnMiss reaction) noexcept {
-  return reaction == OnMiss::kDemote || reaction == OnMiss::kAbort || reaction == OnMiss::kStop ||
-         reaction == OnMiss::kFlag;
+void Supervisor::start(std::atomic<std::size_t>& n_attached) {
+  thread_ = std::thread([this, &n_attached] { run(n_attached); });
 }
 
-Nanoseconds PreemptiveExecutor::used(const JobThread& job) const noexcept {
-  const Nanoseconds all = used_by(job.id);
-  if (all == kNever) return {};
-  return all - Nanoseconds{job.used_before.load(std::memory_order_relaxed)};
+void Supervisor::quit() noexcept {
+  quits_.store(true, std::memory_order_relaxed);
+  checks_.ring();
 }
 
-// Where the most urgent job has not begun yet, nobody else of the list has run since the last look.
-void PreemptiveExecutor::charge_running(Nanoseconds now) noexcept {
-  if (labels_.size() == 0) return;
-  JobThread& top = *of_task_[labels_.jobs().back().task.index];
-  if (top.phase == JobPhase::kBegun) charge(top, now);
-}
-
-// Looks at what a job that has begun has used by now, and acts on it.
-void PreemptiveExecutor::charge(JobThread& job, Nanoseconds now) noexcept {
-  const TaskSpec& s = spec(job);
-  const bool by_laxity = labels_.policy() == Policy::kMufLaxity;
-  if (s.budget == Nanoseconds{} && !job.served && now < job.job.deadline) return;
-  const Nanoseconds all = used_by(job.id);
-  if (all == kNever) return bury(job, now);
-  const Nanoseconds spent = all - Nanoseconds{job.used_before.load(std::memory_order_relaxed)};
-  const Nanoseconds allowed = s.budget > Nanoseconds{} ? s.budget : s.period;
-  if (spent > allowed * kHangsAfter || sleeps_for_ever(job, spent, now)) return hang(job, spent, now);
-  const bool is_reported = releases_.misses().is_reported_overrun(job.task);
-  if (s.budget > Nanoseconds{} && spent > s.budget && !is_reported) return overrun(job, now);
-  if (!by_laxity || job.is_demoted) return;
-  (void)apply(labels_.rekey(job.task, urgency_of(job, std::max(s.budget - spent, Nanoseconds{}))), nullptr);
-  processor_goes_on(now);
-}
-
-// Seen while the job still runs: what can be done at once is done at once; the rest at its end.
-void PreemptiveExecutor::overrun(JobThread& job, Nanoseconds now) noexcept {
-  if (!releases_.misses().report_overrun(job.task, job.cycle, used(job), now)) return;
-  const OnMiss reaction = spec(job).on_overrun;
-  if (reaction == OnMiss::kDemote) demote(job, now);
-  if (reaction == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
-  if (releases_.settlement().is_unsettled(job.task)) ring_edge();
-}
-
-// Its deadline has come; how late it is, is for its end to say.
-void PreemptiveExecutor::tell_late(const JobThread& job, bool has_begun) noexcept {
-  releases_.misses().report_late(job.job, has_begun);
-  if (releases_.settlement().is_unsettled(job.task)) ring_edge();
-}
-
-// It used nothing since the last look, and nobody more urgent had the processor.
-bool PreemptiveExecutor::sleeps_for_ever(JobThread& job, Nanoseconds spent, Nanoseconds now) noexcept {
-  const Nanoseconds period = spec(job).period, since = std::min(now - job.seen_at, period);
-  const bool sleeps = spent == job.seen_used && (job.is_demoted || &job == running());
-  if (spent != job.seen_used) job.slept = {};
-  if (sleeps) job.slept += since;
-  job.seen_used = spent;
-  job.seen_at = now;
-  return job.slept > std::max(kSleepsAtMost, period * kHangsAfter);
-}
-
-// Its thread ended in the body: nobody else would say that the job is over, and its task has no thread any more.
-void PreemptiveExecutor::bury(JobThread& job, Nanoseconds now) noexcept {
-  job.phase = JobPhase::kNone;
-  job.check = kNever;
-  job.is_hanging = true;
-  releases_.jobs().close(job.task);
-  (void)apply(labels_.remove(job.task), nullptr);
-  processor_goes_on(now);
-  releases_.tap().record_now(TapKind::kHang, now, job.task, job.cycle);
-  ring_edge();
-}
-
-// Others keep their deadlines; whoever runs the context ends it, for nothing else ends the job.
-void PreemptiveExecutor::hang(JobThread& job, Nanoseconds spent, Nanoseconds now) noexcept {
-  if (job.is_given_up) return;
-  job.is_given_up = job.is_hanging = true;
-  demote(job, now);
-  releases_.tap().record_now(TapKind::kHang, now, job.task, job.cycle, spent.count);
-  ring_edge();
-}
-
-void PreemptiveExecutor::demote(JobThread& job, Nanoseconds now) noexcept {
-  if (job.is_demoted) return;
-  if (job.phase == JobPhase::kBegun) record_slice(job, now);
-  job.is_demoted = true;
-  if (job.served && job.served->is_halted) job.served->halt.lift();
-  ++task(job).profile.demoted;
-  (void)apply(labels_.remove(job.task), nullptr);
-  processor_goes_on(now);
-  if (has_levels_) set_below_all(job.carrier);
-}
-
-// A job that waits is taken back; its thread goes to sleep again.
-void PreemptiveExecutor::cancel(JobThread& job, Nanoseconds now) noexcept {
-  job.phase = JobPhase::kCancelled;
-  job.check = kNever;
-  releases_.jobs().close(job.task);
-  (void)apply(labels_.remove(job.task), nullptr);
-  processor_goes_on(now);
-  if (has_levels_) set_level(job.carrier, place_.ceiling);
-}
-
-// A job that is alone is looked at a little late: then one alarm does for several jobs. To set one for each would cost
-// more than the rest of its release (it becomes the first timer of the CPU), and nobody waits for it.
-Nanoseconds PreemptiveExecutor::alarm_for(Nanoseconds check, bool is_exact) const noexcept {
-  return is_exact || labels_.size() > 1 ? check : check + kLax;
-}
-
-void PreemptiveExecutor::watch(JobThread& job, Nanoseconds check) noexcept {
-  job.check = check;
-  const TaskSpec& s = spec(job);
-  const bool is_exact = (acts_at_once(s.on_overrun) && s.budget > Nanoseconds{}) || s.on_miss == OnMiss::kDemote ||
-                        job.served.has_value();
-  // A second job in the list: the first one's check counts from here on.
-  if (is_lax_ && labels_.size() > 1) {
-    for (const LabelledJob& other : labels_.jobs()) check = std::min(check, of_task_[other.task.index]->check);
-    is_lax_ = false;
-  }
-  const Nanoseconds wanted = alarm_for(check, is_exact);
-  is_lax_ = is_lax_ || wanted > check;
-  if (wanted < armed_) arm(wanted);
-}
-
-// Nobody is ready: what the alarm was set for is over, but for jobs that are demoted or halted. No other job can be
-// late before the shortest deadline has passed. To move the alarm here costs less than a look of the supervisor, and
-// less than to set it at the next release, where somebody waits.
-void PreemptiveExecutor::put_off_alarm(Nanoseconds now) noexcept {
-  if (labels_.size() > 0 || armed_ > now + shortest_ + kMargin) return;
-  Nanoseconds next = now + shortest_ + kLax;
-  for (const JobThread& job : threads_) next = std::min(next, job.check);
-  if (next > armed_) arm(next);
-}
-
-void PreemptiveExecutor::arm(Nanoseconds instant) noexcept {
-  armed_ = instant;
-  alarm_.set(instant);
-}
-
-void PreemptiveExecutor::supervise() {
-  if (has_levels_) (void)enter_realtime({place_.ceiling, place_.cpu, false});
-  ++n_ready_;
-  while (!quits_) {
-    alarm_.wait();
-    enter();
-    ++counts_.supervised;
-    if (!quits_) look_at_jobs(clock_.now());
-    leave();
+void Supervisor::run(std::atomic<std::size_t>& n_attached) noexcept {
+  ready_.attach_thread();
+  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of whoever starts the threads
+  for (bool is_over = false; !is_over;) {
+    checks_.wait();
+    processor_.enter();
+    ++processor_.counts().supervised;
+    is_over = quits_.load(std::memory_order_relaxed);
+    if (!is_over) check_jobs(clock_.now());
+    processor_.leave();
   }
 }
 
-void PreemptiveExecutor::look_at_jobs(Nanoseconds now) noexcept {
-  charge_running(now);
+void Supervisor::check_jobs(Nanoseconds now) noexcept {
+  check_running(now);
   Nanoseconds next = kNever;
-  for (JobThread& job : threads_) {
-    if (job.check <= now) look_at(job, now);
-    next = std::min(next, job.check);
+  for (JobThread& job : ready_.threads()) {
+    if (checks_.due(job) <= now) check(job, now);
+    next = std::min(next, checks_.due(job));
   }
-  is_lax_ = false;
-  if (labels_.size() == 0) next = std::min(next, next_late(now));
-  if (next != kNever) next = std::max(next, now + kSoonest);
-  if (labels_.policy() == Policy::kMufLaxity && labels_.size() > 1) next = std::min(next, next_quantum(now));
-  arm(next);
+  if (ready_.size() == 0) next = std::min(next, next_late(now));
+  if (next != kNever) next = std::max(next, now + kMinAlarmGap);
+  if (ready_.policy() == Policy::kMufLaxity && ready_.size() > 1) next = std::min(next, processor_.next_quantum(now));
+  checks_.rearm(next);
   keep_share(now, nullptr);
 }
 
 // When a job that is to come would be seen to be late, if it were alone.
-Nanoseconds PreemptiveExecutor::next_late(Nanoseconds now) const noexcept {
+Nanoseconds Supervisor::next_late(Nanoseconds now) const noexcept {
   Nanoseconds next = kNever;
-  for (const JobThread& job : threads_) {
-    const bool comes = job.is_joined && !job.served && job.phase == JobPhase::kNone && job.next < until_;
-    const Nanoseconds late = comes ? job.next + spec(job).deadline + kLax : kNever;
-    if (late > now) next = std::min(next, late);  // else something keeps it from being released
+  for (const JobThread& job : std::as_const(ready_).threads()) {
+    const bool comes = job.is_on && !job.sporadic && job.is_idle() && job.next_release < processor_.window().end;
+    const Nanoseconds late = comes ? job.next_release + job.spec.deadline + JobChecks::kCoalesceWindow : kNever;
+    if (late > now) next = std::min(next, late);  // else something keeps the job from being released
   }
   return next;
 }
 
-void PreemptiveExecutor::look_at(JobThread& job, Nanoseconds now) noexcept {
-  JobPhase phase = JobPhase::kWaiting;
-  if (job.phase.compare_exchange_strong(phase, JobPhase::kChanged)) return look_at_waiting(job, now);
-  if (phase == JobPhase::kBegun) return look_at_begun(job, now);
-  job.check = kNever;
+void Supervisor::check(JobThread& job, Nanoseconds now) noexcept {
+  if (job.try_claim()) return check_claimed(job, now);
+  if (job.is_running()) return check_begun(job, now);
+  checks_.clear(job);
 }
 
-// Its deadline, or its next release, came before it was dispatched.
-void PreemptiveExecutor::look_at_waiting(JobThread& job, Nanoseconds now) noexcept {
-  const TaskSpec& s = spec(job);
-  if (job.served) {
+// The deadline of the job, or its next release, came before it was dispatched.
+void Supervisor::check_claimed(JobThread& job, Nanoseconds now) noexcept {
+  if (job.sporadic) {
     follow_server(job, now);
-    job.phase = JobPhase::kWaiting;
-    return;
+    return job.unclaim();
   }
-  if (now >= job.job.deadline) tell_late(job, false);
-  if (s.on_miss == OnMiss::kAbort && now >= job.job.deadline) {
-    releases_.misses().expire_unstarted(job.job);
-    cancel(job, now);
-  } else if (now >= job.next && job.next < until_) {
-    const std::int64_t passed = (newest_instant(now) - job.next) / s.period;
-    const Nanoseconds release = job.next + s.period * passed;
-    releases_.misses().drop({job.task, release - s.period, static_cast<std::uint32_t>(passed + 1)});
-    job.job = {job.task, release, release + s.deadline};
-    releases_.misses().forget_reports(job.task);
-    job.next = release + s.period;
-    (void)apply(labels_.rekey(job.task, urgency_of(job, s.budget)), nullptr);
-    processor_goes_on(now);
-  }
-  if (releases_.misses().has_lost_patience() && job.phase != JobPhase::kCancelled) cancel(job, now);
-  if (releases_.misses().has_lost_patience()) {
+  if (now >= job.job.deadline) report_late(job, false);
+  const bool is_expired = job.spec.on_miss == OnMiss::kAbort && now >= job.job.deadline;
+  if (is_expired) releases_.misses().expire_unstarted(job.job);
+  else if (now >= job.next_release && job.next_release < processor_.window().end) follow_release(job, now);
+  const bool is_starved = releases_.misses().has_lost_patience();
+  if (is_starved) {
     job.is_held = true;
-    ring_edge();
+    processor_.edge_bell().ring();
   }
-  if (job.phase == JobPhase::kCancelled) return;
-  job.phase = JobPhase::kWaiting;
-  const Nanoseconds next = job.next < until_ ? job.next : kNever;
-  job.check = now < job.job.deadline ? std::min(next, job.job.deadline) : next;
+  if (is_expired || is_starved) return processor_.cancel(job, now);
+  job.unclaim();
+  const Nanoseconds next = job.next_release < processor_.window().end ? job.next_release : kNever;
+  checks_.set(job, now < job.job.deadline ? std::min(next, job.job.deadline) : next);
 }
 
-void PreemptiveExecutor::look_at_begun(JobThread& job, Nanoseconds now) noexcept {
-  const TaskSpec& s = spec(job);
+// The job takes the newest release that has come; the one it had is dropped, and those in between.
+void Supervisor::follow_release(JobThread& job, Nanoseconds now) noexcept {
+  const TaskSpec& s = job.spec;
+  const std::int64_t passed = (processor_.window().newest(now) - job.next_release) / s.period;
+  const Nanoseconds release = job.next_release + s.period * passed;
+  releases_.misses().drop({job.id, release - s.period, static_cast<std::uint32_t>(passed + 1)});
+  job.job = {job.id, release, release + s.deadline};
+  releases_.misses().forget_reports(job.id);
+  job.next_release = release + s.period;
+  ready_.rekey(job, s.budget);
+  processor_.dispatch(now);
+}
+
+void Supervisor::check_begun(JobThread& job, Nanoseconds now) noexcept {
+  const TaskSpec& s = job.spec;
   charge(job, now);
-  if (job.phase != JobPhase::kBegun) return;  // its thread is gone
+  if (!job.is_running()) return;  // its thread is gone, or it has ended meanwhile
   const bool is_late = now >= job.job.deadline;
-  if (is_late) tell_late(job, true);
-  if (is_late && s.on_miss == OnMiss::kDemote) demote(job, now);
-  if (is_late && s.on_miss == OnMiss::kAbort) task(job).give_up.store(true, std::memory_order_relaxed);
-  if (job.served && !job.is_demoted) return follow_server(job, now);
-  job.check = now < job.job.deadline && !job.served ? job.job.deadline : now + s.period;
-  if (&job == on_processor_) job.check = std::min(job.check, end_of_budget(job, now));
+  if (is_late) report_late(job, true);
+  if (is_late && s.on_miss == OnMiss::kDemote) processor_.demote(job, now);
+  if (is_late && s.on_miss == OnMiss::kAbort) job.task.give_up.store(true, std::memory_order_relaxed);
+  if (job.sporadic && !job.is_demoted) return follow_server(job, now);
+  Nanoseconds next = is_late || job.sporadic ? now + s.period : job.job.deadline;
+  if (&job == processor_.on_processor()) next = std::min(next, processor_.end_of_budget(job, now));
+  checks_.set(job, next);
 }
 
-// When a job that runs will have used up its budget, where that is to be seen at once; kNever otherwise. One that has
-// used nothing since the last look sleeps in a system call: nobody waits for that at every instant.
-Nanoseconds PreemptiveExecutor::end_of_budget(JobThread& job, Nanoseconds now) noexcept {
-  const TaskSpec& s = spec(job);
-  const bool is_reported = releases_.misses().is_reported_overrun(job.task);
-  if (!acts_at_once(s.on_overrun) || s.budget == Nanoseconds{} || is_reported) return kNever;
-  const Nanoseconds spent = used(job), last = job.charged;
-  job.charged = spent;
-  return now + std::max(s.budget - spent, spent == last ? kSeldom : kSoonest);
+// Where the most urgent job has not begun yet, no other job of the list has run since the last look.
+void Supervisor::check_running(Nanoseconds now) noexcept {
+  JobThread* const top = ready_.most_urgent();
+  if (top != nullptr && top->is_running()) charge(*top, now);
+}
+
+void Supervisor::charge(JobThread& job, Nanoseconds now) noexcept {
+  const TaskSpec& s = job.spec;
+  const bool has_budget = s.budget > Nanoseconds{};
+  if (!has_budget && !job.sporadic && now < job.job.deadline) return;
+  const Nanoseconds all = used_by(job.thread());
+  if (all == kNever) return reap(job, now);
+  const Nanoseconds used = all - job.used_before();
+  const Nanoseconds allowed = has_budget ? s.budget : s.period;
+  if (used > allowed * kBudgetsOfAHangingJob || sleeps_for_good(job, used, now)) return give_up(job, used, now);
+  if (has_budget && used > s.budget && !releases_.misses().is_reported_overrun(job.id)) return overrun(job, now);
+  if (ready_.policy() != Policy::kMufLaxity || job.is_demoted) return;
+  ready_.rekey(job, std::max(s.budget - used, Nanoseconds{}));
+  processor_.dispatch(now);
+}
+
+// Seen while the job still runs: what can be done at once is done at once; the rest at its end.
+void Supervisor::overrun(JobThread& job, Nanoseconds now) noexcept {
+  if (!releases_.misses().report_overrun(job.id, job.cycle, job.used(), now)) return;
+  const OnMiss reaction = job.spec.on_overrun;
+  if (reaction == OnMiss::kDemote) processor_.demote(job, now);
+  if (reaction == OnMiss::kAbort) job.task.give_up.store(true, std::memory_order_relaxed);
+  if (releases_.settlement().is_unsettled(job.id)) processor_.edge_bell().ring();
+}
+
+// The deadline of the job has come; how late the job is, is known at its end.
+void Supervisor::report_late(const JobThread& job, bool has_begun) noexcept {
+  releases_.misses().report_late(job.job, has_begun);
+  if (releases_.settlement().is_unsettled(job.id)) processor_.edge_bell().ring();
+}
+
+// The job used nothing since the last look, and no more urgent one had the processor.
+bool Supervisor::sleeps_for_good(const JobThread& job, Nanoseconds used, Nanoseconds now) noexcept {
+  Seen& last = seen(job);
+  const Nanoseconds period = job.spec.period, since = std::min(now - last.at, period);
+  const bool is_asleep = used == last.used && (job.is_demoted || &job == ready_.most_urgent_running());
+  if (used != last.used) last.slept = {};
+  if (is_asleep) last.slept += since;
+  last.used = used;
+  last.at = now;
+  return last.slept > std::max(kSleepOfAHangingJob, period * kPeriodsOfAHangingJob);
+}
+
+// The other jobs keep their deadlines; the owner of the context ends it, for nothing else ends the job.
+void Supervisor::give_up(JobThread& job, Nanoseconds used, Nanoseconds now) noexcept {
+  Seen& of_job = seen(job);
+  if (of_job.is_given_up) return;
+  of_job.is_given_up = of_job.is_unreported = true;
+  processor_.demote(job, now);
+  releases_.tap().record_now(TapKind::kHang, now, job.id, job.cycle, used.count);
+  processor_.edge_bell().ring();
+}
+
+// The thread ended in the body: nobody else says that the job is over, and its task has no thread any more.
+void Supervisor::reap(JobThread& job, Nanoseconds now) noexcept {
+  job.lose_thread();
+  checks_.clear(job);
+  seen(job).is_unreported = true;
+  releases_.jobs().close(job.id);
+  ready_.remove(job);
+  processor_.dispatch(now);
+  releases_.tap().record_now(TapKind::kHang, now, job.id, job.cycle);
+  processor_.edge_bell().ring();
+}
+
+bool Supervisor::pop_hanging(const JobThread& job) noexcept { return std::exchange(seen(job).is_unreported, false); }
+
+void Supervisor::forget(const JobThread& job) noexcept { seen(job).is_given_up = false; }
+
+void Supervisor::watch_released(JobThread& job, Nanoseconds now) noexcept {
+  Seen& of_job = seen(job);
+  of_job.at = job.job.release;
+  of_job.slept = {};
+  Nanoseconds check = job.sporadic ? processor_.next_server_check(job, now)
+                                   : std::min(job.next_release, job.job.deadline);
+  if (JobChecks::acts_at_end_of_budget(job.spec)) check = std::min(check, now + job.spec.budget);
+  if (ready_.policy() == Policy::kMufLaxity && ready_.size() > 1) check = std::min(check, processor_.next_quantum(now));
+  checks_.watch(job, check, ready_.size());
+}
+
+// A job that is ready, runs or is halted: what its server has says where the job belongs, and until when.
+void Supervisor::follow_server(JobThread& job, Nanoseconds now) noexcept {
+  SporadicThread& server = *job.sporadic;
+  server.charge(job.thread(), job.is_demoted);
+  const SporadicJob::Grant grant = server.job().grant(now);
+  const bool has_begun = job.is_running();
+  if (has_begun && !grant.may_run && !server.is_halted()) {
+    server.halt();
+    ++job.task.profile.exhausted;
+    ready_.remove(job);
+    processor_.dispatch(now);
+  } else if (has_begun && grant.may_run && server.is_halted()) {
+    (void)ready_.insert(job, server.job().deadline(), job.spec.budget, nullptr);
+    processor_.dispatch(now);
+    server.resume();
+  } else if (grant.has_another_deadline && !server.is_halted()) {
+    ready_.rekey(job, job.spec.budget);
+    processor_.dispatch(now);
+  }
+  checks_.set(job, processor_.next_server_check(job, now));
+}
+
+// Less important tasks may use what the others do not need. Only where the others alone use too much one of them is
+// demoted, the least urgent first.
+void Supervisor::keep_share(Nanoseconds now, const JobThread* own) noexcept {
+  if (!share_.is_limited() || ready_.size() == 0) return;
+  const Nanoseconds left = share_.left(now);
+  for (std::size_t i = 0; left <= Nanoseconds{} && i < ready_.size(); ++i) {
+    JobThread& job = ready_[i];
+    const bool is_there = &job != own && (job.is_ready() || job.is_running());
+    const bool is_most_urgent = i + 1 == ready_.size();
+    const bool is_over_budget = releases_.misses().is_reported_overrun(job.id);
+    if (!is_there || !share_.may_demote(job.id, is_over_budget, is_most_urgent, now)) continue;
+    demote_for_share(job, now);
+    break;
+  }
+  checks_.arm_by(now + std::max(left, kMinShareGap));
+}
+
+void Supervisor::demote_for_share(JobThread& job, Nanoseconds now) noexcept {
+  const bool is_claimed = job.try_claim();
+  if (!is_claimed && !job.is_running()) return;
+  processor_.demote(job, now);
+  if (is_claimed) job.unclaim();
+  if (share_.note_demoted(job.id, now)) processor_.edge_bell().ring();
 }
 
 }  // namespace chimera

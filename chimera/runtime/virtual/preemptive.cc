@@ -13,7 +13,7 @@ Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, Mode
   const Policy policy = releases.queue().policy();
   by_laxity_ = policy == Policy::kLlf || policy == Policy::kMufLaxity;
   for (std::uint32_t i = 0; i < tasks.size(); ++i) {
-    if (tasks[i].server) served_.push_back({.task = TaskId(i), .server = {}, .job = {}});
+    if (tasks[i].server) sporadic_.push_back({TaskId(i), SporadicJob(*tasks[i].server)});
     else if (tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back(i);
     if (tasks[i].on_miss == OnMiss::kDemote) demoters_.push_back(i);
     if (tasks[i].on_miss == OnMiss::kDemote || tasks[i].on_overrun == OnMiss::kDemote) has_demotion_ = true;
@@ -35,11 +35,11 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
         leave_processor();
         return RunEnd::kTime;
       }
-      if (releases_.edge_is_due(now)) take_edge(now);
+      if (releases_.edge_is_due(now)) run_edge(now);
       releases_.release_due(now);
       releases_.rest(until);
     }
-    if (!served_.empty()) follow_servers(now);
+    if (!sporadic_.empty()) follow_servers(now);
     if (dispatch(now)) continue;
     const bool idle = !running_.is_valid() && releases_.queue().is_empty();
     if (idle && !releases_.anything_left()) return RunEnd::kNothingLeft;
@@ -98,11 +98,11 @@ void Preemptive::use_processor(Nanoseconds until) noexcept {
   Active& a = active_[running_.index];
   a.used += until - mark_;
   a.remaining -= until - mark_;
-  if (served_.empty()) {
+  if (sporadic_.empty()) {
     mark_ = until;
     return;
   }
-  if (Served* s = served(running_); s != nullptr && !a.is_demoted) s->server.charge(until - mark_);
+  if (SporadicTask* s = sporadic(running_); s != nullptr && !a.is_demoted) s->job.charge(until - mark_);
   mark_ = until;
 }
 
@@ -128,8 +128,8 @@ void Preemptive::end(Active& a, Nanoseconds now) noexcept {
   if (a.is_demoted) (void)std::remove(demoted_.begin(), demoted_.begin() + n_demoted_--, a.job.task);
   a.is_demoted = false;
   releases_.queue().finish(a.job.task);
-  if (!served_.empty()) forget(a.job.task);
-  releases_.end_job(served_.empty() ? a.job : without_server(a.job), a.time, a.body, a.first_start, now, a.used);
+  if (!sporadic_.empty()) finish_event(a.job.task);
+  releases_.end_job(sporadic_.empty() ? a.job : without_server(a.job), a.time, a.body, a.first_start, now, a.used);
 }
 
 void Preemptive::expire(Nanoseconds now) noexcept {
@@ -188,7 +188,7 @@ void Preemptive::demote(TaskId task) noexcept {
   ++releases_.task(task).profile.demoted;
 }
 
-void Preemptive::take_edge(Nanoseconds& now) noexcept {
+void Preemptive::run_edge(Nanoseconds& now) noexcept {
   clock_.set(now);
   releases_.take_edge(now);
   if (clock_.spent() == Nanoseconds{}) return;
@@ -211,7 +211,7 @@ bool Preemptive::dispatch(Nanoseconds& now) noexcept {
       if (!must_yield()) return false;
       preempt(now);
     }
-    if (!take_processor(queue.pop(), now)) continue;
+    if (!run_job(queue.pop(), now)) continue;
     if (const Nanoseconds end = now + active_[running_.index].remaining; runs_through(end)) {
       now = end;
       use_processor(end);
@@ -246,12 +246,12 @@ bool Preemptive::must_yield() noexcept {
   return is_more_urgent(releases_.queue().policy(), releases_.queue().top_urgency(), mine);
 }
 
-bool Preemptive::take_processor(const Job& job, Nanoseconds now) noexcept {
+bool Preemptive::run_job(const Job& job, Nanoseconds now) noexcept {
   Active& a = active_[job.task.index];
   if (!a.has_begun) {
-    const Job own = served_.empty() ? job : without_server(job);
+    const Job own = sporadic_.empty() ? job : without_server(job);
     if (!releases_.may_start(own, now)) {
-      forget(job.task);
+      finish_event(job.task);
       return false;
     }
     clock_.set(now);

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "chimera/runtime/releases.h"
+#include "chimera/runtime/sporadic_job.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
-#include "chimera/schedule/server_state.h"
 
 namespace chimera {
 
@@ -49,18 +49,15 @@ class Preemptive {
   };
 
   /// A task behind a server.
-  struct Served {
+  struct SporadicTask {
     TaskId task;
-    ServerState server;
-    Job job;                 // with the deadline of the server
-    bool is_active = false;  // an event waits or is served
-    bool has_job = false;
-    bool is_ready = false;   // its job is in the queue or has the processor
+    SporadicJob job;
+    bool is_ready = false;  // the job is in the queue or has the processor
   };
 
   Nanoseconds next_event(Nanoseconds now) noexcept;
   Nanoseconds next_exception(Nanoseconds now) noexcept;
-  bool has_exceptions() const noexcept { return !abandoners_.empty() || has_demotion_ || !served_.empty(); }
+  bool has_exceptions() const noexcept { return !abandoners_.empty() || has_demotion_ || !sporadic_.empty(); }
   Nanoseconds next_deadline() noexcept;
   Nanoseconds next_demotion(Nanoseconds now) noexcept;
   Nanoseconds budget_left(TaskId task) const noexcept;
@@ -71,20 +68,21 @@ class Preemptive {
   void expire(TaskId task) noexcept;
   void demote_due(Nanoseconds now) noexcept;
   void demote(TaskId task) noexcept;
-  void take_edge(Nanoseconds& now) noexcept;
+  void run_edge(Nanoseconds& now) noexcept;
   bool dispatch(Nanoseconds& now) noexcept;
   bool runs_through(Nanoseconds end) const noexcept;
   bool must_yield() noexcept;
   void preempt(Nanoseconds now) noexcept;
-  bool take_processor(const Job& job, Nanoseconds now) noexcept;
+  bool run_job(const Job& job, Nanoseconds now) noexcept;
   void end(Active& active, Nanoseconds now) noexcept;
   void open_servers() noexcept;
   Nanoseconds next_server(Nanoseconds now) noexcept;
   void follow_servers(Nanoseconds now) noexcept;
-  bool take_event(Served& served, Nanoseconds now) noexcept;
-  void stand(Served& served, Nanoseconds now) noexcept;
-  void forget(TaskId task) noexcept;
-  Served* served(TaskId task) noexcept;
+  bool accept_event(SporadicTask& task, Nanoseconds now) noexcept;
+  void apply_grant(SporadicTask& task, Nanoseconds now) noexcept;
+  void halt(SporadicTask& task, Nanoseconds now) noexcept;
+  void finish_event(TaskId task) noexcept;
+  SporadicTask* sporadic(TaskId task) noexcept;
   Job without_server(Job job) noexcept;
 
   Releases& releases_;
@@ -93,7 +91,7 @@ class Preemptive {
   PreemptiveOptions options_;
   std::vector<Active> active_;            // one per task
   std::vector<std::uint32_t> abandoners_;  // tasks with the reaction abort
-  std::vector<Served> served_;
+  std::vector<SporadicTask> sporadic_;
   std::vector<std::uint32_t> demoters_;    // tasks with the reaction demote to a missed deadline
   std::vector<TaskId> demoted_;            // their jobs run when nobody else does, the first until it ends
   std::ptrdiff_t n_demoted_ = 0;

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: the parts of a preemptive executor without its threads and without real-time levels. The test says what
+// time it is and makes the moves of the threads itself; execution time is that of the thread of the test.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "chimera/platform/linux_clock.h"
+#include "chimera/runtime/preemptive/edge_access.h"
+#include "chimera/runtime/preemptive/supervisor.h"
+#include "chimera/runtime/testing/test_application.h"
+
+namespace chimera::testing {
+
+struct Idle {
+  Out<double> y{"y", "1", initial = 0.0};
+  void cycle(Cycle) {}
+  void off(Cycle) {
+    if (during_off) during_off();
+  }
+  static inline std::function<void()> during_off;
+};
+
+/// Counts what is reported.
+class CountingGuest final : public EdgeGuest {
+ public:
+  explicit CountingGuest(const std::atomic<std::uint32_t>& bell) : EdgeGuest(bell) {}
+  void take(EdgeSignals&, Nanoseconds) noexcept override {}
+  void publish() noexcept override {}
+  void told(const SignalReport&, Nanoseconds) noexcept override {}
+  void missed(TaskId, const MissCause::Verdict& verdict, Nanoseconds) noexcept override { verdicts.push_back(verdict); }
+  void hangs(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
+  void gave_way(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
+  void show(const Task&) noexcept override {}
+
+  std::vector<MissCause::Verdict> verdicts;
+};
+
+/// Tasks are added first; then make().
+class PreemptiveParts {
+ public:
+  TaskSpec& add(const char* name, Nanoseconds period) {
+    TaskSpec& spec = app.add(name, component<Idle>("idle"), period);
+    app.link(app.tasks.size() - 1, 0, name);
+    return spec;
+  }
+  /// All tasks are ON and released on a grid that begins at `origin`.
+  void make(Policy policy = Policy::kEdf, ProcessorPlace where = {}) {
+    place = where;
+    ContextPlace context;
+    context.preemptive = true;
+    auto made = TaskSet::create(app.make(), app.components, context);
+    set = *std::move(made);
+    parts = std::make_unique<Parts>(*this, policy);
+    (void)set->life().start(origin);
+    releases().begin(origin);
+    processor().window().is_paused = false;
+    for (JobThread& job : ready().threads()) {
+      job.attach();
+      job.begin_use();
+      job.is_on = true;
+      job.next_release = origin;
+      if (job.sporadic) job.sporadic->start(job.thread(), origin);
+    }
+  }
+
+  Releases& releases() { return parts->releases; }
+  ReadyJobs& ready() { return parts->ready; }
+  JobChecks& checks() { return parts->checks; }
+  Processor& processor() { return parts->processor; }
+  Supervisor& supervisor() { return parts->supervisor; }
+  EdgeAccess& access() { return parts->access; }
+  JobThread& job(std::uint32_t task) { return *ready().of(TaskId(task)); }
+
+  /// As the thread of the task would: a job of it is ready.
+  JobThread& release(std::uint32_t task, Nanoseconds now) {
+    JobThread& one = job(task);
+    one.job = {one.id, now, one.sporadic ? kNever : now + one.spec.deadline};
+    if (one.sporadic) (void)one.sporadic->job().grant(now);
+    one.next_release = now + one.spec.period;
+    one.is_demoted = false;
+    releases().misses().forget_reports(one.id);
+    one.release();
+    one.task.is_busy = true;
+    (void)ready().insert(one, ReadyJobs::deadline_of(one), one.spec.budget, &one);
+    processor().dispatch(now);
+    supervisor().watch_released(one, now);
+    return one;
+  }
+  /// The same, and it has begun.
+  JobThread& begin(std::uint32_t task, Nanoseconds now) {
+    JobThread& one = release(task, now);
+    one.begin_use();
+    one.begin_slice(now);
+    (void)one.try_begin();
+    return one;
+  }
+  /// Execution time of the thread of the test.
+  static void use(Nanoseconds time) {
+    const Nanoseconds end = used_by_this_thread() + time;
+    while (used_by_this_thread() < end) {
+    }
+  }
+
+  struct Clock final : JobClock {
+    Nanoseconds now() noexcept override { return time; }
+    void spend(Nanoseconds) noexcept override {}
+    Nanoseconds time;
+  };
+  struct Parts {
+    Parts(PreemptiveParts& of, Policy policy)
+        : guest(bell), access(releases, ready, processor, of.clock, of.set->tasks().size()),
+          releases(*of.set, of.clock, options(policy)), ready(*of.set, of.place, policy),
+          share(of.set->tasks(), std::vector<bool>(of.set->tasks().size(), true), policy,
+                {of.place.share, of.place.window}),
+          checks(of.set->tasks().size(), milliseconds(5)), processor(*of.set, releases, ready, share, checks, of.place),
+          supervisor(releases, ready, share, checks, processor, of.clock) {}
+    RunOptions options(Policy policy) {
+      RunOptions made;
+      made.policy = policy;
+      made.guest = &guest;
+      made.threads = &access;
+      made.can_demote = true;
+      return made;
+    }
+
+    std::atomic<std::uint32_t> bell{0};  // pairs with nothing: one thread
+    CountingGuest guest;
+    EdgeAccess access;
+    Releases releases;
+    ReadyJobs ready;
+    ProcessorShare share;
+    JobChecks checks;
+    Processor processor;
+    Supervisor supervisor;
+  };
+
+  /// In an hour: no alarm rings while a test runs.
+  const Nanoseconds origin = LinuxClock().now() + seconds(3600);
+  TestApplication app;
+  ProcessorPlace place;
+  Clock clock;
+  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<Parts> parts;
+};
+
+}  // namespace chimera::testing
