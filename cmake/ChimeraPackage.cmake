@@ -37,7 +37,7 @@ install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk PATTERN completi
 get_property(names GLOBAL PROPERTY chimera_component_names)
 get_property(absent GLOBAL PROPERTY chimera_components_without_library)
 list(FILTER names EXCLUDE REGEX "^t_")
-add_custom_target(product DEPENDS chimera chimera-describe chimera_base)
+add_custom_target(product DEPENDS chimera chimera_pages chimera-describe chimera_base)
 foreach(name IN LISTS names)
   if(TARGET component_${name}_files)
     add_dependencies(product component_${name}_files)
@@ -58,9 +58,9 @@ list(JOIN buildable "\n" buildable)
 file(WRITE ${CMAKE_BINARY_DIR}/components/buildable.txt "${buildable}\n")
 
 # What people read, in the folders of the checkout, so that its links hold: share/chimera/{docs,examples,library}.
-install(FILES share/chimera/completion/chimera.bash RENAME chimera
+install(FILES ${CMAKE_BINARY_DIR}/pages/chimera.bash RENAME chimera
   DESTINATION share/bash-completion/completions COMPONENT documents)
-install(FILES docs/man/chimera.1 DESTINATION share/man/man1 COMPONENT documents)
+install(FILES ${CMAKE_BINARY_DIR}/pages/chimera.1 DESTINATION share/man/man1 COMPONENT documents)
 install(DIRECTORY docs/formats/ DESTINATION share/chimera/schema COMPONENT documents
   FILES_MATCHING PATTERN "*.schema.json")
 install(DIRECTORY examples docs DESTINATION share/chimera COMPONENT documents

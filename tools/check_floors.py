@@ -10,9 +10,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
 FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "rtpu": 6,
-         "text": 6, "units": 7, "description": 8, "catalogue": 9, "verify": 10, "analysis": 11, "keeper": 12,
-         "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "desk": 13, "manager": 13, "record": 13,
-         "shell": 13}
+         "text": 6, "units": 7, "command": 7, "description": 8, "catalogue": 9, "verify": 10, "analysis": 11,
+         "keeper": 12, "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "desk": 13, "manager": 13,
+         "record": 13, "shell": 13}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
                        "chimera/task/number_at.h", "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")

@@ -3,10 +3,12 @@
 #include "chimera/control/methods.h"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
+#include "chimera/task/signal.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::control {
@@ -22,6 +24,17 @@ constexpr MethodRule question(MethodId id, const char* name) { return {id, name,
 
 constexpr Parameter kTasks = {"tasks", Kind::kTexts, true};
 constexpr Parameter kText = {"text", Kind::kText, true}, kFile = {"file", Kind::kText, false};
+
+/// The signals that a client may name, a blank between each two: all before `wakeup`, which is `ring`.
+constexpr auto kSignals = [] {
+  std::array<char, 64> words{};
+  std::size_t end = 0;
+  for (std::uint32_t signal = 0; signal < static_cast<std::uint32_t>(Signal::kWakeup); ++signal) {
+    if (end > 0) words[end++] = ' ';
+    for (const char* c = signal_name(static_cast<Signal>(signal)); *c != '\0'; ++c) words[end++] = *c;
+  }
+  return words;
+}();
 
 // clang-format off
 constexpr MethodRule kMethods[] = {
@@ -41,7 +54,7 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kSchedule, "schedule", Role::kObserve, false, true, {kText, kFile}},
     question(MethodId::kLibrary, "library"),
     {MethodId::kSignal, "signal", Role::kOperate, true, false,
-     {{"signal", Kind::kText, true, "spawn on off kill clear reinit"}, kTasks}},
+     {{"signal", Kind::kText, true, kSignals.data()}, kTasks}},
     {MethodId::kRing, "ring", Role::kOperate, true, false, {kTasks}},
     {MethodId::kSet, "set", Role::kOperate, true, false, {{"values", Kind::kObject, true}}},
     {MethodId::kFlag, "flag", Role::kOperate, true, false, {{"up", Kind::kBool, true}}},

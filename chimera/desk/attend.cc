@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// A run whose tasks are in processes of their own, watched over the control protocol.
 #include "chimera/desk/attend.h"
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/record_line.h"
 #include "chimera/desk/run_report.h"
+#include "chimera/desk/run_session.h"
 #include "chimera/desk/script_text.h"
 #include "chimera/platform/linux_clock.h"
 #include "chimera/platform/process.h"
@@ -61,9 +63,10 @@ Seen seen_of(const Json& reading) {
   return seen;
 }
 
-class Attendance {
+/// Tasks in processes of their own. Context: setup.
+class RemoteTarget final : public RunTarget {
  public:
-  Attendance(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err)
+  RemoteTarget(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err)
       : request_(request),
         run_(request.run),
         sink_(sink),
@@ -73,12 +76,17 @@ class Attendance {
         page_(request.page == nullptr ? own_page_ : *request.page),
         is_resumed_(page_.has_begun != 0) {}
 
-  /// Waits until the tasks are ON. Refuses when they will not be.
-  Result<void> begin();
-  RunEnd attend();
-  int report(RunEnd end);
-  /// Of a start that failed: what was made is turned off and killed all the same, and that is judged.
-  int refuse(const Error& error);
+  /// Refuses when the tasks will not be ON.
+  Result<void> start() override;
+  int refuse(const Error& error) override;
+  std::optional<RunEnd> advance(Nanoseconds until) override;
+  Nanoseconds now() const override { return clock_.now() - started_; }
+  Nanoseconds printed_until() const override { return is_resumed_ ? now() : Nanoseconds{}; }
+  bool shows_values_at(RunEnd end) const override { return end == RunEnd::kStopped; }
+  bool draws(Nanoseconds) override { return false; }
+  std::vector<Reading> read(const std::vector<std::string>& names) override;
+  void finish(RunReport& report) override;
+  bool is_output_complete(const RunReport& report) override;
 
  private:
   Result<void> know_tasks(const Json& status);
@@ -88,8 +96,6 @@ class Attendance {
   void look_at_output();
   void act_next();
   void act(const TimedAct& timed);
-  void watch_line(Nanoseconds at);
-  Json readings(std::vector<std::string> names);
   std::vector<UnitFate> units_of(const Json& status) const;
   std::vector<TaskProfile> profiles(const Json& origin);
   std::optional<Json> await_end();
@@ -102,7 +108,7 @@ class Attendance {
   std::FILE* out_;
   std::FILE* err_;
   ControlLine line_;
-  LinuxClock clock_;
+  mutable LinuxClock clock_;
   TaskNames names_;
   std::vector<TimedAct> acts_;
   std::optional<RecordLine> records_;
@@ -111,7 +117,7 @@ class Attendance {
   FacePage& page_;
   const bool is_resumed_;         // a face that died had begun
   std::optional<Error> failure_;  // of the start
-  Nanoseconds started_ = kNever;
+  Nanoseconds started_ = kNever, next_look_;
   std::uint64_t next_event_ = 0;
   bool task_stopped_ = false;
   std::string stopped_by_;
@@ -119,7 +125,7 @@ class Attendance {
   std::map<std::string, Nanoseconds> restarted_;  // by rtpu, the last time
 };
 
-Result<void> Attendance::begin() {
+Result<void> RemoteTarget::start() {
   Json last = Json::object();
   const Nanoseconds until = run_.start_limit == kNever ? kNever : clock_.now() + run_.start_limit;
   for (bool is_last = false; !is_last;) {
@@ -134,6 +140,7 @@ Result<void> Attendance::begin() {
     if (started_ != kNever) {
       print_grants(*status);
       page_.has_begun = 1;
+      next_look_ = is_resumed_ ? clock_.now() : started_;
       return know_tasks(*status);
     }
     if (clock_.now() >= until) {
@@ -147,7 +154,7 @@ Result<void> Attendance::begin() {
   return Error{ErrorCode::kRefused, std::string_view(why), {}};
 }
 
-Result<void> Attendance::know_tasks(const Json& status) {
+Result<void> RemoteTarget::know_tasks(const Json& status) {
   names_ = TaskNames::of(status);
   auto acts = parse_script(run_.at, names_.spec());
   if (!acts) return acts.error();
@@ -169,7 +176,7 @@ std::string in_one_line(const std::string& grant) {
   return line;
 }
 
-void Attendance::print_grants(const Json& status) {
+void RemoteTarget::print_grants(const Json& status) {
   const Json& rtpus = status["rtpus"];
   for (const Json& rtpu : rtpus) {
     const std::string grant = for_terminal(rtpu.value("grant", ""));
@@ -187,7 +194,7 @@ void Attendance::print_grants(const Json& status) {
 }
 
 /// Before the start a task that cannot be made, or an `on` refused, is the end of it.
-void Attendance::look_at_events() {
+void RemoteTarget::look_at_events() {
   for (bool is_all = false; !is_all;) {
     const auto answer = line_.ask("events", {{"since", next_event_}, {"limit", kEventsAtOnce}});
     if (!answer) return;
@@ -198,7 +205,7 @@ void Attendance::look_at_events() {
 }
 
 /// What is printed may be lost: that is told, and nothing else changes.
-void Attendance::look_at_output() {
+void RemoteTarget::look_at_output() {
   const int why = request_.outlet == nullptr ? 0 : request_.outlet->why_lost();
   if (why == 0 || page_.lost_output != 0) return;
   page_.lost_output = why;
@@ -206,7 +213,7 @@ void Attendance::look_at_output() {
   if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR2);
 }
 
-void Attendance::take_event(const Json& event) {
+void RemoteTarget::take_event(const Json& event) {
   next_event_ = event["number"].get<std::uint64_t>() + 1;
   const std::string kind = event.value("kind", ""), text = event.value("text", "");
   const Json about = event.value("task", Json());
@@ -226,20 +233,20 @@ void Attendance::take_event(const Json& event) {
   stopped_by_ = task;
 }
 
-std::string Attendance::since_start(Nanoseconds at) const {
+std::string RemoteTarget::since_start(Nanoseconds at) const {
   char text[32];
   std::snprintf(text, sizeof text, "%.3f s", to_seconds(at - started_));
   return text;
 }
 
 /// One that was begun by a face that died is not done twice.
-void Attendance::act_next() {
+void RemoteTarget::act_next() {
   const TimedAct& timed = acts_[page_.acts_begun++];
   act(timed);
   ++page_.acts_done;
 }
 
-void Attendance::act(const TimedAct& timed) {
+void RemoteTarget::act(const TimedAct& timed) {
   const ScriptAct& act = timed.act;
   const bool is_set = act.kind == ScriptAct::Kind::kSet;
   const bool is_signal = act.kind == ScriptAct::Kind::kSignal;
@@ -256,59 +263,46 @@ void Attendance::act(const TimedAct& timed) {
   refused_ += "refused at " + since_start(clock_.now()) + ": " + what + ": " + answer.error().message.c_str() + "\n";
 }
 
-Json Attendance::readings(std::vector<std::string> names) {
-  if (names.empty()) return Json::object();
-  const auto answer = line_.ask("get", {{"variables", std::move(names)}});
-  return answer ? answer->value("values", Json::object()) : Json::object();
-}
-
-void Attendance::watch_line(Nanoseconds at) {
-  if (run_.watch.empty() || run_.json) return;
-  const Json values = readings(run_.watch);
-  std::string line = "t " + since_start(at);
-  for (const std::string& name : run_.watch) {
-    const Seen seen = seen_of(values.value(name, Json::object()));
-    line += "  " + name + " " + (seen.is_written ? seen.text : "not written yet");
+std::vector<Reading> RemoteTarget::read(const std::vector<std::string>& names) {
+  Json values = Json::object();
+  if (!names.empty())
+    if (const auto answer = line_.ask("get", {{"variables", names}}); answer)
+      values = answer->value("values", Json::object());
+  std::vector<Reading> readings;
+  for (const std::string& name : names) {
+    const Json reading = values.value(name, Json::object());
+    readings.push_back({seen_of(reading), reading.value("unit", "1"), reading.value("value", Json()).dump()});
   }
-  std::fprintf(out_, "%s\n", plain_line(line).c_str());
-  std::fflush(out_);
+  return readings;
 }
 
-RunEnd Attendance::attend() {
-  const Nanoseconds end = run_.duration == kNever ? kNever : started_ + run_.duration;
-  Nanoseconds next_watch = run_.watch.empty() ? kNever : started_ + run_.every;
-  while (is_resumed_ && next_watch < clock_.now()) next_watch += run_.every;
-  Nanoseconds next_look = is_resumed_ ? clock_.now() : started_;
+std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
+  const bool is_last = until == run_.duration;
+  const Nanoseconds end = until == kNever ? kNever : started_ + until;
   for (;;) {
     const std::size_t next_act = page_.acts_begun;
     const Nanoseconds act_at = next_act < acts_.size() ? started_ + acts_[next_act].act.at : kNever;
-    const Nanoseconds next = std::min({next_watch, next_look, act_at, end});
+    const Nanoseconds next = std::min({next_look_, act_at, end});
     while (clock_.now() < next && !stop_is_requested()) {
       if (records_)
         records_->take(next, *sink_);
       else
         clock_.wait_until(next);
     }
-    if (stop_is_requested()) {
-      watch_line(clock_.now());
-      return RunEnd::kStopped;
-    }
+    if (stop_is_requested()) return RunEnd::kStopped;
     if (next == act_at) act_next();
-    if (next == next_watch) {
-      watch_line(next);
-      next_watch += run_.every;
-    }
-    if (next == next_look) {
+    if (next == end && !is_last) return std::nullopt;  // the values are shown first
+    if (next == next_look_) {
       look_at_events();
       look_at_output();
-      next_look += kLookEvery;
+      next_look_ += kLookEvery;
     }
     if (task_stopped_) return RunEnd::kTaskStopped;
     if (next == end) return RunEnd::kTime;
   }
 }
 
-std::vector<UnitFate> Attendance::units_of(const Json& status) const {
+std::vector<UnitFate> RemoteTarget::units_of(const Json& status) const {
   std::vector<UnitFate> units;
   for (const Json& rtpu : status.value("rtpus", Json::array())) {
     UnitFate unit{
@@ -319,7 +313,7 @@ std::vector<UnitFate> Attendance::units_of(const Json& status) const {
   return units;
 }
 
-std::vector<TaskProfile> Attendance::profiles(const Json& origin) {
+std::vector<TaskProfile> RemoteTarget::profiles(const Json& origin) {
   const auto answer = line_.ask("profile", Json::object());
   if (!answer) return {};
   const auto parsed = parse_profiles((*answer)["tasks"].dump(), instant(origin));
@@ -332,7 +326,7 @@ bool any_lives(const Json& status) {
 }
 
 /// Has the tasks turned off and killed, and hears of everything that happens meanwhile: the status after that.
-std::optional<Json> Attendance::await_end() {
+std::optional<Json> RemoteTarget::await_end() {
   if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR1);
   auto after = line_.ask("status", Json::object());
   for (const Nanoseconds until = clock_.now() + kEndLimit; after && any_lives(*after) && clock_.now() < until;) {
@@ -344,7 +338,7 @@ std::optional<Json> Attendance::await_end() {
 }
 
 /// Takes what the last methods of the tasks left: what fails there belongs to the run.
-void Attendance::judge_end(RunReport& report, const Json& before) {
+void RemoteTarget::judge_end(RunReport& report, const Json& before) {
   std::vector<UnitFate> units = units_of(before);
   std::vector<std::uint64_t> faults;
   for (const TaskProfile& task : report.profiles) faults.push_back(task.faults.count);
@@ -374,8 +368,9 @@ void Attendance::judge_end(RunReport& report, const Json& before) {
     report.verdict.failures.emplace_back("nobody answered at the end: how the tasks ended is not known");
 }
 
-int Attendance::refuse(const Error& error) {
-  const Output output = refused(error, run_.json);
+/// What was made is turned off and killed all the same, and that is judged.
+int RemoteTarget::refuse(const Error& error) {
+  const CommandResult output = refused(error, run_.json);
   std::fputs(output.out.c_str(), out_);
   std::fputs(output.err.c_str(), err_);
   std::fflush(out_);
@@ -384,57 +379,37 @@ int Attendance::refuse(const Error& error) {
   return output.code;
 }
 
-int Attendance::report(RunEnd end) {
-  const Nanoseconds now = clock_.now();
-  std::vector<std::string> names = run_.watch;
-  RunReport report{.end = end,
-                   .stopped_by = {},
-                   .is_flag_up = false,
-                   .ran = std::min(now - started_, run_.duration),
-                   .subsystem = names_.subsystem,
-                   .executor = grants_,
-                   .refused = {},
-                   .profiles = {},
-                   .origin = started_,
-                   .variables = {},
-                   .expectations = {},
-                   .verdict = {}};
-  for (std::size_t i = 0; i < run_.expect.size(); ++i)
-    if (auto expectation = Expectation::with_bound(run_.expect[i], request_.bounds[i]); expectation)
-      names.push_back(expectation->variable());
-  const Json values = readings(names);
+void RemoteTarget::finish(RunReport& report) {
   const auto status = line_.ask("status", Json::object());
   if (status) report.profiles = profiles((*status)["origin_ns"]);
-  if (status) report.is_flag_up = status->value(Json::json_pointer("/flag/up"), false);
+  report.is_flag_up = status && status->value(Json::json_pointer("/flag/up"), false);
   look_at_events();
+  report.subsystem = names_.subsystem;
+  report.executor = grants_;
+  report.origin = started_;
   report.stopped_by = stopped_by_;
   report.refused = refused_;
-  for (std::size_t i = 0; i < run_.expect.size(); ++i) {
-    const auto expectation = Expectation::with_bound(run_.expect[i], request_.bounds[i]);
-    if (expectation) report.judge(*expectation, seen_of(values.value(expectation->variable(), Json::object())));
-  }
-  for (const std::string& name : run_.watch) {
-    const Json reading = values.value(name, Json::object());
-    report.variables.push_back({name, reading.value("unit", "1"), reading.value("value", Json()).dump()});
-  }
   if (records_) records_->finish(*sink_);
   judge_end(report, status ? *status : Json::object());
-  print(report, run_.json, out_);
-  std::fflush(out_);
-  const bool is_saved = save_profile(report, run_.profile, err_);
-  if (request_.outlet == nullptr) return is_saved ? report.code() : kRefused;
+}
+
+bool RemoteTarget::is_output_complete(const RunReport& report) {
+  if (request_.outlet == nullptr) return true;
   request_.outlet->finish(kLastOutput);
   look_at_output();
   if (page_.lost_output != 0) std::fputs(report.verdict.text().c_str(), err_);  // what somebody must know
-  return is_saved && page_.lost_output == 0 ? report.code() : kRefused;
+  return page_.lost_output == 0;
 }
 
 }  // namespace
 
 int attend(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err) {
-  Attendance attendance(request, sink, out, err);
-  if (auto begun = attendance.begin(); !begun) return attendance.refuse(begun.error());
-  return attendance.report(attendance.attend());
+  std::vector<Expectation> expectations;
+  for (std::size_t i = 0; i < request.run.expect.size(); ++i)
+    if (auto expectation = Expectation::with_bound(request.run.expect[i], request.bounds[i]); expectation)
+      expectations.push_back(*std::move(expectation));
+  RemoteTarget target(request, sink, out, err);
+  return RunSession(request.run, std::move(expectations), target, out, err).run();
 }
 
 }  // namespace chimera::desk

@@ -49,7 +49,7 @@ std::string verdict_text(const Configuration& configuration) {
   return text;
 }
 
-Output check(const CheckOptions& options, const Workplace& workplace) {
+CommandResult check(const CheckOptions& options, const Workplace& workplace) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), options.json);
   Verdict verdict = verify(read_description_file(options.file), *library);
@@ -59,7 +59,7 @@ Output check(const CheckOptions& options, const Workplace& workplace) {
     verdict.configuration = *std::move(set);
     verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
   }
-  Output output;
+  CommandResult output;
   output.code = verdict.report.is_legal() ? kOk : kRefused;
   if (options.json) {
     output.out = verdict.report.json() + "\n";

@@ -21,7 +21,7 @@ struct CheckOptions {
 };
 
 /// Reads and verifies; code kRefused when the description has a fault. Context: setup; may block.
-Output check(const CheckOptions& options, const Workplace& workplace);
+CommandResult check(const CheckOptions& options, const Workplace& workplace);
 
 /// The lines that a legal description earns: tasks, order, load.
 std::string verdict_text(const Configuration& configuration);

@@ -7,9 +7,9 @@
 namespace chimera::desk {
 namespace {
 
-Output checked(const std::string& text, bool json = false, const std::string& graph = "") {
+CommandResult checked(const std::string& text, bool json = false, const std::string& graph = "") {
   const TestFile file(text);
-  Output output = check({file.path(), json, graph}, test_place());
+  CommandResult output = check({file.path(), json, graph}, test_place());
   for (std::string* said : {&output.out, &output.err})
     for (std::size_t at; (at = said->find(file.path())) != std::string::npos;)
       said->replace(at, file.path().size(), "FILE");
@@ -17,7 +17,7 @@ Output checked(const std::string& text, bool json = false, const std::string& gr
 }
 
 TEST(Check, ALegalDescriptionEarnsItsVerdict) {
-  const Output output = checked(kCounterText);
+  const CommandResult output = checked(kCounterText);
   EXPECT_EQ(output.code, kOk);
   EXPECT_EQ(output.err, "");
   EXPECT_EQ(output.out,
@@ -27,13 +27,13 @@ TEST(Check, ALegalDescriptionEarnsItsVerdict) {
 }
 
 TEST(Check, TellsTheLoadOfStatedBudgets) {
-  const Output output = checked("subsystem: s\ntasks:\n  a: {component: t_counter, budget: 250 us}\n");
+  const CommandResult output = checked("subsystem: s\ntasks:\n  a: {component: t_counter, budget: 250 us}\n");
   EXPECT_NE(output.out.find("rtpu main on cpu 0: budgets take 0.250 of at most 0.93\n"), std::string::npos)
       << output.out << output.err;
 }
 
 TEST(Check, CountsTheFaultsOnStandardError) {
-  const Output output = checked("subsystem: small\ntasks:\n  counter: {component: t_countr}\n");
+  const CommandResult output = checked("subsystem: small\ntasks:\n  counter: {component: t_countr}\n");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(output.out, "");
   EXPECT_EQ(output.err.rfind("FILE:3:", 0), 0u) << output.err;
@@ -42,7 +42,7 @@ TEST(Check, CountsTheFaultsOnStandardError) {
 }
 
 TEST(Check, JsonStandsAloneOnStandardOutput) {
-  const Output output = checked(kCounterText, true);
+  const CommandResult output = checked(kCounterText, true);
   EXPECT_EQ(output.code, kOk);
   EXPECT_EQ(output.err, "");
   EXPECT_EQ(output.out,

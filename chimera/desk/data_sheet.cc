@@ -11,14 +11,13 @@
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/desk/blanks.h"
+#include "chimera/task/signal.h"
 #include "chimera/text/value_text.h"
 
 namespace chimera::desk {
 namespace {
 
 constexpr std::size_t kMostSheetBytes = 1 << 20;
-
-constexpr const char* kMethodWords[] = {"init", "reinit", "on", "cycle", "sync", "off", "kill", "error", "clear"};
 
 std::string type_text(const PortDescriptor& port) {
   const std::string base = port.type_name.empty() ? std::string(type_name(port.type)) : port.type_name;
@@ -82,7 +81,7 @@ std::string head_text(const Descriptor& d) {
   text += "released " + std::string(d.is_aperiodic() ? "by events (sync is asked at its rate)" : "by the timer") + "\n";
   text += "methods ";
   for (std::size_t m = 0; m < CHIMERA_METHODS; ++m)
-    if (d.methods[m]) text += std::string(" ") + kMethodWords[m];
+    if (d.methods[m]) text += std::string(" ") + method_name(static_cast<Method>(m));
   return text + (d.background ? ", and background beside them" : "") + "\n";
 }
 

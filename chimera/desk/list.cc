@@ -10,10 +10,10 @@
 #include "chimera/desk/data_sheet.h"
 
 namespace chimera::desk {
-Output list(const Workplace& workplace, bool json) {
+CommandResult list(const Workplace& workplace, bool json) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), json);
-  Output output;
+  CommandResult output;
   std::size_t width = 4;
   for (const LibraryEntry& entry : library->entries()) width = std::max(width, entry.descriptor.name.size());
   std::string rows;
@@ -37,12 +37,12 @@ Output list(const Workplace& workplace, bool json) {
   return output;
 }
 
-Output describe_component(const std::string& name, const Workplace& workplace, bool json) {
+CommandResult describe_component(const std::string& name, const Workplace& workplace, bool json) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), json);
   const LibraryEntry* entry = library->find(name);
   if (entry == nullptr) return refused(no_component(name, *library), json);
-  Output output;
+  CommandResult output;
   output.out = json ? to_json(entry->descriptor) : data_sheet(*entry);
   return output;
 }

@@ -11,9 +11,9 @@ namespace chimera::desk {
 
 /// One line for each installed component. Descriptors that cannot be read are named on standard error.
 /// Context: setup; may block.
-Output list(const Workplace& workplace, bool json);
+CommandResult list(const Workplace& workplace, bool json);
 
 /// The data sheet of one component: purpose, rate, methods, ports. Context: setup; may block.
-Output describe_component(const std::string& name, const Workplace& workplace, bool json);
+CommandResult describe_component(const std::string& name, const Workplace& workplace, bool json);
 
 }  // namespace chimera::desk

@@ -7,7 +7,7 @@ namespace chimera::desk {
 namespace {
 
 TEST(List, NamesEveryComponentOfTheFolders) {
-  const Output output = list(test_place(), false);
+  const CommandResult output = list(test_place(), false);
   EXPECT_EQ(output.code, kOk) << output.err;
   EXPECT_NE(output.out.find("t_counter "), std::string::npos);
   EXPECT_NE(output.out.find("  Shows what a cycle is told.\n"), std::string::npos) << output.out;
@@ -16,14 +16,14 @@ TEST(List, NamesEveryComponentOfTheFolders) {
 TEST(List, SaysWhereToLookWhenThereIsNothing) {
   Workplace place = test_place();
   place.component_folders = {"/nowhere"};
-  const Output output = list(place, false);
+  const CommandResult output = list(place, false);
   EXPECT_EQ(output.out, "");
   EXPECT_EQ(output.err, "no components found; CHIMERA_PATH says where to look\n");
   EXPECT_EQ(list(place, true).out, "{\"components\": []}\n");
 }
 
 TEST(Describe, ShowsPurposeRateMethodsAndPorts) {
-  const Output output = describe_component("t_counter", test_place(), false);
+  const CommandResult output = describe_component("t_counter", test_place(), false);
   EXPECT_EQ(output.code, kOk);
   EXPECT_EQ(output.out.rfind("t_counter: Shows what a cycle is told.\n", 0), 0u) << output.out;
   EXPECT_NE(output.out.find("rate     1000 Hz by default\nreleased by the timer\nmethods  cycle\nports\n"),

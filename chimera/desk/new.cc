@@ -165,7 +165,7 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
 
 }  // namespace
 
-Output new_project(const NewRequest& request, const std::string& program) {
+CommandResult new_project(const NewRequest& request, const std::string& program) {
   try {
     auto made = make(request, program);
     if (!made) return refused(made.error(), false);

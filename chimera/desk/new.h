@@ -20,6 +20,6 @@ struct NewRequest {
 /// Writes the project and says how to build it against the tree that `program` (its own path) belongs to: a build
 /// tree or an installation. Refuses, with nothing written: an illegal name, a folder that exists already, a parent
 /// that does not, an installation without templates. Context: setup; may block.
-Output new_project(const NewRequest& request, const std::string& program);
+CommandResult new_project(const NewRequest& request, const std::string& program);
 
 }  // namespace chimera::desk

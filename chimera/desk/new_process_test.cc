@@ -27,7 +27,7 @@ class New : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  Output make(NewKind kind, const std::string& name, const std::string& prefix = build_tree()) const {
+  CommandResult make(NewKind kind, const std::string& name, const std::string& prefix = build_tree()) const {
     return new_project({kind, name, folder_}, prefix + "/bin/chimera");
   }
   /// Exit status; what was said is in log().
@@ -41,7 +41,7 @@ class New : public ::testing::Test {
     return all.str();
   }
   /// Follows the printed steps.
-  void build_and_test(const Output& made, const std::string& name) const {
+  void build_and_test(const CommandResult& made, const std::string& name) const {
     ASSERT_EQ(made.code, kOk) << made.err;
     const std::string steps = made.out.substr(made.out.find("next:\n") + 6);
     // Sanitizers watch the component, but a leak check of the build tools is not ours to make.
@@ -90,7 +90,7 @@ TEST_F(New, ADescriptionNamesTheSchemaForEditors) {
 }
 
 TEST_F(New, NamesTheFolderThatCannotBeWritten) {
-  const Output made = new_project({NewKind::kComponent, "mine", "/proc"}, build_tree() + "/bin/chimera");
+  const CommandResult made = new_project({NewKind::kComponent, "mine", "/proc"}, build_tree() + "/bin/chimera");
   EXPECT_TRUE(made.err.starts_with("/proc/mine: error: cannot be made in /proc: ")) << made.err;
   EXPECT_TRUE(made.err.ends_with(". Go to a folder that you may write in.\n")) << made.err;
 }
@@ -98,7 +98,7 @@ TEST_F(New, NamesTheFolderThatCannotBeWritten) {
 TEST_F(New, OverwritesNothing) {
   ASSERT_EQ(make(NewKind::kComponent, "mine").code, kOk);
   std::ofstream(folder_ + "/mine/mine.cc") << "my work\n";
-  const Output again = make(NewKind::kApplication, "mine");
+  const CommandResult again = make(NewKind::kApplication, "mine");
   EXPECT_EQ(again.code, kRefused);
   EXPECT_EQ(again.err, folder_ + "/mine: error: exists already: nothing is overwritten\n");
   EXPECT_EQ(text("mine/mine.cc"), "my work\n");
@@ -106,7 +106,7 @@ TEST_F(New, OverwritesNothing) {
 
 TEST_F(New, RefusesIllegalNames) {
   for (const std::string name : {"", "9lives", "Upper", "a-b", "../up", "a b"}) {
-    const Output made = make(NewKind::kComponent, name);
+    const CommandResult made = make(NewKind::kComponent, name);
     EXPECT_EQ(made.code, kRefused) << name;
     EXPECT_EQ(made.err, "error: \"" + name + "\" is no legal name: [a-z][a-z0-9_]*, at most 40 letters\n");
   }

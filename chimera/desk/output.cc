@@ -13,8 +13,8 @@ std::string error_line(const Error& error) {
   return for_terminal(text) + "\n";
 }
 
-Output refused(const Error& error, bool json, int code) {
-  Output output;
+CommandResult refused(const Error& error, bool json, int code) {
+  CommandResult output;
   output.code = code;
   if (json)
     output.out = "{\"error\": {\"where\": " + json_string(error.where.view()) +

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// A run whose tasks are in this process: in virtual time, or in real time for debugging.
 #include "chimera/desk/run.h"
 
 #include <algorithm>
@@ -7,17 +8,17 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <utility>
 
-#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/desk/profile_report.h"
 #include "chimera/desk/progress.h"
 #include "chimera/desk/run_loop.h"
 #include "chimera/desk/run_plan.h"
 #include "chimera/desk/run_report.h"
+#include "chimera/desk/run_session.h"
 #include "chimera/desk/under_way.h"
 #include "chimera/desk/watch_plot.h"
-#include "chimera/platform/standard_output.h"
 #include "chimera/platform/terminal.h"
 #include "chimera/runtime/tap_ring.h"
 
@@ -61,22 +62,32 @@ class ProgressLine {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// One run with everything that is watched and expected of it.
-class Session {
+/// Tasks in this process. Context: setup.
+class LocalTarget final : public RunTarget {
  public:
-  Session(const RunRequest& request, const RunPlan& plan, Application application, RecordSink* sink, std::FILE* out,
-          std::FILE* err)
-      : request_(request), plan_(plan), application_(std::move(application)), sink_(sink), out_(out), err_(err) {}
+  LocalTarget(const RunRequest& request, const RunPlan& plan, Application application, RecordSink* sink, std::FILE* out,
+              std::FILE* err)
+      : request_(request),
+        plan_(plan),
+        application_(std::move(application)),
+        sink_(sink),
+        out_(out),
+        err_(err),
+        progress_(request, err) {}
 
-  Result<void> start();
-  RunEnd run();
-  int report(RunEnd end);
+  Result<void> start() override;
+  int refuse(const Error& error) override { return refuse_run(request_, error, out_, err_); }
+  std::optional<RunEnd> advance(Nanoseconds until) override;
+  Nanoseconds now() const override { return loop_->now(); }
+  bool shows_values_at(RunEnd) const override { return true; }
+  bool draws(Nanoseconds at) override;
+  std::vector<Reading> read(const std::vector<std::string>& names) override;
+  void finish(RunReport& report) override;
+  bool is_output_complete(const RunReport& report) override;
 
  private:
   void drain();
   void tell_notes();
-  void watch_line(Nanoseconds at);
-  bool write_plot() const;
 
   const RunRequest& request_;
   const RunPlan& plan_;
@@ -84,17 +95,19 @@ class Session {
   RecordSink* sink_;
   std::FILE* out_;
   std::FILE* err_;
+  ProgressLine progress_;
   std::unique_ptr<TapRing> ring_;
   std::optional<Tap> tap_;
   TapReader reader_;
   std::unique_ptr<RunLoop> loop_;
-  std::vector<Probe> watched_;
+  Nanoseconds at_;  // to which it has come, since the start
+  std::map<std::string, Probe> probes_;
+  std::vector<Probe> drawn_;
   WatchPlot plot_;
   std::vector<std::uint64_t> notes_told_;  // by task
-  Nanoseconds ran_;
 };
 
-Result<void> Session::start() {
+Result<void> LocalTarget::start() {
   RunOptions options;
   options.policy = followed_rtpu(plan_.configuration, request_.virtual_time).policy;
   options.script = Script(plan_.acts);
@@ -108,7 +121,8 @@ Result<void> Session::start() {
                                 : make_real_time_loop(application_, request_, options);
   if (auto started = loop_->start(); !started) return started;
   // Now that extents are known.
-  for (const std::string& name : request_.watch) watched_.push_back(*application_.probe(name));
+  if (!request_.svg.empty())
+    for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
   if (request_.virtual_time) tell_notes();  // else the loop runs by now: they are told at the end
   if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin(), loop_->origin());
@@ -116,7 +130,7 @@ Result<void> Session::start() {
 }
 
 // What components have to say beside their values, once each.
-void Session::tell_notes() {
+void LocalTarget::tell_notes() {
   const auto tasks = application_.tasks().tasks();
   notes_told_.resize(tasks.size());
   for (const Task& task : tasks) {
@@ -125,79 +139,52 @@ void Session::tell_notes() {
   }
 }
 
-void Session::drain() {
+void LocalTarget::drain() {
   if (sink_ == nullptr) return;
   TapRecord records[512];
   for (std::size_t n; (n = reader_.read(records)) > 0;) sink_->take({records, n});
 }
 
-void Session::watch_line(Nanoseconds at) {
-  if (!request_.svg.empty()) return plot_.take(at, watched_);
-  if (watched_.empty() || request_.json) return;
-  std::string line = "t " + [at] {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3f s", to_seconds(at));
-    return std::string(text);
-  }();
-  std::vector<std::byte> value;
-  for (const Probe& probe : watched_)
-    line += "  " + probe.name + " " + (probe.read(value) ? value_text(probe.form, value) : "not written yet");
-  std::fprintf(out_, "%s\n", plain_line(line).c_str());
-  (void)flush_and_look(out_);
-}
-
-bool Session::write_plot() const {
-  if (request_.svg.empty()) return true;
-  std::ofstream file(request_.svg, std::ios::binary);
-  file << draw::svg(plot_.plot(plan_.configuration.subsystem()));
-  if (file.flush()) return true;
-  std::fprintf(err_, "%s: cannot be written: %s\n", request_.svg.c_str(), std::strerror(errno));
-  return false;
-}
-
-RunEnd Session::run() {
-  Nanoseconds next_watch = watched_.empty() ? kNever : request_.every;
-  ProgressLine progress(request_, err_);
-  for (Nanoseconds at;;) {
-    const Nanoseconds next_drain = sink_ == nullptr ? kNever : at + kDrainEvery;
-    const bool looks_up = !request_.virtual_time || progress.is_on();
-    const Nanoseconds patience = looks_up ? at + kWatchEvery : kNever;
-    const Nanoseconds next = std::min({next_watch, next_drain, patience, request_.duration});
+std::optional<RunEnd> LocalTarget::advance(Nanoseconds until) {
+  const bool looks_up = !request_.virtual_time || progress_.is_on();
+  for (;;) {
+    const Nanoseconds next_drain = sink_ == nullptr ? kNever : at_ + kDrainEvery;
+    const Nanoseconds patience = looks_up ? at_ + kWatchEvery : kNever;
+    const Nanoseconds next = std::min({until, next_drain, patience});
     const std::optional<RunEnd> end = loop_->advance(next);
     drain();
-    at = next;
-    if (progress.is_on() && !end) progress.look(at);
-    if (end || next == next_watch) progress.wipe();
-    if (end || next == next_watch) watch_line(end && *end != RunEnd::kTime ? loop_->now() : next);
-    if (next == next_watch) next_watch += request_.every;
-    if (end) {
-      ran_ = std::min(loop_->now(), request_.duration);
-      return *end;
-    }
+    at_ = next;
+    if (progress_.is_on() && !end) progress_.look(at_);
+    if (!end && next != until) continue;
+    progress_.wipe();
+    return end;
   }
 }
 
-int Session::report(RunEnd end) {
-  RunReport report{.end = end,
-                   .stopped_by = {},
-                   .is_flag_up = application_.tasks().flag().is_up(),
-                   .ran = ran_,
-                   .subsystem = plan_.configuration.subsystem(),
-                   .executor = loop_->description(),
-                   .refused = {},
-                   .profiles = {},
-                   .origin = loop_->origin(),
-                   .variables = {},
-                   .expectations = {},
-                   .verdict = {}};
-  for (const Expectation& expectation : plan_.expectations)
-    report.judge(expectation, application_.probe(expectation.variable())->look());
+bool LocalTarget::draws(Nanoseconds at) {
+  if (request_.svg.empty()) return false;
+  plot_.take(at, drawn_);
+  return true;
+}
+
+std::vector<Reading> LocalTarget::read(const std::vector<std::string>& names) {
+  std::vector<Reading> readings;
   std::vector<std::byte> value;
-  for (const Probe& probe : watched_)
-    report.variables.push_back(
-        {probe.name, probe.form.unit, probe.read(value) ? value_json(probe.form, value) : "null"});
+  for (const std::string& name : names) {
+    if (!probes_.contains(name)) probes_.emplace(name, *application_.probe(name));
+    const Probe& probe = probes_.at(name);
+    readings.push_back({probe.look(), probe.form.unit, probe.read(value) ? value_json(probe.form, value) : "null"});
+  }
+  return readings;
+}
+
+void LocalTarget::finish(RunReport& report) {
+  report.is_flag_up = application_.tasks().flag().is_up();
+  report.subsystem = plan_.configuration.subsystem();
+  report.executor = loop_->description();
+  report.origin = loop_->origin();
   const std::vector<State> states = states_of(application_.tasks());
-  if (end == RunEnd::kTaskStopped) report.stopped_by = who_stopped(application_.tasks());
+  if (report.end == RunEnd::kTaskStopped) report.stopped_by = who_stopped(application_.tasks());
   for (const RefusedSignal& r : loop_->refused())
     report.refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
   const Nanoseconds now = loop_->now();
@@ -216,9 +203,15 @@ int Session::report(RunEnd end) {
     sink_->end(reader_.lost(), 0);
   }
   tell_notes();
-  print(report, request_.json, out_);
-  (void)flush_and_look(out_);
-  return write_plot() && save_profile(report, request_.profile, err_) ? report.code() : kRefused;
+}
+
+bool LocalTarget::is_output_complete(const RunReport& report) {
+  if (request_.svg.empty()) return true;
+  std::ofstream file(request_.svg, std::ios::binary);
+  file << draw::svg(plot_.plot(report.subsystem));
+  if (file.flush()) return true;
+  std::fprintf(err_, "%s: cannot be written: %s\n", request_.svg.c_str(), std::strerror(errno));
+  return false;
 }
 
 }  // namespace
@@ -233,9 +226,8 @@ int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink,
   if (!plan) return code;
   auto application = Application::load(plan->configuration, plan->library);
   if (!application) return refuse_run(request, application.error(), out, err);
-  Session session(request, *plan, *std::move(application), sink, out, err);
-  if (auto started = session.start(); !started) return refuse_run(request, started.error(), out, err);
-  return session.report(session.run());
+  LocalTarget target(request, *plan, *std::move(application), sink, out, err);
+  return RunSession(request, plan->expectations, target, out, err).run();
 }
 
 }  // namespace chimera::desk

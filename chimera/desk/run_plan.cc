@@ -133,7 +133,7 @@ Result<void> admit_below(const Configuration& configuration, double share) {
 }
 
 int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code) {
-  const Output output = refused(error, request.json, code);
+  const CommandResult output = refused(error, request.json, code);
   std::fputs(for_terminal(output.out).c_str(), out);
   (void)flush_and_look(out);  // in a file that takes both, what came first stands first
   std::fputs(for_terminal(output.err).c_str(), err);

@@ -30,7 +30,7 @@ ScheduleOptions options_of(const ScheduleRequest& request, const std::optional<R
 
 }  // namespace
 
-Output schedule(const ScheduleRequest& request, const Workplace& workplace) {
+CommandResult schedule(const ScheduleRequest& request, const Workplace& workplace) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), request.json);
   Verdict verdict = verify(read_description_file(request.file), *library, Overload::kTold);
@@ -39,7 +39,7 @@ Output schedule(const ScheduleRequest& request, const Workplace& workplace) {
     if (!set) return refused(set.error(), request.json);
     verdict.configuration = *std::move(set);
   }
-  Output output;
+  CommandResult output;
   if (!request.json) output.err = verdict.report.text();
   if (!verdict.configuration) {
     output.code = kRefused;

@@ -23,6 +23,6 @@ struct ScheduleRequest {
 
 /// Reads, verifies and analyses; kOk when all fits, kRefused when not, or when the description is not legal. Context:
 /// setup; may block.
-Output schedule(const ScheduleRequest& request, const Workplace& workplace);
+CommandResult schedule(const ScheduleRequest& request, const Workplace& workplace);
 
 }  // namespace chimera::desk

@@ -22,13 +22,13 @@ const std::string kTwo =
     "  b: {component: t_counter, rate: 20 Hz, budget: 9 ms, rtpu: fast, alias: {count: b_count, dt: b_dt, now: b_now,\n"
     "      deadline: b_deadline, cycles: b_cycles, dropped: b_dropped, illegal: b_illegal}}\n";
 
-Output scheduled(const std::string& text, const std::string& dispatch, const std::string& profile = "") {
+CommandResult scheduled(const std::string& text, const std::string& dispatch, const std::string& profile = "") {
   const TestFile file(text);
   return schedule({file.path(), profile, "", dispatch, false}, test_place());
 }
 
 TEST(Schedule, TellsThatEverythingFits) {
-  const Output output = scheduled(kTwo, "preemptive");
+  const CommandResult output = scheduled(kTwo, "preemptive");
   EXPECT_EQ(output.code, kOk) << output.err;
   EXPECT_EQ(output.out,
             "two: configuration 'all' (start), preemptive\n"
@@ -46,7 +46,7 @@ TEST(Schedule, TellsThatEverythingFits) {
 }
 
 TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
-  const Output output = scheduled(kTwo, "executive");
+  const CommandResult output = scheduled(kTwo, "executive");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_NE(output.out.find("  a     fast  low    2 ms budget  10 ms   10 ms     at most 11 ms  9 ms     -       "
                             "NOT KEPT\n"),
@@ -63,7 +63,7 @@ TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
 TEST(Schedule, ASetThatTakesMoreThanThereIsIsAnalysedAndToldWhatFits) {
   std::string text = kTwo;
   text.replace(text.find("budget: 9 ms"), 12, "budget: 45 ms");
-  const Output output = scheduled(text, "preemptive");
+  const CommandResult output = scheduled(text, "preemptive");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_NE(output.err.find("warning: the budgets of configuration 'all' take 1.100 of CPU 0; expected at most 0.93 "
                             "[utilisation]\n  task 'b' takes most: it would fit with budget: 36.5 ms or rate: "
@@ -186,7 +186,7 @@ TEST(Schedule, WhoMovesTakesTheBandOfItsRtpuAlong) {
 TEST(Schedule, JudgesEachUnitAsTheDescriptionHasIt) {
   std::string text = kTwo;
   text.replace(text.find("policy: rm"), 10, "policy: rm, executor: preemptive");
-  const Output mixed = scheduled(text, "");
+  const CommandResult mixed = scheduled(text, "");
   EXPECT_EQ(mixed.code, kOk) << mixed.err;
   EXPECT_TRUE(mixed.out.starts_with("two: configuration 'all' (start), preemptive in fast; in the other rtpus a job "
                                     "that runs is not taken off\n"))
@@ -198,7 +198,7 @@ TEST(Schedule, TakesTimesFromAProfileAndSaysWhich) {
   RecordedProfile profile{"two", {{"a", 10, milliseconds(1), milliseconds(1), milliseconds(1), {}},
                                   {"gone", 10, milliseconds(1), milliseconds(1), milliseconds(1), {}}}};
   const TestFile file(to_json(profile));
-  const Output output = scheduled(kTwo, "preemptive", file.path());
+  const CommandResult output = scheduled(kTwo, "preemptive", file.path());
   EXPECT_EQ(output.code, kOk);
   EXPECT_NE(output.out.find("  a     fast  low    1 ms profile  10 ms"), std::string::npos) << output.out;
   EXPECT_NE(output.out.find("  b     fast  low    9 ms budget   50 ms"), std::string::npos) << output.out;
@@ -218,7 +218,7 @@ TEST(Schedule, TellsWhatAProfileSaysOfTheBudgets) {
 }
 
 TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
-  const Output output = scheduled("subsystem: s\ntasks:\n  a: {component: t_counter}\n", "");
+  const CommandResult output = scheduled("subsystem: s\ntasks:\n  a: {component: t_counter}\n", "");
   EXPECT_EQ(output.code, kOk);
   EXPECT_NE(output.out.find("  no budget given for a: ignored in this proof; write 'budget:', or record one: "
                             "chimera profile --save FILE, then --profile FILE\n"),
@@ -230,14 +230,14 @@ TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
 TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {
   const std::string text = description("r: {policy: rm, executor: preemptive}",
                                        {{"a", "r", "low", "1000", 10}, {"b", "r", "low", "1", 300000}});
-  const Output output = scheduled(text, "");
+  const CommandResult output = scheduled(text, "");
   EXPECT_NE(output.out.find("\n          B = b\n          . = nobody\n          too short to be seen here: a\n"),
             std::string::npos)
       << output.out;
 }
 
 TEST(Schedule, RefusesWhatIsNotLegalAsCheckDoes) {
-  const Output output = scheduled("subsystem: s\ntasks:\n  a: {component: nothing}\n", "");
+  const CommandResult output = scheduled("subsystem: s\ntasks:\n  a: {component: nothing}\n", "");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(output.out, "");
   EXPECT_NE(output.err.find("nothing"), std::string::npos);
@@ -245,7 +245,7 @@ TEST(Schedule, RefusesWhatIsNotLegalAsCheckDoes) {
 
 TEST(Schedule, RefusesAProfileThatIsNone) {
   const TestFile file("{}");
-  const Output output = scheduled(kTwo, "", file.path());
+  const CommandResult output = scheduled(kTwo, "", file.path());
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(output.err, file.path() + ": error: is no recorded profile: $: the key \"version\" is missing; "
                                         "`chimera profile --save FILE` writes one\n");

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/desk/blanks.h"
+#include "chimera/task/signal.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 
@@ -28,12 +29,14 @@ Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, 
 
 Result<ScriptAct> parse_signal(const std::string& text, const std::string& word, const std::string& task, ScriptAct act,
                                const ApplicationSpec& spec) {
-  const std::vector<std::string> words = {"spawn", "on", "off", "kill", "clear", "reinit", "ring", "flag", "set"};
+  std::vector<std::string> words;
+  for (int signal = 0; signal < CHIMERA_SIGNALS; ++signal) words.emplace_back(signal_name(static_cast<Signal>(signal)));
+  words[static_cast<std::size_t>(Signal::kWakeup)] = "ring";  // sent as wakeup
+  words.insert(words.end(), {"flag", "set"});
   const auto signals = words.end() - 2;
   const auto found = std::find(words.begin(), signals, word);
   if (found == signals) return wrong_act(text, unknown("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
-  static_assert(static_cast<int>(Signal::kWakeup) == 6);  // a ring is sent as wakeup
   std::vector<std::string> names;
   for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
   act.task = TaskId(static_cast<std::size_t>(std::find(names.begin(), names.end(), task) - names.begin()));

@@ -194,12 +194,12 @@ Result<std::vector<LibraryEntry>> wanted(const TestOptions& options, const Libra
 
 }  // namespace
 
-Output test_components(const TestOptions& options, const Workplace& workplace) {
+CommandResult test_components(const TestOptions& options, const Workplace& workplace) {
   const auto library = workplace.library();
   if (!library) return refused(library.error(), options.json);
   const auto entries = wanted(options, *library);
   if (!entries) return refused(entries.error(), options.json);
-  Output output;
+  CommandResult output;
   std::string rows;
   for (const LibraryEntry& entry : *entries) {
     const auto report = OneTest(options, entry, library->units()).run();

@@ -26,6 +26,6 @@ struct TestOptions {
 
 /// A report for each component; refused (1) when one fails or cannot be tested. Call it with one thread.
 /// Context: setup; may block.
-Output test_components(const TestOptions& options, const Workplace& workplace);
+CommandResult test_components(const TestOptions& options, const Workplace& workplace);
 
 }  // namespace chimera::desk

@@ -30,9 +30,9 @@ class TestComponent : public ::testing::Test {
     std::ofstream(path) << text;
     return path;
   }
-  Output run() { return test_components(options_, workplace_); }
+  CommandResult run() { return test_components(options_, workplace_); }
   /// The report's line called `name`.
-  std::string line(const Output& output, const std::string& name) const {
+  std::string line(const CommandResult& output, const std::string& name) const {
     for (std::size_t at = 0; at < output.out.size(); at = output.out.find('\n', at) + 1) {
       const std::string one = output.out.substr(at, output.out.find('\n', at) - at);
       if (one.size() > 28 && one.substr(14, name.size() + 1) == name + " ") return one;
@@ -43,7 +43,7 @@ class TestComponent : public ::testing::Test {
   std::string misdeed(int misdeed, const std::string& name) {
     options_.setup = write("setup.yaml", "subsystem: s\ntasks: {t_misfit: {constants: {misdeed: " +
                                              std::to_string(misdeed) + "}}}\n");
-    const Output output = run();
+    const CommandResult output = run();
     EXPECT_EQ(output.code, kRefused) << output.out;
     return line(output, name);
   }
@@ -54,7 +54,7 @@ class TestComponent : public ::testing::Test {
 };
 
 TEST_F(TestComponent, PassesAGoodOneAndSaysSo) {
-  const Output output = run();
+  const CommandResult output = run();
   EXPECT_EQ(output.code, kOk) << output.out << output.err;
   EXPECT_TRUE(output.out.starts_with("t_misfit: passes (inputs: generated, seed 1)\n")) << output.out;
   EXPECT_EQ(line(output, "start"),
@@ -137,7 +137,7 @@ TEST_F(TestComponent, FindsAnObjectThatIsNotWhatItsDescriptorSays) {
   text.erase(mark, text.find('\n', mark + 2) - mark);
   write("t_misfit.component.json", text);
   options_.components = {(folder_ / "t_misfit.so").string()};
-  const Output output = run();
+  const CommandResult output = run();
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(line(output, "start"),
             "  fails       start         component t_misfit: port 4: name: the descriptor says \"w\", the object says "
@@ -147,7 +147,7 @@ TEST_F(TestComponent, FindsAnObjectThatIsNotWhatItsDescriptorSays) {
 TEST_F(TestComponent, TestsAnObjectWithoutSourceOrDescriptor) {
   fs::copy(build_path("components/t_misfit.so"), folder_ / "alone.so");
   options_.components = {(folder_ / "alone.so").string()};
-  const Output output = run();
+  const CommandResult output = run();
   EXPECT_EQ(output.code, kOk) << output.out << output.err;
   write("text.so", "no object");
   options_.components = {(folder_ / "text.so").string()};
@@ -158,7 +158,7 @@ TEST_F(TestComponent, TestsAnObjectWithoutSourceOrDescriptor) {
 
 TEST_F(TestComponent, RefusesASetupThatIsNotLegal) {
   options_.setup = write("setup.yaml", "subsystem: s\ntasks: {t_misfit: {}}\noperator: {x: 1 m}\n");
-  const Output output = run();
+  const CommandResult output = run();
   EXPECT_EQ(output.code, kRefused);
   EXPECT_NE(output.out.find("[value-unit]"), std::string::npos) << output.out;
   options_.setup = write("setup.yaml", "subsystem: s\ntasks: {a: {component: t_misfit}, b: {component: t_misfit}}\n");
@@ -168,7 +168,7 @@ TEST_F(TestComponent, RefusesASetupThatIsNotLegal) {
 TEST_F(TestComponent, PlaysARecording) {
   options_.inputs = write("run.csv", "t,in[0]\n0,1\n0.05,2\n0.1,\n0.2,-3\n");
   options_.names = {"x"};
-  const Output output = run();
+  const CommandResult output = run();
   EXPECT_EQ(output.code, kOk) << output.out << output.err;
   EXPECT_EQ(line(output, "cycles"), "  ok          cycles        201 cycles completed");
   options_.inputs = write("run.csv", "t,v\n0,1\n");
@@ -177,7 +177,7 @@ TEST_F(TestComponent, PlaysARecording) {
 
 TEST_F(TestComponent, NamesTheNearestWhenThereIsNone) {
   options_.components = {"t_misfitt"};
-  const Output output = run();
+  const CommandResult output = run();
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(output.err, "error: no component 't_misfitt' is installed; did you mean 't_misfit'?\n");
 }

@@ -23,7 +23,9 @@ using control::Answer;
 using control::Json;
 using control::MethodId;
 
-constexpr const char* kSignals[] = {"spawn", "on", "off", "kill", "clear", "reinit"};
+constexpr const char* kSignals[] = {signal_name(Signal::kSpawn), signal_name(Signal::kOn),
+                                    signal_name(Signal::kOff),   signal_name(Signal::kKill),
+                                    signal_name(Signal::kClear), signal_name(Signal::kReinit)};
 
 std::string working_folder() {
   std::error_code error;

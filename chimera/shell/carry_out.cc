@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the subsystem of a command and hands the command to what carries it out.
+// Carries out a call by its row, and names the subsystem that an act reached.
 #include "chimera/shell/carry_out.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/shell/live.h"
-#include "chimera/shell/one_shot.h"
-#include "chimera/shell/save_file.h"
-#include "chimera/shell/scope_command.h"
 #include "chimera/shell/terminal.h"
 
 namespace chimera::shell {
@@ -35,9 +31,9 @@ std::string with_subsystem(const std::string& text, const std::string& subsystem
 }
 
 /// An act and its refusal tell whom they reached.
-Said named(Said said, Session& session, const Call& call) {
+CommandResult named(CommandResult said, Session& session, const Call& call) {
   if (call.json) return said.out = with_subsystem(said.out, session.subsystem()), said;
-  if (!call.is_act() || call.has("--pid")) return said;
+  if (!call.is_act() || row_of(call).names_its_subsystem) return said;
   said.out = behind_name(said.out, session.subsystem());
   said.err = behind_name(said.err, session.subsystem());
   return said;
@@ -49,11 +45,11 @@ int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err
   if (call.is_act())
     if (const auto may = session.may_act(); !may) return print(refused(may.error(), call.json), out, err);
   (void)session.subsystem();  // known before the act: after an `end` nobody can be asked
-  if (is_live(call)) return live(session, call, out, err);
-  const std::size_t width = is_terminal(kStandardOutput) ? screen_size(kStandardOutput).width : 0;
-  Said said = std::string_view(call.command->name) == "scope" ? scope(session, call, width, err)
-              : call.has("--write")                           ? save_to_file(session, call)
-                                    : one_shot(session, call, {.height = screen_size(kStandardOutput).height});
+  const RunningCommand& row = row_of(call);
+  if (row.is_live(call)) return row.live(session, call, out, err);
+  const ScreenSize size = screen_size(kStandardOutput);
+  const Screen screen{is_terminal(kStandardOutput) ? size.width : 0, size.height, err};
+  CommandResult said = one_shot(session, call, screen);
   return print(named(std::move(said), session, call), out, err);
 }
 
@@ -66,8 +62,7 @@ int carry_out(const Surroundings& surroundings, const Call& call, std::FILE* out
   if (const control::Answer hello = session->hear(); !hello.is_good())
     return print(refused(hello, call.json), out, err);
   // Who did not say which one learns which one it is; status and top head with it, an act says it in every line.
-  const std::string_view name = call.command->name;
-  const bool says_itself = call.json || call.is_act() || name == "status" || name == "top";
+  const bool says_itself = call.json || call.is_act() || row_of(call).names_its_subsystem;
   if (!session->is_named() && !says_itself) std::fprintf(err, "[%s]\n", session->subsystem().c_str());
   return carry_out(*session, call, out, err);
 }

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "chimera/shell/command.h"
+#include "chimera/shell/commands.h"
 #include "chimera/shell/session.h"
 
 namespace chimera::shell {

@@ -36,13 +36,12 @@ Outcome carry_out_line(Session& session, std::string_view line, std::FILE* out, 
   const auto words = words_of(line);
   if (!words) return {print(refused(words.error(), false, kUsage), out, err)};
   if (words.value().empty()) return {};
-  const auto call = read_call(words.value());
+  const auto call = read_call(shell_words(), words.value());
   if (!call) return {print(refused(call.error(), false, kUsage), out, err)};
-  const std::string_view name = call.value().command->name;
-  if (name == "quit") return {kOk, true};
-  if (name != "help") return {carry_out(session, call.value(), out, err)};
-  const std::string asked = call.value().operands.empty() ? "" : call.value().operands[0];
-  const std::string text = help_text(asked);
+  if (call->command == &quit_words()) return {kOk, true};
+  if (call->command != &help_words()) return {carry_out(session, *call, out, err)};
+  const std::string asked = call->operand(0);
+  const std::string text = help_text(shell_words(), asked);
   if (text.empty()) return {print({"", "no command '" + asked + "'; `help` lists them\n", kUsage}, out, err)};
   return {print({text, "", kOk}, out, err)};
 }
@@ -110,7 +109,7 @@ class Editor {
   static unsigned char complete(EditLine* edit, int) {
     const LineInfo* line = ::el_line(edit);
     const std::string before(line->buffer, static_cast<std::size_t>(line->cursor - line->buffer));
-    const std::vector<std::string> words = completions(before, of(edit).names_);
+    const std::vector<std::string> words = completions(shell_words(), before, of(edit).names_);
     if (words.empty()) return CC_ERROR;
     const std::size_t typed = before.size() - (before.find_last_of(" \t") + 1);  // npos + 1 is 0
     std::string more = shared_beginning(words).substr(typed);

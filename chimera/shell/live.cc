@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Shows answers again and again, or what a subscription brings.
 #include "chimera/shell/live.h"
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include "chimera/platform/standard_output.h"
 #include "chimera/shell/event_lines.h"
 #include "chimera/shell/fields.h"
-#include "chimera/shell/one_shot.h"
 #include "chimera/shell/sparkline.h"
 #include "chimera/shell/terminal.h"
 #include "chimera/shell/top.h"
@@ -63,10 +63,8 @@ std::string drawn(const std::vector<TopLine>& lines) {
 std::string printed(const Json& status) {
   ScreenSize size = screen_size(kStandardOutput);
   size.height = std::max<std::size_t>(5 + field(status, "rtpus").size() + field(status, "tasks").size(), 6);
-  std::vector<TopLine> lines = top_lines(status, nullptr, {.width = size.width, .height = size.height});
-  lines.pop_back();  // the keys
   std::string text;
-  for (TopLine& line : lines) {
+  for (TopLine& line : top_lines(status, nullptr, {.width = size.width, .height = size.height, .has_keys = false})) {
     line.text.erase(line.text.find_last_not_of(' ') + 1);
     text += line.text + "\n";
   }
@@ -102,20 +100,6 @@ std::optional<Error> top_on_screen(Session& session, const Json& first, const Js
       return woken.error;
     if (woken.by == By::kNote && woken.note.method == "status") before = std::move(now), now = *woken.note.parameters;
   }
-}
-
-int top(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
-  const auto period = period_ms(call, 500);
-  if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
-  const control::Answer first = session.ask("status");
-  if (!first.is_good()) return print(refused(first, call.json), out, err);
-  const bool is_live = is_terminal(kStandardOutput) && is_terminal(kStandardInput) && !call.json;
-  if (!is_live) return print({call.json ? first.result->dump() + "\n" : printed(*first.result), "", kOk}, out, err);
-  const Json subscription = {{"to", "status"}, {"period_ms", period.value()}};
-  const control::Answer subscribed = session.ask("subscribe", subscription);
-  if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
-  const auto end = top_on_screen(session, *first.result, subscription);
-  return end ? print(refused(*end, call.json), out, err) : end_of_notes(session);
 }
 
 Result<std::vector<ChannelName>> channels_of(const Call& call) {
@@ -163,6 +147,22 @@ int follow(Session& session, const Call& call, Json subscription, std::FILE* out
   }
 }
 
+}  // namespace
+
+int top(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
+  const auto period = period_ms(call, 500);
+  if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
+  const control::Answer first = session.ask("status");
+  if (!first.is_good()) return print(refused(first, call.json), out, err);
+  const bool is_live = is_terminal(kStandardOutput) && is_terminal(kStandardInput) && !call.json;
+  if (!is_live) return print({call.json ? first.result->dump() + "\n" : printed(*first.result), "", kOk}, out, err);
+  const Json subscription = {{"to", "status"}, {"period_ms", period.value()}};
+  const control::Answer subscribed = session.ask("subscribe", subscription);
+  if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
+  const auto end = top_on_screen(session, *first.result, subscription);
+  return end ? print(refused(*end, call.json), out, err) : end_of_notes(session);
+}
+
 int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   const bool is_live = is_terminal(kStandardOutput);
   const auto period = period_ms(call, is_live ? 100 : 1000);
@@ -189,7 +189,7 @@ int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE*
   if (!kinds) return print(refused(kinds.error(), call.json, kUsage), out, err);
   Call once = call;
   once.options.erase("--follow");
-  const Said said = one_shot(session, once, {});
+  const CommandResult said = one_shot(session, once, {});
   if (said.code != kOk) return print(said, out, err);
   const std::string since = call.value("--since");
   Json wanted = {{"to", "events"}};
@@ -210,27 +210,12 @@ int get_every(Session& session, const Call& call, std::FILE* out, std::FILE* err
   if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
   Attention attention(false);
   for (;;) {
-    const Said said = one_shot(session, call, {});
+    const CommandResult said = one_shot(session, call, {});
     if (print(said, out, err) != kOk) return said.code;
     if (flush_and_look(out) != 0) return kRefused;  // nobody sees it any more
     const Woken woken = attention.wait(nullptr, milliseconds(period.value()));
     if (woken.by == By::kStop) return kOk;
   }
-}
-
-}  // namespace
-
-bool is_live(const Call& call) {
-  const std::string_view name = call.command->name;
-  return name == "top" || name == "watch" || (name == "events" && call.has("--follow")) ||
-         (name == "get" && call.has("--every"));
-}
-
-int live(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
-  const std::string_view name = call.command->name;
-  if (name == "top") return top(session, call, out, err);
-  if (name == "watch") return watch(session, call, out, err);
-  return name == "events" ? follow_events(session, call, out, err) : get_every(session, call, out, err);
 }
 
 }  // namespace chimera::shell

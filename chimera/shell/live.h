@@ -2,19 +2,16 @@
 // Commands that go on until Ctrl-C, `q` or the end of the subsystem: top, watch, events --follow, get --every.
 #pragma once
 
-#include <cstdio>
-
-#include "chimera/shell/command.h"
-#include "chimera/shell/session.h"
+#include "chimera/shell/commands.h"
 
 namespace chimera::shell {
 
-/// True when `call` is one of them.
-bool is_live(const Call& call);
-
-/// Carries it out; prints to `out` and `err`. On a terminal top and watch draw over themselves; otherwise top prints
+/// Each prints to `out` and `err`. On a terminal top and watch draw over themselves; otherwise top prints
 /// one screen and ends, watch a line each time. With --json every answer or notification is one line. Returns kOk
 /// when somebody ended it, kRefused when it could not go on, kUsage. Context: setup; blocks until then.
-int live(Session& session, const Call& call, std::FILE* out, std::FILE* err);
+int top(Session& session, const Call& call, std::FILE* out, std::FILE* err);
+int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err);
+int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE* err);
+int get_every(Session& session, const Call& call, std::FILE* out, std::FILE* err);
 
 }  // namespace chimera::shell

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Carries out the commands that ask more than once or read their options themselves.
 #include "chimera/shell/one_shot.h"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "chimera/shell/answer_text.h"
 #include "chimera/shell/event_lines.h"
 #include "chimera/shell/fields.h"
+#include "chimera/shell/save_file.h"
 #include "chimera/shell/status_text.h"
 #include "chimera/shell/words.h"
 #include "chimera/text/nearest.h"
@@ -19,15 +21,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-Said wrong(const std::string& message, bool json) {
+CommandResult wrong(const std::string& message, bool json) {
   return refused(Error{ErrorCode::kBadInput, std::string_view(message), {}}, json, kUsage);
-}
-
-/// The raw answer, or what `words` makes of it; or the refusal.
-template <class Words>
-Said tell(const control::Answer& answer, bool json, const Words& words) {
-  if (!answer.is_good()) return refused(answer, json);
-  return {json ? answer.result->dump() + "\n" : words(*answer.result), "", kOk};
 }
 
 /// Those of `tasks` that are not ON so far.
@@ -50,15 +45,8 @@ std::vector<std::string> with_configuration(Session& session, std::vector<std::s
   return tasks;
 }
 
-Said signal(Session& session, const Call& call) {
-  std::vector<std::string> tasks = call.operands;
-  if (std::string_view(call.command->name) == "on") tasks = with_configuration(session, std::move(tasks));
-  if (tasks.empty()) return {call.json ? "{\"tasks\":[]}\n" : "all of its tasks are ON\n", "", kOk};
-  return tell(session.ask("signal", {{"signal", call.command->name}, {"tasks", tasks}}), call.json, signal_text);
-}
-
 /// The number of one process, and nothing else: for `kill`.
-Said pid(Session& session, const Call& call) {
+CommandResult pid(Session& session, const Call& call) {
   const std::string name = call.value("--pid");
   const control::Answer hello = session.ask("hello"), status = session.ask("status");
   for (const control::Answer* asked : {&hello, &status})
@@ -80,15 +68,24 @@ Said pid(Session& session, const Call& call) {
   return refused(Error{ErrorCode::kNotFound, std::string_view(why), {}}, call.json);
 }
 
-Said set(Session& session, const Call& call) {
-  std::string value = call.operands[1];
-  for (std::size_t i = 2; i < call.operands.size(); ++i) value += " " + call.operands[i];
-  return tell(session.ask("set", {{"values", {{call.operands[0], value}}}}), call.json, readings_text);
+Json only(const EventLines& lines, Json answer) {
+  std::erase_if(answer["events"].get_ref<Json::array_t&>(), [&](const Json& e) { return !lines.is_wanted(e); });
+  return answer;
 }
 
-Said profile(Session& session, const Call& call) {
+}  // namespace
+
+CommandResult signal(Session& session, const Call& call, const Screen&) {
+  std::vector<std::string> tasks = call.operands;
+  const bool takes_configuration = call.command->operand_kind == command::WordKind::kTaskOrConfiguration;
+  if (takes_configuration) tasks = with_configuration(session, std::move(tasks));
+  if (tasks.empty()) return {call.json ? "{\"tasks\":[]}\n" : "all of its tasks are ON\n", "", kOk};
+  return answered(session.ask("signal", {{"signal", call.command->name}, {"tasks", tasks}}), call.json, signal_text);
+}
+
+CommandResult profile(Session& session, const Call& call, const Screen&) {
   const control::Answer answer = session.ask("profile");
-  if (!call.has("--save")) return tell(answer, call.json, profile_text);
+  if (!call.has("--save")) return answered(answer, call.json, profile_text);
   const control::Answer hello = session.ask("hello");
   for (const control::Answer* asked : {&answer, &hello})
     if (!asked->is_good()) return refused(*asked, call.json);
@@ -100,12 +97,7 @@ Said profile(Session& session, const Call& call) {
   return {call.json ? Json{{"file", file}}.dump() + "\n" : file + ": written\n", "", kOk};
 }
 
-Json only(const EventLines& lines, Json answer) {
-  std::erase_if(answer["events"].get_ref<Json::array_t&>(), [&](const Json& e) { return !lines.is_wanted(e); });
-  return answer;
-}
-
-Said events(Session& session, const Call& call) {
+CommandResult events(Session& session, const Call& call, const Screen&) {
   std::int64_t since = 0;
   const std::string text = call.value("--since");
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), since);
@@ -117,40 +109,38 @@ Said events(Session& session, const Call& call) {
   const EventLines lines(kinds.value(), call.has("--each"));
   if (call.json && answer.is_good() && !kinds->empty())
     answer = control::Answer::good(only(lines, *answer.result));
-  return tell(answer, call.json, [&](const Json& told) { return events_text(told, since, lines); });
+  return answered(answer, call.json, [&](const Json& told) { return events_text(told, since, lines); });
 }
 
-Said flag(Session& session, const Call& call) {
+CommandResult flag(Session& session, const Call& call, const Screen&) {
   if (call.operands[0] != "up" && call.operands[0] != "down")
     return wrong("flag: found '" + call.operands[0] + "', expected up or down", call.json);
-  return tell(session.ask("flag", {{"up", call.operands[0] == "up"}}), call.json, flag_text);
+  return answered(session.ask("flag", {{"up", call.operands[0] == "up"}}), call.json, flag_text);
 }
 
-}  // namespace
+CommandResult status(Session& session, const Call& call, const Screen&) {
+  if (call.has("--pid")) return pid(session, call);
+  return answered(session.ask("status"), call.json, status_text);
+}
 
-Said one_shot(Session& session, const Call& call, const Look& look) {
-  const std::string_view name = call.command->name;
-  if (name == "status" && call.has("--pid")) return pid(session, call);
-  if (name == "status") return tell(session.ask("status"), call.json, status_text);
-  if (name == "profile") return profile(session, call);
-  if (name == "save") return tell(session.ask("save"), call.json, save_text);
-  if (name == "set") return set(session, call);
-  if (name == "events") return events(session, call);
-  if (name == "flag") return flag(session, call);
-  if (name == "ring") return tell(session.ask("ring", {{"tasks", call.operands}}), call.json, ring_text);
-  if (name == "get") {
-    const Json asked = call.operands.empty() ? Json::object() : Json{{"variables", call.operands}};
-    return tell(session.ask("get", asked), call.json, readings_text);
-  }
-  if (name == "why")
-    return tell(session.ask("why", {{"variable", call.operands[0]}}), call.json,
-                [&](const Json& answer) { return why_text(answer, look.height); });
-  if (name == "end") {
-    control::Answer answer = session.ask("end", {{"code", 0}});
-    if (answer.code == control::kNoConnection) answer = control::Answer::good(Json::object());  // it has ended already
-    return tell(answer, call.json, [](const Json&) { return std::string("ending\n"); });
-  }
-  return signal(session, call);
+CommandResult save(Session& session, const Call& call, const Screen&) {
+  return call.has("--write") ? save_to_file(session, call) : answered(session.ask("save"), call.json, save_text);
+}
+
+CommandResult why(Session& session, const Call& call, const Screen& screen) {
+  return answered(session.ask("why", {{"variable", call.operands[0]}}), call.json,
+                  [&](const Json& answer) { return why_text(answer, screen.height); });
+}
+
+CommandResult end(Session& session, const Call& call, const Screen&) {
+  control::Answer answer = session.ask("end", {{"code", 0}});
+  if (answer.code == control::kNoConnection) answer = control::Answer::good(Json::object());  // it has ended already
+  return answered(answer, call.json, [](const Json&) { return std::string("ending\n"); });
+}
+
+CommandResult answered(const control::Answer& answer, bool json, const std::function<std::string(const Json&)>& show) {
+  if (!answer.is_good()) return refused(answer, json);
+  return {json ? answer.result->dump() + "\n" : show(*answer.result), "", kOk};
 }
 
 }  // namespace chimera::shell

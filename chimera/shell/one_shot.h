@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands that ask once and say the answer.
+// The commands of more than one request, or with an option that is judged here, before anybody is asked.
 #pragma once
 
-#include "chimera/shell/command.h"
-#include "chimera/shell/session.h"
+#include <functional>
+
+#include "chimera/shell/commands.h"
 
 namespace chimera::shell {
 
-/// How an answer is shown.
-struct Look {
-  std::size_t height = 24;  ///< lines of the screen, for `why`
-};
+// Context of all: setup; may block.
+CommandResult signal(Session& session, const Call& call, const Screen& screen);
+CommandResult status(Session& session, const Call& call, const Screen& screen);
+CommandResult profile(Session& session, const Call& call, const Screen& screen);
+CommandResult save(Session& session, const Call& call, const Screen& screen);
+CommandResult events(Session& session, const Call& call, const Screen& screen);
+CommandResult flag(Session& session, const Call& call, const Screen& screen);
+CommandResult why(Session& session, const Call& call, const Screen& screen);
+CommandResult end(Session& session, const Call& call, const Screen& screen);
 
-/// Carries out status on off kill clear reinit spawn get set save profile why flag end events, without the options
-/// that go on (--follow, --every) or write (--write). Context: setup; may block.
-Said one_shot(Session& session, const Call& call, const Look& look);
+/// The answer as it came, or what `show` makes of it; or the refusal.
+CommandResult answered(const control::Answer& answer, bool json,
+                       const std::function<std::string(const nlohmann::json&)>& show);
 
 }  // namespace chimera::shell

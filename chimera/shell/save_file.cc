@@ -95,7 +95,7 @@ Result<std::string> edited(Session& session, const File& file, const Json& value
 
 }  // namespace
 
-Said save_to_file(Session& session, const Call& call) {
+CommandResult save_to_file(Session& session, const Call& call) {
   const control::Answer hello = session.ask("hello"), status = session.ask("status"), saved = session.ask("save");
   for (const control::Answer* answer : {&hello, &status, &saved})
     if (!answer->is_good()) return refused(*answer, call.json);

@@ -2,7 +2,7 @@
 // `chimera save --write`: the operator's present values into the description file; nothing else in it changes.
 #pragma once
 
-#include "chimera/shell/command.h"
+#include "chimera/shell/commands.h"
 #include "chimera/shell/session.h"
 
 namespace chimera::shell {
@@ -11,6 +11,6 @@ namespace chimera::shell {
 /// and puts it in the place of the old file in one step. Refuses, changing nothing: a file that changed since the
 /// start (but by this command), one that cannot be read or written, a result that is not legal. Context: setup; may
 /// block.
-Said save_to_file(Session& session, const Call& call);
+CommandResult save_to_file(Session& session, const Call& call);
 
 }  // namespace chimera::shell

@@ -143,7 +143,7 @@ Result<void> write(const std::string& path, const std::string& text) {
   return Error{ErrorCode::kSystem, {std::string("cannot be written: ") + std::strerror(why)}, std::string_view(path)};
 }
 
-Said tell(const Scope& scope, const Call& call, const std::string& subsystem, std::size_t width) {
+CommandResult tell(const Scope& scope, const Call& call, const std::string& subsystem, std::size_t width) {
   const std::string note = (call.has("--trigger") ? "trigger " + call.value("--trigger") + "; " : "") + scope.summary();
   for (const auto& [option, text] : {std::pair{"--csv", scope.csv()}, {"--svg", svg(scope.plot(subsystem, note))}})
     if (call.has(option))
@@ -168,7 +168,7 @@ Said tell(const Scope& scope, const Call& call, const std::string& subsystem, st
 
 }  // namespace
 
-Said scope(Session& session, const Call& call, std::size_t width, std::FILE* err) {
+CommandResult scope(Session& session, const Call& call, const Screen& screen) {
   const control::Answer described = session.ask("describe");
   if (!described.is_good()) return refused(described, call.json);
   const auto asked = read(call, *described.result, session.surroundings());
@@ -180,10 +180,10 @@ Said scope(Session& session, const Call& call, std::size_t width, std::FILE* err
   const control::Answer subscribed = session.ask("subscribe", {{"to", "tap"}, {"variables", asked.value().variables}});
   if (!subscribed.is_good()) return refused(subscribed, call.json);
   Scope scope(asked.value().request);
-  if (asked->request.pre.count > 0 && !call.json) {
-    std::fprintf(err, "the pre-trigger of %s fills first; then the trigger is looked at\n",
+  if (asked->request.pre.count > 0 && !call.json && screen.err != nullptr) {
+    std::fprintf(screen.err, "the pre-trigger of %s fills first; then the trigger is looked at\n",
                  duration_text(asked->request.pre.count).c_str());
-    std::fflush(err);
+    std::fflush(screen.err);
   }
   const auto end = record(session, scope, asked.value());
   session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
@@ -197,7 +197,7 @@ Said scope(Session& session, const Call& call, std::size_t width, std::FILE* err
                                                        : "nothing was published" + within),
                    call.json);
   }
-  Said said = tell(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "", width);
+  CommandResult said = tell(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "", screen.width);
   if (end && said.code == kOk) {  // what was recorded is kept; what came after is not known to anybody
     said.err += "ended before its time: " + std::string(end->message.view()) + "\n";
     said.code = kRefused;

@@ -23,7 +23,7 @@ Nanoseconds limit_of(std::string_view method, const nlohmann::json& parameters) 
 
 }  // namespace
 
-Said refused(const control::Answer& answer, bool json) {
+CommandResult refused(const control::Answer& answer, bool json) {
   const nlohmann::json data = answer.data ? *answer.data : nlohmann::json();
   if (!json) return {"", refusal_text(answer.message, data) + "\n", kRefused};
   nlohmann::json error = data.is_object() ? data : nlohmann::json::object();
@@ -33,7 +33,7 @@ Said refused(const control::Answer& answer, bool json) {
   return {nlohmann::json{{"error", std::move(error)}}.dump() + "\n", "", kRefused};
 }
 
-Said refused(const Error& error, bool json, int code) {
+CommandResult refused(const Error& error, bool json, int code) {
   const std::string message(error.message.view()), where(error.where.view());
   if (json) return {nlohmann::json{{"error", {{"where", where}, {"message", message}}}}.dump() + "\n", "", code};
   return {"", (where.empty() ? "" : where + ": ") + plain_line(message) + "\n", code};

@@ -7,11 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "chimera/command/command_result.h"
 #include "chimera/control/client.h"
 #include "chimera/control/home.h"
-#include "chimera/shell/said.h"
 
 namespace chimera::shell {
+
+using command::CommandResult, command::kOk, command::kRefused, command::kUsage, command::print;
 
 /// What a session needs to know of its surroundings.
 struct Surroundings {
@@ -22,8 +24,8 @@ struct Surroundings {
 
 /// A refusal as a command says it: the words on standard error, or {"error": {...}} on standard output.
 /// Context of all: setup.
-Said refused(const control::Answer& answer, bool json);
-Said refused(const Error& error, bool json, int code = kRefused);
+CommandResult refused(const control::Answer& answer, bool json);
+CommandResult refused(const Error& error, bool json, int code = kRefused);
 
 /// Context: setup; calls block, never longer than their limit.
 class Session {

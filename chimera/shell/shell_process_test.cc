@@ -33,6 +33,8 @@
 namespace chimera::shell {
 namespace {
 
+Result<Call> read_call(const std::vector<std::string>& words) { return command::read_call(shell_words(), words); }
+
 using control::Answer;
 using control::Json;
 

@@ -221,6 +221,7 @@ std::vector<TopLine> top_lines(const Json& status, const Json& previous, const T
   if (view.height == 0) return {};
   lines.resize(std::min(lines.size(), view.height - 1));
   while (lines.size() + 1 < view.height) lines.push_back({std::string(view.width, ' ')});
+  if (!view.has_keys) return lines;
   const std::size_t hidden = rows.size() - std::min(room, rows.size());
   std::string keys = "q quit  h help  sort: o order  n name  e exec  b used  j jitter  m missed  a age";
   if (hidden > 0) keys = std::to_string(hidden) + " more: up, down  q quit  h help  sort: o n e b j m a";

@@ -20,6 +20,7 @@ struct TopView {
   TopOrder order = TopOrder::kFile;
   std::size_t skipped = 0;  ///< tasks scrolled out at the top
   bool is_help = false;     ///< what the columns mean instead of the tasks
+  bool has_keys = true;     ///< the last line names the keys
 };
 
 struct TopLine {
@@ -31,10 +32,11 @@ struct TopLine {
 /// The order that a key asks for; nullopt when it is no such key.
 std::optional<TopOrder> order_of_key(int key);
 
-/// Exactly `height` lines: the headline, a line for each rtpu, the tasks, the keys. Rate and execution time are those
-/// since `previous` (an earlier `status` of the same subsystem, or null: since the start). A task in ERROR, or that
-/// missed a deadline since `previous`, is an alarm; so is an rtpu that is dead. What does not fit is counted.
-/// Below 80 columns the budget is left out, then jitter, rate and execution time. Context: setup.
+/// Exactly `height` lines, one less without `has_keys`: the headline, a line for each rtpu, the tasks, the keys. Rate
+/// and execution time are those since `previous` (an earlier `status` of the same subsystem, or null: since the
+/// start). A task in ERROR, or that missed a deadline since `previous`, is an alarm; so is an rtpu that is dead. What
+/// does not fit is counted. Below 80 columns the budget is left out, then jitter, rate and execution time. Context:
+/// setup.
 std::vector<TopLine> top_lines(const nlohmann::json& status, const nlohmann::json& previous, const TopView& view);
 
 /// What the columns and keys mean: exactly `height` lines. Context: setup.

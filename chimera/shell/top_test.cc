@@ -45,6 +45,14 @@ TEST(Top, AScreenOf80By24ToTheLetter) {
       "|q quit  h help  sort: o order  n name  e exec  b used  j jitter  m missed  a age|\n");
 }
 
+TEST(Top, WithoutKeysItEndsBeforeTheirLine) {
+  const std::string with_keys = screen(status(), nullptr, {});
+  EXPECT_EQ(screen(status(), nullptr, {.has_keys = false}), with_keys.substr(0, with_keys.find("|q quit")));
+  Json named = status();
+  named["tasks"][0]["task"] = "q quit";  // no word of a line ends the screen
+  EXPECT_NE(screen(named, nullptr, {.has_keys = false}).find("|arm "), std::string::npos);
+}
+
 TEST(Top, ANarrowScreenKeepsTheMissedDeadlinesWhole) {
   Json many = status();
   many["tasks"][2]["missed"] = 2231;

@@ -1,49 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits a line into words and finds completions.
+// Cuts a line into words, and completes the last one by the row of its command.
 #include "chimera/shell/words.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/shell/command.h"
 #include "chimera/shell/fields.h"
 
 namespace chimera::shell {
 namespace {
 
-/// What the words behind a command are.
-enum class Takes : char { kNothing, kTasks, kVariables, kSettings, kUpDown, kCommands };
-
-Takes taken_by(std::string_view command) {
-  for (const char* signal : {"spawn", "on", "off", "kill", "clear", "reinit", "ring"})
-    if (command == signal) return Takes::kTasks;
-  for (const char* reader : {"get", "watch", "why", "scope"})
-    if (command == reader) return Takes::kVariables;
-  if (command == "set") return Takes::kSettings;
-  if (command == "flag") return Takes::kUpDown;
-  return command == "help" ? Takes::kCommands : Takes::kNothing;
+std::vector<std::string> all_of(const std::vector<std::string>& some, const std::vector<std::string>& more) {
+  std::vector<std::string> all = some;
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
 }
 
-std::vector<std::string> candidates(const std::vector<std::string>& words, const Names& names) {
-  std::vector<std::string> all;
-  const Takes takes = words.empty() ? Takes::kCommands : taken_by(words[0]);
-  switch (takes) {
-    case Takes::kCommands:
-      for (const Command& command : commands()) all.emplace_back(command.name);
-      break;
-    case Takes::kTasks:
-      all = names.tasks;
-      // `on` takes a configuration for all of its tasks.
-      if (words[0] == "on") all.insert(all.end(), names.configurations.begin(), names.configurations.end());
-      break;
-    case Takes::kVariables: all = names.variables; break;
-    case Takes::kSettings:
-      if (words.size() == 1) all = names.operators;
-      break;
-    case Takes::kUpDown: all = {"up", "down"}; break;
-    case Takes::kNothing: break;
+std::vector<std::string> names_in(command::Table table) {
+  std::vector<std::string> names;
+  for (const command::Command* command : table) names.emplace_back(command->name);
+  return names;
+}
+
+/// What the word behind `words` may be.
+std::vector<std::string> candidates(command::Table table, const std::vector<std::string>& words, const Names& names) {
+  using command::WordKind;
+  if (words.empty()) return names_in(table);
+  const command::Command* command = command_named(table, words[0]);
+  if (command == nullptr) return {};
+  switch (command->operand_kind) {
+    case WordKind::kTask: return names.tasks;
+    case WordKind::kTaskOrConfiguration: return all_of(names.tasks, names.configurations);
+    case WordKind::kVariable: return names.variables;
+    case WordKind::kSetting: return words.size() == 1 ? names.operators : std::vector<std::string>();
+    case WordKind::kOneOf: return words_of(command->operand_words).value();
+    case WordKind::kCommand: return names_in(table);
+    default: return {};
   }
-  return all;
 }
 
 }  // namespace
@@ -86,13 +79,13 @@ Names names_of(const nlohmann::json& described) {
   return names;
 }
 
-std::vector<std::string> completions(std::string_view before, const Names& names) {
+std::vector<std::string> completions(command::Table table, std::string_view before, const Names& names) {
   const std::size_t space = before.find_last_of(" \t");
   const std::string_view last = space == std::string_view::npos ? before : before.substr(space + 1);
   const auto words = words_of(before.substr(0, before.size() - last.size()));
   if (!words) return {};
   std::vector<std::string> fitting;
-  for (const std::string& word : candidates(words.value(), names))
+  for (const std::string& word : candidates(table, words.value(), names))
     if (word.starts_with(last)) fitting.push_back(word);
   return fitting;
 }

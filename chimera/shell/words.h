@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chimera/base/result.h"
+#include "chimera/command/command.h"
 
 namespace chimera::shell {
 
@@ -23,7 +24,7 @@ Names names_of(const nlohmann::json& described);
 
 /// What the last word of `before` (the line up to the cursor) could become, whole words in order: commands at the
 /// beginning, then what the command takes.
-std::vector<std::string> completions(std::string_view before, const Names& names);
+std::vector<std::string> completions(command::Table table, std::string_view before, const Names& names);
 /// The longest beginning that all of them share.
 std::string shared_beginning(const std::vector<std::string>& words);
 

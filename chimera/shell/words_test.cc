@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "chimera/shell/commands.h"
 #include "chimera/shell/testing/test_answers.h"
 
 namespace chimera::shell {
@@ -34,7 +35,7 @@ TEST(Words, AnOpenQuoteIsRefused) {
 }
 
 Words offered(const std::string& before) {
-  return completions(before, names_of(nlohmann::json::parse(test::kDescribed)));
+  return completions(shell_words(), before, names_of(nlohmann::json::parse(test::kDescribed)));
 }
 
 TEST(Words, CommandsAreCompletedFirstThenWhatTheyTake) {

@@ -3,7 +3,9 @@
 """The commands and options that `chimera --help` names, the manual and the completion are the same, each way; README.md
 names the commands without --json.
 
-usage: words.py PROGRAM SOURCE
+usage: words.py PROGRAM SOURCE PAGES
+
+PAGES is the folder of the manual and the completion as they are installed
 """
 import pathlib
 import re
@@ -69,6 +71,13 @@ def differences(what, said, wanted):
             yield f"chimera {command}: {word} is in the {what} only"
 
 
+def lost_lines(manual):
+    """Lines that roff takes for a macro, and prints nothing of."""
+    for line in manual.splitlines():
+        if re.match(r"[.'](?!\\\"|(TH|SH|SS|TP|B|BI|BR|I|IR|RB|br|nf|fi)\b)", line):
+            yield f"the manual loses the line: {line}"
+
+
 def without_json(wanted, readme):
     """README.md says "all but `a`, `b` and `c` have `--json`": of commands that have no commands of their own."""
     found = {command.split()[0] for command, words in wanted.items() if command and "--json" not in words
@@ -81,10 +90,10 @@ def without_json(wanted, readme):
 
 
 def main():
-    program, source = sys.argv[1], pathlib.Path(sys.argv[2])
-    completion = source / "share/chimera/completion/chimera.bash"
+    program, source, pages = sys.argv[1], *map(pathlib.Path, sys.argv[2:])
+    completion, manual = pages / "chimera.bash", (pages / "chimera.1").read_text()
     wanted = said_by_help(program)
-    faults = list(differences("manual", said_by_manual((source / "docs/man/chimera.1").read_text()), wanted))
+    faults = list(differences("manual", said_by_manual(manual), wanted))
     faults += differences("completion", said_by_completion(completion, wanted), wanted)
     if "run" not in wanted or "--virtual" not in wanted["run"] or "--c" not in wanted.get("new component", ()):
         faults.append(f"the help was not understood: {wanted}")
@@ -92,9 +101,12 @@ def main():
                            (["check", "--graph", "d"], {"dot"}), (["new", "c"], {"component"}),
                            (["run", "--seed", ""], set()), (["describe", "gai"], {"gain"}),
                            (["test", "--se"], {"--seed", "--setup"}),
-                           (["test", "gai"], {"gain"})):
+                           (["test", "gai"], {"gain"}), (["flag", "u"], {"up"}), (["new", "app", ""], set()),
+                           (["run", "--isolation", "n"], {"none"}), (["list", ""], set()),
+                           (["watch", "--every", ""], set())):
         if (got := complete(completion, program, words)) != offered:
             faults.append(f"completion of {words}: {sorted(got)}, expected {sorted(offered)}")
+    faults += lost_lines(manual)
     faults += without_json(wanted, (source / "README.md").read_text())
     for fault in faults:
         print(fault)

@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/shell/command.h"
+#include "chimera/shell/commands.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "chimera/control/methods.h"
+
 namespace chimera::shell {
 namespace {
+
+Result<Call> read_call(const std::vector<std::string>& words) { return command::read_call(shell_words(), words); }
+std::string help_text(std::string_view name = {}) { return command::help_text(shell_words(), name); }
 
 std::string refusal(const std::vector<std::string>& words) {
   const auto call = read_call(words);
@@ -32,8 +43,8 @@ TEST(Command, RefusesWithTheNearestName) {
 
 TEST(Command, IsTypedAgainAsItWasGiven) {
   const auto call = read_call({"scope", "q[0]", "--for", "1 s", "--json", "--csv", "a.csv"});
-  EXPECT_EQ(command_line(*call), "chimera scope 'q[0]' --csv a.csv --for '1 s' --json");
-  EXPECT_EQ(command_line(*read_call({"set", "kp", "it's"})), "chimera set kp 'it'\\''s'");
+  EXPECT_EQ(command::command_line(*call), "chimera scope 'q[0]' --csv a.csv --for '1 s' --json");
+  EXPECT_EQ(command::command_line(*read_call({"set", "kp", "it's"})), "chimera set kp 'it'\\''s'");
 }
 
 TEST(Command, WhatChangesSomethingIsAnAct) {
@@ -47,12 +58,48 @@ TEST(Command, WhatChangesSomethingIsAnAct) {
 }
 
 TEST(Command, TheTableIsInOrderAndComplete) {
-  for (std::size_t i = 0; i < commands().size(); ++i) {
-    const Command& command = commands()[i];
-    EXPECT_LT(i == 0 ? "" : std::string(commands()[i - 1].name), command.name);
+  const command::Table table = shell_words();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const command::Command& command = *table[i];
+    EXPECT_LT(i == 0 ? "" : std::string(table[i - 1]->name), command.name);
     const std::string begins = command.is_shells ? command.name : std::string("chimera ") + command.name;
     EXPECT_TRUE(std::string(command.example).starts_with(begins)) << command.example;
   }
+}
+
+TEST(Command, EveryRowDoesSomethingWithAMethodOfTheProtocol) {
+  for (const RunningCommand& row : running_commands()) {
+    SCOPED_TRACE(row.words.name);
+    EXPECT_TRUE(row.once != nullptr || row.live != nullptr || row.show != nullptr);
+    const control::MethodRule* method = control::find_method(row.method);
+    ASSERT_NE(method, nullptr);
+    const bool has_act = row.words.is_act || std::ranges::any_of(row.words.options, &command::Option::is_act);
+    EXPECT_TRUE(has_act || method->role == control::Role::kObserve) << "asks first which subsystem it may change";
+  }
+}
+
+TEST(Command, EveryMethodOfTheProtocolHasACommand) {
+  std::set<std::string> asked = {"hello", "describe", "unsubscribe"};  // by several commands, beside their own
+  asked.insert({"check", "schedule", "library"});                      // by editors: the command line has its own
+  for (const RunningCommand& row : running_commands()) asked.insert(row.method);
+  for (const control::MethodRule& method : control::methods()) EXPECT_TRUE(asked.contains(method.name)) << method.name;
+  EXPECT_EQ(asked.size(), control::methods().size());
+}
+
+TEST(Command, ControlMdNamesEveryMethodAndEveryAct) {
+  std::ifstream file(std::string(std::getenv("CHIMERA_SOURCE")) + "/docs/formats/control.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string acts;
+  for (const RunningCommand& row : running_commands()) {
+    EXPECT_NE(text.str().find(std::string("| `") + row.method + "` |"), std::string::npos) << row.method;
+    if (row.words.is_act) acts += std::string(acts.empty() ? "" : " ") + row.words.name;
+    for (const command::Option& option : row.words.options) {
+      const std::string act = std::string("`") + row.words.name + " " + option.name + "`";
+      EXPECT_EQ(text.str().find(act) != std::string::npos, option.is_act) << act;
+    }
+  }
+  EXPECT_NE(text.str().find("Which words act: `" + acts + "`"), std::string::npos) << acts;
 }
 
 TEST(Command, HelpTellsUsageOptionsAndAnExample) {

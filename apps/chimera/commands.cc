@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Joins the tables of commands, and finds the function of a row.
+#include "apps/chimera/commands.h"
+
+#include <cstdio>
+
+#include "chimera/shell/carry_out.h"
+#include "chimera/shell/commands.h"
+
+using namespace chimera;  // NOLINT: a part of a main()
+
+namespace {
+
+const std::vector<FileCommand>& file_commands() {
+  static const std::vector<FileCommand> kRows = {
+      check_row(),    schedule_row(), run_row(), idle_row(),          attend_row(),          sweep_row(), list_row(),
+      describe_row(), test_row(),     new_row(), new_component_row(), new_application_row(), pages_row()};
+  return kRows;
+}
+
+const FileCommand& the_shell() {
+  static const FileCommand kRow = shell_row();
+  return kRow;
+}
+
+}  // namespace
+
+command::Table all_commands() {
+  static const std::vector<const command::Command*> kTable = [] {
+    std::vector<const command::Command*> table;
+    for (const FileCommand& row : file_commands()) table.push_back(&row.words);
+    for (const shell::RunningCommand& row : shell::running_commands()) table.push_back(&row.words);
+    table.push_back(&the_shell().words);  // which takes those before it
+    return table;
+  }();
+  return kTable;
+}
+
+int carry_out(const command::Call& call, const desk::Workplace& workplace) {
+  if (call.command == &the_shell().words) return the_shell().carry_out(call, workplace);
+  for (const FileCommand& row : file_commands())
+    if (&row.words == call.command) return row.carry_out(call, workplace);
+  return shell::carry_out({call.value("--subsystem"), workplace.unit_files}, call, stdout, stderr);
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every command of `chimera`: those on files, each a row with the function that carries it out, and those on a running
+// subsystem (chimera/shell/commands.h).
+#pragma once
+
+#include <vector>
+
+#include "chimera/command/command.h"
+#include "chimera/desk/workplace.h"
+
+/// A command that needs no running subsystem. Plain value.
+struct FileCommand {
+  chimera::command::Command words;
+  /// Returns the exit code; nullptr: the command is nothing without one of its own commands.
+  int (*carry_out)(const chimera::command::Call& call, const chimera::desk::Workplace& workplace) = nullptr;
+};
+
+/// The rows of one file each. Context of all: setup.
+FileCommand check_row();
+FileCommand schedule_row();
+FileCommand list_row();
+FileCommand describe_row();
+FileCommand test_row();
+FileCommand new_row();
+FileCommand new_component_row();
+FileCommand new_application_row();
+FileCommand run_row();
+FileCommand idle_row();
+FileCommand attend_row();
+FileCommand sweep_row();
+FileCommand shell_row();
+FileCommand pages_row();
+
+/// All rows in the order of `chimera --help`.
+chimera::command::Table all_commands();
+/// Carries out a call of any of them. Returns the exit code; may block.
+int carry_out(const chimera::command::Call& call, const chimera::desk::Workplace& workplace);

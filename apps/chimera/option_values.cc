@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the values of options that several commands share.
+#include "apps/chimera/option_values.h"
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include "chimera/desk/run.h"
+#include "chimera/units/quantity.h"
+
+using namespace chimera;  // NOLINT: a part of a main()
+
+command::Option set_option(const char* manual) {
+  return {.name = "--set",
+          .value = "VAR VALUE",
+          .help =
+              "this value instead of the file's; VAR is an operator variable, a constant, or TASK.CONSTANT; may be "
+              "repeated",
+          .manual = manual,
+          .repeats = command::Option::Repeats::kOneEach};
+}
+
+std::vector<Setting> settings_of(const command::Call& call) {
+  const std::vector<std::string> words = call.values("--set");
+  std::vector<Setting> settings;
+  for (std::size_t i = 0; i + 1 < words.size(); i += 2)
+    settings.push_back({words[i], words[i + 1], "--set " + words[i] + " '" + words[i + 1] + "'"});
+  return settings;
+}
+
+bool read_duration(const command::Call& call, const char* option, Nanoseconds& to) {
+  const std::string text = call.value(option);
+  if (text.empty()) return true;
+  const auto value = parse_duration(text);
+  if (value && value->count > 0) return to = *value, true;
+  std::fprintf(stderr, "%s: %s\n", option, value ? "must be longer than 0" : value.error().message.c_str());
+  return false;
+}
+
+bool read_seed(const command::Call& call, std::optional<std::uint64_t>& to) {
+  const std::string text = call.value("--seed");
+  if (text.empty()) return true;
+  char* end = nullptr;
+  errno = 0;
+  to = std::strtoull(text.c_str(), &end, 10);
+  if (*end == '\0' && errno == 0 && text[0] != '-') return true;
+  std::fprintf(stderr, "--seed: '%s' is not a whole number from 0 to 2^64-1\n", text.c_str());
+  return false;
+}
+
+int print(const command::CommandResult& result) { return command::print(result, stdout, stderr); }
+
+void stop_run_at_signals() {
+  std::signal(SIGINT, [](int) { desk::request_stop(); });
+  std::signal(SIGTERM, [](int) { desk::request_stop(); });
+}
