@@ -33,8 +33,8 @@ Nanoseconds used_by(pid_t thread) noexcept;
 /// Execution time of the calling thread. Context: cycle; wait-free (one system call).
 Nanoseconds used_by_this_thread() noexcept;
 
-/// True when `thread` waits for something in the kernel; false too when it is gone. Context: edge; bounded (a file of
-/// the kernel is read).
+/// True when `thread` waits for something in the kernel; false too when it is gone. Context: cycle boundary; bounded (a
+/// file of the kernel is read).
 bool is_asleep(pid_t thread) noexcept;
 
 /// How often the calling thread gave its processor away to wait for something, a page of memory too. Context: any;

@@ -21,14 +21,14 @@ inline constexpr int kNobodyReads = -1;
 const char* why_lost_text(int why) noexcept;
 
 /// Flushes `stream`. Why something that was printed to it is lost, then and ever after; 0: nothing is. Of other streams
-/// than the standard ones only what is lost now. Context: edge; may block.
+/// than the standard ones only what is lost now. Context: cycle boundary; may block.
 int flush_and_look(std::FILE* stream) noexcept;
 
 /// Somebody has told of the loss already: report_lost_output() says nothing. Context: any.
 void loss_is_told() noexcept;
 
 /// Last of all in a program: tells on standard error when standard output is lost. `code`, or 1 in the place of 0 when
-/// one of the two is. Context: edge; may block.
+/// one of the two is. Context: cycle boundary; may block.
 int report_lost_output(int code) noexcept;
 
 }  // namespace chimera

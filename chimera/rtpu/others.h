@@ -21,12 +21,12 @@ class Others final : public Neighbours {
          DecisionPage& decision, const KeeperPage& keeper, MappedPeers& peers);
   /// Shows the others what is listed in tasks.changes() and clears the list: for each change, in order, the word or the
   /// fault group and then the event for the manager's log; after the last of them all bells are rung, once.
-  /// Context: edge; wait-free.
+  /// Context: cycle boundary; wait-free.
   void publish(TaskSet& tasks) noexcept;
-  /// The same for all that is not shown as it is, listed or not: at the start. Context: edge.
+  /// The same for all that is not shown as it is, listed or not: at the start. Context: cycle boundary.
   void publish_all(TaskSet& tasks) noexcept;
   /// While it keeps them nobody is shown states: what was ON when the unit began to end alone comes back with its
-  /// successor. When it does not any more, all are shown. Context: edge.
+  /// successor. When it does not any more, all are shown. Context: cycle boundary.
   void keep_last_words(bool keeps, TaskSet& tasks) noexcept;
 
   State state(TaskId task) const noexcept override;
@@ -36,20 +36,21 @@ class Others final : public Neighbours {
   bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept override;
 
   /// Takes over segments that the main thread offered; true when there was one. One that follows another waits until
-  /// no task reads that any more. Context: edge.
+  /// no task reads that any more. Context: cycle boundary.
   bool adopt(TaskSet& tasks) noexcept;
   /// From here on `flag` reads the flag words of those who live; that of the manager also while it is being restarted.
-  /// Context: edge.
+  /// Context: cycle boundary.
   void watch_flags(IllegalFlag& flag) noexcept;
-  /// The next post of any peer. Context: edge; wait-free.
+  /// The next post of any peer. Context: cycle boundary; wait-free.
   bool take(Post& post) noexcept;
-  /// To the manager; what finds no room is counted. Context: edge; wait-free.
+  /// To the manager; what finds no room is counted. Context: cycle boundary; wait-free.
   void tell(const Post& post) noexcept;
   /// An event for the manager's log.
   void tell(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
   /// The count of changes of the decision page. Context: cycle; wait-free.
   std::uint32_t changes() const noexcept { return decision_->changes.load(std::memory_order_acquire); }
-  /// Does the manager want the task's publications on the tap? Not while there is no manager. Context: edge; wait-free.
+  /// Does the manager want the task's publications on the tap? Not while there is no manager. Context: cycle boundary;
+  /// wait-free.
   bool is_wanted_on_tap(TaskId task) const noexcept {
     const PeerSegment* there = peers_->at(manager());
     return there != nullptr && there->block().is_tapped(task);

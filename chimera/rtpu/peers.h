@@ -32,11 +32,11 @@ class MappedPeers {
   void clear();
 
   /// Takes over a segment that was offered; true when there is a new one. The one before stays mapped until let_go().
-  /// Context: edge; wait-free.
+  /// Context: cycle boundary; wait-free.
   bool adopt(std::uint32_t peer) noexcept;
-  /// Nothing reads the predecessor of the adopted segment any more. Context: edge; wait-free.
+  /// Nothing reads the predecessor of the adopted segment any more. Context: cycle boundary; wait-free.
   void let_go(std::uint32_t peer) noexcept;
-  /// The adopted segment; nullptr: none yet. Context: edge; wait-free.
+  /// The adopted segment; nullptr: none yet. Context: cycle boundary; wait-free.
   const PeerSegment* at(std::uint32_t peer) const noexcept {
     const Mapping* present = slots_[peer]->present;
     return present == nullptr ? nullptr : &present->segment;

@@ -20,25 +20,26 @@ class EdgeGuest {
     return bell_->load(std::memory_order_relaxed) != heard_ || now >= due_;
   }
   Nanoseconds next_due() const noexcept { return due_; }
-  /// What has rung by now is dealt with by the take() that follows. Context: edge; wait-free.
+  /// What has rung by now is dealt with by the take() that follows. Context: cycle boundary; wait-free.
   std::uint32_t heard() const noexcept { return heard_; }
 
   /// Deals with the inputs that are due: what comes from other processes. Signals are carried out by `signals`; what
-  /// they change is listed in TaskSet::changes(), and published by publish(). Context: edge.
+  /// they change is listed in TaskSet::changes(), and published by publish(). Context: cycle boundary.
   virtual void take(EdgeSignals& signals, Nanoseconds now) noexcept = 0;
   /// Shows other processes what is listed in TaskSet::changes(), and clears the list: at the end of every edge, and
-  /// after jobs that left something to settle. Context: edge.
+  /// after jobs that left something to settle. Context: cycle boundary.
   virtual void publish() noexcept = 0;
-  /// A signal that a task of this context sent to one of this context was carried out or refused. Context: edge.
+  /// A signal that a task of this context sent to one of this context was carried out or refused. Context: cycle
+  /// boundary.
   virtual void told(const SignalReport& report, Nanoseconds now) noexcept = 0;
-  /// The task missed a deadline, maybe with a job that is under way; the verdict says why. Context: edge.
+  /// The task missed a deadline, maybe with a job that is under way; the verdict says why. Context: cycle boundary.
   virtual void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept = 0;
-  /// A job of the task has used `used` and does not end by itself. Context: edge.
+  /// A job of the task has used `used` and does not end by itself. Context: cycle boundary.
   virtual void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
   /// Jobs here used `used` of the time that the kernel looks back to, about all it lets real-time threads have: one of
-  /// the task went on below all others. Context: edge.
+  /// the task went on below all others. Context: cycle boundary.
   virtual void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
-  /// A job of the task is over, or its state changed, and its numbers may be shown. Context: edge.
+  /// A job of the task is over, or its state changed, and its numbers may be shown. Context: cycle boundary.
   virtual void show(const Task& task) noexcept = 0;
 
  protected:

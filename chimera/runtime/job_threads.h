@@ -15,15 +15,15 @@ namespace chimera {
 class JobThreads {
  public:
   /// Keeps the task's thread from beginning a job until the edge is over; a job that waits is put back. False while a
-  /// job of it is under way: then an edge follows its end. Context: edge; wait-free.
+  /// job of it is under way: then an edge follows its end. Context: cycle boundary; wait-free.
   virtual bool claim(TaskId task) noexcept = 0;
-  /// Execution time of the job of the task that is under way; 0 without one. Context: edge; wait-free.
+  /// Execution time of the job of the task that is under way; 0 without one. Context: cycle boundary; wait-free.
   virtual Nanoseconds used_by_job(TaskId task) noexcept = 0;
   /// True when the job of the task that is under way was found waiting in a system call, before this edge.
-  /// Context: edge; wait-free.
+  /// Context: cycle boundary; wait-free.
   virtual bool is_blocked(TaskId task) noexcept = 0;
   /// Calls a method of a task at an edge, as call_method(): where jobs preempt each other at the urgency of the task,
-  /// and what the edge may touch may change meanwhile. Context: edge; as long as the method takes.
+  /// and what the edge may touch may change meanwhile. Context: cycle boundary; as long as the method takes.
   virtual Answer call(Task& task, Method method, Nanoseconds now) noexcept { return call_method(task, method, now); }
 
  protected:

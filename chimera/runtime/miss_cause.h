@@ -45,9 +45,9 @@ class MissCause {
     if (release.count < waits.load(std::memory_order_relaxed)) waits.store(release.count, std::memory_order_relaxed);
   }
   /// The cause of what the task missed since the last verdict, by the cases above.
-  /// Context: edge; O(tasks).
+  /// Context: cycle boundary; O(tasks).
   std::optional<Verdict> judge(TaskId task, Nanoseconds now) noexcept;
-  /// A verdict on the task may be given at `now`. Context: edge; wait-free.
+  /// A verdict on the task may be given at `now`. Context: cycle boundary; wait-free.
   bool may_judge(TaskId task, Nanoseconds now) const noexcept { return now - judged_[task.index] >= kSeldom; }
 
  private:

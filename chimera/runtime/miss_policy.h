@@ -62,10 +62,10 @@ class MissPolicy {
   /// A job of the task is released of which nothing was reported yet. Before anybody else knows of the job.
   void forget_reports(TaskId task) noexcept { records_[task.index].reported.store(0, std::memory_order_relaxed); }
   /// The deadline of the job has come and it is not over. The cause is reported, and where the job has begun `flag`
-  /// and `stop` act, unless the miss is tolerated; its end counts the miss. Once a job. Context: edge.
+  /// and `stop` act, unless the miss is tolerated; its end counts the miss. Once a job. Context: cycle boundary.
   void report_late(const Job& job, bool has_begun) noexcept;
   /// The job of the task that is under way, its `cycle`-th, has used more than its budget: `flag` and `stop` act. False
-  /// when that was reported before. Context: edge.
+  /// when that was reported before. Context: cycle boundary.
   bool report_overrun(TaskId task, std::uint64_t cycle, Nanoseconds used, Nanoseconds now) noexcept;
   bool is_reported_late(TaskId task) const noexcept { return was_reported(task, JobRecord::kLate); }
   bool is_reported_overrun(TaskId task) const noexcept { return was_reported(task, JobRecord::kOverrun); }
@@ -77,7 +77,7 @@ class MissPolicy {
   }
   /// Ends the task for that, in ERROR.
   void give_up(Task& task, Nanoseconds at) noexcept;
-  /// A dropped release made some task's misses too many since clear_lost_patience(). Context: edge.
+  /// A dropped release made some task's misses too many since clear_lost_patience(). Context: cycle boundary.
   bool has_lost_patience() const noexcept { return patience_lost_; }
   void clear_lost_patience() noexcept { patience_lost_ = false; }
 

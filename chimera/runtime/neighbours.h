@@ -14,15 +14,15 @@ namespace chimera {
 /// not told here: runtime/changes.h.
 class Neighbours {
  public:
-  /// State of a task of another context; ERROR when its process is dead. Context: edge; wait-free.
+  /// State of a task of another context; ERROR when its process is dead. Context: cycle boundary; wait-free.
   virtual State state(TaskId task) const noexcept = 0;
   /// Groups of a task of another context in its present incarnation, and of the operator. Not bound when that
-  /// process has not shown its segment yet. Context: edge; wait-free.
+  /// process has not shown its segment yet. Context: cycle boundary; wait-free.
   virtual GroupReader outputs(TaskId task) const noexcept = 0;
   virtual GroupReader constants(TaskId task) const noexcept = 0;
   virtual GroupReader operator_variable(std::size_t index) const noexcept = 0;
   /// Passes a signal on: to the rtpu of `target`; `on` to the manager, who alone turns tasks ON. `is_echo`: a
-  /// reinit because a constant changed. False when there is no room. Context: edge; wait-free.
+  /// reinit because a constant changed. False when there is no room. Context: cycle boundary; wait-free.
   virtual bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept = 0;
 
  protected:

@@ -86,7 +86,7 @@ class Outbox {
   std::uint64_t room() const noexcept;
   /// Does the reader take the posts of this incarnation (and none from before)? Context: cycle; wait-free.
   bool is_followed() const noexcept;
-  /// Another incarnation of the reader; null: none. Context: edge.
+  /// Another incarnation of the reader; null: none. Context: cycle boundary.
   void set_reader(const PostProgress* progress) noexcept { progress_ = progress; }
 
  private:
@@ -99,10 +99,10 @@ class Outbox {
 class Inbox {
  public:
   Inbox() noexcept = default;
-  /// Begins behind everything posted so far. Context: edge.
+  /// Begins behind everything posted so far. Context: cycle boundary.
   Inbox(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept;
   /// Goes on where `progress` stands, copied from a predecessor's; begins behind everything when that was of another
-  /// incarnation of the sender. Context: edge.
+  /// incarnation of the sender. Context: cycle boundary.
   static Inbox resume(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept;
 
   /// The next post; false when there is none. Nothing read from the ring is used as index or length by this class, and

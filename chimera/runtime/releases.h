@@ -39,7 +39,7 @@ class Releases {
   Releases(const Releases&) = delete;
   Releases& operator=(const Releases&) = delete;
 
-  /// The grid of releases starts at `origin`; whoever is ON by now is released from there on. Context: edge.
+  /// The grid of releases starts at `origin`; whoever is ON by now is released from there on. Context: cycle boundary.
   void begin(Nanoseconds origin) noexcept;
   Nanoseconds origin() const noexcept { return origin_; }
 
@@ -97,7 +97,7 @@ class Releases {
                                       Nanoseconds end, Nanoseconds used) noexcept {
     if (jobs_.close_and_conclude(job, time, body, start, end, used)) settle_job(job.task, end);
   }
-  /// What jobs of the task left for others to see. Requires: none is under way. Context: edge.
+  /// What jobs of the task left for others to see. Requires: none is under way. Context: cycle boundary.
   void settle_job(TaskId task, Nanoseconds now) noexcept;
 
   ReadyQueue& queue() noexcept { return queue_; }

@@ -37,7 +37,7 @@ class Script {
 
   /// When the next act is due; kNever after the last. Context: cycle; wait-free.
   Nanoseconds next_at() const noexcept { return done_ < acts_.size() ? acts_[done_].at : kNever; }
-  /// The next act that is due at `since_start`, once; null when none is. Context: edge; wait-free.
+  /// The next act that is due at `since_start`, once; null when none is. Context: cycle boundary; wait-free.
   const ScriptAct* take(Nanoseconds since_start) noexcept {
     return next_at() <= since_start ? &acts_[done_++] : nullptr;
   }

@@ -10,9 +10,9 @@ namespace chimera {
 /// calls TaskLife::finish_slow(task) at an edge.
 class Service {
  public:
-  /// Takes over the task until it is served. Context: edge; wait-free.
+  /// Takes over the task until it is served. Context: cycle boundary; wait-free.
   virtual void ask(TaskId task) noexcept = 0;
-  /// A task that was served; false when there is none. Context: edge; wait-free.
+  /// A task that was served; false when there is none. Context: cycle boundary; wait-free.
   virtual bool take_served(TaskId& task) noexcept = 0;
 
  protected:

@@ -36,12 +36,12 @@ class SlowMethods {
     return service_ != nullptr && (method == Method::kInit || method == Method::kKill);
   }
   /// Hands the task over; nobody else touches it before finish(). A task that is being killed is ON no more, whatever
-  /// its kill does. Context: edge; wait-free.
+  /// its kill does. Context: cycle boundary; wait-free.
   void ask_construction(Task& task) noexcept { ask(task, {true, Method::kInit, {}}); }
   void ask(Task& task, Method method) noexcept { ask(task, {false, method, {}}); }
   /// Runs what was asked for with the task. Context: the service thread; may block.
   void run(TaskId task, JobClock& clock);
-  /// The task is back. Requires: run() is over. Context: edge; wait-free.
+  /// The task is back. Requires: run() is over. Context: cycle boundary; wait-free.
   Outcome finish(Task& task) noexcept;
 
  private:

@@ -95,22 +95,24 @@ class TaskSet {
   /// Where the values of state variables come from.
   Sources& sources() noexcept { return sources_; }
 
-  /// States of tasks changed: the flag is judged anew, and what is new to other processes is listed. Context: edge.
+  /// States of tasks changed: the flag is judged anew, and what is new to other processes is listed. Context: cycle
+  /// boundary.
   void on_set_changed() noexcept;
-  /// Something changed in another context: inputs follow, and all of on_set_changed(). Context: edge.
+  /// Something changed in another context: inputs follow, and all of on_set_changed(). Context: cycle boundary.
   void follow_others() noexcept;
-  /// As IllegalFlag::raise_for(), and other processes are to see the flag at once. Context: edge.
+  /// As IllegalFlag::raise_for(), and other processes are to see the flag at once. Context: cycle boundary.
   void raise_flag_for(TaskId task) noexcept;
-  /// Between two jobs of the task; true when it had something to follow. Context: edge; wait-free.
+  /// Between two jobs of the task; true when it had something to follow. Context: cycle boundary; wait-free.
   bool adopt(TaskId task) noexcept {
     if (!sources_.is_behind(task)) return false;
     sources_.adopt(task);
     return true;
   }
-  /// Reads constants of other contexts; true when one that the task was initialised with has changed. Context: edge.
+  /// Reads constants of other contexts; true when one that the task was initialised with has changed. Context: cycle
+  /// boundary.
   bool uses_changed_constants(TaskId task) noexcept;
   /// Publishes a value of operator variable `index`. Requires: the context is alone; as many bytes as the description
-  /// gives. Context: edge.
+  /// gives. Context: cycle boundary.
   void set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept;
 
   std::span<Task> tasks() noexcept { return tasks_; }
@@ -125,7 +127,7 @@ class TaskSet {
   /// Every group in which a value of variable `index` may stand (each producer has two, used in turn):
   /// for readers in other threads, who take the latest publication. Context: setup.
   std::vector<VariableReader> readers_of(std::size_t index) const;
-  /// Latest value of variable `index` (Variables::all()). Context: edge.
+  /// Latest value of variable `index` (Variables::all()). Context: cycle boundary.
   VariableView view(std::size_t index) const noexcept;
 
  private:

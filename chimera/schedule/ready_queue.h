@@ -95,14 +95,14 @@ class ReadyQueue {
   void set_origin(Nanoseconds origin) noexcept;
 
   /// The task takes part from the first release of its grid at or after `now`. No effect when it already does.
-  /// Context: edge; O(class + log classes).
+  /// Context: cycle boundary; O(class + log classes).
   void join(TaskId task, Nanoseconds now) noexcept;
   /// The task takes part no more; a job of it that waits is forgotten without a count. No effect when outside.
-  /// Context: edge; O(class + classes).
+  /// Context: cycle boundary; O(class + classes).
   void leave(TaskId task) noexcept;
-  /// The first release that the member takes part in. Context: edge.
+  /// The first release that the member takes part in. Context: cycle boundary.
   Nanoseconds first_release(TaskId task) const noexcept { return storage_.members[find(task.index)].first; }
-  /// True between join and leave. Context: edge.
+  /// True between join and leave. Context: cycle boundary.
   bool is_member(TaskId task) const noexcept;
 
   /// The next instant at which release_due has something to do; kNever without members. Context: cycle; O(1).

@@ -49,7 +49,7 @@ class SerialPort {
   void close() noexcept {
     if (file_ >= 0) ::close(std::exchange(file_, -1));
   }
-  /// What came and was not read is forgotten. Context: edge; wait-free, one system call.
+  /// What came and was not read is forgotten. Context: cycle boundary; wait-free, one system call.
   void flush() noexcept { ::tcflush(file_, TCIFLUSH); }
   /// Bytes that came, at most `to`; -1: the device is gone. Context: cycle; one system call that does not wait.
   int read(std::span<std::uint8_t> to) noexcept {

@@ -23,10 +23,11 @@ class BallSource {
   void open(const std::string& path);
   /// A terminal gets back the mode it had. Context: setup; wait-free.
   void close() noexcept;
-  /// A device that is gone is opened again; a recording needs nothing. Throws as open(). Context: edge; may block.
+  /// A device that is gone is opened again; a recording needs nothing. Throws as open(). Context: cycle boundary; may
+  /// block.
   void reopen();
   /// What waits is forgotten: it is of a time nobody was there. A recording starts at its first event.
-  /// Context: edge; at most 17 reads.
+  /// Context: cycle boundary; at most 17 reads.
   void start(Nanoseconds now) noexcept;
   /// Gives the ball what has come, at most kMostEvents; false: the device is gone. Context: cycle; at most one read.
   bool collect(Ball& ball, std::int32_t full, Nanoseconds now) noexcept;

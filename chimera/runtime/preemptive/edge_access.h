@@ -10,7 +10,7 @@
 
 namespace chimera {
 
-/// In the section, by the thread that takes the edges, unless said otherwise. Context: edge; wait-free.
+/// In the section, by the thread that takes the edges, unless said otherwise. Context: cycle boundary; wait-free.
 class EdgeAccess final : public JobThreads {
  public:
   /// The references are used from attach() on and outlive it. Context: setup.
@@ -30,8 +30,8 @@ class EdgeAccess final : public JobThreads {
   /// Which jobs the edge at `now` reports as late that have begun and are not looked up yet. True when there are some:
   /// look_up_blocked() is due.
   bool collect_late(Nanoseconds now) noexcept;
-  /// Finds out which of the collected jobs sleep in a system call. Context: edge; outside the section; may block for
-  /// some microseconds a job, in which others act.
+  /// Finds out which of the collected jobs sleep in a system call. Context: cycle boundary; outside the section; may
+  /// block for some microseconds a job, in which others act.
   void look_up_blocked() noexcept;
   /// The edge has reported what was missed.
   void forget_blocked() noexcept;

@@ -22,7 +22,7 @@ class JobLoop {
   void run(JobThread& me, std::atomic<std::size_t>& n_attached);
   /// Threads that wake end. Context: setup; in the section.
   void quit() noexcept { quits_ = true; }
-  /// Hands out the profile of the task, which no job is writing. Context: edge too.
+  /// Hands out the profile of the task, which no job is writing. Context: cycle boundary too.
   void show(JobThread& job, Nanoseconds now) noexcept;
 
  private:
