@@ -4,7 +4,7 @@
 #pragma once
 
 #include "chimera/platform/doorbell.h"
-#include "chimera/rtpu/edge.h"
+#include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/counter_clock.h"
 
 namespace chimera {
@@ -13,7 +13,7 @@ namespace chimera {
 class BellClock final : public Clock {
  public:
   /// Context: setup; blocks about 10 ms.
-  BellClock(Doorbell bell, std::atomic<std::uint32_t>& running, Edge& edge) noexcept
+  BellClock(Doorbell bell, std::atomic<std::uint32_t>& running, RtpuControl& edge) noexcept
       : bell_(bell), running_(running), edge_(edge) {}
 
   Nanoseconds now() noexcept override { return counter_.now(); }
@@ -28,7 +28,7 @@ class BellClock final : public Clock {
  private:
   Doorbell bell_;
   std::atomic<std::uint32_t>& running_;  // BlockHead::running; relaxed, pairs with nothing
-  Edge& edge_;
+  RtpuControl& edge_;
   CounterClock counter_;
 };
 

@@ -11,7 +11,7 @@
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/linux_clock.h"
 #include "chimera/rtpu/bell_clock.h"
-#include "chimera/rtpu/edge.h"
+#include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 
@@ -26,7 +26,7 @@ struct CyclingPlace {
   std::uint32_t me;
   std::int32_t priority;  ///< the highest level any unit may have: ApplicationSettings
   TaskSet& tasks;
-  Edge& edge;
+  RtpuControl& edge;
   Others& others;
   BackgroundWriter& writer;  ///< runs what components do beside their cycles
   Nanoseconds origin;  ///< of the grid of releases that all units share

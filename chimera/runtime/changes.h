@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an edge changed, as a list: what other processes are to see of it. Nothing is published where something changes;
-// whoever takes part in the edges (EdgeGuest) publishes the list and clears it.
+// whoever takes part in the edges (BoundaryListener) publishes the list and clears it.
 #pragma once
 
 #include <cstddef>

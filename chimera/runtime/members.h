@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/job_record.h"
 #include "chimera/schedule/ready_queue.h"
 
@@ -17,7 +17,7 @@ class Members {
  public:
   /// Everything given outlives this; `guest` null: nobody is shown profiles. Context: setup.
   Members(std::span<Task> tasks, std::span<JobRecord> records, ReadyQueue& queue, ContextTap& tap,
-          EdgeGuest* guest) noexcept
+          BoundaryListener* guest) noexcept
       : tasks_(tasks), records_(records), queue_(queue), tap_(tap), guest_(guest) {}
 
   /// The task was ON at the last follow(). Context: cycle; wait-free.
@@ -37,7 +37,7 @@ class Members {
   std::span<JobRecord> records_;
   ReadyQueue& queue_;
   ContextTap& tap_;
-  EdgeGuest* guest_;
+  BoundaryListener* guest_;
   std::uint32_t n_on_ = 0;
 };
 

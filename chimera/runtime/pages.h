@@ -13,8 +13,8 @@ inline constexpr std::uint32_t kMaxRtpus = 16;             // description/draft.
 inline constexpr std::uint32_t kMaxPeers = kMaxRtpus + 1;  // the manager is peer number n_rtpus
 
 /// One word on a cache line of its own, so that ringing one bell does not slow the reader of another.
-/// Doorbell::ring() adds one with release; Doorbell::read() and EdgeGuest::listen() load with acquire: what was stored
-/// before the ring is seen after it.
+/// Doorbell::ring() adds one with release; Doorbell::read() and BoundaryListener::listen() load with acquire: what was
+/// stored before the ring is seen after it.
 struct alignas(64) BellWord {
   std::atomic<std::uint32_t> word{0};
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The common half of all executors of one context: when what is due, and the order in which the parts act.
 //
-//   edge: inputs of the guest, script acts, signals   -> tasks join and leave the queue     EdgeSignals, Members
+//   edge: inputs of the guest, script acts, signals   -> tasks join and leave the queue     BoundarySignals, Members
 //   release_due: releases                             -> ready queue; what is dropped is counted
 //   may_start: last chance to say no                  -> begin: inputs and body
 //                                                     -> end: failures, publication, profile JobCycle, MissPolicy
@@ -18,7 +18,7 @@
 #include <optional>
 #include <vector>
 
-#include "chimera/runtime/edge_signals.h"
+#include "chimera/runtime/boundary_signals.h"
 #include "chimera/runtime/job_cycle.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/members.h"
@@ -105,8 +105,8 @@ class Releases {
   JobCycle& jobs() noexcept { return jobs_; }
   MissPolicy& misses() noexcept { return misses_; }
   Members& members() noexcept { return members_; }
-  EdgeSignals& signals() noexcept { return signals_; }
-  const EdgeSignals& signals() const noexcept { return signals_; }
+  BoundarySignals& signals() noexcept { return signals_; }
+  const BoundarySignals& signals() const noexcept { return signals_; }
   Settlement& settlement() noexcept { return settlement_; }
   /// What happens is recorded here.
   ContextTap& tap() noexcept { return tap_; }
@@ -119,7 +119,7 @@ class Releases {
   void give_up_starved(Nanoseconds now) noexcept;
 
   TaskSet& set_;
-  EdgeGuest* guest_;
+  BoundaryListener* guest_;
   const std::atomic<bool>* stop_;  // set by other threads and by signal handlers; relaxed, pairs with nothing
   Nanoseconds origin_;
   Nanoseconds calm_until_ = kAtOnce;
@@ -138,7 +138,7 @@ class Releases {
   JobCycle jobs_;
   Members members_;
   Settlement settlement_;
-  EdgeSignals signals_;
+  BoundarySignals signals_;
 };
 
 }  // namespace chimera

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "chimera/runtime/background_writer.h"
-#include "chimera/runtime/edge_guest.h"
+#include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
 #include "chimera/runtime/tap_ring.h"
@@ -20,7 +20,7 @@ struct RunOptions {
   Script script;
   Tap* tap = nullptr;                        ///< null: nothing is recorded
   std::uint8_t rtpu = 0;                     ///< for the records
-  EdgeGuest* guest = nullptr;                ///< null: nobody else takes part in the edges
+  BoundaryListener* guest = nullptr;         ///< null: nobody else takes part in the edges
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
   JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
   BackgroundWriter* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer

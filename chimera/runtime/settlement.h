@@ -5,8 +5,8 @@
 
 #include <span>
 
+#include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/job_record.h"
 #include "chimera/runtime/members.h"
 #include "chimera/runtime/miss_policy.h"
@@ -25,7 +25,7 @@ class Settlement {
     Members& members;
     MissPolicy& misses;
     MissCause* cause;
-    EdgeGuest* guest;
+    BoundaryListener* guest;
   };
   explicit Settlement(const Parts& parts) noexcept : parts_(parts) {}
 

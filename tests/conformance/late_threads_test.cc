@@ -156,7 +156,7 @@ TEST_F(Late, TakesSignalsAlsoWhenItAlwaysIs) {
     (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(25));
     return CHIMERA_OK;
   };
-  listener.on_take = [&](EdgeSignals& signals, Nanoseconds now) {
+  listener.on_take = [&](BoundarySignals& signals, Nanoseconds now) {
     const TaskId late = app.id("late");
     if (!wants_off || !signals.may_touch(late)) return;
     wants_off = false;

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "chimera/platform/linux_clock.h"
-#include "chimera/runtime/edge_guest.h"
+#include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/releases.h"
 
 namespace chimera::toy {
 
-class Listener final : public EdgeGuest {
+class Listener final : public BoundaryListener {
  public:
   struct Miss {
     TaskId task, culprit;
@@ -19,7 +19,7 @@ class Listener final : public EdgeGuest {
     Nanoseconds told;
   };
 
-  explicit Listener(const std::atomic<std::uint32_t>& bell) : EdgeGuest(bell) {}
+  explicit Listener(const std::atomic<std::uint32_t>& bell) : BoundaryListener(bell) {}
 
   std::vector<Miss> of(TaskId task) const {
     std::vector<Miss> found;
@@ -28,7 +28,7 @@ class Listener final : public EdgeGuest {
     return found;
   }
 
-  void take(EdgeSignals& signals, Nanoseconds now) noexcept override {
+  void take(BoundarySignals& signals, Nanoseconds now) noexcept override {
     listen();
     if (on_take) on_take(signals, now);
   }
@@ -44,7 +44,7 @@ class Listener final : public EdgeGuest {
 
   std::vector<Miss> misses;
   std::function<void(TaskId, const MissCause::Verdict&)> on_miss;
-  std::function<void(EdgeSignals&, Nanoseconds)> on_take;
+  std::function<void(BoundarySignals&, Nanoseconds)> on_take;
 };
 
 }  // namespace chimera::toy

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chimera/platform/virtual/virtual_clock.h"
-#include "chimera/rtpu/edge.h"
+#include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/testing/test_application.h"
 

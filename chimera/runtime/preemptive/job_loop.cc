@@ -15,9 +15,16 @@ constexpr Nanoseconds kShowGap = milliseconds(10);
 }  // namespace
 
 JobLoop::JobLoop(TaskSet& set, Releases& releases, ReadyJobs& ready, JobChecks& checks, Processor& processor,
-                 Supervisor& supervisor, ThreadClock& clock, EdgeGuest* guest)
-    : set_(set), releases_(releases), ready_(ready), checks_(checks), processor_(processor), supervisor_(supervisor),
-      clock_(clock), guest_(guest), sees_switches_(SwitchWatch::can_tell()) {}
+                 Supervisor& supervisor, ThreadClock& clock, BoundaryListener* guest)
+    : set_(set),
+      releases_(releases),
+      ready_(ready),
+      checks_(checks),
+      processor_(processor),
+      supervisor_(supervisor),
+      clock_(clock),
+      guest_(guest),
+      sees_switches_(SwitchWatch::can_tell()) {}
 
 void JobLoop::run(JobThread& me, std::atomic<std::size_t>& n_attached) {
   ready_.attach_thread();

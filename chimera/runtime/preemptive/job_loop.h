@@ -15,7 +15,7 @@ class JobLoop {
  public:
   /// `guest` null: profiles are shown to nobody. The references outlive it. Context: setup.
   JobLoop(TaskSet& set, Releases& releases, ReadyJobs& ready, JobChecks& checks, Processor& processor,
-          Supervisor& supervisor, ThreadClock& clock, EdgeGuest* guest);
+          Supervisor& supervisor, ThreadClock& clock, BoundaryListener* guest);
 
   /// The life of the thread of `me`, until quit(). Adds one to `n_attached` when the thread is at the ceiling.
   /// Context: the thread of the task; outside the section; blocks.
@@ -44,7 +44,7 @@ class JobLoop {
   Processor& processor_;
   Supervisor& supervisor_;
   ThreadClock& clock_;
-  EdgeGuest* guest_;
+  BoundaryListener* guest_;
   const bool sees_switches_;
   bool quits_ = false;
 };

@@ -59,7 +59,7 @@ class PreemptiveExecutor final {
   void stop_jobs(RunEnd end) noexcept;
 
   TaskSet& set_;
-  EdgeGuest* guest_;
+  BoundaryListener* guest_;
   ThreadClock clock_;
   EdgeAccess access_;
   Releases releases_;

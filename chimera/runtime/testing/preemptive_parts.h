@@ -24,10 +24,10 @@ struct Idle {
 };
 
 /// Counts what is reported.
-class CountingGuest final : public EdgeGuest {
+class CountingGuest final : public BoundaryListener {
  public:
-  explicit CountingGuest(const std::atomic<std::uint32_t>& bell) : EdgeGuest(bell) {}
-  void take(EdgeSignals&, Nanoseconds) noexcept override {}
+  explicit CountingGuest(const std::atomic<std::uint32_t>& bell) : BoundaryListener(bell) {}
+  void take(BoundarySignals&, Nanoseconds) noexcept override {}
   void publish() noexcept override {}
   void told(const SignalReport&, Nanoseconds) noexcept override {}
   void missed(TaskId, const MissCause::Verdict& verdict, Nanoseconds) noexcept override { verdicts.push_back(verdict); }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes messages of other processes between two cycles, and carries out the signals in them step by step.
-#include "chimera/rtpu/edge.h"
+#include "chimera/rtpu/rtpu_control.h"
 
 #include <algorithm>
 
 #include "chimera/platform/wake_event.h"
-#include "chimera/runtime/edge_signals.h"
+#include "chimera/runtime/boundary_signals.h"
 #include "chimera/runtime/task_word.h"
 
 namespace chimera {
@@ -17,32 +17,46 @@ constexpr Nanoseconds kLookWhileEnding = milliseconds(1);
 // The first that a signal calls.
 Method method_of(Signal signal) noexcept {
   switch (signal) {
-    case Signal::kSpawn: return Method::kInit;
-    case Signal::kOn: return Method::kOn;
-    case Signal::kOff: return Method::kOff;
-    case Signal::kKill: return Method::kKill;
-    case Signal::kClear: return Method::kClear;
-    case Signal::kReinit: return Method::kReinit;
-    default: return Method::kCycle;
+    case Signal::kSpawn:
+      return Method::kInit;
+    case Signal::kOn:
+      return Method::kOn;
+    case Signal::kOff:
+      return Method::kOff;
+    case Signal::kKill:
+      return Method::kKill;
+    case Signal::kClear:
+      return Method::kClear;
+    case Signal::kReinit:
+      return Method::kReinit;
+    default:
+      return Method::kCycle;
   }
 }
 
 }  // namespace
 
-Edge::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
-           std::uint32_t me, Nanoseconds method_limit)
-    : EdgeGuest(decision.bells[me].word), spec_(spec), tasks_(tasks), others_(others), service_(service),
-      method_limit_(method_limit), seen_changes_(others.changes() - 1), blocked_(spec.tasks.size()),
-      commands_(spec.tasks.size()), hangs_(spec.tasks.size()) {
+RtpuControl::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
+                  std::uint32_t me, Nanoseconds method_limit)
+    : BoundaryListener(decision.bells[me].word),
+      spec_(spec),
+      tasks_(tasks),
+      others_(others),
+      service_(service),
+      method_limit_(method_limit),
+      seen_changes_(others.changes() - 1),
+      blocked_(spec.tasks.size()),
+      commands_(spec.tasks.size()),
+      hangs_(spec.tasks.size()) {
   set_due({});  // the first edge looks around
 }
 
-void Edge::begin() noexcept {
+void RtpuControl::begin() noexcept {
   others_.watch_flags(tasks_.flag());
   others_.publish_all(tasks_);
 }
 
-void Edge::take(EdgeSignals& signals, Nanoseconds now) noexcept {
+void RtpuControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
   listen();
   set_due(kNever);
   others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
@@ -53,7 +67,7 @@ void Edge::take(EdgeSignals& signals, Nanoseconds now) noexcept {
   act_on_waiting(signals, now);
 }
 
-void Edge::look_around() noexcept {
+void RtpuControl::look_around() noexcept {
   const bool is_new = others_.adopt(tasks_);
   const std::uint32_t changes = others_.changes();
   if (!is_new && changes == seen_changes_) return;
@@ -65,17 +79,19 @@ void Edge::look_around() noexcept {
   others_.block().head().seen_changes.store(changes, std::memory_order_release);
 }
 
-void Edge::take_posts() noexcept {
+void RtpuControl::take_posts() noexcept {
   for (Post post; !waiting_.is_full() && others_.take(post);) {
-    const bool is_for_us = post.kind == PostKind::kSignal && post.task.index < spec_.tasks.size() &&
-                           tasks_.is_mine(post.task);
+    const bool is_for_us =
+        post.kind == PostKind::kSignal && post.task.index < spec_.tasks.size() && tasks_.is_mine(post.task);
     if (!is_for_us) continue;
-    if (post.signal == Signal::kWakeup) (void)tasks_.sent().ring(post.task);
-    else (void)waiting_.try_push(post);
+    if (post.signal == Signal::kWakeup)
+      (void)tasks_.sent().ring(post.task);
+    else
+      (void)waiting_.try_push(post);
   }
 }
 
-void Edge::take_slow(EdgeSignals& signals, Nanoseconds now) noexcept {
+void RtpuControl::take_slow(BoundarySignals& signals, Nanoseconds now) noexcept {
   for (TaskId task; service_.take_served(task);) {
     const SignalReport done = signals.finish_slow(task, now);
     publish();
@@ -86,14 +102,14 @@ void Edge::take_slow(EdgeSignals& signals, Nanoseconds now) noexcept {
 }
 
 // A step is a signal with those that belong to one transaction with it; 0: the rest of it is still to come.
-std::size_t Edge::step_length(std::size_t first) const noexcept {
+std::size_t RtpuControl::step_length(std::size_t first) const noexcept {
   for (std::size_t i = first; i < waiting_.size(); ++i)
     if (!waiting_[i].more) return i - first + 1;
   return waiting_.is_full() ? waiting_.size() - first : 0;
 }
 
 // A task keeps the order of its signals: one that is being served, or that has an earlier signal waiting, waits.
-bool Edge::may_act(std::span<const Post> step, EdgeSignals& signals) noexcept {
+bool RtpuControl::may_act(std::span<const Post> step, BoundarySignals& signals) noexcept {
   bool may = true;
   for (const Post& post : step) {
     const Task& task = tasks_.tasks()[post.task.index];
@@ -104,7 +120,7 @@ bool Edge::may_act(std::span<const Post> step, EdgeSignals& signals) noexcept {
   return may;
 }
 
-void Edge::act_on_waiting(EdgeSignals& signals, Nanoseconds now) noexcept {
+void RtpuControl::act_on_waiting(BoundarySignals& signals, Nanoseconds now) noexcept {
   std::fill(blocked_.begin(), blocked_.end(), false);
   std::size_t kept = 0, at = 0;
   while (at < waiting_.size()) {
@@ -120,7 +136,7 @@ void Edge::act_on_waiting(EdgeSignals& signals, Nanoseconds now) noexcept {
   while (waiting_.size() > kept) waiting_.pop_back();
 }
 
-bool Edge::refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept {
+bool RtpuControl::refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept {
   const auto is_illegal = [this](const Post& post) {
     const Task& task = tasks_.tasks()[post.task.index];
     return next(task.state, post.signal, task.spec->aperiodic).kind == Next::Kind::kImpossible;
@@ -134,19 +150,21 @@ bool Edge::refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept 
   return true;
 }
 
-void Edge::act(std::span<const Post> step, EdgeSignals& signals, Nanoseconds now) noexcept {
+void RtpuControl::act(std::span<const Post> step, BoundarySignals& signals, Nanoseconds now) noexcept {
   if (refuse_illegal(step, now)) return;
   if (step[0].signal == Signal::kOn) return turn_on(step, signals, now);
   for (const Post& post : step) {
     const bool is_echo = post.signal == Signal::kReinit && post.detail != 0;
     if (is_echo && !tasks_.uses_changed_constants(post.task)) continue;
     const SignalReport done = carry_out(signals, {&post.task, 1}, post.signal, now);
-    if (done.is_deferred) commands_[post.task.index] = post;
-    else report(post, done, now);
+    if (done.is_deferred)
+      commands_[post.task.index] = post;
+    else
+      report(post, done, now);
   }
 }
 
-void Edge::turn_on(std::span<const Post> step, EdgeSignals& signals, Nanoseconds now) noexcept {
+void RtpuControl::turn_on(std::span<const Post> step, BoundarySignals& signals, Nanoseconds now) noexcept {
   FixedVector<TaskId, kWaiting> tasks;
   for (const Post& post : step) (void)tasks.try_push(post.task);
   const SignalReport done = carry_out(signals, {tasks.begin(), tasks.size()}, Signal::kOn, now);
@@ -157,13 +175,14 @@ void Edge::turn_on(std::span<const Post> step, EdgeSignals& signals, Nanoseconds
   }
 }
 
-void Edge::report(const Post& signal, const SignalReport& done, Nanoseconds now) noexcept {
+void RtpuControl::report(const Post& signal, const SignalReport& done, Nanoseconds now) noexcept {
   const bool arrived = done.is_accepted && has_arrived(done.signal, done.before, done.after);
   const Refusal why = arrived || done.why != Refusal::kNone ? done.why : Refusal::kFault;
   report(signal, done.before, done.after, why, arrived, now);
 }
 
-void Edge::report(const Post& signal, State before, State after, Refusal why, bool accepted, Nanoseconds now) noexcept {
+void RtpuControl::report(const Post& signal, State before, State after, Refusal why, bool accepted,
+                         Nanoseconds now) noexcept {
   Post post = signal;
   post.at = now;
   post.kind = PostKind::kReport;
@@ -181,17 +200,17 @@ void Edge::report(const Post& signal, State before, State after, Refusal why, bo
 }
 
 // What the manager's log says comes after what it is about.
-void Edge::post(const Post& post) noexcept {
+void RtpuControl::post(const Post& post) noexcept {
   publish();
   others_.tell(post);
 }
 
-void Edge::post_event(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
+void RtpuControl::post_event(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
   publish();
   others_.tell(happening, task, detail, at);
 }
 
-void Edge::told(const SignalReport& done, Nanoseconds now) noexcept {
+void RtpuControl::told(const SignalReport& done, Nanoseconds now) noexcept {
   Post post;
   post.at = now;
   post.task = done.task;
@@ -204,7 +223,7 @@ void Edge::told(const SignalReport& done, Nanoseconds now) noexcept {
   this->post(post);
 }
 
-void Edge::missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept {
+void RtpuControl::missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept {
   Post post;
   post.at = now;
   post.task = task;
@@ -215,11 +234,11 @@ void Edge::missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds no
   this->post(post);
 }
 
-void Edge::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
+void RtpuControl::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
   post_event(Happening::kGaveWay, task, static_cast<std::uint64_t>(used.count), now);
 }
 
-void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
+void RtpuControl::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
   post_event(Happening::kHang, task, static_cast<std::uint64_t>(used.count), now);
   hangs_[task.index] = true;
   others_.keep_last_words(true, tasks_);
@@ -230,8 +249,8 @@ void Edge::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
 }
 
 // Carries out a signal in sight of whoever supervises: its method may not come to its end.
-SignalReport Edge::carry_out(EdgeSignals& signals, std::span<const TaskId> tasks, Signal signal,
-                             Nanoseconds now) noexcept {
+SignalReport RtpuControl::carry_out(BoundarySignals& signals, std::span<const TaskId> tasks, Signal signal,
+                                    Nanoseconds now) noexcept {
   acting_ = TaskWord(tasks[0], method_of(signal)).word();
   ++progress_;
   const SignalReport done = signals.signal(tasks, signal, now);
@@ -241,21 +260,23 @@ SignalReport Edge::carry_out(EdgeSignals& signals, std::span<const TaskId> tasks
   return done;
 }
 
-void Edge::wake_supervisor() noexcept {
+void RtpuControl::wake_supervisor() noexcept {
   if (supervisor_ >= 0) ring_event(supervisor_);
 }
 
-void Edge::stop_all(EdgeSignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {
+void RtpuControl::stop_all(BoundarySignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {
   post_event(Happening::kStop, stopped_by, 0, now);
   for (const TaskId id : spec_.end_order) {
     Task& task = tasks_.tasks()[id.index];
     if (!tasks_.is_mine(id) || task.state != State::kOn) continue;
-    if (signals.may_touch(id)) (void)carry_out(signals, {&id, 1}, Signal::kOff, now);
-    else tasks_.sent().defer(task, Signal::kOff);  // its job is late, and is not waited for
+    if (signals.may_touch(id))
+      (void)carry_out(signals, {&id, 1}, Signal::kOff, now);
+    else
+      tasks_.sent().defer(task, Signal::kOff);  // its job is late, and is not waited for
   }
 }
 
-void Edge::show_profiles() noexcept {
+void RtpuControl::show_profiles() noexcept {
   const std::size_t n = spec_.tasks.size();
   for (std::size_t looked = 0, shown = 0; looked < n && shown < kShownAtOnce; ++looked) {
     const TaskId id(shown_);
@@ -266,7 +287,7 @@ void Edge::show_profiles() noexcept {
   }
 }
 
-void Edge::go_on_ending(EdgeSignals& signals, Nanoseconds now) noexcept {
+void RtpuControl::go_on_ending(BoundarySignals& signals, Nanoseconds now) noexcept {
   others_.keep_last_words(ends_alone_, tasks_);
   if (!has_begun_ending_) {
     has_begun_ending_ = true;
@@ -281,7 +302,7 @@ void Edge::go_on_ending(EdgeSignals& signals, Nanoseconds now) noexcept {
 }
 
 // True when none of ours is ON any more. Tasks of others that come first are waited for, not for ever.
-bool Edge::turn_off_next(EdgeSignals& signals, Nanoseconds now) noexcept {
+bool RtpuControl::turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept {
   for (; next_off_ < spec_.end_order.size(); ++next_off_) {
     const TaskId id = spec_.end_order[next_off_];
     if (!tasks_.is_mine(id)) {
@@ -300,7 +321,7 @@ bool Edge::turn_off_next(EdgeSignals& signals, Nanoseconds now) noexcept {
 }
 
 // True when all of ours are killed.
-bool Edge::kill_next(EdgeSignals& signals, Nanoseconds now) noexcept {
+bool RtpuControl::kill_next(BoundarySignals& signals, Nanoseconds now) noexcept {
   bool is_done = true;
   for (const TaskId id : spec_.end_order) {
     if (!tasks_.is_mine(id)) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of an edge: signals that are carried out, tasks that join and leave, what jobs left for others.
-#include "chimera/runtime/edge_signals.h"
+#include "chimera/runtime/boundary_signals.h"
 
 #include <gtest/gtest.h>
 
@@ -28,9 +28,9 @@ struct Reader {
 constexpr TaskId kSender{0u}, kReader{1u};
 
 /// Takes part in the edges and writes down what it is told.
-struct Guest final : EdgeGuest {
-  explicit Guest(const std::atomic<std::uint32_t>& bell) : EdgeGuest(bell) {}
-  void take(EdgeSignals& signals, Nanoseconds now) noexcept override {
+struct Guest final : BoundaryListener {
+  explicit Guest(const std::atomic<std::uint32_t>& bell) : BoundaryListener(bell) {}
+  void take(BoundarySignals& signals, Nanoseconds now) noexcept override {
     listen();
     if (turns_off_sender) (void)signals.signal({&kSender, 1}, Signal::kOff, now);
   }

@@ -7,13 +7,13 @@
 //     methods that are over         init and kill, run by the service thread
 //     the end of the unit           from then on no signal is begun
 //     signals                       from tasks elsewhere and from the manager
-//   step                            one signal, or one transaction of several: EdgeSignals::signal()
+//   step                            one signal, or one transaction of several: BoundarySignals::signal()
 //   list of changes                 TaskSet::changes(): nothing below this class publishes anything
 //   publication                     publish(), in one place: after every step, because the next method may hang or end
 //                                   the process, and at the end of the edge
 //
 // A change at one instant (a switch) is one more input: a plan that take() looks at before the signals, whose steps are
-// carried out by EdgeSignals and published once, after the last of them.
+// carried out by BoundarySignals and published once, after the last of them.
 #pragma once
 
 #include <atomic>
@@ -21,21 +21,21 @@
 
 #include "chimera/base/fixed.h"
 #include "chimera/rtpu/others.h"
-#include "chimera/runtime/edge_guest.h"
+#include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/service.h"
 
 namespace chimera {
 
 /// Used by the thread that cycles, but for what is marked.
-class Edge final : public EdgeGuest {
+class RtpuControl final : public BoundaryListener {
  public:
   /// Signals that wait for a task to be served; more stay in the rings.
   static constexpr std::size_t kWaiting = 512;
 
-  Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
-       std::uint32_t me, Nanoseconds method_limit);
+  RtpuControl(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
+              std::uint32_t me, Nanoseconds method_limit);
 
-  void take(EdgeSignals& signals, Nanoseconds now) noexcept override;
+  void take(BoundarySignals& signals, Nanoseconds now) noexcept override;
   void told(const SignalReport& report, Nanoseconds now) noexcept override;
   void publish() noexcept override { others_.publish(tasks_); }
   void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
@@ -49,7 +49,7 @@ class Edge final : public EdgeGuest {
   /// A job of some task does not end. Any thread.
   bool has_hanging() const noexcept { return hanging_; }
   /// The reaction `stop` of a task: turns all tasks of the unit OFF.
-  void stop_all(EdgeSignals& signals, TaskId stopped_by, Nanoseconds now) noexcept;
+  void stop_all(BoundarySignals& signals, TaskId stopped_by, Nanoseconds now) noexcept;
   /// Before a wait: shows what the tasks cost, a few of them at a time.
   void show_profiles() noexcept;
 
@@ -72,19 +72,20 @@ class Edge final : public EdgeGuest {
  private:
   void look_around() noexcept;
   void take_posts() noexcept;
-  void take_slow(EdgeSignals& signals, Nanoseconds now) noexcept;
-  void act_on_waiting(EdgeSignals& signals, Nanoseconds now) noexcept;
+  void take_slow(BoundarySignals& signals, Nanoseconds now) noexcept;
+  void act_on_waiting(BoundarySignals& signals, Nanoseconds now) noexcept;
   std::size_t step_length(std::size_t first) const noexcept;
-  bool may_act(std::span<const Post> step, EdgeSignals& signals) noexcept;
-  void act(std::span<const Post> step, EdgeSignals& signals, Nanoseconds now) noexcept;
-  void turn_on(std::span<const Post> step, EdgeSignals& signals, Nanoseconds now) noexcept;
+  bool may_act(std::span<const Post> step, BoundarySignals& signals) noexcept;
+  void act(std::span<const Post> step, BoundarySignals& signals, Nanoseconds now) noexcept;
+  void turn_on(std::span<const Post> step, BoundarySignals& signals, Nanoseconds now) noexcept;
   bool refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept;
   void report(const Post& signal, const SignalReport& report, Nanoseconds now) noexcept;
   void report(const Post& signal, State before, State after, Refusal why, bool accepted, Nanoseconds now) noexcept;
-  void go_on_ending(EdgeSignals& signals, Nanoseconds now) noexcept;
-  SignalReport carry_out(EdgeSignals& signals, std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
-  bool turn_off_next(EdgeSignals& signals, Nanoseconds now) noexcept;
-  bool kill_next(EdgeSignals& signals, Nanoseconds now) noexcept;
+  void go_on_ending(BoundarySignals& signals, Nanoseconds now) noexcept;
+  SignalReport carry_out(BoundarySignals& signals, std::span<const TaskId> tasks, Signal signal,
+                         Nanoseconds now) noexcept;
+  bool turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept;
+  bool kill_next(BoundarySignals& signals, Nanoseconds now) noexcept;
   void post(const Post& post) noexcept;
   void post_event(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
   void wake_supervisor() noexcept;
@@ -96,14 +97,14 @@ class Edge final : public EdgeGuest {
   const Nanoseconds method_limit_;
   std::uint32_t seen_changes_;
   FixedVector<Post, kWaiting> waiting_;
-  std::vector<bool> blocked_;      // by task: an earlier signal for it waits
-  std::vector<Post> commands_;     // by task: the signal that is being served
-  std::vector<bool> hangs_;        // by task: nobody waits for its job
+  std::vector<bool> blocked_;   // by task: an earlier signal for it waits
+  std::vector<Post> commands_;  // by task: the signal that is being served
+  std::vector<bool> hangs_;     // by task: nobody waits for its job
   int supervisor_ = -1;
-  std::size_t shown_ = 0;          // the task whose profile is shown next
+  std::size_t shown_ = 0;  // the task whose profile is shown next
   bool has_begun_ending_ = false;
-  std::size_t next_off_ = 0;       // in spec_.end_order
-  Nanoseconds patience_;           // with the tasks of others, while ending
+  std::size_t next_off_ = 0;  // in spec_.end_order
+  Nanoseconds patience_;      // with the tasks of others, while ending
   // end() by the main thread, read at edges: sequentially consistent, so that ends_alone_ is seen with ending_.
   std::atomic<bool> ending_{false};
   std::atomic<bool> ends_alone_{false};

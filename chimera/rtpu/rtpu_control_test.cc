@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/rtpu/edge.h"
+#include "chimera/rtpu/rtpu_control.h"
 
 #include <gtest/gtest.h>
 

@@ -10,10 +10,10 @@
 
 namespace chimera {
 
-class EdgeSignals;
+class BoundarySignals;
 
 /// Rings a bell or names an instant when it wants an edge. Used by the executor's thread only.
-class EdgeGuest {
+class BoundaryListener {
  public:
   /// True when take() has something to do. Context: cycle; wait-free.
   bool is_due(Nanoseconds now) const noexcept {
@@ -25,7 +25,7 @@ class EdgeGuest {
 
   /// Deals with the inputs that are due: what comes from other processes. Signals are carried out by `signals`; what
   /// they change is listed in TaskSet::changes(), and published by publish(). Context: cycle boundary.
-  virtual void take(EdgeSignals& signals, Nanoseconds now) noexcept = 0;
+  virtual void take(BoundarySignals& signals, Nanoseconds now) noexcept = 0;
   /// Shows other processes what is listed in TaskSet::changes(), and clears the list: at the end of every edge, and
   /// after jobs that left something to settle. Context: cycle boundary.
   virtual void publish() noexcept = 0;
@@ -43,8 +43,8 @@ class EdgeGuest {
   virtual void show(const Task& task) noexcept = 0;
 
  protected:
-  explicit EdgeGuest(const std::atomic<std::uint32_t>& bell) noexcept : bell_(&bell) {}
-  ~EdgeGuest() = default;
+  explicit BoundaryListener(const std::atomic<std::uint32_t>& bell) noexcept : bell_(&bell) {}
+  ~BoundaryListener() = default;
   void listen() noexcept { heard_ = bell_->load(std::memory_order_acquire); }  // pairs with Doorbell::ring()
   void set_due(Nanoseconds due) noexcept { due_ = due; }
 

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // Carries out signals at an edge and records them.
-#include "chimera/runtime/edge_signals.h"
+#include "chimera/runtime/boundary_signals.h"
 
 namespace chimera {
 
-void EdgeSignals::begin(Nanoseconds origin) noexcept {
+void BoundarySignals::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
   look_at_script();
 }
 
-void EdgeSignals::look_at_script() noexcept {
+void BoundarySignals::look_at_script() noexcept {
   const Nanoseconds at = script_.next_at();
   next_act_ = at == kNever ? kNever : origin_ + at;
 }
 
-void EdgeSignals::act(Nanoseconds now) noexcept {
+void BoundarySignals::act(Nanoseconds now) noexcept {
   while (const ScriptAct* next = script_.take(now - origin_)) act(*next, now);
   look_at_script();
 }
 
-void EdgeSignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
+void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
   if (act.kind == ScriptAct::Kind::kSet) return set_.set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
@@ -35,7 +35,7 @@ void EdgeSignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
   if (!task.outbox.try_push({act.signal, act.task})) tap_.record(TapKind::kSignal, now, task.id, 0, 0);
 }
 
-void EdgeSignals::carry_out_pending(Nanoseconds now) noexcept {
+void BoundarySignals::carry_out_pending(Nanoseconds now) noexcept {
   for (Task& task : set_.tasks()) {
     Signal signal;
     while (!task.pending.empty() && !task.in_service && may_touch(task.id) && set_.sent().take_pending(task, signal))
@@ -43,39 +43,39 @@ void EdgeSignals::carry_out_pending(Nanoseconds now) noexcept {
   }
 }
 
-void EdgeSignals::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
+void BoundarySignals::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
   const SignalReport report = this->signal({&task.id, 1}, signal, now);
   if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before});
   if (guest_ != nullptr) guest_->told(report, now);
 }
 
-void EdgeSignals::ring(Task& task, Nanoseconds now) noexcept {
+void BoundarySignals::ring(Task& task, Nanoseconds now) noexcept {
   const bool counts = set_.sent().ring(task.id);
   if (!counts) (void)refused_.try_push({now, task.id, Signal::kWakeup, Refusal::kState, task.state});
   tap_.record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(Signal::kWakeup), counts ? 1 : 0);
 }
 
-SignalReport EdgeSignals::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
+SignalReport BoundarySignals::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
   const bool was_illegal = set_.flag().is_up();
   const SignalReport report = set_.life().signal(tasks, signal, now);
   record(report, was_illegal, now);
   return report;
 }
 
-SignalReport EdgeSignals::finish_slow(TaskId task, Nanoseconds now) noexcept {
+SignalReport BoundarySignals::finish_slow(TaskId task, Nanoseconds now) noexcept {
   const bool was_illegal = set_.flag().is_up();
   const SignalReport report = set_.life().finish_slow(task, now);
   record_outcome(task, was_illegal, now);
   return report;
 }
 
-void EdgeSignals::record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept {
+void BoundarySignals::record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept {
   const int accepted = report.is_accepted ? 1 : 0;
   tap_.record(TapKind::kSignal, now, report.task, static_cast<std::uint64_t>(report.signal), accepted);
   record_outcome(report.task, was_illegal, now);
 }
 
-void EdgeSignals::record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept {
+void BoundarySignals::record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept {
   settlement_.record_faults(set_.tasks()[task.index]);
   if (set_.flag().is_up() != was_illegal) tap_.record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
 }

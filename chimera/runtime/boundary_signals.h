@@ -6,8 +6,8 @@
 #include <span>
 
 #include "chimera/base/fixed.h"
+#include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/edge_guest.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
 #include "chimera/runtime/settlement.h"
@@ -27,11 +27,11 @@ struct RefusedSignal {
 inline constexpr std::size_t kRefusedKept = 64;
 
 /// Context of everything not marked: edge; as long as the methods of components take; no allocation but theirs.
-class EdgeSignals {
+class BoundarySignals {
  public:
   /// Everything given outlives this; `guest` null: nobody is told. Context: setup.
-  EdgeSignals(TaskSet& set, const Script& script, ContextTap& tap, Settlement& settlement, JobThreads& threads,
-              EdgeGuest* guest) noexcept
+  BoundarySignals(TaskSet& set, const Script& script, ContextTap& tap, Settlement& settlement, JobThreads& threads,
+                  BoundaryListener* guest) noexcept
       : set_(set), script_(script), tap_(tap), settlement_(settlement), threads_(threads), guest_(guest) {}
 
   /// The script counts from `origin`.
@@ -66,7 +66,7 @@ class EdgeSignals {
   ContextTap& tap_;
   Settlement& settlement_;
   JobThreads& threads_;
-  EdgeGuest* guest_;
+  BoundaryListener* guest_;
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever;
   FixedVector<RefusedSignal, kRefusedKept> refused_;
