@@ -30,7 +30,7 @@ SIGNALS = {r'chimera::BoundarySignals::(carry_out|signal|finish_slow)\(': 'a sig
 # Vectors within the room reserved at setup, which cannot be seen here; no_heap_test.cc and edge_no_heap_test.cc count.
 RESERVED = {r'(chimera::LabelList::set\(|std::vector<chimera::LabelledJob)': 'a place for every task of the context',
             r'chimera::Sources::collect_copies\(': 'a place for every variable that the task reads',
-            r'chimera::Others::watch_flags\(': 'a place for every peer'}
+            r'chimera::PeerLinks::watch_flags\(': 'a place for every peer'}
 
 
 class Path:

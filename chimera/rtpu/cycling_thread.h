@@ -27,7 +27,7 @@ struct CyclingPlace {
   std::int32_t priority;  ///< the highest level any unit may have: ApplicationSettings
   TaskSet& tasks;
   RtpuControl& edge;
-  Others& others;
+  PeerLinks& others;
   BackgroundWriter& writer;  ///< runs what components do beside their cycles
   Nanoseconds origin;  ///< of the grid of releases that all units share
   std::atomic<std::uint32_t>& bell;

@@ -78,7 +78,7 @@ class Rtpu {
   BlockOwner block_;
   std::vector<const chimera_component*> components_;
   std::unique_ptr<ServiceThread> service_;
-  std::unique_ptr<Others> others_;
+  std::unique_ptr<PeerLinks> others_;
   BackgroundWriter writer_;
   std::unique_ptr<TaskSet> tasks_;
   std::unique_ptr<Edge> edge_;
@@ -159,7 +159,7 @@ Result<void> Rtpu::make_tasks() {
   if (!components) return components.error();
   components_ = *std::move(components);
   service_ = std::make_unique<ServiceThread>(spec.tasks.size(), Doorbell(bell()));
-  others_ = std::make_unique<Others>(spec, start_.peer, segment_.writable(), block_, *decision_, *keeper_, *peers_);
+  others_ = std::make_unique<PeerLinks>(spec, start_.peer, segment_.writable(), block_, *decision_, *keeper_, *peers_);
   ContextPlace place;
   place.rtpu = RtpuId(start_.peer);
   place.table = segment_.writable().subspan(sizeof(SegmentHeader));

@@ -36,8 +36,8 @@ Method method_of(Signal signal) noexcept {
 
 }  // namespace
 
-RtpuControl::Edge(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
-                  std::uint32_t me, Nanoseconds method_limit)
+RtpuControl::Edge(const ApplicationSpec& spec, TaskSet& tasks, PeerLinks& others, Service& service,
+                  DecisionPage& decision, std::uint32_t me, Nanoseconds method_limit)
     : BoundaryListener(decision.bells[me].word),
       spec_(spec),
       tasks_(tasks),

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "chimera/base/fixed.h"
-#include "chimera/rtpu/others.h"
+#include "chimera/rtpu/peer_links.h"
 #include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/service.h"
 
@@ -32,7 +32,7 @@ class RtpuControl final : public BoundaryListener {
   /// Signals that wait for a task to be served; more stay in the rings.
   static constexpr std::size_t kWaiting = 512;
 
-  RtpuControl(const ApplicationSpec& spec, TaskSet& tasks, Others& others, Service& service, DecisionPage& decision,
+  RtpuControl(const ApplicationSpec& spec, TaskSet& tasks, PeerLinks& others, Service& service, DecisionPage& decision,
               std::uint32_t me, Nanoseconds method_limit);
 
   void take(BoundarySignals& signals, Nanoseconds now) noexcept override;
@@ -92,7 +92,7 @@ class RtpuControl final : public BoundaryListener {
 
   const ApplicationSpec& spec_;
   TaskSet& tasks_;
-  Others& others_;
+  PeerLinks& others_;
   Service& service_;
   const Nanoseconds method_limit_;
   std::uint32_t seen_changes_;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/runtime/neighbours.h"
+#include "chimera/runtime/peer_view.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/task/task.h"
 
@@ -15,7 +15,7 @@ namespace chimera {
 class SentSignals {
  public:
   /// `memories[t]` is planned for the tasks of this context; `others` null: there is no other. Context: setup.
-  void prepare(std::span<Task> tasks, std::span<const TaskMemory> memories, Neighbours* others) noexcept {
+  void prepare(std::span<Task> tasks, std::span<const TaskMemory> memories, PeerView* others) noexcept {
     tasks_ = tasks;
     memories_ = memories;
     others_ = others;
@@ -38,7 +38,7 @@ class SentSignals {
 
   std::span<Task> tasks_;
   std::span<const TaskMemory> memories_;
-  Neighbours* others_ = nullptr;
+  PeerView* others_ = nullptr;
   std::uint32_t n_pending_ = 0;
 };
 

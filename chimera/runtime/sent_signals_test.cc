@@ -17,7 +17,7 @@ struct Plain {
 };
 
 /// The other processes: takes posts while it has room.
-struct Elsewhere final : Neighbours {
+struct Elsewhere final : PeerView {
   State state(TaskId) const noexcept override { return State::kOn; }
   GroupReader outputs(TaskId) const noexcept override { return {}; }
   GroupReader constants(TaskId) const noexcept override { return {}; }

@@ -30,8 +30,8 @@ void fill_output(const PortSpec& port, std::span<std::byte> to) noexcept {
 }  // namespace
 
 void Sources::prepare(const Variables& variables, const PeerLayout& everything, std::span<Task> tasks,
-                      std::span<TaskMemory> memories, std::span<const GroupReader> operators,
-                      const Neighbours* others, bool preemptive) {
+                      std::span<TaskMemory> memories, std::span<const GroupReader> operators, const PeerView* others,
+                      bool preemptive) {
   preemptive_ = preemptive;
   variables_ = &variables;
   everything_ = &everything;

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "chimera/runtime/aligned_bytes.h"
-#include "chimera/runtime/neighbours.h"
 #include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/peer_view.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/variables.h"
 #include "chimera/table/local_group.h"
@@ -38,7 +38,7 @@ class Sources {
   /// empty for those of others; `operators[o]` is the group of operator variable o where this context holds it itself.
   /// `preemptive`: tasks of this context read each other through copies too. Context: setup.
   void prepare(const Variables& variables, const PeerLayout& everything, std::span<Task> tasks,
-               std::span<TaskMemory> memories, std::span<const GroupReader> operators, const Neighbours* others,
+               std::span<TaskMemory> memories, std::span<const GroupReader> operators, const PeerView* others,
                bool preemptive = false);
 
   /// The task, of this context, went ON: whoever reads its variables reads them from its group now.
@@ -91,7 +91,7 @@ class Sources {
   std::span<Task> tasks_;
   std::span<TaskMemory> memories_;
   std::span<const GroupReader> operators_;
-  const Neighbours* others_ = nullptr;
+  const PeerView* others_ = nullptr;
   std::vector<Source> sources_;  // by variable
   std::deque<Copy> copies_;
   std::vector<AlignedBytes> copy_memory_;

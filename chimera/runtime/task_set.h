@@ -14,8 +14,8 @@
 #include "chimera/runtime/constant_store.h"
 #include "chimera/runtime/illegal_flag.h"
 #include "chimera/runtime/job_step.h"
-#include "chimera/runtime/neighbours.h"
 #include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/peer_view.h"
 #include "chimera/runtime/sent_signals.h"
 #include "chimera/runtime/service.h"
 #include "chimera/runtime/slow_methods.h"
@@ -49,7 +49,7 @@ struct VariableReader {
 struct ContextPlace {
   RtpuId rtpu;                     ///< whose tasks are its own; invalid: all
   std::span<std::byte> table;      ///< zeroed bytes for PeerLayout::of(spec, rtpu); empty: memory of its own
-  Neighbours* others = nullptr;
+  PeerView* others = nullptr;
   Service* service = nullptr;  ///< null: init and kill run where the signal is taken
   // Words for whoever finds the process dead or hanging (TaskWord): written relaxed, pair with nothing.
   /// Told which task and method runs, as BlockHead::running says: by the context, and by the service thread.

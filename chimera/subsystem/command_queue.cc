@@ -171,7 +171,7 @@ void CommandQueue::revive(const Command& command, Part& part) {
   state_.emit(StartRtpu{rtpu});
 }
 
-// Neighbours of one rtpu go in one list.
+// PeerView of one rtpu go in one list.
 void CommandQueue::send(Command& command) {
   auto& parts = command.parts;
   const auto is_open = [](const Part& part) { return part.stage == Stage::kOpen; };

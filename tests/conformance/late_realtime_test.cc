@@ -90,9 +90,8 @@ class LateSoon : public testing::TestWithParam<int> {
   static Nanoseconds gap() { return GetParam() == 0 ? microseconds(200) : microseconds(700); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Beside, LateSoon, testing::Values(0, 3), [](const auto& one) {
-  return one.param == 0 ? std::string("Nobody") : "Others";
-});
+INSTANTIATE_TEST_SUITE_P(Beside, LateSoon, testing::Values(0, 3),
+                         [](const auto& one) { return one.param == 0 ? std::string("Nobody") : "PeerLinks"; });
 
 TEST_P(LateSoon, AJobThatComputes) {
   const auto seen = judged(gap(), [] { return run_bad(computes, GetParam()); });

@@ -119,7 +119,7 @@ TEST(Servers, WhatWaitsWhenTheTaskGoesOffIsForgotten) {
 }
 
 /// Another rtpu that has no room for a post.
-struct Deaf final : Neighbours {
+struct Deaf final : PeerView {
   chimera::State state(TaskId) const noexcept override { return chimera::State::kOn; }
   GroupReader outputs(TaskId) const noexcept override { return {}; }
   GroupReader constants(TaskId) const noexcept override { return {}; }

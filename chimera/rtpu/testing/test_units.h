@@ -87,7 +87,7 @@ struct Unit {
   VirtualClock clock;
   ComputingClock job_clock{clock};
   HandService service;
-  Others others;
+  PeerLinks others;
   std::unique_ptr<TaskSet> tasks;
   std::unique_ptr<Edge> edge;
   std::unique_ptr<Executive> executive;

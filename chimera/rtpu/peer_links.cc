@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows other processes what changed here, and reads what they show.
-#include "chimera/rtpu/others.h"
+#include "chimera/rtpu/peer_links.h"
 
 #include <cstring>
 #include <utility>
@@ -14,21 +14,30 @@ constexpr std::uint32_t kFlagIllegalSet = 1, kFlagRaised = 2;
 
 }  // namespace
 
-Others::Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
-               DecisionPage& decision, const KeeperPage& keeper, MappedPeers& peers)
-    : spec_(&spec), me_(me), segment_(segment), block_(block), decision_(&decision), keeper_(&keeper), peers_(&peers),
-      faults_(spec.tasks.size()), notes_(spec.tasks.size()), inboxes_(peers.count()), is_read_(peers.count()) {
+PeerLinks::PeerLinks(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
+                     DecisionPage& decision, const KeeperPage& keeper, MappedPeers& peers)
+    : spec_(&spec),
+      me_(me),
+      segment_(segment),
+      block_(block),
+      decision_(&decision),
+      keeper_(&keeper),
+      peers_(&peers),
+      faults_(spec.tasks.size()),
+      notes_(spec.tasks.size()),
+      inboxes_(peers.count()),
+      is_read_(peers.count()) {
   for (std::uint32_t peer = 0; peer < peers.count(); ++peer)
     outboxes_.emplace_back(block_.outbox(peer), nullptr, block_.head().incarnation);
   flags_.reserve(peers.count());
 }
 
-bool Others::lives(std::uint32_t peer) const noexcept {
+bool PeerLinks::lives(std::uint32_t peer) const noexcept {
   const PeerSegment* mapped = peers_->at(peer);
   return mapped != nullptr && keeper_->alive[peer].load(std::memory_order_acquire) == mapped->incarnation();
 }
 
-State Others::state(TaskId task) const noexcept {
+State PeerLinks::state(TaskId task) const noexcept {
   const std::uint32_t peer = spec_->tasks[task.index].rtpu.index;
   const PeerSegment* mapped = peers_->at(peer);
   if (mapped == nullptr) return State::kNotCreated;
@@ -37,28 +46,28 @@ State Others::state(TaskId task) const noexcept {
   return status.in_service && status.state == State::kOn ? State::kOff : status.state;
 }
 
-GroupReader Others::group(std::uint32_t peer, GroupId id) const noexcept {
+GroupReader PeerLinks::group(std::uint32_t peer, GroupId id) const noexcept {
   const PeerSegment* mapped = peers_->at(peer);
   return mapped == nullptr ? GroupReader() : mapped->group(id);
 }
 
-GroupReader Others::outputs(TaskId task) const noexcept {
+GroupReader PeerLinks::outputs(TaskId task) const noexcept {
   const std::uint32_t peer = spec_->tasks[task.index].rtpu.index;
   const PeerSegment* mapped = peers_->at(peer);
   if (mapped == nullptr) return {};
   return group(peer, peers_->layout(peer).outputs(task, mapped->block().status(task).incarnation));
 }
 
-GroupReader Others::constants(TaskId task) const noexcept {
+GroupReader PeerLinks::constants(TaskId task) const noexcept {
   const std::uint32_t peer = spec_->tasks[task.index].rtpu.index;
   return group(peer, peers_->layout(peer).constants(task));
 }
 
-GroupReader Others::operator_variable(std::size_t index) const noexcept {
+GroupReader PeerLinks::operator_variable(std::size_t index) const noexcept {
   return group(manager(), peers_->layout(manager()).operator_group(index));
 }
 
-bool Others::post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept {
+bool PeerLinks::post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept {
   Post post;
   post.task = target;
   post.from = from;
@@ -71,7 +80,7 @@ bool Others::post(Signal signal, TaskId target, TaskId from, bool is_echo) noexc
   return true;
 }
 
-void Others::publish(TaskSet& tasks) noexcept {
+void PeerLinks::publish(TaskSet& tasks) noexcept {
   bool is_for_all = false;
   for (const Change& change : tasks.changes().list()) {
     if (change.kind == Change::Kind::kFault) publish_fault(tasks.tasks()[change.task.index]);
@@ -84,7 +93,7 @@ void Others::publish(TaskSet& tasks) noexcept {
   if (is_for_all) ring_all();
 }
 
-void Others::publish_all(TaskSet& tasks) noexcept {
+void PeerLinks::publish_all(TaskSet& tasks) noexcept {
   publish(tasks);
   bool is_for_all = publish_flag(tasks.flag());
   for (const Task& task : tasks.tasks()) {
@@ -96,7 +105,7 @@ void Others::publish_all(TaskSet& tasks) noexcept {
 }
 
 // True when the others are to look.
-bool Others::publish_status(const Task& task, TaskStatus before, TaskStatus now) noexcept {
+bool PeerLinks::publish_status(const Task& task, TaskStatus before, TaskStatus now) noexcept {
   if (now == before) return false;
   block_.set_status(task.id, now);
   if (now.state == before.state) return true;
@@ -111,7 +120,7 @@ bool Others::publish_status(const Task& task, TaskStatus before, TaskStatus now)
   return true;
 }
 
-bool Others::publish_flag(const IllegalFlag& flag) noexcept {
+bool PeerLinks::publish_flag(const IllegalFlag& flag) noexcept {
   const std::uint32_t judged = (flag.is_on_set_legal() ? 0 : kFlagIllegalSet) | (flag.is_raised() ? kFlagRaised : 0);
   const std::uint32_t before = block_.head().flag.load(std::memory_order_relaxed);
   // A unit that ends raises no flag any more: what its tasks lack is what was told to go.
@@ -128,7 +137,7 @@ bool Others::publish_flag(const IllegalFlag& flag) noexcept {
   return true;
 }
 
-void Others::publish_fault(const Task& task) noexcept {
+void PeerLinks::publish_fault(const Task& task) noexcept {
   const PeerLayout& layout = peers_->layout(me_);
   const GroupPlace& place = layout.place(layout.fault(task.id));
   GroupWriter writer(segment_.subspan(sizeof(SegmentHeader) + place.offset, group_bytes(place.payload_bytes)),
@@ -141,17 +150,17 @@ void Others::publish_fault(const Task& task) noexcept {
     tell(Happening::kNote, task.id, 0, LinuxClock().now());
 }
 
-void Others::ring_all() noexcept {
+void PeerLinks::ring_all() noexcept {
   decision_->changes.fetch_add(1, std::memory_order_release);  // pairs with changes(): the words above are seen
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer)
     if (peer != me_) ring(peer);
 }
 
-void Others::keep_last_words(bool keeps, TaskSet& tasks) noexcept {
+void PeerLinks::keep_last_words(bool keeps, TaskSet& tasks) noexcept {
   if (std::exchange(keeps_last_words_, keeps) && !keeps) publish_all(tasks);
 }
 
-void Others::watch_flags(IllegalFlag& flag) noexcept {
+void PeerLinks::watch_flags(IllegalFlag& flag) noexcept {
   flags_.clear();
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
     const PeerSegment* mapped = peer == me_ ? nullptr : peers_->at(peer);
@@ -160,7 +169,7 @@ void Others::watch_flags(IllegalFlag& flag) noexcept {
   flag.watch(flags_);
 }
 
-bool Others::adopt(TaskSet& tasks) noexcept {
+bool PeerLinks::adopt(TaskSet& tasks) noexcept {
   bool any = false;
   let_go_unread(tasks.sources());
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
@@ -179,7 +188,7 @@ bool Others::adopt(TaskSet& tasks) noexcept {
   return any;
 }
 
-void Others::let_go_unread(const Sources& sources) noexcept {
+void PeerLinks::let_go_unread(const Sources& sources) noexcept {
   if (sources.is_any_behind()) return;
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
     if (is_read_[peer]) peers_->let_go(peer);
@@ -187,18 +196,20 @@ void Others::let_go_unread(const Sources& sources) noexcept {
   }
 }
 
-bool Others::take(Post& post) noexcept {
+bool PeerLinks::take(Post& post) noexcept {
   for (Inbox& inbox : inboxes_)
     if (inbox.is_attached() && inbox.take(post)) return true;
   return false;
 }
 
-void Others::tell(const Post& post) noexcept {
-  if (outboxes_[manager()].is_followed() && outboxes_[manager()].try_post(post)) ring(manager());
-  else block_.head().lost_posts.fetch_add(1, std::memory_order_relaxed);
+void PeerLinks::tell(const Post& post) noexcept {
+  if (outboxes_[manager()].is_followed() && outboxes_[manager()].try_post(post))
+    ring(manager());
+  else
+    block_.head().lost_posts.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Others::tell(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
+void PeerLinks::tell(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
   Post post;
   post.at = at;
   post.task = task;

@@ -12,7 +12,7 @@ namespace chimera {
 
 /// Asked by the thread of the context, at edges; an answer is good until the next edge. What this context changes is
 /// not told here: runtime/changes.h.
-class Neighbours {
+class PeerView {
  public:
   /// State of a task of another context; ERROR when its process is dead. Context: cycle boundary; wait-free.
   virtual State state(TaskId task) const noexcept = 0;
@@ -26,7 +26,7 @@ class Neighbours {
   virtual bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept = 0;
 
  protected:
-  ~Neighbours() = default;
+  ~PeerView() = default;
 };
 
 }  // namespace chimera

@@ -8,17 +8,17 @@
 
 #include "chimera/platform/doorbell.h"
 #include "chimera/rtpu/peers.h"
-#include "chimera/runtime/neighbours.h"
+#include "chimera/runtime/peer_view.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
 
 /// Used by the thread that cycles only. Everything given to it outlives it.
-class Others final : public Neighbours {
+class PeerLinks final : public PeerView {
  public:
   /// `segment` is the unit's own, writable; `block` lies in it.
-  Others(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
-         DecisionPage& decision, const KeeperPage& keeper, MappedPeers& peers);
+  PeerLinks(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
+            DecisionPage& decision, const KeeperPage& keeper, MappedPeers& peers);
   /// Shows the others what is listed in tasks.changes() and clears the list: for each change, in order, the word or the
   /// fault group and then the event for the manager's log; after the last of them all bells are rung, once.
   /// Context: cycle boundary; wait-free.
@@ -78,9 +78,9 @@ class Others final : public Neighbours {
   MappedPeers* peers_;
   bool keeps_last_words_ = false;
   std::vector<std::uint64_t> faults_, notes_;  // by task: of those that were told
-  std::vector<Outbox> outboxes_;  // by peer
-  std::vector<Inbox> inboxes_;    // by peer
-  std::vector<bool> is_read_;     // by peer: a task may still read the segment before the present one
+  std::vector<Outbox> outboxes_;               // by peer
+  std::vector<Inbox> inboxes_;                 // by peer
+  std::vector<bool> is_read_;                  // by peer: a task may still read the segment before the present one
   std::vector<const std::atomic<std::uint32_t>*> flags_;
 };
 
