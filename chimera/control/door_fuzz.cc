@@ -95,14 +95,14 @@ struct Peer {
   bool must_answer = true;               // false once garbage of its own may have ended it
 };
 
-class World {
+class ManagerState {
  public:
-  World() {
+  ManagerState() {
     const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     door_ = *Door::open(listening, model_, 1000, {});
     for (std::size_t p = 0; p < kPeers; ++p) open(p);
   }
-  ~World() {
+  ~ManagerState() {
     for (Peer& peer : peers_) ::close(peer.fd);
   }
   void run(const std::uint8_t* bytes, std::size_t size) {
@@ -210,6 +210,6 @@ class World {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   if (size > 4096) return 0;
-  chimera::control::World().run(bytes, size);
+  chimera::control::ManagerState().run(bytes, size);
   return 0;
 }

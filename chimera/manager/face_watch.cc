@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/standard_output.h"
 
@@ -14,13 +14,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string last_end(const World& world) {
+std::string last_end(const ManagerState& world) {
   return "ended by " + std::string(signal_text(world.keeper.face_signal.load(std::memory_order_relaxed)).view());
 }
 
 }  // namespace
 
-void FaceWatch::look(World& world, Nanoseconds at) {
+void FaceWatch::look(ManagerState& world, Nanoseconds at) {
   const std::uint32_t deaths = world.keeper.face_deaths.load(std::memory_order_acquire);
   if (deaths > deaths_)
     world.tell("face-died", TaskId{}, RtpuId{},
@@ -35,7 +35,7 @@ void FaceWatch::look(World& world, Nanoseconds at) {
   lost_ = lost;
 }
 
-Json face_json(const World& world) {
+Json face_json(const ManagerState& world) {
   const std::uint32_t deaths = world.keeper.face_deaths.load(std::memory_order_acquire);
   const std::int32_t lost = world.keeper.lost_output.load(std::memory_order_acquire);
   return {{"deaths", deaths},

@@ -9,13 +9,13 @@
 
 namespace chimera::manager {
 
-struct World;
+struct ManagerState;
 
 /// Tells each death and each loss once in the life of a manager: the events of its predecessor are gone.
 class FaceWatch {
  public:
   /// Context: setup; may allocate.
-  void look(World& world, Nanoseconds at);
+  void look(ManagerState& world, Nanoseconds at);
 
  private:
   std::uint32_t deaths_ = 0;
@@ -23,6 +23,6 @@ class FaceWatch {
 };
 
 /// {"deaths", "last_end", "lost_output"}: docs/formats/control.md.
-nlohmann::json face_json(const World& world);
+nlohmann::json face_json(const ManagerState& world);
 
 }  // namespace chimera::manager

@@ -69,7 +69,7 @@ void ManagerBackend::analyse(Question::Kind kind, const Request& request) {
 }
 
 /// What the bundle says does not change as long as the manager lives.
-Answer ManagerBackend::always(std::shared_ptr<const std::string>& text, Json (*make)(const World&)) const {
+Answer ManagerBackend::always(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const {
   if (text == nullptr)
     text = std::make_shared<const std::string>(make(world()).dump(-1, ' ', false, Json::error_handler_t::replace));
   return Answer::ready(text);

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "chimera/control/control_backend.h"
-#include "chimera/manager/driver.h"
+#include "chimera/manager/manager_loop.h"
 #include "chimera/manager/questions.h"
 #include "chimera/manager/subscription_feeds.h"
 
@@ -18,7 +18,7 @@ class ManagerBackend final : public control::ControlBackend {
  public:
   /// `driver` outlives it.
   /// So does `questions`; null: analyses are made here and now.
-  explicit ManagerBackend(Driver& driver, Questions* questions = nullptr)
+  explicit ManagerBackend(ManagerLoop& driver, Questions* questions = nullptr)
       : driver_(driver), questions_(questions), feeds_(driver.world()) {}
 
   void call(const control::MethodRule& method, const control::Json& parameters, const control::Caller& caller,
@@ -60,11 +60,11 @@ class ManagerBackend final : public control::ControlBackend {
   void end(const Request& request);
   void unknown(const Request& request);
 
-  World& world() const noexcept { return driver_.world(); }
+  ManagerState& world() const noexcept { return driver_.world(); }
   void analyse(Question::Kind kind, const Request& request);
-  control::Answer always(std::shared_ptr<const std::string>& text, control::Json (*make)(const World&)) const;
+  control::Answer always(std::shared_ptr<const std::string>& text, control::Json (*make)(const ManagerState&)) const;
 
-  Driver& driver_;
+  ManagerLoop& driver_;
   Questions* questions_;
   SubscriptionFeeds feeds_;
   std::shared_ptr<const std::string> library_, description_;  // what never changes, once somebody asked for it

@@ -50,7 +50,7 @@ class ManagerBackendTest : public testing::Test {
     if (answer.is_good()) return "accepted " + answer.result->dump();
     return std::to_string(answer.code) + " " + answer.message + (answer.data ? " " + answer.data->dump() : "");
   }
-  World& world() { return fake_.driver().world(); }
+  ManagerState& world() { return fake_.driver().world(); }
 
   FakeSubsystem fake_;
   std::unique_ptr<ManagerBackend> backend_;

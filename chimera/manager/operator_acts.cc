@@ -21,7 +21,7 @@ Answer unknown(const char* what, const std::string& name, const std::vector<std:
   return Answer::unknown(message + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near);
 }
 
-std::vector<std::string> variable_names(const World& world) {
+std::vector<std::string> variable_names(const ManagerState& world) {
   std::vector<std::string> names;
   if (world.readings)
     for (const Variable& variable : world.readings->variables().all()) names.emplace_back(variable.name);
@@ -29,14 +29,14 @@ std::vector<std::string> variable_names(const World& world) {
 }
 
 /// Elements of a row of an operator variable; 0 for what has one dimension.
-std::size_t columns(const World& world, VariableId variable) {
+std::size_t columns(const ManagerState& world, VariableId variable) {
   const std::uint32_t index = world.readings->variables().all()[variable.index].operator_index;
   const std::string& shape = world.readings->configured(variable).shape;
   const bool has_rows = shape.find("][") != std::string::npos;
   return has_rows ? world.spec().operators[index].extent[1].max : 0;
 }
 
-Answer no_operators(const World& world, VariableId variable, const std::string& name) {
+Answer no_operators(const ManagerState& world, VariableId variable, const std::string& name) {
   const TaskId task = world.readings->producer(variable);
   const std::string who = task.is_valid() ? "task " + world.name(task) : "a task";
   return Answer::refused("not-operator", name + " is produced by " + who + ", not by the operator", name);
@@ -44,7 +44,7 @@ Answer no_operators(const World& world, VariableId variable, const std::string& 
 
 }  // namespace
 
-std::variant<std::vector<VariableId>, Answer> variables_named(const World& world,
+std::variant<std::vector<VariableId>, Answer> variables_named(const ManagerState& world,
                                                               const std::vector<std::string>& names) {
   std::vector<VariableId> found;
   if (names.empty() && world.readings)
@@ -57,7 +57,8 @@ std::variant<std::vector<VariableId>, Answer> variables_named(const World& world
   return found;
 }
 
-std::variant<std::vector<TaskId>, Answer> tasks_named(const World& world, const std::vector<std::string>& names) {
+std::variant<std::vector<TaskId>, Answer> tasks_named(const ManagerState& world,
+                                                      const std::vector<std::string>& names) {
   if (names.empty())
     return Answer::error(control::kBadParameters, "'tasks' must name at least one", {{"where", "tasks"}});
   std::vector<TaskId> found;
@@ -71,7 +72,7 @@ std::variant<std::vector<TaskId>, Answer> tasks_named(const World& world, const 
   return found;
 }
 
-Answer judge_ring(const World& world, TaskId task) {
+Answer judge_ring(const ManagerState& world, TaskId task) {
   const std::string name = world.name(task);
   if (!world.spec().tasks[task.index].server)
     return Answer::refused("no-server", name + " is not behind a server: it has no doorbell", name,
@@ -82,7 +83,7 @@ Answer judge_ring(const World& world, TaskId task) {
                          "turn it ON first");
 }
 
-Answer set_values(World& world, const Json& values) {
+Answer set_values(ManagerState& world, const Json& values) {
   std::vector<VariableId> variables;
   std::map<std::string, ValueForm> forms;
   for (const auto& [name, value] : values.items()) {
@@ -107,7 +108,7 @@ Answer set_values(World& world, const Json& values) {
   return Answer::good(answer);
 }
 
-Answer set_flag(World& world, bool up) {
+Answer set_flag(ManagerState& world, bool up) {
   auto& flag = world.own.block().head().flag;
   const std::uint32_t before = flag.load(std::memory_order_relaxed);
   flag.store(up ? before | kOperatorFlag : before & ~kOperatorFlag, std::memory_order_release);
@@ -119,7 +120,7 @@ Answer set_flag(World& world, bool up) {
   return Answer::good(flag_json(world));
 }
 
-Answer saved_values(const World& world) {
+Answer saved_values(const ManagerState& world) {
   Json saved = Json::object();
   for (std::size_t v = 0; world.readings && v < world.readings->size(); ++v) {
     const VariableId variable(v);

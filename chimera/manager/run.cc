@@ -13,10 +13,10 @@
 namespace chimera::manager {
 
 Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int32_t keeper_pid) {
-  auto started = Driver::start(inherited, incarnation, keeper_pid);
+  auto started = ManagerLoop::start(inherited, incarnation, keeper_pid);
   if (!started) return started.error();
   if (*started == nullptr) return 0;
-  Driver& driver = **started;
+  ManagerLoop& driver = **started;
   // Until everything is known connections wait in the backlog, so that no command meets half a picture.
   while (!driver.is_ready())
     if (!driver.step()) return 0;

@@ -12,7 +12,7 @@ using control::Answer;
 using control::Json;
 using subsystem::RefusalKind;
 
-Answer signal_answer(const World& world, const subsystem::CommandAnswer& answer) {
+Answer signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer) {
   if (answer.is_accepted()) {
     Json tasks = Json::array();
     for (const subsystem::TaskOutcome& outcome : answer.outcomes) {
@@ -30,7 +30,7 @@ Answer signal_answer(const World& world, const subsystem::CommandAnswer& answer)
                          answer.at.is_valid() ? world.name(answer.at) : "", remedy);
 }
 
-Answer no_answer(const World& world, RtpuId rtpu, const std::string& text) {
+Answer no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text) {
   const PeerSegment& segment = world.peers[rtpu];
   const std::string running = segment.is_there() ? running_text(world.spec(), segment.block().head().running) : "";
   return Answer::error(control::kNoAnswer, text,

@@ -5,14 +5,14 @@
 #include <string>
 
 #include "chimera/control/answer.h"
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
 
 namespace chimera::manager {
 
 /// Context of both: setup.
 /// The states of the tasks before and after, or the refusal with its kind, place and remedy.
-control::Answer signal_answer(const World& world, const subsystem::CommandAnswer& answer);
+control::Answer signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer);
 /// Error -32006 with what the real-time unit runs.
-control::Answer no_answer(const World& world, RtpuId rtpu, const std::string& text);
+control::Answer no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text);
 
 }  // namespace chimera::manager

@@ -40,24 +40,23 @@ Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text
 /// What the rtpu says of itself, one that was cut short included.
 std::string grant_of(const BlockHead& head) { return {head.grant, ::strnlen(head.grant, sizeof head.grant)}; }
 
-
-bool is_given_up(const World& world, RtpuId rtpu) {
+bool is_given_up(const ManagerState& world, RtpuId rtpu) {
   return !world.rtpus[rtpu.index].is_alive && world.logic.is_given_up(rtpu) && !world.is_ending();
 }
 
-bool has_lost_tasks(const World& world, RtpuId rtpu) {
+bool has_lost_tasks(const ManagerState& world, RtpuId rtpu) {
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t)
     if (world.spec().tasks[t].rtpu == rtpu && world.state(TaskId(t)) == State::kError) return true;
   return false;
 }
 
 /// Nobody is left who could raise the flag for what its tasks do not produce any more.
-bool all_are_dead(const World& world) {
+bool all_are_dead(const ManagerState& world) {
   return !world.is_ending() &&
          std::none_of(world.rtpus.begin(), world.rtpus.end(), [](const RtpuRecord& rtpu) { return rtpu.is_alive; });
 }
 
-Json rtpu_json(const World& world, RtpuId rtpu) {
+Json rtpu_json(const ManagerState& world, RtpuId rtpu) {
   const RtpuSpec& spec = world.spec().rtpus[rtpu.index];
   const RtpuRecord& record = world.rtpus[rtpu.index];
   const PeerSegment& segment = world.peers[rtpu];
@@ -94,7 +93,7 @@ Json rtpu_json(const World& world, RtpuId rtpu) {
   return json;
 }
 
-Json inputs_json(const World& world, TaskId task, Nanoseconds at) {
+Json inputs_json(const ManagerState& world, TaskId task, Nanoseconds at) {
   Json inputs = Json::array();
   for (const ConfiguredPort& port : world.configuration->tasks()[task.index].ports) {
     if (port.kind != CHIMERA_IN_VAR) continue;
@@ -117,7 +116,7 @@ Json spread_json(const Spread& spread) {
   return {{"mean", spread.mean().count}, {"max", spread.max.count}};
 }
 
-Profile profile_of(const World& world, TaskId task) {
+Profile profile_of(const ManagerState& world, TaskId task) {
   const PeerSegment& segment = world.peers.of(task);
   const Profile counted = segment.is_there() ? segment.block().profile(task) : Profile{};
   return is_credible(counted, now() - world.keeper.origin) ? counted : Profile{};
@@ -131,11 +130,11 @@ Json server_json(const std::optional<ServerSpec>& server) {
 }
 
 /// Of a task that ceased to be ON without saying so only what it was ON before that is known.
-Nanoseconds on_time(const World& world, TaskId task, const Profile& profile, Nanoseconds at) {
+Nanoseconds on_time(const ManagerState& world, TaskId task, const Profile& profile, Nanoseconds at) {
   return world.state(task) == State::kOn ? profile.on_by(at) : profile.on_before;
 }
 
-Json task_json(const World& world, TaskId task, Nanoseconds at) {
+Json task_json(const ManagerState& world, TaskId task, Nanoseconds at) {
   const TaskSpec& spec = world.spec().tasks[task.index];
   const TaskStatus status = world.peers.status(task);
   const Profile p = profile_of(world, task);
@@ -178,7 +177,7 @@ Json port_json(const ConfiguredPort& port) {
           {"unit", port.unit}, {"shape", port.shape}};
 }
 
-Json described_task(const World& world, const ConfiguredTask& task) {
+Json described_task(const ManagerState& world, const ConfiguredTask& task) {
   Json ports = Json::array();
   for (const ConfiguredPort& port : task.ports) ports.push_back(port_json(port));
   return {{"task", task.name},
@@ -213,7 +212,7 @@ Json described_variable(const Configuration& configuration, const ConfiguredVari
 
 }  // namespace
 
-Json flag_json(const World& world) {
+Json flag_json(const ManagerState& world) {
   Json by = Json::array();
   for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) {
     const PeerSegment& segment = world.peers[RtpuId(r)];
@@ -224,13 +223,13 @@ Json flag_json(const World& world) {
   return {{"up", !by.empty()}, {"by", std::move(by)}};
 }
 
-std::string fault_text(const World& world, TaskId task) {
+std::string fault_text(const ManagerState& world, TaskId task) {
   const FaultRecord fault = world.peers.fault(task);
   if (fault.count == 0) return "";
   return std::string(method_name(fault.method)) + ": " + fault.last.text;
 }
 
-std::string configuration_name(const World& world) {
+std::string configuration_name(const ManagerState& world) {
   if (!world.configuration) return "";
   const Configuration& configuration = *world.configuration;
   std::vector<bool> on(world.spec().tasks.size());
@@ -243,7 +242,7 @@ std::string configuration_name(const World& world) {
   return "";
 }
 
-Json status_json(const World& world, Nanoseconds at) {
+Json status_json(const ManagerState& world, Nanoseconds at) {
   Json rtpus = Json::array(), tasks = Json::array();
   for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) rtpus.push_back(rtpu_json(world, RtpuId(r)));
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) tasks.push_back(task_json(world, TaskId(t), at));
@@ -261,7 +260,7 @@ Json status_json(const World& world, Nanoseconds at) {
           {"tasks", std::move(tasks)}};
 }
 
-Json describe_json(const World& world) {
+Json describe_json(const ManagerState& world) {
   Json tasks = Json::array(), variables = Json::array(), sets = Json::array();
   std::string start;
   if (world.configuration) {
@@ -282,7 +281,7 @@ Json describe_json(const World& world) {
           {"start", start}};
 }
 
-Json profile_json(const World& world, Nanoseconds at) {
+Json profile_json(const ManagerState& world, Nanoseconds at) {
   std::vector<TaskProfile> tasks;
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) {
     const TaskSpec& spec = world.spec().tasks[t];
@@ -295,7 +294,7 @@ Json profile_json(const World& world, Nanoseconds at) {
   return {{"tasks", Json::parse(chimera::profile_json(tasks, world.keeper.origin))}};
 }
 
-Json event_json(const World& world, const LoggedEvent& event) {
+Json event_json(const ManagerState& world, const LoggedEvent& event) {
   Json json = {{"number", event.number},
                {"at_ns", event.at.count},
                {"wall_ns", event.wall_ns},
@@ -306,7 +305,7 @@ Json event_json(const World& world, const LoggedEvent& event) {
   return json;
 }
 
-Json events_json(const World& world, std::uint64_t since, std::size_t limit) {
+Json events_json(const ManagerState& world, std::uint64_t since, std::size_t limit) {
   Json events = Json::array();
   const EventLog& log = world.log;
   for (std::uint64_t n = std::max(since, log.first()); n <= log.last() && events.size() < limit; ++n)
@@ -314,7 +313,7 @@ Json events_json(const World& world, std::uint64_t since, std::size_t limit) {
   return {{"events", std::move(events)}, {"first", log.first()}, {"last", log.last()}};
 }
 
-Json library_json(const World& world) {
+Json library_json(const ManagerState& world) {
   Json components = Json::array();
   for (const LibraryEntry& entry : world.bundle.library.entries())
     components.push_back({{"name", entry.descriptor.name}, {"doc", entry.descriptor.doc}, {"file", entry.object_file}});

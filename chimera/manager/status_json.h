@@ -5,23 +5,23 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
 
 namespace chimera::manager {
 
 /// Context of all: setup; may block for the time of a copy.
-nlohmann::json status_json(const World& world, Nanoseconds at);
+nlohmann::json status_json(const ManagerState& world, Nanoseconds at);
 /// Whether the illegal-configuration flag is up, and by whom.
-nlohmann::json flag_json(const World& world);
-nlohmann::json describe_json(const World& world);
-nlohmann::json profile_json(const World& world, Nanoseconds at);
-nlohmann::json event_json(const World& world, const LoggedEvent& event);
+nlohmann::json flag_json(const ManagerState& world);
+nlohmann::json describe_json(const ManagerState& world);
+nlohmann::json profile_json(const ManagerState& world, Nanoseconds at);
+nlohmann::json event_json(const ManagerState& world, const LoggedEvent& event);
 /// At most `limit` events from number `since` on.
-nlohmann::json events_json(const World& world, std::uint64_t since, std::size_t limit);
-nlohmann::json library_json(const World& world);
+nlohmann::json events_json(const ManagerState& world, std::uint64_t since, std::size_t limit);
+nlohmann::json library_json(const ManagerState& world);
 /// The last fault of a task as "cycle: its words"; "" when there was none.
-std::string fault_text(const World& world, TaskId task);
+std::string fault_text(const ManagerState& world, TaskId task);
 /// Name of the configuration whose tasks are ON, exactly; "" when it has no name.
-std::string configuration_name(const World& world);
+std::string configuration_name(const ManagerState& world);
 
 }  // namespace chimera::manager

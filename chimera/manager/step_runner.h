@@ -8,8 +8,8 @@
 #include <map>
 #include <vector>
 
-#include "chimera/manager/fleet.h"
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
+#include "chimera/manager/rtpu_links.h"
 #include "chimera/platform/channel.h"
 
 namespace chimera::manager {
@@ -20,7 +20,7 @@ using Answered = std::function<void(const subsystem::CommandAnswer&)>;
 /// Context: setup; never blocks. Everything outlives it.
 class StepRunner {
  public:
-  StepRunner(World& world, Fleet& fleet, Channel& keeper) : world_(world), fleet_(fleet), keeper_(keeper) {}
+  StepRunner(ManagerState& world, RtpuLinks& fleet, Channel& keeper) : world_(world), fleet_(fleet), keeper_(keeper) {}
   StepRunner(const StepRunner&) = delete;
   StepRunner& operator=(const StepRunner&) = delete;
 
@@ -53,8 +53,8 @@ class StepRunner {
 
   ManagerMemory& memory() noexcept { return world_.own.block().memory(); }
 
-  World& world_;
-  Fleet& fleet_;
+  ManagerState& world_;
+  RtpuLinks& fleet_;
   Channel& keeper_;
   std::map<std::uint64_t, Answered> waiting_;  // by number of the command
   std::uint64_t last_command_ = 0;

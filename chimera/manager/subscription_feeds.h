@@ -20,7 +20,7 @@ inline constexpr std::size_t kEventsAtOnce = 1000;
 class SubscriptionFeeds {
  public:
   /// `world` outlives it.
-  explicit SubscriptionFeeds(World& world) : world_(world) {}
+  explicit SubscriptionFeeds(ManagerState& world) : world_(world) {}
 
   control::Answer open(std::uint64_t subscription, const control::Json& parameters);
   void close(std::uint64_t subscription) { feeds_.erase(subscription); }
@@ -38,7 +38,7 @@ class SubscriptionFeeds {
   std::shared_ptr<const control::Json> pull_events(Feed& feed) const;
   std::shared_ptr<const control::Json> pull_tap(Feed& feed) const;
 
-  World& world_;
+  ManagerState& world_;
   std::map<std::uint64_t, Feed> feeds_;
 };
 

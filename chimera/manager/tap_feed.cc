@@ -26,7 +26,7 @@ std::vector<std::uint32_t> payload_sizes(const Peers& peers) {
 
 }  // namespace
 
-TapFeed::TapFeed(World& world, const std::vector<VariableId>& variables, bool from_oldest)
+TapFeed::TapFeed(ManagerState& world, const std::vector<VariableId>& variables, bool from_oldest)
     : world_(world), from_oldest_(from_oldest && variables.empty()), buffer_(kAtOnce) {
   for (const VariableId variable : variables)
     for (const PortOf& port : world.readings->variables().all()[variable.index].producers)

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
 #include "chimera/runtime/tap_rows.h"
 
 namespace chimera::manager {
@@ -22,7 +22,7 @@ class TapFeed {
  public:
   /// `variables` empty: scheduling records; `from_oldest`: those that are still there, too, the rest of them counted
   /// as lost. Requires: not idle; `world` outlives it.
-  TapFeed(World& world, const std::vector<VariableId>& variables, bool from_oldest = false);
+  TapFeed(ManagerState& world, const std::vector<VariableId>& variables, bool from_oldest = false);
   ~TapFeed();
   TapFeed(const TapFeed&) = delete;
   TapFeed& operator=(const TapFeed&) = delete;
@@ -62,7 +62,7 @@ class TapFeed {
   void flush(Rows& rows, const TapSink& sink);
   void flush(Ring& ring, std::uint64_t lost, const TapSink& sink);
 
-  World& world_;
+  ManagerState& world_;
   const bool from_oldest_;
   std::vector<Rows> rows_;
   std::vector<Ring> rings_;

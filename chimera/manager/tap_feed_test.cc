@@ -18,7 +18,7 @@ class TapFeedTest : public testing::Test {
     fake_.start_manager();
     ASSERT_TRUE(fake_.until_on("law"));
   }
-  World& world() { return fake_.driver().world(); }
+  ManagerState& world() { return fake_.driver().world(); }
   VariableId variable(const char* name) { return *world().readings->find(name); }
   void pump(TapFeed& feed) {
     feed.pump([this](Json message) { messages_.push_back(std::move(message)); });

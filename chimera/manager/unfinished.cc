@@ -16,7 +16,8 @@ bool is_of(std::uint32_t word, TaskId task) {
 
 }  // namespace
 
-std::vector<Unfinished> unfinished(const World& world, RtpuId rtpu, const BlockView& left, const std::string& cause) {
+std::vector<Unfinished> unfinished(const ManagerState& world, RtpuId rtpu, const BlockView& left,
+                                   const std::string& cause) {
   std::vector<Unfinished> found;
   const BlockHead& head = left.head();
   if (head.phase == PeerPhase::kEnded) return found;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
 #include "chimera/rtpu/keeper_message.h"
 
 namespace chimera::manager {
@@ -17,6 +17,7 @@ struct Unfinished {
 
 /// Those in whose `off` or `kill` the unit died, and, when everything ends, those that were still ON. `left` is the
 /// block of the incarnation that ended, `cause` its `cause_text`. Context: setup.
-std::vector<Unfinished> unfinished(const World& world, RtpuId rtpu, const BlockView& left, const std::string& cause);
+std::vector<Unfinished> unfinished(const ManagerState& world, RtpuId rtpu, const BlockView& left,
+                                   const std::string& cause);
 
 }  // namespace chimera::manager

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
 #include "chimera/platform/thread_rights.h"
 
 namespace chimera::manager {
@@ -32,7 +32,7 @@ std::string lost_rights(const GrantedRights& granted, bool preemptive, const std
 /// twice in a row. Context: setup; reads some files of the kernel for each unit.
 class UnitHealth {
  public:
-  explicit UnitHealth(World& world) : world_(world), seen_(world.rtpus.size()) {}
+  explicit UnitHealth(ManagerState& world) : world_(world), seen_(world.rtpus.size()) {}
 
   /// To be called often: looks twice in a second, and at a unit when it comes up, before its tasks are ON.
   void look(Nanoseconds now);
@@ -49,7 +49,7 @@ class UnitHealth {
   void weigh(std::size_t index, Nanoseconds now);
   void compare(std::size_t index, Nanoseconds now);
 
-  World& world_;
+  ManagerState& world_;
   std::vector<Seen> seen_;
   Nanoseconds due_;
 };

@@ -20,7 +20,7 @@ std::string seconds_text(Nanoseconds time) {
   return text;
 }
 
-const BlockHead* head_of(const World& world, RtpuId rtpu) {
+const BlockHead* head_of(const ManagerState& world, RtpuId rtpu) {
   const PeerSegment& segment = world.peers[rtpu];
   const bool is_current = segment.is_there() && segment.incarnation() == world.rtpus[rtpu.index].incarnation;
   return is_current ? &segment.block().head() : nullptr;
@@ -28,7 +28,7 @@ const BlockHead* head_of(const World& world, RtpuId rtpu) {
 
 }  // namespace
 
-UnitWatch::UnitWatch(World& world) : world_(world) {
+UnitWatch::UnitWatch(ManagerState& world) : world_(world) {
   for (std::uint32_t r = 0; r < world.peers.n_rtpus(); ++r) units_.push_back(std::make_unique<Unit>());
 }
 

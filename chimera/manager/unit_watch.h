@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "chimera/manager/manager_state.h"
 #include "chimera/manager/method_watch.h"
-#include "chimera/manager/world.h"
 #include "chimera/rtpu/keeper_message.h"
 
 namespace chimera::manager {
@@ -15,7 +15,7 @@ namespace chimera::manager {
 /// Single-threaded. Context: setup; never blocks.
 class UnitWatch {
  public:
-  explicit UnitWatch(World& world);
+  explicit UnitWatch(ManagerState& world);
 
   /// When look() is due.
   Nanoseconds due() const noexcept { return due_; }
@@ -37,7 +37,7 @@ class UnitWatch {
   void look_at_keeper(Nanoseconds at);
   void tell(RtpuId rtpu, const MethodVerdict& verdict, Nanoseconds at);
 
-  World& world_;
+  ManagerState& world_;
   std::vector<std::unique_ptr<Unit>> units_;
   LifeWatch keeper_;
   Nanoseconds due_;

@@ -36,18 +36,18 @@ Json element_of(const ValueForm& form, std::span<const std::byte> at) {
   return fields;
 }
 
-std::string producer_name(const World& world, VariableId variable, TaskId producer) {
+std::string producer_name(const ManagerState& world, VariableId variable, TaskId producer) {
   if (producer.is_valid()) return world.name(producer);
   return world.readings->is_operators(variable) ? "operator" : "";
 }
 
-std::string state_text(const World& world, VariableId variable, TaskId producer) {
+std::string state_text(const ManagerState& world, VariableId variable, TaskId producer) {
   if (producer.is_valid()) return state_name(world.state(producer));
   return state_name(world.readings->is_operators(variable) ? State::kOn : State::kNotCreated);
 }
 
 /// The only candidate, or the one that wrote last; invalid: several, and none of them was ever created.
-TaskId likely_producer(const World& world, VariableId variable) {
+TaskId likely_producer(const ManagerState& world, VariableId variable) {
   const TaskId producer = world.readings->producer(variable);
   const auto& candidates = world.readings->variables().all()[variable.index].producers;
   return producer.is_valid() || candidates.size() != 1 ? producer : candidates[0].task;
@@ -66,7 +66,7 @@ std::string timing_text(const Profile& p) {
   return text;
 }
 
-void add_producer(const World& world, TaskId task, VariableFacts& facts) {
+void add_producer(const ManagerState& world, TaskId task, VariableFacts& facts) {
   const TaskSpec& spec = world.spec().tasks[task.index];
   const RtpuRecord& rtpu = world.rtpus[spec.rtpu.index];
   facts.producer = spec.name;
@@ -88,7 +88,7 @@ void add_producer(const World& world, TaskId task, VariableFacts& facts) {
 }
 
 /// The shortest stale_after of the tasks that read it; 0: none says so.
-Nanoseconds patience(const World& world, VariableId variable) {
+Nanoseconds patience(const ManagerState& world, VariableId variable) {
   Nanoseconds shortest;
   for (const PortOf& reader : world.readings->variables().all()[variable.index].consumers) {
     const auto& limit = world.configuration->draft().tasks[reader.task.index].stale_after;
@@ -97,7 +97,7 @@ Nanoseconds patience(const World& world, VariableId variable) {
   return shortest;
 }
 
-VariableFacts facts_of(const World& world, VariableId variable, Nanoseconds at) {
+VariableFacts facts_of(const ManagerState& world, VariableId variable, Nanoseconds at) {
   const VariableReading reading = world.readings->read(variable);
   VariableFacts facts;
   facts.variable = world.readings->configured(variable).name;
@@ -145,7 +145,7 @@ Json value_of(const ValueForm& form, std::span<const std::byte> bytes) {
   return list;
 }
 
-Json reading_json(const World& world, VariableId variable, Nanoseconds at) {
+Json reading_json(const ManagerState& world, VariableId variable, Nanoseconds at) {
   const VariableReading reading = world.readings->read(variable);
   const ConfiguredVariable& known = world.readings->configured(variable);
   return {{"value", reading.is_valid ? value_of(reading.form, reading.value) : Json()},
@@ -161,14 +161,14 @@ Json reading_json(const World& world, VariableId variable, Nanoseconds at) {
           {"valid", reading.is_valid}};
 }
 
-Json readings_json(const World& world, std::span<const VariableId> variables, Nanoseconds at) {
+Json readings_json(const ManagerState& world, std::span<const VariableId> variables, Nanoseconds at) {
   Json values = Json::object();
   for (const VariableId variable : variables)
     values[world.readings->configured(variable).name] = reading_json(world, variable, at);
   return values;
 }
 
-Json why_json(const World& world, VariableId variable, Nanoseconds at) {
+Json why_json(const ManagerState& world, VariableId variable, Nanoseconds at) {
   const Why answer = why(world.readings->configured(variable).name, [&](std::string_view name) {
     return facts_of(world, *world.readings->find(name), at);
   });

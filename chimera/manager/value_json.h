@@ -6,18 +6,18 @@
 #include <span>
 #include <string>
 
+#include "chimera/manager/manager_state.h"
 #include "chimera/manager/why.h"
-#include "chimera/manager/world.h"
 
 namespace chimera::manager {
 
 /// A value as docs/formats/control.md has it: number, boolean, text, array or object. Context of all: setup.
 nlohmann::json value_of(const ValueForm& form, std::span<const std::byte> bytes);
 /// One reading; its age is told at `at`.
-nlohmann::json reading_json(const World& world, VariableId variable, Nanoseconds at);
+nlohmann::json reading_json(const ManagerState& world, VariableId variable, Nanoseconds at);
 /// {name: reading} of these variables.
-nlohmann::json readings_json(const World& world, std::span<const VariableId> variables, Nanoseconds at);
+nlohmann::json readings_json(const ManagerState& world, std::span<const VariableId> variables, Nanoseconds at);
 /// Requires: not idle.
-nlohmann::json why_json(const World& world, VariableId variable, Nanoseconds at);
+nlohmann::json why_json(const ManagerState& world, VariableId variable, Nanoseconds at);
 
 }  // namespace chimera::manager

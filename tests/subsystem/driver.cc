@@ -23,11 +23,11 @@ static_assert(std::size(kActionNames) == std::variant_size_v<Action>);
 
 }  // namespace
 
-Driver::Driver(World& world) : world_(world), told_(world.n_tasks()), taken_(Plan::kRtpus) {}
+ManagerLoop::ManagerLoop(ManagerState& world) : world_(world), told_(world.n_tasks()), taken_(Plan::kRtpus) {}
 
 // ---- life and death ----
 
-void Driver::start() {
+void ManagerLoop::start() {
   world_.note("manager starts", ++life_);
   const bool is_blind = world_.defect == Defect::kJudgesNothing;
   subsystem_ = std::make_unique<Subsystem>(is_blind ? world_.plan.blind : world_.plan.spec);
@@ -57,7 +57,7 @@ void Driver::start() {
   });
 }
 
-void Driver::die(const char* point) {
+void ManagerLoop::die(const char* point) {
   if (!is_alive()) return;
   world_.note("manager dies", life_);
   world_.tally.count(point);
@@ -73,7 +73,7 @@ void Driver::die(const char* point) {
 
 // ---- events ----
 
-void Driver::poke() {
+void ManagerLoop::poke() {
   if (!is_alive() || poll_is_due_) return;
   poll_is_due_ = true;
   world_.agenda.after(world_.chance.between(microseconds(20), milliseconds(1)), [this, life = life_] {
@@ -81,19 +81,19 @@ void Driver::poke() {
   });
 }
 
-void Driver::serves(RtpuId rtpu, std::uint32_t incarnation, std::uint32_t manager) {
+void ManagerLoop::serves(RtpuId rtpu, std::uint32_t incarnation, std::uint32_t manager) {
   if (!is_alive() || manager != life_) return;
   messages_.push_back({Message::Kind::kServes, rtpu, incarnation});
   poke();
 }
 
-void Driver::ended(RtpuId rtpu, std::uint32_t incarnation) {
+void ManagerLoop::ended(RtpuId rtpu, std::uint32_t incarnation) {
   if (!is_alive()) return;
   messages_.push_back({Message::Kind::kEnded, rtpu, incarnation});
   poke();
 }
 
-void Driver::poll() {
+void ManagerLoop::poll() {
   poll_is_due_ = false;
   while (!messages_.empty()) {
     const Message message = messages_.front();
@@ -107,7 +107,7 @@ void Driver::poll() {
 }
 
 // False, here and below: it died over it.
-bool Driver::take(const Message& message) {
+bool ManagerLoop::take(const Message& message) {
   switch (message.kind) {
     case Message::Kind::kServes:
       taken_[message.rtpu.index] =
@@ -124,7 +124,7 @@ bool Driver::take(const Message& message) {
   return true;
 }
 
-bool Driver::take_ended(const Message& message) {
+bool ManagerLoop::take_ended(const Message& message) {
   if (world_.chance.percent(50) && !take_notes(message.rtpu)) return false;
   if (!tell_words(message.rtpu)) return false;
   for (std::size_t t = 0; t < told_.size(); ++t)
@@ -134,24 +134,24 @@ bool Driver::take_ended(const Message& message) {
   return feed(RtpuDown{message.rtpu, message.incarnation, world_.processes[message.rtpu.index]->cause()});
 }
 
-bool Driver::is_readable(RtpuId rtpu) const {
+bool ManagerLoop::is_readable(RtpuId rtpu) const {
   return world_.keeper->is_alive(rtpu) && (tells_of_mute_ || is_served_[rtpu.index]);
 }
 
-bool Driver::tell_words(RtpuId rtpu) {
+bool ManagerLoop::tell_words(RtpuId rtpu) {
   for (std::size_t t = 0; t < told_.size(); ++t)
     if (world_.plan.spec.tasks[t].rtpu == rtpu && !tell_word(TaskId(t))) return false;
   return true;
 }
 
-bool Driver::tell_word(TaskId task) {
+bool ManagerLoop::tell_word(TaskId task) {
   const TaskStatus word = world_.process_of(task).word(task);
   if (told_[task.index] == word) return true;
   told_[task.index] = word;
   return feed(TaskSeen{task, word});
 }
 
-bool Driver::take_notes(RtpuId rtpu) {
+bool ManagerLoop::take_notes(RtpuId rtpu) {
   const auto& notes = world_.processes[rtpu.index]->notes();
   for (std::size_t& taken = taken_[rtpu.index]; taken < notes.size();) {
     const Process::Note note = notes[taken++];
@@ -164,7 +164,7 @@ bool Driver::take_notes(RtpuId rtpu) {
   return true;
 }
 
-bool Driver::take_commands() {
+bool ManagerLoop::take_commands() {
   for (std::size_t f = 0; f < world_.faces.size(); ++f) {
     Face& face = *world_.faces[f];
     if (!face.is_waiting_at_door(life_)) continue;
@@ -175,7 +175,7 @@ bool Driver::take_commands() {
   return true;
 }
 
-bool Driver::feed(const Event& event) {
+bool ManagerLoop::feed(const Event& event) {
   std::vector<Action> actions;
   world_.note(kEventNames[event.index()]);
   subsystem_->step(event, world_.now(), actions);
@@ -200,11 +200,11 @@ bool Driver::feed(const Event& event) {
 }
 
 // How many of the actions are carried out before it dies.
-std::size_t Driver::cut(std::size_t n_actions) {
+std::size_t ManagerLoop::cut(std::size_t n_actions) {
   return is_doomed_ && n_actions > 0 ? world_.chance.below(n_actions + 1) : n_actions;
 }
 
-void Driver::plan_tick() {
+void ManagerLoop::plan_tick() {
   const Nanoseconds due = subsystem_->next_due();
   if (due == kNever || due == tick_ || world_.defect == Defect::kHasNoClock) return;
   tick_ = due;
@@ -216,7 +216,7 @@ void Driver::plan_tick() {
 
 // ---- actions ----
 
-void Driver::carry_out(const Action& action) {
+void ManagerLoop::carry_out(const Action& action) {
   Begun& memory = world_.keeper->memory;
   world_.note(kActionNames[action.index()]);
   if (const auto* it = std::get_if<Send>(&action)) {
@@ -245,7 +245,7 @@ void Driver::carry_out(const Action& action) {
   }
 }
 
-void Driver::send(const Send& send) {
+void ManagerLoop::send(const Send& send) {
   world_.tally.count("action send");
   world_.signals += send.tasks.size();
   for (TaskId task : send.tasks) world_.note("send", static_cast<int>(send.signal), task.index, send.command);
@@ -263,7 +263,7 @@ void Driver::send(const Send& send) {
     world_.processes[send.rtpu.index]->receive({send.command, life_, send.signal, send.tasks});
 }
 
-void Driver::answer(const subsystem::CommandAnswer& answer) {
+void ManagerLoop::answer(const subsystem::CommandAnswer& answer) {
   world_.tally.count(answer.is_accepted() ? "action answer yes" : "action answer no");
   world_.trace.note(world_.now(), "answer", {static_cast<std::int64_t>(answer.id), answer.is_accepted()},
                     answer.refusal.text());
@@ -276,7 +276,7 @@ void Driver::answer(const subsystem::CommandAnswer& answer) {
   world_.judge->answered(answer, face);
 }
 
-void Driver::tell(const LogEvent& tell) {
+void ManagerLoop::tell(const LogEvent& tell) {
   world_.tally.count("action tell");
   world_.tally.count("tell " + tell.kind);
   world_.trace.note(world_.now(), tell.kind, {}, tell.text);

@@ -12,9 +12,9 @@
 
 namespace chimera::simulated {
 
-class Driver {
+class ManagerLoop {
  public:
-  explicit Driver(World& world);
+  explicit ManagerLoop(ManagerState& world);
 
   void start();
   void die(const char* point);
@@ -54,7 +54,7 @@ class Driver {
   void tell(const subsystem::LogEvent& tell);
   void plan_tick();
 
-  World& world_;
+  ManagerState& world_;
   std::unique_ptr<subsystem::Subsystem> subsystem_;
   std::uint32_t life_ = 0;
   bool is_complete_ = false;

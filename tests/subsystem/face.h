@@ -11,7 +11,7 @@ namespace chimera::simulated {
 
 class Face {
  public:
-  Face(World& world, std::size_t index) : world_(world), index_(index) {}
+  Face(ManagerState& world, std::size_t index) : world_(world), index_(index) {}
 
   /// Asks by chance again and again until the world is calm.
   void live();
@@ -32,7 +32,7 @@ class Face {
   bool swap();
   std::vector<TaskId> in_state(State state, bool starters_only) const;
 
-  World& world_;
+  ManagerState& world_;
   std::size_t index_;
   bool is_waiting_ = false;
   std::uint32_t asked_of_ = 0;

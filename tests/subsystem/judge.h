@@ -11,8 +11,12 @@ namespace chimera::simulated {
 
 class Judge {
  public:
-  explicit Judge(World& world) : world_(world), turning_(world.n_tasks()), ended_(world.n_tasks()),
-                                 debts_(world.n_tasks()), given_up_(Plan::kRtpus) {}
+  explicit Judge(ManagerState& world)
+      : world_(world),
+        turning_(world.n_tasks()),
+        ended_(world.n_tasks()),
+        debts_(world.n_tasks()),
+        given_up_(Plan::kRtpus) {}
 
   /// A status word or somebody's life changed: two producers?
   void changed();
@@ -63,7 +67,7 @@ class Judge {
   RtpuId rtpu_of(TaskId task) const { return world_.plan.spec.tasks[task.index].rtpu; }
   std::string name(TaskId task) const { return std::string(world_.plan.spec.tasks[task.index].name); }
 
-  World& world_;
+  ManagerState& world_;
   std::vector<bool> turning_;  // `on` was sent, its transaction is not over
   std::vector<bool> ended_;    // its transaction is over, how will be told
   bool is_rolling_back_ = false;

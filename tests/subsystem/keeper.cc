@@ -7,7 +7,7 @@
 
 namespace chimera::simulated {
 
-Keeper::Keeper(World& world) : world_(world), alive_(Plan::kRtpus), incarnations_(Plan::kRtpus) {
+Keeper::Keeper(ManagerState& world) : world_(world), alive_(Plan::kRtpus), incarnations_(Plan::kRtpus) {
   memory.goals.resize(world.n_tasks());
   memory.handled.resize(Plan::kRtpus);
   memory.restarts.resize(Plan::kRtpus);

@@ -10,7 +10,7 @@ namespace chimera::simulated {
 
 class Keeper {
  public:
-  explicit Keeper(World& world);
+  explicit Keeper(ManagerState& world);
 
   /// Everything for the first time.
   void begin();
@@ -30,7 +30,7 @@ class Keeper {
  private:
   void start_now(RtpuId rtpu);
 
-  World& world_;
+  ManagerState& world_;
   std::vector<bool> alive_;
   std::vector<std::uint32_t> incarnations_;
   RtpuId crasher_;

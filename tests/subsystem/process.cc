@@ -9,7 +9,7 @@
 
 namespace chimera::simulated {
 
-Process::Process(World& world, RtpuId id) : world_(world), id_(id), words_(world.n_tasks()) {}
+Process::Process(ManagerState& world, RtpuId id) : world_(world), id_(id), words_(world.n_tasks()) {}
 
 void Process::later(Nanoseconds from, Nanoseconds to, std::function<void()> what) {
   at(world_.now() + world_.chance.between(from, to), std::move(what));

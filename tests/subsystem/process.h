@@ -27,7 +27,7 @@ class Process {
  public:
   using Note = std::variant<subsystem::Reported, subsystem::Requested>;
 
-  Process(World& world, RtpuId id);
+  Process(ManagerState& world, RtpuId id);
 
   void start(std::uint32_t incarnation);
   void receive(Letter letter);
@@ -95,7 +95,7 @@ class Process {
   void report(const Letter& letter, TaskId task, bool accepted, Refusal why, State before, State after);
   void look();
 
-  World& world_;
+  ManagerState& world_;
   RtpuId id_;
   bool is_alive_ = false;
   bool is_hung_ = false;

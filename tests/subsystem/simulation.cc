@@ -17,7 +17,7 @@ constexpr std::size_t kMostEvents = 400'000;
 /// What goes wrong, and when.
 class Chaos {
  public:
-  explicit Chaos(World& world) : world_(world) {}
+  explicit Chaos(ManagerState& world) : world_(world) {}
 
   void plan() {
     Chance& chance = world_.chance;
@@ -96,10 +96,10 @@ class Chaos {
     if (task.is_valid()) world_.process_of(task).receive({0, 0, Signal::kWakeup, {task}});
   }
 
-  World& world_;
+  ManagerState& world_;
 };
 
-void run_out(World& world) {
+void run_out(ManagerState& world) {
   for (std::size_t n = 0; !world.agenda.is_empty() && world.failure.empty(); ++n) {
     if (n == kMostEvents) return world.fail("no end");
     world.agenda.run_next();
@@ -110,7 +110,7 @@ void run_out(World& world) {
 /// In a calm world everything a person asks for must work: from whatever is left to the start set ON.
 class Repair {
  public:
-  explicit Repair(World& world) : world_(world) {}
+  explicit Repair(ManagerState& world) : world_(world) {}
 
   void run() {
     for (auto& process : world_.processes) {
@@ -146,30 +146,30 @@ class Repair {
       world_.fail(std::string("repair: ") + signal_name(signal) + ": " + face.last().refusal.text());
   }
 
-  World& world_;
+  ManagerState& world_;
 };
 
 }  // namespace
 
-World::World(std::uint64_t seed, Defect planted, bool prints)
+ManagerState::ManagerState(std::uint64_t seed, Defect planted, bool prints)
     : chance(seed), trace(prints), plan(chance), variables(plan.spec), defect(planted) {
   for (std::size_t r = 0; r < Plan::kRtpus; ++r) processes.push_back(std::make_unique<Process>(*this, RtpuId(r)));
   keeper = std::make_unique<Keeper>(*this);
-  driver = std::make_unique<Driver>(*this);
+  driver = std::make_unique<ManagerLoop>(*this);
   judge = std::make_unique<Judge>(*this);
   for (std::size_t f = 0; f < kFaces; ++f) faces.push_back(std::make_unique<Face>(*this, f));
 }
 
-World::~World() = default;
+ManagerState::~ManagerState() = default;
 
-void World::fail(std::string what) {
+void ManagerState::fail(std::string what) {
   if (!failure.empty()) return;
   trace.note(now(), "FAILS", {}, what);
   failure = std::move(what);
 }
 
 Outcome simulate(std::uint64_t seed, Defect defect, bool prints) {
-  World world(seed, defect, prints);
+  ManagerState world(seed, defect, prints);
   Chaos chaos(world);
   chaos.plan();
   world.keeper->begin();

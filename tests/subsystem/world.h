@@ -18,7 +18,7 @@ namespace chimera::simulated {
 
 class Process;
 class Keeper;
-class Driver;
+class ManagerLoop;
 class Face;
 class Judge;
 
@@ -33,9 +33,9 @@ enum class Defect {
   kHasNoClock,           ///< never a Tick
 };
 
-struct World {
-  World(std::uint64_t seed, Defect planted, bool prints);
-  ~World();
+struct ManagerState {
+  ManagerState(std::uint64_t seed, Defect planted, bool prints);
+  ~ManagerState();
 
   Nanoseconds now() const noexcept { return agenda.now(); }
   std::size_t n_tasks() const noexcept { return plan.spec.tasks.size(); }
@@ -62,7 +62,7 @@ struct World {
 
   std::vector<std::unique_ptr<Process>> processes;
   std::unique_ptr<Keeper> keeper;
-  std::unique_ptr<Driver> driver;
+  std::unique_ptr<ManagerLoop> driver;
   std::vector<std::unique_ptr<Face>> faces;
   std::unique_ptr<Judge> judge;
 };

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/manager/driver.h"
+#include "chimera/manager/manager_loop.h"
 #include "chimera/manager/testing/fake_rtpu.h"
 #include "chimera/manager/testing/test_bundle.h"
 #include "chimera/platform/process.h"
@@ -108,7 +108,7 @@ class FakeSubsystem {
   std::uint32_t n_rtpus() const noexcept { return static_cast<std::uint32_t>(spec_.rtpus.size()); }
   FakeRtpu& rtpu(std::uint32_t index) { return *rtpus_[index]; }
   KeeperPage& page() { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
-  Driver& driver() { return *driver_; }
+  ManagerLoop& driver() { return *driver_; }
   TaskId task(std::string_view name) const {
     for (std::size_t t = 0; t < spec_.tasks.size(); ++t)
       if (spec_.tasks[t].name == name) return TaskId(t);
@@ -121,7 +121,7 @@ class FakeSubsystem {
     const Channel end = introduce_all();
     const Inherited inherited{again(end.descriptor()),       again(image_.descriptor()), again(decision_.descriptor()),
                               again(keeper_.descriptor()), -1, again(frozen_bundle_.descriptor())};
-    auto made = Driver::start(inherited, manager_incarnation_, ::getpid());
+    auto made = ManagerLoop::start(inherited, manager_incarnation_, ::getpid());
     ASSERT_TRUE(made) << made.error().message.c_str();
     driver_ = *std::move(made);
     ASSERT_NE(driver_, nullptr);
@@ -177,7 +177,7 @@ class FakeSubsystem {
   /// The texts of all events of a kind, with the task's name before it.
   std::string told(const std::string& kind) {
     std::string text;
-    const World& world = driver_->world();
+    const ManagerState& world = driver_->world();
     for (std::uint64_t n = world.log.first(); n <= world.log.last(); ++n) {
       const LoggedEvent& event = world.log.at(n);
       if (event.kind == kind)
@@ -246,7 +246,7 @@ class FakeSubsystem {
   std::uint32_t manager_incarnation_ = 0, segment_incarnation_ = 0;
   std::map<std::uint32_t, std::unique_ptr<FakeRtpu>> rtpus_;
   std::map<std::uint32_t, std::optional<KeeperMessage>> ended_;
-  std::unique_ptr<Driver> driver_;
+  std::unique_ptr<ManagerLoop> driver_;
 };
 
 }  // namespace chimera::manager

@@ -7,11 +7,11 @@
 
 #include "chimera/manager/bell_watch.h"
 #include "chimera/manager/face_watch.h"
-#include "chimera/manager/fleet.h"
+#include "chimera/manager/manager_state.h"
+#include "chimera/manager/rtpu_links.h"
 #include "chimera/manager/step_runner.h"
 #include "chimera/manager/unit_health.h"
 #include "chimera/manager/unit_watch.h"
-#include "chimera/manager/world.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/shared_pages.h"
@@ -30,15 +30,15 @@ struct Inherited {
 };
 
 /// Context: setup. Single-threaded but for the bell watch.
-class Driver {
+class ManagerLoop {
  public:
   /// Maps what was inherited, waits for the keeper's inventory, makes the own segment and hands it on. Refuses what is
   /// not as documented; null when the keeper is gone. May block until the inventory is complete.
-  static Result<std::unique_ptr<Driver>> start(const Inherited& inherited, std::uint32_t incarnation,
-                                               std::int32_t keeper_pid);
-  Driver(const Driver&) = delete;
-  Driver& operator=(const Driver&) = delete;
-  ~Driver();
+  static Result<std::unique_ptr<ManagerLoop>> start(const Inherited& inherited, std::uint32_t incarnation,
+                                                    std::int32_t keeper_pid);
+  ManagerLoop(const ManagerLoop&) = delete;
+  ManagerLoop& operator=(const ManagerLoop&) = delete;
+  ~ManagerLoop();
 
   /// One round: waits until something is due, `at_most`, or until `also` or `or_else` is readable; deals with
   /// everything that is the driver's. False when the keeper is gone.
@@ -47,7 +47,7 @@ class Driver {
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered) {
     steps_->command(signal, std::move(tasks), std::move(answered));
   }
-  /// Rings doorbells, as Fleet::ring.
+  /// Rings doorbells, as RtpuLinks::ring.
   RtpuId ring(std::span<const TaskId> tasks);
   /// Has the keeper end everything; it is told in the next step(), when whoever asked has been answered.
   void end(std::int32_t code);
@@ -56,13 +56,13 @@ class Driver {
   /// Of the bundle, to hand on; stays the driver's.
   int bundle() const noexcept;
 
-  World& world() noexcept { return *world_; }
+  ManagerState& world() noexcept { return *world_; }
   /// Has the step function been given the whole inventory? Faces are served from then on.
   bool is_ready() const noexcept { return is_ready_; }
 
  private:
   struct Mapped;
-  explicit Driver(std::unique_ptr<Mapped> mapped);
+  explicit ManagerLoop(std::unique_ptr<Mapped> mapped);
   Result<bool> take_inventory(std::uint32_t incarnation, std::int32_t keeper_pid);
   void say_hello();
   bool take_messages();
@@ -76,8 +76,8 @@ class Driver {
   void wait(Nanoseconds until, int also, int or_else);
 
   std::unique_ptr<Mapped> mapped_;
-  std::unique_ptr<World> world_;
-  std::unique_ptr<Fleet> fleet_;
+  std::unique_ptr<ManagerState> world_;
+  std::unique_ptr<RtpuLinks> fleet_;
   std::unique_ptr<StepRunner> steps_;
   std::unique_ptr<UnitWatch> watch_;
   std::uint64_t keeper_beats_ = 0;  // that were answered

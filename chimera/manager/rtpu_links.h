@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
 #include "chimera/rtpu/keeper_message.h"
 
 namespace chimera::manager {
@@ -15,9 +15,9 @@ namespace chimera::manager {
 using Events = std::vector<subsystem::Event>;
 
 /// Context: setup; never blocks.
-class Fleet {
+class RtpuLinks {
  public:
-  explicit Fleet(World& world);
+  explicit RtpuLinks(ManagerState& world);
 
   /// The keeper says that an incarnation lives.
   void started(const KeeperMessage& message);
@@ -62,7 +62,7 @@ class Fleet {
   void count(TaskId task, Nanoseconds at);
   std::string what_it_made(RtpuId rtpu) const;
 
-  World& world_;
+  ManagerState& world_;
   std::vector<Link> links_;
   std::vector<TaskStatus> seen_;
   std::vector<Counted> counted_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Maps the segments of real-time units, reads their state and messages, and sends them signals.
-#include "chimera/manager/fleet.h"
+#include "chimera/manager/rtpu_links.h"
 
 #include <utility>
 
@@ -15,18 +15,18 @@
 
 namespace chimera::manager {
 
-Fleet::Fleet(World& world)
+RtpuLinks::RtpuLinks(ManagerState& world)
     : world_(world), links_(world.peers.n_rtpus()), seen_(world.peers.n_tasks()), counted_(world.peers.n_tasks()) {
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t)
     links_[world.spec().tasks[t].rtpu.index].tasks.push_back(TaskId(t));
 }
 
-bool Fleet::is_current(RtpuId rtpu) const noexcept {
+bool RtpuLinks::is_current(RtpuId rtpu) const noexcept {
   const PeerSegment& segment = world_.peers[rtpu];
   return segment.is_there() && segment.incarnation() == world_.rtpus[rtpu.index].incarnation;
 }
 
-void Fleet::started(const KeeperMessage& message) {
+void RtpuLinks::started(const KeeperMessage& message) {
   if (message.index >= links_.size()) return;
   RtpuRecord& rtpu = record(RtpuId(message.index));
   rtpu.pid = message.pid;
@@ -38,7 +38,7 @@ void Fleet::started(const KeeperMessage& message) {
   rtpu.ended_for.clear();
 }
 
-void Fleet::mapped(const KeeperMessage& message, int descriptor) {
+void RtpuLinks::mapped(const KeeperMessage& message, int descriptor) {
   const RtpuId rtpu(message.index);
   Link& link = links_[rtpu.index];
   link.inbox = {};  // both point into the mapping that goes away
@@ -61,7 +61,7 @@ void Fleet::mapped(const KeeperMessage& message, int descriptor) {
   Doorbell(world_.page.bells[rtpu.index].word).ring();
 }
 
-void Fleet::ended(const KeeperMessage& message, Events& events) {
+void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
   if (message.index >= links_.size()) return;
   const RtpuId rtpu(message.index);
   RtpuRecord& record = this->record(rtpu);
@@ -87,7 +87,7 @@ void Fleet::ended(const KeeperMessage& message, Events& events) {
 }
 
 /// What a unit that never showed a block was loading or constructing.
-std::string Fleet::what_it_made(RtpuId rtpu) const {
+std::string RtpuLinks::what_it_made(RtpuId rtpu) const {
   const std::uint32_t word = world_.page.making[rtpu.index];
   const std::uint32_t task = task_of_making(word, world_.spec().tasks.size());
   if (task == UINT32_MAX) return {};
@@ -96,13 +96,13 @@ std::string Fleet::what_it_made(RtpuId rtpu) const {
   return making_text(word, spec.name, entry == nullptr ? std::string(spec.component) : entry->object_file);
 }
 
-bool Fleet::all_up() const noexcept {
+bool RtpuLinks::all_up() const noexcept {
   for (const RtpuRecord& rtpu : world_.rtpus)
     if (rtpu.is_alive && !rtpu.is_up) return false;
   return true;
 }
 
-void Fleet::look(Events& events) {
+void RtpuLinks::look(Events& events) {
   for (std::uint32_t r = 0; r < links_.size(); ++r) {
     const RtpuId rtpu(r);
     RtpuRecord& record = this->record(rtpu);
@@ -118,19 +118,19 @@ void Fleet::look(Events& events) {
   }
 }
 
-void Fleet::see(TaskId task, Events& events, bool always) {
+void RtpuLinks::see(TaskId task, Events& events, bool always) {
   const TaskStatus status = world_.peers.status(task);
   if (!always && status == seen_[task.index]) return;
   seen_[task.index] = status;
   events.push_back(subsystem::TaskSeen{task, status});
 }
 
-void Fleet::take_posts(RtpuId rtpu, Events& events) {
+void RtpuLinks::take_posts(RtpuId rtpu, Events& events) {
   Post post;
   for (std::size_t n = 0; n < 4 * kPosts && links_[rtpu.index].inbox.take(post); ++n) take(post, rtpu, events);
 }
 
-void Fleet::take(const Post& post, RtpuId rtpu, Events& events) {
+void RtpuLinks::take(const Post& post, RtpuId rtpu, Events& events) {
   const bool is_its = post.task.index < seen_.size() && world_.spec().tasks[post.task.index].rtpu == rtpu;
   if (post.kind == PostKind::kEvent) return log(post, rtpu);
   if (post.kind == PostKind::kRequest && post.task.index < seen_.size()) {
@@ -143,11 +143,13 @@ void Fleet::take(const Post& post, RtpuId rtpu, Events& events) {
   }
 }
 
-void Fleet::log(const Post& post, RtpuId rtpu) {
+void RtpuLinks::log(const Post& post, RtpuId rtpu) {
   const bool has_task = post.task.index < seen_.size();
   std::string words;
-  if (has_task && post.happening == Happening::kNote) words = world_.peers.fault(post.task).note;
-  else if (has_task) words = fault_text(world_, post.task);
+  if (has_task && post.happening == Happening::kNote)
+    words = world_.peers.fault(post.task).note;
+  else if (has_task)
+    words = fault_text(world_, post.task);
   std::string text = event_text(world_.spec(), post, words);
   const bool is_illegal_set = post.happening == Happening::kFlag && (post.detail & 1u) != 0;
   if (const std::string missing = is_illegal_set ? world_.logic.missing() : ""; !missing.empty())
@@ -158,13 +160,13 @@ void Fleet::log(const Post& post, RtpuId rtpu) {
     tell_not_off(post.task, method, rtpu, post.at);
 }
 
-void Fleet::tell_not_off(TaskId task, Method method, RtpuId rtpu, Nanoseconds at) {
+void RtpuLinks::tell_not_off(TaskId task, Method method, RtpuId rtpu, Nanoseconds at) {
   const FaultRecord fault = world_.peers.fault(task);
   const char* words = fault.method == method ? fault.last.text : "its words were replaced by those of a later fault";
   world_.tell("not-off", task, rtpu, not_off_text(method, words), at);
 }
 
-void Fleet::look_at_counters(Nanoseconds at) {
+void RtpuLinks::look_at_counters(Nanoseconds at) {
   for (std::uint32_t r = 0; r < links_.size(); ++r) {
     if (!world_.peers[RtpuId(r)].is_there()) continue;
     for (const TaskId task : links_[r].tasks) count(task, at);
@@ -175,7 +177,7 @@ void Fleet::look_at_counters(Nanoseconds at) {
   }
 }
 
-void Fleet::count(TaskId task, Nanoseconds at) {
+void RtpuLinks::count(TaskId task, Nanoseconds at) {
   const Profile p = world_.peers.of(task).block().profile(task);
   Counted& before = counted_[task.index];
   const RtpuId rtpu = world_.spec().tasks[task.index].rtpu;
@@ -193,12 +195,12 @@ void Fleet::count(TaskId task, Nanoseconds at) {
   before = {p.missed, p.overrun, p.stale};
 }
 
-bool Fleet::has_room(RtpuId rtpu, std::size_t posts) const noexcept {
+bool RtpuLinks::has_room(RtpuId rtpu, std::size_t posts) const noexcept {
   const Outbox& outbox = links_[rtpu.index].outbox;
   return world_.rtpus[rtpu.index].is_alive && outbox.is_followed() && outbox.room() >= posts;
 }
 
-RtpuId Fleet::ring(std::span<const TaskId> tasks, Nanoseconds at) {
+RtpuId RtpuLinks::ring(std::span<const TaskId> tasks, Nanoseconds at) {
   std::vector<std::size_t> posts(links_.size());
   for (const TaskId task : tasks) ++posts[world_.spec().tasks[task.index].rtpu.index];
   for (std::size_t r = 0; r < posts.size(); ++r)
@@ -215,7 +217,7 @@ RtpuId Fleet::ring(std::span<const TaskId> tasks, Nanoseconds at) {
   return {};
 }
 
-bool Fleet::send(const subsystem::Send& send, Nanoseconds at) {
+bool RtpuLinks::send(const subsystem::Send& send, Nanoseconds at) {
   Outbox& outbox = links_[send.rtpu.index].outbox;
   if (!has_room(send.rtpu, send.tasks.size())) return false;
   for (std::size_t i = 0; i < send.tasks.size(); ++i) {

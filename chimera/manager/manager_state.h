@@ -29,14 +29,14 @@ struct RtpuRecord {
   std::string hang;            ///< what does not run or end: "log.init for 2.0 s"; "": nothing
   std::string ended_for;       ///< why this manager had it ended; "": it had not
   std::uint64_t resident_bytes = 0, first_resident_bytes = 0;  ///< now, and when it was ON; 0: not known
-  std::string lost_rights;     ///< what of its real-time rights is not as granted any more
+  std::string lost_rights;  ///< what of its real-time rights is not as granted any more
 };
 
 /// Owned by the driver; the rest reads, and acts through publish_operator(), raise_flag() and tap().
-struct World {
-  World(Bundle given, Peers mapped, OwnSegment segment, DecisionPage& shared, const KeeperPage& keepers);
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
+struct ManagerState {
+  ManagerState(Bundle given, Peers mapped, OwnSegment segment, DecisionPage& shared, const KeeperPage& keepers);
+  ManagerState(const ManagerState&) = delete;
+  ManagerState& operator=(const ManagerState&) = delete;
 
   Bundle bundle;
   std::optional<Configuration> configuration;  ///< none: idle
@@ -46,9 +46,9 @@ struct World {
   const KeeperPage& keeper;
   subsystem::Subsystem logic;
   EventLog log;
-  std::optional<Readings> readings;            ///< none: idle
+  std::optional<Readings> readings;  ///< none: idle
   std::vector<RtpuRecord> rtpus;
-  std::vector<std::uint32_t> tap_users;        ///< by task: subscriptions that want what it publishes
+  std::vector<std::uint32_t> tap_users;  ///< by task: subscriptions that want what it publishes
   std::int32_t keeper_pid = 0;
   std::string keeper_hang;  ///< "" while it runs
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/manager/driver.h"
+#include "chimera/manager/manager_loop.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace chimera::manager {
 namespace {
 
-TEST(Driver, BringsTheStartSetUp) {
+TEST(ManagerLoop, BringsTheStartSetUp) {
   FakeSubsystem fake;
   fake.start_manager();
   EXPECT_TRUE(fake.until_on("law")) << fake.told("refused");
@@ -21,7 +21,7 @@ TEST(Driver, BringsTheStartSetUp) {
   EXPECT_NE(fake.told("state").find("law: OFF -> ON\n"), std::string::npos) << fake.told("state");
 }
 
-TEST(Driver, CarriesOutACommandAndSaysWhatBecameOfIt) {
+TEST(ManagerLoop, CarriesOutACommandAndSaysWhatBecameOfIt) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -36,7 +36,7 @@ TEST(Driver, CarriesOutACommandAndSaysWhatBecameOfIt) {
   EXPECT_EQ(fake.told("command"), "off law: done\n");
 }
 
-TEST(Driver, ARefusedCommandChangesNothing) {
+TEST(ManagerLoop, ARefusedCommandChangesNothing) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -48,7 +48,7 @@ TEST(Driver, ARefusedCommandChangesNothing) {
   EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOn);
 }
 
-TEST(Driver, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
+TEST(ManagerLoop, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -62,7 +62,7 @@ TEST(Driver, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
   EXPECT_EQ(fake.driver().world().rtpus[0].last_end, "ended by signal 11 (SIGSEGV) in filter.cycle");
 }
 
-TEST(Driver, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
+TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -73,7 +73,7 @@ TEST(Driver, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   fake.kill_manager();
   fake.start_manager();
   ASSERT_TRUE(fake.until([&] { return fake.driver().is_ready(); }));
-  World& world = fake.driver().world();
+  ManagerState& world = fake.driver().world();
   EXPECT_EQ(world.log.first(), last + 1);
   EXPECT_EQ(fake.told("manager-started"),
             "manager started again, incarnation 2; events 1 to " + std::to_string(last) + " are not kept\n");
@@ -88,7 +88,7 @@ TEST(Driver, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   EXPECT_TRUE(got->is_accepted()) << got->refusal.text();
 }
 
-TEST(Driver, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
+TEST(ManagerLoop, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -100,7 +100,7 @@ TEST(Driver, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
   EXPECT_EQ(fake.told("state"), "filter: ON -> ERROR\n");
 }
 
-TEST(Driver, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
+TEST(ManagerLoop, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -112,7 +112,7 @@ TEST(Driver, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
   EXPECT_TRUE(fake.until_on("law"));
 }
 
-TEST(Driver, TellsTheFaultOfATaskInItsWords) {
+TEST(ManagerLoop, TellsTheFaultOfATaskInItsWords) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -122,7 +122,7 @@ TEST(Driver, TellsTheFaultOfATaskInItsWords) {
   EXPECT_TRUE(fake.until([&] { return fake.driver().world().state(fake.task("filter")) == State::kError; }));
 }
 
-TEST(Driver, TellsTheNoteOfATaskInItsWords) {
+TEST(ManagerLoop, TellsTheNoteOfATaskInItsWords) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -132,7 +132,7 @@ TEST(Driver, TellsTheNoteOfATaskInItsWords) {
   EXPECT_EQ(fake.told("fault"), "");
 }
 
-TEST(Driver, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
+TEST(ManagerLoop, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -146,7 +146,7 @@ TEST(Driver, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
   EXPECT_EQ(fake.told("overrun"), "law: 2 cycles over budget\n");
 }
 
-TEST(Driver, CountersThatCannotBeTrueAreToldAsThatAndNotAsNumbers) {
+TEST(ManagerLoop, CountersThatCannotBeTrueAreToldAsThatAndNotAsNumbers) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -156,7 +156,7 @@ TEST(Driver, CountersThatCannotBeTrueAreToldAsThatAndNotAsNumbers) {
   EXPECT_EQ(fake.told("overrun"), "");
 }
 
-TEST(Driver, ADeafRtpuFailsTheCommandInTime) {
+TEST(ManagerLoop, ADeafRtpuFailsTheCommandInTime) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -169,14 +169,14 @@ TEST(Driver, ADeafRtpuFailsTheCommandInTime) {
   EXPECT_EQ(got->refusal.text(), "no answer from rtpu spare");
 }
 
-TEST(Driver, WithoutTasksItIsReadyAtOnce) {
+TEST(ManagerLoop, WithoutTasksItIsReadyAtOnce) {
   FakeSubsystem fake("");
   fake.start_manager();
   EXPECT_TRUE(fake.until([&] { return fake.driver().is_ready(); }));
   EXPECT_FALSE(fake.driver().world().configuration.has_value());
 }
 
-TEST(Driver, EndsWhenTheKeeperIsGoneAndAsksItToEnd) {
+TEST(ManagerLoop, EndsWhenTheKeeperIsGoneAndAsksItToEnd) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));

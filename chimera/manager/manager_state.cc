@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes events, and keeps the clocks of the manager.
-#include "chimera/manager/world.h"
+#include "chimera/manager/manager_state.h"
 
 #include <ctime>
 
@@ -23,21 +23,29 @@ std::int64_t wall_ns(Nanoseconds at) noexcept {
   return read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC) + at.count;
 }
 
-World::World(Bundle given, Peers mapped, OwnSegment segment, DecisionPage& shared, const KeeperPage& keepers)
-    : bundle(std::move(given)), peers(std::move(mapped)), own(std::move(segment)), page(shared), keeper(keepers),
-      logic(peers.spec()), log(own.block().memory().events), rtpus(peers.n_rtpus()), tap_users(peers.n_tasks()) {
+ManagerState::ManagerState(Bundle given, Peers mapped, OwnSegment segment, DecisionPage& shared,
+                           const KeeperPage& keepers)
+    : bundle(std::move(given)),
+      peers(std::move(mapped)),
+      own(std::move(segment)),
+      page(shared),
+      keeper(keepers),
+      logic(peers.spec()),
+      log(own.block().memory().events),
+      rtpus(peers.n_rtpus()),
+      tap_users(peers.n_tasks()) {
   if (bundle.is_idle()) return;
   configuration = verify(bundle).configuration;
   if (configuration)
     readings.emplace(peers, own, *configuration, bundle.library, [this](TaskId task) { return state(task); });
 }
 
-void World::tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at) {
+void ManagerState::tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at) {
   own.block().memory().events.store(log.last() + 1, std::memory_order_release);
   log.add({0, at, wall_ns(at), std::move(kind), task, rtpu, std::move(text)});
 }
 
-void World::announce() noexcept {
+void ManagerState::announce() noexcept {
   page.changes.fetch_add(1, std::memory_order_release);
   for (std::uint32_t peer = 0; peer < peers.n_rtpus(); ++peer) Doorbell(page.bells[peer].word).ring();
 }

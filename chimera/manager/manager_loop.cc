@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loop of the manager: inventory first, then messages of the keeper, posts of the units, what is due.
-#include "chimera/manager/driver.h"
+#include "chimera/manager/manager_loop.h"
 
 #include <algorithm>
 #include <utility>
@@ -19,7 +19,7 @@ constexpr Nanoseconds kLookEvery = milliseconds(2);   // while one does not serv
 }  // namespace
 
 /// What stays mapped as long as the driver lives. Members refer to those before them.
-struct Driver::Mapped {
+struct ManagerLoop::Mapped {
   Channel channel;
   FrozenBytes image_bytes, bundle_bytes;
   SharedPages decision;
@@ -28,9 +28,7 @@ struct Driver::Mapped {
   std::optional<Bundle> bundle;
   int listening = -1;
 
-  ~Mapped() {
-    const OwnedDescriptor ended(listening);
-  }
+  ~Mapped() { const OwnedDescriptor ended(listening); }
   DecisionPage& decision_page() const noexcept { return *reinterpret_cast<DecisionPage*>(decision.bytes().data()); }
   const KeeperPage& keeper_page() const noexcept { return *reinterpret_cast<const KeeperPage*>(keeper.bytes().data()); }
 
@@ -62,23 +60,23 @@ struct Driver::Mapped {
   }
 };
 
-Driver::Driver(std::unique_ptr<Mapped> mapped) : mapped_(std::move(mapped)) {}
+ManagerLoop::ManagerLoop(std::unique_ptr<Mapped> mapped) : mapped_(std::move(mapped)) {}
 
-Driver::~Driver() = default;
+ManagerLoop::~ManagerLoop() = default;
 
-Result<std::unique_ptr<Driver>> Driver::start(const Inherited& inherited, std::uint32_t incarnation,
-                                              std::int32_t keeper_pid) {
+Result<std::unique_ptr<ManagerLoop>> ManagerLoop::start(const Inherited& inherited, std::uint32_t incarnation,
+                                                        std::int32_t keeper_pid) {
   auto mapped = std::make_unique<Mapped>();
   if (const auto opened = mapped->open(inherited); !opened) return opened.error();
-  std::unique_ptr<Driver> driver(new Driver(std::move(mapped)));
+  std::unique_ptr<ManagerLoop> driver(new ManagerLoop(std::move(mapped)));
   const auto complete = driver->take_inventory(incarnation, keeper_pid);
   if (!complete) return complete.error();
-  if (!*complete) return std::unique_ptr<Driver>();
+  if (!*complete) return std::unique_ptr<ManagerLoop>();
   return driver;
 }
 
 /// Everything the keeper has to say before `complete`; only then there is a predecessor to take over from.
-Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keeper_pid) {
+Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t keeper_pid) {
   std::vector<std::pair<KeeperMessage, int>> inventory;
   for (KeeperMessage message; inventory.empty() || message.kind != KeeperMessage::Kind::kComplete;) {
     int passed = -1;
@@ -105,10 +103,10 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
   if (!own) return own.error();
   KeeperMessage made;
   if (!mapped_->channel.send(bytes_of(made), own->descriptor())) return false;
-  world_ = std::make_unique<World>(*std::move(mapped_->bundle), *std::move(peers), *std::move(own),
-                                   mapped_->decision_page(), mapped_->keeper_page());
+  world_ = std::make_unique<ManagerState>(*std::move(mapped_->bundle), *std::move(peers), *std::move(own),
+                                          mapped_->decision_page(), mapped_->keeper_page());
   world_->keeper_pid = keeper_pid;
-  fleet_ = std::make_unique<Fleet>(*world_);
+  fleet_ = std::make_unique<RtpuLinks>(*world_);
   watch_ = std::make_unique<UnitWatch>(*world_);
   health_ = std::make_unique<UnitHealth>(*world_);
   auto bell = BellWatch::start(Doorbell(mapped_->decision_page().bells[world_->own.peer()].word));
@@ -123,7 +121,7 @@ Result<bool> Driver::take_inventory(std::uint32_t incarnation, std::int32_t keep
 }
 
 /// The first event of every manager; the numbers of its predecessors' are not kept by anybody.
-void Driver::say_hello() {
+void ManagerLoop::say_hello() {
   const std::uint64_t gone = world_->log.last();
   std::string text = "manager started";
   if (world_->own.incarnation() > 1)
@@ -132,7 +130,7 @@ void Driver::say_hello() {
   world_->tell("manager-started", TaskId{}, RtpuId{}, text, now());
 }
 
-bool Driver::take_messages() {
+bool ManagerLoop::take_messages() {
   KeeperMessage message;
   int passed = -1;
   while (true) {
@@ -147,7 +145,7 @@ bool Driver::take_messages() {
   }
 }
 
-void Driver::take(const KeeperMessage& message, int passed) {
+void ManagerLoop::take(const KeeperMessage& message, int passed) {
   using Kind = KeeperMessage::Kind;
   Events events;
   if (message.kind == Kind::kPeer && passed >= 0 && message.index < world_->peers.n_rtpus()) {
@@ -163,7 +161,7 @@ void Driver::take(const KeeperMessage& message, int passed) {
   steps_->step(events);
 }
 
-void Driver::look() {
+void ManagerLoop::look() {
   Events events;
   fleet_->look(events);
   health_->look(now());  // before a task of a unit that came up is ON
@@ -171,16 +169,16 @@ void Driver::look() {
   if (!is_ready_ && (fleet_->all_up() || now() - begun_ > kPatience)) become_ready();
 }
 
-void Driver::become_ready() {
+void ManagerLoop::become_ready() {
   is_ready_ = true;
   steps_->step(subsystem::InventoryComplete{});
 }
 
-RtpuId Driver::ring(std::span<const TaskId> tasks) { return fleet_->ring(tasks, now()); }
+RtpuId ManagerLoop::ring(std::span<const TaskId> tasks) { return fleet_->ring(tasks, now()); }
 
-void Driver::end(std::int32_t code) { end_wish_ = code; }
+void ManagerLoop::end(std::int32_t code) { end_wish_ = code; }
 
-void Driver::pass_end_on() {
+void ManagerLoop::pass_end_on() {
   if (!end_wish_) return;
   KeeperMessage message;
   message.kind = KeeperMessage::Kind::kEnd;
@@ -188,11 +186,11 @@ void Driver::pass_end_on() {
   [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: it ends already
 }
 
-int Driver::bundle() const noexcept { return mapped_->bundle_bytes.descriptor(); }
+int ManagerLoop::bundle() const noexcept { return mapped_->bundle_bytes.descriptor(); }
 
-int Driver::take_listening() noexcept { return std::exchange(mapped_->listening, -1); }
+int ManagerLoop::take_listening() noexcept { return std::exchange(mapped_->listening, -1); }
 
-void Driver::look_at_keeper() {
+void ManagerLoop::look_at_keeper() {
   face_watch_.look(*world_, now());
   if (is_ending_ || !world_->is_ending()) return;
   is_ending_ = true;
@@ -200,7 +198,7 @@ void Driver::look_at_keeper() {
 }
 
 /// Each beat of the keeper is answered by one of the manager's: never more of them than the keeper takes.
-void Driver::watch() {
+void ManagerLoop::watch() {
   KeeperMessage message;
   message.kind = KeeperMessage::Kind::kBeat;
   message.index = world_->own.peer();
@@ -215,19 +213,19 @@ void Driver::watch() {
   }
 }
 
-Nanoseconds Driver::next_due() const noexcept {
+Nanoseconds ManagerLoop::next_due() const noexcept {
   Nanoseconds due = std::min({steps_->next_due(), counters_due_, watch_->due()});
   if (!is_ready_ || !fleet_->all_up()) due = std::min(due, now() + kLookEvery);
   return due;
 }
 
 /// A negative descriptor is passed over.
-void Driver::wait(Nanoseconds until, int also, int or_else) {
+void ManagerLoop::wait(Nanoseconds until, int also, int or_else) {
   const int descriptors[] = {mapped_->channel.descriptor(), bell_->descriptor(), also, or_else};
   await_readable(descriptors, std::min(until - now(), seconds(1)));
 }
 
-bool Driver::step(Nanoseconds at_most, int also, int or_else) {
+bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
   pass_end_on();  // what asked for it is answered by now
   wait(std::min(next_due(), at_most), also, or_else);
   bell_->reset();
