@@ -17,8 +17,8 @@ struct Caller {
   std::uint64_t connection = 0;  ///< number of the connection; never used again for another one
 };
 
-/// Called by Door::serve() only, on its thread; must not throw and must not call the door back from within, but for
-/// the Reply it is given. Context: setup.
+/// Called by ControlServer::serve() only, on its thread; must not throw and must not call the door back from within,
+/// but for the Reply it is given. Context: setup.
 class ControlBackend {
  public:
   /// Carries out a call whose role and parameters have been checked; `reply` takes its one answer, now or later.

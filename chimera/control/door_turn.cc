@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // In which order the door does what its peers ask for: acts before questions, those of higher roles first; then one
 // question of each connection in turn, as long as a turn lasts. Within a connection nothing is overtaken.
-#include "chimera/control/door.h"
+#include "chimera/control/control_server.h"
 #include "chimera/control/methods.h"
 #include "chimera/control/turn.h"
 
@@ -18,7 +18,7 @@ bool is_act(const Request& request) {
 
 }  // namespace
 
-void Door::take_turn(Nanoseconds now) {
+void ControlServer::take_turn(Nanoseconds now) {
   const Turn turn;
   for (const auto& [number, connection] : connections_)
     if (connection->has_output()) (void)connection->flush(now);  // answers that came since the last turn
@@ -29,7 +29,7 @@ void Door::take_turn(Nanoseconds now) {
 }
 
 /// One act of each connection, if it has nothing else to do before it. False: there was nothing.
-bool Door::act(Nanoseconds now) {
+bool ControlServer::act(Nanoseconds now) {
   bool did = false;
   for (const Role role : {Role::kConfigure, Role::kOperate})
     for (const auto& [number, connection] : connections_)
@@ -37,7 +37,7 @@ bool Door::act(Nanoseconds now) {
   return did;
 }
 
-bool Door::act_of(Connection& connection, Nanoseconds now) {
+bool ControlServer::act_of(Connection& connection, Nanoseconds now) {
   if (!is_open(connection)) return false;
   std::string line;
   const bool reads = connection.next == nullptr && connection.has_short_line() && connection.take_line(line);
@@ -49,7 +49,7 @@ bool Door::act_of(Connection& connection, Nanoseconds now) {
 }
 
 /// One question of the connection whose turn it is. False: there was none.
-bool Door::ask(Nanoseconds now) {
+bool ControlServer::ask(Nanoseconds now) {
   auto at = connections_.upper_bound(last_asked_);
   for (std::size_t n = connections_.size(); n > 0; --n, ++at) {
     if (at == connections_.end()) at = connections_.begin();
@@ -65,13 +65,13 @@ bool Door::ask(Nanoseconds now) {
 }
 
 /// What a new connection has brought, so that it is answered before its place is wanted.
-void Door::take_first(Connection& connection, Nanoseconds now) {
+void ControlServer::take_first(Connection& connection, Nanoseconds now) {
   std::string line;
   if (is_open(connection) && connection.take_line(line)) take(connection, line, now);
   if (connection.next != nullptr) carry_out_next(connection, now);
 }
 
-void Door::carry_out_next(Connection& connection, Nanoseconds now) {
+void ControlServer::carry_out_next(Connection& connection, Nanoseconds now) {
   const std::unique_ptr<const Request> request = std::move(connection.next);
   carry_out(connection, *request, now);
 }

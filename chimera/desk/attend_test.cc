@@ -16,7 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "chimera/control/door.h"
+#include "chimera/control/control_server.h"
 #include "chimera/platform/linux_clock.h"
 
 namespace chimera::desk {
@@ -117,7 +117,7 @@ class Attend : public ::testing::Test {
   static Json reading(const Json& value, const std::string& text) {
     return {{"value", value}, {"text", text}, {"unit", "rad"}, {"valid", true}};
   }
-  void open_door() { door_ = *control::Door::open(::dup(listening_), backend_, ::geteuid(), {}); }
+  void open_door() { door_ = *control::ControlServer::open(::dup(listening_), backend_, ::geteuid(), {}); }
 
   /// The exit code; out_ and err_ are what it printed. `meanwhile` is called again and again on the door's thread.
   int attend(RecordSink* sink = nullptr, std::function<void()> meanwhile = [] {}) {
@@ -151,7 +151,7 @@ class Attend : public ::testing::Test {
   std::string folder_, out_, err_;
   int listening_ = -1;
   MadeUp backend_;
-  std::unique_ptr<control::Door> door_;
+  std::unique_ptr<control::ControlServer> door_;
   AttendRequest request_;
 };
 

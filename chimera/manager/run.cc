@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "chimera/control/door.h"
+#include "chimera/control/control_server.h"
 #include "chimera/manager/manager_backend.h"
 #include "chimera/manager/questions.h"
 #include "chimera/platform/process_id.h"
@@ -26,8 +26,8 @@ Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int3
       std::filesystem::read_symlink("/proc/self/exe", error).string(), driver.bundle(),
       [&driver](const std::string& text) { driver.world().tell("note", TaskId{}, RtpuId{}, text, now()); });
   ManagerBackend backend(driver, &questions);
-  auto door = control::Door::open(driver.take_listening(), backend, own_user(),
-                                  {bundle.observe_group, bundle.operate_group, bundle.configure_group});
+  auto door = control::ControlServer::open(driver.take_listening(), backend, own_user(),
+                                           {bundle.observe_group, bundle.operate_group, bundle.configure_group});
   if (!door) return door.error();
   (*door)->tell_closings_by(
       [&driver](const std::string& text) { driver.world().tell("closed", TaskId{}, RtpuId{}, text, now()); });

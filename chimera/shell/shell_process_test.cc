@@ -24,7 +24,7 @@
 #include <utility>
 
 #include "chimera/base/testing/tree_path.h"
-#include "chimera/control/door.h"
+#include "chimera/control/control_server.h"
 #include "chimera/platform/linux_clock.h"
 #include "chimera/shell/carry_out.h"
 #include "chimera/shell/interactive.h"
@@ -127,7 +127,7 @@ struct ShellTest : ::testing::Test {
     open(::dup(keepers));
   }
   void open(int listening) {
-    door = *control::Door::open(listening, subject, ::getuid(), {});
+    door = *control::ControlServer::open(listening, subject, ::getuid(), {});
     server = std::thread([this] {
       sigset_t all;
       ::sigfillset(&all);
@@ -175,7 +175,7 @@ struct ShellTest : ::testing::Test {
   std::string folder;
   int keepers = -1;  ///< the listening socket, which outlives a door
   FakeSubject subject;
-  std::unique_ptr<control::Door> door;
+  std::unique_ptr<control::ControlServer> door;
   std::thread server;
   std::atomic<bool> is_over{false};
 };

@@ -61,7 +61,7 @@ def is_closed(one):
         return True
 
 
-class Door(unittest.TestCase):
+class ControlServer(unittest.TestCase):
     """One subsystem for all of them: what they do to it must not change it."""
 
     @classmethod

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/control/door.h"
+#include "chimera/control/control_server.h"
 
 namespace chimera::control {
 
@@ -50,7 +50,7 @@ struct DoorTest : ::testing::Test {
       ASSERT_EQ(::bind(listening, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
       ASSERT_EQ(::listen(listening, 64), 0);
     }
-    door = *Door::open(::dup(listening), backend, ::getuid(), groups);
+    door = *ControlServer::open(::dup(listening), backend, ::getuid(), groups);
   }
   static sockaddr_un address_of(const std::string& path) {
     sockaddr_un address{};
@@ -109,7 +109,7 @@ struct DoorTest : ::testing::Test {
   int listening = -1;
   RoleGroups groups;
   FakeBackend backend;
-  std::unique_ptr<Door> door;
+  std::unique_ptr<ControlServer> door;
   Nanoseconds now = seconds(1);
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/control/door.h"
+#include "chimera/control/control_server.h"
 
 #include <grp.h>
 #include <sys/wait.h>
@@ -81,19 +81,25 @@ TEST_F(DoorTest, NamesTheNearestMethod) {
   const int fd = plain();
   EXPECT_EQ(ask(fd, request("statsu")),
             R"({"error":{"code":-32601,"data":{"nearest":"status","where":"method"},"message":"no method 'statsu'"},)"
-            R"("id":1,"jsonrpc":"2.0"})" "\n");
+            R"("id":1,"jsonrpc":"2.0"})"
+            "\n");
   EXPECT_EQ(ask(fd, request("flag", R"({"up":1})")),
             R"({"error":{"code":-32602,"data":{"where":"up"},"message":"'up' must be true or false"},"id":1,)"
-            R"("jsonrpc":"2.0"})" "\n");
+            R"("jsonrpc":"2.0"})"
+            "\n");
   EXPECT_EQ(backend.calls, 0);
   ::close(fd);
 }
 
 TEST_F(DoorTest, ARequestWithoutIdIsCarriedOutAndNotAnswered) {
   const int fd = plain();
-  EXPECT_EQ(ask(fd, R"({"jsonrpc":"2.0","method":"flag","params":{"up":true}})" "\n"), "");
+  EXPECT_EQ(ask(fd, R"({"jsonrpc":"2.0","method":"flag","params":{"up":true}})"
+                    "\n"),
+            "");
   EXPECT_EQ(backend.calls, 1);
-  EXPECT_EQ(ask(fd, R"({"jsonrpc":"2.0","method":"flog"})" "\n"), "");
+  EXPECT_EQ(ask(fd, R"({"jsonrpc":"2.0","method":"flog"})"
+                    "\n"),
+            "");
   ::close(fd);
 }
 
@@ -132,7 +138,8 @@ TEST_F(DoorTest, APeerThatSaysNothingMoreIsStillAnswered) {
   EXPECT_EQ(door->next_due(), kNever) << "it is waited for, not asked again and again";
   backend.later.at(0)(Answer::good(Json::object()));
   serve();
-  EXPECT_EQ(take(fd), R"({"id":1,"jsonrpc":"2.0","result":{}})" "\n");
+  EXPECT_EQ(take(fd), R"({"id":1,"jsonrpc":"2.0","result":{}})"
+                      "\n");
   EXPECT_TRUE(is_closed(fd));
   EXPECT_EQ(door->connections(), 0u);
   ::close(fd);
@@ -286,7 +293,8 @@ TEST_F(StrangerTest, IsToldThatItHasNoRightAndNothingElse) {
   const auto got = as_stranger(path, 65534, request("hello") + request("flag", R"({"up":true})"), [&] { serve(); });
   EXPECT_EQ(got, R"({"error":{"code":-32004,"data":{"has":"nothing","needs":"observe"},"message":"you have no right )"
                  R"(here: you are neither the user of the subsystem nor in a group with a role"},"id":null,)"
-                 R"("jsonrpc":"2.0"})" "\n");
+                 R"("jsonrpc":"2.0"})"
+                 "\n");
   EXPECT_EQ(backend.calls, 0);
   EXPECT_EQ(door->connections(), 0u);
 }
@@ -297,7 +305,8 @@ TEST_F(StrangerTest, OfAGroupWithARoleHasThatRoleAndNoMore) {
   EXPECT_NE(as_stranger(path, 4242, request("hello"), [&] { serve(); }).find(R"("role":"observe")"), std::string::npos);
   EXPECT_EQ(as_stranger(path, 4242, request("flag", R"({"up":true})"), [&] { serve(); }),
             R"({"error":{"code":-32004,"data":{"has":"observe","needs":"operate"},"message":"'flag' needs the role )"
-            R"(operate, you have observe"},"id":1,"jsonrpc":"2.0"})" "\n");
+            R"(operate, you have observe"},"id":1,"jsonrpc":"2.0"})"
+            "\n");
   EXPECT_EQ(backend.calls, 1);
 }
 

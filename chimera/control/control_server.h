@@ -10,25 +10,25 @@
 
 #include "chimera/base/result.h"
 #include "chimera/control/closings.h"
-#include "chimera/control/places.h"
-#include "chimera/control/request.h"
 #include "chimera/control/connection.h"
 #include "chimera/control/control_backend.h"
+#include "chimera/control/places.h"
+#include "chimera/control/request.h"
 #include "chimera/control/subscriptions.h"
 #include "chimera/platform/descriptor_set.h"
 
 namespace chimera::control {
 
 /// Context: setup.
-class Door {
+class ControlServer {
  public:
   /// Takes over `listening` (-1: connections only come by enter()). `owner` is the user of the keeper; `backend`
   /// outlives the door.
-  static Result<std::unique_ptr<Door>> open(int listening, ControlBackend& backend, uid_t owner,
-                                            const RoleGroups& groups);
-  Door(const Door&) = delete;
-  Door& operator=(const Door&) = delete;
-  ~Door();
+  static Result<std::unique_ptr<ControlServer>> open(int listening, ControlBackend& backend, uid_t owner,
+                                                     const RoleGroups& groups);
+  ControlServer(const ControlServer&) = delete;
+  ControlServer& operator=(const ControlServer&) = delete;
+  ~ControlServer();
 
   /// Readable when serve() has something to do: for the owner's poll or epoll.
   int descriptor() const noexcept { return watched_.descriptor(); }
@@ -47,7 +47,7 @@ class Door {
  private:
   struct Call;
 
-  Door(ControlBackend& backend, uid_t owner, const RoleGroups& groups)
+  ControlServer(ControlBackend& backend, uid_t owner, const RoleGroups& groups)
       : backend_(backend), subscriptions_(backend), owner_(owner), groups_(groups) {}
   void accept(Nanoseconds now);
   Answer admit(const PeerIdentity& peer, Nanoseconds now);

@@ -13,7 +13,7 @@
 #include <set>
 #include <string>
 
-#include "chimera/control/door.h"
+#include "chimera/control/control_server.h"
 #include "chimera/task/state_machine.h"
 
 namespace chimera::control {
@@ -35,8 +35,10 @@ class Model final : public ControlBackend {
     require(caller.role >= method.role, "nobody calls what its role does not open");
     if (std::string_view(method.name) != "signal") return reply(Answer::good({{"method", method.name}}));
     const Answer answer = signal(parameters);
-    if (++signals_ % 2 == 0) reply(answer);
-    else later_.push_back({std::move(reply), answer});
+    if (++signals_ % 2 == 0)
+      reply(answer);
+    else
+      later_.push_back({std::move(reply), answer});
   }
   Answer open(std::uint64_t subscription, const Json&) override {
     require(open_.insert(subscription).second, "a subscription is opened once");
@@ -79,7 +81,6 @@ class Model final : public ControlBackend {
     }
     return Answer::error(kBadParameters, "no such signal");
   }
-  
 
   std::array<State, kTasks> states_{};
   std::vector<std::pair<Reply, Answer>> later_;
@@ -99,7 +100,7 @@ class ManagerState {
  public:
   ManagerState() {
     const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    door_ = *Door::open(listening, model_, 1000, {});
+    door_ = *ControlServer::open(listening, model_, 1000, {});
     for (std::size_t p = 0; p < kPeers; ++p) open(p);
   }
   ~ManagerState() {
@@ -118,10 +119,18 @@ class ManagerState {
           break;
         }
         case 1:
-        case 2: request(p, argument); break;
-        case 3: serve(milliseconds(static_cast<std::int64_t>(argument))); break;
-        case 4: model_.answer_all(); break;
-        default: reopen(p); break;
+        case 2:
+          request(p, argument);
+          break;
+        case 3:
+          serve(milliseconds(static_cast<std::int64_t>(argument)));
+          break;
+        case 4:
+          model_.answer_all();
+          break;
+        default:
+          reopen(p);
+          break;
       }
     }
     for (int i = 0; i < 4; ++i) {
@@ -199,7 +208,7 @@ class ManagerState {
   }
 
   Model model_;
-  std::unique_ptr<Door> door_;
+  std::unique_ptr<ControlServer> door_;
   std::array<Peer, kPeers> peers_;
   Nanoseconds now_ = seconds(1);
   std::uint64_t requests_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Accepts connections, takes requests in turn, judges them, and sends answers and notifications.
-#include "chimera/control/door.h"
+#include "chimera/control/control_server.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -40,8 +40,8 @@ Answer no_method(const std::string& name) {
 
 /// The one answer of a call that was handed to the backend: the first one counts, and if its reply is dropped without
 /// any, the caller is told.
-struct Door::Call {
-  Call(Door& opened, Connection& from, const Request& asked, bool does_act)
+struct ControlServer::Call {
+  Call(ControlServer& opened, Connection& from, const Request& asked, bool does_act)
       : door(&opened), is_alive(opened.is_alive_), connection(from.number()), request(asked), acts(does_act) {
     ++from.open_calls;
     from.open_acts += acts;
@@ -60,7 +60,7 @@ struct Door::Call {
     door->answer(*found->second, request, said);
   }
 
-  Door* door;
+  ControlServer* door;
   std::shared_ptr<bool> is_alive;
   std::uint64_t connection;
   Request request;
@@ -68,9 +68,9 @@ struct Door::Call {
   bool is_answered = false;
 };
 
-Result<std::unique_ptr<Door>> Door::open(int listening, ControlBackend& backend, uid_t owner,
-                                         const RoleGroups& groups) {
-  std::unique_ptr<Door> door(new Door(backend, owner, groups));
+Result<std::unique_ptr<ControlServer>> ControlServer::open(int listening, ControlBackend& backend, uid_t owner,
+                                                           const RoleGroups& groups) {
+  std::unique_ptr<ControlServer> door(new ControlServer(backend, owner, groups));
   door->listening_ = OwnedDescriptor(listening);
   const Message what("the control socket cannot be watched");
   auto watched = DescriptorSet::open(what);
@@ -80,9 +80,9 @@ Result<std::unique_ptr<Door>> Door::open(int listening, ControlBackend& backend,
   return door;
 }
 
-Door::~Door() { *is_alive_ = false; }
+ControlServer::~ControlServer() { *is_alive_ = false; }
 
-void Door::serve(Nanoseconds now) {
+void ControlServer::serve(Nanoseconds now) {
   now_ = now;
   has_more_ = false;
   if (now >= accepts_again_) {
@@ -106,7 +106,7 @@ void Door::serve(Nanoseconds now) {
   settle(now);
 }
 
-Standing Door::standing(Connection& connection, Nanoseconds now) const {
+Standing ControlServer::standing(Connection& connection, Nanoseconds now) const {
   if (connection.open_acts > 0) return Standing::kActs;
   const bool listens = subscriptions_.count_of(connection.number()) > 0 && connection.is_read(now);
   if (listens && !connection.is_gone) return Standing::kListens;
@@ -115,7 +115,7 @@ Standing Door::standing(Connection& connection, Nanoseconds now) const {
 }
 
 /// A place for one more, or why there is none.
-Answer Door::admit(const PeerIdentity& peer, Nanoseconds now) {
+Answer ControlServer::admit(const PeerIdentity& peer, Nanoseconds now) {
   if (peer.role == Role::kNone) return no_role();
   std::vector<Occupant> all;
   for (const auto& [number, connection] : connections_) {
@@ -132,7 +132,7 @@ Answer Door::admit(const PeerIdentity& peer, Nanoseconds now) {
   return {};
 }
 
-std::string Door::idle_text(Connection& connection, Nanoseconds now) const {
+std::string ControlServer::idle_text(Connection& connection, Nanoseconds now) const {
   switch (standing(connection, now)) {
     case Standing::kHalfLine:
       return "a line without an end for " + time_text(now - connection.half_since());
@@ -149,7 +149,7 @@ std::string Door::idle_text(Connection& connection, Nanoseconds now) const {
 }
 
 /// Tells the peer, if that can be done at once, and whoever wants to know what was closed.
-void Door::turn_out(Connection& connection, const std::string& why, Nanoseconds now) {
+void ControlServer::turn_out(Connection& connection, const std::string& why, Nanoseconds now) {
   connection.say(answer_line(nullptr, Answer::error(kClosed, "closed: " + why)), now);
   (void)connection.flush(now);
   const PeerIdentity& peer = connection.peer();
@@ -159,7 +159,7 @@ void Door::turn_out(Connection& connection, const std::string& why, Nanoseconds 
       "a connection of user " + std::to_string(peer.user) + " (" + process + role_name(peer.role) + "): " + why, now);
 }
 
-void Door::accept(Nanoseconds now) {
+void ControlServer::accept(Nanoseconds now) {
   for (int n = 0; n < kAcceptAtOnce; ++n) {
     OwnedDescriptor connected = accept_now(listening_.fd);
     if (connected.fd >= 0) {
@@ -175,7 +175,7 @@ void Door::accept(Nanoseconds now) {
   }
 }
 
-void Door::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now) {
+void ControlServer::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now) {
   auto connection = std::make_unique<Connection>(++last_connection_, std::move(connected), peer, now);
   if (peer.role != Role::kNone) connection->receive(now);  // whoever has only one question has asked it by now
   if (connection->has_ended() && !connection->has_line()) return;
@@ -192,7 +192,7 @@ void Door::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanosecond
 }
 
 /// Reads a line: what is no request, or may not be one now, is answered; else it is the connection's next.
-void Door::take(Connection& connection, const std::string& line, Nanoseconds now) {
+void ControlServer::take(Connection& connection, const std::string& line, Nanoseconds now) {
   connection.active_at = now;
   const std::size_t pieces = 1 + std::min(line.size(), kMaxLine) / kLongLine;
   const bool may = connection.requests.take(now, static_cast<std::int64_t>(pieces));
@@ -210,7 +210,7 @@ void Door::take(Connection& connection, const std::string& line, Nanoseconds now
   }
 }
 
-void Door::carry_out(Connection& connection, const Request& request, Nanoseconds now) {
+void ControlServer::carry_out(Connection& connection, const Request& request, Nanoseconds now) {
   const MethodRule* rule = find_method(request.method);
   const Answer judged = judge(connection, request, rule, now);
   if (!judged.is_good()) return answer(connection, request, judged);
@@ -223,7 +223,7 @@ void Door::carry_out(Connection& connection, const Request& request, Nanoseconds
                 [call = std::move(call)](const Answer& said) { call->take(said); });
 }
 
-Answer Door::judge(Connection& connection, const Request& request, const MethodRule* rule, Nanoseconds now) {
+Answer ControlServer::judge(Connection& connection, const Request& request, const MethodRule* rule, Nanoseconds now) {
   if (rule == nullptr) return no_method(request.method);
   const Role has = connection.peer().role;
   if (has < rule->role)
@@ -236,7 +236,7 @@ Answer Door::judge(Connection& connection, const Request& request, const MethodR
 }
 
 /// Of a user's places some are kept for who comes with one question or act.
-Answer Door::subscribe(Connection& connection, const Json& parameters, Nanoseconds now) {
+Answer ControlServer::subscribe(Connection& connection, const Json& parameters, Nanoseconds now) {
   const auto is_one = [&](const auto& one) {
     return one.second->peer().user == connection.peer().user && subscriptions_.count_of(one.first) > 0;
   };
@@ -247,7 +247,7 @@ Answer Door::subscribe(Connection& connection, const Json& parameters, Nanosecon
   return subscriptions_.open(connection.number(), parameters, now);
 }
 
-void Door::answer(Connection& connection, const Request& request, const Answer& answer) {
+void ControlServer::answer(Connection& connection, const Request& request, const Answer& answer) {
   connection.active_at = now_;
   if (!request.wants_answer) return;
   connection.say(answer_line(*request.id, answer), now_);
@@ -256,7 +256,7 @@ void Door::answer(Connection& connection, const Request& request, const Answer& 
 
 /// What a peer said before it went is still carried out. One that says nothing more but listens is told what it asked
 /// for and subscribed to.
-bool Door::is_over(Connection& connection, Nanoseconds now) {
+bool ControlServer::is_over(Connection& connection, Nanoseconds now) {
   if (connection.is_gone && !connection.has_line()) return true;
   const bool wants_more =
       connection.open_calls > 0 || connection.has_line() || subscriptions_.count_of(connection.number()) > 0;
@@ -267,14 +267,14 @@ bool Door::is_over(Connection& connection, Nanoseconds now) {
 }
 
 /// For which it is closed now; null: none.
-const char* Door::fault_of(Connection& connection, Nanoseconds now) const {
+const char* ControlServer::fault_of(Connection& connection, Nanoseconds now) const {
   if (connection.is_closing() || connection.is_gone) return nullptr;
   if (connection.patience_ends() <= now) return "it took nothing for 5 s";
   const Nanoseconds half = connection.has_line() ? kNever : connection.half_since();
   return half != kNever && now - half >= kPatience ? "its line did not end within 5 s" : nullptr;
 }
 
-void Door::settle(Nanoseconds now) {
+void ControlServer::settle(Nanoseconds now) {
   std::vector<std::uint64_t> over;
   bool waits = false;
   for (const auto& [number, connection] : connections_) {
@@ -297,13 +297,13 @@ void Door::settle(Nanoseconds now) {
   has_more_ = waits;
 }
 
-void Door::end(std::uint64_t connection) {
+void ControlServer::end(std::uint64_t connection) {
   subscriptions_.end(connection);
   connections_.erase(connection);
   backend_.forget(connection);
 }
 
-Nanoseconds Door::next_due() const noexcept {
+Nanoseconds ControlServer::next_due() const noexcept {
   if (has_more_) return now_;
   Nanoseconds next = std::min({subscriptions_.next_due(), accepts_again_, closings_.next_due()});
   for (const auto& [number, connection] : connections_) {
