@@ -55,42 +55,58 @@ std::string missed_text(const ApplicationSpec& spec, const Post& post) {
 
 }  // namespace
 
-const char* event_kind(Happening happening) noexcept {
+const char* event_kind(EventKind happening) noexcept {
   switch (happening) {
-    case Happening::kState: return "state";
-    case Happening::kFault: return "fault";
-    case Happening::kRefused: return "refused";
-    case Happening::kSignalled: return "signal";
-    case Happening::kFlag: return "flag";
-    case Happening::kMissed:
-    case Happening::kBlocked: return "blame";
-    case Happening::kHang: return "hang";
-    case Happening::kGaveWay: return "demoted";
-    case Happening::kNote: return "note";
-    case Happening::kStop: break;
+    case EventKind::kState:
+      return "state";
+    case EventKind::kFault:
+      return "fault";
+    case EventKind::kRefused:
+      return "refused";
+    case EventKind::kSignalled:
+      return "signal";
+    case EventKind::kFlag:
+      return "flag";
+    case EventKind::kMissed:
+    case EventKind::kBlocked:
+      return "blame";
+    case EventKind::kHang:
+      return "hang";
+    case EventKind::kGaveWay:
+      return "demoted";
+    case EventKind::kNote:
+      return "note";
+    case EventKind::kStop:
+      break;
   }
   return "stop";
 }
 
 std::string event_text(const ApplicationSpec& spec, const Post& post, const std::string& fault) {
   switch (post.happening) {
-    case Happening::kState: return std::string(state_name(post.before)) + " -> " + state_name(post.after);
-    case Happening::kFault:
-    case Happening::kNote: return fault;
-    case Happening::kRefused:
+    case EventKind::kState:
+      return std::string(state_name(post.before)) + " -> " + state_name(post.after);
+    case EventKind::kFault:
+    case EventKind::kNote:
+      return fault;
+    case EventKind::kRefused:
       return std::string(signal_name(post.signal)) + sender(spec, post) + ": " + refusal(post, fault);
-    case Happening::kSignalled: return signal_name(post.signal) + sender(spec, post);
-    case Happening::kFlag: return flag_text(spec, post);
-    case Happening::kMissed: return missed_text(spec, post);
-    case Happening::kBlocked:
+    case EventKind::kSignalled:
+      return signal_name(post.signal) + sender(spec, post);
+    case EventKind::kFlag:
+      return flag_text(spec, post);
+    case EventKind::kMissed:
+      return missed_text(spec, post);
+    case EventKind::kBlocked:
       return "missed its deadline: it waits in a system call (it used " + milliseconds_text(post.detail) + ")";
-    case Happening::kHang:
+    case EventKind::kHang:
       if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";
       return "a cycle used " + milliseconds_text(post.detail) + " and does not end: this real-time unit ends";
-    case Happening::kGaveWay:
+    case EventKind::kGaveWay:
       return "goes on below all others: the tasks of its real-time unit used " + milliseconds_text(post.detail) +
              " lately, nearly all that the kernel leaves to real-time threads";
-    case Happening::kStop: break;
+    case EventKind::kStop:
+      break;
   }
   return "stopped by its reaction: all tasks of this real-time unit go OFF";
 }

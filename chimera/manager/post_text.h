@@ -11,7 +11,7 @@
 namespace chimera::manager {
 
 /// As in docs/formats/control.md. Context of all: setup.
-const char* event_kind(Happening happening) noexcept;
+const char* event_kind(EventKind happening) noexcept;
 /// `fault`: the last words of the task, "" when there are none.
 std::string event_text(const ApplicationSpec& spec, const Post& post, const std::string& fault);
 /// "1 deadline missed", "3 deadlines missed (17 in all)".

@@ -146,17 +146,17 @@ void RtpuLinks::take(const Post& post, RtpuId rtpu, Events& events) {
 void RtpuLinks::log(const Post& post, RtpuId rtpu) {
   const bool has_task = post.task.index < seen_.size();
   std::string words;
-  if (has_task && post.happening == Happening::kNote)
+  if (has_task && post.happening == EventKind::kNote)
     words = world_.peers.fault(post.task).note;
   else if (has_task)
     words = fault_text(world_, post.task);
   std::string text = event_text(world_.spec(), post, words);
-  const bool is_illegal_set = post.happening == Happening::kFlag && (post.detail & 1u) != 0;
+  const bool is_illegal_set = post.happening == EventKind::kFlag && (post.detail & 1u) != 0;
   if (const std::string missing = is_illegal_set ? world_.logic.missing() : ""; !missing.empty())
     text += ": " + missing;
   world_.tell(event_kind(post.happening), has_task ? post.task : TaskId{}, rtpu, std::move(text), post.at);
   const auto method = static_cast<Method>(post.detail);
-  if (has_task && post.happening == Happening::kFault && turns_off(method))
+  if (has_task && post.happening == EventKind::kFault && turns_off(method))
     tell_not_off(post.task, method, rtpu, post.at);
 }
 

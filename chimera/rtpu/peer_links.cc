@@ -113,7 +113,7 @@ bool PeerLinks::publish_status(const Task& task, TaskStatus before, TaskStatus n
   post.at = {task.call.now_ns};
   post.task = task.id;
   post.kind = PostKind::kEvent;
-  post.happening = Happening::kState;
+  post.happening = EventKind::kState;
   post.before = before.state;
   post.after = now.state;
   tell(post);
@@ -131,7 +131,7 @@ bool PeerLinks::publish_flag(const IllegalFlag& flag) noexcept {
   post.at = LinuxClock().now();
   post.from = flag.raised_by();
   post.kind = PostKind::kEvent;
-  post.happening = Happening::kFlag;
+  post.happening = EventKind::kFlag;
   post.detail = now;
   tell(post);
   return true;
@@ -145,9 +145,9 @@ void PeerLinks::publish_fault(const Task& task) noexcept {
   std::memcpy(writer.staging(), &task.faults, sizeof task.faults);
   writer.publish(task.faults.at, 1);
   if (std::exchange(faults_[task.id.index], task.faults.count) != task.faults.count)
-    tell(Happening::kFault, task.id, static_cast<std::uint64_t>(task.faults.method), task.faults.at);
+    tell(EventKind::kFault, task.id, static_cast<std::uint64_t>(task.faults.method), task.faults.at);
   if (std::exchange(notes_[task.id.index], task.faults.notes) != task.faults.notes)
-    tell(Happening::kNote, task.id, 0, LinuxClock().now());
+    tell(EventKind::kNote, task.id, 0, LinuxClock().now());
 }
 
 void PeerLinks::ring_all() noexcept {
@@ -209,7 +209,7 @@ void PeerLinks::tell(const Post& post) noexcept {
     block_.head().lost_posts.fetch_add(1, std::memory_order_relaxed);
 }
 
-void PeerLinks::tell(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
+void PeerLinks::tell(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
   Post post;
   post.at = at;
   post.task = task;

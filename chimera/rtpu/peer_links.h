@@ -46,7 +46,7 @@ class PeerLinks final : public PeerView {
   /// To the manager; what finds no room is counted. Context: cycle boundary; wait-free.
   void tell(const Post& post) noexcept;
   /// An event for the manager's log.
-  void tell(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
+  void tell(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
   /// The count of changes of the decision page. Context: cycle; wait-free.
   std::uint32_t changes() const noexcept { return decision_->changes.load(std::memory_order_acquire); }
   /// Does the manager want the task's publications on the tap? Not while there is no manager. Context: cycle boundary;

@@ -194,7 +194,7 @@ void RtpuControl::report(const Post& signal, State before, State after, Refusal 
   if (signal.command == 0) {
     if (!signal.task.is_valid() || !signal.from.is_valid()) return;  // nobody asked
     post.kind = PostKind::kEvent;
-    post.happening = accepted ? Happening::kSignalled : Happening::kRefused;
+    post.happening = accepted ? EventKind::kSignalled : EventKind::kRefused;
   }
   this->post(post);
 }
@@ -205,7 +205,7 @@ void RtpuControl::post(const Post& post) noexcept {
   others_.tell(post);
 }
 
-void RtpuControl::post_event(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
+void RtpuControl::post_event(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
   publish();
   others_.tell(happening, task, detail, at);
 }
@@ -216,7 +216,7 @@ void RtpuControl::told(const SignalReport& done, Nanoseconds now) noexcept {
   post.task = done.task;
   post.signal = done.signal;
   post.kind = PostKind::kEvent;
-  post.happening = done.is_accepted ? Happening::kSignalled : Happening::kRefused;
+  post.happening = done.is_accepted ? EventKind::kSignalled : EventKind::kRefused;
   post.why = static_cast<std::uint8_t>(done.why);
   post.before = done.before;
   post.after = done.after;
@@ -229,17 +229,17 @@ void RtpuControl::missed(TaskId task, const MissCause::Verdict& verdict, Nanosec
   post.task = task;
   post.from = verdict.culprit;
   post.kind = PostKind::kEvent;
-  post.happening = verdict.is_blocked ? Happening::kBlocked : Happening::kMissed;
+  post.happening = verdict.is_blocked ? EventKind::kBlocked : EventKind::kMissed;
   post.detail = static_cast<std::uint64_t>(verdict.used.count);
   this->post(post);
 }
 
 void RtpuControl::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
-  post_event(Happening::kGaveWay, task, static_cast<std::uint64_t>(used.count), now);
+  post_event(EventKind::kGaveWay, task, static_cast<std::uint64_t>(used.count), now);
 }
 
 void RtpuControl::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
-  post_event(Happening::kHang, task, static_cast<std::uint64_t>(used.count), now);
+  post_event(EventKind::kHang, task, static_cast<std::uint64_t>(used.count), now);
   hangs_[task.index] = true;
   others_.keep_last_words(true, tasks_);
   hanging_used_ = used.count;
@@ -265,7 +265,7 @@ void RtpuControl::wake_supervisor() noexcept {
 }
 
 void RtpuControl::stop_all(BoundarySignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {
-  post_event(Happening::kStop, stopped_by, 0, now);
+  post_event(EventKind::kStop, stopped_by, 0, now);
   for (const TaskId id : spec_.end_order) {
     Task& task = tasks_.tasks()[id.index];
     if (!tasks_.is_mine(id) || task.state != State::kOn) continue;

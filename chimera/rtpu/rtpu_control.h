@@ -87,7 +87,7 @@ class RtpuControl final : public BoundaryListener {
   bool turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept;
   bool kill_next(BoundarySignals& signals, Nanoseconds now) noexcept;
   void post(const Post& post) noexcept;
-  void post_event(Happening happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
+  void post_event(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
   void wake_supervisor() noexcept;
 
   const ApplicationSpec& spec_;

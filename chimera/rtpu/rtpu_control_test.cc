@@ -242,7 +242,7 @@ TEST_F(EdgeTest, ANoteIsToldAtOnceAndTheTaskGoesOn) {
   EXPECT_EQ(second().state(kFollower), State::kOn);
   const auto events = units->take(PostKind::kEvent);
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_EQ(events[0].happening, Happening::kNote);
+  EXPECT_EQ(events[0].happening, EventKind::kNote);
   EXPECT_EQ(events[0].task, kFollower);
   EXPECT_STREQ(shown_of_follower().note, "as asked");
 }
@@ -256,7 +256,7 @@ TEST_F(EdgeTest, AFaultIsToldWithItsTextInTheFaultGroup) {
   EXPECT_TRUE(units->flag_is_up()) << "the killer reads y";
   const auto events = units->take(PostKind::kEvent);
   ASSERT_FALSE(events.empty());
-  EXPECT_EQ(events[0].happening, Happening::kFault);
+  EXPECT_EQ(events[0].happening, EventKind::kFault);
   EXPECT_EQ(events[0].task, kFollower);
   EXPECT_EQ(events[0].detail, static_cast<std::uint64_t>(Method::kCycle));
   const FaultRecord fault = shown_of_follower();

@@ -23,22 +23,22 @@ namespace chimera {
 enum class PostKind : std::uint8_t { kSignal, kReport, kRequest, kEvent };
 
 /// What an event is about.
-enum class Happening : std::uint8_t {
-  kState,     ///< task went from `before` to `after`
-  kFault,     ///< method `detail` of the task failed; its text stands in the task's fault group
-  kRefused,   ///< signal from task `from` refused, `why`
-  kSignalled, ///< signal from task `from` carried out
-  kFlag,      ///< this rtpu's flag word went to `detail`; `from` raised it, if a task did
-  kStop,      ///< reaction `stop` of the task: the rtpu turned all its tasks OFF
-  kMissed,    ///< the task missed its deadline; `from` used the processor most, for `detail` ns: more than its budget
-              ///< when somebody did. Invalid `from`: for so long nobody here had the processor
-  kHang,      ///< a job of the task does not end: it used `detail` ns by now. The rtpu ends
-  kGaveWay,   ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns lately, nearly all
-              ///< that the kernel lets real-time threads have
-  kBlocked,   ///< the task missed its deadline with a job that waits in a system call, having used `detail` ns
-  kNote,      ///< the task left a note; its text stands in the task's fault group
+enum class EventKind : std::uint8_t {
+  kState,      ///< task went from `before` to `after`
+  kFault,      ///< method `detail` of the task failed; its text stands in the task's fault group
+  kRefused,    ///< signal from task `from` refused, `why`
+  kSignalled,  ///< signal from task `from` carried out
+  kFlag,       ///< this rtpu's flag word went to `detail`; `from` raised it, if a task did
+  kStop,       ///< reaction `stop` of the task: the rtpu turned all its tasks OFF
+  kMissed,     ///< the task missed its deadline; `from` used the processor most, for `detail` ns: more than its budget
+               ///< when somebody did. Invalid `from`: for so long nobody here had the processor
+  kHang,       ///< a job of the task does not end: it used `detail` ns by now. The rtpu ends
+  kGaveWay,    ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns lately, nearly all
+               ///< that the kernel lets real-time threads have
+  kBlocked,    ///< the task missed its deadline with a job that waits in a system call, having used `detail` ns
+  kNote,       ///< the task left a note; its text stands in the task's fault group
 };
-inline constexpr auto kLastHappening = Happening::kNote;
+inline constexpr auto kLastHappening = EventKind::kNote;
 
 /// 64 bytes; what is not used is 0 (ids: invalid).
 struct Post {
@@ -48,12 +48,12 @@ struct Post {
   TaskId from;                ///< the sending task
   Signal signal = Signal::kOn;
   PostKind kind = PostKind::kSignal;
-  Happening happening = Happening::kState;
+  EventKind happening = EventKind::kState;
   bool more = false;          ///< one transaction with the next signal in the same ring
   std::uint8_t why = 0;       ///< Refusal
   State before = State::kNotCreated;
   State after = State::kNotCreated;
-  std::uint64_t detail = 0;   ///< report: 1 accepted, 0 not; event: as its Happening says
+  std::uint64_t detail = 0;  ///< report: 1 accepted, 0 not; event: as its EventKind says
   std::uint64_t reserved[2] = {};
 };
 static_assert(sizeof(Post) == 64);

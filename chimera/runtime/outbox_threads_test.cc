@@ -180,13 +180,13 @@ TEST_F(Outboxes, EveryHappeningArrives) {
   for (int i = 0; i < kHappenings; ++i) {
     Post told = numbered(0);
     told.kind = PostKind::kEvent;
-    told.happening = static_cast<Happening>(i);
+    told.happening = static_cast<EventKind>(i);
     ASSERT_TRUE(outbox.try_post(told));
     ASSERT_TRUE(inbox.take(post)) << i;
     EXPECT_EQ(post.happening, told.happening);
   }
   Post unknown = numbered(0);
-  unknown.happening = static_cast<Happening>(kHappenings);
+  unknown.happening = static_cast<EventKind>(kHappenings);
   ASSERT_TRUE(outbox.try_post(unknown));
   EXPECT_FALSE(inbox.take(post));
 }

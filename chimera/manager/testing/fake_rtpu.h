@@ -74,7 +74,7 @@ class FakeRtpu {
     std::memcpy(payload.data(), &record, sizeof record);
     faults_[index(task)].write(payload.data(), record.at, 1);
     Post post = about(task, PostKind::kEvent);
-    post.happening = Happening::kFault;
+    post.happening = EventKind::kFault;
     post.detail = CHIMERA_CYCLE;
     tell(post);
     enter(task, State::kError);
@@ -89,7 +89,7 @@ class FakeRtpu {
     std::memcpy(payload.data(), &record, sizeof record);
     faults_[index(task)].write(payload.data(), clock_.now(), 1);
     Post post = about(task, PostKind::kEvent);
-    post.happening = Happening::kNote;
+    post.happening = EventKind::kNote;
     tell(post);
   }
   /// As if `from` had sent `on` to `task`.
@@ -182,7 +182,7 @@ class FakeRtpu {
   void enter(TaskId task, State state) {
     TaskStatus status = block_.view().status(task);
     Post post = about(task, PostKind::kEvent);
-    post.happening = Happening::kState;
+    post.happening = EventKind::kState;
     post.before = status.state;
     post.after = status.state;
     if (status.state == State::kNotCreated) ++status.incarnation;
