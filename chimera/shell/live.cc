@@ -20,7 +20,7 @@ namespace chimera::shell {
 namespace {
 
 using Json = nlohmann::json;
-using By = Woken::By;
+using By = Wakeup::By;
 
 /// The period of --every in whole milliseconds, as the protocol takes it.
 Result<std::int64_t> period_ms(const Call& call, std::int64_t otherwise) {
@@ -85,7 +85,7 @@ bool obey(int key, TopView& view, const Json& status) {
 
 /// Until somebody ends it; the error that ended it otherwise. A manager that is restarted is waited for.
 std::optional<Error> top_on_screen(Session& session, const Json& first, const Json& subscription) {
-  Attention attention(true);
+  InputWait attention(true);
   FullScreen screen;
   Json now = first, before;
   TopView view;
@@ -94,7 +94,7 @@ std::optional<Error> top_on_screen(Session& session, const Json& first, const Js
     view.width = size.width;
     view.height = size.height;
     screen.show(drawn(view.is_help ? help_lines(view) : top_lines(now, before, view)));
-    Woken woken = attention.wait(&session.client(), seconds(60));
+    Wakeup woken = attention.wait(&session.client(), seconds(60));
     if (woken.by == By::kStop || (woken.by == By::kKey && !obey(woken.key, view, now))) return std::nullopt;
     if (woken.by == By::kLost && !session.ask("subscribe", subscription).is_good())
       return woken.error;
@@ -134,9 +134,9 @@ template <class Show>
 int follow(Session& session, const Call& call, Json subscription, std::FILE* out, std::FILE* err, const Show& show) {
   const control::Answer subscribed = session.ask("subscribe", subscription);
   if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
-  Attention attention(false);
+  InputWait attention(false);
   for (;;) {
-    const Woken woken = attention.wait(&session.client(), seconds(60));
+    const Wakeup woken = attention.wait(&session.client(), seconds(60));
     if (woken.by == By::kStop) return end_of_notes(session);
     if (woken.by == By::kLost && !session.ask("subscribe", subscription).is_good())
       return print(refused(woken.error, call.json), out, err);
@@ -208,12 +208,12 @@ int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE*
 int get_every(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   const auto period = period_ms(call, 1000);
   if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
-  Attention attention(false);
+  InputWait attention(false);
   for (;;) {
     const CommandResult said = one_shot(session, call, {});
     if (print(said, out, err) != kOk) return said.code;
     if (flush_and_look(out) != 0) return kRefused;  // nobody sees it any more
-    const Woken woken = attention.wait(nullptr, milliseconds(period.value()));
+    const Wakeup woken = attention.wait(nullptr, milliseconds(period.value()));
     if (woken.by == By::kStop) return kOk;
   }
 }

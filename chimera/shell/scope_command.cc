@@ -23,7 +23,7 @@ namespace chimera::shell {
 namespace {
 
 using Json = nlohmann::json;
-using By = Woken::By;
+using By = Wakeup::By;
 
 constexpr Nanoseconds kGrace = seconds(2);  // for the last rows to come
 
@@ -118,11 +118,11 @@ Result<Asked> read(const Call& call, const Json& described, const Surroundings& 
 /// Feeds `scope` until it is complete, somebody ends it, or the time is over. An error only when the other end is gone.
 std::optional<Error> record(Session& session, Scope& scope, const Asked& asked) {
   LinuxClock clock;
-  Attention attention(false);
+  InputWait attention(false);
   Nanoseconds until = clock.now() + asked.request.pre + asked.wait;  // nothing is waited for before it can begin
   bool was_triggered = false;
   while (!scope.is_complete() && clock.now() < until) {
-    const Woken woken = attention.wait(&session.client(), until - clock.now());
+    const Wakeup woken = attention.wait(&session.client(), until - clock.now());
     if (woken.by == By::kStop) return std::nullopt;
     if (woken.by == By::kLost) return woken.error;
     if (woken.by == By::kNote && woken.note.method == "tap") scope.take(*woken.note.parameters);

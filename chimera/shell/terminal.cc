@@ -18,31 +18,31 @@ FullScreen::~FullScreen() { write_out("\x1b[0m\x1b[?25h\x1b[?1049l"); }
 
 void FullScreen::show(const std::string& text) { write_out("\x1b[H" + text + "\x1b[0m\x1b[J"); }
 
-Attention::Attention(bool keys) : keys_(keys) {
+InputWait::InputWait(bool keys) : keys_(keys) {
   constexpr int kTaken[] = {SIGINT, SIGTERM, SIGHUP, SIGWINCH};
   auto signals = SignalQueue::open(kTaken);
   if (signals) signals_ = *std::move(signals);
 }
 
-Attention::~Attention() {
+InputWait::~InputWait() {
   // What has come but was not read would act as soon as it may: it has been obeyed by ending.
   while (take_signal()) {}
 }
 
-std::optional<Woken> Attention::take_signal() {
+std::optional<Wakeup> InputWait::take_signal() {
   SignalQueue::Arrived signal;
   if (!signals_.take(signal)) return std::nullopt;
-  Woken woken;
-  woken.by = signal.number == SIGWINCH ? Woken::By::kResize : Woken::By::kStop;
+  Wakeup woken;
+  woken.by = signal.number == SIGWINCH ? Wakeup::By::kResize : Wakeup::By::kStop;
   return woken;
 }
 
-Woken Attention::take_key() {
+Wakeup InputWait::take_key() {
   constexpr std::pair<std::string_view, int> kArrows[] = {{"\x1b[A", kKeyUp},      {"\x1bOA", kKeyUp},
                                                           {"\x1b[B", kKeyDown},    {"\x1bOB", kKeyDown},
                                                           {"\x1b[5~", kKeyPageUp}, {"\x1b[6~", kKeyPageDown}};
-  Woken woken;
-  woken.by = Woken::By::kKey;
+  Wakeup woken;
+  woken.by = Wakeup::By::kKey;
   woken.key = typed_.empty() ? kKeyEnd : static_cast<unsigned char>(typed_[0]);
   std::size_t length = std::min<std::size_t>(typed_.size(), 1);
   for (const auto& [sequence, key] : kArrows)
@@ -51,17 +51,17 @@ Woken Attention::take_key() {
   return woken;
 }
 
-Woken Attention::wait(control::Client* client, Nanoseconds limit) {
+Wakeup InputWait::wait(control::Client* client, Nanoseconds limit) {
   LinuxClock clock;
   const Nanoseconds until = clock.now() + limit;
   for (;;) {
     if (auto woken = take_signal()) return std::move(*woken);
     if (!typed_.empty()) return take_key();
-    Woken woken;
+    Wakeup woken;
     if (client != nullptr) {
       auto note = client->next(Nanoseconds{0});
-      if (!note) return woken.by = Woken::By::kLost, woken.error = note.error(), woken;
-      if (note.value()) return woken.by = Woken::By::kNote, woken.note = std::move(*note.value()), woken;
+      if (!note) return woken.by = Wakeup::By::kLost, woken.error = note.error(), woken;
+      if (note.value()) return woken.by = Wakeup::By::kNote, woken.note = std::move(*note.value()), woken;
     }
     Watched all[] = {{signals_.descriptor()}, {client == nullptr ? -1 : client->descriptor()},
                      {keys_ ? kStandardInput : -1}};

@@ -29,7 +29,7 @@ class FullScreen {
 };
 
 /// What a wait ended with.
-struct Woken {
+struct Wakeup {
   enum class By : char { kNote, kKey, kResize, kStop, kTime, kLost };
   By by = By::kTime;
   control::Note note;  ///< kNote
@@ -39,20 +39,20 @@ struct Woken {
 inline constexpr int kKeyUp = 1000, kKeyDown = 1001, kKeyPageUp = 1002, kKeyPageDown = 1003, kKeyEnd = -1;
 
 /// While it lives, SIGINT, SIGTERM, SIGHUP and SIGWINCH are taken here instead of acting. Context: setup.
-class Attention {
+class InputWait {
  public:
   /// `keys`: also listen to standard input.
-  explicit Attention(bool keys);
-  ~Attention();
-  Attention(const Attention&) = delete;
-  Attention& operator=(const Attention&) = delete;
+  explicit InputWait(bool keys);
+  ~InputWait();
+  InputWait(const InputWait&) = delete;
+  InputWait& operator=(const InputWait&) = delete;
 
   /// The first thing that comes, at most until `limit` has passed. `client` may be null: no notes.
-  Woken wait(control::Client* client, Nanoseconds limit);
+  Wakeup wait(control::Client* client, Nanoseconds limit);
 
  private:
-  std::optional<Woken> take_signal();
-  Woken take_key();
+  std::optional<Wakeup> take_signal();
+  Wakeup take_key();
 
   SignalQueue signals_;
   bool keys_;
