@@ -10,7 +10,7 @@
 
 #include "chimera/task/abi.h"
 
-namespace chimera::face {
+namespace chimera::component_api {
 
 /// Everything declared about one component. Lives in the object's static storage.
 struct Declaration {
@@ -90,4 +90,4 @@ class Collector {
   Collector* outer_;
 };
 
-}  // namespace chimera::face
+}  // namespace chimera::component_api

@@ -38,7 +38,7 @@
 #include "chimera/task/port.h"
 #include "chimera/task/registry.h"
 
-namespace chimera::face {
+namespace chimera::component_api {
 
 inline std::int32_t note_fault(chimera_fault* fault, std::int32_t code, const char* text) noexcept {
   fault->code = code;
@@ -198,7 +198,7 @@ bool offer(PortName name, Literal doc, Extras... extras) noexcept {
   return chimera_offer(&declare<T>) != 0;
 }
 
-}  // namespace chimera::face
+}  // namespace chimera::component_api
 
 #define CHIMERA_COMPONENT_JOIN_(a, b) a##b
 #define CHIMERA_COMPONENT_JOIN(a, b) CHIMERA_COMPONENT_JOIN_(a, b)
@@ -206,9 +206,9 @@ bool offer(PortName name, Literal doc, Extras... extras) noexcept {
 /// Offers a class as a component: CHIMERA_COMPONENT(Class, "name", "One sentence.") with optional extras
 /// `rate = 1000.0` (default rate, Hz) and `source = "paper or book"`. Stands at namespace scope, in the one
 /// source file of the component.
-#define CHIMERA_COMPONENT(Class, ...)                                              \
-  namespace {                                                                      \
+#define CHIMERA_COMPONENT(Class, ...)                                                 \
+  namespace {                                                                         \
   [[maybe_unused]] const bool CHIMERA_COMPONENT_JOIN(chimera_offered_, __COUNTER__) = \
-      ::chimera::face::offer<Class>(__VA_ARGS__);                                  \
-  }                                                                                \
+      ::chimera::component_api::offer<Class>(__VA_ARGS__);                            \
+  }                                                                                   \
   static_assert(true)

@@ -9,7 +9,7 @@
 #include "chimera/task/fields.h"
 #include "chimera/task/options.h"
 
-namespace chimera::face {
+namespace chimera::component_api {
 
 template <class T>
 inline constexpr bool kIsInitial = false;
@@ -169,4 +169,4 @@ void declare_port(const char* name, const char* unit, const char* shape, PortPla
   to->add(port, place.live, place.instances);
 }
 
-}  // namespace chimera::face
+}  // namespace chimera::component_api

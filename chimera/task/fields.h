@@ -40,7 +40,7 @@ constexpr FieldOf<Struct, Member> field(const char* name, const char* unit, Memb
   return {name, unit, member};
 }
 
-namespace face {
+namespace component_api {
 
 template <class T>
 inline constexpr bool kIsText = false;
@@ -167,5 +167,5 @@ struct PortType<Matrix<T>> : PortType<T> {
   static constexpr bool kOpen = true;
 };
 
-}  // namespace face
+}  // namespace component_api
 }  // namespace chimera

@@ -6,7 +6,7 @@
 
 #include "chimera/task/cycle.h"
 
-namespace chimera::face {
+namespace chimera::component_api {
 
 // For each name: is there any member of that name (even private or overloaded), can it be called with a Cycle, or
 // with nothing? A name is found by making it ambiguous: a class that inherits it twice cannot take its address.
@@ -138,4 +138,4 @@ constexpr bool check_component() {
 #undef CHIMERA_FACE_MISSPELLINGS
 #undef CHIMERA_FACE_NAME
 
-}  // namespace chimera::face
+}  // namespace chimera::component_api

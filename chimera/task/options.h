@@ -10,7 +10,7 @@
 #include <type_traits>
 
 namespace chimera {
-namespace face {
+namespace component_api {
 
 /// A string literal: it lives as long as the component's object. Text made at run time does not compile here.
 struct Literal {
@@ -141,8 +141,8 @@ inline constexpr SourceName source{};     ///< CHIMERA_COMPONENT: the paper or b
 /// The values this port may take, in its unit, ends included.
 inline RangeIs range(double min, double max) { return RangeIs(min, max); }
 }  // namespace names
-}  // namespace face
+}  // namespace component_api
 
-using namespace face::names;
+using namespace component_api::names;
 
 }  // namespace chimera

@@ -23,7 +23,7 @@ namespace chimera {
 template <class P, std::uint32_t N = CHIMERA_MAX_INSTANCES>
 class Many;
 
-namespace face {
+namespace component_api {
 
 /// What the four kinds of typed ports have in common: the three ways to declare one.
 template <class T, std::uint32_t Kind>
@@ -50,13 +50,13 @@ class TypedPort : public View<T, Kind == CHIMERA_IN_VAR || Kind == CHIMERA_IN_CO
   TypedPort() noexcept = default;  // one of Many, which declares for all
 };
 
-}  // namespace face
+}  // namespace component_api
 
 /// An in-var: the latest value published before the method began; it stands still until the method returns.
 template <class T>
-class In : public face::TypedPort<T, CHIMERA_IN_VAR> {
+class In : public component_api::TypedPort<T, CHIMERA_IN_VAR> {
  public:
-  using face::TypedPort<T, CHIMERA_IN_VAR>::TypedPort;
+  using component_api::TypedPort<T, CHIMERA_IN_VAR>::TypedPort;
 
   /// How long ago the value was published, seen from the release of this job; kNever while !valid().
   /// Context: cycle; wait-free.
@@ -80,9 +80,9 @@ class In : public face::TypedPort<T, CHIMERA_IN_VAR> {
 /// An out-var: holds the last published value until the method writes it. Published together with all
 /// other out-vars of the task, when the method returned ok.
 template <class T>
-class Out : public face::TypedPort<T, CHIMERA_OUT_VAR> {
+class Out : public component_api::TypedPort<T, CHIMERA_OUT_VAR> {
  public:
-  using face::TypedPort<T, CHIMERA_OUT_VAR>::TypedPort;
+  using component_api::TypedPort<T, CHIMERA_OUT_VAR>::TypedPort;
 
  private:
   template <class P, std::uint32_t N>
@@ -92,9 +92,9 @@ class Out : public face::TypedPort<T, CHIMERA_OUT_VAR> {
 
 /// An in-const: a value that is known from init on and changes only with reinit. Read-only.
 template <class T>
-class InConst : public face::TypedPort<T, CHIMERA_IN_CONST> {
+class InConst : public component_api::TypedPort<T, CHIMERA_IN_CONST> {
  public:
-  using face::TypedPort<T, CHIMERA_IN_CONST>::TypedPort;
+  using component_api::TypedPort<T, CHIMERA_IN_CONST>::TypedPort;
 
   /// False when nobody gives the value and it has no default. Context: setup; wait-free.
   bool valid() const noexcept { return this->live_.value != nullptr; }
@@ -107,9 +107,9 @@ class InConst : public face::TypedPort<T, CHIMERA_IN_CONST> {
 
 /// An out-const: written in init or reinit; its users are initialised after it.
 template <class T>
-class OutConst : public face::TypedPort<T, CHIMERA_OUT_CONST> {
+class OutConst : public component_api::TypedPort<T, CHIMERA_OUT_CONST> {
  public:
-  using face::TypedPort<T, CHIMERA_OUT_CONST>::TypedPort;
+  using component_api::TypedPort<T, CHIMERA_OUT_CONST>::TypedPort;
 
  private:
   template <class P, std::uint32_t N>
@@ -119,11 +119,11 @@ class OutConst : public face::TypedPort<T, CHIMERA_OUT_CONST> {
 
 /// A resource: the text of the description that names a device, a file, an address. What to do with it is
 /// the component's business, in init and kill. Nothing is transferred.
-class Resource : public face::PortBase {
+class Resource : public component_api::PortBase {
  public:
-  template <face::Option... O>
-  explicit Resource(face::PortName name, const O&... options) {
-    face::declare_port<Text<256>, CHIMERA_RESOURCE>(name.text, "1", "", {&live_}, options...);
+  template <component_api::Option... O>
+  explicit Resource(component_api::PortName name, const O&... options) {
+    component_api::declare_port<Text<256>, CHIMERA_RESOURCE>(name.text, "1", "", {&live_}, options...);
   }
   /// Context: any; wait-free.
   std::string_view text() const noexcept { return {c_str()}; }
@@ -134,13 +134,15 @@ class Resource : public face::PortBase {
 template <class P, std::uint32_t N>
 class Many {
  public:
-  template <face::Option... O>
-  Many(face::RepeatedName name, face::Literal unit, const O&... options) {
-    static_assert(!face::PortType<typename P::Type>::kOpen, "this type leaves the shape open: give it after the unit");
-    declare(name, unit, face::Literal(face::PortType<typename P::Type>::kShape), options...);
+  template <component_api::Option... O>
+  Many(component_api::RepeatedName name, component_api::Literal unit, const O&... options) {
+    static_assert(!component_api::PortType<typename P::Type>::kOpen,
+                  "this type leaves the shape open: give it after the unit");
+    declare(name, unit, component_api::Literal(component_api::PortType<typename P::Type>::kShape), options...);
   }
-  template <face::Option... O>
-  Many(face::RepeatedName name, face::Literal unit, face::Literal shape, const O&... options) {
+  template <component_api::Option... O>
+  Many(component_api::RepeatedName name, component_api::Literal unit, component_api::Literal shape,
+       const O&... options) {
     declare(name, unit, shape, options...);
   }
   Many(const Many&) = delete;
@@ -148,7 +150,7 @@ class Many {
 
   std::size_t size() const noexcept { return instances_; }
   const P& operator[](std::size_t i) const {
-    face::check_index(i, instances_);
+    component_api::check_index(i, instances_);
     return ports_[i];
   }
   const P* begin() const noexcept { return ports_; }
@@ -159,9 +161,10 @@ class Many {
   static_assert(N >= 1 && N <= CHIMERA_MAX_INSTANCES, "a repeated port has 1 to 16 instances");
 
   template <class... O>
-  void declare(face::RepeatedName name, face::Literal unit, face::Literal shape, const O&... options) {
-    face::declare_port<typename P::Type, P::kKind>(name.text, unit.text, shape.text, {ports_, &instances_, N},
-                                                   options...);
+  void declare(component_api::RepeatedName name, component_api::Literal unit, component_api::Literal shape,
+               const O&... options) {
+    component_api::declare_port<typename P::Type, P::kKind>(name.text, unit.text, shape.text, {ports_, &instances_, N},
+                                                            options...);
   }
 
   std::uint32_t instances_ = 0;

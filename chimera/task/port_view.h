@@ -16,7 +16,7 @@
 #include "chimera/task/abi.h"
 #include "chimera/task/fields.h"
 
-namespace chimera::face {
+namespace chimera::component_api {
 
 /// Ends the method with a fault that says so. (Where exceptions are not built, the process ends.)
 [[noreturn]] inline void index_beyond(std::size_t index, std::size_t size) {
@@ -117,4 +117,4 @@ struct ViewOf {
 template <class T, bool kReadOnly>
 using View = typename ViewOf<T, kReadOnly>::type;
 
-}  // namespace chimera::face
+}  // namespace chimera::component_api

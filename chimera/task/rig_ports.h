@@ -54,7 +54,7 @@ class RigPorts {
   void type(const char* port, std::size_t instance = 0) {
     Cell& cell = cell_of(port, instance);
     if (cell.decl->type != CHIMERA_ANY) throw std::invalid_argument(std::string(port) + " has a type of its own");
-    cell.live->type = face::element_type<T>();
+    cell.live->type = component_api::element_type<T>();
     cell.live->element_size = sizeof(T);
   }
   /// The text of a resource port.

@@ -30,7 +30,7 @@ struct Pedal {
   void off() { *force = 0; }
 
  protected:
-  Pedal(face::PortName output, double full)
+  Pedal(component_api::PortName output, double full)
       : force{output, "N", initial = 0.0, safety, range(0, 20000), doc = "Force the driver asks for; 0: foot off."},
         full_force{"full_force", "N", initial = full, range(0, 20000), doc = "With the pedal down."} {}
 

@@ -16,10 +16,10 @@ namespace chimera::testing {
 /// The declaration of component class T under `name`.
 template <class T>
 const chimera_component* component(const char* name) {
-  face::declared<T>.component.name = name;
-  face::declared<T>.component.doc = "A component of a test.";
-  face::declared<T>.component.source = "";
-  return face::declare<T>();
+  component_api::declared<T>.component.name = name;
+  component_api::declared<T>.component.doc = "A component of a test.";
+  component_api::declared<T>.component.source = "";
+  return component_api::declare<T>();
 }
 
 template <class T>
