@@ -44,20 +44,20 @@ def pidfd_of_a_child():
     return took
 
 
-def end_undertaker(pid):
-    """What the death of a unit would be without its second process (chimera/platform/undertaker.h)."""
+def end_memory_holder(pid):
+    """What the death of a unit would be without its second process (chimera/platform/memory_holder.h)."""
     children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     assert len(children) == 1, children
     os.kill(int(children[0]), signal.SIGKILL)  # nobody reaps it: the number stays its own
 
 
-def once(system, with_undertaker):
+def once(system, with_memory_holder):
     """Microseconds until the death is told; the unit is brought back afterwards."""
     since = system.call("events", since=0)["last"]
     pid = system.rtpu("second")["pid"]
     pidfd = os.pidfd_open(pid)
-    if not with_undertaker:
-        end_undertaker(pid)
+    if not with_memory_holder:
+        end_memory_holder(pid)
     time.sleep(QUIET_S)  # the manager answers nobody when it happens, and nothing is left of the last death
     began = time.monotonic_ns()
     signal.pidfd_send_signal(pidfd, signal.SIGKILL)
@@ -82,10 +82,10 @@ def lost(system):
     return task["dropped"] + task["missed"]
 
 
-def counted(system, with_undertaker):
+def counted(system, with_memory_holder):
     """(microseconds of once(), cycles that the other unit lost meanwhile)"""
     before = lost(system)
-    return once(system, with_undertaker), lost(system) - before
+    return once(system, with_memory_holder), lost(system) - before
 
 
 baseline, quick, slow = [], [], []
@@ -112,10 +112,10 @@ middle_slow, without = p50_p99([took for took, _ in slow])
 print(json.dumps({"row": 13, "what": f"death seen, p99 ({middle})", "unit": "us", "figure": figure, "baseline": small,
                   "baseline_name": f"small child ({middle_small})", "ratio": round(figure / small, 2),
                   "goal": f"<= {GOAL_US} us", "met": figure <= GOAL_US, "n": ROUNDS}))
-print(json.dumps({"row": 13, "what": "the same against no undertaker", "unit": "us", "figure": figure,
+print(json.dumps({"row": 13, "what": "the same against no memory holder", "unit": "us", "figure": figure,
                   "baseline": without, "baseline_name": f"without ({middle_slow})",
                   "ratio": round(figure / without, 2), "goal": "< 1", "met": figure < without, "n": ROUNDS}))
-for what, deaths in (("cycles the other unit lost", quick), ("the same without undertaker", slow)):
+for what, deaths in (("cycles the other unit lost", quick), ("the same without memory holder", slow)):
     missing = sum(n for _, n in deaths)
     print(json.dumps({"row": 13, "what": what, "unit": "", "figure": missing, "baseline": control,
                       "baseline_name": "nobody dies", "goal": "no more than without death",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes that a keeper adopted: what components started and left behind, and undertakers.
+// The processes that a keeper adopted: what components started and left behind, and memory holders.
 // docs/formats/processes.md, "What components start".
 #pragma once
 
@@ -26,8 +26,8 @@ class Orphans {
   const std::string& prefix() const noexcept { return prefix_; }
 
   /// Reaps each child that has ended and is not among `held`: those of which somebody has a Process. Sends SIGKILL to
-  /// each that comes from a unit that does not live, to an undertaker 100 ms after it was first seen. One whose origin
-  /// is not known is left until the end. `lives`: whether the unit of that origin does.
+  /// each that comes from a unit that does not live, to a memory holder 100 ms after it was first seen. One whose
+  /// origin is not known is left until the end. `lives`: whether the unit of that origin does.
   void look(std::span<const pid_t> held, const std::function<bool(std::string_view)>& lives, Nanoseconds now);
   /// When there is something to look at though nothing happens; kNever: no such thing.
   Nanoseconds due() const noexcept { return due_; }

@@ -12,13 +12,13 @@
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/lost_descriptor.h"
+#include "chimera/platform/memory_holder.h"
 #include "chimera/platform/origin.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/readiness.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/platform/signal_queue.h"
 #include "chimera/platform/thread_stack.h"
-#include "chimera/platform/undertaker.h"
 #include "chimera/platform/wake_event.h"
 #include "chimera/rtpu/components.h"
 #include "chimera/rtpu/cycling_thread.h"
@@ -100,7 +100,7 @@ Result<void> Rtpu::prepare() {
     signals_ = *std::move(signals);
     signals_.stay_blocked();  // one that comes while everything is taken down changes nothing
     if (!follow_parent(start_.parent, SIGTERM)) return Error{ErrorCode::kRefused, {"the keeper is gone"}, {}};
-    start_undertaker();  // refused: its death is seen later, and nothing else is different
+    start_memory_holder();  // refused: its death is seen later, and nothing else is different
   }
   auto over = WakeEvent::open(Message("rtpu"));
   if (!over) return over.error();

@@ -51,10 +51,10 @@ class Rig(System):
     def children(self):
         """Of components: neither of the project's own processes."""
         own = set(self.pids().values()) | {self.process.pid}
-        return [p for p in self.left_over() if p not in own and name_of(p) not in ("undertaker", "chimera", "")]
+        return [p for p in self.left_over() if p not in own and name_of(p) not in ("memory-holder", "chimera", "")]
 
-    def undertaker_of(self, pid):
-        found = [p for p in self.left_over() if name_of(p) == "undertaker" and parent_of(p) == pid]
+    def memory_holder_of(self, pid):
+        found = [p for p in self.left_over() if name_of(p) == "memory-holder" and parent_of(p) == pid]
         return found[0] if found else None
 
 
@@ -85,16 +85,16 @@ class Orphans(unittest.TestCase):
             sleeper = [p for p in children if name_of(p) == "sleep"]
             self.assertEqual(len(sleeper), 1)
             self.assertEqual(sorted(descriptors(sleeper[0])), [0, 1, 2])
-            # Its rtpu ends: so do they, while the others go on; a stopped undertaker does not keep its memory.
+            # Its rtpu ends: so do they, while the others go on; a stopped memory holder does not keep its memory.
             system.disarm()
             second = system.pids()["second"]
-            undertaker = system.undertaker_of(second)
-            if undertaker:
-                system.kill(undertaker, signal.SIGSTOP)
+            memory holder = system.memory_holder_of(second)
+            if memory holder:
+                system.kill(memory holder, signal.SIGSTOP)
             system.kill(second)
             await_that(lambda: not system.children(), 1.5, "the end of the children of a unit that died")
-            if undertaker:
-                await_that(lambda: gone([undertaker], system.marker), 1.0, "the end of a stopped undertaker")
+            if memory holder:
+                await_that(lambda: gone([memory holder], system.marker), 1.0, "the end of a stopped memory holder")
             self.assertGreater(system.task("steady")["cycles"], missed)
             self.assertEqual(system.rtpu("first")["restarts"], 0)
             # And again at the end of everything.

@@ -54,10 +54,10 @@ std::vector<pid_t> Orphans::living(std::span<const pid_t> held) {
   return found;
 }
 
-/// An undertaker ends by itself, unless somebody stopped it.
+/// A memory holder ends by itself, unless somebody stopped it.
 bool Orphans::has_time(pid_t pid, Nanoseconds now) {
   const Nanoseconds due = first_seen(pid, now) + kUndertakersTime;
-  if (now >= due || name_of(pid) != "undertaker") return false;
+  if (now >= due || name_of(pid) != "memory-holder") return false;
   due_ = std::min(due_, due);
   return true;
 }

@@ -9,10 +9,10 @@
 
 namespace chimera {
 
-/// From now on this process dies quickly. The undertaker has no descriptor of this process, takes no signal but
+/// From now on this process dies quickly. The memory holder has no descriptor of this process, takes no signal but
 /// SIGKILL, runs only when nothing else wants to (SCHED_IDLE), and ends some milliseconds after this process, however
 /// that ends. False when the system grants no second process: then everything is as without. Once per process, by its
 /// first thread, before it has secrets to close. Context: setup.
-bool start_undertaker() noexcept;
+bool start_memory_holder() noexcept;
 
 }  // namespace chimera
