@@ -13,7 +13,7 @@
 #   eight at a time (./dev lint looks at each alone) and without the sanitizers' checks of null and alignment.
 # chimera_tests(NAME LIBS lib... [DEPENDS target...] [MEMORY])
 #   The test half alone, for folders without a library. DEPENDS: targets the tests run (programs, components).
-#   MEMORY: with every check of the sanitizers, for floors that make memory of their own (0 to 5). PeerLinks are compiled
+#   MEMORY: with every check of the sanitizers, for floors that make memory of their own (0 to 5). Others are compiled
 #   without those of null and alignment, a fifth faster.
 # chimera_script_test(NAME LABEL label [TREES tree...] [DEPENDS target...] COMMAND command...)
 #   A test that is a command. Exit 77 = skipped, the last line of its output is the reason.

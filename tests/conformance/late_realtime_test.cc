@@ -91,7 +91,7 @@ class LateSoon : public testing::TestWithParam<int> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Beside, LateSoon, testing::Values(0, 3),
-                         [](const auto& one) { return one.param == 0 ? std::string("Nobody") : "PeerLinks"; });
+                         [](const auto& one) { return one.param == 0 ? std::string("Nobody") : "Others"; });
 
 TEST_P(LateSoon, AJobThatComputes) {
   const auto seen = judged(gap(), [] { return run_bad(computes, GetParam()); });

@@ -88,13 +88,13 @@ class Orphans(unittest.TestCase):
             # Its rtpu ends: so do they, while the others go on; a stopped memory holder does not keep its memory.
             system.disarm()
             second = system.pids()["second"]
-            memory holder = system.memory_holder_of(second)
-            if memory holder:
-                system.kill(memory holder, signal.SIGSTOP)
+            memory_holder = system.memory_holder_of(second)
+            if memory_holder:
+                system.kill(memory_holder, signal.SIGSTOP)
             system.kill(second)
             await_that(lambda: not system.children(), 1.5, "the end of the children of a unit that died")
-            if memory holder:
-                await_that(lambda: gone([memory holder], system.marker), 1.0, "the end of a stopped memory holder")
+            if memory_holder:
+                await_that(lambda: gone([memory_holder], system.marker), 1.0, "the end of a stopped memory holder")
             self.assertGreater(system.task("steady")["cycles"], missed)
             self.assertEqual(system.rtpu("first")["restarts"], 0)
             # And again at the end of everything.

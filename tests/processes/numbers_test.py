@@ -58,12 +58,12 @@ def numbers_given():
     return int(re.search(r"^processes (\d+)", pathlib.Path("/proc/stat").read_text(), re.M)[1])
 
 
-def memory holders():
+def memory_holders():
     """Alive or dead, in this world of processes."""
     found = 0
     for comm in pathlib.Path("/proc").glob("[0-9]*/comm"):
         try:
-            found += comm.read_text() == "memory holder\n"
+            found += comm.read_text() == "memory-holder\n"
         except OSError:
             continue  # it has gone
     return found
@@ -114,7 +114,7 @@ class Numbers(unittest.TestCase):
             self.assertEqual(len(self.ends), restarts)
             self.assertTrue(all("signal 9" in text for text in self.ends), self.ends)
         if "CHIMERA_FEW_NUMBERS" in os.environ:  # process 1 of this world reaps nobody, and all in it is ours
-            self.assertEqual(memory holders(), 0, "left unreaped")
+            self.assertEqual(memory_holders(), 0, "left unreaped")
         numbers = numbers_given() - numbers
         print(f"restarts: {restarts} in {time.monotonic() - began:.1f} s, {numbers} numbers given of {number_limit()}",
               file=sys.stderr)
