@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
+#include <vector>
 
 #include "chimera/base/assert.h"
 #include "chimera/platform/ordinary_thread.h"
@@ -59,11 +60,17 @@ struct BackgroundWriter::Worker {
   }
 };
 
-BackgroundWriter::BackgroundWriter(Nanoseconds every, Nanoseconds limit) noexcept : every_(every), limit_(limit) {}
+struct BackgroundWriter::Workers {
+  std::mutex mutex;                          // of the list: whoever asks for the longest is another thread
+  std::vector<std::shared_ptr<Worker>> all;  // each shared with its thread, which may outlive us
+};
+
+BackgroundWriter::BackgroundWriter(Nanoseconds every, Nanoseconds limit) noexcept
+    : every_(every), limit_(limit), workers_(std::make_unique<Workers>()) {}
 
 BackgroundWriter::~BackgroundWriter() {
   chimera_fault unheard{};
-  for (const auto& worker : workers_) (void)end(*worker, unheard);
+  for (const auto& worker : workers_->all) (void)end(*worker, unheard);
 }
 
 bool BackgroundWriter::add(void* instance, chimera_background background, std::uint32_t tag) {
@@ -73,27 +80,27 @@ bool BackgroundWriter::add(void* instance, chimera_background background, std::u
   worker->every = every_;
   worker->tag = tag;
   const bool made = start_ordinary_thread([worker] { worker->run(); });
-  const std::lock_guard lock(mutex_);
-  if (made) workers_.push_back(std::move(worker));
+  const std::lock_guard lock(workers_->mutex);
+  if (made) workers_->all.push_back(std::move(worker));
   return made;
 }
 
 std::uint32_t BackgroundWriter::longest(Nanoseconds longer_than) const {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(workers_->mutex);
   const auto earlier = [](const auto& a, const auto& b) { return a->began < b->began; };
-  const auto at = std::min_element(workers_.begin(), workers_.end(), earlier);
-  return at != workers_.end() && (*at)->began < steady_now() - longer_than.count ? (*at)->tag : 0;
+  const auto at = std::min_element(workers_->all.begin(), workers_->all.end(), earlier);
+  return at != workers_->all.end() && (*at)->began < steady_now() - longer_than.count ? (*at)->tag : 0;
 }
 
 BackgroundWriter::End BackgroundWriter::remove(void* instance, chimera_fault& fault) {
   std::shared_ptr<Worker> worker;
   {
-    const std::lock_guard lock(mutex_);
-    const auto at = std::find_if(workers_.begin(), workers_.end(),
+    const std::lock_guard lock(workers_->mutex);
+    const auto at = std::find_if(workers_->all.begin(), workers_->all.end(),
                                  [instance](const auto& other) { return other->instance == instance; });
-    CHIMERA_ASSERT(at != workers_.end());
+    CHIMERA_ASSERT(at != workers_->all.end());
     worker = *at;
-    workers_.erase(at);
+    workers_->all.erase(at);
   }
   return end(*worker, fault);
 }

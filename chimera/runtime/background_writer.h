@@ -3,9 +3,8 @@
 // stalled costs no cycle. One thread for each instance, so that the stalled disk of one does not hold up another.
 #pragma once
 
+#include <cstdint>
 #include <memory>
-#include <mutex>
-#include <vector>
 
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
@@ -43,8 +42,8 @@ class BackgroundWriter {
   End end(Worker& worker, chimera_fault& fault) const;
 
   Nanoseconds every_, limit_;
-  mutable std::mutex mutex_;                      // of the list: whoever asks for the longest is another thread
-  std::vector<std::shared_ptr<Worker>> workers_;  // shared with its thread, which may outlive us
+  struct Workers;  // not here: a header that cycles include is compiled where there are no threads
+  std::unique_ptr<Workers> workers_;
 };
 
 }  // namespace chimera
