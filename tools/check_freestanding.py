@@ -17,7 +17,7 @@ import sources  # noqa: E402
 FLOORS = ("base", "table", "task", "schedule")
 SOURCE = re.compile(rf"chimera/({'|'.join(FLOORS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.cc$")
 CYCLE = tuple(f"chimera/runtime/{name}.cc" for name in (
-    "job_step", "job_cycle", "miss_policy", "members", "settlement", "edge_signals", "sent_signals", "task_host",
+    "job_step", "job_cycle", "miss_policy", "members", "settlement", "boundary_signals", "sent_signals", "task_host",
     "task_methods", "outbox", "safety", "tap_ring", "executive/executive"))
 COMPONENTS = ("library/gain/gain.cc", "library/pid_joint/pid_joint.cc", "library/tderiv/tderiv.cc")
 FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
