@@ -81,7 +81,7 @@ class Rtpu {
   std::unique_ptr<PeerLinks> others_;
   BackgroundWriter writer_;
   std::unique_ptr<TaskSet> tasks_;
-  std::unique_ptr<Edge> edge_;
+  std::unique_ptr<RtpuControl> edge_;
   std::unique_ptr<HangWatch> hang_watch_;
   std::unique_ptr<CyclingThread> cycling_;
   bool is_ending_ = false;
@@ -173,7 +173,7 @@ Result<void> Rtpu::make_tasks() {
   auto tasks = TaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);
-  edge_ = std::make_unique<Edge>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
+  edge_ = std::make_unique<RtpuControl>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
                                  image_->settings().method_limit);
   edge_->set_supervisor(over_.descriptor());
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);

@@ -36,7 +36,7 @@ Method method_of(Signal signal) noexcept {
 
 }  // namespace
 
-RtpuControl::Edge(const ApplicationSpec& spec, TaskSet& tasks, PeerLinks& others, Service& service,
+RtpuControl::RtpuControl(const ApplicationSpec& spec, TaskSet& tasks, PeerLinks& others, Service& service,
                   DecisionPage& decision, std::uint32_t me, Nanoseconds method_limit)
     : BoundaryListener(decision.bells[me].word),
       spec_(spec),

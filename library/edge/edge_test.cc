@@ -26,7 +26,7 @@ struct Pulses : Rig {
   }
 };
 
-TEST(RtpuControl, IsTrueForOneCycleAtTheEdgesThatCount) {
+TEST(Edge, IsTrueForOneCycleAtTheEdgesThatCount) {
   constexpr std::pair<const char*, const char*> kExpected[] = {
       {"rising", "0010001000"}, {"falling", "0000100010"}, {"both", "0010101010"}};
   for (const auto& [of, expected] : kExpected) {
@@ -36,19 +36,19 @@ TEST(RtpuControl, IsTrueForOneCycleAtTheEdgesThatCount) {
   }
 }
 
-TEST(RtpuControl, LastsAsLongAsItIsTold) {
+TEST(Edge, LastsAsLongAsItIsTold) {
   Pulses rig("rising", 3e-3);
   ASSERT_TRUE(rig.init() && rig.on());
   EXPECT_EQ(rig.run("011111000"), "011100000");
 }
 
-TEST(RtpuControl, AFurtherEdgeWithinMakesThePulseLonger) {
+TEST(Edge, AFurtherEdgeWithinMakesThePulseLonger) {
   Pulses rig("rising", 4e-3);
   ASSERT_TRUE(rig.init() && rig.on());
   EXPECT_EQ(rig.run("0101000000"), "0111111000");
 }
 
-TEST(RtpuControl, CountsTheTimeOfDroppedReleases) {
+TEST(Edge, CountsTheTimeOfDroppedReleases) {
   Pulses rig("rising", 3e-3);
   ASSERT_TRUE(rig.init() && rig.on());
   EXPECT_EQ(rig.run("01"), "01");
@@ -56,7 +56,7 @@ TEST(RtpuControl, CountsTheTimeOfDroppedReleases) {
   EXPECT_FALSE(rig.get<bool>("y"));
 }
 
-TEST(RtpuControl, WhatChangedWhileItWasOffIsNoEdgeAndNeitherIsTheFirstValue) {
+TEST(Edge, WhatChangedWhileItWasOffIsNoEdgeAndNeitherIsTheFirstValue) {
   Pulses rig("both", 5e-3);
   ASSERT_TRUE(rig.init() && rig.on());
   EXPECT_EQ(rig.run("1"), "0");
@@ -67,7 +67,7 @@ TEST(RtpuControl, WhatChangedWhileItWasOffIsNoEdgeAndNeitherIsTheFirstValue) {
   EXPECT_EQ(rig.run("1"), "0");
 }
 
-TEST(RtpuControl, LooksAtEachElementByItself) {
+TEST(Edge, LooksAtEachElementByItself) {
   Pulses rig("rising", 0, 2);
   rig.set("x", false, 0), rig.set("x", false, 1);
   ASSERT_TRUE(rig.init() && rig.on());
@@ -78,7 +78,7 @@ TEST(RtpuControl, LooksAtEachElementByItself) {
   EXPECT_TRUE(rig.get<bool>("y", 1));
 }
 
-TEST(RtpuControl, WaitsForAnInputAndRefusesWrongConstants) {
+TEST(Edge, WaitsForAnInputAndRefusesWrongConstants) {
   Pulses rig("rising");
   ASSERT_TRUE(rig.init() && rig.on());
   EXPECT_EQ(rig.cycle().status, CHIMERA_ABORTED);

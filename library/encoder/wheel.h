@@ -54,7 +54,7 @@ class CountedWheel {
   void step(std::int64_t way, Nanoseconds now, Nanoseconds window, Nanoseconds standstill) noexcept {
     if (way == 0) return wait(now, standstill);
     total_ = static_cast<std::int64_t>(static_cast<std::uint64_t>(total_) + static_cast<std::uint64_t>(way));
-    const RtpuControl edge{way > 0 ? total_ : total_ + 1, now};
+    const Edge edge{way > 0 ? total_ : total_ + 1, now};
     last_edge_ = now;
     if (!has_edge_) base_ = edge, has_edge_ = true;
     if (edge.at == base_.at || edge.at - base_.at < window) return;

@@ -14,7 +14,7 @@ constexpr double kAgreed = 1e-9;  // m and rad
 struct InverseAgainstKdl : testing::Test {
   RandomArms random;
 
-  // PeerLinks with `--gtest_shuffle --gtest_repeat=10`.
+  // Others with `--gtest_shuffle --gtest_repeat=10`.
   void SetUp() override {
     const unsigned seed = 2026 + static_cast<unsigned>(testing::UnitTest::GetInstance()->random_seed());
     random.random.seed(seed);

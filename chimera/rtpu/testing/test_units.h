@@ -53,7 +53,7 @@ struct Unit {
     auto made = TaskSet::create(spec, components, place);
     EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message.c_str());
     tasks = *std::move(made);
-    edge = std::make_unique<Edge>(spec, *tasks, others, service, decision, me, seconds(1));
+    edge = std::make_unique<RtpuControl>(spec, *tasks, others, service, decision, me, seconds(1));
     RunOptions options;
     options.policy = spec.rtpus[me].policy;
     options.guest = edge.get();
@@ -89,7 +89,7 @@ struct Unit {
   HandService service;
   PeerLinks others;
   std::unique_ptr<TaskSet> tasks;
-  std::unique_ptr<Edge> edge;
+  std::unique_ptr<RtpuControl> edge;
   std::unique_ptr<Executive> executive;
 };
 
