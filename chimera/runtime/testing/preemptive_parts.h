@@ -138,7 +138,8 @@ class PreemptiveParts {
   };
 
   /// In an hour: no alarm rings while a test runs.
-  const Nanoseconds origin = LinuxClock().now() + seconds(3600);
+  /// An hour from now, on a whole second: laxities are rounded to multiples of the quantum.
+  const Nanoseconds origin = seconds(LinuxClock().now().count / 1'000'000'000 + 3600);
   TestApplication app;
   ProcessorPlace place;
   Clock clock;
