@@ -137,8 +137,7 @@ class PreemptiveParts {
     Supervisor supervisor;
   };
 
-  /// In an hour: no alarm rings while a test runs.
-  /// An hour from now, on a whole second: laxities are rounded to multiples of the quantum.
+  /// In an hour, so that no alarm rings while a test runs; on a whole second, as laxities are rounded to the quantum.
   const Nanoseconds origin = seconds(LinuxClock().now().count / 1'000'000'000 + 3600);
   TestApplication app;
   ProcessorPlace place;
