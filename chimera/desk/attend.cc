@@ -122,7 +122,7 @@ class RemoteTarget final : public RunTarget {
   bool task_stopped_ = false;
   std::string stopped_by_;
   std::vector<NotOff> not_off_;
-  std::map<std::string, Nanoseconds> restarted_;  // by rtpu, the last time
+  std::map<std::string, Nanoseconds> restarted_;  // by rtpu, the last time: maybe before the start is known
 };
 
 Result<void> RemoteTarget::start() {
@@ -224,7 +224,7 @@ void RemoteTarget::take_event(const Json& event) {
   else if (kind == "refused")
     refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
   if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())
-    restarted_[event["rtpu"].get<std::string>()] = instant(event["at_ns"]) - started_;
+    restarted_[event["rtpu"].get<std::string>()] = instant(event["at_ns"]);
   const bool is_news = next_event_ > page_.events_seen;
   if (kind == "note" && !run_.json && is_news) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
   if (kind == "not-off") not_off_.push_back({task, text});
@@ -307,7 +307,8 @@ std::vector<UnitFate> RemoteTarget::units_of(const Json& status) const {
   for (const Json& rtpu : status.value("rtpus", Json::array())) {
     UnitFate unit{
         rtpu.value("name", ""), rtpu.value("restarts", std::uint64_t{0}), kNever, rtpu.value("given_up", false), {}};
-    if (const auto at = restarted_.find(unit.name); at != restarted_.end()) unit.restarted = at->second;
+    if (const auto at = restarted_.find(unit.name); at != restarted_.end() && started_ != kNever)
+      unit.restarted = at->second - started_;
     units.push_back(std::move(unit));
   }
   return units;
