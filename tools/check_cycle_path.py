@@ -54,7 +54,8 @@ PATHS = (
          ASSERTS | SIGNALS | RESERVED | {r'chimera::enter_realtime\(': 'the start of a thread',
                                          r'chimera::Processor::check(_holder)?\(': 'in tests only',
                                          r'chimera::EdgeAccess::look_up_blocked\(': 'outside the section'}),
-    Path('edges of an rtpu', [r'chimera::RtpuControl::(take|publish|told|show|show_profiles|missed|gave_way|hangs|stop_all)\(',
+    Path('edges of an rtpu', [r'chimera::RtpuControl::(take|publish|told|show|show_profiles|missed|gave_way|hangs'
+                              r'|stop_all)\(',
                               r'chimera::(Doorbell|Outbox)::'],
          PLAIN + WAKES,
          ASSERTS | SIGNALS | RESERVED),

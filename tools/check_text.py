@@ -50,7 +50,7 @@ def is_known(name):
 
 
 def wants_purpose(name):
-    return (re.match(r"(chimera/(?!desk/|shell/)|library/).*\.cc$", name)
+    return (re.match(r"(chimera/|library/).*\.cc$", name)
             and not re.search(r"/testing/|_(test|fuzz|stress)\.cc$", name))
 
 
