@@ -31,7 +31,7 @@ TEST(ForkedChild, WhatItWroteIntoFamilyMemoryStaysWhenItIsKilled) {
   EXPECT_EQ(text[9'999], 0);
   EXPECT_EQ(status_of(fork_quietly("/", [text] {
     std::strcpy(text, std::filesystem::current_path().c_str());
-    ::kill(::getpid(), SIGKILL);
+    ::kill(::getpid(), SIGKILL);  // still ours
     return 0;
   })), -1);
   EXPECT_STREQ(text, "/");

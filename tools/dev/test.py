@@ -27,8 +27,8 @@ class Share:
 
 COMPILE = Share("compile", 12)
 SHARES = (
-    Share("units", 3, (("debug", "unit"), ("tsan", "threads"), ("release", "symbol|cost"))),
-    Share("processes", 4, (("debug", "process"), ("debug", "hostile"), ("release", "realtime"))),
+    Share("units", 3, (("debug", "unit"), ("debug", "hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
+    Share("processes", 4, (("debug", "process"), ("release", "realtime"))),
     Share("models", 2, (("debug", "model"), ("fuzz", "fuzz"))),
 )
 QUICK = Share("quick", 2, (("debug", "unit"),))
