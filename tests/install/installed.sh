@@ -28,7 +28,8 @@ while read -r component; do
 done < "$tree/components/buildable.txt"
 [ "$(wc -l < "$tree/components/buildable.txt")" -ge 61 ] || fail "the library has fewer than 61 components"
 # A link within the documents leads to a file that is installed, or into the source.
-find share/chimera -name '*.md' -exec awk 'FNR == 1 { code = 0 } /^```/ { code = !code } code { next } { gsub(/`[^`]*`/, "")
+find share/chimera -name '*.md' -exec awk 'FNR == 1 { code = 0 } /^```/ { code = !code } code { next } {
+  gsub(/`[^`]*`/, "")
   while (match($0, /\]\([^)#:]*\)/)) {
     print FILENAME ":" substr($0, RSTART + 2, RLENGTH - 3)
     $0 = substr($0, RSTART + RLENGTH)
