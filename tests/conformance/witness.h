@@ -32,7 +32,7 @@ inline void pin_here(int priority) {
   }
 }
 
-/// What the hypervisor took from the same processor until now: the eighth figure of its line, in hundredths of a second.
+/// What the hypervisor took from the same processor so far: the eighth figure of its line, in 1/100 s.
 inline Nanoseconds stolen() {
   std::ifstream stat("/proc/stat");
   for (std::string word; stat >> word;) {
