@@ -114,6 +114,7 @@ void JobLoop::prepare(JobThread& me, const Job& job) noexcept {
   me.cycle = me.task.call.cycle;
   me.is_illegal = releases_.is_illegal();
   me.is_demoted = false;
+  me.begin_slice(kNever);
   releases_.jobs().open(me.id);
   me.task.give_up.store(false, std::memory_order_relaxed);
   if (set_.adopt(me.id)) processor_.edge_bell().ring();
@@ -144,7 +145,7 @@ Nanoseconds JobLoop::run_body(JobThread& me) noexcept {
   const Nanoseconds before = me.used_before();
   if (sees_switches_) SwitchWatch::begin();
   const Nanoseconds start = clock_.now();
-  me.begin_slice(start);
+  me.begin_first_slice(start);
   if (me.sporadic) me.sporadic->open();
   Nanoseconds end = start;
   if (releases_.jobs().may_start(job, start)) {

@@ -106,8 +106,15 @@ class JobThread {
   /// Execution time of the job that runs, or hangs; zero when its thread is gone.
   Nanoseconds used() const noexcept;
 
-  /// From here on the job has the processor, as far as can be told. Context: any.
+  /// From here on the job has the processor, as far as can be told. kNever: it has not had the processor yet.
+  /// Context: any.
   void begin_slice(Nanoseconds now) noexcept { slice_.store(now.count, std::memory_order_relaxed); }
+  /// No effect when the job was preempted, and went on, since its thread read the clock. Context: the thread itself;
+  /// outside the section.
+  void begin_first_slice(Nanoseconds now) noexcept {
+    std::int64_t none = kNever.count;
+    (void)slice_.compare_exchange_strong(none, now.count, std::memory_order_relaxed);
+  }
   Nanoseconds slice() const noexcept { return Nanoseconds{slice_.load(std::memory_order_relaxed)}; }
 
   Task& task;
@@ -143,7 +150,7 @@ class JobThread {
   // kRunning sees used_before_. finish() pairs with phase(): who sees kEnded leaves the level alone.
   std::atomic<JobPhase> phase_{JobPhase::kIdle};
   std::atomic<std::int64_t> used_before_{0};  // written by the thread before try_begin(), which publishes the value
-  std::atomic<std::int64_t> slice_{0};        // pairs with nothing: one that is read too early misplaces one record
+  std::atomic<std::int64_t> slice_{kNever.count};  // pairs with nothing: only where a record begins depends on it
 };
 
 }  // namespace chimera

@@ -144,5 +144,16 @@ TEST_F(JobThreadTest, LosesNoWakeThatCameBeforeTheWait) {
   EXPECT_LT(LinuxClock().now() - begun, seconds(10));
 }
 
+// A job that is preempted between its begin and its first look at the clock began when it went on.
+TEST_F(JobThreadTest, TheFirstSliceBeginsOnce) {
+  JobThread job(task_);
+  EXPECT_EQ(job.slice(), kNever);
+  job.begin_first_slice(milliseconds(3));
+  EXPECT_EQ(job.slice(), milliseconds(3));
+  job.begin_slice(milliseconds(5));
+  job.begin_first_slice(milliseconds(4));
+  EXPECT_EQ(job.slice(), milliseconds(5));
+}
+
 }  // namespace
 }  // namespace chimera
