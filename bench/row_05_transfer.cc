@@ -57,10 +57,11 @@ class Switches {
     if (read(descriptor, &count, sizeof count) != sizeof count) std::exit(1);
   }
   void answer() {
-    do {
+    for (bool ends = false; !ends;) {
       await(there_);
+      ends = ends_;  // written before the last ring
       ring(back_);
-    } while (!ends_);
+    }
   }
 
   int there_, back_;
