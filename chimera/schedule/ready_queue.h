@@ -122,7 +122,7 @@ class ReadyQueue {
   /// Takes the most urgent job; ties: user priority, then order of the tasks. Requires: not empty.
   /// Context: cycle; O(1) while one class is ready, else O(log classes).
   Job pop() noexcept {
-    if (n_runs_ != 1 || n_loose_ != 0 || n_busy_ != 0) return pop_among();
+    if (n_runs_ != 1 || n_loose_ != 0 || n_busy_ != 0) [[unlikely]] return pop_among();
     QueueClass& c = storage_.classes[storage_.runs[0]];
     const QueueMember& m = storage_.members[c.begin + c.cursor];
     do {
