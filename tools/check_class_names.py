@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Proves that a class, struct, union or enum has its name alone: none at namespace scope of chimera/ and apps/
-(production sources, all namespaces together) is defined twice. `EXCEPTIONS` says how often a name still is; it only
-shrinks."""
+(production sources, all namespaces together) is defined twice."""
 import pathlib
 import re
 import sys
@@ -9,9 +8,6 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
-EXCEPTIONS = {
-    "Answer": 2, "File": 2, "Outcome": 2, "Placement": 2, "Words": 2,
-}
 TEST = re.compile(r"_(test|fuzz|stress|bench|rig)\.(cc|h)$|(^|/)(test|fake)_[^/]*$|/testing/")
 NOISE = re.compile(r"""//[^\n]*|/\*.*?\*/|R"\(.*?\)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'"""
                    r"""|^[ \t]*#(?:\\\n|[^\n])*""", re.DOTALL | re.MULTILINE)
@@ -49,13 +45,9 @@ def check(root):
         if name.startswith(("chimera/", "apps/")) and name.endswith((".h", ".cc")) and not TEST.search(name):
             for line, found in definitions(sources.text(root, name)):
                 places.setdefault(found, []).append(f"{name}:{line}")
-    known = EXCEPTIONS if root == sources.ROOT else {}
     for name, where in sorted(places.items()):
-        if len(where) > known.get(name, 1):
+        if len(where) > 1:
             yield f"{where[-1]}: {name} is defined in {', '.join(where[:-1])} too: one name a class"
-    for name, count in sorted(known.items()):
-        if len(places.get(name, [])) < count:
-            yield f"tools/check_class_names.py: {name} is defined less than {count} times: shorten the exceptions"
 
 
 def _two(first, second, name="chimera/control/y.cc"):

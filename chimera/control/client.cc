@@ -71,21 +71,21 @@ std::vector<std::string> those_here(const std::string& folder, const std::vector
   for (const std::string& name : names) {
     auto client = Client::connect_to(socket_path(folder, name), kWhoIsIt);
     if (!client) continue;
-    const Answer hello = client->call("hello", Json::object(), kWhoIsIt);
+    const RpcResponse hello = client->call("hello", Json::object(), kWhoIsIt);
     if (hello.is_good() && is_here(home_of(*hello.result))) here.push_back(name);
   }
   return here;
 }
 
 /// A message of the other end, whatever it is: never more than an answer or a note.
-Answer answer_of(const Json& message) {
+RpcResponse answer_of(const Json& message) {
   const auto error = message.find("error");
-  if (error == message.end()) return Answer::good(message.value("result", Json::object()));
+  if (error == message.end()) return RpcResponse::good(message.value("result", Json::object()));
   const auto code = error->find("code");
   const auto words = error->find("message");
   if (code == error->end() || !code->is_number_integer() || words == error->end() || !words->is_string())
-    return Answer::error(kNoConnection, "the other end does not speak the control protocol");
-  return Answer::error(code->get<int>(), words->get<std::string>(), error->value("data", Json::object()));
+    return RpcResponse::error(kNoConnection, "the other end does not speak the control protocol");
+  return RpcResponse::error(code->get<int>(), words->get<std::string>(), error->value("data", Json::object()));
 }
 
 }  // namespace
@@ -112,10 +112,10 @@ void Client::drop() {
 }
 
 /// The caller is told, and with that knows that its subscriptions are gone.
-Answer Client::lost(const char* why) {
+RpcResponse Client::lost(const char* why) {
   socket_ = OwnedDescriptor();
   has_subscribed_ = false;
-  return Answer::error(kNoConnection, why);
+  return RpcResponse::error(kNoConnection, why);
 }
 
 Result<Client> Client::connect(const std::string& subsystem, Nanoseconds limit) {
@@ -179,7 +179,7 @@ Client::Got Client::receive(std::string& line, Nanoseconds until) {
 }
 
 /// Keeps a note, or takes the answer to `id` and is true; what is neither is passed over.
-bool Client::take(const std::string& line, std::uint64_t id, Answer& answer) {
+bool Client::take(const std::string& line, std::uint64_t id, RpcResponse& answer) {
   const Json message = Json::parse(line, nullptr, false);
   if (!message.is_object()) return false;
   const auto method = message.find("method");
@@ -198,7 +198,7 @@ bool Client::take(const std::string& line, std::uint64_t id, Answer& answer) {
 
 /// Asks for a sign of life when half of `silence` has passed without a word.
 Client::Got Client::exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Nanoseconds silence,
-                             Answer& answer) {
+                             RpcResponse& answer) {
   const auto within = [&](Nanoseconds time) { return until - now() > time ? now() + time : until; };
   const Got sent = send(line, within(silence));
   if (sent == Got::kLate) return now() >= until ? sent : Got::kSilent;
@@ -217,7 +217,7 @@ Client::Got Client::exchange(std::uint64_t id, std::string_view line, Nanosecond
   }
 }
 
-Answer Client::call(std::string_view method) { return call(method, Json::object()); }
+RpcResponse Client::call(std::string_view method) { return call(method, Json::object()); }
 
 /// After the door closed this connection without having carried out what it did not answer, or had no place: another.
 bool Client::comes_again(int code, Nanoseconds until) {
@@ -225,13 +225,13 @@ bool Client::comes_again(int code, Nanoseconds until) {
   return !has_subscribed_ && until - now() > kTryAgain && reconnect(until);
 }
 
-Answer Client::call(std::string_view method, const Json& parameters, Nanoseconds limit, Nanoseconds silence) {
+RpcResponse Client::call(std::string_view method, const Json& parameters, Nanoseconds limit, Nanoseconds silence) {
   const Nanoseconds until = now() + limit;
   const std::uint64_t id = ++last_id_;
   const std::string line = request_line(id, method, parameters);
   if (!is_connected() && !reconnect(until)) return lost(kLost);
   for (;;) {
-    Answer answer;
+    RpcResponse answer;
     const Got got = exchange(id, line, until, silence, answer);
     if (got == Got::kLine && is_turned_out_) {
       if (comes_again(answer.code, until)) continue;
@@ -242,9 +242,10 @@ Answer Client::call(std::string_view method, const Json& parameters, Nanoseconds
       return answer;
     }
     if (got == Got::kLate && silence < limit)  // the manager lives
-      return Answer::error(kNoAnswer, "no answer within " + time_text(limit) + "; `chimera status` says what was done");
+      return RpcResponse::error(kNoAnswer,
+                                "no answer within " + time_text(limit) + "; `chimera status` says what was done");
     if (got == Got::kLate || got == Got::kSilent)
-      return Answer::error(kNoAnswer, silent(path_, std::min(limit, silence)));
+      return RpcResponse::error(kNoAnswer, silent(path_, std::min(limit, silence)));
     if (got == Got::kClosed && !may_be_sent_twice(method))
       return lost("the manager ended before it answered; `chimera status` says what was done");
     if (has_subscribed_ || now() >= until || !reconnect(until)) return lost(kLost);
@@ -253,7 +254,7 @@ Answer Client::call(std::string_view method, const Json& parameters, Nanoseconds
 
 Result<std::optional<Note>> Client::next(Nanoseconds limit) {
   const Nanoseconds until = now() + limit;
-  Answer ignored;
+  RpcResponse ignored;
   for (std::string line; notes_.empty();) {
     const Got got = receive(line, until);
     if (got == Got::kLate) return std::optional<Note>{};

@@ -18,7 +18,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/base/time.h"
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 #include "chimera/platform/owned_descriptor.h"
 
 namespace chimera::control {
@@ -49,9 +49,9 @@ class Client {
   /// is lost meanwhile stands above. Notifications that come meanwhile are kept for next().
   /// `silence`: a manager that says nothing at all for so long, though it is asked for a sign of life, is not waited
   /// for until `limit`. kNoAnswer names its process and says what to do.
-  Answer call(std::string_view method, const Json& parameters, Nanoseconds limit = kCallLimit,
-              Nanoseconds silence = kNever);
-  Answer call(std::string_view method);
+  RpcResponse call(std::string_view method, const Json& parameters, Nanoseconds limit = kCallLimit,
+                   Nanoseconds silence = kNever);
+  RpcResponse call(std::string_view method);
   /// The next notification; nullopt: none came within `limit`. Refuses when the connection is lost, and the
   /// subscriptions with it.
   Result<std::optional<Note>> next(Nanoseconds limit);
@@ -68,11 +68,11 @@ class Client {
   Client(OwnedDescriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
   Got send(std::string_view line, Nanoseconds until);
   Got receive(std::string& line, Nanoseconds until);
-  Got exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Nanoseconds silence, Answer& answer);
+  Got exchange(std::uint64_t id, std::string_view line, Nanoseconds until, Nanoseconds silence, RpcResponse& answer);
   bool reconnect(Nanoseconds until);
   bool comes_again(int code, Nanoseconds until);
-  Answer lost(const char* why);
-  bool take(const std::string& line, std::uint64_t id, Answer& answer);
+  RpcResponse lost(const char* why);
+  bool take(const std::string& line, std::uint64_t id, RpcResponse& answer);
 
   OwnedDescriptor socket_;
   std::string path_;

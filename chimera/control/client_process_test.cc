@@ -43,10 +43,10 @@ TEST_F(ClientTest, CallsAndHearsNotifications) {
   start();
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
-  const Answer hello = client->call("hello");
+  const RpcResponse hello = client->call("hello");
   ASSERT_TRUE(hello.is_good()) << hello.message;
   EXPECT_EQ((*hello.result)["role"], "configure");
-  const Answer wrong = client->call("helo");
+  const RpcResponse wrong = client->call("helo");
   EXPECT_EQ(wrong.code, kNoMethod);
   EXPECT_EQ(wrong.detail("nearest"), "hello");
   ASSERT_TRUE(client->call("subscribe", {{"to", "status"}, {"period_ms", 20}}).is_good());
@@ -87,7 +87,7 @@ TEST_F(ClientTest, AsksAgainWhenTheManagerDiedAndMayHaveActedOnlyWhereItDoesNotM
     start();
   };
   std::thread killer(die);
-  const Answer lost = client->call("signal", {{"signal", "off"}, {"tasks", {"a"}}});
+  const RpcResponse lost = client->call("signal", {{"signal", "off"}, {"tasks", {"a"}}});
   killer.join();
   EXPECT_EQ(lost.code, kNoConnection);
   EXPECT_EQ(lost.message, "the manager ended before it answered; `chimera status` says what was done");
@@ -163,7 +163,7 @@ TEST_F(ClientTest, SendsAnActOnceAndAQuestionAgainWhenTheConnectionIsLost) {
   door.reset();
   for (const MethodRule& rule : methods()) {
     HalfDeafServer half_deaf(listening);
-    Answer answer;
+    RpcResponse answer;
     {
       Client client = Client::at(path);
       answer = client.call(rule.name, Json::object());
@@ -183,7 +183,7 @@ TEST_F(ClientTest, HearsWhyItIsNotLetInAndGetsInAsSoonAsThereIsAPlace) {
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   std::this_thread::sleep_for(std::chrono::milliseconds(30));  // refused before it says a word
-  const Answer refused = client->call("hello", Json::object(), milliseconds(200));
+  const RpcResponse refused = client->call("hello", Json::object(), milliseconds(200));
   EXPECT_EQ(refused.code, kTooMany);
   EXPECT_EQ(refused.message, "too many connections: the 16 of user " + std::to_string(::getuid()) + " are all in use");
   std::thread later([fd = fds[3]] {
@@ -244,7 +244,7 @@ TEST_F(LimitTest, HoldsForACallThatNobodyAnswers) {
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   const Nanoseconds time = took([&] {
-    const Answer late = client->call("hello", Json::object(), milliseconds(200));
+    const RpcResponse late = client->call("hello", Json::object(), milliseconds(200));
     EXPECT_EQ(late.code, kNoAnswer);
     EXPECT_EQ(late.message, silent);
   });
@@ -259,7 +259,7 @@ TEST_F(LimitTest, ALongOneIsWaitedForAsLongAsTheManagerShowsASignOfLife) {
             seconds(5));
   start();
   const Nanoseconds time = took([&] {
-    const Answer late = client->call("signal", off, milliseconds(700), milliseconds(200));
+    const RpcResponse late = client->call("signal", off, milliseconds(700), milliseconds(200));
     EXPECT_EQ(late.code, kNoAnswer);
     EXPECT_EQ(late.message, "no answer within 700 ms; `chimera status` says what was done");
   });

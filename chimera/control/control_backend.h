@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "chimera/control/answer.h"
 #include "chimera/control/methods.h"
+#include "chimera/control/rpc_response.h"
 
 namespace chimera::control {
 
@@ -26,7 +26,7 @@ class ControlBackend {
   /// The connection is over: nobody waits for the answers to its questions any more. What it told to do stays told.
   virtual void forget(std::uint64_t /*connection*/) {}
   /// Somebody subscribes; refuses what cannot be. `parameters` as those of `subscribe`.
-  virtual Answer open(std::uint64_t subscription, const Json& parameters) = 0;
+  virtual RpcResponse open(std::uint64_t subscription, const Json& parameters) = 0;
   virtual void close(std::uint64_t subscription) = 0;
   /// What the subscription is to be sent now, as the parameters of its notification (without `subscription`); null:
   /// nothing new. Asked at each period (status, values), or whenever the peer has room (events, tap): who is slow is

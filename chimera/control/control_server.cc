@@ -17,21 +17,21 @@ constexpr std::uint64_t kListening = 0;                  // in watched_; connect
 constexpr int kAcceptAtOnce = 64;                        // a crowd of strangers must not stop the others
 constexpr Nanoseconds kAcceptPause = milliseconds(100);  // when there is no descriptor left
 
-Answer too_fast(Nanoseconds wait) {
-  return Answer::error(kTooFast, "too many requests", {{"retry_ms", (wait.count + 999'999) / 1'000'000}});
+RpcResponse too_fast(Nanoseconds wait) {
+  return RpcResponse::error(kTooFast, "too many requests", {{"retry_ms", (wait.count + 999'999) / 1'000'000}});
 }
 
-Answer no_role() {
-  return Answer::error(kNoRight,
-                       "you have no right here: you are neither the user of the subsystem nor in a group with a role",
-                       {{"needs", "observe"}, {"has", "nothing"}});
+RpcResponse no_role() {
+  return RpcResponse::error(
+      kNoRight, "you have no right here: you are neither the user of the subsystem nor in a group with a role",
+      {{"needs", "observe"}, {"has", "nothing"}});
 }
 
-Answer no_method(const std::string& name) {
+RpcResponse no_method(const std::string& name) {
   std::vector<std::string> names;
   for (const MethodRule& known : methods()) names.emplace_back(known.name);
   const std::string near = name.size() < 40 ? nearest(name, names) : "";
-  Answer unknown = Answer::unknown("no method '" + name.substr(0, 40) + "'", "method", near);
+  RpcResponse unknown = RpcResponse::unknown("no method '" + name.substr(0, 40) + "'", "method", near);
   unknown.code = kNoMethod;
   return unknown;
 }
@@ -49,9 +49,9 @@ struct ControlServer::Call {
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
   ~Call() {
-    if (!is_answered) take(Answer::error(kNoAnswer, "the subsystem gave no answer"));
+    if (!is_answered) take(RpcResponse::error(kNoAnswer, "the subsystem gave no answer"));
   }
-  void take(const Answer& said) {
+  void take(const RpcResponse& said) {
     if (std::exchange(is_answered, true) || !*is_alive) return;
     const auto found = door->connections_.find(connection);
     if (found == door->connections_.end()) return;
@@ -115,7 +115,7 @@ Standing ControlServer::standing(Connection& connection, Nanoseconds now) const 
 }
 
 /// A place for one more, or why there is none.
-Answer ControlServer::admit(const PeerIdentity& peer, Nanoseconds now) {
+RpcResponse ControlServer::admit(const PeerIdentity& peer, Nanoseconds now) {
   if (peer.role == Role::kNone) return no_role();
   std::vector<Occupant> all;
   for (const auto& [number, connection] : connections_) {
@@ -124,7 +124,7 @@ Answer ControlServer::admit(const PeerIdentity& peer, Nanoseconds now) {
                    has == Standing::kHalfLine ? connection->half_since() : connection->active_at});
   }
   const PlaceGrant placement = find_place(all, peer.user, rank_of(peer, owner_));
-  if (!placement.is_granted) return Answer::error(kTooMany, "too many connections: " + placement.refusal);
+  if (!placement.is_granted) return RpcResponse::error(kTooMany, "too many connections: " + placement.refusal);
   if (placement.in_place_of == 0) return {};
   Connection& first = *connections_.at(placement.in_place_of);
   turn_out(first, idle_text(first, now) + "; its place was needed", now);
@@ -150,7 +150,7 @@ std::string ControlServer::idle_text(Connection& connection, Nanoseconds now) co
 
 /// Tells the peer, if that can be done at once, and whoever wants to know what was closed.
 void ControlServer::turn_out(Connection& connection, const std::string& why, Nanoseconds now) {
-  connection.say(answer_line(nullptr, Answer::error(kClosed, "closed: " + why)), now);
+  connection.say(answer_line(nullptr, RpcResponse::error(kClosed, "closed: " + why)), now);
   (void)connection.flush(now);
   const PeerIdentity& peer = connection.peer();
   const std::string process = peer.process > 0 ? "process " + std::to_string(peer.process) + ", " : "";
@@ -179,7 +179,7 @@ void ControlServer::enter(OwnedDescriptor connected, const PeerIdentity& peer, N
   auto connection = std::make_unique<Connection>(++last_connection_, std::move(connected), peer, now);
   if (peer.role != Role::kNone) connection->receive(now);  // whoever has only one question has asked it by now
   if (connection->has_ended() && !connection->has_line()) return;
-  if (const Answer refusal = admit(peer, now); !refusal.is_good()) {
+  if (const RpcResponse refusal = admit(peer, now); !refusal.is_good()) {
     connection->say(answer_line(nullptr, refusal), now);
     (void)connection->flush(now);
     return;
@@ -196,7 +196,8 @@ void ControlServer::take(Connection& connection, const std::string& line, Nanose
   connection.active_at = now;
   const std::size_t pieces = 1 + std::min(line.size(), kMaxLine) / kLongLine;
   const bool may = connection.requests.take(now, static_cast<std::int64_t>(pieces));
-  const Answer refusal = may ? Answer{} : too_fast(connection.requests.wait(now, static_cast<std::int64_t>(pieces)));
+  const RpcResponse refusal =
+      may ? RpcResponse{} : too_fast(connection.requests.wait(now, static_cast<std::int64_t>(pieces)));
   const bool is_long = pieces > 1 && line.size() <= kMaxLine;
   if (!may && is_long) return connection.say(answer_line(nullptr, refusal), now);  // its id is not worth the search
   const Request request = read_request(line);
@@ -212,7 +213,7 @@ void ControlServer::take(Connection& connection, const std::string& line, Nanose
 
 void ControlServer::carry_out(Connection& connection, const Request& request, Nanoseconds now) {
   const MethodRule* rule = find_method(request.method);
-  const Answer judged = judge(connection, request, rule, now);
+  const RpcResponse judged = judge(connection, request, rule, now);
   if (!judged.is_good()) return answer(connection, request, judged);
   if (rule->id == MethodId::kSubscribe)
     return answer(connection, request, subscribe(connection, *request.parameters, now));
@@ -220,14 +221,15 @@ void ControlServer::carry_out(Connection& connection, const Request& request, Na
     return answer(connection, request, subscriptions_.close(connection.number(), *request.parameters));
   auto call = std::make_shared<Call>(*this, connection, request, rule->is_act);
   backend_.call(*rule, *request.parameters, {connection.peer().role, connection.number()},
-                [call = std::move(call)](const Answer& said) { call->take(said); });
+                [call = std::move(call)](const RpcResponse& said) { call->take(said); });
 }
 
-Answer ControlServer::judge(Connection& connection, const Request& request, const MethodRule* rule, Nanoseconds now) {
+RpcResponse ControlServer::judge(Connection& connection, const Request& request, const MethodRule* rule,
+                                 Nanoseconds now) {
   if (rule == nullptr) return no_method(request.method);
   const Role has = connection.peer().role;
   if (has < rule->role)
-    return Answer::error(
+    return RpcResponse::error(
         kNoRight,
         std::string("'") + rule->name + "' needs the role " + role_name(rule->role) + ", you have " + role_name(has),
         {{"needs", role_name(rule->role)}, {"has", role_name(has)}});
@@ -236,18 +238,18 @@ Answer ControlServer::judge(Connection& connection, const Request& request, cons
 }
 
 /// Of a user's places some are kept for who comes with one question or act.
-Answer ControlServer::subscribe(Connection& connection, const Json& parameters, Nanoseconds now) {
+RpcResponse ControlServer::subscribe(Connection& connection, const Json& parameters, Nanoseconds now) {
   const auto is_one = [&](const auto& one) {
     return one.second->peer().user == connection.peer().user && subscriptions_.count_of(one.first) > 0;
   };
   const auto listeners = std::count_if(connections_.begin(), connections_.end(), is_one);
   if (subscriptions_.count_of(connection.number()) == 0 && listeners >= static_cast<long>(kMaxListenersOfUser))
-    return Answer::error(kTooMany, "too many connections: " + std::to_string(kMaxListenersOfUser) + " of user " +
-                                       std::to_string(connection.peer().user) + " have subscriptions");
+    return RpcResponse::error(kTooMany, "too many connections: " + std::to_string(kMaxListenersOfUser) + " of user " +
+                                            std::to_string(connection.peer().user) + " have subscriptions");
   return subscriptions_.open(connection.number(), parameters, now);
 }
 
-void ControlServer::answer(Connection& connection, const Request& request, const Answer& answer) {
+void ControlServer::answer(Connection& connection, const Request& request, const RpcResponse& answer) {
   connection.active_at = now_;
   if (!request.wants_answer) return;
   connection.say(answer_line(*request.id, answer), now_);

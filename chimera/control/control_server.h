@@ -50,7 +50,7 @@ class ControlServer {
   ControlServer(ControlBackend& backend, uid_t owner, const RoleGroups& groups)
       : backend_(backend), subscriptions_(backend), owner_(owner), groups_(groups) {}
   void accept(Nanoseconds now);
-  Answer admit(const PeerIdentity& peer, Nanoseconds now);
+  RpcResponse admit(const PeerIdentity& peer, Nanoseconds now);
   Standing standing(Connection& connection, Nanoseconds now) const;
   std::string idle_text(Connection& connection, Nanoseconds now) const;
   void turn_out(Connection& connection, const std::string& why, Nanoseconds now);
@@ -64,9 +64,9 @@ class ControlServer {
   // door.cc
   void take(Connection& connection, const std::string& line, Nanoseconds now);
   void carry_out(Connection& connection, const Request& request, Nanoseconds now);
-  Answer judge(Connection& connection, const Request& request, const MethodRule* rule, Nanoseconds now);
-  Answer subscribe(Connection& connection, const Json& parameters, Nanoseconds now);
-  void answer(Connection& connection, const Request& request, const Answer& answer);
+  RpcResponse judge(Connection& connection, const Request& request, const MethodRule* rule, Nanoseconds now);
+  RpcResponse subscribe(Connection& connection, const Json& parameters, Nanoseconds now);
+  void answer(Connection& connection, const Request& request, const RpcResponse& answer);
   const char* fault_of(Connection& connection, Nanoseconds now) const;
   bool is_over(Connection& connection, Nanoseconds now);
   void settle(Nanoseconds now);

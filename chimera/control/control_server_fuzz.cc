@@ -33,14 +33,14 @@ class Model final : public ControlBackend {
  public:
   void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) override {
     require(caller.role >= method.role, "nobody calls what its role does not open");
-    if (std::string_view(method.name) != "signal") return reply(Answer::good({{"method", method.name}}));
-    const Answer answer = signal(parameters);
+    if (std::string_view(method.name) != "signal") return reply(RpcResponse::good({{"method", method.name}}));
+    const RpcResponse answer = signal(parameters);
     if (++signals_ % 2 == 0)
       reply(answer);
     else
       later_.push_back({std::move(reply), answer});
   }
-  Answer open(std::uint64_t subscription, const Json&) override {
+  RpcResponse open(std::uint64_t subscription, const Json&) override {
     require(open_.insert(subscription).second, "a subscription is opened once");
     return {};
   }
@@ -59,17 +59,17 @@ class Model final : public ControlBackend {
   std::size_t open_subscriptions() const { return open_.size(); }
 
  private:
-  Answer signal(const Json& parameters) {
+  RpcResponse signal(const Json& parameters) {
     const std::string word = parameters["signal"].get<std::string>();
     for (std::uint32_t s = 0; s < CHIMERA_SIGNAL_WAKEUP; ++s) {
       if (word != signal_name(static_cast<Signal>(s))) continue;
       for (const Json& name : parameters["tasks"]) {
         const std::string text = name.get<std::string>();
         if (text.size() != 1 || text[0] < 'a' || text[0] >= static_cast<char>('a' + kTasks))
-          return Answer::unknown("no task", text, "a");
+          return RpcResponse::unknown("no task", text, "a");
         State& state = states_[static_cast<std::size_t>(text[0] - 'a')];
         Next at = next(state, static_cast<Signal>(s), false);
-        if (at.kind == Next::Kind::kImpossible) return Answer::error(kRefused, "not legal");
+        if (at.kind == Next::Kind::kImpossible) return RpcResponse::error(kRefused, "not legal");
         while (at.kind == Next::Kind::kStep) at = rule(at.step).next[static_cast<int>(chimera::Answer::kOk)];
         state = at.state;
 #ifdef CHIMERA_PLANTED_DEFECT
@@ -77,13 +77,13 @@ class Model final : public ControlBackend {
         require(state != State::kOff, "planted");
 #endif
       }
-      return Answer::good(Json::object());
+      return RpcResponse::good(Json::object());
     }
-    return Answer::error(kBadParameters, "no such signal");
+    return RpcResponse::error(kBadParameters, "no such signal");
   }
 
   std::array<State, kTasks> states_{};
-  std::vector<std::pair<Reply, Answer>> later_;
+  std::vector<std::pair<Reply, RpcResponse>> later_;
   std::set<std::uint64_t> open_;
   std::uint64_t signals_ = 0;
 };

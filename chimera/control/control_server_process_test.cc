@@ -19,15 +19,15 @@ void FakeBackend::call(const MethodRule& method, const Json& parameters, const C
   if (called.back() == "status" && busy_us > 0) ::usleep(static_cast<useconds_t>(busy_us));
   if (std::string(method.name) == "signal") return later.push_back(std::move(reply));
   if (std::string(method.name) == "library") return;
-  reply(Answer::good({{"method", method.name},
-                      {"params", parameters},
-                      {"role", role_name(caller.role)},
-                      {"ballast", std::string(ballast, 'x')}}));
+  reply(RpcResponse::good({{"method", method.name},
+                           {"params", parameters},
+                           {"role", role_name(caller.role)},
+                           {"ballast", std::string(ballast, 'x')}}));
 }
 
-Answer FakeBackend::open(std::uint64_t subscription, const Json& parameters) {
+RpcResponse FakeBackend::open(std::uint64_t subscription, const Json& parameters) {
   if (parameters.contains("variables") && parameters["variables"][0] == "nothing")
-    return Answer::unknown("no state variable 'nothing'", "variables", "something");
+    return RpcResponse::unknown("no state variable 'nothing'", "variables", "something");
   opened.push_back(subscription);
   return {};
 }
@@ -108,8 +108,8 @@ TEST_F(DoorTest, AnAnswerMayComeLaterAndOnlyOnce) {
   const std::string off = request("signal", R"({"signal":"off","tasks":["a"]})", 9);
   EXPECT_EQ(ask(fd, off), "");
   ASSERT_EQ(backend.later.size(), 1u);
-  backend.later[0](Answer::error(kRefused, "not now"));
-  backend.later[0](Answer::error(kRefused, "still not"));
+  backend.later[0](RpcResponse::error(kRefused, "not now"));
+  backend.later[0](RpcResponse::error(kRefused, "still not"));
   EXPECT_LE(door->next_due(), now) << "an answer given between two turns is sent at once";
   serve();
   EXPECT_EQ(take(fd), error("9", -32000, "not now"));
@@ -117,9 +117,9 @@ TEST_F(DoorTest, AnAnswerMayComeLaterAndOnlyOnce) {
   ::close(fd);
   serve();
   EXPECT_EQ(door->connections(), 0u);
-  backend.later[1](Answer::good(Json::object()));  // nobody there any more: harmless
+  backend.later[1](RpcResponse::good(Json::object()));  // nobody there any more: harmless
   door.reset();
-  backend.later[1](Answer::good(Json::object()));
+  backend.later[1](RpcResponse::good(Json::object()));
   backend.later.clear();
 }
 
@@ -136,7 +136,7 @@ TEST_F(DoorTest, APeerThatSaysNothingMoreIsStillAnswered) {
   serve();
   EXPECT_EQ(door->connections(), 1u);
   EXPECT_EQ(door->next_due(), kNever) << "it is waited for, not asked again and again";
-  backend.later.at(0)(Answer::good(Json::object()));
+  backend.later.at(0)(RpcResponse::good(Json::object()));
   serve();
   EXPECT_EQ(take(fd), R"({"id":1,"jsonrpc":"2.0","result":{}})"
                       "\n");

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 
 namespace chimera::control {
 

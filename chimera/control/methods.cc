@@ -87,10 +87,10 @@ const char* meaning(Kind kind) {
 
 std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
 
-Answer bad(std::string message, const std::string& where, const std::string& nearest = {}) {
+RpcResponse bad(std::string message, const std::string& where, const std::string& nearest = {}) {
   Json data{{"where", where}};
   if (!nearest.empty()) data["nearest"] = nearest;
-  return Answer::error(kBadParameters, std::move(message), data);
+  return RpcResponse::error(kBadParameters, std::move(message), data);
 }
 
 /// Of what a client sent: as much as a message needs.
@@ -100,7 +100,7 @@ std::string near_of(const std::string& wrong, const std::vector<std::string>& na
   return wrong.size() <= 40 ? nearest(wrong, names) : "";
 }
 
-Answer check_word(const Parameter& parameter, const std::string& word) {
+RpcResponse check_word(const Parameter& parameter, const std::string& word) {
   std::vector<std::string> words;
   std::istringstream in(parameter.words);
   for (std::string one; in >> one;) words.push_back(one);
@@ -110,18 +110,18 @@ Answer check_word(const Parameter& parameter, const std::string& word) {
   return bad(in_quotes(parameter.name) + " must be " + listed, parameter.name, near_of(word, words));
 }
 
-Answer check_count(const Parameter& parameter, std::uint64_t count) {
+RpcResponse check_count(const Parameter& parameter, std::uint64_t count) {
   if (count >= parameter.least && count <= parameter.most) return {};
   const bool has_limit = parameter.most < INT64_MAX;
   const std::string range = has_limit ? "from " + std::to_string(parameter.least) + " to " : "at most ";
   return bad(in_quotes(parameter.name) + " must be " + range + std::to_string(parameter.most), parameter.name);
 }
 
-Answer check_value(const Parameter& parameter, const Json& value) {
+RpcResponse check_value(const Parameter& parameter, const Json& value) {
   if (!fits(parameter.kind, value))
     return bad(in_quotes(parameter.name) + " must be " + meaning(parameter.kind), parameter.name);
   if (parameter.words != nullptr) return check_word(parameter, value.get<std::string>());
-  return parameter.kind == Kind::kCount ? check_count(parameter, value.get<std::uint64_t>()) : Answer{};
+  return parameter.kind == Kind::kCount ? check_count(parameter, value.get<std::uint64_t>()) : RpcResponse{};
 }
 
 }  // namespace
@@ -134,7 +134,7 @@ const MethodRule* find_method(std::string_view name) noexcept {
   return nullptr;
 }
 
-Answer check_parameters(const MethodRule& rule, const Json& parameters) {
+RpcResponse check_parameters(const MethodRule& rule, const Json& parameters) {
   if (!parameters.is_object()) return bad("the parameters of " + in_quotes(rule.name) + " must be an object", "params");
   std::vector<std::string> names;
   for (const Parameter& parameter : rule.parameters)
@@ -149,7 +149,7 @@ Answer check_parameters(const MethodRule& rule, const Json& parameters) {
     if (found == parameters.end()) {
       if (!parameter.is_required) continue;
       return bad(in_quotes(rule.name) + " needs " + in_quotes(parameter.name), parameter.name);
-    } else if (Answer judged = check_value(parameter, *found); !judged.is_good()) {
+    } else if (RpcResponse judged = check_value(parameter, *found); !judged.is_good()) {
       return judged;
     }
   }

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 
 namespace chimera::control {
 
@@ -41,6 +41,6 @@ std::span<const MethodRule> methods() noexcept;
 /// The rule of that name; nullptr: there is none.
 const MethodRule* find_method(std::string_view name) noexcept;
 /// Judges the parameters of a call: an error, or an answer without result when they are as the rule says.
-Answer check_parameters(const MethodRule& rule, const Json& parameters);
+RpcResponse check_parameters(const MethodRule& rule, const Json& parameters);
 
 }  // namespace chimera::control

@@ -9,7 +9,7 @@ namespace chimera::control {
 namespace {
 
 std::string judged(const char* method, const Json& parameters) {
-  const Answer answer = check_parameters(*find_method(method), parameters);
+  const RpcResponse answer = check_parameters(*find_method(method), parameters);
   if (answer.is_good()) return "";
   EXPECT_EQ(answer.code, kBadParameters);
   const std::string near = answer.detail("nearest");

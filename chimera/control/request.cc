@@ -20,7 +20,7 @@ std::string line_of(const Json& message) {
 Request refused(const Json& id, int code, std::string message, bool must_close = false) {
   Request request;
   request.id = std::make_shared<const Json>(id);
-  request.refusal = Answer::error(code, std::move(message));
+  request.refusal = RpcResponse::error(code, std::move(message));
   request.must_close = must_close;
   return request;
 }
@@ -93,7 +93,7 @@ Request read_request(std::string_view line) {
   return request;
 }
 
-std::string answer_line(const Json& id, const Answer& answer) {
+std::string answer_line(const Json& id, const RpcResponse& answer) {
   if (answer.is_good() && answer.text != nullptr) {
     std::string line = R"({"id":)" + id.dump(-1, ' ', false, Json::error_handler_t::replace);
     line.reserve(line.size() + answer.text->size() + 32);

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 
 namespace chimera::control {
 
@@ -17,14 +17,14 @@ struct Request {
   bool wants_answer = true;                ///< false: a notification of JSON-RPC
   std::string method;
   std::shared_ptr<const Json> parameters;  ///< an object
-  Answer refusal;
+  RpcResponse refusal;
   bool must_close = false;                 ///< the line breaks a limit: the connection ends
 };
 
 /// Reads a line; never throws, whatever the bytes. Context: setup.
 Request read_request(std::string_view line);
 /// The lines to send, each with its line end. Text that is no UTF-8 is sent with replacements.
-std::string answer_line(const Json& id, const Answer& answer);
+std::string answer_line(const Json& id, const RpcResponse& answer);
 std::string note_line(std::string_view method, std::uint64_t subscription, const Json& parameters);
 std::string request_line(std::uint64_t id, std::string_view method, const Json& parameters);
 

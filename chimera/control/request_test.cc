@@ -74,10 +74,10 @@ TEST(Request, ALineOfTooManyValuesIsNotRead) {
 }
 
 TEST(Request, LinesThatGoBackAreOneLineOfUtf8) {
-  EXPECT_EQ(answer_line(1, Answer::error(kRefused, "a\nb\xff")),
+  EXPECT_EQ(answer_line(1, RpcResponse::error(kRefused, "a\nb\xff")),
             "{\"error\":{\"code\":-32000,\"message\":\"a\\nb\xef\xbf\xbd\"},\"id\":1,\"jsonrpc\":\"2.0\"}\n");
-  EXPECT_EQ(answer_line("x", Answer{}), "{\"id\":\"x\",\"jsonrpc\":\"2.0\",\"result\":{}}\n");
-  EXPECT_EQ(answer_line("x", Answer::ready(std::make_shared<const std::string>("[1]"))),
+  EXPECT_EQ(answer_line("x", RpcResponse{}), "{\"id\":\"x\",\"jsonrpc\":\"2.0\",\"result\":{}}\n");
+  EXPECT_EQ(answer_line("x", RpcResponse::ready(std::make_shared<const std::string>("[1]"))),
             "{\"id\":\"x\",\"jsonrpc\":\"2.0\",\"result\":[1]}\n");
   EXPECT_EQ(note_line("tap", 3, {{"lost", 0}}),
             "{\"jsonrpc\":\"2.0\",\"method\":\"tap\",\"params\":{\"lost\":0,\"subscription\":3}}\n");

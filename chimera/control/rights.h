@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 #include "chimera/platform/process_id.h"
 
 namespace chimera::control {

@@ -16,27 +16,27 @@ constexpr int kNewsAtOnce = 64;                        // messages of one subscr
 
 }  // namespace
 
-Answer Subscriptions::open(std::uint64_t connection, const Json& parameters, Nanoseconds now) {
+RpcResponse Subscriptions::open(std::uint64_t connection, const Json& parameters, Nanoseconds now) {
   if (count_of(connection) >= kMaxSubscriptions)
-    return Answer::error(kBadParameters, "a connection may have 32 subscriptions", {{"where", "to"}});
+    return RpcResponse::error(kBadParameters, "a connection may have 32 subscriptions", {{"where", "to"}});
   const std::uint64_t number = ++last_;
-  Answer opened = backend_.open(number, parameters);
+  RpcResponse opened = backend_.open(number, parameters);
   if (!opened.is_good()) return opened;
   const std::string to = parameters.at("to").get<std::string>();
   const bool skips = to == "status" || to == "values";
   const Nanoseconds period = skips ? milliseconds(parameters.value("period_ms", std::int64_t{100})) : kLookAtNews;
   all_[number] = {connection, to, period, skips, now};
-  return Answer::good({{"subscription", number}});
+  return RpcResponse::good({{"subscription", number}});
 }
 
-Answer Subscriptions::close(std::uint64_t connection, const Json& parameters) {
+RpcResponse Subscriptions::close(std::uint64_t connection, const Json& parameters) {
   const auto number = parameters.at("subscription").get<std::uint64_t>();
   const auto found = all_.find(number);
   if (found == all_.end() || found->second.connection != connection)
-    return Answer::unknown("no subscription " + std::to_string(number), "subscription", "");
+    return RpcResponse::unknown("no subscription " + std::to_string(number), "subscription", "");
   backend_.close(number);
   all_.erase(found);
-  return Answer::good(Json::object());
+  return RpcResponse::good(Json::object());
 }
 
 void Subscriptions::end(std::uint64_t connection) {

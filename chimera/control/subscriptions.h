@@ -18,8 +18,8 @@ class Subscriptions {
   explicit Subscriptions(ControlBackend& backend) : backend_(backend) {}
 
   /// Answers `subscribe` and `unsubscribe` of a connection; `parameters` have been checked.
-  Answer open(std::uint64_t connection, const Json& parameters, Nanoseconds now);
-  Answer close(std::uint64_t connection, const Json& parameters);
+  RpcResponse open(std::uint64_t connection, const Json& parameters, Nanoseconds now);
+  RpcResponse close(std::uint64_t connection, const Json& parameters);
   /// The connection is over.
   void end(std::uint64_t connection);
   std::size_t count_of(std::uint64_t connection) const noexcept;

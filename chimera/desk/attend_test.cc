@@ -22,8 +22,8 @@
 namespace chimera::desk {
 namespace {
 
-using control::Answer;
 using control::Json;
+using control::RpcResponse;
 
 /// One task `pid` on two rtpus; what it answers may be changed before it is asked.
 class MadeUp final : public control::ControlBackend {
@@ -32,14 +32,14 @@ class MadeUp final : public control::ControlBackend {
             control::Reply reply) override {
     const std::string name = method.name;
     asked += name + (name == "signal" ? parameters.dump() : "") + "\n";
-    if (name == "status") return reply(Answer::good(status()));
-    if (name == "events") return reply(Answer::good(news(parameters["since"].get<std::uint64_t>())));
-    if (name == "get") return reply(Answer::good({{"values", values}}));
-    if (name == "profile") return reply(Answer::good({{"tasks", Json::array({profile()})}}));
-    if (name == "signal") return reply(Answer::error(control::kRefused, "on is not legal for pid in state ON"));
-    reply(Answer::good(Json::object()));
+    if (name == "status") return reply(RpcResponse::good(status()));
+    if (name == "events") return reply(RpcResponse::good(news(parameters["since"].get<std::uint64_t>())));
+    if (name == "get") return reply(RpcResponse::good({{"values", values}}));
+    if (name == "profile") return reply(RpcResponse::good({{"tasks", Json::array({profile()})}}));
+    if (name == "signal") return reply(RpcResponse::error(control::kRefused, "on is not legal for pid in state ON"));
+    reply(RpcResponse::good(Json::object()));
   }
-  Answer open(std::uint64_t, const Json& parameters) override {
+  RpcResponse open(std::uint64_t, const Json& parameters) override {
     asked += "subscribe" + parameters.dump() + "\n";
     return {};
   }

@@ -9,11 +9,11 @@
 
 namespace chimera::desk {
 
-using control::Answer;
 using control::Json;
+using control::RpcResponse;
 
 Result<Json> ControlLine::ask(std::string_view method, const Json& parameters, Nanoseconds limit) {
-  const Answer answer = client_.call(method, parameters, limit);
+  const RpcResponse answer = client_.call(method, parameters, limit);
   if (answer.is_good()) return *answer.result;
   const bool is_lost = answer.code == control::kNoConnection;
   const std::string where = is_lost ? client_.path() : answer.detail("where");

@@ -48,23 +48,23 @@ class TextFile {
   std::FILE* file_;
 };
 
-struct Words {
+struct ParsedMeasures {
   std::vector<Measure> measures, expectations;
 };
 
-Result<Words> words_of(const MeasuredRequest& request, const RunPlan& plan) {
-  Words words;
+Result<ParsedMeasures> parse_measures(const MeasuredRequest& request, const RunPlan& plan) {
+  ParsedMeasures parsed;
   for (const std::string& text : request.measures) {
     auto measure = Measure::parse(text, plan.configuration, plan.library.units());
     if (!measure) return measure.error();
-    words.measures.push_back(*std::move(measure));
+    parsed.measures.push_back(*std::move(measure));
   }
   for (const std::string& text : request.expect) {
     auto expectation = Measure::parse_expectation(text, plan.configuration, plan.library.units());
     if (!expectation) return expectation.error();
-    words.expectations.push_back(*std::move(expectation));
+    parsed.expectations.push_back(*std::move(expectation));
   }
-  return words;
+  return parsed;
 }
 
 /// One that may begin; else why not.
@@ -108,8 +108,8 @@ void add_remarks(const TaskSet& tasks, bool is_flag_up, std::vector<std::string>
 
 class Measuring {
  public:
-  Measuring(const MeasuredRequest& request, const RunPlan& plan, Application application, Words words)
-      : request_(request), plan_(plan), application_(std::move(application)), words_(std::move(words)) {}
+  Measuring(const MeasuredRequest& request, const RunPlan& plan, Application application, ParsedMeasures parsed)
+      : request_(request), plan_(plan), application_(std::move(application)), parsed_(std::move(parsed)) {}
 
   MeasuredRun run() {
     RunOptions options;
@@ -118,7 +118,7 @@ class Measuring {
     loop_ = make_virtual_loop(application_, request_.run, options);
     MeasuredRun made;
     if (auto started = loop_->start(); !started) return failed(started.error());
-    for (auto* list : {&words_.measures, &words_.expectations})
+    for (auto* list : {&parsed_.measures, &parsed_.expectations})
       for (Measure& measure : *list)
         if (auto bound = measure.bind(application_); !bound) return failed(bound.error());
     const RunEnd end = go(made.ran);
@@ -142,16 +142,16 @@ class Measuring {
       at = std::min(at + every, request_.run.duration);
       const auto end = loop_->advance(at);
       ran = end ? std::min(loop_->now(), request_.run.duration) : at;
-      for (auto* list : {&words_.measures, &words_.expectations})
+      for (auto* list : {&parsed_.measures, &parsed_.expectations})
         for (Measure& measure : *list) measure.take(ran);
       if (end) return *end;
     }
   }
 
   void report(MeasuredRun& made) {
-    for (const Measure& measure : words_.measures)
+    for (const Measure& measure : parsed_.measures)
       for (Measure::Number& number : measure.numbers()) made.numbers.push_back(std::move(number));
-    for (const Measure& expectation : words_.expectations) {
+    for (const Measure& expectation : parsed_.expectations) {
       RunReport::Judged judged{expectation.text(), {}, false};
       judged.holds = expectation.holds(judged.said);
       made.expectations.push_back(std::move(judged));
@@ -170,7 +170,7 @@ class Measuring {
   const MeasuredRequest& request_;
   const RunPlan& plan_;
   Application application_;
-  Words words_;
+  ParsedMeasures parsed_;
   std::unique_ptr<RunLoop> loop_;
 };
 
@@ -180,15 +180,15 @@ Result<void> judge_measured(const MeasuredRequest& request, const Library& libra
   std::string why;
   const auto planned = plan(request, library, why);
   if (!planned) return Error{ErrorCode::kRefused, std::string_view(why), {}};
-  const auto words = words_of(request, *planned);
-  return words ? Result<void>() : Result<void>(words.error());
+  const auto measures = parse_measures(request, *planned);
+  return measures ? Result<void>() : Result<void>(measures.error());
 }
 
 MeasuredRun measured_run(const MeasuredRequest& request, const Library& library) {
   MeasuredRun refused;
   const auto planned = plan(request, library, refused.failure);
   if (!planned) return refused;
-  auto words = words_of(request, *planned);
+  auto measures = parse_measures(request, *planned);
   std::error_code error;
   if (!request.folder.empty()) std::filesystem::current_path(request.folder, error);
   if (error) {
@@ -196,8 +196,8 @@ MeasuredRun measured_run(const MeasuredRequest& request, const Library& library)
     return refused;
   }
   auto application = Application::load(planned->configuration, planned->library);
-  if (words && application) return Measuring(request, *planned, *std::move(application), *std::move(words)).run();
-  const Error& why = words ? application.error() : words.error();
+  if (measures && application) return Measuring(request, *planned, *std::move(application), *std::move(measures)).run();
+  const Error& why = measures ? application.error() : measures.error();
   refused.failure = why.message.c_str();
   return refused;
 }

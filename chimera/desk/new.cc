@@ -25,7 +25,7 @@ struct Filling {
   std::string name, type, package, program, schema;
 };
 
-struct File {
+struct NewFile {
   std::string path, text;
   bool is_program = false;
 };
@@ -94,10 +94,10 @@ std::string schema(const fs::path& prefix) {
   return "";
 }
 
-File fill_in(const fs::path& file, const Filling& words) {
+NewFile fill_in(const fs::path& file, const Filling& words) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();
-  File made{file.filename().string(), without_licence(text.str()), file.extension() == ".sh"};
+  NewFile made{file.filename().string(), without_licence(text.str()), file.extension() == ".sh"};
   if (made.path.starts_with("NAME")) made.path.replace(0, 4, words.name);
   replace(made.text, "@NAME@", words.name);
   replace(made.text, "@TYPE@", words.type);
@@ -123,10 +123,10 @@ Result<void> check(const NewRequest& request) {
   return {};
 }
 
-std::string next_steps(const fs::path& folder, const std::string& package, const std::vector<File>& files) {
-  const bool has_script = std::any_of(files.begin(), files.end(), [](const File& file) { return file.is_program; });
+std::string next_steps(const fs::path& folder, const std::string& package, const std::vector<NewFile>& files) {
+  const bool has_script = std::any_of(files.begin(), files.end(), [](const NewFile& file) { return file.is_program; });
   std::string text = "made " + folder.string() + ":";
-  for (const File& file : files) text += " " + file.path;
+  for (const NewFile& file : files) text += " " + file.path;
   return text + "\nnext:\n  cd " + folder.string() + "\n  cmake -B build -Dchimera_DIR=" + package +
          "\n  cmake --build build\n  ctest --test-dir build --output-on-failure\n" +
          (has_script ? "  ./run.sh --virtual\n" : "");
@@ -142,7 +142,7 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
   std::vector<fs::path> sources;
   for (const auto& entry : fs::directory_iterator(*templates)) sources.push_back(entry.path());
   std::sort(sources.begin(), sources.end());
-  std::vector<File> files;
+  std::vector<NewFile> files;
   files.reserve(sources.size());
   for (const fs::path& source : sources) files.push_back(fill_in(source, words));
 
@@ -153,7 +153,7 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
     return (Message() << "cannot be made in " << parent << ": " << why << ". Go to a folder that you may write in.")
         .error(ErrorCode::kSystem, folder.string());
   }
-  for (const File& file : files) {
+  for (const NewFile& file : files) {
     std::ofstream out(folder / file.path, std::ios::binary);
     out << file.text;
     out.close();

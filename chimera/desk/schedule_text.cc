@@ -38,9 +38,9 @@ Nanoseconds unit_for(Nanoseconds length) {
   return {std::llround(power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10))};
 }
 
-class Words {
+class ScheduleLines {
  public:
-  explicit Words(const Configuration& configuration) : configuration_(configuration) {}
+  explicit ScheduleLines(const Configuration& configuration) : configuration_(configuration) {}
 
   const std::string& name(std::size_t task) const { return configuration_.tasks()[task].name; }
   std::string rtpu(std::size_t index) const { return std::string(configuration_.rtpus()[index].name); }
@@ -221,29 +221,29 @@ bool has_blocker(const ScheduleReport& report, const CpuSchedule& cpu) {
   return false;
 }
 
-std::string paths_text(const Words& words, const SetSchedule& set) {
+std::string paths_text(const ScheduleLines& lines, const SetSchedule& set) {
   if (set.paths.empty()) return "";
   std::string text = "data age, from the release of the sensor's job until what it caused is replaced:\n";
-  for (const PathAge& path : set.paths) text += "  " + words.path(path) + "\n";
+  for (const PathAge& path : set.paths) text += "  " + lines.path(path) + "\n";
   return text + (set.has_more_paths ? "  and more ways than were followed\n" : "");
 }
 
 }  // namespace
 
 std::string schedule_text(const Configuration& configuration, const ScheduleReport& report) {
-  const Words words(configuration);
+  const ScheduleLines lines(configuration);
   std::string text;
   for (const SetSchedule& set : report.sets) {
     text += configuration.subsystem() + ": configuration '" + set.name + "'" + (set.is_start ? " (start)" : "") +
-            words.dispatch(report) + "\n";
-    for (const CpuSchedule& cpu : set.cpus) text += words.cpu(cpu);
-    text += paths_text(words, set);
+            lines.dispatch(report) + "\n";
+    for (const CpuSchedule& cpu : set.cpus) text += lines.cpu(cpu);
+    text += paths_text(lines, set);
   }
   return text;
 }
 
 std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, const ScheduleReport& report) {
-  const Words words(configuration);
+  const ScheduleLines lines(configuration);
   std::vector<draw::Gantt> pictures;
   for (const SetSchedule& set : report.sets) {
     if (!set.is_start) continue;
@@ -257,7 +257,7 @@ std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, c
       picture.length = cpu.window.length;
       for (const ScheduleRow& row : cpu.rows) {
         draw::GanttRow drawn;
-        drawn.name = words.name(row.task);
+        drawn.name = lines.name(row.task);
         drawn.note = time_text(row.work.time) + " every " + time_text(row.work.period);
         drawn.period = row.work.period;
         drawn.deadline = row.work.deadline;

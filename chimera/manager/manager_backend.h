@@ -26,7 +26,7 @@ class ManagerBackend final : public control::ControlBackend {
   void forget(std::uint64_t connection) override {
     if (questions_ != nullptr) questions_->forget(connection);
   }
-  control::Answer open(std::uint64_t subscription, const control::Json& parameters) override {
+  control::RpcResponse open(std::uint64_t subscription, const control::Json& parameters) override {
     return feeds_.open(subscription, parameters);
   }
   void close(std::uint64_t subscription) override { feeds_.close(subscription); }
@@ -62,7 +62,8 @@ class ManagerBackend final : public control::ControlBackend {
 
   ManagerState& world() const noexcept { return driver_.world(); }
   void analyse(Question::Kind kind, const Request& request);
-  control::Answer always(std::shared_ptr<const std::string>& text, control::Json (*make)(const ManagerState&)) const;
+  control::RpcResponse always(std::shared_ptr<const std::string>& text,
+                              control::Json (*make)(const ManagerState&)) const;
 
   ManagerLoop& driver_;
   Questions* questions_;

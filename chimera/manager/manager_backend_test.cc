@@ -31,22 +31,22 @@ class ManagerBackendTest : public testing::Test {
       if (world().peers.of(TaskId(t)).block().profile(TaskId(t)).cycles < 3) return false;
     return true;
   }
-  control::Answer ask(const char* method, const Json& parameters = Json::object()) {
-    std::optional<control::Answer> got;
+  control::RpcResponse ask(const char* method, const Json& parameters = Json::object()) {
+    std::optional<control::RpcResponse> got;
     backend_->call(*control::find_method(method), parameters, {Role::kConfigure, 1},
-                   [&](const control::Answer& answer) { got = answer; });
+                   [&](const control::RpcResponse& answer) { got = answer; });
     EXPECT_TRUE(fake_.until([&] { return got.has_value(); })) << method;
-    return got.value_or(control::Answer{});
+    return got.value_or(control::RpcResponse{});
   }
   Json good(const char* method, const Json& parameters = Json::object()) {
-    const control::Answer answer = ask(method, parameters);
+    const control::RpcResponse answer = ask(method, parameters);
     EXPECT_TRUE(answer.is_good()) << method << ": " << answer.message;
     if (answer.is_good() && answer.text != nullptr) return Json::parse(*answer.text);
     return answer.is_good() ? *answer.result : Json();
   }
   /// "CODE MESSAGE DATA" of a refusal.
   std::string refusal(const char* method, const Json& parameters) {
-    const control::Answer answer = ask(method, parameters);
+    const control::RpcResponse answer = ask(method, parameters);
     if (answer.is_good()) return "accepted " + answer.result->dump();
     return std::to_string(answer.code) + " " + answer.message + (answer.data ? " " + answer.data->dump() : "");
   }

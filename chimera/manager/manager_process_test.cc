@@ -93,7 +93,7 @@ Json ask(const std::string& path, const char* method, const Json& parameters = J
   for (int tries = 0; tries < 20; ++tries) {
     auto client = control::Client::connect_to(path);
     if (!client) continue;
-    const control::Answer answer = client->call(method, parameters);
+    const control::RpcResponse answer = client->call(method, parameters);
     if (answer.is_good()) return *answer.result;
     EXPECT_EQ(answer.code, control::kNoConnection) << method << ": " << answer.message;
   }
@@ -130,7 +130,7 @@ TEST(ManagerProcess, ACommandWaitsForTheRestartedManager) {
   while (kept.starts() == 1) ::usleep(100);
   auto client = control::Client::connect_to(kept.path());
   ASSERT_TRUE(client);
-  const control::Answer answer = client->call("signal", {{"signal", "off"}, {"tasks", {"law"}}});
+  const control::RpcResponse answer = client->call("signal", {{"signal", "off"}, {"tasks", {"law"}}});
   EXPECT_TRUE(answer.is_good()) << answer.message;
 }
 

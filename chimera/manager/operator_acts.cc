@@ -12,13 +12,13 @@
 namespace chimera::manager {
 namespace {
 
-using control::Answer;
 using control::Json;
+using control::RpcResponse;
 
-Answer unknown(const char* what, const std::string& name, const std::vector<std::string>& names) {
+RpcResponse unknown(const char* what, const std::string& name, const std::vector<std::string>& names) {
   const std::string near = nearest(name, names);
   const std::string message = std::string("no ") + what + " '" + name + "'";
-  return Answer::unknown(message + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near);
+  return RpcResponse::unknown(message + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near);
 }
 
 std::vector<std::string> variable_names(const ManagerState& world) {
@@ -36,16 +36,16 @@ std::size_t columns(const ManagerState& world, VariableId variable) {
   return has_rows ? world.spec().operators[index].extent[1].max : 0;
 }
 
-Answer no_operators(const ManagerState& world, VariableId variable, const std::string& name) {
+RpcResponse no_operators(const ManagerState& world, VariableId variable, const std::string& name) {
   const TaskId task = world.readings->producer(variable);
   const std::string who = task.is_valid() ? "task " + world.name(task) : "a task";
-  return Answer::refused("not-operator", name + " is produced by " + who + ", not by the operator", name);
+  return RpcResponse::refused("not-operator", name + " is produced by " + who + ", not by the operator", name);
 }
 
 }  // namespace
 
-std::variant<std::vector<VariableId>, Answer> variables_named(const ManagerState& world,
-                                                              const std::vector<std::string>& names) {
+std::variant<std::vector<VariableId>, RpcResponse> variables_named(const ManagerState& world,
+                                                                   const std::vector<std::string>& names) {
   std::vector<VariableId> found;
   if (names.empty() && world.readings)
     for (std::size_t v = 0; v < world.readings->size(); ++v) found.emplace_back(v);
@@ -57,10 +57,10 @@ std::variant<std::vector<VariableId>, Answer> variables_named(const ManagerState
   return found;
 }
 
-std::variant<std::vector<TaskId>, Answer> tasks_named(const ManagerState& world,
-                                                      const std::vector<std::string>& names) {
+std::variant<std::vector<TaskId>, RpcResponse> tasks_named(const ManagerState& world,
+                                                           const std::vector<std::string>& names) {
   if (names.empty())
-    return Answer::error(control::kBadParameters, "'tasks' must name at least one", {{"where", "tasks"}});
+    return RpcResponse::error(control::kBadParameters, "'tasks' must name at least one", {{"where", "tasks"}});
   std::vector<TaskId> found;
   std::vector<std::string> known;
   for (const TaskSpec& task : world.spec().tasks) known.emplace_back(task.name);
@@ -72,43 +72,44 @@ std::variant<std::vector<TaskId>, Answer> tasks_named(const ManagerState& world,
   return found;
 }
 
-Answer judge_ring(const ManagerState& world, TaskId task) {
+RpcResponse judge_ring(const ManagerState& world, TaskId task) {
   const std::string name = world.name(task);
   if (!world.spec().tasks[task.index].server)
-    return Answer::refused("no-server", name + " is not behind a server: it has no doorbell", name,
-                           "give it 'server:' in the description");
+    return RpcResponse::refused("no-server", name + " is not behind a server: it has no doorbell", name,
+                                "give it 'server:' in the description");
   const State state = world.state(task);
   if (state == State::kOn) return {};
-  return Answer::refused("state", name + " is " + state_name(state) + ": nobody would answer the event", name,
-                         "turn it ON first");
+  return RpcResponse::refused("state", name + " is " + state_name(state) + ": nobody would answer the event", name,
+                              "turn it ON first");
 }
 
-Answer set_values(ManagerState& world, const Json& values) {
+RpcResponse set_values(ManagerState& world, const Json& values) {
   std::vector<VariableId> variables;
   std::map<std::string, ValueForm> forms;
   for (const auto& [name, value] : values.items()) {
     const auto found = variables_named(world, {name});
-    if (const auto* refused = std::get_if<Answer>(&found)) return *refused;
+    if (const auto* refused = std::get_if<RpcResponse>(&found)) return *refused;
     const VariableId variable = std::get<0>(found)[0];
     if (!world.readings->is_operators(variable)) return no_operators(world, variable, name);
     variables.push_back(variable);
     forms[name] = world.readings->form(variable);
   }
   if (variables.empty())
-    return Answer::error(control::kBadParameters, "'values' must name at least one variable", {{"where", "values"}});
+    return RpcResponse::error(control::kBadParameters, "'values' must name at least one variable",
+                              {{"where", "values"}});
   const auto bytes = operator_bytes(*world.configuration, world.bundle.library, values, forms);
   if (!bytes)
-    return Answer::error(control::kBadParameters, std::string(bytes.error().message.view()),
-                         {{"where", bytes.error().where.view()}});
+    return RpcResponse::error(control::kBadParameters, std::string(bytes.error().message.view()),
+                              {{"where", bytes.error().where.view()}});
   const Nanoseconds at = now();
   for (const auto& [index, value] : *bytes) world.own.publish_operator(index, value, at);
   Json answer = {{"values", readings_json(world, variables, at)}};
   for (const auto& [name, reading] : answer["values"].items())
     world.tell("set", TaskId{}, RtpuId{}, name + " = " + reading["text"].get<std::string>(), at);
-  return Answer::good(answer);
+  return RpcResponse::good(answer);
 }
 
-Answer set_flag(ManagerState& world, bool up) {
+RpcResponse set_flag(ManagerState& world, bool up) {
   auto& flag = world.own.block().head().flag;
   const std::uint32_t before = flag.load(std::memory_order_relaxed);
   flag.store(up ? before | kOperatorFlag : before & ~kOperatorFlag, std::memory_order_release);
@@ -117,10 +118,10 @@ Answer set_flag(ManagerState& world, bool up) {
     world.tell("flag", TaskId{}, RtpuId{}, words, now());
     world.announce();
   }
-  return Answer::good(flag_json(world));
+  return RpcResponse::good(flag_json(world));
 }
 
-Answer saved_values(const ManagerState& world) {
+RpcResponse saved_values(const ManagerState& world) {
   Json saved = Json::object();
   for (std::size_t v = 0; world.readings && v < world.readings->size(); ++v) {
     const VariableId variable(v);
@@ -129,7 +130,7 @@ Answer saved_values(const ManagerState& world) {
     saved[world.readings->configured(variable).name] =
         description_text(reading.form, reading.value, columns(world, variable));
   }
-  return Answer::good({{"operator", std::move(saved)}});
+  return RpcResponse::good({{"operator", std::move(saved)}});
 }
 
 }  // namespace chimera::manager

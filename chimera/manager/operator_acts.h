@@ -8,25 +8,25 @@
 #include <variant>
 #include <vector>
 
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 #include "chimera/manager/manager_state.h"
 
 namespace chimera::manager {
 
 /// Context of all: setup.
 /// The variables of these names, none: all of them; refuses an unknown one with the nearest.
-std::variant<std::vector<VariableId>, control::Answer> variables_named(const ManagerState& world,
-                                                                       const std::vector<std::string>& names);
+std::variant<std::vector<VariableId>, control::RpcResponse> variables_named(const ManagerState& world,
+                                                                            const std::vector<std::string>& names);
 /// The tasks of these names; refuses none at all, and an unknown one with the nearest.
-std::variant<std::vector<TaskId>, control::Answer> tasks_named(const ManagerState& world,
-                                                               const std::vector<std::string>& names);
+std::variant<std::vector<TaskId>, control::RpcResponse> tasks_named(const ManagerState& world,
+                                                                    const std::vector<std::string>& names);
 /// Why nobody would answer a ring of the task's doorbell; good when it is behind a server and ON.
-control::Answer judge_ring(const ManagerState& world, TaskId task);
+control::RpcResponse judge_ring(const ManagerState& world, TaskId task);
 /// {name: value}: sets operator variables, all or none. The answer has their readings.
-control::Answer set_values(ManagerState& world, const nlohmann::json& values);
+control::RpcResponse set_values(ManagerState& world, const nlohmann::json& values);
 /// Raises or lowers the operator's part of the flag.
-control::Answer set_flag(ManagerState& world, bool up);
+control::RpcResponse set_flag(ManagerState& world, bool up);
 /// Present values of the operator variables in the words of a description.
-control::Answer saved_values(const ManagerState& world);
+control::RpcResponse saved_values(const ManagerState& world);
 
 }  // namespace chimera::manager

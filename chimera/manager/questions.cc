@@ -16,14 +16,14 @@
 namespace chimera::manager {
 namespace {
 
-using control::Answer;
+using control::RpcResponse;
 
 constexpr Nanoseconds kPatienceWithEnd = seconds(1);  // of a process that was sent SIGKILL
 
-Answer too_many(const char* what) { return Answer::error(control::kTooFast, what, {{"retry_ms", 100}}); }
+RpcResponse too_many(const char* what) { return RpcResponse::error(control::kTooFast, what, {{"retry_ms", 100}}); }
 
-Answer given_up(const std::string& why) {
-  return Answer::refused("analysis", why, "text", "ask `chimera check` or `chimera schedule` with the file");
+RpcResponse given_up(const std::string& why) {
+  return RpcResponse::refused("analysis", why, "text", "ask `chimera check` or `chimera schedule` with the file");
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ void Questions::take_answer(Nanoseconds now) {
     const auto frozen = FrozenBytes::open(passed);
     const bool is_whole = frozen && frozen->bytes().size() >= told.text_bytes;
     const char* text = is_whole ? reinterpret_cast<const char*>(frozen->bytes().data()) : nullptr;
-    answer_first(is_whole ? Answer::ready(std::make_shared<const std::string>(text, told.text_bytes))
+    answer_first(is_whole ? RpcResponse::ready(std::make_shared<const std::string>(text, told.text_bytes))
                           : given_up("the answer of the analysis cannot be read"),
                  now);
   } else if (got == Channel::Got::kClosed) {
@@ -88,7 +88,7 @@ void Questions::take_answer(Nanoseconds now) {
   }
 }
 
-void Questions::answer_first(const Answer& answer, Nanoseconds now) {
+void Questions::answer_first(const RpcResponse& answer, Nanoseconds now) {
   is_under_way_ = false;
   since_ = now;
   Waiting first = std::move(waiting_.front());

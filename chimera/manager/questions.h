@@ -8,7 +8,7 @@
 #include <string>
 
 #include "chimera/base/time.h"
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 #include "chimera/manager/question.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/process.h"
@@ -55,7 +55,7 @@ class Questions {
   };
 
   void take_answer(Nanoseconds now);
-  void answer_first(const control::Answer& answer, Nanoseconds now);
+  void answer_first(const control::RpcResponse& answer, Nanoseconds now);
   void pass_on(Nanoseconds now);
   bool start(Nanoseconds now);
   bool send_first();

@@ -13,8 +13,8 @@
 namespace chimera::manager {
 namespace {
 
-using control::Answer;
 using control::Json;
+using control::RpcResponse;
 
 struct QuestionsTest : testing::Test {
   void SetUp() override {
@@ -29,7 +29,7 @@ struct QuestionsTest : testing::Test {
   void ask(const std::string& name, std::uint64_t connection, const std::string& text = kFakeText) {
     questions_->ask(
         {Question::Kind::kCheck, name, text}, connection,
-        [this, name](const Answer& answer) {
+        [this, name](const RpcResponse& answer) {
           order_ += name + " ";
           answers_[name] = answer;
         },
@@ -45,7 +45,7 @@ struct QuestionsTest : testing::Test {
   }
   FrozenBytes bundle_;
   std::unique_ptr<Questions> questions_;
-  std::map<std::string, Answer> answers_;
+  std::map<std::string, RpcResponse> answers_;
   std::string order_, told_;
 };
 

@@ -8,11 +8,11 @@
 
 namespace chimera::manager {
 
-using control::Answer;
 using control::Json;
+using control::RpcResponse;
 using subsystem::RefusalKind;
 
-Answer signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer) {
+RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer) {
   if (answer.is_accepted()) {
     Json tasks = Json::array();
     for (const subsystem::TaskOutcome& outcome : answer.outcomes) {
@@ -21,20 +21,20 @@ Answer signal_answer(const ManagerState& world, const subsystem::CommandAnswer& 
                        {"after", state_name(outcome.after)}});
       if (outcome.is_already) tasks.back()["already"] = true;
     }
-    return Answer::good({{"tasks", std::move(tasks)}});
+    return RpcResponse::good({{"tasks", std::move(tasks)}});
   }
   const auto& [kind, reason, remedy] = answer.refusal;
   if (kind == RefusalKind::kNoAnswer && answer.at.is_valid())
     return no_answer(world, world.spec().tasks[answer.at.index].rtpu, answer.refusal.text());
-  return Answer::refused(subsystem::refusal_kind_name(kind), answer.refusal.text(),
-                         answer.at.is_valid() ? world.name(answer.at) : "", remedy);
+  return RpcResponse::refused(subsystem::refusal_kind_name(kind), answer.refusal.text(),
+                              answer.at.is_valid() ? world.name(answer.at) : "", remedy);
 }
 
-Answer no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text) {
+RpcResponse no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text) {
   const PeerSegment& segment = world.peers[rtpu];
   const std::string running = segment.is_there() ? running_text(world.spec(), segment.block().head().running) : "";
-  return Answer::error(control::kNoAnswer, text,
-                       {{"rtpu", world.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
+  return RpcResponse::error(control::kNoAnswer, text,
+                            {{"rtpu", world.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
 }
 
 }  // namespace chimera::manager

@@ -4,15 +4,15 @@
 
 #include <string>
 
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 #include "chimera/manager/manager_state.h"
 
 namespace chimera::manager {
 
 /// Context of both: setup.
 /// The states of the tasks before and after, or the refusal with its kind, place and remedy.
-control::Answer signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer);
+control::RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer);
 /// Error -32006 with what the real-time unit runs.
-control::Answer no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text);
+control::RpcResponse no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text);
 
 }  // namespace chimera::manager

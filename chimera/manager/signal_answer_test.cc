@@ -23,7 +23,7 @@ class SignalAnswerTest : public testing::Test {
   /// "CODE MESSAGE DATA" of a refusal that names the task `law`.
   std::string refusal(RefusalKind kind, const char* reason, const char* remedy) {
     const CommandAnswer refused{1, {kind, reason, remedy}, fake_.task("law"), {}};
-    const control::Answer answer = signal_answer(fake_.driver().world(), refused);
+    const control::RpcResponse answer = signal_answer(fake_.driver().world(), refused);
     return std::to_string(answer.code) + " " + answer.message + " " + answer.data->dump();
   }
   FakeSubsystem fake_;
@@ -45,7 +45,7 @@ TEST_F(SignalAnswerTest, OfAUnitThatDoesNotAnswerNamesTheUnit) {
 TEST_F(SignalAnswerTest, OfWhatWasDoneHasTheStatesOfEachTask) {
   const CommandAnswer done{1, {}, TaskId{}, {{fake_.task("law"), State::kOn, State::kOff, false},
                                              {fake_.task("filter"), State::kOff, State::kOff, true}}};
-  const control::Answer answer = signal_answer(fake_.driver().world(), done);
+  const control::RpcResponse answer = signal_answer(fake_.driver().world(), done);
   ASSERT_TRUE(answer.is_good());
   EXPECT_EQ((*answer.result)["tasks"],
             Json::array({Json{{"task", "law"}, {"before", "ON"}, {"after", "OFF"}},

@@ -12,8 +12,8 @@
 
 namespace chimera::manager {
 
-using control::Answer;
 using control::Json;
+using control::RpcResponse;
 
 namespace {
 
@@ -21,12 +21,12 @@ std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Js
 
 }  // namespace
 
-Answer SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameters) {
+RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameters) {
   using To = Feed::To;
   const std::string to = parameters.at("to");
   const auto names = texts(parameters, "variables");
   auto variables = variables_named(world_, names);
-  if (const auto* refused = std::get_if<Answer>(&variables)) return *refused;
+  if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
   Feed made;
   made.to = to == "status" ? To::kStatus : to == "events" ? To::kEvents : to == "values" ? To::kValues : To::kTap;
   if (made.to == To::kEvents) made.next = number(parameters, "since", world_.log.last() + 1);
@@ -36,7 +36,7 @@ Answer SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameter
         world_, names.empty() ? std::vector<VariableId>() : std::get<0>(std::move(variables)),
         number(parameters, "since", 1) == 0);
   feeds_[subscription] = std::move(made);
-  return Answer{};
+  return RpcResponse{};
 }
 
 std::shared_ptr<const Json> SubscriptionFeeds::pull(std::uint64_t subscription) {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 #include "chimera/manager/tap_feed.h"
 
 namespace chimera::manager {
@@ -22,7 +22,7 @@ class SubscriptionFeeds {
   /// `world` outlives it.
   explicit SubscriptionFeeds(ManagerState& world) : world_(world) {}
 
-  control::Answer open(std::uint64_t subscription, const control::Json& parameters);
+  control::RpcResponse open(std::uint64_t subscription, const control::Json& parameters);
   void close(std::uint64_t subscription) { feeds_.erase(subscription); }
   std::shared_ptr<const control::Json> pull(std::uint64_t subscription);
 

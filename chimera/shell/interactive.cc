@@ -26,13 +26,13 @@ namespace {
 
 constexpr std::size_t kMostScriptBytes = 1 << 20;
 
-struct Outcome {
+struct LineResult {
   int code = kOk;
   bool is_quit = false;
 };
 
 /// One line, wherever it comes from.
-Outcome carry_out_line(Session& session, std::string_view line, std::FILE* out, std::FILE* err) {
+LineResult carry_out_line(Session& session, std::string_view line, std::FILE* out, std::FILE* err) {
   const auto words = words_of(line);
   if (!words) return {print(refused(words.error(), false, kUsage), out, err)};
   if (words.value().empty()) return {};
@@ -135,7 +135,7 @@ class Editor {
 };
 
 int typed(Session& session) {
-  const control::Answer hello = session.ask("hello"), described = session.ask("describe");
+  const control::RpcResponse hello = session.ask("hello"), described = session.ask("describe");
   if (!hello.is_good()) return print(refused(hello, false), stdout, stderr);
   Editor editor(text_of(*hello.result, "subsystem"), described.is_good() ? names_of(*described.result) : Names{});
   for (std::string line;;) {
@@ -155,7 +155,7 @@ int run_script(Session& session, std::istream& script, const std::string& name, 
   int code = kOk, number = 0;
   for (std::string line; std::getline(script, line);) {
     ++number;
-    const Outcome outcome = carry_out_line(session, line, out, err);
+    const LineResult outcome = carry_out_line(session, line, out, err);
     if (outcome.is_quit) break;
     if (outcome.code == kOk) continue;
     if (code == kOk) code = outcome.code;

@@ -132,7 +132,7 @@ void redraw(const std::vector<std::string>& lines, bool is_first, std::FILE* out
 /// for.
 template <class Show>
 int follow(Session& session, const Call& call, Json subscription, std::FILE* out, std::FILE* err, const Show& show) {
-  const control::Answer subscribed = session.ask("subscribe", subscription);
+  const control::RpcResponse subscribed = session.ask("subscribe", subscription);
   if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
   InputWait attention(false);
   for (;;) {
@@ -152,12 +152,12 @@ int follow(Session& session, const Call& call, Json subscription, std::FILE* out
 int top(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   const auto period = period_ms(call, 500);
   if (!period) return print(refused(period.error(), call.json, kUsage), out, err);
-  const control::Answer first = session.ask("status");
+  const control::RpcResponse first = session.ask("status");
   if (!first.is_good()) return print(refused(first, call.json), out, err);
   const bool is_live = is_terminal(kStandardOutput) && is_terminal(kStandardInput) && !call.json;
   if (!is_live) return print({call.json ? first.result->dump() + "\n" : printed(*first.result), "", kOk}, out, err);
   const Json subscription = {{"to", "status"}, {"period_ms", period.value()}};
-  const control::Answer subscribed = session.ask("subscribe", subscription);
+  const control::RpcResponse subscribed = session.ask("subscribe", subscription);
   if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
   const auto end = top_on_screen(session, *first.result, subscription);
   return end ? print(refused(*end, call.json), out, err) : end_of_notes(session);

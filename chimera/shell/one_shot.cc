@@ -27,7 +27,7 @@ CommandResult wrong(const std::string& message, bool json) {
 
 /// Those of `tasks` that are not ON so far.
 std::vector<std::string> still_off(Session& session, std::vector<std::string> tasks) {
-  const control::Answer status = session.ask("status");
+  const control::RpcResponse status = session.ask("status");
   if (!status.is_good()) return tasks;
   for (const Json& task : field(*status.result, "tasks"))
     if (text_of(task, "state") == "ON") std::erase(tasks, text_of(task, "task"));
@@ -36,7 +36,7 @@ std::vector<std::string> still_off(Session& session, std::vector<std::string> ta
 
 /// A configuration stands for those of its tasks that are not ON, unless a task has that name.
 std::vector<std::string> with_configuration(Session& session, std::vector<std::string> tasks) {
-  const control::Answer described = session.ask("describe");
+  const control::RpcResponse described = session.ask("describe");
   if (tasks.size() != 1 || !described.is_good()) return tasks;
   const Names names = names_of(*described.result);
   if (std::find(names.tasks.begin(), names.tasks.end(), tasks[0]) != names.tasks.end()) return tasks;
@@ -48,8 +48,8 @@ std::vector<std::string> with_configuration(Session& session, std::vector<std::s
 /// The number of one process, and nothing else: for `kill`.
 CommandResult pid(Session& session, const Call& call) {
   const std::string name = call.value("--pid");
-  const control::Answer hello = session.ask("hello"), status = session.ask("status");
-  for (const control::Answer* asked : {&hello, &status})
+  const control::RpcResponse hello = session.ask("hello"), status = session.ask("status");
+  for (const control::RpcResponse* asked : {&hello, &status})
     if (!asked->is_good()) return refused(*asked, call.json);
   std::map<std::string, std::int64_t> pids = {{"keeper", whole_of(*hello.result, "keeper_pid")},
                                               {"manager", whole_of(field(*hello.result, "manager"), "pid")}};
@@ -84,10 +84,10 @@ CommandResult signal(Session& session, const Call& call, const Screen&) {
 }
 
 CommandResult profile(Session& session, const Call& call, const Screen&) {
-  const control::Answer answer = session.ask("profile");
+  const control::RpcResponse answer = session.ask("profile");
   if (!call.has("--save")) return answered(answer, call.json, profile_text);
-  const control::Answer hello = session.ask("hello");
-  for (const control::Answer* asked : {&answer, &hello})
+  const control::RpcResponse hello = session.ask("hello");
+  for (const control::RpcResponse* asked : {&answer, &hello})
     if (!asked->is_good()) return refused(*asked, call.json);
   const auto tasks = parse_profiles(field(*answer.result, "tasks").dump(), Nanoseconds{});
   if (!tasks) return refused(tasks.error(), call.json);
@@ -105,10 +105,10 @@ CommandResult events(Session& session, const Call& call, const Screen&) {
     return wrong("--since: '" + text + "' is no number of an event", call.json);
   const auto kinds = read_kinds(call.value("--kind"));
   if (!kinds) return refused(kinds.error(), call.json, kUsage);
-  control::Answer answer = session.ask("events", {{"since", since}});
+  control::RpcResponse answer = session.ask("events", {{"since", since}});
   const EventLines lines(kinds.value(), call.has("--each"));
   if (call.json && answer.is_good() && !kinds->empty())
-    answer = control::Answer::good(only(lines, *answer.result));
+    answer = control::RpcResponse::good(only(lines, *answer.result));
   return answered(answer, call.json, [&](const Json& told) { return events_text(told, since, lines); });
 }
 
@@ -133,12 +133,14 @@ CommandResult why(Session& session, const Call& call, const Screen& screen) {
 }
 
 CommandResult end(Session& session, const Call& call, const Screen&) {
-  control::Answer answer = session.ask("end", {{"code", 0}});
-  if (answer.code == control::kNoConnection) answer = control::Answer::good(Json::object());  // it has ended already
+  control::RpcResponse answer = session.ask("end", {{"code", 0}});
+  if (answer.code == control::kNoConnection)
+    answer = control::RpcResponse::good(Json::object());  // it has ended already
   return answered(answer, call.json, [](const Json&) { return std::string("ending\n"); });
 }
 
-CommandResult answered(const control::Answer& answer, bool json, const std::function<std::string(const Json&)>& show) {
+CommandResult answered(const control::RpcResponse& answer, bool json,
+                       const std::function<std::string(const Json&)>& show) {
   if (!answer.is_good()) return refused(answer, json);
   return {json ? answer.result->dump() + "\n" : show(*answer.result), "", kOk};
 }

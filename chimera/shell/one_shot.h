@@ -19,7 +19,7 @@ CommandResult why(Session& session, const Call& call, const Screen& screen);
 CommandResult end(Session& session, const Call& call, const Screen& screen);
 
 /// The answer as it came, or what `show` makes of it; or the refusal.
-CommandResult answered(const control::Answer& answer, bool json,
+CommandResult answered(const control::RpcResponse& answer, bool json,
                        const std::function<std::string(const nlohmann::json&)>& show);
 
 }  // namespace chimera::shell

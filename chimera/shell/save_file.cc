@@ -27,14 +27,14 @@ Error refusal(const std::string& message, const std::string& where = {}) {
   return {ErrorCode::kRefused, std::string_view(message), std::string_view(where)};
 }
 
-struct File {
+struct DescriptionFile {
   std::string path, text;
   FileState state;
 };
 
-Result<File> read_file(const std::string& path) {
+Result<DescriptionFile> read_file(const std::string& path) {
   char real[PATH_MAX];
-  File file;
+  DescriptionFile file;
   if (::realpath(path.c_str(), real) == nullptr) return refusal(std::strerror(errno), path);
   file.path = real;
   auto text = read_ordinary(file.path, kMostBytes);
@@ -46,14 +46,14 @@ Result<File> read_file(const std::string& path) {
   return file;
 }
 
-std::string own_record(const File& file) {
+std::string own_record(const DescriptionFile& file) {
   return file.path + "\n" + std::to_string(file.state.inode) + " " + std::to_string(file.state.changed_ns) + "\n";
 }
 
 std::string record_path(const std::string& subsystem) { return state_folder() + "/saved-" + subsystem; }
 
 /// The file is as it was when the subsystem read it, or as this command left it.
-bool is_as_known(const File& file, std::int64_t started_wall_ns, const std::string& subsystem) {
+bool is_as_known(const DescriptionFile& file, std::int64_t started_wall_ns, const std::string& subsystem) {
   if (file.state.changed_ns < started_wall_ns) return true;
   std::ifstream record(record_path(subsystem), std::ios::binary);
   std::ostringstream text;
@@ -79,14 +79,14 @@ std::string first_fault(const Json& report) {
   return "not legal";
 }
 
-Result<std::string> edited(Session& session, const File& file, const Json& values) {
+Result<std::string> edited(Session& session, const DescriptionFile& file, const Json& values) {
   const auto units = UnitSystem::load(session.surroundings().unit_files);
   if (!units) return units.error();
   std::map<std::string, std::string> words;
   for (const auto& item : values.items()) words[item.key()] = text_of(values, item.key());
   auto text = with_operator_values(file.text, words, units.value());
   if (!text || text.value() == file.text) return text;
-  const control::Answer checked = session.ask("check", {{"text", text.value()}, {"file", file.path}});
+  const control::RpcResponse checked = session.ask("check", {{"text", text.value()}, {"file", file.path}});
   if (!checked.is_good()) return refusal(checked.message);
   if (!truth_of(*checked.result, "legal"))
     return refusal("with these values the description is not legal: " + first_fault(*checked.result), file.path);
@@ -96,8 +96,8 @@ Result<std::string> edited(Session& session, const File& file, const Json& value
 }  // namespace
 
 CommandResult save_to_file(Session& session, const Call& call) {
-  const control::Answer hello = session.ask("hello"), status = session.ask("status"), saved = session.ask("save");
-  for (const control::Answer* answer : {&hello, &status, &saved})
+  const control::RpcResponse hello = session.ask("hello"), status = session.ask("status"), saved = session.ask("save");
+  for (const control::RpcResponse* answer : {&hello, &status, &saved})
     if (!answer->is_good()) return refused(*answer, call.json);
   const std::string subsystem = text_of(*hello.result, "subsystem");
   const Json& values = field(*saved.result, "operator");
@@ -112,7 +112,7 @@ CommandResult save_to_file(Session& session, const Call& call) {
   if (is_new) {
     if (const auto replaced = replace_file(file->path, file->state, text.value()); !replaced)
       return refused(replaced.error(), call.json);
-    File written = file.value();
+    DescriptionFile written = file.value();
     const auto state = state_of_file(written.path);
     if (state) written.state = *state;
     if (state && make_state_folder())

@@ -169,15 +169,16 @@ CommandResult tell(const Scope& scope, const Call& call, const std::string& subs
 }  // namespace
 
 CommandResult scope(Session& session, const Call& call, const Screen& screen) {
-  const control::Answer described = session.ask("describe");
+  const control::RpcResponse described = session.ask("describe");
   if (!described.is_good()) return refused(described, call.json);
   const auto asked = read(call, *described.result, session.surroundings());
   if (!asked) return refused(asked.error(), call.json, asked.error().code == ErrorCode::kNotFound ? kRefused : kUsage);
   for (const char* option : {"--csv", "--svg"})
     if (call.has(option))
       if (const auto may = may_write_recorded_profile(call.value(option)); !may) return refused(may.error(), call.json);
-  const control::Answer hello = session.ask("hello");
-  const control::Answer subscribed = session.ask("subscribe", {{"to", "tap"}, {"variables", asked.value().variables}});
+  const control::RpcResponse hello = session.ask("hello");
+  const control::RpcResponse subscribed =
+      session.ask("subscribe", {{"to", "tap"}, {"variables", asked.value().variables}});
   if (!subscribed.is_good()) return refused(subscribed, call.json);
   Scope scope(asked.value().request);
   if (asked->request.pre.count > 0 && !call.json && screen.err != nullptr) {

@@ -23,7 +23,7 @@ Nanoseconds limit_of(std::string_view method, const nlohmann::json& parameters) 
 
 }  // namespace
 
-CommandResult refused(const control::Answer& answer, bool json) {
+CommandResult refused(const control::RpcResponse& answer, bool json) {
   const nlohmann::json data = answer.data ? *answer.data : nlohmann::json();
   if (!json) return {"", refusal_text(answer.message, data) + "\n", kRefused};
   nlohmann::json error = data.is_object() ? data : nlohmann::json::object();
@@ -53,8 +53,8 @@ const control::Home& Session::home() {
   return home_;
 }
 
-control::Answer Session::hear() {
-  const control::Answer hello = ask("hello");
+control::RpcResponse Session::hear() {
+  const control::RpcResponse hello = ask("hello");
   if (hello.is_good()) home_ = control::home_of(*hello.result);
   return hello;
 }
@@ -72,9 +72,9 @@ Result<void> Session::may_act() {
   return Error{ErrorCode::kRefused, std::string_view(message), {}};
 }
 
-control::Answer Session::ask(std::string_view method) { return ask(method, nlohmann::json::object()); }
+control::RpcResponse Session::ask(std::string_view method) { return ask(method, nlohmann::json::object()); }
 
-control::Answer Session::ask(std::string_view method, const nlohmann::json& parameters) {
+control::RpcResponse Session::ask(std::string_view method, const nlohmann::json& parameters) {
   return client_.call(method, parameters, limit_of(method, parameters), control::kCallLimit);
 }
 

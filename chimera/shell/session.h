@@ -24,7 +24,7 @@ struct Surroundings {
 
 /// A refusal as a command says it: the words on standard error, or {"error": {...}} on standard output.
 /// Context of all: setup.
-CommandResult refused(const control::Answer& answer, bool json);
+CommandResult refused(const control::RpcResponse& answer, bool json);
 CommandResult refused(const Error& error, bool json, int code = kRefused);
 
 /// Context: setup; calls block, never longer than their limit.
@@ -38,14 +38,14 @@ class Session {
   /// Did somebody name the subsystem, by option or by CHIMERA_SUBSYSTEM?
   bool is_named() const noexcept { return is_named_; }
   /// Asks who it is: what every command begins with. The answer of `hello`.
-  control::Answer hear();
+  control::RpcResponse hear();
   /// Its name, as it says itself; "" when it does not answer.
   const std::string& subsystem();
   /// May an act go to it? Named, or of this terminal or folder: else refused, with what is to be typed.
   Result<void> may_act();
   /// As control::Client::call, with the time that the method may take.
-  control::Answer ask(std::string_view method);
-  control::Answer ask(std::string_view method, const nlohmann::json& parameters);
+  control::RpcResponse ask(std::string_view method);
+  control::RpcResponse ask(std::string_view method, const nlohmann::json& parameters);
 
  private:
   Session(control::Client client, Surroundings surroundings)

@@ -35,8 +35,8 @@ namespace {
 
 Result<Call> read_call(const std::vector<std::string>& words) { return command::read_call(shell_words(), words); }
 
-using control::Answer;
 using control::Json;
+using control::RpcResponse;
 
 /// Two tasks and the variables of test_answers.h; `error` rises by 1 mrad a row.
 struct FakeSubject final : control::ControlBackend {
@@ -47,32 +47,36 @@ struct FakeSubject final : control::ControlBackend {
     if (name == "status") {
       Json status = Json::parse(test::kStatus);
       if (origin.count > 0) status["origin_ns"] = origin.count;
-      return reply(Answer::good(status));
+      return reply(RpcResponse::good(status));
     }
-    if (name == "describe") return reply(Answer::good(Json::parse(test::kDescribed)));
+    if (name == "describe") return reply(RpcResponse::good(Json::parse(test::kDescribed)));
     if (name == "hello")
-      return reply(Answer::good({{"subsystem", "puma_pid"}, {"file", file}, {"keeper_pid", 1}, {"session", session},
-                                 {"folder", "/srv/bo"}, {"manager", {{"pid", 12}, {"starts", 1}}}}));
-    if (name == "save") return reply(Answer::good({{"operator", {{"kp", "[1 N.m/rad, 2 N.m/rad]"}}}}));
-    if (name == "check") return reply(Answer::good({{"legal", is_legal}, {"faults", Json::array()}}));
+      return reply(RpcResponse::good({{"subsystem", "puma_pid"},
+                                      {"file", file},
+                                      {"keeper_pid", 1},
+                                      {"session", session},
+                                      {"folder", "/srv/bo"},
+                                      {"manager", {{"pid", 12}, {"starts", 1}}}}));
+    if (name == "save") return reply(RpcResponse::good({{"operator", {{"kp", "[1 N.m/rad, 2 N.m/rad]"}}}}));
+    if (name == "check") return reply(RpcResponse::good({{"legal", is_legal}, {"faults", Json::array()}}));
     if (name == "signal") return signal(parameters, reply);
-    if (name == "get") return reply(Answer::good({{"values", {{"error", reading(0.5)}}}}));
-    if (name == "events") return reply(Answer::good({{"events", Json::array()}, {"first", 1}, {"last", 0}}));
-    reply(Answer::error(control::kRefused, "not now", {{"where", "kp"}, {"remedy", "off first"}}));
+    if (name == "get") return reply(RpcResponse::good({{"values", {{"error", reading(0.5)}}}}));
+    if (name == "events") return reply(RpcResponse::good({{"events", Json::array()}, {"first", 1}, {"last", 0}}));
+    reply(RpcResponse::error(control::kRefused, "not now", {{"where", "kp"}, {"remedy", "off first"}}));
   }
   void signal(const Json& parameters, const control::Reply& reply) {
     Json tasks = Json::array();
     for (const Json& task : parameters["tasks"]) {
-      if (task == "pdi") return reply(Answer::unknown("no task 'pdi'", "pdi", "pid"));
+      if (task == "pdi") return reply(RpcResponse::unknown("no task 'pdi'", "pdi", "pid"));
       tasks.push_back({{"task", task}, {"before", "OFF"}, {"after", "ON"}});
     }
-    reply(Answer::good({{"tasks", tasks}}));
+    reply(RpcResponse::good({{"tasks", tasks}}));
   }
   static Json reading(double value) {
     return {{"value", value}, {"text", Json(value).dump() + " rad"}, {"unit", "rad"}, {"producer", "pid"},
             {"state", "ON"}, {"sequence", 1}, {"age_ns", 1000}, {"valid", true}};
   }
-  Answer open(std::uint64_t subscription, const Json& parameters) override {
+  RpcResponse open(std::uint64_t subscription, const Json& parameters) override {
     to[subscription] = parameters["to"];
     return {};
   }

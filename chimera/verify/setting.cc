@@ -50,11 +50,11 @@ NamedNode* named(std::vector<NamedNode>& list, const std::string& name) {
 }
 
 /// Puts settings into a draft, and knows afterwards where.
-class Placement {
+class AppliedSettings {
  public:
   /// `keeps_units`: in_unit(), by these.
-  Placement(const Configuration& configuration, std::span<const Setting> settings,
-            const UnitSystem* keeps_units = nullptr)
+  AppliedSettings(const Configuration& configuration, std::span<const Setting> settings,
+                  const UnitSystem* keeps_units = nullptr)
       : configuration_(configuration), settings_(settings), keeps_units_(keeps_units), draft_(configuration.draft()) {}
 
   Result<void> put_all() {
@@ -192,15 +192,15 @@ Node written_value(const std::string& text) {
 Result<Configuration> with_settings(const Configuration& configuration, const Library& library,
                                     std::span<const Setting> settings, Overload overload) {
   if (settings.empty()) return configuration;
-  Placement placement(configuration, settings);
-  if (auto put = placement.put_all(); !put) return put.error();
-  const Verdict verdict = verify({placement.draft(), Report(configuration.file()), {}}, library, overload);
-  if (!verdict.configuration) return placement.refusal(verdict.report);
+  AppliedSettings applied(configuration, settings);
+  if (auto put = applied.put_all(); !put) return put.error();
+  const Verdict verdict = verify({applied.draft(), Report(configuration.file()), {}}, library, overload);
+  if (!verdict.configuration) return applied.refusal(verdict.report);
   return *verdict.configuration;
 }
 
 Result<void> knows(const Configuration& configuration, std::span<const Setting> settings) {
-  return Placement(configuration, settings).put_all();
+  return AppliedSettings(configuration, settings).put_all();
 }
 
 Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
@@ -220,19 +220,19 @@ Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
 
 Result<Configuration> with_new_value(const Configuration& configuration, const Library& library,
                                      const Setting& setting) {
-  Placement placement(configuration, {&setting, 1}, &library.units());
-  if (auto put = placement.put_all(); !put) return put.error();
-  const Verdict verdict = verify(placement.draft(), library);
-  if (!verdict.configuration) return placement.refusal(verdict.report);
-  const ConfiguredVariable* before = placement.variable(setting.name);
+  AppliedSettings applied(configuration, {&setting, 1}, &library.units());
+  if (auto put = applied.put_all(); !put) return put.error();
+  const Verdict verdict = verify(applied.draft(), library);
+  if (!verdict.configuration) return applied.refusal(verdict.report);
+  const ConfiguredVariable* before = applied.variable(setting.name);
   for (const ConfiguredVariable& now : verdict.configuration->variables()) {
     if (now.name != setting.name || before == nullptr) continue;
     if (now.unit != before->unit)
-      return placement.refuse(
+      return applied.refuse(
           setting, "expected a quantity in \"" + before->unit + "\", found one in \"" + now.unit + "\"", before->at);
     if (now.type != before->type || now.shape != before->shape)
-      return placement.refuse(setting, "expected " + before->type + before->shape + ", found " + now.type + now.shape,
-                              before->at);
+      return applied.refuse(setting, "expected " + before->type + before->shape + ", found " + now.type + now.shape,
+                            before->at);
   }
   return *verdict.configuration;
 }

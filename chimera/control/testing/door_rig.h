@@ -20,7 +20,7 @@ namespace chimera::control {
 /// Echoes; keeps the replies of `signal` until told, forgets that of `library`. In door_process_test.cc.
 struct FakeBackend final : ControlBackend {
   void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) override;
-  Answer open(std::uint64_t subscription, const Json& parameters) override;
+  RpcResponse open(std::uint64_t subscription, const Json& parameters) override;
   void close(std::uint64_t subscription) override { closed.push_back(subscription); }
   void forget(std::uint64_t connection) override { forgotten.push_back(connection); }
   std::shared_ptr<const Json> pull(std::uint64_t subscription) override;

@@ -1,34 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makers of answers: one for each form that the data of an error have.
-#include "chimera/control/answer.h"
+#include "chimera/control/rpc_response.h"
 
 #include <nlohmann/json.hpp>
 
 namespace chimera::control {
 
-Answer Answer::good(const Json& result) { return {0, {}, std::make_shared<const Json>(result), nullptr}; }
+RpcResponse RpcResponse::good(const Json& result) { return {0, {}, std::make_shared<const Json>(result), nullptr}; }
 
-Answer Answer::ready(std::shared_ptr<const std::string> text) { return {0, {}, nullptr, nullptr, std::move(text)}; }
+RpcResponse RpcResponse::ready(std::shared_ptr<const std::string> text) {
+  return {0, {}, nullptr, nullptr, std::move(text)};
+}
 
-Answer Answer::error(int code, std::string message) { return {code, std::move(message), nullptr, nullptr}; }
+RpcResponse RpcResponse::error(int code, std::string message) { return {code, std::move(message), nullptr, nullptr}; }
 
-Answer Answer::error(int code, std::string message, const Json& data) {
+RpcResponse RpcResponse::error(int code, std::string message, const Json& data) {
   return {code, std::move(message), nullptr, std::make_shared<const Json>(data)};
 }
 
-Answer Answer::refused(const char* kind, std::string message, const std::string& where, const std::string& remedy) {
+RpcResponse RpcResponse::refused(const char* kind, std::string message, const std::string& where,
+                                 const std::string& remedy) {
   Json data{{"kind", kind}, {"where", where}};
   if (!remedy.empty()) data["remedy"] = remedy;
   return error(kRefused, std::move(message), data);
 }
 
-Answer Answer::unknown(std::string message, const std::string& where, const std::string& nearest) {
+RpcResponse RpcResponse::unknown(std::string message, const std::string& where, const std::string& nearest) {
   Json data{{"where", where}};
   if (!nearest.empty()) data["nearest"] = nearest;
   return error(kUnknown, std::move(message), data);
 }
 
-std::string Answer::detail(const char* key) const {
+std::string RpcResponse::detail(const char* key) const {
   if (data == nullptr || !data->is_object()) return {};
   const auto found = data->find(key);
   return found != data->end() && found->is_string() ? found->get<std::string>() : std::string{};

@@ -30,24 +30,24 @@ enum : int {
 };
 
 /// Cheap to copy. Context: setup.
-struct Answer {
+struct RpcResponse {
   int code = 0;  ///< 0: `result` is there; else `message` is
   std::string message;
   std::shared_ptr<const Json> result;
   std::shared_ptr<const Json> data;                   ///< of an error; may be null
   std::shared_ptr<const std::string> text = nullptr;  ///< in the place of `result`: the same as one line of JSON
 
-  static Answer good(const Json& result);
+  static RpcResponse good(const Json& result);
   /// A result that is JSON already: whoever sends it has nothing to do but to copy it.
-  static Answer ready(std::shared_ptr<const std::string> text);
-  static Answer error(int code, std::string message);
-  static Answer error(int code, std::string message, const Json& data);
+  static RpcResponse ready(std::shared_ptr<const std::string> text);
+  static RpcResponse error(int code, std::string message);
+  static RpcResponse error(int code, std::string message, const Json& data);
   /// Error kRefused. `kind` is a word for programs (docs/formats/control.md), `where` names a task, a variable or
   /// nothing, `remedy` says what to do; "": nothing is known.
-  static Answer refused(const char* kind, std::string message, const std::string& where,
-                        const std::string& remedy = {});
+  static RpcResponse refused(const char* kind, std::string message, const std::string& where,
+                             const std::string& remedy = {});
   /// "no task 'pod'" with the nearest of `names` in the data, if one is near.
-  static Answer unknown(std::string message, const std::string& where, const std::string& nearest);
+  static RpcResponse unknown(std::string message, const std::string& where, const std::string& nearest);
 
   bool is_good() const noexcept { return code == 0; }
   /// Text of `key` in the data, or "".
@@ -55,7 +55,7 @@ struct Answer {
 };
 
 /// Takes the one answer of a request, now or later.
-using Reply = std::function<void(const Answer&)>;
+using Reply = std::function<void(const RpcResponse&)>;
 
 enum class Role : unsigned char { kNone, kObserve, kOperate, kConfigure };
 /// "operate".
