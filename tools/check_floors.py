@@ -10,9 +10,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
 FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "rtpu": 6,
-         "text": 6, "units": 7, "command": 7, "description": 8, "catalogue": 9, "verify": 10, "analysis": 11,
-         "keeper": 12, "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "desk": 13, "manager": 13,
-         "record": 13, "shell": 13}
+         "text": 6, "units": 7, "description": 8, "catalogue": 9, "verify": 10, "analysis": 11,
+         "keeper": 12, "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "cli": 13, "manager": 13,
+         "record": 13}
+# Floors inside of one folder: a subfolder imports only those with lower numbers.
+INSIDE = {"cli": {"command": 0, "files": 1, "live": 1, "run": 2, "batch": 3}}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
                        "chimera/task/number_at.h", "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")
@@ -46,10 +48,10 @@ SYSTEM = re.compile(r"^(aio|dirent|dlfcn|execinfo|fcntl|ftw|glob|grp|ifaddrs|lib
 SEES_THE_SYSTEM = {
     "chimera/platform/": "the floor for it",
     "chimera/base/hosted/ordinary_file.h": "components read files too, and they see chimera/base only",
-    "chimera/desk/outlet.cc": "a stream that never waits for its reader",
-    "chimera/desk/own_process.cc": "forks, waits and passes signals on: one piece of code with its limits of time",
-    "chimera/desk/side_by_side.cc": "the same of many children",
-    "chimera/desk/under_way.cc": "memory shared with both of these",
+    "chimera/cli/run/outlet.cc": "a stream that never waits for its reader",
+    "chimera/cli/run/own_process.cc": "forks, waits and passes signals on: one piece of code with its limits of time",
+    "chimera/cli/batch/side_by_side.cc": "the same of many children",
+    "chimera/cli/run/under_way.cc": "memory shared with both of these",
     "library/csv_log/": "writes a file, whose loss it must tell",
     "library/device/": "reasons why a device cannot be opened",
     "library/serial_frame/": "a serial line",
@@ -106,6 +108,9 @@ def refusal(root, name, path, interface):
             return "no floor is known for this folder"
         if folder[1] != target[1] and theirs >= mine:
             return f"{folder[1]} is floor {mine}, {target[1]} is floor {theirs}"
+        inside = INSIDE.get(folder[1], {}) if folder[1] == target[1] else {}
+        if inside and folder[2] != target[2] and not inside.get(folder[2], -1) > inside.get(target[2], 99):
+            return f"inside {folder[1]}/, {folder[2]} does not import {target[2]}"
     if folder[0] == "library" and not name.endswith("_test.cc") and target[0] != "library":
         if path not in interface and not path.startswith("chimera/base/"):
             return "library/ imports only the component interface and chimera/base"
@@ -186,8 +191,14 @@ PLANTED = (
     (_tree("chimera/table/x.h", '"chimera/table/y.h"'), None),
     (_tree("chimera/base/x.h", '"chimera/table/y.h"'),
      "chimera/base/x.h:1: includes chimera/table/y.h: base is floor 0, table is floor 2"),
-    (_tree("chimera/shell/x.cc", '"chimera/record/y.h"'),
-     "chimera/shell/x.cc:1: includes chimera/record/y.h: shell is floor 13, record is floor 13"),
+    (_tree("chimera/manager/x.cc", '"chimera/record/y.h"'),
+     "chimera/manager/x.cc:1: includes chimera/record/y.h: manager is floor 13, record is floor 13"),
+    (_tree("chimera/cli/run/x.cc", '"chimera/cli/files/y.h"'), None),
+    (_tree("chimera/cli/live/testing/x.h", '"chimera/cli/live/y.h"'), None),
+    (_tree("chimera/cli/files/x.cc", '"chimera/cli/run/y.h"'),
+     "chimera/cli/files/x.cc:1: includes chimera/cli/run/y.h: inside cli/, files does not import run"),
+    (_tree("chimera/cli/live/x_test.cc", '"chimera/cli/files/y.h"'),
+     "chimera/cli/live/x_test.cc:1: includes chimera/cli/files/y.h: inside cli/, live does not import files"),
     ({"CONTRIBUTING.md": _DRAWING.format(""), "chimera/base/x.h": "", "chimera/load/x.h": ""}, None),
     ({"CONTRIBUTING.md": _DRAWING.format(" web"), "chimera/base/x.h": "", "chimera/load/x.h": ""},
      "CONTRIBUTING.md: floor 'web' is no folder of chimera/"),

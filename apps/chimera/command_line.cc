@@ -11,13 +11,13 @@
 #include <utility>
 
 #include "apps/chimera/wrong_usage.h"
-#include "chimera/command/command_result.h"
+#include "chimera/cli/command/command_result.h"
 #include "chimera/text/nearest.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
-using command::Command;
-using command::Option;
-using command::WordKind;
+using cli::Command;
+using cli::Option;
+using cli::WordKind;
 
 /// One row as CLI11 reads it, and where it puts the words.
 struct Subcommand {
@@ -60,7 +60,7 @@ CLI::Option* add_operands(Subcommand& sub) {
     added = sub.app->add_option(operand_name(row), sub.operand, row.operand_help);
   } else {
     added = sub.app->add_option(operand_name(row), sub.operands, row.operand_help);
-    const bool is_open = row.most == command::kAnyNumber;
+    const bool is_open = row.most == cli::kAnyNumber;
     added->expected(static_cast<int>(row.least),
                     is_open ? CLI::detail::expected_max_vector_size : static_cast<int>(row.most));
   }
@@ -124,8 +124,8 @@ void fill(Subcommand& sub) {
   if (const std::string footer = footer_of(row); !footer.empty()) sub.app->footer(footer);
 }
 
-command::Call call_of(const Subcommand& sub) {
-  command::Call call{sub.row, sub.operands, {}, sub.json};
+cli::Call call_of(const Subcommand& sub) {
+  cli::Call call{sub.row, sub.operands, {}, sub.json};
   if (sub.row->most == 1 && sub.app->count(operand_name(*sub.row)) > 0) call.operands.push_back(sub.operand);
   for (const auto& [name, is_set] : sub.flags)
     if (is_set) call.options[std::string(name)] = {};
@@ -155,7 +155,7 @@ struct CommandLine::Parser {
   }
 };
 
-CommandLine::CommandLine(command::Table table, const std::string& documents) : parser_(std::make_unique<Parser>()) {
+CommandLine::CommandLine(cli::Table table, const std::string& documents) : parser_(std::make_unique<Parser>()) {
   CLI::App& app = parser_->app;
   app.require_subcommand(1);
   app.footer("`chimera COMMAND --help` has an example. Documents and examples: " + documents);
@@ -170,7 +170,7 @@ CommandLine::CommandLine(command::Table table, const std::string& documents) : p
 
 CommandLine::~CommandLine() = default;
 
-std::optional<command::Call> CommandLine::read(int argc, char** argv) {
+std::optional<cli::Call> CommandLine::read(int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* one : parser_->app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(one->get_name());
@@ -178,7 +178,7 @@ std::optional<command::Call> CommandLine::read(int argc, char** argv) {
     const std::string near = nearest(argv[1], names);
     const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
     std::fprintf(stderr, "no command '%s'%s; `chimera --help` lists them\n", argv[1], hint.c_str());
-    return exit_code_ = command::kUsage, std::nullopt;
+    return exit_code_ = cli::kUsage, std::nullopt;
   }
   try {
     parser_->app.parse(argc, argv);

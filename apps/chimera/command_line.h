@@ -6,17 +6,17 @@
 #include <optional>
 #include <string>
 
-#include "chimera/command/command.h"
+#include "chimera/cli/command/command.h"
 
 /// Context: setup.
 class CommandLine {
  public:
   /// `documents` is where docs/ and examples/ are: the help ends with it.
-  CommandLine(chimera::command::Table table, const std::string& documents);
+  CommandLine(chimera::cli::Table table, const std::string& documents);
   ~CommandLine();
   /// Reads what was typed. Nothing when there is nothing to carry out: the help or a fault was printed, and
   /// exit_code() is that of the program.
-  std::optional<chimera::command::Call> read(int argc, char** argv);
+  std::optional<chimera::cli::Call> read(int argc, char** argv);
   int exit_code() const noexcept { return exit_code_; }
 
  private:

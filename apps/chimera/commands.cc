@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "chimera/shell/carry_out.h"
-#include "chimera/shell/commands.h"
+#include "chimera/cli/live/carry_out.h"
+#include "chimera/cli/live/commands.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
 
@@ -25,20 +25,20 @@ const FileCommand& the_shell() {
 
 }  // namespace
 
-command::Table all_commands() {
-  static const std::vector<const command::Command*> kTable = [] {
-    std::vector<const command::Command*> table;
+cli::Table all_commands() {
+  static const std::vector<const cli::Command*> kTable = [] {
+    std::vector<const cli::Command*> table;
     for (const FileCommand& row : file_commands()) table.push_back(&row.words);
-    for (const shell::RunningCommand& row : shell::running_commands()) table.push_back(&row.words);
+    for (const cli::RunningCommand& row : cli::running_commands()) table.push_back(&row.words);
     table.push_back(&the_shell().words);  // which takes those before it
     return table;
   }();
   return kTable;
 }
 
-int carry_out(const command::Call& call, const desk::Workplace& workplace) {
+int carry_out(const cli::Call& call, const cli::Workplace& workplace) {
   if (call.command == &the_shell().words) return the_shell().carry_out(call, workplace);
   for (const FileCommand& row : file_commands())
     if (&row.words == call.command) return row.carry_out(call, workplace);
-  return shell::carry_out({call.value("--subsystem"), workplace.unit_files}, call, stdout, stderr);
+  return cli::carry_out({call.value("--subsystem"), workplace.unit_files}, call, stdout, stderr);
 }

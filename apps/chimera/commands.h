@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every command of `chimera`: those on files, each a row with the function that carries it out, and those on a running
-// subsystem (chimera/shell/commands.h).
+// subsystem (chimera/cli/live/commands.h).
 #pragma once
 
 #include <vector>
 
-#include "chimera/command/command.h"
-#include "chimera/desk/workplace.h"
+#include "chimera/cli/command/command.h"
+#include "chimera/cli/files/workplace.h"
 
 /// A command that needs no running subsystem. Plain value.
 struct FileCommand {
-  chimera::command::Command words;
+  chimera::cli::Command words;
   /// Returns the exit code; nullptr: the command is nothing without one of its own commands.
-  int (*carry_out)(const chimera::command::Call& call, const chimera::desk::Workplace& workplace) = nullptr;
+  int (*carry_out)(const chimera::cli::Call& call, const chimera::cli::Workplace& workplace) = nullptr;
 };
 
 /// The rows of one file each. Context of all: setup.
@@ -32,6 +32,6 @@ FileCommand shell_row();
 FileCommand pages_row();
 
 /// All rows in the order of `chimera --help`.
-chimera::command::Table all_commands();
+chimera::cli::Table all_commands();
 /// Carries out a call of any of them. Returns the exit code; may block.
-int carry_out(const chimera::command::Call& call, const chimera::desk::Workplace& workplace);
+int carry_out(const chimera::cli::Call& call, const chimera::cli::Workplace& workplace);

@@ -4,50 +4,50 @@
 
 #include "apps/chimera/commands.h"
 #include "apps/chimera/option_values.h"
-#include "chimera/desk/check.h"
-#include "chimera/desk/list.h"
-#include "chimera/desk/new.h"
-#include "chimera/desk/schedule.h"
+#include "chimera/cli/files/check.h"
+#include "chimera/cli/files/list.h"
+#include "chimera/cli/files/new.h"
+#include "chimera/cli/files/schedule.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
-using command::Call;
-using command::WordKind;
+using cli::Call;
+using cli::WordKind;
 
 namespace {
 
-int check(const Call& call, const desk::Workplace& workplace) {
-  return print(desk::check({call.operand(0), call.json, call.value("--graph"), settings_of(call)}, workplace));
+int check(const Call& call, const cli::Workplace& workplace) {
+  return print(cli::check({call.operand(0), call.json, call.value("--graph"), settings_of(call)}, workplace));
 }
 
-int schedule(const Call& call, const desk::Workplace& workplace) {
-  return print(desk::schedule({.file = call.operand(0),
-                               .profile = call.value("--profile"),
-                               .svg = call.value("--svg"),
-                               .dispatch = call.value("--dispatch"),
-                               .json = call.json,
-                               .settings = settings_of(call)},
-                              workplace));
+int schedule(const Call& call, const cli::Workplace& workplace) {
+  return print(cli::schedule({.file = call.operand(0),
+                              .profile = call.value("--profile"),
+                              .svg = call.value("--svg"),
+                              .dispatch = call.value("--dispatch"),
+                              .json = call.json,
+                              .settings = settings_of(call)},
+                             workplace));
 }
 
-int list(const Call& call, const desk::Workplace& workplace) { return print(desk::list(workplace, call.json)); }
+int list(const Call& call, const cli::Workplace& workplace) { return print(cli::list(workplace, call.json)); }
 
-int describe(const Call& call, const desk::Workplace& workplace) {
-  return print(desk::describe_component(call.operand(0), workplace, call.json));
+int describe(const Call& call, const cli::Workplace& workplace) {
+  return print(cli::describe_component(call.operand(0), workplace, call.json));
 }
 
-int make(desk::NewKind kind, const Call& call) {
-  return print(desk::new_project({.kind = kind, .name = call.operand(0)}, desk::program_path()));
+int make(cli::NewKind kind, const Call& call) {
+  return print(cli::new_project({.kind = kind, .name = call.operand(0)}, cli::program_path()));
 }
 
-int new_component(const Call& call, const desk::Workplace&) {
-  using desk::NewKind;
+int new_component(const Call& call, const cli::Workplace&) {
+  using cli::NewKind;
   return make(call.has("--c")          ? NewKind::kComponentInC
               : call.has("--hardware") ? NewKind::kHardwareComponent
                                        : NewKind::kComponent,
               call);
 }
 
-int new_application(const Call& call, const desk::Workplace&) { return make(desk::NewKind::kApplication, call); }
+int new_application(const Call& call, const cli::Workplace&) { return make(cli::NewKind::kApplication, call); }
 
 }  // namespace
 

@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <charconv>
 
-#include "chimera/desk/output.h"
-#include "chimera/desk/run_plan.h"
+#include "chimera/cli/files/file_refusal.h"
+#include "chimera/cli/run/run_plan.h"
 #include "chimera/keeper/keeper.h"
-#include "chimera/platform/socket_place.h"
 #include "chimera/load/descriptor.h"
 #include "chimera/manager/bundle.h"
 #include "chimera/platform/cpu_claim.h"
@@ -18,6 +17,7 @@
 #include "chimera/platform/limits.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/socket_folder.h"
+#include "chimera/platform/socket_place.h"
 #include "chimera/platform/standard_output.h"
 #include "chimera/runtime/application_image.h"
 
@@ -25,7 +25,7 @@ namespace {
 
 using namespace chimera;  // NOLINT: a main() of this project
 
-Result<FrozenBytes> make_image(const desk::RunPlan& plan, const RunSettings& settings) {
+Result<FrozenBytes> make_image(const cli::RunPlan& plan, const RunSettings& settings) {
   std::vector<ComponentPlace> places;
   for (const ConfiguredTask& task : plan.configuration.tasks()) {
     const LibraryEntry* entry = plan.library.find(task.component);
@@ -35,7 +35,7 @@ Result<FrozenBytes> make_image(const desk::RunPlan& plan, const RunSettings& set
   return FrozenBytes::create("chimera-image", encode(plan.configuration.spec(), places, settings));
 }
 
-Result<FrozenBytes> make_bundle(const KeepRequest& request, const desk::RunPlan& plan) {
+Result<FrozenBytes> make_bundle(const KeepRequest& request, const cli::RunPlan& plan) {
   const manager::Bundle bundle{CHIMERA_VERSION,       request.run.file,        plan.description, request.observe_group,
                                request.operate_group, request.configure_group, plan.library,     request.run.settings};
   const std::string text = encode(bundle);
@@ -43,7 +43,7 @@ Result<FrozenBytes> make_bundle(const KeepRequest& request, const desk::RunPlan&
 }
 
 /// One claim for each CPU on which tasks run at real-time priorities; none when this user gets no such priority.
-Result<std::vector<CpuClaim>> claim_cpus(const desk::RunPlan& plan, int priority) {
+Result<std::vector<CpuClaim>> claim_cpus(const cli::RunPlan& plan, int priority) {
   std::vector<CpuClaim> claims;
   if (priority == 0 || !may_be_realtime(priority)) return claims;
   std::vector<std::uint32_t> cpus;
@@ -64,22 +64,22 @@ std::string exact(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::vector<std::string> face_of(const KeepRequest& request, const desk::RunPlan& plan, const std::string& socket) {
-  std::vector<std::string> words = {desk::program_path(), "attend", "--socket=" + socket,
+std::vector<std::string> face_of(const KeepRequest& request, const cli::RunPlan& plan, const std::string& socket) {
+  std::vector<std::string> words = {cli::program_path(), "attend", "--socket=" + socket,
                                     "--parent=" + std::to_string(::getpid())};
   words.insert(words.end(), request.face.begin(), request.face.end());
-  for (const desk::Expectation& expectation : plan.expectations)
+  for (const cli::Expectation& expectation : plan.expectations)
     words.push_back("--bound=" + exact(expectation.bound()));
   return words;
 }
 
 /// Beside this program.
 std::string sibling(const char* name) {
-  const std::string mine = desk::program_path();
+  const std::string mine = cli::program_path();
   return mine.substr(0, mine.rfind('/') + 1) + name;
 }
 
-Result<int> keep(const KeepRequest& request, const desk::RunPlan& plan) {
+Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
   RunSettings settings;
   settings.priority = request.run.priority;
   const auto claims = claim_cpus(plan, request.run.priority);
@@ -105,7 +105,7 @@ Result<int> keep(const KeepRequest& request, const desk::RunPlan& plan) {
   const int code = keeper.run();
   if (!keeper.output_is_lost()) return code;
   loss_is_told();
-  return std::max(code, desk::kRefused);
+  return std::max(code, cli::kRefused);
 }
 
 Result<int> keep_nothing(const std::string& subsystem, const Library& library) {
@@ -138,18 +138,18 @@ Result<int> keep_nothing(const std::string& subsystem, const Library& library) {
 
 }  // namespace
 
-int keep_idle(const std::string& subsystem, const desk::Workplace& workplace) {
-  if (auto may = may_share_memory_here(); !may) return desk::refuse_run({}, may.error(), stdout, stderr);
+int keep_idle(const std::string& subsystem, const cli::Workplace& workplace) {
+  if (auto may = may_share_memory_here(); !may) return cli::refuse_run({}, may.error(), stdout, stderr);
   const auto library = workplace.library();
   const auto code = library ? keep_nothing(subsystem, *library) : Result<int>(library.error());
-  return code ? *code : desk::refuse_run({}, code.error(), stdout, stderr);
+  return code ? *code : cli::refuse_run({}, code.error(), stdout, stderr);
 }
 
-int keep(const KeepRequest& request, const desk::Workplace& workplace) {
-  if (auto may = may_share_memory_here(); !may) return desk::refuse_run(request.run, may.error(), stdout, stderr);
-  int wrong = desk::kRefused;
-  const auto plan = desk::plan_run(request.run, workplace, stdout, stderr, &wrong);
+int keep(const KeepRequest& request, const cli::Workplace& workplace) {
+  if (auto may = may_share_memory_here(); !may) return cli::refuse_run(request.run, may.error(), stdout, stderr);
+  int wrong = cli::kRefused;
+  const auto plan = cli::plan_run(request.run, workplace, stdout, stderr, &wrong);
   if (!plan) return wrong;
   const auto code = keep(request, *plan);
-  return code ? *code : desk::refuse_run(request.run, code.error(), stdout, stderr);
+  return code ? *code : cli::refuse_run(request.run, code.error(), stdout, stderr);
 }

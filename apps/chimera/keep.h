@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "chimera/desk/run.h"
-#include "chimera/desk/workplace.h"
+#include "chimera/cli/files/workplace.h"
+#include "chimera/cli/run/run.h"
 
 /// What the keeper needs to know beside the request.
 struct KeepRequest {
-  chimera::desk::RunRequest run;
+  chimera::cli::RunRequest run;
   std::vector<std::string> face;  ///< the arguments of `chimera attend` that stand on the command line of `run`
   std::optional<std::uint32_t> observe_group, operate_group, configure_group;
 };
 
 /// Answers the exit code of the run. Context: setup, the first thread; blocks for the duration.
-int keep(const KeepRequest& request, const chimera::desk::Workplace& workplace);
+int keep(const KeepRequest& request, const chimera::cli::Workplace& workplace);
 
 /// A subsystem of that name with nothing loaded: serves `check`, `schedule` and `library` to editors until it is ended.
-int keep_idle(const std::string& subsystem, const chimera::desk::Workplace& workplace);
+int keep_idle(const std::string& subsystem, const chimera::cli::Workplace& workplace);

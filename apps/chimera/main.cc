@@ -11,8 +11,8 @@
 
 #include "apps/chimera/command_line.h"
 #include "apps/chimera/commands.h"
-#include "chimera/command/command_result.h"
-#include "chimera/desk/output.h"
+#include "chimera/cli/command/command_result.h"
+#include "chimera/cli/files/file_refusal.h"
 #include "chimera/platform/limits.h"
 #include "chimera/platform/standard_output.h"
 
@@ -42,11 +42,11 @@ bool memory_is_limited() {
     tell_defect();
   }
   std::fprintf(stderr, "chimera: %s\n", why);
-  ::_exit(command::kRefused);
+  ::_exit(cli::kRefused);
 }
 
 int run_program(int argc, char** argv) {
-  const desk::Workplace workplace = desk::Workplace::around(desk::program_path());
+  const cli::Workplace workplace = cli::Workplace::around(cli::program_path());
   CommandLine line(all_commands(), workplace.documents);
   const auto call = line.read(argc, argv);
   if (!call) return line.exit_code();
@@ -59,8 +59,8 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   hold_standard_streams();
   if (const auto may = may_run_here(); !may) {
-    std::fputs(desk::error_line(may.error()).c_str(), stderr);
-    return command::kRefused;
+    std::fputs(cli::error_line(may.error()).c_str(), stderr);
+    return cli::kRefused;
   }
   tell_defect = std::set_terminate(give_up);
   return report_lost_output(run_program(argc, argv));

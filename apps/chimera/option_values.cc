@@ -7,22 +7,22 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "chimera/desk/run.h"
+#include "chimera/cli/run/run.h"
 #include "chimera/units/quantity.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
 
-command::Option set_option(const char* manual) {
+cli::Option set_option(const char* manual) {
   return {.name = "--set",
           .value = "VAR VALUE",
           .help =
               "this value instead of the file's; VAR is an operator variable, a constant, or TASK.CONSTANT; may be "
               "repeated",
           .manual = manual,
-          .repeats = command::Option::Repeats::kOneEach};
+          .repeats = cli::Option::Repeats::kOneEach};
 }
 
-std::vector<Setting> settings_of(const command::Call& call) {
+std::vector<Setting> settings_of(const cli::Call& call) {
   const std::vector<std::string> words = call.values("--set");
   std::vector<Setting> settings;
   for (std::size_t i = 0; i + 1 < words.size(); i += 2)
@@ -30,7 +30,7 @@ std::vector<Setting> settings_of(const command::Call& call) {
   return settings;
 }
 
-bool read_duration(const command::Call& call, const char* option, Nanoseconds& to) {
+bool read_duration(const cli::Call& call, const char* option, Nanoseconds& to) {
   const std::string text = call.value(option);
   if (text.empty()) return true;
   const auto value = parse_duration(text);
@@ -39,7 +39,7 @@ bool read_duration(const command::Call& call, const char* option, Nanoseconds& t
   return false;
 }
 
-bool read_seed(const command::Call& call, std::optional<std::uint64_t>& to) {
+bool read_seed(const cli::Call& call, std::optional<std::uint64_t>& to) {
   const std::string text = call.value("--seed");
   if (text.empty()) return true;
   char* end = nullptr;
@@ -50,9 +50,9 @@ bool read_seed(const command::Call& call, std::optional<std::uint64_t>& to) {
   return false;
 }
 
-int print(const command::CommandResult& result) { return command::print(result, stdout, stderr); }
+int print(const cli::CommandResult& result) { return cli::print(result, stdout, stderr); }
 
 void stop_run_at_signals() {
-  std::signal(SIGINT, [](int) { desk::request_stop(); });
-  std::signal(SIGTERM, [](int) { desk::request_stop(); });
+  std::signal(SIGINT, [](int) { cli::request_stop(); });
+  std::signal(SIGTERM, [](int) { cli::request_stop(); });
 }

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "chimera/desk/run.h"
+#include "chimera/cli/run/run.h"
 
 /// Context: setup thread.
-class RecordFiles final : public chimera::desk::RecordSink {
+class RecordFiles final : public chimera::cli::RecordSink {
  public:
   /// `trace` empty: no file; `unit` 0: no timeline.
   RecordFiles(const std::string& trace, chimera::Nanoseconds unit, chimera::Nanoseconds duration);

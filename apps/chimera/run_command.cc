@@ -12,22 +12,22 @@
 #include "apps/chimera/option_values.h"
 #include "apps/chimera/record_files.h"
 #include "chimera/analysis/recorded_profile.h"
-#include "chimera/desk/attend.h"
-#include "chimera/desk/outlet.h"
-#include "chimera/desk/output.h"
-#include "chimera/desk/own_process.h"
-#include "chimera/desk/run_plan.h"
+#include "chimera/cli/files/file_refusal.h"
+#include "chimera/cli/run/attend.h"
+#include "chimera/cli/run/outlet.h"
+#include "chimera/cli/run/own_process.h"
+#include "chimera/cli/run/run_plan.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/platform/standard_output.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
-using command::Call;
-using command::kRefused;
-using command::kUsage;
-using command::Option;
-using command::WordKind;
-using Repeats = command::Option::Repeats;
+using cli::Call;
+using cli::kRefused;
+using cli::kUsage;
+using cli::Option;
+using cli::WordKind;
+using Repeats = cli::Option::Repeats;
 
 namespace {
 
@@ -158,7 +158,7 @@ bool may_save(const std::string& path) {
 
 /// A run as asked for, and the unit of its timeline.
 struct AskedRun {
-  desk::RunRequest run;
+  cli::RunRequest run;
   Nanoseconds unit;
 
   /// What both commands know. False when it cannot be read, which was printed then.
@@ -216,7 +216,7 @@ constexpr Nanoseconds kStartLimit = seconds(10);  // of a run that has an end
 constexpr Nanoseconds kLastLines = milliseconds(500);
 
 int print_refusal(const Error& error) {
-  std::fputs(desk::error_line(error).c_str(), stderr);
+  std::fputs(cli::error_line(error).c_str(), stderr);
   return kRefused;
 }
 
@@ -234,7 +234,7 @@ int with_records(const Call& call, const AskedRun& asked, std::FILE* out, Body b
   return files.finish(out, stderr) ? code : kRefused;
 }
 
-int run(const Call& call, const desk::Workplace& workplace) {
+int run(const Call& call, const cli::Workplace& workplace) {
   AskedRun asked;
   KeepRequest kept;
   if (!asked.read(call) || !read_group(call, "--observe-group", kept.observe_group) ||
@@ -250,13 +250,13 @@ int run(const Call& call, const desk::Workplace& workplace) {
   stop_run_at_signals();
   const auto body = [&] {
     return with_records(call, asked, stdout,
-                        [&](desk::RecordSink* sink) { return desk::run(asked.run, workplace, sink, stdout, stderr); });
+                        [&](cli::RecordSink* sink) { return cli::run(asked.run, workplace, sink, stdout, stderr); });
   };
-  return desk::in_own_process(
-      body, [&](const desk::BrokenRun& broken) { return desk::tell_broken(asked.run, broken, stdout, stderr); });
+  return cli::in_own_process(
+      body, [&](const cli::BrokenRun& broken) { return cli::tell_broken(asked.run, broken, stdout, stderr); });
 }
 
-int idle(const Call& call, const desk::Workplace& workplace) {
+int idle(const Call& call, const cli::Workplace& workplace) {
   return keep_idle(call.has("--subsystem") ? call.value("--subsystem") : "idle", workplace);
 }
 
@@ -267,8 +267,8 @@ std::vector<double> bounds_of(const Call& call) {
   return bounds;
 }
 
-int attend(const Call& call, const desk::Workplace&) {
-  std::signal(SIGTERM, [](int) { desk::request_stop(); });
+int attend(const Call& call, const cli::Workplace&) {
+  std::signal(SIGTERM, [](int) { cli::request_stop(); });
   sigset_t held;  // by the keeper, until somebody listens
   ::sigemptyset(&held);
   ::sigaddset(&held, SIGTERM);
@@ -283,11 +283,11 @@ int attend(const Call& call, const desk::Workplace&) {
   const auto page = SharedPages::open(kFacePageDescriptor, sizeof(FacePage));
   if (!page) return print_refusal(page.error());
   auto& done = *reinterpret_cast<FacePage*>(page->bytes().data());
-  desk::Outlet outlet(STDOUT_FILENO);
+  cli::Outlet outlet(STDOUT_FILENO);
   if (outlet.stream() == nullptr) return print_refusal({ErrorCode::kSystem, {"no memory to print"}, {}});
-  const int code = with_records(call, asked, outlet.stream(), [&](desk::RecordSink* sink) {
-    return desk::attend({call.value("--socket"), asked.run, bounds, parent, &done, &outlet}, sink, outlet.stream(),
-                        stderr);
+  const int code = with_records(call, asked, outlet.stream(), [&](cli::RecordSink* sink) {
+    return cli::attend({call.value("--socket"), asked.run, bounds, parent, &done, &outlet}, sink, outlet.stream(),
+                       stderr);
   });
   outlet.finish(kLastLines);  // of --timeline
   if (const int why = outlet.why_lost(); why != 0 && done.lost_output == 0)

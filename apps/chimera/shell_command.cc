@@ -5,31 +5,30 @@
 #include "apps/chimera/commands.h"
 #include "apps/chimera/option_values.h"
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/command/page.h"
-#include "chimera/desk/output.h"
-#include "chimera/shell/commands.h"
-#include "chimera/shell/interactive.h"
+#include "chimera/cli/command/page.h"
+#include "chimera/cli/files/file_refusal.h"
+#include "chimera/cli/live/commands.h"
+#include "chimera/cli/live/interactive.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
-using command::Call;
-using command::WordKind;
+using cli::Call;
+using cli::WordKind;
 
 namespace {
 
-int shell_of(const Call& call, const desk::Workplace& workplace) {
-  return shell::interactive({call.value("--subsystem"), workplace.unit_files}, call.operand(0),
-                            call.has("--keep-going"));
+int shell_of(const Call& call, const cli::Workplace& workplace) {
+  return cli::interactive({call.value("--subsystem"), workplace.unit_files}, call.operand(0), call.has("--keep-going"));
 }
 
 constexpr std::size_t kMostBytesOfPage = 1 << 20;
 
-int pages(const Call& call, const desk::Workplace&) {
+int pages(const Call& call, const cli::Workplace&) {
   const auto text = read_ordinary(call.operand(0), kMostBytesOfPage);
-  if (!text) return print(desk::refused(text.error(), false));
-  const auto made = command::page(*text, all_commands());
-  if (!made) return print(desk::refused(made.error(), false));
+  if (!text) return print(cli::file_refusal(text.error(), false));
+  const auto made = cli::page(*text, all_commands());
+  if (!made) return print(cli::file_refusal(made.error(), false));
   std::fputs(made->c_str(), stdout);
-  return command::kOk;
+  return cli::kOk;
 }
 
 }  // namespace
@@ -47,7 +46,7 @@ FileCommand shell_row() {
                                            "and its line is named.",
                                  .letter = "-k"}},
                     .json = nullptr,
-                    .which = shell::kWhichOne,
+                    .which = cli::kWhichOne,
                     .example = "chimera shell --subsystem puma_pid",
                     .manual = "Takes the commands above one after the other: typed, with history and completion of "
                               "commands, tasks, variables and configurations, or from a script, one command a line. "
@@ -63,7 +62,7 @@ FileCommand pages_row() {
                     .least = 1,
                     .most = 1,
                     .operand_kind = WordKind::kFile,
-                    .operand_help = "chimera/command/page.h",
+                    .operand_help = "chimera/cli/command/page.h",
                     .json = nullptr,
                     .is_hidden = true},
           .carry_out = pages};

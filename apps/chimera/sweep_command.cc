@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `chimera sweep`: a description in virtual time over lists of values.
-#include "chimera/desk/sweep.h"
+#include "chimera/cli/batch/sweep.h"
 
 #include <cstdio>
 
@@ -8,15 +8,15 @@
 #include "apps/chimera/option_values.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
-using command::Call;
-using command::kUsage;
-using command::WordKind;
-using Repeats = command::Option::Repeats;
+using cli::Call;
+using cli::kUsage;
+using cli::WordKind;
+using Repeats = cli::Option::Repeats;
 
 namespace {
 
-int sweep(const Call& call, const desk::Workplace& workplace) {
-  desk::SweepRequest request;
+int sweep(const Call& call, const cli::Workplace& workplace) {
+  cli::SweepRequest request;
   request.over = call.values("--over");
   request.limit = seconds(600);
   request.csv = call.value("--csv");
@@ -25,7 +25,7 @@ int sweep(const Call& call, const desk::Workplace& workplace) {
   request.each.measures = call.values("--measure");
   request.each.expect = call.values("--expect");
   read_number(call, "--jobs", request.jobs);
-  desk::RunRequest& run = request.each.run;
+  cli::RunRequest& run = request.each.run;
   run.file = call.operand(0);
   run.at = call.values("--at");
   run.preemptive = call.has("--preemptive");
@@ -40,10 +40,10 @@ int sweep(const Call& call, const desk::Workplace& workplace) {
   run.virtual_time = true;
   run.settings = settings_of(call);
   stop_run_at_signals();
-  return desk::sweep(request, workplace, stdout, stderr);
+  return cli::sweep(request, workplace, stdout, stderr);
 }
 
-std::vector<command::Option> swept_options() {
+std::vector<cli::Option> swept_options() {
   return {
       {.name = "--over",
        .value = "LIST",
@@ -74,7 +74,7 @@ std::vector<command::Option> swept_options() {
       set_option("This value in every run, as of `run`.")};
 }
 
-std::vector<command::Option> run_options() {
+std::vector<cli::Option> run_options() {
   return {{.name = "--at",
            .value = "ACT",
            .help = "a timed act of every run, as of `run`; may be repeated",
@@ -115,9 +115,9 @@ std::vector<command::Option> run_options() {
            .kind = WordKind::kFile}};
 }
 
-std::vector<command::Option> sweep_options() {
-  std::vector<command::Option> options = swept_options();
-  for (const command::Option& option : run_options()) options.push_back(option);
+std::vector<cli::Option> sweep_options() {
+  std::vector<cli::Option> options = swept_options();
+  for (const cli::Option& option : run_options()) options.push_back(option);
   return options;
 }
 

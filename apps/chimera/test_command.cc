@@ -6,44 +6,44 @@
 
 #include "apps/chimera/commands.h"
 #include "apps/chimera/option_values.h"
-#include "chimera/desk/test_application.h"
-#include "chimera/desk/test_component.h"
+#include "chimera/cli/batch/test_application.h"
+#include "chimera/cli/batch/test_component.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
-using command::Call;
-using command::kUsage;
-using command::WordKind;
-using Repeats = command::Option::Repeats;
+using cli::Call;
+using cli::kUsage;
+using cli::WordKind;
+using Repeats = cli::Option::Repeats;
 
 namespace {
 
 int usage(const std::string& what) { return print({"", "chimera test: " + what + "\n", kUsage}); }
 
-int test_cases(const Call& call, const desk::Workplace& workplace) {
-  desk::CasesRequest request{.places = call.operands,
-                             .only = call.values("--case"),
-                             .limit = seconds(600),
-                             .junit = call.value("--junit"),
-                             .json = call.json};
+int test_cases(const Call& call, const cli::Workplace& workplace) {
+  cli::CasesRequest request{.places = call.operands,
+                            .only = call.values("--case"),
+                            .limit = seconds(600),
+                            .junit = call.value("--junit"),
+                            .json = call.json};
   read_number(call, "--jobs", request.jobs);
   if (!read_duration(call, "--limit", request.limit)) return kUsage;
   stop_run_at_signals();
-  return desk::test_application(request, workplace, stdout, stderr);
+  return cli::test_application(request, workplace, stdout, stderr);
 }
 
-int test_components(const Call& call, const desk::Workplace& workplace) {
-  desk::TestOptions options{.components = call.operands,
-                            .all = call.has("--all"),
-                            .setup = call.value("--setup"),
-                            .inputs = call.value("--inputs"),
-                            .names = call.values("--names"),
-                            .json = call.json};
+int test_components(const Call& call, const cli::Workplace& workplace) {
+  cli::TestOptions options{.components = call.operands,
+                           .all = call.has("--all"),
+                           .setup = call.value("--setup"),
+                           .inputs = call.value("--inputs"),
+                           .names = call.values("--names"),
+                           .json = call.json};
   read_number(call, "--seed", options.seed);
   read_number(call, "--cycles", options.cycles);
-  return print(desk::test_components(options, workplace));
+  return print(cli::test_components(options, workplace));
 }
 
-int test(const Call& call, const desk::Workplace& workplace) {
+int test(const Call& call, const cli::Workplace& workplace) {
   const auto is_given = [&call](std::initializer_list<const char*> options) {
     return std::any_of(options.begin(), options.end(), [&call](const char* option) { return call.has(option); });
   };
@@ -52,7 +52,7 @@ int test(const Call& call, const desk::Workplace& workplace) {
   const auto library = workplace.library();
   const auto places =
       library ? std::count_if(what.begin(), what.end(),
-                              [&](const std::string& word) { return desk::is_place_of_cases(word, *library); })
+                              [&](const std::string& word) { return cli::is_place_of_cases(word, *library); })
               : 0;
   if (places == 0) {
     if (is_given({"--case", "--junit", "--jobs", "--limit"}))
@@ -65,7 +65,7 @@ int test(const Call& call, const desk::Workplace& workplace) {
   return test_cases(call, workplace);
 }
 
-std::vector<command::Option> test_options() {
+std::vector<cli::Option> test_options() {
   return {
       {.name = "--all", .help = "every installed component", .excludes = "WHAT"},
       {.name = "--setup",
@@ -120,7 +120,7 @@ FileCommand test_row() {
       .words = {.name = "test",
                 .help = "Test components alone, or the applications of a folder, in virtual time",
                 .operands = "[WHAT...]",
-                .most = command::kAnyNumber,
+                .most = cli::kAnyNumber,
                 .operand_kind = WordKind::kTestable,
                 .operand_help = "a component, the path of a shared object, a folder with NAME.cases.yaml, or such a "
                                 "file",

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/desk/output.h"
+#include "chimera/cli/files/file_refusal.h"
 #include "chimera/platform/standard_output.h"
 #include "chimera/text/nearest.h"
 
@@ -90,5 +90,5 @@ int tell_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc
   }
   text += example_of(command) + "`" + name_of(command) + " --help` tells more\n";
   std::fputs(text.c_str(), stderr);
-  return desk::kUsage;
+  return cli::kUsage;
 }

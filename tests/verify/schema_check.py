@@ -52,7 +52,7 @@ def main():
     cases = json.loads((ROOT / "docs/formats/cases.schema.json").read_text())
     jsonschema.Draft7Validator.check_schema(cases)
     known = cases["definitions"]["case"]["properties"]
-    header = (ROOT / "chimera/desk/case_file.h").read_text()
+    header = (ROOT / "chimera/cli/batch/case_file.h").read_text()
     for name, properties in (("kCaseFileKeys", cases["properties"]), ("kCaseKeys", known)):
         faults += [f"{name}: {key} is in the reader or in the schema only"
                    for key in sorted(set(array(header, name)) ^ set(properties))]

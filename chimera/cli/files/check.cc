@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads and verifies a description and prints its verdict, its order of tasks, or its picture.
+#include "chimera/cli/files/check.h"
+
+#include <cstdio>
+
+#include "chimera/cli/files/graph_of.h"
+#include "chimera/draw/graph.h"
+
+namespace chimera::cli {
+namespace {
+
+std::string count(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+std::string order_text(const Configuration& configuration, const ConfiguredSet& set) {
+  std::string text;
+  for (TaskId id : set.order) text += (text.empty() ? "" : " -> ") + configuration.tasks()[id.index].name;
+  return text;
+}
+
+}  // namespace
+
+std::string verdict_text(const Configuration& configuration) {
+  std::size_t states = 0, constants = 0;
+  for (const ConfiguredVariable& variable : configuration.variables()) ++(variable.is_constant ? constants : states);
+  std::string text = configuration.subsystem() + ": legal. " + count(configuration.tasks().size(), "task", "tasks") +
+                     ", " + count(states, "state variable", "state variables") + ", " +
+                     count(constants, "constant", "constants") + ", " +
+                     count(configuration.sets().size(), "configuration", "configurations") + "\n";
+  for (std::size_t s = 0; s < configuration.sets().size(); ++s) {
+    const ConfiguredSet& set = configuration.sets()[s];
+    text +=
+        "  " + set.name + (s == configuration.start() ? " (start): " : ": ") + order_text(configuration, set) + "\n";
+  }
+  const auto loads = configuration.utilisation();
+  for (std::size_t r = 0; r < loads.size(); ++r) {
+    char line[160];
+    const RtpuSpec& rtpu = configuration.rtpus()[r];
+    if (loads[r] > 0)
+      std::snprintf(line, sizeof line, "  rtpu %.*s on cpu %u: budgets take %.3f of at most 0.93\n",
+                    static_cast<int>(rtpu.name.size()), rtpu.name.data(), rtpu.cpu, loads[r]);
+    else
+      std::snprintf(line, sizeof line, "  rtpu %.*s on cpu %u: no budgets stated, so the load is not judged\n",
+                    static_cast<int>(rtpu.name.size()), rtpu.name.data(), rtpu.cpu);
+    text += line;
+  }
+  return text;
+}
+
+CommandResult check(const CheckOptions& options, const Workplace& workplace) {
+  const auto library = workplace.library();
+  if (!library) return file_refusal(library.error(), options.json);
+  Verdict verdict = verify(read_description_file(options.file), *library);
+  if (verdict.configuration) {
+    auto set = with_settings(*verdict.configuration, *library, options.settings);
+    if (!set) return file_refusal(set.error(), options.json);
+    verdict.configuration = *std::move(set);
+    verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
+  }
+  CommandResult output;
+  output.code = verdict.report.is_legal() ? kOk : kRefused;
+  if (options.json) {
+    output.out = verdict.report.json() + "\n";
+    return output;
+  }
+  output.err = verdict.report.text();
+  if (!verdict.report.is_legal()) {
+    output.err += count(verdict.report.errors(), "error", "errors") + "\n";
+    return output;
+  }
+  if (options.graph.empty()) {
+    output.out = verdict_text(*verdict.configuration);
+    return output;
+  }
+  const draw::Graph graph = graph_of(*verdict.configuration);
+  output.out = options.graph == "dot"   ? draw::dot(graph)
+               : options.graph == "svg" ? draw::svg(graph)
+                                        : draw::text(graph);
+  return output;
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/cli/files/schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "chimera/analysis/recorded_profile.h"
+#include "chimera/cli/files/testing/test_place.h"
+#include "chimera/text/time_text.h"
+
+namespace chimera::cli {
+namespace {
+
+const std::string kTwo =
+    "subsystem: two\n"
+    "rtpus: {fast: {cpu: 0, policy: rm}, spare: {cpu: 1}}\n"
+    "tasks:\n"
+    "  a: {component: t_counter, rate: 100 Hz, budget: 2 ms, rtpu: fast, alias: {count: a_count}}\n"
+    "  b: {component: t_counter, rate: 20 Hz, budget: 9 ms, rtpu: fast, alias: {count: b_count, dt: b_dt, now: b_now,\n"
+    "      deadline: b_deadline, cycles: b_cycles, dropped: b_dropped, illegal: b_illegal}}\n";
+
+CommandResult scheduled(const std::string& text, const std::string& dispatch, const std::string& profile = "") {
+  const TestFile file(text);
+  return schedule({file.path(), profile, "", dispatch, false}, test_place());
+}
+
+TEST(Schedule, TellsThatEverythingFits) {
+  const CommandResult output = scheduled(kTwo, "preemptive");
+  EXPECT_EQ(output.code, kOk) << output.err;
+  EXPECT_EQ(output.out,
+            "two: configuration 'all' (start), preemptive\n"
+            "CPU 0: rtpu fast, rm; load 0.380 of at most 0.93; rate monotonic bound 0.828, "
+            "product of (1 + load) 1.416, enough up to 2\n"
+            "  task  rtpu  crit.  time         period  deadline  response  blocked  copies  deadline is\n"
+            "  a     fast  low    2 ms budget  10 ms   10 ms     2 ms      -        -       kept\n"
+            "  b     fast  low    9 ms budget  50 ms   50 ms     13 ms     -        -       kept\n"
+            "  fits: every task keeps its deadline, also with all times 2.44 times as long as stated\n"
+            "  worst window, a letter for 500 us:\n"
+            "       0  AAAABBBBBBBBBBBBBBBBAAAABB\n"
+            "          A = a\n"
+            "          B = b\n"
+            "          . = nobody\n");
+}
+
+TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
+  const CommandResult output = scheduled(kTwo, "executive");
+  EXPECT_EQ(output.code, kRefused);
+  EXPECT_NE(output.out.find("  a     fast  low    2 ms budget  10 ms   10 ms     at most 11 ms  9 ms     -       "
+                            "NOT KEPT\n"),
+            std::string::npos)
+      << output.out;
+  EXPECT_NE(output.out.find("  does not fit\n  guaranteed: b\n  not guaranteed: a\n  first to give way: b\n"
+                            "  would fit: rtpu 'fast' with executor: preemptive\n"
+                            "         or: task 'a' at rate: 90.9 Hz\n         or: task 'b' on rtpu: spare\n"
+                            "         or: all times 0.909 times as long as stated\n"),
+            std::string::npos)
+      << output.out;
+}
+
+TEST(Schedule, ASetThatTakesMoreThanThereIsIsAnalysedAndToldWhatFits) {
+  std::string text = kTwo;
+  text.replace(text.find("budget: 9 ms"), 12, "budget: 45 ms");
+  const CommandResult output = scheduled(text, "preemptive");
+  EXPECT_EQ(output.code, kRefused);
+  EXPECT_NE(output.err.find("warning: the budgets of configuration 'all' take 1.100 of CPU 0; expected at most 0.93 "
+                            "[utilisation]\n  task 'b' takes most: it would fit with budget: 36.5 ms or rate: "
+                            "16.2 Hz\n"),
+            std::string::npos)
+      << output.err;
+  EXPECT_NE(output.out.find("  does not fit\n  guaranteed: a\n  not guaranteed: b\n"), std::string::npos)
+      << output.out;
+  EXPECT_NE(output.out.find("  would fit: task 'b' at rate: 16.2 Hz\n"), std::string::npos) << output.out;
+}
+
+struct Line {
+  std::string name, rtpu, criticality, rate;
+  int budget_us = 0;
+};
+
+constexpr const char* kOutputs[] = {"count", "dt", "now", "deadline", "cycles", "dropped", "illegal"};
+
+std::string description(const std::string& rtpus, const std::vector<Line>& lines) {
+  std::string text = "subsystem: s\nrtpus: {" + rtpus + "}\ntasks:\n";
+  for (const Line& line : lines) {
+    text += "  " + line.name + ": {component: t_counter, rtpu: " + line.rtpu + ", criticality: " + line.criticality +
+            ", rate: " + line.rate + " Hz, budget: " + std::to_string(line.budget_us) + " us, alias: {";
+    for (const char* output : kOutputs) text += std::string(output) + ": " + line.name + output + ", ";
+    text += "}}\n";
+  }
+  return text;
+}
+
+nlohmann::json analysed(const std::string& text) {
+  const TestFile file(text);
+  return nlohmann::json::parse(schedule({file.path(), "", "", "", true}, test_place()).out);
+}
+
+/// CPU 0 as the analysis sees it after the change.
+nlohmann::json changed(const std::string& rtpus, std::vector<Line> lines, const nlohmann::json& remedy) {
+  std::string all = rtpus;
+  if (remedy.contains("executor")) all.replace(all.find("executive"), 9, "preemptive");
+  for (Line& line : lines) {
+    if (line.name != remedy.value("task", "")) continue;
+    if (remedy.contains("rate_hz")) line.rate = remedy["rate_hz"].dump();
+    if (remedy.contains("criticality")) line.criticality = remedy["criticality"];
+    if (!remedy.contains("rtpu")) continue;
+    line.rtpu = remedy["rtpu"].is_null() ? "new" : remedy["rtpu"];
+    if (remedy["rtpu"].is_null()) all += ", new: {cpu: 7}";
+  }
+  const nlohmann::json said = analysed(description(all, lines));
+  return said.contains("sets") ? said["sets"][0]["cpus"][0] : said;
+}
+
+std::vector<Line> random_lines(std::mt19937& random) {
+  constexpr int kPeriodsMs[] = {2, 4, 5, 10, 20};
+  constexpr const char* kCriticalities[] = {"low", "medium", "high"};
+  std::vector<Line> lines;
+  for (int i = 0; i < 4; ++i) {
+    const int ms = kPeriodsMs[random() % 5];
+    lines.push_back({"t" + std::to_string(i), i == 3 ? "b" : "a", kCriticalities[random() % 3],
+                     std::to_string(1000 / ms), ms * (150 + static_cast<int>(random() % 200))});
+  }
+  return lines;
+}
+
+// What is said to fit is tried: the changed description is analysed again.
+TEST(Schedule, ItsAdviceIsTrue) {
+  std::mt19937 random(3);
+  std::map<std::string, int> tried;
+  for (int run = 0; run < 40; ++run) {
+    const std::vector<Line> lines = random_lines(random);
+    const std::string policy = run % 4 == 0 ? "rm" : run % 4 == 1 ? "edf" : "muf";
+    const std::string executor = run % 8 < 4 ? "preemptive" : "executive";
+    const std::string rtpus = "a: {cpu: 0, policy: " + policy + ", executor: " + executor + "}, b: {cpu: 1}";
+    const nlohmann::json said = analysed(description(rtpus, lines));
+    ASSERT_TRUE(said.contains("sets")) << said;
+    for (const nlohmann::json& remedy : said["sets"][0]["cpus"][0]["remedies"]) {
+      const nlohmann::json cpu = changed(rtpus, lines, remedy);
+      const bool is_lower = remedy.value("criticality", "") == "low";
+      ++tried[is_lower ? "lower" : remedy.items().begin().key()];
+      ASSERT_TRUE(cpu.contains("fits")) << remedy << cpu;
+      EXPECT_TRUE(is_lower || cpu["fits"]) << remedy << description(rtpus, lines);
+      for (const auto& task : cpu["tasks"])
+        EXPECT_TRUE(task["guarantee"] == "yes" || task["task"] == remedy.value("task", "")) << cpu;
+    }
+    const double scale = said["sets"][0]["cpus"][0]["scale"];
+    std::vector<Line> scaled = lines;
+    for (Line& line : scaled) line.budget_us = static_cast<int>(line.budget_us * scale);
+    const nlohmann::json other = analysed(description(rtpus, scaled))["sets"][0]["cpus"][0];
+    EXPECT_TRUE(other["fits"]) << scale << description(rtpus, lines);
+    EXPECT_EQ(scale >= 1, said["sets"][0]["cpus"][0]["fits"]) << scale;
+  }
+  for (const char* kind : {"executor", "rate_hz", "rtpu", "criticality", "lower"}) EXPECT_GT(tried[kind], 0) << kind;
+}
+
+TEST(Schedule, ASetAtTheVeryLimitFitsWithNoTimeToSpare) {
+  const std::string rtpus = "r: {policy: edf, executor: preemptive}";
+  const auto said = [&](int budget_us) {
+    return scheduled(description(rtpus, {{"a", "r", "low", "100", 4300}, {"b", "r", "low", "50", budget_us}}), "");
+  };
+  EXPECT_EQ(said(10000).code, kOk);  // 0.43 + 0.5 = 0.93
+  EXPECT_NE(said(10000).out.find("  fits: every task keeps its deadline, with no time to spare\n"), std::string::npos);
+  EXPECT_EQ(said(10001).code, kRefused);
+}
+
+TEST(Schedule, AMoreCriticalTaskIsNeverSaidToGiveWayToALessCriticalOne) {
+  const std::vector<Line> lines = {{"a", "r", "high", "166.6666667", 2000}, {"b", "r", "high", "100", 2000},
+                                   {"c", "r", "high", "83.33333333", 3000}, {"d", "r", "low", "66.66666667", 2000}};
+  const nlohmann::json said = analysed(description("r: {policy: muf, executor: preemptive}", lines));
+  const nlohmann::json remedies = said["sets"][0]["cpus"][0]["remedies"];
+  EXPECT_EQ(remedies.back(), nlohmann::json({{"task", "d"}, {"criticality", "high"}})) << remedies;
+}
+
+// `b`, the most critical, lifts its rtpu above the other one: once it has moved, `a` would come second and miss.
+TEST(Schedule, WhoMovesTakesTheBandOfItsRtpuAlong) {
+  const std::vector<Line> lines = {{"a", "second", "low", "200", 1500}, {"b", "second", "high", "20", 6000},
+                                   {"c", "first", "low", "20", 4000}};
+  const nlohmann::json said = analysed(description("first: {policy: rm}, second: {policy: rm}", lines));
+  const nlohmann::json remedies = said["sets"][0]["cpus"][0]["remedies"];
+  EXPECT_EQ(remedies.back(), nlohmann::json({{"task", "a"}, {"rtpu", nullptr}})) << remedies;
+}
+
+TEST(Schedule, JudgesEachUnitAsTheDescriptionHasIt) {
+  std::string text = kTwo;
+  text.replace(text.find("policy: rm"), 10, "policy: rm, executor: preemptive");
+  const CommandResult mixed = scheduled(text, "");
+  EXPECT_EQ(mixed.code, kOk) << mixed.err;
+  EXPECT_TRUE(mixed.out.starts_with("two: configuration 'all' (start), preemptive in fast; in the other rtpus a job "
+                                    "that runs is not taken off\n"))
+      << mixed.out;
+  EXPECT_EQ(scheduled(kTwo, "").out, scheduled(kTwo, "executive").out);
+}
+
+TEST(Schedule, TakesTimesFromAProfileAndSaysWhich) {
+  RecordedProfile profile{"two", {{"a", 10, milliseconds(1), milliseconds(1), milliseconds(1), {}},
+                                  {"gone", 10, milliseconds(1), milliseconds(1), milliseconds(1), {}}}};
+  const TestFile file(to_json(profile));
+  const CommandResult output = scheduled(kTwo, "preemptive", file.path());
+  EXPECT_EQ(output.code, kOk);
+  EXPECT_NE(output.out.find("  a     fast  low    1 ms profile  10 ms"), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("  b     fast  low    9 ms budget   50 ms"), std::string::npos) << output.out;
+  EXPECT_TRUE(output.err.ends_with("note: the profile has a task 'gone' that is not there\n"
+                                   "note: few cycles were measured: a 10; the longest of few is no bound\n"))
+      << output.err;
+}
+
+TEST(Schedule, TellsWhatAProfileSaysOfTheBudgets) {
+  RecordedProfile profile{"other", {{"a", 1000, milliseconds(3), milliseconds(1), milliseconds(1), {}}}};
+  const TestFile file(to_json(profile));
+  const std::string said = scheduled(kTwo, "preemptive", file.path()).err;
+  EXPECT_TRUE(said.ends_with(
+      "note: the profile was recorded of subsystem 'other': tasks of the same name have their times from it\n"
+      "note: task 'a' was seen to take 3 ms, more than its budget of 2 ms\n"))
+      << said;
+}
+
+TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
+  const CommandResult output = scheduled("subsystem: s\ntasks:\n  a: {component: t_counter}\n", "");
+  EXPECT_EQ(output.code, kOk);
+  EXPECT_NE(output.out.find("  no budget given for a: ignored in this proof; write 'budget:', or record one: "
+                            "chimera profile --save FILE, then --profile FILE\n"),
+            std::string::npos)
+      << output.out;
+  EXPECT_NE(output.out.find("  nothing to judge: no task has a time\n"), std::string::npos) << output.out;
+}
+
+TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {
+  const std::string text = description("r: {policy: rm, executor: preemptive}",
+                                       {{"a", "r", "low", "1000", 10}, {"b", "r", "low", "1", 300000}});
+  const CommandResult output = scheduled(text, "");
+  EXPECT_NE(output.out.find("\n          B = b\n          . = nobody\n          too short to be seen here: a\n"),
+            std::string::npos)
+      << output.out;
+}
+
+TEST(Schedule, RefusesWhatIsNotLegalAsCheckDoes) {
+  const CommandResult output = scheduled("subsystem: s\ntasks:\n  a: {component: nothing}\n", "");
+  EXPECT_EQ(output.code, kRefused);
+  EXPECT_EQ(output.out, "");
+  EXPECT_NE(output.err.find("nothing"), std::string::npos);
+}
+
+TEST(Schedule, RefusesAProfileThatIsNone) {
+  const TestFile file("{}");
+  const CommandResult output = scheduled(kTwo, "", file.path());
+  EXPECT_EQ(output.code, kRefused);
+  EXPECT_EQ(output.err, file.path() + ": error: is no recorded profile: $: the key \"version\" is missing; "
+                                        "`chimera profile --save FILE` writes one\n");
+}
+
+TEST(TimeText, WritesTimesAsPeopleDo) {
+  EXPECT_EQ(time_text(Nanoseconds{999}), "999 ns");
+  EXPECT_EQ(time_text(microseconds(1500)), "1.5 ms");
+  EXPECT_EQ(time_text(seconds(2)), "2 s");
+}
+
+}  // namespace
+}  // namespace chimera::cli

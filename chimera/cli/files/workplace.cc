@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the installed components, units and templates from the place of the program and from the environment.
+#include "chimera/cli/files/workplace.h"
+
+#include <filesystem>
+
+#include "chimera/units/unit_system.h"
+
+namespace chimera::cli {
+
+Workplace Workplace::around(const std::string& program) {
+  const std::string folder = program.substr(0, program.rfind('/'));
+  const std::string prefix = folder.substr(0, folder.rfind('/'));
+  const std::vector<std::string> installed = {prefix + "/components", prefix + "/lib/chimera/components"};
+  Workplace made;
+  made.component_folders = chimera::component_folders(installed);
+  made.unit_files = {prefix + "/share/chimera/units.xml", prefix + "/../../share/chimera/units.xml"};
+  made.documents = prefix + "/share/chimera";
+  const std::filesystem::path checkout = std::filesystem::path(prefix).parent_path().parent_path();
+  if (std::filesystem::is_directory(checkout / "docs/formats")) made.documents = checkout.string();
+  return made;
+}
+
+Result<Library> Workplace::library() const {
+  auto units = UnitSystem::load(unit_files);
+  if (!units) return units.error();
+  return Library::make(component_folders, *std::move(units));
+}
+
+Error no_component(const std::string& name, const Library& library) {
+  for (const Error& fault : library.faults())
+    if (fault.where.view().ends_with("/" + name + ".component.json"))
+      return {fault.code, {std::string(fault.message.view()) + ". Rebuild the component."}, fault.where};
+  const std::string nearest = library.nearest_name(name);
+  std::string message = "no component '" + name + "' is installed";
+  if (library.is_unbuilt(name))
+    message = "the component '" + name + "' is not built: run './dev install' in the checkout";
+  else if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";
+  else message += "; `chimera list` names those that are, CHIMERA_PATH says where to look";
+  return {ErrorCode::kNotFound, {message}, {}};
+}
+
+std::string program_path() {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::string("chimera") : path.string();
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the commands find what is installed: components, units, templates.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/base/result.h"
+#include "chimera/catalogue/library.h"
+
+namespace chimera::cli {
+
+/// Folders and files, in the order in which they are searched. Context: setup.
+struct Workplace {
+  std::vector<std::string> component_folders;
+  std::vector<std::string> unit_files;
+  std::string documents{};  ///< where docs/ and examples/ are, which messages name
+
+  /// What belongs to the program at `program` (its own path): CHIMERA_PATH first, then the tree that it was built
+  /// or installed in (../components, ../lib/chimera/components; ../share/chimera/units.xml, or the source's).
+  static Workplace around(const std::string& program);
+  /// All installed components. Refuses when there is no unit file. May block.
+  Result<Library> library() const;
+};
+
+/// That no component of this name is installed, with the nearest one that is. Context: setup.
+Error no_component(const std::string& name, const Library& library);
+
+/// The path of the running program. Context: setup.
+std::string program_path();
+
+}  // namespace chimera::cli

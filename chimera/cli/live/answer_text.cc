@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes answers of the manager as sentences and tables.
+#include "chimera/cli/live/answer_text.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "chimera/base/hosted/terminal_text.h"
+#include "chimera/cli/live/columns.h"
+#include "chimera/cli/live/fields.h"
+#include "chimera/cli/live/figures.h"
+#include "chimera/cli/live/status_text.h"
+
+namespace chimera::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string origin_text(const Json& reading) {
+  const std::string producer = text_of(reading, "producer"), state = text_of(reading, "state");
+  std::string text = producer.empty() ? "no producer" : producer;
+  if (!state.empty() && state != "ON") text += " is " + state;
+  if (whole_of(reading, "sequence") > 0)
+    if (const auto age = whole_or_none(reading, "age_ns")) text += ", " + duration_text(*age) + " ago";
+  return text;
+}
+
+std::string producer_of(const Json& link) {
+  const std::string producer = text_of(link, "producer"), component = text_of(link, "component");
+  if (producer.empty()) return "nobody";
+  return component.empty() || component == producer ? producer : producer + " (" + component + ")";
+}
+
+bool is_well(const Json& link) { return text_of(link, "verdict") == "ok"; }
+
+std::string age_of(const Json& link) {
+  return truth_of(link, "valid") && whole_of(link, "published_ns") > 0 ? duration_text(whole_or_none(link, "age_ns"))
+                                                                        : "-";
+}
+
+/// Who, when, from what: the head of `why`.
+std::string why_head(const Json& link) {
+  std::string text = text_of(link, "variable") + " = " + text_of(link, "value") + "\n";
+  text += "  produced by  " + producer_of(link);
+  if (const std::string rtpu = text_of(link, "rtpu"); !rtpu.empty()) text += " on " + rtpu;
+  if (text_of(link, "producer") != "operator") text += ", " + text_of(link, "state");
+  text += "\n  published    " + (age_of(link) == "-" ? "never" : age_of(link) + " ago");
+  if (const std::int64_t period = whole_of(link, "period_ns"); period > 0) text += ", every " + duration_text(period);
+  std::string inputs;
+  for (const std::string& input : texts_of(link, "inputs")) inputs += (inputs.empty() ? "" : ", ") + input;
+  if (const std::string timing = text_of(link, "timing"); !timing.empty()) text += "\n  in time      " + timing;
+  return text + "\n  from         " + (inputs.empty() ? "no inputs" : inputs) + "\n";
+}
+
+}  // namespace
+
+std::string readings_text(const Json& answer) {
+  std::string text;
+  const Json& values = field(answer, "values");
+  if (!values.is_object()) return text;
+  for (const auto& [name, reading] : values.items())
+    text += plain_line(name) + " = " + text_of(reading, "text") + "  (" + origin_text(reading) + ")\n";
+  return text;
+}
+
+std::string signal_text(const Json& answer) {
+  std::string text;
+  for (const Json& task : field(answer, "tasks")) {
+    const std::string before = text_of(task, "before"), after = text_of(task, "after");
+    text += text_of(task, "task") + ": " + (before == after ? after : before + " -> " + after) +
+            (truth_of(task, "already") ? " already\n" : "\n");
+  }
+  return text;
+}
+
+std::string save_text(const Json& answer) {
+  const Json& values = field(answer, "operator");
+  if (!values.is_object() || values.empty()) return "no operator variables\n";
+  std::string text = "operator:\n";
+  for (const auto& item : values.items())
+    text += "  " + plain_line(item.key()) + ": " + text_of(values, item.key()) + "\n";
+  return text;
+}
+
+std::string ring_text(const Json& answer) {
+  std::string text;
+  for (const std::string& task : texts_of(answer, "tasks")) text += task + ": rung\n";
+  return text;
+}
+
+std::string flag_text(const Json& answer) { return flag_words(answer) + "\n"; }
+
+std::string why_text(const Json& answer, std::size_t height) {
+  const Json& chain = field(answer, "chain");
+  if (!chain.is_array() || chain.empty()) return text_of(answer, "verdict") + "\n";
+  std::vector<const Json*> links;
+  for (std::size_t i = 1; i < chain.size(); ++i) links.push_back(&chain[i]);
+  std::stable_partition(links.begin(), links.end(), [](const Json* link) { return !is_well(*link); });
+  // 4 or 5 lines of head, an empty one, the heading of the table, an empty one, the verdict.
+  const std::size_t taken = text_of(chain[0], "timing").empty() ? 9 : 10;
+  const std::size_t room = height > taken + 1 ? height - taken : 1;
+  Columns table({"ancestor", "verdict", "producer", "state", ">age", ">period", "value"});
+  for (std::size_t i = 0; i < std::min(room, links.size()); ++i) {
+    const Json& link = *links[i];
+    const std::int64_t period = whole_of(link, "period_ns");
+    table.add({std::string(static_cast<std::size_t>(std::clamp<std::int64_t>(whole_of(link, "depth"), 1, 9) - 1), ' ') +
+                   text_of(link, "variable"),
+               text_of(link, "verdict"), producer_of(link), text_of(link, "state"), age_of(link),
+               period > 0 ? duration_text(period) : "-", fitted(text_of(link, "value"), 24)});
+  }
+  std::string text = why_head(chain[0]);
+  if (!table.empty()) text += "\n" + table.text();
+  if (links.size() > room) text += "... and " + std::to_string(links.size() - room) + " more\n";
+  return text + "\n" + text_of(answer, "verdict") + "\n";
+}
+
+std::string refusal_text(const std::string& message, const Json& data) {
+  const std::string where = text_of(data, "where"), nearest = text_of(data, "nearest");
+  const std::string remedy = text_of(data, "remedy");
+  std::string text = plain_line(message);
+  const auto says = [&](const std::string& words) { return text.find(words) != std::string::npos; };
+  if (!where.empty() && !says(where)) text = where + ": " + text;
+  if (!remedy.empty() && !says(remedy)) text += "; " + remedy;
+  if (!nearest.empty() && !says("'" + nearest + "'")) text += "; did you mean '" + nearest + "'?";
+  return text;
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every other answer of docs/formats/control.md as text for people.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace chimera::cli {
+
+/// `get` and `set`: one line a variable, "kp = [100 90] N.m/rad  (operator, 1.20 s ago)". Context of all: setup.
+std::string readings_text(const nlohmann::json& answer);
+/// `signal`: "pid: ON -> OFF", one line a task.
+std::string signal_text(const nlohmann::json& answer);
+/// `save`: lines for the section `operator:` of a description.
+std::string save_text(const nlohmann::json& answer);
+/// `ring`: "lamp: rung" for each.
+std::string ring_text(const nlohmann::json& answer);
+/// `flag`: "flag up" or "flag down".
+std::string flag_text(const nlohmann::json& answer);
+/// `why` on one screen of `height` lines: who produces the variable, when, from what; then its ancestors, those in
+/// trouble before those that are well; the last line is the verdict.
+std::string why_text(const nlohmann::json& answer, std::size_t height);
+/// A refusal: "pid: the words; the remedy (did you mean 'pid'?)" from the members of an error.
+std::string refusal_text(const std::string& message, const nlohmann::json& data);
+
+}  // namespace chimera::cli

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of the commands on a running subsystem.
+#include "chimera/cli/live/commands.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "chimera/base/assert.h"
+#include "chimera/cli/live/answer_text.h"
+#include "chimera/cli/live/live.h"
+#include "chimera/cli/live/one_shot.h"
+#include "chimera/cli/live/scope_command.h"
+#include "chimera/cli/live/status_text.h"
+#include "chimera/task/signal.h"
+
+namespace chimera::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A signal to tasks: the command has the name of the signal.
+RunningCommand signal_row(Signal to_send, const char* help, const char* manual, const char* example,
+                          WordKind takes = WordKind::kTask) {
+  return {.words = {.name = signal_name(to_send),
+                    .help = help,
+                    .operands = "TASK...",
+                    .least = 1,
+                    .most = kAnyNumber,
+                    .operand_kind = takes,
+                    .example = example,
+                    .manual = manual,
+                    .is_act = true},
+          .method = "signal",
+          .once = signal};
+}
+
+RunningCommand clear_row() {
+  return signal_row(Signal::kClear, "Bring tasks from ERROR to OFF", "Brings each TASK from ERROR to OFF.",
+                    "chimera clear pid");
+}
+
+RunningCommand end_row() {
+  return {.words = {.name = "end",
+                    .help = "End the subsystem: off, kill, and every process",
+                    .example = "chimera end",
+                    .manual = "Ends the subsystem: `off` and `kill` of every task, then every process.",
+                    .is_act = true},
+          .method = "end",
+          .once = end};
+}
+
+RunningCommand events_row() {
+  return {.words = {.name = "events",
+                    .help = "What happened, numbered without a gap",
+                    .options = {{.name = "--since", .value = "N", .help = "from this number on"},
+                                {.name = "--kind",
+                                 .value = "KIND,...",
+                                 .help = "only these, such as 'set,fault'",
+                                 .manual = "Only events of these kinds, such as `set,fault`."},
+                                {.name = "--each",
+                                 .help = "a line for every event; else misses within 100 ms of each other are one",
+                                 .manual = "A line for every event. Else deadlines that are missed within 100 ms of "
+                                           "each other are one line: the tasks, the first cause, how many events, and "
+                                           "the number of the last."},
+                                {.name = "--follow", .help = "go on with what happens, until Ctrl-C"}},
+                    .example = "chimera events --follow",
+                    .manual = "Prints what happened, numbered without a gap; says how many events are gone."},
+          .method = "events",
+          .once = events,
+          .live = follow_events,
+          .live_option = "--follow"};
+}
+
+RunningCommand flag_row() {
+  return {.words = {.name = "flag",
+                    .help = "Raise or lower the operator's part of the illegal-configuration flag",
+                    .operands = "up|down",
+                    .least = 1,
+                    .most = 1,
+                    .operand_kind = WordKind::kOneOf,
+                    .operand_words = "up down",
+                    .example = "chimera flag up",
+                    .manual = "Raises or lowers the operator's part of the illegal-configuration flag. It stays up "
+                              "while anybody else raises it.",
+                    .is_act = true},
+          .method = "flag",
+          .once = flag};
+}
+
+RunningCommand get_row() {
+  return {.words = {.name = "get",
+                    .help = "Present values; without a name all",
+                    .operands = "VAR...",
+                    .most = kAnyNumber,
+                    .operand_kind = WordKind::kVariable,
+                    .options = {{.name = "--every",
+                                 .value = "TIME",
+                                 .help = "again and again, such as '1 s', until Ctrl-C"}},
+                    .example = "chimera get q kp",
+                    .manual = "Prints present values with their producer and age; without a name all."},
+          .method = "get",
+          .parameters =
+              [](const Call& call) {
+                return call.operands.empty() ? Json::object() : Json{{"variables", call.operands}};
+              },
+          .show = readings_text,
+          .live = get_every,
+          .live_option = "--every"};
+}
+
+RunningCommand kill_row() {
+  return signal_row(Signal::kKill, "End tasks: back to NOT-CREATED", "Ends tasks: back to NOT-CREATED.",
+                    "chimera kill pid");
+}
+
+RunningCommand off_row() {
+  return signal_row(Signal::kOff, "Take tasks out of service, those of one rtpu in one step",
+                    "Takes tasks out of service: those of one rtpu in one step, all or none; the rtpus one by one.",
+                    "chimera off pid arm");
+}
+
+RunningCommand on_row() {
+  return signal_row(
+      Signal::kOn, "Put tasks, or those of a configuration, into service in one step",
+      "Puts tasks into service in one step: all or none. The name of a configuration stands for its tasks.",
+      "chimera on pid arm", WordKind::kTaskOrConfiguration);
+}
+
+RunningCommand profile_row() {
+  return {
+      .words = {.name = "profile",
+                .help = "What each task costs and how punctual it is",
+                .options = {{.name = "--save",
+                             .value = "FILE",
+                             .help = "write it into this file, for `chimera schedule --profile`",
+                             .manual = "Writes it into this file instead, for `chimera schedule --profile` "
+                                       "(docs/formats/profile.md).",
+                             .kind = WordKind::kFile}},
+                .footer = "mean, max: execution time of a cycle; load: its share of the time ON; response: longest, "
+                          "release to end;\njitter: latest start minus earliest, each after its release; groups, "
+                          "bytes: copied from other rtpus or the\noperator",
+                .example = "chimera profile",
+                .manual = "Prints what each task costs and how punctual it is: mean and longest execution time of "
+                          "a cycle, the load that they are, the longest response (from release to end), the jitter "
+                          "(latest start minus earliest, each after its release), failures by kind, what is copied "
+                          "from other rtpus or the operator, the other methods, and the sums of each rtpu."},
+      .method = "profile",
+      .once = profile};
+}
+
+RunningCommand reinit_row() {
+  return signal_row(Signal::kReinit, "Have tasks read their constants anew", "Has tasks read their constants anew.",
+                    "chimera reinit pid");
+}
+
+RunningCommand ring_row() {
+  return {.words = {.name = "ring",
+                    .help = "Ring the doorbell of tasks behind a server: one event for each",
+                    .operands = "TASK...",
+                    .least = 1,
+                    .most = kAnyNumber,
+                    .operand_kind = WordKind::kTask,
+                    .example = "chimera ring lamp",
+                    .manual = "Rings the doorbell of tasks behind a server: one event for each time that one is named.",
+                    .is_act = true},
+          .method = "ring",
+          .parameters =
+              [](const Call& call) {
+                return Json{{"tasks", call.operands}};
+              },
+          .show = ring_text};
+}
+
+RunningCommand save_row() {
+  return {.words = {.name = "save",
+                    .help = "Show the operator's values in the words of the description",
+                    .options = {{.name = "--write",
+                                 .help = "write them into the description file; nothing else in it changes",
+                                 .is_act = true}},
+                    .example = "chimera save --write",
+                    .manual = "Prints the present values of the operator variables in the words of the description."},
+          .method = "save",
+          .once = save};
+}
+
+RunningCommand scope_row() {
+  return {
+      .words =
+          {.name = "scope",
+           .help = "Record everything that is published, round a trigger",
+           .operands = "VAR...",
+           .least = 1,
+           .most = kAnyNumber,
+           .operand_kind = WordKind::kVariable,
+           .options =
+               {{.name = "--trigger", .value = "EXPR", .help = "begin when this comes true, such as 'error > 2 mrad'"},
+                {.name = "--pre", .value = "TIME", .help = "keep this much from before the trigger, such as '50 ms'"},
+                {.name = "--for", .value = "TIME", .help = "how long from the trigger on ('1 s')"},
+                {.name = "--wait", .value = "TIME", .help = "how long to wait for the trigger ('60 s')"},
+                {.name = "--csv", .value = "FILE", .help = "write the rows to this file", .kind = WordKind::kFile},
+                {.name = "--svg", .value = "FILE", .help = "draw them into this file", .kind = WordKind::kFile}},
+           .example = "chimera scope q tau --trigger 'error > 2 mrad' --pre '50 ms' --for '200 ms' --svg "
+                      "scope.svg",
+           .manual = "Records everything that the producers of the variables publish. VAR is a variable, an "
+                     "element such as `q[2]` or a field such as `pose.x`. Without `--csv` and `--svg` the "
+                     "table is printed. Rows that were lost are counted in the last column and hatched in the "
+                     "picture."},
+      .method = "subscribe",
+      .once = scope};
+}
+
+RunningCommand set_row() {
+  return {.words = {.name = "set",
+                    .help = "Give an operator variable a value with its unit",
+                    .operands = "VAR VALUE",
+                    .least = 2,
+                    .most = kAnyNumber,
+                    .operand_kind = WordKind::kSetting,
+                    .example = "chimera set kp '[100 90] N.m/rad'",
+                    .manual = "Gives an operator variable a value with its unit. Values for all elements stand in "
+                              "brackets.",
+                    .is_act = true},
+          .method = "set",
+          .parameters =
+              [](const Call& call) {
+                std::string value = call.operands[1];
+                for (std::size_t i = 2; i < call.operands.size(); ++i) value += " " + call.operands[i];
+                return Json{{"values", {{call.operands[0], value}}}};
+              },
+          .show = readings_text};
+}
+
+RunningCommand spawn_row() {
+  return signal_row(Signal::kSpawn, "Create and init tasks: OFF", "Creates tasks and calls their `init`: they are OFF.",
+                    "chimera spawn pid");
+}
+
+RunningCommand status_row() {
+  return {.words = {.name = "status",
+                    .help = "Real-time units, tasks, flag",
+                    .options = {{.name = "--pid",
+                                 .value = "RTPU",
+                                 .help = "only the number of the process of this real-time unit ('keeper', 'manager': "
+                                         "of theirs)",
+                                 .manual = "Only the number of the process of this real-time unit, for `kill`; "
+                                           "`keeper` and `manager` are names, too.",
+                                 .is_act = true}},
+                    .example = "chimera status",
+                    .manual = "Prints the real-time units, the tasks and the flag."},
+          .method = "status",
+          .once = status,
+          .names_its_subsystem = true};
+}
+
+constexpr Option kEvery{.name = "--every", .value = "TIME", .help = "how often, such as '100 ms'"};
+
+RunningCommand top_row() {
+  return {
+      .words = {.name = "top",
+                .help = "The same live, on the whole screen: q ends it",
+                .options = {kEvery},
+                .footer = "EXEC: mean execution time since the last look; MAX: longest so far; USED: MAX of BUDGET; "
+                          "INPUT: age of the\noldest input",
+                .example = "chimera top",
+                .manual = "Shows the same live on the whole screen. EXEC is the mean execution time since the last "
+                          "look, MAX the longest so far, USED that of BUDGET, INPUT the age of the oldest input. A "
+                          "task that is not created has the state `none`. The keys o n e b j m a sort, the arrows "
+                          "scroll, `q` ends. Without a terminal it prints one screen."},
+      .method = "subscribe",
+      .live = top,
+      .names_its_subsystem = true};
+}
+
+RunningCommand watch_row() {
+  return {.words = {.name = "watch",
+                    .help = "Values live, with their recent course",
+                    .operands = "VAR...",
+                    .least = 1,
+                    .most = kAnyNumber,
+                    .operand_kind = WordKind::kVariable,
+                    .options = {kEvery},
+                    .example = "chimera watch q tau[2]",
+                    .manual = "Shows values live, one line each, with their recent course. Without a terminal it "
+                              "prints a line each time."},
+          .method = "subscribe",
+          .live = watch};
+}
+
+RunningCommand why_row() {
+  return {.words = {.name = "why",
+                    .help = "Where a value comes from, and what is wrong with it",
+                    .operands = "VAR",
+                    .least = 1,
+                    .most = 1,
+                    .operand_kind = WordKind::kVariable,
+                    .example = "chimera why tau",
+                    .manual = "Tells who produces a variable, when, from which inputs, and the first ancestor that is "
+                              "wrong, stale or missing."},
+          .method = "why",
+          .once = why};
+}
+
+std::vector<RunningCommand> table() {
+  std::vector<RunningCommand> rows = {clear_row(),  end_row(),  events_row(), flag_row(),    get_row(),
+                                      kill_row(),   off_row(),  on_row(),     profile_row(), reinit_row(),
+                                      ring_row(),   save_row(), scope_row(),  set_row(),     spawn_row(),
+                                      status_row(), top_row(),  watch_row(),  why_row()};
+  for (RunningCommand& row : rows) row.words.which = kWhichOne;
+  return rows;
+}
+
+}  // namespace
+
+std::span<const RunningCommand> running_commands() {
+  static const std::vector<RunningCommand> kRows = table();
+  return kRows;
+}
+
+const Command& help_words() {
+  static const Command kWords{.name = "help",
+                              .help = "This list, or more about one command",
+                              .operands = "[COMMAND]",
+                              .most = 1,
+                              .operand_kind = WordKind::kCommand,
+                              .example = "help set",
+                              .is_shells = true};
+  return kWords;
+}
+
+const Command& quit_words() {
+  static const Command kWords{
+      .name = "quit", .help = "Leave the shell; the subsystem goes on", .example = "quit", .is_shells = true};
+  return kWords;
+}
+
+Table shell_words() {
+  static const std::vector<const Command*> kWords = [] {
+    std::vector<const Command*> words = {&help_words(), &quit_words()};
+    for (const RunningCommand& row : running_commands()) words.push_back(&row.words);
+    std::ranges::sort(words, {}, [](const Command* command) { return std::string_view(command->name); });
+    return words;
+  }();
+  return kWords;
+}
+
+const RunningCommand& row_of(const Call& call) {
+  for (const RunningCommand& row : running_commands())
+    if (&row.words == call.command) return row;
+  CHIMERA_ASSERT(false);  // `help` and `quit` ask nobody
+  return running_commands().front();
+}
+
+CommandResult one_shot(Session& session, const Call& call, const Screen& screen) {
+  const RunningCommand& row = row_of(call);
+  if (row.once != nullptr) return row.once(session, call, screen);
+  return answered(session.ask(row.method, row.parameters == nullptr ? Json::object() : row.parameters(call)), call.json,
+                  row.show);
+}
+
+}  // namespace chimera::cli

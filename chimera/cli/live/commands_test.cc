@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/cli/live/commands.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "chimera/control/methods.h"
+
+namespace chimera::cli {
+namespace {
+
+Result<Call> read_call(const std::vector<std::string>& words) { return cli::read_call(shell_words(), words); }
+std::string help_text(std::string_view name = {}) { return cli::help_text(shell_words(), name); }
+
+std::string refusal(const std::vector<std::string>& words) {
+  const auto call = read_call(words);
+  return call ? "none" : std::string(call.error().message.view());
+}
+
+TEST(Command, OperandsAndOptionsComeInAnyOrder) {
+  const auto call = read_call({"scope", "--for", "1 s", "q", "--json", "tau", "--csv", "a.csv"});
+  ASSERT_TRUE(call);
+  EXPECT_EQ(call->operands, (std::vector<std::string>{"q", "tau"}));
+  EXPECT_EQ(call->value("--for"), "1 s");
+  EXPECT_EQ(call->value("--svg"), "");
+  EXPECT_TRUE(call->has("--csv"));
+  EXPECT_TRUE(call->json);
+}
+
+TEST(Command, RefusesWithTheNearestName) {
+  EXPECT_EQ(refusal({"statsu"}), "no command 'statsu'; did you mean 'status'?; `help` lists them");
+  EXPECT_EQ(refusal({"events", "--sinc", "3"}), "events has no option '--sinc'; did you mean '--since'?");
+  EXPECT_EQ(refusal({"events", "--since"}), "--since needs a value: N");
+  EXPECT_EQ(refusal({"why"}), "usage: why VAR");
+  EXPECT_EQ(refusal({"status", "x"}), "usage: status [--pid RTPU]");
+  EXPECT_EQ(refusal({"get"}), "none");
+}
+
+TEST(Command, IsTypedAgainAsItWasGiven) {
+  const auto call = read_call({"scope", "q[0]", "--for", "1 s", "--json", "--csv", "a.csv"});
+  EXPECT_EQ(cli::command_line(*call), "chimera scope 'q[0]' --csv a.csv --for '1 s' --json");
+  EXPECT_EQ(cli::command_line(*read_call({"set", "kp", "it's"})), "chimera set kp 'it'\\''s'");
+}
+
+TEST(Command, WhatChangesSomethingIsAnAct) {
+  EXPECT_TRUE(read_call({"off", "pid"})->is_act());
+  EXPECT_TRUE(read_call({"end"})->is_act());
+  EXPECT_TRUE(read_call({"save", "--write"})->is_act());
+  EXPECT_TRUE(read_call({"status", "--pid", "servo"})->is_act()) << "whoever asks for it means to signal it";
+  EXPECT_FALSE(read_call({"save"})->is_act());
+  EXPECT_FALSE(read_call({"status"})->is_act());
+  EXPECT_FALSE(read_call({"get", "q"})->is_act());
+}
+
+TEST(Command, TheTableIsInOrderAndComplete) {
+  const Table table = shell_words();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const Command& command = *table[i];
+    EXPECT_LT(i == 0 ? "" : std::string(table[i - 1]->name), command.name);
+    const std::string begins = command.is_shells ? command.name : std::string("chimera ") + command.name;
+    EXPECT_TRUE(std::string(command.example).starts_with(begins)) << command.example;
+  }
+}
+
+TEST(Command, EveryRowDoesSomethingWithAMethodOfTheProtocol) {
+  for (const RunningCommand& row : running_commands()) {
+    SCOPED_TRACE(row.words.name);
+    EXPECT_TRUE(row.once != nullptr || row.live != nullptr || row.show != nullptr);
+    const control::MethodRule* method = control::find_method(row.method);
+    ASSERT_NE(method, nullptr);
+    const bool has_act = row.words.is_act || std::ranges::any_of(row.words.options, &Option::is_act);
+    EXPECT_TRUE(has_act || method->role == control::Role::kObserve) << "asks first which subsystem it may change";
+  }
+}
+
+TEST(Command, EveryMethodOfTheProtocolHasACommand) {
+  std::set<std::string> asked = {"hello", "describe", "unsubscribe"};  // by several commands, beside their own
+  asked.insert({"check", "schedule", "library"});                      // by editors: the command line has its own
+  for (const RunningCommand& row : running_commands()) asked.insert(row.method);
+  for (const control::MethodRule& method : control::methods()) EXPECT_TRUE(asked.contains(method.name)) << method.name;
+  EXPECT_EQ(asked.size(), control::methods().size());
+}
+
+TEST(Command, ControlMdNamesEveryMethodAndEveryAct) {
+  std::ifstream file(std::string(std::getenv("CHIMERA_SOURCE")) + "/docs/formats/control.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string acts;
+  for (const RunningCommand& row : running_commands()) {
+    EXPECT_NE(text.str().find(std::string("| `") + row.method + "` |"), std::string::npos) << row.method;
+    if (row.words.is_act) acts += std::string(acts.empty() ? "" : " ") + row.words.name;
+    for (const Option& option : row.words.options) {
+      const std::string act = std::string("`") + row.words.name + " " + option.name + "`";
+      EXPECT_EQ(text.str().find(act) != std::string::npos, option.is_act) << act;
+    }
+  }
+  EXPECT_NE(text.str().find("Which words act: `" + acts + "`"), std::string::npos) << acts;
+}
+
+TEST(Command, HelpTellsUsageOptionsAndAnExample) {
+  EXPECT_EQ(help_text("events"),
+            "events [--since N] [--kind KIND,...] [--each] [--follow]\n"
+            "  What happened, numbered without a gap\n"
+            "  --since N         from this number on\n"
+            "  --kind KIND,...   only these, such as 'set,fault'\n"
+            "  --each            a line for every event; else misses within 100 ms of each other are one\n"
+            "  --follow          go on with what happens, until Ctrl-C\n"
+            "  Example: chimera events --follow\n");
+  EXPECT_EQ(help_text("nonsense"), "");
+  EXPECT_NE(help_text("top").find("INPUT: age of the\n  oldest input\n  Example: chimera top\n"), std::string::npos);
+  EXPECT_NE(help_text().find("why VAR           Where a value comes from, and what is wrong with it\n"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace chimera::cli

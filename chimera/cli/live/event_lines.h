@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Events for people: a line each; deadlines that were missed one behind the other are one line, so that what somebody
+// did between them is seen.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/base/result.h"
+
+namespace chimera::cli {
+
+/// What events can be, as docs/formats/control.md lists them.
+std::span<const std::string_view> event_kinds() noexcept;
+
+/// The words of --kind, "miss,set"; none for "". Refuses an unknown one with the nearest. Context: setup.
+Result<std::vector<std::string>> read_kinds(std::string_view text);
+
+/// Takes events in their order. Context: setup.
+class EventLines {
+ public:
+  /// Of these kinds only; none: all. `each`: a line for every event.
+  explicit EventLines(std::vector<std::string> kinds = {}, bool each = false) : kinds_(std::move(kinds)), each_(each) {}
+
+  /// The lines that `event` completes; what may go on is kept back until end().
+  std::string take(const nlohmann::json& event);
+  std::string end();
+  bool is_wanted(const nlohmann::json& event) const;
+
+ private:
+  struct Event {
+    std::int64_t number = 0, at_ns = 0, wall_ns = 0;
+    std::string kind, who, text;
+  };
+  static Event read(const nlohmann::json& event);
+  static std::string line_of(const Event& event);
+  static std::string line_of(const std::vector<Event>& incident);
+
+  std::vector<std::string> kinds_;
+  bool each_;
+  std::vector<Event> incident_;  ///< misses that have not been told
+};
+
+/// The answer of `events`, in lines; `since`: the number that was asked for.
+std::string events_text(const nlohmann::json& answer, std::int64_t since, EventLines lines = EventLines());
+
+}  // namespace chimera::cli

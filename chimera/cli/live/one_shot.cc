@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Carries out the commands that ask more than once or read their options themselves.
+#include "chimera/cli/live/one_shot.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "chimera/analysis/recorded_profile.h"
+#include "chimera/cli/live/answer_text.h"
+#include "chimera/cli/live/event_lines.h"
+#include "chimera/cli/live/fields.h"
+#include "chimera/cli/live/save_file.h"
+#include "chimera/cli/live/status_text.h"
+#include "chimera/cli/live/words.h"
+#include "chimera/text/nearest.h"
+
+namespace chimera::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+CommandResult wrong(const std::string& message, bool json) {
+  return refused(Error{ErrorCode::kBadInput, std::string_view(message), {}}, json, kUsage);
+}
+
+/// Those of `tasks` that are not ON so far.
+std::vector<std::string> still_off(Session& session, std::vector<std::string> tasks) {
+  const control::RpcResponse status = session.ask("status");
+  if (!status.is_good()) return tasks;
+  for (const Json& task : field(*status.result, "tasks"))
+    if (text_of(task, "state") == "ON") std::erase(tasks, text_of(task, "task"));
+  return tasks;
+}
+
+/// A configuration stands for those of its tasks that are not ON, unless a task has that name.
+std::vector<std::string> with_configuration(Session& session, std::vector<std::string> tasks) {
+  const control::RpcResponse described = session.ask("describe");
+  if (tasks.size() != 1 || !described.is_good()) return tasks;
+  const Names names = names_of(*described.result);
+  if (std::find(names.tasks.begin(), names.tasks.end(), tasks[0]) != names.tasks.end()) return tasks;
+  for (const Json& set : field(*described.result, "configurations"))
+    if (text_of(set, "name") == tasks[0]) return still_off(session, texts_of(set, "tasks"));
+  return tasks;
+}
+
+/// The number of one process, and nothing else: for `kill`.
+CommandResult pid(Session& session, const Call& call) {
+  const std::string name = call.value("--pid");
+  const control::RpcResponse hello = session.ask("hello"), status = session.ask("status");
+  for (const control::RpcResponse* asked : {&hello, &status})
+    if (!asked->is_good()) return refused(*asked, call.json);
+  std::map<std::string, std::int64_t> pids = {{"keeper", whole_of(*hello.result, "keeper_pid")},
+                                              {"manager", whole_of(field(*hello.result, "manager"), "pid")}};
+  for (const Json& rtpu : field(*status.result, "rtpus"))
+    pids[text_of(rtpu, "name")] = truth_of(rtpu, "alive") ? whole_of(rtpu, "pid") : 0;
+  const auto found = pids.find(name);
+  if (found != pids.end() && found->second > 0)
+    return {call.json ? Json{{"name", name}, {"pid", found->second}}.dump() + "\n"
+                      : std::to_string(found->second) + "\n", "", kOk};
+  std::vector<std::string> names;
+  for (const auto& [one, number] : pids) names.push_back(one);
+  const std::string near = nearest(name, names);
+  const std::string why = found != pids.end() ? "--pid: the process of '" + name + "' is dead"
+                                              : "--pid: no real-time unit '" + name + "'" +
+                                                    (near.empty() ? "" : "; did you mean '" + near + "'?");
+  return refused(Error{ErrorCode::kNotFound, std::string_view(why), {}}, call.json);
+}
+
+Json only(const EventLines& lines, Json answer) {
+  std::erase_if(answer["events"].get_ref<Json::array_t&>(), [&](const Json& e) { return !lines.is_wanted(e); });
+  return answer;
+}
+
+}  // namespace
+
+CommandResult signal(Session& session, const Call& call, const Screen&) {
+  std::vector<std::string> tasks = call.operands;
+  const bool takes_configuration = call.command->operand_kind == WordKind::kTaskOrConfiguration;
+  if (takes_configuration) tasks = with_configuration(session, std::move(tasks));
+  if (tasks.empty()) return {call.json ? "{\"tasks\":[]}\n" : "all of its tasks are ON\n", "", kOk};
+  return answered(session.ask("signal", {{"signal", call.command->name}, {"tasks", tasks}}), call.json, signal_text);
+}
+
+CommandResult profile(Session& session, const Call& call, const Screen&) {
+  const control::RpcResponse answer = session.ask("profile");
+  if (!call.has("--save")) return answered(answer, call.json, profile_text);
+  const control::RpcResponse hello = session.ask("hello");
+  for (const control::RpcResponse* asked : {&answer, &hello})
+    if (!asked->is_good()) return refused(*asked, call.json);
+  const auto tasks = parse_profiles(field(*answer.result, "tasks").dump(), Nanoseconds{});
+  if (!tasks) return refused(tasks.error(), call.json);
+  const std::string file = call.value("--save");
+  const auto written = write_recorded_profile(file, recorded(text_of(*hello.result, "subsystem"), *tasks));
+  if (!written) return refused(written.error(), call.json);
+  return {call.json ? Json{{"file", file}}.dump() + "\n" : file + ": written\n", "", kOk};
+}
+
+CommandResult events(Session& session, const Call& call, const Screen&) {
+  std::int64_t since = 0;
+  const std::string text = call.value("--since");
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), since);
+  if (call.has("--since") && (error != std::errc() || end != text.data() + text.size() || since < 0))
+    return wrong("--since: '" + text + "' is no number of an event", call.json);
+  const auto kinds = read_kinds(call.value("--kind"));
+  if (!kinds) return refused(kinds.error(), call.json, kUsage);
+  control::RpcResponse answer = session.ask("events", {{"since", since}});
+  const EventLines lines(kinds.value(), call.has("--each"));
+  if (call.json && answer.is_good() && !kinds->empty())
+    answer = control::RpcResponse::good(only(lines, *answer.result));
+  return answered(answer, call.json, [&](const Json& told) { return events_text(told, since, lines); });
+}
+
+CommandResult flag(Session& session, const Call& call, const Screen&) {
+  if (call.operands[0] != "up" && call.operands[0] != "down")
+    return wrong("flag: found '" + call.operands[0] + "', expected up or down", call.json);
+  return answered(session.ask("flag", {{"up", call.operands[0] == "up"}}), call.json, flag_text);
+}
+
+CommandResult status(Session& session, const Call& call, const Screen&) {
+  if (call.has("--pid")) return pid(session, call);
+  return answered(session.ask("status"), call.json, status_text);
+}
+
+CommandResult save(Session& session, const Call& call, const Screen&) {
+  return call.has("--write") ? save_to_file(session, call) : answered(session.ask("save"), call.json, save_text);
+}
+
+CommandResult why(Session& session, const Call& call, const Screen& screen) {
+  return answered(session.ask("why", {{"variable", call.operands[0]}}), call.json,
+                  [&](const Json& answer) { return why_text(answer, screen.height); });
+}
+
+CommandResult end(Session& session, const Call& call, const Screen&) {
+  control::RpcResponse answer = session.ask("end", {{"code", 0}});
+  if (answer.code == control::kNoConnection)
+    answer = control::RpcResponse::good(Json::object());  // it has ended already
+  return answered(answer, call.json, [](const Json&) { return std::string("ending\n"); });
+}
+
+CommandResult answered(const control::RpcResponse& answer, bool json,
+                       const std::function<std::string(const Json&)>& show) {
+  if (!answer.is_good()) return refused(answer, json);
+  return {json ? answer.result->dump() + "\n" : show(*answer.result), "", kOk};
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// One subsystem, asked the way commands ask: which one it is, whether an act may go to it, how long an answer may take.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chimera/cli/command/command_result.h"
+#include "chimera/control/client.h"
+#include "chimera/control/home.h"
+
+namespace chimera::cli {
+
+/// What a session needs to know of its surroundings.
+struct Surroundings {
+  std::string subsystem;                ///< as asked for; "" when the choice is clear
+  std::vector<std::string> unit_files;  ///< in the order in which they are tried
+  std::string command = {};             ///< what was typed, to be typed again: "chimera off pid"
+};
+
+/// A refusal as a command says it: the words on standard error, or {"error": {...}} on standard output.
+/// Context of all: setup.
+CommandResult refused(const control::RpcResponse& answer, bool json);
+CommandResult refused(const Error& error, bool json, int code = kRefused);
+
+/// Context: setup; calls block, never longer than their limit.
+class Session {
+ public:
+  /// Refuses as control::Client does.
+  static Result<Session> open(const Surroundings& surroundings);
+
+  control::Client& client() noexcept { return client_; }
+  const Surroundings& surroundings() const noexcept { return surroundings_; }
+  /// Did somebody name the subsystem, by option or by CHIMERA_SUBSYSTEM?
+  bool is_named() const noexcept { return is_named_; }
+  /// Asks who it is: what every command begins with. The answer of `hello`.
+  control::RpcResponse hear();
+  /// Its name, as it says itself; "" when it does not answer.
+  const std::string& subsystem();
+  /// May an act go to it? Named, or of this terminal or folder: else refused, with what is to be typed.
+  Result<void> may_act();
+  /// As control::Client::call, with the time that the method may take.
+  control::RpcResponse ask(std::string_view method);
+  control::RpcResponse ask(std::string_view method, const nlohmann::json& parameters);
+
+ private:
+  Session(control::Client client, Surroundings surroundings)
+      : client_(std::move(client)), surroundings_(std::move(surroundings)) {}
+  const control::Home& home();
+
+  control::Client client_;
+  Surroundings surroundings_;
+  bool is_named_ = false;
+  control::Home home_;
+};
+
+}  // namespace chimera::cli

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Verifies a description, loads its components, makes its tasks, and reads their variables.
+#include "chimera/cli/run/application.h"
+
+#include <algorithm>
+#include <map>
+
+#include "chimera/cli/run/under_way.h"
+#include "chimera/load/shared_object.h"
+#include "chimera/runtime/making.h"
+
+namespace chimera::cli {
+namespace {
+
+// All tasks of one component share its object: static variables of a component are its own business.
+Result<const chimera_component*> open(const LibraryEntry& entry, std::map<std::string, SharedObject>& opened) {
+  auto found = opened.find(entry.object_file);
+  if (found == opened.end()) {
+    auto object = SharedObject::open(entry.object_file);
+    if (!object) return object.error();
+    found = opened.emplace(entry.object_file, *std::move(object)).first;
+  }
+  return found->second.matching(entry.descriptor);
+}
+
+std::vector<FieldDescriptor> fields_of(const chimera_port_decl& decl) {
+  std::vector<FieldDescriptor> fields;
+  for (std::uint32_t f = 0; f < decl.n_fields; ++f) {
+    const chimera_field& field = decl.fields[f];
+    fields.push_back({field.name, field.unit, field.type, field.offset, field.count, field.size});
+  }
+  return fields;
+}
+
+}  // namespace
+
+Result<Application> Application::load(Configuration configuration, const Library& library) {
+  Application made(std::move(configuration));
+  std::map<std::string, SharedObject> opened;
+  UnderWay& told = under_way();
+  told.know(made.configuration_, library);
+  for (const ConfiguredTask& task : made.configuration_.tasks()) {
+    show_making(told.making, made.components_.size(), Making::kLoads);
+    const LibraryEntry* entry = library.find(task.component);
+    CHIMERA_ASSERT(entry != nullptr);  // verified
+    auto component = open(*entry, opened);
+    if (!component) return component.error();
+    made.components_.push_back(*component);
+  }
+  ContextPlace place;
+  place.running = &told.running;
+  place.serving = &told.serving;
+  place.making = &told.making;
+  show_made(told.making);
+  auto tasks = TaskSet::create(made.configuration_.spec(), made.components_, place);
+  if (!tasks) return tasks.error();
+  made.tasks_ = *std::move(tasks);
+  return made;
+}
+
+Result<Probe> Application::probe(const std::string& variable) const {
+  const auto found = find_variable(configuration_, variable);
+  if (!found) return found.error();
+  const auto all = tasks_->variables().all();
+  const std::size_t index = tasks_->variables().find(variable);
+  CHIMERA_ASSERT(index < all.size());  // whatever is configured is laid out
+  Probe probe;
+  probe.name = variable;
+  probe.readers = tasks_->readers_of(index);
+  probe.form.unit = (*found)->unit;
+  probe.form.is_scalar = (*found)->shape.empty();
+  const VariableView view = tasks_->view(index);
+  probe.form.count = view.count;
+  if (view.spec != nullptr) {
+    const PortOf& producer = all[index].producers[0];
+    const PortSpec& spec = *view.spec;
+    probe.form.type = spec.type;
+    probe.form.element_bytes = spec.element_bytes;
+    probe.form.fields = fields_of(components_[producer.task.index]->ports[spec.declared]);
+  } else {
+    const GivenSpec& given = configuration_.spec().operators[all[index].operator_index];
+    probe.form.type = given.type;
+    probe.form.element_bytes = given.element_bytes;
+  }
+  return probe;
+}
+
+bool Probe::read(std::vector<std::byte>& value) const {
+  std::int64_t latest = INT64_MIN;
+  bool is_valid = false;
+  std::vector<std::byte> payload;
+  for (const auto& [reader, offset, bit] : readers) {
+    chimera_slot slot;
+    payload.resize(reader.payload_bytes());
+    if (!reader.try_read(slot, payload.data()) || slot.published_ns < latest) continue;
+    latest = slot.published_ns;
+    const auto begin = payload.begin() + offset;
+    value.assign(begin, begin + form.count * form.element_bytes);
+    is_valid = ((slot.valid >> bit) & 1u) != 0;
+  }
+  return is_valid;
+}
+
+Seen Probe::look() const {
+  std::vector<std::byte> bytes;
+  if (!read(bytes)) return {};
+  return {true, value_text(form, bytes), numbers(form, bytes)};
+}
+
+}  // namespace chimera::cli

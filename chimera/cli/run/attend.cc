@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: Apache-2.0
+// A run whose tasks are in processes of their own, watched over the control protocol.
+#include "chimera/cli/run/attend.h"
+
+#include <algorithm>
+#include <csignal>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "chimera/analysis/task_profile.h"
+#include "chimera/base/hosted/terminal_text.h"
+#include "chimera/cli/files/file_refusal.h"
+#include "chimera/cli/run/control_line.h"
+#include "chimera/cli/run/expectation.h"
+#include "chimera/cli/run/not_ready.h"
+#include "chimera/cli/run/profile_report.h"
+#include "chimera/cli/run/record_line.h"
+#include "chimera/cli/run/run_report.h"
+#include "chimera/cli/run/run_session.h"
+#include "chimera/cli/run/script_text.h"
+#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/process.h"
+#include "chimera/platform/standard_output.h"
+#include "chimera/text/json_text.h"
+
+namespace chimera::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr Nanoseconds kLookEvery = milliseconds(100);  // for what has happened, and whether to stop
+constexpr Nanoseconds kStartLook = milliseconds(5);
+constexpr std::size_t kEventsAtOnce = 1000;
+constexpr Nanoseconds kLastOutput = seconds(1);  // half of what the keeper waits for a face to finish
+constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends whoever takes too long: that is not judged here
+
+std::string limit_text(Nanoseconds time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g s", to_seconds(time));
+  return text;
+}
+
+Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.get<std::int64_t>()} : kNever; }
+
+void add_numbers(const Json& value, std::vector<double>& numbers) {
+  if (value.is_number())
+    numbers.push_back(value.get<double>());
+  else if (value.is_boolean())
+    numbers.push_back(value.get<bool>() ? 1 : 0);
+  else if (value.is_null())
+    numbers.push_back(std::numeric_limits<double>::quiet_NaN());
+  else if (value.is_array())
+    for (const Json& element : value) add_numbers(element, numbers);
+}
+
+Seen seen_of(const Json& reading) {
+  Seen seen;
+  seen.is_written = reading.value("valid", false);
+  seen.text = reading.value("text", "");
+  if (seen.is_written) add_numbers(reading.value("value", Json()), seen.numbers);
+  return seen;
+}
+
+/// Tasks in processes of their own. Context: setup.
+class RemoteTarget final : public RunTarget {
+ public:
+  RemoteTarget(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err)
+      : request_(request),
+        run_(request.run),
+        sink_(sink),
+        out_(out),
+        err_(err),
+        line_(request.socket),
+        page_(request.page == nullptr ? own_page_ : *request.page),
+        is_resumed_(page_.has_begun != 0) {}
+
+  /// Refuses when the tasks will not be ON.
+  Result<void> start() override;
+  int refuse(const Error& error) override;
+  std::optional<RunEnd> advance(Nanoseconds until) override;
+  Nanoseconds now() const override { return clock_.now() - started_; }
+  Nanoseconds printed_until() const override { return is_resumed_ ? now() : Nanoseconds{}; }
+  bool shows_values_at(RunEnd end) const override { return end == RunEnd::kStopped; }
+  bool draws(Nanoseconds) override { return false; }
+  std::vector<Reading> read(const std::vector<std::string>& names) override;
+  void finish(RunReport& report) override;
+  bool is_output_complete(const RunReport& report) override;
+
+ private:
+  Result<void> know_tasks(const Json& status);
+  void print_grants(const Json& status);
+  void look_at_events();
+  void take_event(const Json& event);
+  void look_at_output();
+  void act_next();
+  void act(const TimedAct& timed);
+  std::vector<UnitFate> units_of(const Json& status) const;
+  std::vector<TaskProfile> profiles(const Json& origin);
+  std::optional<Json> await_end();
+  void judge_end(RunReport& report, const Json& status);
+  std::string since_start(Nanoseconds at) const;
+
+  const AttendRequest& request_;
+  const RunRequest& run_;
+  RecordSink* sink_;
+  std::FILE* out_;
+  std::FILE* err_;
+  ControlLine line_;
+  mutable LinuxClock clock_;
+  TaskNames names_;
+  std::vector<TimedAct> acts_;
+  std::optional<RecordLine> records_;
+  std::string grants_, refused_;
+  FacePage own_page_;  // of one that has no predecessors
+  FacePage& page_;
+  const bool is_resumed_;         // a face that died had begun
+  std::optional<Error> failure_;  // of the start
+  Nanoseconds started_ = kNever, next_look_;
+  std::uint64_t next_event_ = 0;
+  bool task_stopped_ = false;
+  std::string stopped_by_;
+  std::vector<NotOff> not_off_;
+  std::map<std::string, Nanoseconds> restarted_;  // by rtpu, the last time: maybe before the start is known
+};
+
+Result<void> RemoteTarget::start() {
+  Json last = Json::object();
+  const Nanoseconds until = run_.start_limit == kNever ? kNever : clock_.now() + run_.start_limit;
+  for (bool is_last = false; !is_last;) {
+    is_last = stop_is_requested();  // also then: it may have started long ago
+    const auto status = line_.ask("status", Json::object(), seconds(20));
+    if (!status) return status.error();
+    last = *status;
+    // What went wrong before the start comes first, also when the start was told meanwhile.
+    started_ = instant((*status)["started_ns"]);
+    look_at_events();
+    if (failure_) return *failure_;
+    if (started_ != kNever) {
+      print_grants(*status);
+      page_.has_begun = 1;
+      next_look_ = is_resumed_ ? clock_.now() : started_;
+      return know_tasks(*status);
+    }
+    if (clock_.now() >= until) {
+      const std::string why =
+          "not ON after " + limit_text(run_.start_limit) + " (--start-limit): " + not_ready(*status);
+      return Error{ErrorCode::kRefused, std::string_view(why), {}};
+    }
+    clock_.wait_until(clock_.now() + kStartLook);
+  }
+  const std::string why = "ended before its tasks were ON: " + not_ready(last);
+  return Error{ErrorCode::kRefused, std::string_view(why), {}};
+}
+
+Result<void> RemoteTarget::know_tasks(const Json& status) {
+  names_ = TaskNames::of(status);
+  auto acts = parse_script(run_.at, names_.spec());
+  if (!acts) return acts.error();
+  acts_ = *std::move(acts);
+  if (sink_ == nullptr) return {};
+  sink_->begin(names_.spec(), instant(status["origin_ns"]), kNever);
+  records_.emplace(request_.socket, names_);
+  return records_->subscribe(RecordLine::From::kOldest);
+}
+
+/// The lines of a warning behind each other.
+std::string in_one_line(const std::string& grant) {
+  std::string line;
+  for (std::size_t at = 0; at < grant.size(); ++at) {
+    const bool is_break = grant.compare(at, 3, "\n  ") == 0;
+    line += is_break ? std::string("; ") : std::string(1, grant[at]);
+    if (is_break) at += 2;
+  }
+  return line;
+}
+
+void RemoteTarget::print_grants(const Json& status) {
+  const Json& rtpus = status["rtpus"];
+  for (const Json& rtpu : rtpus) {
+    const std::string grant = for_terminal(rtpu.value("grant", ""));
+    grants_ +=
+        (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : rtpu.value("name", "") + ": ") + in_one_line(grant);
+    if (run_.json || is_resumed_) continue;
+    std::fprintf(out_, "%s%s\n", rtpus.size() == 1 ? "" : (rtpu.value("name", "") + ": ").c_str(), grant.c_str());
+  }
+  if (!run_.json && is_resumed_)
+    std::fprintf(out_, "(the process that prints this died of %s and was replaced)\n",
+                 std::string(signal_text(page_.last_signal).view()).c_str());
+  else if (!run_.json && run_.duration == kNever)
+    std::fputs("running until Ctrl-C; `chimera top` in another terminal shows the tasks\n", out_);
+  std::fflush(out_);
+}
+
+/// Before the start a task that cannot be made, or an `on` refused, is the end of it.
+void RemoteTarget::look_at_events() {
+  for (bool is_all = false; !is_all;) {
+    const auto answer = line_.ask("events", {{"since", next_event_}, {"limit", kEventsAtOnce}});
+    if (!answer) return;
+    is_all = (*answer)["events"].size() < kEventsAtOnce;
+    for (const Json& event : (*answer)["events"]) take_event(event);
+  }
+  page_.events_seen = std::max<std::uint64_t>(page_.events_seen, next_event_);
+}
+
+/// What is printed may be lost: that is told, and nothing else changes.
+void RemoteTarget::look_at_output() {
+  const int why = request_.outlet == nullptr ? 0 : request_.outlet->why_lost();
+  if (why == 0 || page_.lost_output != 0) return;
+  page_.lost_output = why;
+  std::fprintf(err_, "standard output is lost (%s): the run goes on, and its exit code is 1\n", why_lost_text(why));
+  if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR2);
+}
+
+void RemoteTarget::take_event(const Json& event) {
+  next_event_ = event["number"].get<std::uint64_t>() + 1;
+  const std::string kind = event.value("kind", ""), text = event.value("text", "");
+  const Json about = event.value("task", Json());
+  const std::string task = about.is_string() ? about.get<std::string>() : "";
+  const bool is_refusal = kind == "refused" || kind == "fault" || kind == "rtpu-given-up";
+  if (is_refusal && instant(event["at_ns"]) < started_ && !failure_)
+    failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
+  else if (kind == "refused")
+    refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
+  if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())
+    restarted_[event["rtpu"].get<std::string>()] = instant(event["at_ns"]);
+  const bool is_news = next_event_ > page_.events_seen;
+  if (kind == "note" && !run_.json && is_news) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
+  if (kind == "not-off") not_off_.push_back({task, text});
+  if (kind != "stop" || task_stopped_) return;
+  task_stopped_ = true;
+  stopped_by_ = task;
+}
+
+std::string RemoteTarget::since_start(Nanoseconds at) const {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f s", to_seconds(at - started_));
+  return text;
+}
+
+/// One that was begun by a face that died is not done twice.
+void RemoteTarget::act_next() {
+  const TimedAct& timed = acts_[page_.acts_begun++];
+  act(timed);
+  ++page_.acts_done;
+}
+
+void RemoteTarget::act(const TimedAct& timed) {
+  const ScriptAct& act = timed.act;
+  const bool is_set = act.kind == ScriptAct::Kind::kSet;
+  const bool is_signal = act.kind == ScriptAct::Kind::kSignal;
+  const std::string task = is_signal ? names_.tasks[act.task.index] : "";
+  const bool is_ring = is_signal && act.signal == Signal::kWakeup;
+  const auto answer = is_ring     ? line_.ask("ring", {{"tasks", {task}}})
+                      : is_signal ? line_.ask("signal", {{"signal", signal_name(act.signal)}, {"tasks", {task}}})
+                      : is_set    ? line_.ask("set", {{"values", {{timed.variable, timed.value}}}})
+                                  : line_.ask("flag", {{"up", act.kind == ScriptAct::Kind::kRaiseFlag}});
+  if (answer) return;
+  const std::string what = is_signal ? std::string(is_ring ? "ring" : signal_name(act.signal)) + " " + task
+                           : is_set  ? "set " + timed.variable
+                                     : "flag";
+  refused_ += "refused at " + since_start(clock_.now()) + ": " + what + ": " + answer.error().message.c_str() + "\n";
+}
+
+std::vector<Reading> RemoteTarget::read(const std::vector<std::string>& names) {
+  Json values = Json::object();
+  if (!names.empty())
+    if (const auto answer = line_.ask("get", {{"variables", names}}); answer)
+      values = answer->value("values", Json::object());
+  std::vector<Reading> readings;
+  for (const std::string& name : names) {
+    const Json reading = values.value(name, Json::object());
+    readings.push_back({seen_of(reading), reading.value("unit", "1"), reading.value("value", Json()).dump()});
+  }
+  return readings;
+}
+
+std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
+  const bool is_last = until == run_.duration;
+  const Nanoseconds end = until == kNever ? kNever : started_ + until;
+  for (;;) {
+    const std::size_t next_act = page_.acts_begun;
+    const Nanoseconds act_at = next_act < acts_.size() ? started_ + acts_[next_act].act.at : kNever;
+    const Nanoseconds next = std::min({next_look_, act_at, end});
+    while (clock_.now() < next && !stop_is_requested()) {
+      if (records_)
+        records_->take(next, *sink_);
+      else
+        clock_.wait_until(next);
+    }
+    if (stop_is_requested()) return RunEnd::kStopped;
+    if (next == act_at) act_next();
+    if (next == end && !is_last) return std::nullopt;  // the values are shown first
+    if (next == next_look_) {
+      look_at_events();
+      look_at_output();
+      next_look_ += kLookEvery;
+    }
+    if (task_stopped_) return RunEnd::kTaskStopped;
+    if (next == end) return RunEnd::kTime;
+  }
+}
+
+std::vector<UnitFate> RemoteTarget::units_of(const Json& status) const {
+  std::vector<UnitFate> units;
+  for (const Json& rtpu : status.value("rtpus", Json::array())) {
+    UnitFate unit{
+        rtpu.value("name", ""), rtpu.value("restarts", std::uint64_t{0}), kNever, rtpu.value("given_up", false), {}};
+    if (const auto at = restarted_.find(unit.name); at != restarted_.end() && started_ != kNever)
+      unit.restarted = at->second - started_;
+    units.push_back(std::move(unit));
+  }
+  return units;
+}
+
+std::vector<TaskProfile> RemoteTarget::profiles(const Json& origin) {
+  const auto answer = line_.ask("profile", Json::object());
+  if (!answer) return {};
+  const auto parsed = parse_profiles((*answer)["tasks"].dump(), instant(origin));
+  return parsed ? *parsed : std::vector<TaskProfile>();
+}
+
+bool any_lives(const Json& status) {
+  const Json rtpus = status.value("rtpus", Json::array());
+  return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return rtpu.value("alive", false); });
+}
+
+/// Has the tasks turned off and killed, and hears of everything that happens meanwhile: the status after that.
+std::optional<Json> RemoteTarget::await_end() {
+  if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR1);
+  auto after = line_.ask("status", Json::object());
+  for (const Nanoseconds until = clock_.now() + kEndLimit; after && any_lives(*after) && clock_.now() < until;) {
+    clock_.wait_until(clock_.now() + kStartLook);
+    after = line_.ask("status", Json::object());
+  }
+  look_at_events();
+  return after ? std::optional<Json>(*after) : std::nullopt;
+}
+
+/// Takes what the last methods of the tasks left: what fails there belongs to the run.
+void RemoteTarget::judge_end(RunReport& report, const Json& before) {
+  std::vector<UnitFate> units = units_of(before);
+  std::vector<std::uint64_t> faults;
+  for (const TaskProfile& task : report.profiles) faults.push_back(task.faults.count);
+  auto after = await_end();
+  const auto ended = after ? profiles(before["origin_ns"]) : std::vector<TaskProfile>();
+  for (std::size_t t = 0; t < std::min(ended.size(), report.profiles.size()); ++t) {
+    TaskProfile& task = report.profiles[t];  // cycles and misses are those up to the end of the run
+    task.faults = ended[t].faults;
+    for (const int method : {CHIMERA_OFF, CHIMERA_KILL, CHIMERA_ERROR})
+      task.profile.execution[method] = ended[t].profile.execution[method];
+  }
+  for (std::size_t r = 0; after && r < units.size(); ++r) {
+    const Json& was = before["rtpus"][r];
+    const Json end = (*after)["rtpus"][r].value("last_end", Json());
+    const bool is_new = was.value("alive", false) && end.is_string() && end != was.value("last_end", Json());
+    if (is_new && end != "ended with status 0") units[r].bad_end = end.get<std::string>();
+  }
+  report.verdict = judge_run({report.profiles, faults, units, report.is_flag_up, run_.strict, not_off_});
+  if (page_.deaths > 0)
+    report.verdict.remarks.push_back("the process that prints and ends the run died " + std::to_string(page_.deaths) +
+                                     (page_.deaths == 1 ? " time" : " times"));
+  if (const std::uint32_t lost = page_.acts_begun - page_.acts_done; lost > 0)
+    report.verdict.failures.push_back("of " + std::to_string(lost) +
+                                      " of the acts of --at it is not known whether they were done: the process that "
+                                      "asked for them died");
+  if (ended.empty() && !names_.tasks.empty())
+    report.verdict.failures.emplace_back("nobody answered at the end: how the tasks ended is not known");
+}
+
+/// What was made is turned off and killed all the same, and that is judged.
+int RemoteTarget::refuse(const Error& error) {
+  const CommandResult output = file_refusal(error, run_.json);
+  std::fputs(output.out.c_str(), out_);
+  std::fputs(output.err.c_str(), err_);
+  std::fflush(out_);
+  (void)await_end();
+  for (const NotOff& one : not_off_) std::fprintf(err_, "FAILED: %s: %s\n", one.task.c_str(), one.text.c_str());
+  return output.code;
+}
+
+void RemoteTarget::finish(RunReport& report) {
+  const auto status = line_.ask("status", Json::object());
+  if (status) report.profiles = profiles((*status)["origin_ns"]);
+  report.is_flag_up = status && status->value(Json::json_pointer("/flag/up"), false);
+  look_at_events();
+  report.subsystem = names_.subsystem;
+  report.executor = grants_;
+  report.origin = started_;
+  report.stopped_by = stopped_by_;
+  report.refused = refused_;
+  if (records_) records_->finish(*sink_);
+  judge_end(report, status ? *status : Json::object());
+}
+
+bool RemoteTarget::is_output_complete(const RunReport& report) {
+  if (request_.outlet == nullptr) return true;
+  request_.outlet->finish(kLastOutput);
+  look_at_output();
+  if (page_.lost_output != 0) std::fputs(report.verdict.text().c_str(), err_);  // what somebody must know
+  return page_.lost_output == 0;
+}
+
+}  // namespace
+
+int attend(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err) {
+  std::vector<Expectation> expectations;
+  for (std::size_t i = 0; i < request.run.expect.size(); ++i)
+    if (auto expectation = Expectation::with_bound(request.run.expect[i], request.bounds[i]); expectation)
+      expectations.push_back(*std::move(expectation));
+  RemoteTarget target(request, sink, out, err);
+  return RunSession(request.run, std::move(expectations), target, out, err).run();
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The face of one `chimera run` in real time: watches, acts at stated times, judges, prints. It is a process of its
+// own that talks the control protocol and nothing else, so a run goes on without it.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "chimera/cli/run/outlet.h"
+#include "chimera/cli/run/run.h"
+#include "chimera/runtime/face_page.h"
+
+namespace chimera::cli {
+
+struct AttendRequest {
+  std::string socket;          ///< path of the subsystem's
+  RunRequest run;              ///< of these: duration, every, watch, at, expect, json
+  std::vector<double> bounds;  ///< of run.expect, each in the unit of its variable
+  int keeper = 0;              ///< process that ends the tasks when it is told so by SIGUSR1; 0: nobody
+  FacePage* page = nullptr;    ///< what faces before this one have done; null: there was none, and none will be
+  Outlet* outlet = nullptr;    ///< of `out`: asked for losses, of which SIGUSR2 tells the keeper; may be null
+};
+
+/// Waits for the start, attends until the end of the duration or request_stop(), reports; answers the exit code of the
+/// run. What it prints may be lost: the run goes on, and the code is 1 at its end. `sink` may be null. Context: setup;
+/// blocks.
+int attend(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err);
+
+}  // namespace chimera::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run asks of its own subsystem, as results; a lost connection is control::Client's affair.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "chimera/control/client.h"
+
+namespace chimera::cli {
+
+/// Move-only. Context: setup; blocks.
+class ControlLine {
+ public:
+  /// Connects at its first question. `path` is the socket's.
+  explicit ControlLine(std::string path) : client_(control::Client::at(std::move(path))) {}
+
+  /// The result of one request within `limit`. A refusal comes with its words, its `where` as place; without an answer
+  /// the place is the socket.
+  Result<control::Json> ask(std::string_view method, const control::Json& parameters,
+                            Nanoseconds limit = control::kCallLimit);
+  /// The parameters of the next notification; nothing when none comes until `instant` (CLOCK_MONOTONIC), or when the
+  /// connection is lost: is_connected() tells.
+  std::optional<control::Json> notification(Nanoseconds instant);
+  bool is_connected() const noexcept { return client_.is_connected(); }
+
+ private:
+  control::Client client_;
+};
+
+}  // namespace chimera::cli

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parses a comparison of a variable with a bound and judges it.
+#include "chimera/cli/run/expectation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "chimera/cli/files/blanks.h"
+#include "chimera/text/nearest.h"
+#include "chimera/units/quantity.h"
+
+namespace chimera::cli {
+namespace {
+
+Error wrong_expectation(const std::string& why) { return {ErrorCode::kBadInput, std::string_view(why), {}}; }
+
+bool compare(double value, const std::string& op, double bound) {
+  if (op == "<") return value < bound;
+  if (op == "<=") return value <= bound;
+  if (op == ">") return value > bound;
+  return value >= bound;
+}
+
+// The quantity of `text`, behind the comparison.
+std::string quantity_of(const std::string& text, const std::string& op) {
+  return trimmed(text.substr(text.find_first_of("<>") + op.size()));
+}
+
+}  // namespace
+
+Result<const ConfiguredVariable*> find_variable(const Configuration& configuration, const std::string& name) {
+  std::vector<std::string> names;
+  for (const ConfiguredVariable& variable : configuration.variables()) {
+    if (variable.is_constant) continue;
+    if (variable.name == name) return &variable;
+    names.push_back(variable.name);
+  }
+  const std::string near(nearest(name, names));
+  return Error{ErrorCode::kNotFound,
+               {"no state variable '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")},
+               {configuration.file()}};
+}
+
+Result<Expectation> Expectation::with_bound(const std::string& text, double bound) {
+  const std::size_t at = text.find_first_of("<>");
+  if (at == std::string::npos) return wrong_expectation("write 'VARIABLE <= QUANTITY', with < <= > or >=");
+  Expectation made;
+  made.text_ = text;
+  made.bound_ = bound;
+  made.op_ = text.substr(at, at + 1 < text.size() && text[at + 1] == '=' ? 2 : 1);
+  made.variable_ = trimmed(text.substr(0, at));
+  if (made.variable_.size() > 2 && made.variable_.front() == '|' && made.variable_.back() == '|') {
+    made.magnitude_ = true;
+    made.variable_ = trimmed(made.variable_.substr(1, made.variable_.size() - 2));
+  }
+  return made;
+}
+
+Result<Expectation> Expectation::parse(const std::string& text, const Configuration& configuration,
+                                       const UnitSystem& units) {
+  auto made = read(text, configuration, units);
+  if (made) return made;
+  return wrong_expectation("--expect '" + text + "': " + made.error().message.c_str());
+}
+
+Result<Expectation> Expectation::read(const std::string& text, const Configuration& configuration,
+                                      const UnitSystem& units) {
+  auto made = with_bound(text, 0);
+  if (!made) return made;
+  const auto found = find_variable(configuration, made->variable_);
+  if (!found) return wrong_expectation(found.error().message.c_str());
+  const ConfiguredVariable& variable = **found;
+  constexpr std::array kNumbers = {"bool", "int32", "int64", "float32", "float64"};
+  if (std::find(kNumbers.begin(), kNumbers.end(), variable.type) == kNumbers.end())
+    return wrong_expectation(variable.name + " is not a number or a list of numbers");
+  const auto quantity = parse_quantity(quantity_of(text, made->op_), units);
+  if (!quantity) return wrong_expectation(quantity.error().message.c_str());
+  const auto unit = units.parse(variable.unit);
+  if (!unit) return wrong_expectation(unit.error().message.c_str());
+  const auto bound = value_in(*quantity, *unit, variable.unit);
+  if (!bound) return wrong_expectation(bound.error().message.c_str());
+  made->bound_ = *bound;
+  return made;
+}
+
+bool Expectation::holds(const Seen& seen, std::string& said) const {
+  said = variable_ + (seen.is_written ? " is " + seen.text : " was never written");
+  return seen.is_written && std::all_of(seen.numbers.begin(), seen.numbers.end(), [this](double value) {
+           return compare(magnitude_ ? std::fabs(value) : value, op_, bound_);
+         });
+}
+
+}  // namespace chimera::cli

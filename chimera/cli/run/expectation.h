@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run must have reached at its end, so that its exit code says whether it was good: "error <= 2 mrad".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/units/unit_system.h"
+#include "chimera/verify/configuration.h"
+
+namespace chimera::cli {
+
+/// The present value of a state variable, wherever it was looked at.
+struct Seen {
+  bool is_written = false;
+  std::string text;             ///< "27.7778 m/s"
+  std::vector<double> numbers;  ///< all of them, in the unit of the variable
+};
+
+/// The state variable of that name; refuses an unknown name with the nearest one. Context: setup.
+Result<const ConfiguredVariable*> find_variable(const Configuration& configuration, const std::string& name);
+
+/// `VARIABLE OP QUANTITY` with OP one of < <= > >=; every element of the variable must satisfy it. Around the
+/// variable may stand |bars|: the magnitude. The quantity is converted to the variable's unit.
+class Expectation {
+ public:
+  /// Refuses an unknown variable, a unit that measures something else, and what is no comparison. Context: setup.
+  static Result<Expectation> parse(const std::string& text, const Configuration& configuration,
+                                   const UnitSystem& units);
+  /// As parse(), but a refusal does not repeat `text`.
+  static Result<Expectation> read(const std::string& text, const Configuration& configuration,
+                                  const UnitSystem& units);
+  /// One that parse() has accepted elsewhere, whose bound was `bound`. Refuses what is no comparison. Context: setup.
+  static Result<Expectation> with_bound(const std::string& text, double bound);
+
+  /// True when the value satisfies it; `said` tells the value. One that was never written, or is NaN, satisfies
+  /// nothing.
+  bool holds(const Seen& seen, std::string& said) const;
+  const std::string& text() const noexcept { return text_; }
+  const std::string& variable() const noexcept { return variable_; }
+  /// In the unit of the variable.
+  double bound() const noexcept { return bound_; }
+
+ private:
+  std::string text_, variable_, op_;
+  double bound_ = 0;
+  bool magnitude_ = false;
+};
+
+}  // namespace chimera::cli

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/cli/run/not_ready.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace chimera::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+Json task(const char* name, const char* state, bool in_service) {
+  return {{"task", name}, {"component", "csv_log"}, {"rtpu", "servo"}, {"state", state}, {"in_service", in_service}};
+}
+
+Json rtpu(const char* phase, const Json& running = nullptr, bool alive = true) {
+  return {{"name", "servo"}, {"phase", phase}, {"running", running}, {"alive", alive}};
+}
+
+TEST(NotReady, NamesTheTaskAndTheMethod) {
+  EXPECT_EQ(not_ready({{"tasks", {task("wave", "OFF", false), task("log", "NOT-CREATED", true)}},
+                       {"rtpus", {rtpu("serving")}}}),
+            "log (csv_log): its `init` is under way");
+  EXPECT_EQ(not_ready({{"tasks", {task("log", "OFF", false)}}, {"rtpus", {rtpu("serving", "log.on")}}}),
+            "`log.on` is under way");
+}
+
+TEST(NotReady, NamesAProcessThatDoesNotComeUp) {
+  EXPECT_EQ(not_ready({{"tasks", {task("log", "NOT-CREATED", false)}}, {"rtpus", {rtpu("starting")}}}),
+            "real-time unit servo still makes its tasks (log): a shared object that is loaded, or a constructor, is "
+            "under way");
+  EXPECT_EQ(not_ready({{"tasks", {task("log", "NOT-CREATED", false)}}, {"rtpus", {rtpu("ended", nullptr, false)}}}),
+            "the process of real-time unit servo is dead");
+}
+
+TEST(NotReady, TellsStatesWhenNobodyStandsOut) {
+  EXPECT_EQ(not_ready({{"tasks", {task("a", "OFF", false), task("b", "ON", false)}}, {"rtpus", {rtpu("serving")}}}),
+            "a is OFF");
+  EXPECT_EQ(not_ready(Json::object()), "nothing is known of its tasks");
+}
+
+}  // namespace
+}  // namespace chimera::cli

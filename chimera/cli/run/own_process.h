@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Work that runs components, in a process of its own: whatever they do to it, somebody is left who says what it was.
+#pragma once
+
+#include <cstdio>
+#include <functional>
+#include <string>
+
+namespace chimera::cli {
+
+/// The longest that one object may take to be loaded, or one state to be constructed.
+inline constexpr int kMakingLimitSeconds = 10;
+/// The longest that `off` and `kill` may take at the end, as in real time, and any method of a run told to end.
+inline constexpr int kEndingLimitSeconds = 2;
+
+/// How a run ended that did not come to its end.
+struct BrokenRun {
+  std::string task;  ///< whose method was under way; "": none was
+  /// "the run ended by signal 11 (SIGSEGV) while it loaded /lib/gain.so, the component of task 'amp'",
+  /// "arm.off did not return within 2 s: its hardware may not be off".
+  std::string text;
+};
+
+/// Runs `work` in a child and returns its exit code; both write to the same files. When the child did not return from
+/// its work (a signal, exit() in a component, an object that is not loaded or a method that does not return in time: it
+/// is killed), `died` is told how and what was under way, and gives the code. SIGINT and SIGTERM reach the child once.
+/// Under a debugger, and when there is no memory or process, `work` runs in this process.
+/// Requires: one thread, handlers of both signals set. Context: setup; may block.
+int in_own_process(const std::function<int()>& work, const std::function<int(const BrokenRun&)>& died);
+
+/// "ended by signal 11 (SIGSEGV)", "ended with status 3", of a status of waitpid(). Context: setup.
+std::string end_text(int status);
+
+}  // namespace chimera::cli

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// A run whose tasks are in this process: in virtual time, or in real time for debugging.
+#include "chimera/cli/run/run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <utility>
+
+#include "chimera/cli/run/profile_report.h"
+#include "chimera/cli/run/progress.h"
+#include "chimera/cli/run/run_loop.h"
+#include "chimera/cli/run/run_plan.h"
+#include "chimera/cli/run/run_report.h"
+#include "chimera/cli/run/run_session.h"
+#include "chimera/cli/run/under_way.h"
+#include "chimera/cli/run/watch_plot.h"
+#include "chimera/platform/terminal.h"
+#include "chimera/runtime/tap_ring.h"
+
+namespace chimera::cli {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+
+constexpr Nanoseconds kDrainEvery = milliseconds(10);
+constexpr Nanoseconds kWatchEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
+constexpr Nanoseconds kTellEvery = seconds(3);          // of wall time
+
+/// Lines of progress, each over the one before; silent unless somebody can see them.
+class ProgressLine {
+ public:
+  ProgressLine(const RunRequest& request, std::FILE* err)
+      : all_(request.duration), err_(err), is_on_(request.virtual_time && is_terminal(::fileno(err))) {}
+
+  bool is_on() const noexcept { return is_on_; }
+  void look(Nanoseconds done) {
+    const Nanoseconds wall = spent();
+    if (wall < next_) return;
+    std::fprintf(err_, "\r%s\033[K", progress_text(done, all_, wall).c_str());
+    std::fflush(err_);
+    next_ = wall + kTellEvery;
+    has_written_ = true;
+  }
+  void wipe() {
+    if (has_written_) std::fputs("\r\033[K", err_);
+    has_written_ = false;
+  }
+
+ private:
+  Nanoseconds spent() const {
+    return Nanoseconds{std::chrono::nanoseconds(std::chrono::steady_clock::now() - begin_).count()};
+  }
+  Nanoseconds all_, next_ = kTellEvery;
+  std::FILE* err_;
+  bool is_on_;
+  bool has_written_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Tasks in this process. Context: setup.
+class LocalTarget final : public RunTarget {
+ public:
+  LocalTarget(const RunRequest& request, const RunPlan& plan, Application application, RecordSink* sink, std::FILE* out,
+              std::FILE* err)
+      : request_(request),
+        plan_(plan),
+        application_(std::move(application)),
+        sink_(sink),
+        out_(out),
+        err_(err),
+        progress_(request, err) {}
+
+  Result<void> start() override;
+  int refuse(const Error& error) override { return refuse_run(request_, error, out_, err_); }
+  std::optional<RunEnd> advance(Nanoseconds until) override;
+  Nanoseconds now() const override { return loop_->now(); }
+  bool shows_values_at(RunEnd) const override { return true; }
+  bool draws(Nanoseconds at) override;
+  std::vector<Reading> read(const std::vector<std::string>& names) override;
+  void finish(RunReport& report) override;
+  bool is_output_complete(const RunReport& report) override;
+
+ private:
+  void drain();
+  void tell_notes();
+
+  const RunRequest& request_;
+  const RunPlan& plan_;
+  Application application_;
+  RecordSink* sink_;
+  std::FILE* out_;
+  std::FILE* err_;
+  ProgressLine progress_;
+  std::unique_ptr<TapRing> ring_;
+  std::optional<Tap> tap_;
+  TapReader reader_;
+  std::unique_ptr<RunLoop> loop_;
+  Nanoseconds at_;  // to which it has come, since the start
+  std::map<std::string, Probe> probes_;
+  std::vector<Probe> drawn_;
+  WatchPlot plot_;
+  std::vector<std::uint64_t> notes_told_;  // by task
+};
+
+Result<void> LocalTarget::start() {
+  RunOptions options;
+  options.policy = followed_rtpu(plan_.configuration, request_.virtual_time).policy;
+  options.script = Script(plan_.acts);
+  options.stop = &stop_requested;
+  if (sink_ != nullptr) {
+    ring_ = std::make_unique<TapRing>();
+    options.tap = &tap_.emplace(*ring_);
+    reader_ = TapReader(*ring_);
+  }
+  loop_ = request_.virtual_time ? make_virtual_loop(application_, request_, options)
+                                : make_real_time_loop(application_, request_, options);
+  if (auto started = loop_->start(); !started) return started;
+  // Now that extents are known.
+  if (!request_.svg.empty())
+    for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
+  if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
+  if (request_.virtual_time) tell_notes();  // else the loop runs by now: they are told at the end
+  if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin(), loop_->origin());
+  return {};
+}
+
+// What components have to say beside their values, once each.
+void LocalTarget::tell_notes() {
+  const auto tasks = application_.tasks().tasks();
+  notes_told_.resize(tasks.size());
+  for (const Task& task : tasks) {
+    if (std::exchange(notes_told_[task.id.index], task.faults.notes) == task.faults.notes || request_.json) continue;
+    std::fprintf(out_, "%s\n", note_line(task.spec->name, task.faults.note).c_str());
+  }
+}
+
+void LocalTarget::drain() {
+  if (sink_ == nullptr) return;
+  TapRecord records[512];
+  for (std::size_t n; (n = reader_.read(records)) > 0;) sink_->take({records, n});
+}
+
+std::optional<RunEnd> LocalTarget::advance(Nanoseconds until) {
+  const bool looks_up = !request_.virtual_time || progress_.is_on();
+  for (;;) {
+    const Nanoseconds next_drain = sink_ == nullptr ? kNever : at_ + kDrainEvery;
+    const Nanoseconds patience = looks_up ? at_ + kWatchEvery : kNever;
+    const Nanoseconds next = std::min({until, next_drain, patience});
+    const std::optional<RunEnd> end = loop_->advance(next);
+    drain();
+    at_ = next;
+    if (progress_.is_on() && !end) progress_.look(at_);
+    if (!end && next != until) continue;
+    progress_.wipe();
+    return end;
+  }
+}
+
+bool LocalTarget::draws(Nanoseconds at) {
+  if (request_.svg.empty()) return false;
+  plot_.take(at, drawn_);
+  return true;
+}
+
+std::vector<Reading> LocalTarget::read(const std::vector<std::string>& names) {
+  std::vector<Reading> readings;
+  std::vector<std::byte> value;
+  for (const std::string& name : names) {
+    if (!probes_.contains(name)) probes_.emplace(name, *application_.probe(name));
+    const Probe& probe = probes_.at(name);
+    readings.push_back({probe.look(), probe.form.unit, probe.read(value) ? value_json(probe.form, value) : "null"});
+  }
+  return readings;
+}
+
+void LocalTarget::finish(RunReport& report) {
+  report.is_flag_up = application_.tasks().flag().is_up();
+  report.subsystem = plan_.configuration.subsystem();
+  report.executor = loop_->description();
+  report.origin = loop_->origin();
+  const std::vector<State> states = states_of(application_.tasks());
+  if (report.end == RunEnd::kTaskStopped) report.stopped_by = who_stopped(application_.tasks());
+  for (const RefusedSignal& r : loop_->refused())
+    report.refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
+  const Nanoseconds now = loop_->now();
+  std::vector<std::uint64_t> faults_before;
+  for (const Task& task : application_.tasks().tasks()) faults_before.push_back(task.faults.count);
+  under_way().running = 0;  // of the run, which is over
+  under_way().is_ending = true;
+  loop_->shut_down();
+  under_way().is_ending = false;
+  under_way().running = under_way().serving = 0;
+  // What `off` and `kill` cost, and their faults, too.
+  report.profiles = profiles_of(application_.tasks(), states, application_.configuration(), now);
+  report.verdict = judge_run({report.profiles, faults_before, {}, report.is_flag_up, request_.strict});
+  if (sink_ != nullptr) {
+    drain();
+    sink_->end(reader_.lost(), 0);
+  }
+  tell_notes();
+}
+
+bool LocalTarget::is_output_complete(const RunReport& report) {
+  if (request_.svg.empty()) return true;
+  std::ofstream file(request_.svg, std::ios::binary);
+  file << draw::svg(plot_.plot(report.subsystem));
+  if (file.flush()) return true;
+  std::fprintf(err_, "%s: cannot be written: %s\n", request_.svg.c_str(), std::strerror(errno));
+  return false;
+}
+
+}  // namespace
+
+void request_stop() noexcept { stop_requested = true; }
+
+bool stop_is_requested() noexcept { return stop_requested; }
+
+int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err) {
+  int code = kRefused;
+  const auto plan = plan_run(request, workplace, out, err, &code);
+  if (!plan) return code;
+  auto application = Application::load(plan->configuration, plan->library);
+  if (!application) return refuse_run(request, application.error(), out, err);
+  LocalTarget target(request, *plan, *std::move(application), sink, out, err);
+  return RunSession(request, plan->expectations, target, out, err).run();
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs an application in slices, by the virtual executor or by the real-time executive in this process.
+#include "chimera/cli/run/run_loop.h"
+
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/realtime.h"
+#include "chimera/runtime/executive/counter_clock.h"
+#include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/virtual/virtual_executor.h"
+
+namespace chimera::cli {
+
+const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time) {
+  const bool has_tasks = !configuration.tasks().empty();
+  return configuration.rtpus()[virtual_time && has_tasks ? configuration.tasks()[0].rtpu : 0];
+}
+
+std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
+  const std::string name(task.spec->name);
+  std::string why = task.faults.last.text;
+  if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
+  const bool is_ring = refused.signal == Signal::kWakeup;
+  if (is_ring && !task.spec->server) why = "it is not behind a server";
+  if (refused.why == Refusal::kIllegalSet) why = "the tasks ON would not be a legal set";
+  char at[32];
+  std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
+  const std::string signal = is_ring ? "ring" : signal_name(refused.signal);
+  return std::string("refused at ") + at + ": " + signal + " " + name + ": " + why + "\n";
+}
+
+std::string who_stopped(const TaskSet& tasks) {
+  for (const Task& task : tasks.tasks())
+    if ((task.spec->on_miss == OnMiss::kStop && task.profile.missed > task.profile.tolerated) ||
+        (task.spec->on_overrun == OnMiss::kStop && task.profile.overrun > 0))
+      return std::string(task.spec->name);
+  return {};
+}
+
+namespace {
+
+class VirtualLoop final : public RunLoop {
+ public:
+  VirtualLoop(Application& application, const RunRequest& request, const RunOptions& options)
+      : request_(request),
+        is_preemptive_(request.preemptive || followed_rtpu(application.configuration(), true).preemptive),
+        executor_(application.tasks(), options, {is_preemptive_, request.seed, request.quantum}) {}
+
+  Result<void> start() override { return executor_.start(); }
+  std::optional<RunEnd> advance(Nanoseconds until) override {
+    const bool last = until >= request_.duration;
+    const RunEnd end = executor_.run(last ? request_.duration : until);
+    if (end == RunEnd::kTime && !last) return std::nullopt;
+    return end;
+  }
+  Nanoseconds now() const override { return executor_.now() - executor_.origin(); }
+  Nanoseconds origin() const override { return executor_.origin(); }
+  void shut_down() override { executor_.shut_down(); }
+  std::span<const RefusedSignal> refused() const override { return executor_.refused(); }
+  std::string description() const override {
+    std::string text = is_preemptive_ ? "virtual time, preemptive" : "virtual time, non-preemptive";
+    return request_.seed ? text + ", seed " + std::to_string(*request_.seed) : text;
+  }
+
+ private:
+  const RunRequest& request_;
+  const bool is_preemptive_;
+  VirtualExecutor executor_;
+};
+
+RunOptions with_threads(RunOptions options, BackgroundWriter& writer) {
+  options.writer = &writer;
+  return options;
+}
+
+// The executive has a thread of its own; this side sleeps and looks on.
+class RealTimeLoop final : public RunLoop {
+ public:
+  RealTimeLoop(Application& application, const RunRequest& request, const RunOptions& options)
+      : request_(request), cpu_(static_cast<int>(application.configuration().rtpus()[0].cpu)), job_clock_(clock_),
+        executive_(application.tasks(), clock_, job_clock_, with_threads(options, application.background_writer())) {
+    const auto rtpus = application.configuration().rtpus();
+    if (rtpus.size() > 1)
+      grant_ =
+          "one process: all tasks in one loop, on the CPU and by the policy of '" + std::string(rtpus[0].name) + "'; ";
+  }
+  ~RealTimeLoop() override {
+    if (thread_.joinable()) thread_.join();
+  }
+
+  Result<void> start() override {
+    std::promise<Result<void>> started;
+    auto answer = started.get_future();
+    thread_ = std::thread([this, &started] {
+      const RealtimeRequest wanted{request_.priority, cpu_, true};
+      grant_ += enter_realtime(wanted).report.c_str();
+      const Result<void> result = executive_.start();
+      started.set_value(result);
+      ended_.set_value(result ? executive_.run(request_.duration) : RunEnd::kStopped);
+    });
+    return answer.get();
+  }
+  std::optional<RunEnd> advance(Nanoseconds until) override {
+    const auto wait = std::chrono::nanoseconds((until - now()).count);
+    if (end_.wait_for(wait) == std::future_status::timeout) return std::nullopt;
+    ran_ = now();
+    thread_.join();
+    return end_.get();
+  }
+  Nanoseconds now() const override { return looking_on_.now() - executive_.origin(); }
+  Nanoseconds origin() const override { return executive_.origin(); }
+  void shut_down() override { executive_.shut_down(); }
+  std::span<const RefusedSignal> refused() const override { return executive_.refused(); }
+  std::string description() const override { return grant_; }
+
+ private:
+  const RunRequest& request_;
+  int cpu_;
+  CounterClock clock_;             // of the executive's thread
+  mutable LinuxClock looking_on_;  // of this side
+  ComputingClock job_clock_;
+  Executive executive_;
+  std::string grant_;
+  std::promise<RunEnd> ended_;
+  std::future<RunEnd> end_ = ended_.get_future();
+  Nanoseconds ran_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
+                                           const RunOptions& options) {
+  return std::make_unique<VirtualLoop>(application, request, options);
+}
+
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,
+                                             const RunOptions& options) {
+  return std::make_unique<RealTimeLoop>(application, request, options);
+}
+
+}  // namespace chimera::cli

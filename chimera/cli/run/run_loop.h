@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two ways to run an application, seen alike: in slices up to an instant since the start.
+#pragma once
+
+#include <memory>
+
+#include "chimera/cli/run/run.h"
+#include "chimera/runtime/releases.h"
+
+namespace chimera::cli {
+
+/// Context: setup thread. Only one at a time per application.
+class RunLoop {
+ public:
+  virtual ~RunLoop() = default;
+  /// Spawns the tasks and turns the start set ON; real time: from now on they run.
+  virtual Result<void> start() = 0;
+  /// Lets the run come to `until` (since its origin) or to its end; nullopt: it goes on.
+  virtual std::optional<RunEnd> advance(Nanoseconds until) = 0;
+  /// Since the origin.
+  virtual Nanoseconds now() const = 0;
+  virtual Nanoseconds origin() const = 0;
+  virtual void shut_down() = 0;
+  /// What was refused while it ran; after the end only.
+  virtual std::span<const RefusedSignal> refused() const = 0;
+  /// One line about how it is run, for people.
+  virtual std::string description() const = 0;
+};
+
+/// Whose policy a run of one context follows: in virtual time that of the only rtpu with tasks, else the first.
+const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time);
+
+/// "refused at 0.200 s: off pid: ..." and a line end. Context: setup.
+std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin);
+/// The task whose reaction `stop` ended it: the first failure of time with that; "" when there is none.
+std::string who_stopped(const TaskSet& tasks);
+
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
+                                           const RunOptions& options);
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,
+                                             const RunOptions& options);
+
+}  // namespace chimera::cli

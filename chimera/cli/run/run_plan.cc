@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks the words of `chimera run` against the description and decides which executor runs it.
+#include "chimera/cli/run/run_plan.h"
+
+#include <algorithm>
+
+#include "chimera/analysis/schedule_report.h"
+#include "chimera/base/hosted/terminal_text.h"
+#include "chimera/cli/files/check.h"
+#include "chimera/cli/run/run.h"
+#include "chimera/cli/run/script_text.h"
+#include "chimera/platform/realtime.h"
+#include "chimera/platform/standard_output.h"
+#include "chimera/schedule/utilisation.h"
+#include "chimera/text/nearest.h"
+#include "chimera/verify/setting.h"
+#include "chimera/verify/verify.h"
+
+namespace chimera::cli {
+namespace {
+
+constexpr double kUsualRealtimeShare = 0.95;
+
+Executor executor_of(const RunRequest& request) {
+  if (request.virtual_time) return request.preemptive ? Executor::kPreemptiveVirtual : Executor::kVirtual;
+  return request.one_process ? Executor::kOneProcess : Executor::kProcesses;
+}
+
+Result<void> judge_task_names(const RunRequest& request, const Configuration& configuration) {
+  std::vector<std::string> names;
+  for (const ConfiguredTask& task : configuration.tasks()) names.push_back(task.name);
+  for (const std::string& name : request.may_miss) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    const std::string near = nearest(name, names);
+    return Error{ErrorCode::kNotFound,
+                 {"--may-miss: no task '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")},
+                 {}};
+  }
+  return {};
+}
+
+/// Real time only: nobody who must keep a deadline may be expected to miss it.
+Report promises(const RunRequest& request, const Configuration& configuration) {
+  if (request.virtual_time) return Report(configuration.file());
+  ScheduleOptions options;
+  options.may_miss = request.may_miss;
+  options.one_rtpu = request.one_process;
+  return unschedulable(configuration, schedule_report(configuration, options));
+}
+
+/// What the kernel leaves to real-time threads, less the margin that kMaxUtilisation has below the usual 0.95.
+Result<void> judge_throttling(const RunRequest& request, const Configuration& configuration) {
+  if (request.virtual_time || request.priority == 0 || !may_be_realtime(request.priority)) return {};
+  return admit_below(configuration, realtime_share());
+}
+
+/// A list is as long as the one before it where its length is a constant that only `init` may know.
+bool is_as_long(const GivenSpec& now, const GivenSpec& before) {
+  for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d)
+    if (now.extent[d].constant.is_valid() && now.listed[d] != 0 && now.listed[d] != before.listed[d]) return false;
+  return true;
+}
+
+/// The act with its bytes, judged by the rules of the description.
+Result<ScriptAct> settled(const TimedAct& timed, RunPlan& plan) {
+  const std::string said = "--at '" + timed.text + "'";
+  const ConfiguredVariable* constant = nullptr;
+  for (const ConfiguredVariable& known : plan.configuration.variables())
+    if (known.is_constant && known.name == timed.variable) constant = &known;
+  if (constant != nullptr || timed.variable.find('.') != std::string::npos)
+    return Error{ErrorCode::kRefused,
+                 {said + ": '" + timed.variable +
+                  "' is a constant, which nothing changes while tasks run; for the "
+                  "whole run: --set " +
+                  timed.variable + " VALUE"},
+                 {plan.configuration.file()}};
+  auto set = with_new_value(plan.configuration, plan.library, {timed.variable, timed.value, said});
+  if (!set) return set.error();
+  ScriptAct act = timed.act;
+  const auto operators = set->spec().operators;
+  while (operators[act.operator_index].name != timed.variable) ++act.operator_index;
+  act.value = operators[act.operator_index].value;
+  if (!is_as_long(operators[act.operator_index], plan.configuration.spec().operators[act.operator_index]))
+    return Error{ErrorCode::kBadInput,
+                 {said + ": the list is not as long as the one that '" + timed.variable + "' begins with"},
+                 {plan.configuration.file()}};
+  plan.set.push_back(*std::move(set));
+  return act;
+}
+
+Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
+  const auto acts = parse_script(request.at, plan.configuration.spec());
+  if (!acts) return acts.error();
+  for (const TimedAct& timed : *acts) {
+    const bool is_set = timed.act.kind == ScriptAct::Kind::kSet;
+    const auto act = is_set ? settled(timed, plan) : Result<ScriptAct>(timed.act);
+    if (!act) return act.error();
+    plan.acts.push_back(*act);
+  }
+  return {};
+}
+
+Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
+  for (const std::string& name : request.watch)
+    if (auto found = find_variable(plan.configuration, name); !found) return found.error();
+  for (const std::string& text : request.expect) {
+    auto expectation = Expectation::parse(text, plan.configuration, plan.library.units());
+    if (!expectation) return expectation.error();
+    plan.expectations.push_back(*std::move(expectation));
+  }
+  if (auto known = judge_task_names(request, plan.configuration); !known) return known.error();
+  return judge_acts(request, plan);
+}
+
+}  // namespace
+
+Result<void> admit_below(const Configuration& configuration, double share) {
+  const double limit = share - (kUsualRealtimeShare - kMaxUtilisation);
+  const auto rtpus = configuration.rtpus();
+  for (const RtpuSpec& rtpu : rtpus) {
+    double load = 0;
+    for (std::size_t r = 0; r < rtpus.size(); ++r)
+      if (rtpus[r].cpu == rtpu.cpu) load += configuration.utilisation()[r];
+    if (!is_beyond(load, limit)) continue;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "the budgets take %.3f of the processor; of the %.2f that the kernel leaves to real-time threads at "
+                  "most %.2f can be promised: set kernel.sched_rt_runtime_us to 950000, sched_rt_period_us to 1000000",
+                  load, share, limit < 0 ? 0.0 : limit);
+    return Error{ErrorCode::kRefused, {text}, {"cpu " + std::to_string(rtpu.cpu)}};
+  }
+  return {};
+}
+
+int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code) {
+  const CommandResult output = file_refusal(error, request.json, code);
+  std::fputs(for_terminal(output.out).c_str(), out);
+  (void)flush_and_look(out);  // in a file that takes both, what came first stands first
+  std::fputs(for_terminal(output.err).c_str(), err);
+  return output.code;
+}
+
+int tell_broken(const RunRequest& request, const BrokenRun& broken, std::FILE* out, std::FILE* err) {
+  if (broken.task.empty() || request.json)
+    return refuse_run(request, {ErrorCode::kRefused, {broken.text}, {broken.task.empty() ? request.file : broken.task}},
+                      out, err);
+  std::fprintf(err, "FAILED: %s: %s\n", broken.task.c_str(), for_terminal(broken.text).c_str());
+  return kRefused;
+}
+
+std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out,
+                                std::FILE* err, int* code) {
+  const auto library = workplace.library();
+  if (library) return plan_run(request, *library, out, err, code);
+  if (code != nullptr) *code = kRefused;
+  refuse_run(request, library.error(), out, err);
+  return std::nullopt;
+}
+
+std::optional<RunPlan> plan_run(const RunRequest& request, const Library& library, std::FILE* out, std::FILE* err,
+                                int* code) {
+  if (code != nullptr) *code = kRefused;
+  ReadDescription reading = read_description_file(request.file);
+  Verdict verdict = verify(reading, library);
+  if (verdict.configuration) {
+    auto set = with_settings(*verdict.configuration, library, request.settings);
+    if (!set) {
+      refuse_run(request, set.error(), out, err);
+      return std::nullopt;
+    }
+    verdict.configuration = *std::move(set);
+  }
+  if (verdict.configuration) {
+    verdict.report.add_all(faulty_objects(*verdict.configuration, library));
+    verdict.report.add_all(unsupported(*verdict.configuration, executor_of(request)));
+    if (verdict.report.is_legal()) verdict.report.add_all(promises(request, *verdict.configuration));
+  }
+  if (!request.json) std::fputs(for_terminal(verdict.report.text()).c_str(), err);
+  if (!verdict.report.is_legal()) {
+    if (request.json) std::fprintf(out, "%s\n", for_terminal(verdict.report.json()).c_str());
+    return std::nullopt;
+  }
+  if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
+  RunPlan plan{library, std::move(reading.text), *std::move(verdict.configuration), {}, {}, {}};
+  if (const auto judged = judge_words(request, plan); !judged) {
+    const int usage = refuse_run(request, judged.error(), out, err, kUsage);
+    if (code != nullptr) *code = usage;
+    return std::nullopt;
+  }
+  if (const auto judged = judge_throttling(request, plan.configuration); !judged) {
+    refuse_run(request, judged.error(), out, err);
+    return std::nullopt;
+  }
+  return plan;
+}
+
+}  // namespace chimera::cli

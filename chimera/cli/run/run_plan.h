@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `chimera run` finds out before anything starts: is the description legal, can it be run, and does every word
+// of the command line mean something in it.
+#pragma once
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chimera/catalogue/library.h"
+#include "chimera/cli/files/workplace.h"
+#include "chimera/cli/run/expectation.h"
+#include "chimera/cli/run/own_process.h"
+#include "chimera/runtime/script.h"
+#include "chimera/verify/configuration.h"
+
+namespace chimera::cli {
+
+struct RunRequest;
+
+/// A run that may begin.
+struct RunPlan {
+  Library library;
+  std::string description;  ///< the text of the file, as it was read
+  Configuration configuration;      ///< with the settings of the request
+  std::vector<ScriptAct> acts;
+  std::vector<Configuration> set;   ///< one for each act `set`, which has its value there
+  std::vector<Expectation> expectations;
+};
+
+/// Prints the report and the verdict; nothing when the run is refused, which has been said then. `code`, where there is
+/// one, is then kUsage for words of the command line that fit no description, else kRefused. Context: setup; may block.
+std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err,
+                                int* code = nullptr);
+
+/// The same with a library that is there already.
+std::optional<RunPlan> plan_run(const RunRequest& request, const Library& library, std::FILE* out, std::FILE* err,
+                                int* code = nullptr);
+
+/// Refuses a start set whose budgets take more of a CPU than may be promised when the kernel leaves `share` of it to
+/// real-time threads: 0.02 less. Context: setup.
+Result<void> admit_below(const Configuration& configuration, double share);
+
+/// Prints a refusal as the request wants it, and answers `code`.
+int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code = 1);
+/// Tells of a run that did not come to its end, by the task whose method was under way, else by its file.
+int tell_broken(const RunRequest& request, const BrokenRun& broken, std::FILE* out, std::FILE* err);
+
+}  // namespace chimera::cli

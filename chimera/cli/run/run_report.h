@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run says at its end, however it was run: docs/formats/run.md.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "chimera/analysis/task_profile.h"
+#include "chimera/cli/run/expectation.h"
+#include "chimera/cli/run/run_verdict.h"
+#include "chimera/runtime/releases.h"
+
+namespace chimera::cli {
+
+/// Plain value.
+struct RunReport {
+  struct Watched {
+    std::string name, unit;
+    std::string value;  ///< JSON
+  };
+  struct Judged {
+    std::string text, said;
+    bool holds = false;
+  };
+
+  RunEnd end = RunEnd::kTime;
+  std::string stopped_by;              ///< the task whose reaction `stop` ended it, where that is known
+  bool is_flag_up = false;             ///< the illegal-configuration flag at the end
+  Nanoseconds ran;
+  std::string subsystem;
+  std::string executor;                ///< how it was run, for people
+  std::string refused;                 ///< a line for each refused signal
+  std::vector<TaskProfile> profiles;
+  Nanoseconds origin;                  ///< of `ran`; faults are timed from it
+  std::vector<Watched> variables;
+  std::vector<Judged> expectations;
+  RunVerdict verdict;
+
+  void judge(const Expectation& expectation, const Seen& seen);
+  /// kOk when it came to its end, every expectation holds and the verdict is no failure.
+  int code() const;
+};
+
+/// Writes what `chimera schedule --profile` reads; false, with the reason on `err`, when that cannot be. No path:
+/// nothing to do. Context: setup; may block.
+bool save_profile(const RunReport& report, const std::string& path, std::FILE* err);
+
+/// What a component has to say, as a line of a run. Context: setup.
+std::string note_line(std::string_view task, std::string_view note);
+
+/// As text or as one JSON object. Context: setup.
+void print(const RunReport& report, bool json, std::FILE* out);
+
+}  // namespace chimera::cli

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// What counts: docs/decisions/0023-exit-code-of-a-run.md.
+#include "chimera/cli/run/run_verdict.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "chimera/text/json_text.h"
+#include "chimera/text/not_off.h"
+
+namespace chimera::cli {
+namespace {
+
+std::string counted(std::uint64_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+/// Adds what `count` says of every task, with the tasks by name where it is not 0.
+template <class Count>
+std::uint64_t add_up(RunVerdict& verdict, std::span<const TaskProfile> tasks, const char* one, const char* many,
+                     const Count& count) {
+  std::uint64_t sum = 0;
+  std::string who;
+  for (const TaskProfile& task : tasks) {
+    const std::uint64_t n = count(task);
+    if (n > 0) who += (who.empty() ? "" : ", ") + task.task + " " + std::to_string(n);
+    sum += n;
+  }
+  if (sum > 0) verdict.remarks.push_back(counted(sum, one, many) + " (" + who + ")");
+  return sum;
+}
+
+void add_not_off(RunVerdict& verdict, const std::string& task, const std::string& text) {
+  verdict.failures.push_back(task + ": " + text);
+  if (std::find(verdict.not_off.begin(), verdict.not_off.end(), task) == verdict.not_off.end())
+    verdict.not_off.push_back(task);
+}
+
+/// `is_told`: tasks of it that were not turned off say how it ended.
+void add_unit(RunVerdict& verdict, const UnitFate& unit, bool is_told) {
+  verdict.restarts += unit.restarts;
+  if (unit.restarts > 0) {
+    verdict.remarks.push_back(counted(unit.restarts, "restart", "restarts") + " of " + unit.name);
+    char at[40] = "";
+    if (unit.restarted != kNever) std::snprintf(at, sizeof at, " at %.3f s", to_seconds(unit.restarted));
+    verdict.since.push_back(unit.name + ": what its tasks count is since its restart" + at);
+  }
+  if (unit.is_given_up)
+    verdict.failures.push_back(unit.name + " was given up: its process ended too often, its tasks did not run");
+  if (!unit.bad_end.empty() && !is_told)
+    verdict.failures.push_back(unit.name + " did not end in order: it " + unit.bad_end);
+}
+
+void add_end(RunVerdict& verdict, const TaskProfile& task, std::uint64_t faults_before) {
+  const Method method = task.faults.method;
+  const std::string fault = std::string(method_name(method)) + ": " + task.faults.last.text;
+  const bool is_new = task.faults.count > faults_before;
+  const bool is_told = std::find(verdict.not_off.begin(), verdict.not_off.end(), task.task) != verdict.not_off.end();
+  if (task.state == State::kError)
+    verdict.failures.push_back(task.task + " was in ERROR at the end" + (task.faults.count > 0 ? ": " + fault : ""));
+  else if (is_new && method == Method::kError)
+    verdict.failures.push_back(task.task + " failed at the end: " + fault);
+  if (is_told) return;
+  if (task.faults.off_count > 0)
+    add_not_off(verdict, task.task, not_off_text(task.faults.off_method, task.faults.off_text));
+  else if (is_new && turns_off(method))
+    add_not_off(verdict, task.task, not_off_text(method, task.faults.last.text));
+}
+
+std::string json_array(const std::vector<std::string>& texts) {
+  std::string json;
+  for (const std::string& text : texts) json += (json.empty() ? "" : ", ") + json_string(text);
+  return "[" + json + "]";
+}
+
+}  // namespace
+
+RunVerdict judge_run(const RunFacts& facts) {
+  RunVerdict verdict;
+  verdict.is_strict = facts.is_strict;
+  verdict.is_flag_up = facts.is_flag_up;
+  verdict.missed = add_up(verdict, facts.tasks, "deadline missed", "deadlines missed", [](const TaskProfile& task) {
+    return task.profile.missed - std::min(task.profile.missed, task.profile.tolerated);
+  });
+  verdict.dropped = add_up(verdict, facts.tasks, "release dropped", "releases dropped",
+                           [](const TaskProfile& task) { return task.profile.dropped; });
+  verdict.faults = add_up(verdict, facts.tasks, "fault", "faults",
+                          [](const TaskProfile& task) { return std::uint64_t{task.faults.count}; });
+  for (const NotOff& one : facts.not_off) add_not_off(verdict, one.task, one.text);
+  for (const UnitFate& unit : facts.units) {
+    const bool is_told = std::any_of(facts.tasks.begin(), facts.tasks.end(), [&](const TaskProfile& task) {
+      return task.rtpu == unit.name && std::any_of(facts.not_off.begin(), facts.not_off.end(),
+                                                   [&](const NotOff& one) { return one.task == task.task; });
+    });
+    add_unit(verdict, unit, is_told);
+  }
+  if (facts.is_flag_up) verdict.remarks.emplace_back("the illegal-configuration flag is up");
+  for (std::size_t t = 0; t < facts.tasks.size(); ++t)
+    add_end(verdict, facts.tasks[t], t < facts.faults_before.size() ? facts.faults_before[t] : 0);
+  return verdict;
+}
+
+std::string RunVerdict::text() const {
+  std::string text, listed;
+  for (const std::string& line : since) text += line + "\n";
+  for (const std::string& remark : remarks) listed += (listed.empty() ? "" : ", ") + remark;
+  if (is_clean())
+    text += "clean: no deadline missed, no release dropped, no fault, no restart\n";
+  else if (!listed.empty())
+    text += "not clean: " + listed + "\n";
+  for (const std::string& failure : failures) text += "FAILED: " + failure + "\n";
+  if (failures.empty() && is_failure()) text += "FAILED: not clean, and --strict asks for that\n";
+  return text;
+}
+
+std::string RunVerdict::json() const {
+  return std::string("{\"clean\": ") + (is_clean() ? "true" : "false") +
+         ", \"strict\": " + (is_strict ? "true" : "false") + ", \"missed\": " + std::to_string(missed) +
+         ", \"dropped\": " + std::to_string(dropped) + ", \"faults\": " + std::to_string(faults) +
+         ", \"restarts\": " + std::to_string(restarts) + ", \"remarks\": " + json_array(remarks) +
+         ", \"since\": " + json_array(since) + ", \"not_off\": " + json_array(not_off) +
+         ", \"failures\": " + json_array(failures) + "}";
+}
+
+}  // namespace chimera::cli

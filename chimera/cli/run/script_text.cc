@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parses timed acts and finds the tasks and variables that they name.
+#include "chimera/cli/run/script_text.h"
+
+#include <algorithm>
+
+#include "chimera/cli/files/blanks.h"
+#include "chimera/task/signal.h"
+#include "chimera/text/nearest.h"
+#include "chimera/units/quantity.h"
+
+namespace chimera::cli {
+namespace {
+
+Error wrong_act(const std::string& text, const std::string& why) {
+  return {ErrorCode::kBadInput, {"--at '" + text + "': " + why}, {}};
+}
+
+std::string unknown(const char* what, const std::string& found, std::span<const std::string> names) {
+  const std::string near = nearest(found, names);
+  return std::string("no ") + what + " '" + found + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
+Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, ScriptAct act) {
+  if (which != "up" && which != "down") return wrong_act(text, "the flag goes 'up' or 'down'");
+  act.kind = which == "up" ? ScriptAct::Kind::kRaiseFlag : ScriptAct::Kind::kLowerFlag;
+  return act;
+}
+
+Result<ScriptAct> parse_signal(const std::string& text, const std::string& word, const std::string& task, ScriptAct act,
+                               const ApplicationSpec& spec) {
+  std::vector<std::string> words;
+  for (int signal = 0; signal < CHIMERA_SIGNALS; ++signal) words.emplace_back(signal_name(static_cast<Signal>(signal)));
+  words[static_cast<std::size_t>(Signal::kWakeup)] = "ring";  // sent as wakeup
+  words.insert(words.end(), {"flag", "set"});
+  const auto signals = words.end() - 2;
+  const auto found = std::find(words.begin(), signals, word);
+  if (found == signals) return wrong_act(text, unknown("signal", word, words));
+  act.signal = static_cast<Signal>(found - words.begin());
+  std::vector<std::string> names;
+  for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
+  act.task = TaskId(static_cast<std::size_t>(std::find(names.begin(), names.end(), task) - names.begin()));
+  if (act.task.index < names.size()) return act;
+  return wrong_act(text, unknown("task", task, names));
+}
+
+Result<TimedAct> parse_set(const std::string& text, const std::string& object, ScriptAct act) {
+  const std::size_t blank = object.find(' ');
+  if (blank == std::string::npos) return wrong_act(text, "write 'set VARIABLE VALUE', such as 'set kp 100 N.m/rad'");
+  act.kind = ScriptAct::Kind::kSet;
+  return TimedAct{act, text, object.substr(0, blank), trimmed(object.substr(blank))};
+}
+
+Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return wrong_act(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
+  const auto at = parse_duration(text.substr(0, colon));
+  if (!at) return wrong_act(text, at.error().message.c_str());
+  const std::string act_text = trimmed(text.substr(colon + 1));
+  const std::size_t blank = act_text.find(' ');
+  if (blank == std::string::npos)
+    return wrong_act(text, "after the time stand a signal and a task, 'flag up', or 'set VARIABLE VALUE'");
+  const std::string word = act_text.substr(0, blank);
+  const std::string object = trimmed(act_text.substr(blank));
+  ScriptAct act;
+  act.at = *at;
+  if (word == "set") return parse_set(text, object, act);
+  const auto made = word == "flag" ? parse_flag(text, object, act) : parse_signal(text, word, object, act, spec);
+  return made ? Result<TimedAct>(TimedAct{*made, text, {}, {}}) : Result<TimedAct>(made.error());
+}
+
+}  // namespace
+
+Result<std::vector<TimedAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec) {
+  std::vector<TimedAct> acts;
+  for (const std::string& text : texts) {
+    auto act = parse(text, spec);
+    if (!act) return act.error();
+    acts.push_back(*std::move(act));
+  }
+  std::stable_sort(acts.begin(), acts.end(), [](const TimedAct& a, const TimedAct& b) { return a.act.at < b.act.at; });
+  return acts;
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a process that runs an application is doing, in memory that its parent reads when it is dead: which object it
+// loads, which method runs.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "chimera/catalogue/library.h"
+#include "chimera/verify/configuration.h"
+
+namespace chimera::cli {
+
+/// Plain memory: one process writes, another reads. Context: setup, but for the words that an executor writes.
+struct UnderWay {
+  static constexpr std::size_t kMostTasks = 256;
+
+  std::atomic<std::uint32_t> making{0};   ///< as show_making() writes it
+  std::atomic<std::uint32_t> running{0};  ///< as BlockHead::running
+  std::atomic<std::uint32_t> serving{0};
+  std::atomic<bool> is_ending{false};     ///< all tasks are being turned off and killed
+  std::atomic<bool> has_returned{false};  ///< the work came to its end: what follows is the end of the process
+  std::uint32_t n_tasks = 0;
+  struct {
+    char name[80], object[256];
+  } tasks[kMostTasks];
+
+  /// The names behind the words, before anything is loaded.
+  void know(const Configuration& configuration, const Library& library);
+  /// "while it loaded /lib/gain.so, the component of task 'amp'", "in amp.cycle", "at its end", or "" when nothing is
+  /// known. Whatever stands in the memory is taken for words and nothing else.
+  std::string text() const;
+  /// The method that runs: its task, "" when none does, and whether it turns the task's hardware off.
+  struct Method {
+    std::string task, name;
+    bool turns_off = false;
+  };
+  Method method() const;
+  /// `running` and `serving` are not the same for as long as methods begin and end. Context: any; wait-free.
+  std::uint64_t words() const noexcept { return std::uint64_t{running} << 32 | serving; }
+};
+
+/// Where this process writes; memory of its own that nobody reads, until a parent has passed another to its child.
+UnderWay& under_way() noexcept;
+void write_under_way_to(UnderWay& place) noexcept;
+
+/// One in memory that a child shares with its parent; nullptr when there is no memory.
+UnderWay* make_shared_under_way() noexcept;
+void release(UnderWay* place) noexcept;
+
+}  // namespace chimera::cli

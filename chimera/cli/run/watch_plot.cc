@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Collects samples of watched variables and draws them.
+#include "chimera/cli/run/watch_plot.h"
+
+#include <algorithm>
+
+#include "chimera/cli/run/probe_numbers.h"
+
+namespace chimera::cli {
+
+void WatchPlot::take(Nanoseconds at, std::span<const Probe> probes) {
+  if (first_.empty()) {
+    for (const Probe& probe : probes) {
+      first_.push_back(curves_.size());
+      const auto names = number_names(probe), units = number_units(probe);
+      for (std::size_t n = 0; n < names.size(); ++n) curves_.push_back({names[n], units[n], {}, 0, true});
+    }
+    first_.push_back(curves_.size());
+  }
+  for (std::size_t p = 0; p < probes.size(); ++p) {
+    const Seen seen = probes[p].look();
+    if (points_ + seen.numbers.size() > kMostPoints) return;
+    const std::size_t n = std::min(seen.numbers.size(), first_[p + 1] - first_[p]);
+    for (std::size_t i = 0; i < n; ++i) curves_[first_[p] + i].points.push_back({to_seconds(at), seen.numbers[i]});
+    points_ += n;
+  }
+}
+
+draw::Plot WatchPlot::plot(const std::string& title) const {
+  draw::Plot plot;
+  plot.title = title;
+  plot.curves = curves_;
+  return plot;
+}
+
+}  // namespace chimera::cli

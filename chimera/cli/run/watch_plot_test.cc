@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/cli/run/watch_plot.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "chimera/cli/files/testing/test_place.h"
+#include "chimera/cli/run/run.h"
+
+namespace chimera::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(WatchPlot, DrawsWhatIsWatchedInsteadOfPrintingIt) {
+  const fs::path folder = fs::temp_directory_path();
+  const std::string file = (folder / ("plot_" + std::to_string(::getpid()) + ".yaml")).string();
+  const std::string picture = file + ".svg";
+  std::ofstream(file) << "subsystem: drawn\ntasks: {t_counter: {rate: 1 kHz}}\n";
+  RunRequest request;
+  request.file = file;
+  request.virtual_time = true;
+  request.duration = milliseconds(50);
+  request.watch = {"count"};
+  request.every = milliseconds(1);
+  request.svg = picture;
+  std::FILE* out = std::tmpfile();
+  EXPECT_EQ(run(request, test_place(), nullptr, out, out), kOk);
+  std::rewind(out);
+  char text[4096] = {};
+  EXPECT_GT(std::fread(text, 1, sizeof text - 1, out), 0u);
+  EXPECT_EQ(std::string(text).find("t 0.0"), std::string::npos) << text;
+  std::fclose(out);
+  std::ifstream stream(picture);
+  const std::string svg{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_TRUE(svg.starts_with("<svg")) << svg.substr(0, 100);
+  EXPECT_NE(svg.find("drawn"), std::string::npos);
+  EXPECT_NE(svg.find("count"), std::string::npos);
+  request.svg = "/nowhere/a.svg";
+  std::FILE* refused = std::tmpfile();
+  EXPECT_EQ(run(request, test_place(), nullptr, refused, refused), kRefused);
+  std::fclose(refused);
+  fs::remove(file);
+  fs::remove(picture);
+}
+
+}  // namespace
+}  // namespace chimera::cli
