@@ -19,19 +19,19 @@ namespace {
 using Json = nlohmann::json;
 
 /// A signal to tasks: the command has the name of the signal.
-RunningCommand signal_row(Signal to_send, const char* help, const char* manual, const char* example,
-                          WordKind takes = WordKind::kTask) {
+RunningCommand signal_row(Signal to_send, const char* help, const char* manual, const char* example) {
   return {.words = {.name = signal_name(to_send),
                     .help = help,
                     .operands = "TASK...",
                     .least = 1,
                     .most = kAnyNumber,
-                    .operand_kind = takes,
+                    .operand_kind = WordKind::kTask,
                     .example = example,
                     .manual = manual,
                     .is_act = true},
           .method = "signal",
-          .once = signal};
+          .parameters = [](const Call& call) { return Json{{"signal", call.command->name}, {"tasks", call.operands}}; },
+          .show = signal_text};
 }
 
 RunningCommand clear_row() {
@@ -120,10 +120,13 @@ RunningCommand off_row() {
 }
 
 RunningCommand on_row() {
-  return signal_row(
+  RunningCommand row = signal_row(
       Signal::kOn, "Put tasks, or those of a configuration, into service in one step",
       "Puts tasks into service in one step: all or none. The name of a configuration stands for its tasks.",
-      "chimera on pid arm", WordKind::kTaskOrConfiguration);
+      "chimera on pid arm");
+  row.words.operand_kind = WordKind::kTaskOrConfiguration;
+  row.once = turn_on;
+  return row;
 }
 
 RunningCommand profile_row() {

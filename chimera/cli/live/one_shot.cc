@@ -75,12 +75,10 @@ Json only(const EventLines& lines, Json answer) {
 
 }  // namespace
 
-CommandResult signal(Session& session, const Call& call, const Screen&) {
-  std::vector<std::string> tasks = call.operands;
-  const bool takes_configuration = call.command->operand_kind == WordKind::kTaskOrConfiguration;
-  if (takes_configuration) tasks = with_configuration(session, std::move(tasks));
+CommandResult turn_on(Session& session, const Call& call, const Screen&) {
+  const std::vector<std::string> tasks = with_configuration(session, call.operands);
   if (tasks.empty()) return {call.json ? "{\"tasks\":[]}\n" : "all of its tasks are ON\n", "", kOk};
-  return answered(session.ask("signal", {{"signal", call.command->name}, {"tasks", tasks}}), call.json, signal_text);
+  return answered(session.ask("signal", {{"signal", "on"}, {"tasks", tasks}}), call.json, signal_text);
 }
 
 CommandResult profile(Session& session, const Call& call, const Screen&) {
@@ -137,12 +135,6 @@ CommandResult end(Session& session, const Call& call, const Screen&) {
   if (answer.code == control::kNoConnection)
     answer = control::RpcResponse::good(Json::object());  // it has ended already
   return answered(answer, call.json, [](const Json&) { return std::string("ending\n"); });
-}
-
-CommandResult answered(const control::RpcResponse& answer, bool json,
-                       const std::function<std::string(const Json&)>& show) {
-  if (!answer.is_good()) return refused(answer, json);
-  return {json ? answer.result->dump() + "\n" : show(*answer.result), "", kOk};
 }
 
 }  // namespace chimera::cli

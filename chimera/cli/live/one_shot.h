@@ -2,14 +2,12 @@
 // The commands of more than one request, or with an option that is judged here, before anybody is asked.
 #pragma once
 
-#include <functional>
-
 #include "chimera/cli/live/commands.h"
 
 namespace chimera::cli {
 
 // Context of all: setup; may block.
-CommandResult signal(Session& session, const Call& call, const Screen& screen);
+CommandResult turn_on(Session& session, const Call& call, const Screen& screen);
 CommandResult status(Session& session, const Call& call, const Screen& screen);
 CommandResult profile(Session& session, const Call& call, const Screen& screen);
 CommandResult save(Session& session, const Call& call, const Screen& screen);
@@ -17,9 +15,5 @@ CommandResult events(Session& session, const Call& call, const Screen& screen);
 CommandResult flag(Session& session, const Call& call, const Screen& screen);
 CommandResult why(Session& session, const Call& call, const Screen& screen);
 CommandResult end(Session& session, const Call& call, const Screen& screen);
-
-/// The answer as it came, or what `show` makes of it; or the refusal.
-CommandResult answered(const control::RpcResponse& answer, bool json,
-                       const std::function<std::string(const nlohmann::json&)>& show);
 
 }  // namespace chimera::cli

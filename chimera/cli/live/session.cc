@@ -39,6 +39,12 @@ CommandResult refused(const Error& error, bool json, int code) {
   return {"", (where.empty() ? "" : where + ": ") + plain_line(message) + "\n", code};
 }
 
+CommandResult answered(const control::RpcResponse& answer, bool json,
+                       const std::function<std::string(const nlohmann::json&)>& show) {
+  if (!answer.is_good()) return refused(answer, json);
+  return {json ? answer.result->dump() + "\n" : show(*answer.result), "", kOk};
+}
+
 Result<Session> Session::open(const Surroundings& surroundings) {
   auto client = control::Client::connect(surroundings.subsystem);
   if (!client) return client.error();

@@ -2,6 +2,7 @@
 // One subsystem, asked the way commands ask: which one it is, whether an act may go to it, how long an answer may take.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -24,6 +25,9 @@ struct Surroundings {
 /// Context of all: setup.
 CommandResult refused(const control::RpcResponse& answer, bool json);
 CommandResult refused(const Error& error, bool json, int code = kRefused);
+/// The answer as it came (`json`), or what `show` makes of it; or the refusal.
+CommandResult answered(const control::RpcResponse& answer, bool json,
+                       const std::function<std::string(const nlohmann::json&)>& show);
 
 /// Context: setup; calls block, never longer than their limit.
 class Session {
