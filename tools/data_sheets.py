@@ -150,7 +150,7 @@ def measured(program, name, components):
         return "less than 10 ns" if ns < 10 else f"{ns:.0f} ns" if ns < 1000 else f"{ns / 1000:.1f} us"
 
     return (f"{text(report['typical_ns'])} (mean of the middle half), {text(report['worst_ns'])} worst of "
-            f"{report['measured_cycles']} cycles, each the least of three:\n"
+            f"{report['measured_cycles']} cycles, each the shortest of three runs:\n"
             f"`chimera test {name}`, release build, {cpu[1] if cpu else 'unknown processor'}.")
 
 

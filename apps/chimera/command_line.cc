@@ -3,6 +3,8 @@
 #include "apps/chimera/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <deque>
 #include <map>
@@ -68,21 +70,24 @@ CLI::Option* add_operands(Subcommand& sub) {
   return added;
 }
 
-/// A whole number, kept as its digits.
-CLI::Option* add_number(Subcommand& sub, const Option& option) {
-  std::string& to = sub.texts[option.name];
-  if (option.most < 0)
-    return sub.app->add_option_function<std::uint64_t>(
-        option.name, [&to](std::uint64_t number) { to = std::to_string(number); }, option.help);
-  return sub.app
-      ->add_option_function<std::int64_t>(
-          option.name, [&to](std::int64_t number) { to = std::to_string(number); }, option.help)
-      ->check(CLI::Range(static_cast<int>(option.least), static_cast<int>(option.most)));
+/// Accepts the digits of a whole number from `least` to `most` and nothing else: no sign, no unit.
+CLI::Validator whole_number(const Option& option) {
+  const auto least = static_cast<std::uint64_t>(option.least);
+  const std::uint64_t most = option.most < 0 ? UINT64_MAX : static_cast<std::uint64_t>(option.most);
+  return CLI::Validator(
+      [least, most](std::string& given) {
+        std::uint64_t number = 0;
+        const char* const end = given.data() + given.size();
+        const auto [read_to, error] = std::from_chars(given.data(), end, number);
+        if (error == std::errc() && read_to == end && number >= least && number <= most) return std::string();
+        return "'" + given + "' is not a whole number from " + std::to_string(least) + " to " +
+               (most == UINT64_MAX ? "2^64-1" : std::to_string(most));
+      },
+      "");
 }
 
 CLI::Option* add_value(Subcommand& sub, const Option& option) {
   CLI::App& app = *sub.app;
-  if (option.kind == WordKind::kNumber) return add_number(sub, option);
   if (std::string_view(option.value).find(' ') != std::string_view::npos)
     return app.add_option(option.name, sub.pairs[option.name], option.help);
   if (option.repeats != Option::Repeats::kNo) return app.add_option(option.name, sub.lists[option.name], option.help);
@@ -96,6 +101,7 @@ CLI::Option* add_option(Subcommand& sub, const Option& option) {
   added->type_name(option.value)->required(option.is_required);
   if (option.repeats == Option::Repeats::kOneEach) added->allow_extra_args(false);
   if (option.separator != '\0') added->delimiter(option.separator);
+  if (option.kind == WordKind::kNumber) added->check(whole_number(option));
   if (option.kind == WordKind::kOneOf) added->check(CLI::IsMember(words_in(option.words)));
   if (option.kind == WordKind::kFile)  // "" is a wrong call, not "no file"
     added->check(

@@ -97,15 +97,16 @@ FileCommand schedule_row() {
                                  .kind = WordKind::kFile},
                                 {.name = "--dispatch",
                                  .value = "HOW",
-                                 .help = "judge all rtpus as 'preemptive' or 'executive'; else each as described",
-                                 .manual = "Whether the rtpus take a job that runs off the processor: `preemptive` or "
+                                 .help = "judge all rtpus as 'preemptive' or 'executive' (non-preemptive); else each as "
+                                         "described",
+                                 .manual = "Whether a running job can be preempted, in all rtpus: `preemptive` or "
                                            "`executive`; without it each as the description says.",
                                  .kind = WordKind::kOneOf,
                                  .words = "preemptive executive"}},
                     .json = "the analysis as one JSON object",
-                    .footer = "Response: longest from release to end. Blocked: by a job that cannot be taken off. "
-                              "Copies: at each\ncycle, from tables of other rtpus or the operator. `run` starts only "
-                              "when every task keeps its deadline\nthat does not say 'may miss'.\n"
+                    .footer = "Response: longest time from release to end. Blocked: longest wait for a job that is not "
+                              "preempted.\nCopies: at each cycle, from tables of other rtpus or the operator. `run` "
+                              "starts only when every task\nkeeps its deadline, those with 'may miss' apart.\n"
                               "Exit code 0: everything keeps its deadlines; 1: it does not.",
                     .example = "chimera schedule examples/01_puma_pid/puma_pid.yaml --svg window.svg",
                     .manual = "Proves that every task of FILE keeps its deadlines, or tells who does not, who would "

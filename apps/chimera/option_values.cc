@@ -2,10 +2,8 @@
 // Reads the values of options that several commands share.
 #include "apps/chimera/option_values.h"
 
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 
 #include "chimera/cli/run/run.h"
 #include "chimera/units/quantity.h"
@@ -36,17 +34,6 @@ bool read_duration(const cli::Call& call, const char* option, Nanoseconds& to) {
   const auto value = parse_duration(text);
   if (value && value->count > 0) return to = *value, true;
   std::fprintf(stderr, "%s: %s\n", option, value ? "must be longer than 0" : value.error().message.c_str());
-  return false;
-}
-
-bool read_seed(const cli::Call& call, std::optional<std::uint64_t>& to) {
-  const std::string text = call.value("--seed");
-  if (text.empty()) return true;
-  char* end = nullptr;
-  errno = 0;
-  to = std::strtoull(text.c_str(), &end, 10);
-  if (*end == '\0' && errno == 0 && text[0] != '-') return true;
-  std::fprintf(stderr, "--seed: '%s' is not a whole number from 0 to 2^64-1\n", text.c_str());
   return false;
 }
 

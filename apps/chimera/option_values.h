@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +18,6 @@ chimera::cli::Option set_option(const char* manual);
 std::vector<chimera::Setting> settings_of(const chimera::cli::Call& call);
 /// A duration above 0, when the option was given.
 bool read_duration(const chimera::cli::Call& call, const char* option, chimera::Nanoseconds& to);
-/// From 0 to 2^64-1, when --seed was given.
-bool read_seed(const chimera::cli::Call& call, std::optional<std::uint64_t>& to);
 /// A whole number that the command line has judged already, when the option was given.
 template <class Number>
 void read_number(const chimera::cli::Call& call, const char* option, Number& to) {

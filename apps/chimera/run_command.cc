@@ -58,8 +58,8 @@ const std::vector<Option>& printing_options() {
        .manual = "How often `--watch` prints (1 s)."},
       {.name = "--expect",
        .value = "COMPARISON",
-       .help = "at the end must hold: 'error <= 2 mrad'; may be repeated",
-       .manual = "At the end must hold, such as 'error <= 2 mrad' or '|error| < 1 deg'. May be repeated.",
+       .help = "what must hold at the end, such as 'error <= 2 mrad'; may be repeated",
+       .manual = "What must hold at the end, such as 'error <= 2 mrad' or '|error| < 1 deg'. May be repeated.",
        .repeats = Repeats::kManyEach},
       {.name = "--trace",
        .value = "FILE",
@@ -99,7 +99,8 @@ const std::vector<Option>& own_options() {
       {.name = "--seed",
        .value = "N",
        .help = "virtual time: draw execution times from [min, budget]",
-       .manual = "Virtual time: draw execution times from [min, budget] with this seed."},
+       .manual = "Virtual time: draw execution times from [min, budget] with this seed.",
+       .kind = WordKind::kNumber},
       {.name = "--quantum",
        .value = "DURATION",
        .help = "virtual time, laxity policies: compare again this often (1 ms)"},
@@ -126,8 +127,8 @@ const std::vector<Option>& own_options() {
        .words = "process none"},
       {.name = "--observe-group",
        .value = "GROUP",
-       .help = "real time: members of this group may look on",
-       .manual = "Real time: the members of this group may look on.",
+       .help = "real time: members of this group may observe: read states, values and events",
+       .manual = "Real time: the members of this group may observe: read states, values and events.",
        .kind = WordKind::kGroup},
       {.name = "--operate-group",
        .value = "GROUP",
@@ -169,9 +170,10 @@ struct AskedRun {
     run.profile = call.value("--profile");
     run.strict = call.has("--strict");
     run.json = call.json;
+    if (call.has("--seed")) read_number(call, "--seed", run.seed.emplace());
     return read_duration(call, "--for", run.duration) && read_duration(call, "--start-limit", run.start_limit) &&
            read_duration(call, "--every", run.every) && read_duration(call, "--quantum", run.quantum) &&
-           read_duration(call, "--timeline", unit) && read_seed(call, run.seed);
+           read_duration(call, "--timeline", unit);
   }
   bool read(const Call& call);
 };
@@ -345,7 +347,7 @@ FileCommand idle_row() {
 FileCommand attend_row() {
   FileCommand row{
       .words = {.name = "attend",
-                .help = "The face of a run; started by it",
+                .help = "The process that prints a run; started by `chimera run`",
                 .options = {{.name = "--socket", .value = "PATH", .is_required = true},
                             {.name = "--parent", .value = "PID", .kind = WordKind::kNumber, .is_required = true},
                             {.name = "--bound", .value = "NUMBER", .repeats = Repeats::kManyEach}},

@@ -30,9 +30,9 @@ int sweep(const Call& call, const cli::Workplace& workplace) {
   run.at = call.values("--at");
   run.preemptive = call.has("--preemptive");
   if (!read_duration(call, "--for", run.duration) || !read_duration(call, "--every", request.each.every) ||
-      !read_duration(call, "--quantum", run.quantum) || !read_duration(call, "--limit", request.limit) ||
-      !read_seed(call, run.seed))
+      !read_duration(call, "--quantum", run.quantum) || !read_duration(call, "--limit", request.limit))
     return kUsage;
+  if (call.has("--seed")) read_number(call, "--seed", run.seed.emplace());
   if (request.each.measures.empty() && request.each.expect.empty()) {
     std::fputs("chimera sweep: name what to look at: --measure 'max |error|', or --expect 'error <= 2 mrad'\n", stderr);
     return kUsage;
@@ -93,12 +93,13 @@ std::vector<cli::Option> run_options() {
            .most = 1024},
           {.name = "--limit",
            .value = "DURATION",
-           .help = "time on the wall for each run; one that takes longer has failed (10 min)"},
+           .help = "wall-clock time for each run; a run that takes longer has failed (10 min)"},
           {.name = "--preemptive", .help = "schedule preemptively", .manual = "Schedules preemptively."},
           {.name = "--seed",
            .value = "N",
            .help = "draw execution times from [min, budget], the same in every run",
-           .manual = "Draws execution times from [min, budget], the same in every run."},
+           .manual = "Draws execution times from [min, budget], the same in every run.",
+           .kind = WordKind::kNumber},
           {.name = "--quantum",
            .value = "DURATION",
            .help = "laxity policies: compare again this often (1 ms)",

@@ -110,7 +110,7 @@ std::vector<cli::Option> test_options() {
        .kind = WordKind::kNumber,
        .least = 1,
        .most = 1024},
-      {.name = "--limit", .value = "DURATION", .help = "a folder: time on the wall for each case (10 min)"}};
+      {.name = "--limit", .value = "DURATION", .help = "a folder: wall-clock time for each case (10 min)"}};
 }
 
 }  // namespace

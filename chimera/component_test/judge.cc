@@ -52,7 +52,7 @@ struct Judge {
     return static_cast<std::size_t>(std::ranges::count_if(trial.counted.rows(), is_completed));
   }
 
-  /// False: it did not come so far that there is anything to judge.
+  /// False: the test ended before this that there is anything to judge.
   bool start() {
     const Record& record = trial.counted.record();
     if (record.refusal[0] != '\0') return fails("start", record.refusal), false;
@@ -124,12 +124,12 @@ struct Judge {
               system_call_name(method.first_system_call);
     }
     if (text.empty()) return ok("system calls", "none in a cycle");
-    if (has_resources()) return ok("system calls", text + "; it speaks to a resource");
-    fails("system calls", text + "; it has no resource port to speak to");
+    if (has_resources()) return ok("system calls", text + "; it uses a resource");
+    fails("system calls", text + "; and the component has no resource port");
   }
 
   void repeatable() {
-    if (about.has_partner) return not_judged("repeatable", "a partner speaks to it");
+    if (about.has_partner) return not_judged("repeatable", "a partner answers it: two runs may differ");
     if (const std::string how = how_it_ended(trial.timed_end, trial.timed.record()); !how.empty())
       return fails("repeatable", "the second time: " + how);
     const auto first = trial.counted.rows(), second = trial.timed.rows();
@@ -152,7 +152,7 @@ struct Judge {
     if (record.stage == stage)
       fails(name, how);
     else
-      not_judged(name, "it did not come so far");
+      not_judged(name, "the test ended before this");
     return false;
   }
 
@@ -165,7 +165,7 @@ struct Judge {
       if (!trouble.is_tried || !trouble.has_happened) continue;
       const std::string after = std::string("after a fault in ") + kMethodNames[m];
       if (trouble.refused_clear && m != CHIMERA_CLEAR)
-        return fails("faults", after + " clear says no, though the cause is gone");
+        return fails("faults", after + " clear returns false although the cause is gone");
       if (trouble.how == Return::kNot)
         return fails("faults", after + " it does not come back: " + quoted(trouble.text));
       if (!trouble.is_finite) return fails("faults", after + " its outputs are not finite");
@@ -182,12 +182,14 @@ struct Judge {
       const Trouble& trouble = trial.troubled.record().bad_inputs[kind];
       if (!trouble.is_tried || !trouble.has_happened) continue;
       const std::string after = std::string("after ") + spoilt_name(kind);
-      if (trouble.refused_clear) return fails("bad inputs", after + " clear says no, though the inputs are good again");
+      if (trouble.refused_clear)
+        return fails("bad inputs", after + " clear returns false although the inputs are good again");
       if (trouble.how == Return::kNot) return fails("bad inputs", after + " it does not come back");
       if (!trouble.is_finite)
         return fails("bad inputs", after + " its outputs are still not finite 100 good cycles later");
       tried += std::string(tried.empty() ? "" : "; ") + spoilt_name(kind) + ": " +
-               (trouble.is_rejected ? "refused, " + quoted(trouble.text) : "taken, and over when it is over");
+               (trouble.is_rejected ? "refused, " + quoted(trouble.text)
+                                    : "accepted; good outputs again once the inputs are good");
     }
     if (tried.empty()) return not_judged("bad inputs", "it has no in-vars that could be bad");
     ok("bad inputs", tried);
@@ -206,7 +208,7 @@ struct Judge {
                    std::string(", such as ") + record.left_open);
     if (late.threads > early.threads) return grown("threads", late.threads - early.threads, "");
     if (late.blocks > early.blocks) return grown("blocks of memory", late.blocks - early.blocks, "");
-    ok("leftovers", "spawn and kill again and again leave no descriptor, thread or memory");
+    ok("leftovers", "repeated spawn and kill leave no open descriptor, thread or memory");
   }
 
   void measure() {
@@ -239,7 +241,7 @@ std::string how_it_ended(const PlayEnd& end, const Record& record) {
                       : record.stage == Stage::kStart ? " in its constructor"
                                                       : " while it was loaded";
   if (is_in_method && record.stage == Stage::kRows) where += " " + std::to_string(record.row);
-  if (end.has_hung) return "nothing moved any more" + where;
+  if (end.has_hung) return "no progress, ended" + where;
   if (!end.process.by_signal) return "its process ended with code " + std::to_string(end.process.code) + where;
   return "killed by signal " + std::to_string(end.process.code) + " (" + ::strsignal(end.process.code) + ")" + where;
 }

@@ -28,7 +28,7 @@ Result<Partner> Partner::start(const std::string& program, Nanoseconds patience)
   if (!process) return process.error();
   Partner partner(*std::move(process));
   partner.line_ = pipe->first_line(patience);
-  if (partner.line_.empty()) return (Message() << "says no first line").error(ErrorCode::kBadInput, program);
+  if (partner.line_.empty()) return (Message() << "printed no first line").error(ErrorCode::kBadInput, program);
   return partner;
 }
 

@@ -45,7 +45,7 @@ TEST_F(PartnerProgram, LivesInItsFolder) {
 TEST_F(PartnerProgram, IsRefusedWhenItSaysNothing) {
   const auto ended = start("exit 0\n", seconds(20));
   ASSERT_FALSE(ended);
-  EXPECT_EQ(std::string(ended.error().message.c_str()), "says no first line");
+  EXPECT_EQ(std::string(ended.error().message.c_str()), "printed no first line");
   EXPECT_FALSE(start("exec sleep 100\n", milliseconds(200)));
 }
 

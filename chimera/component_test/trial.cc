@@ -140,7 +140,7 @@ Result<std::string> descriptor_text(const std::string& object_file, const TrialO
   if (!end) return end.error();
   if (!found.empty() && end->is_clean()) return found;
   const char* refusal = record.record().refusal;
-  return (Message() << (refusal[0] != '\0' ? refusal : "dies or hangs when it is opened"))
+  return (Message() << (refusal[0] != '\0' ? refusal : "crashes or hangs when it is opened"))
       .error(ErrorCode::kBadInput, object_file);
 }
 

@@ -62,7 +62,7 @@ Result<OwnedDescriptor> connected(const std::string& path, Nanoseconds limit) {
   if (errno == ENAMETOOLONG) return refusal("the path of the socket is too long", path);
   if (errno == EAGAIN || errno == EINTR) return refusal(silent(path, limit));
   const bool is_closed = errno == EACCES || errno == EPERM;
-  return refusal(is_closed ? "you may not talk to this subsystem" : "no subsystem listens here", path);
+  return refusal(is_closed ? "you have no right to connect to this subsystem" : "no subsystem listens here", path);
 }
 
 /// Those of `names` that were started from this terminal or folder.

@@ -23,7 +23,7 @@ RpcResponse too_fast(Nanoseconds wait) {
 
 RpcResponse no_role() {
   return RpcResponse::error(
-      kNoRight, "you have no right here: you are neither the user of the subsystem nor in a group with a role",
+      kNoRight, "you have no role in this subsystem: you are neither its user nor in a group that has a role",
       {{"needs", "observe"}, {"has", "nothing"}});
 }
 
@@ -139,9 +139,9 @@ std::string ControlServer::idle_text(Connection& connection, Nanoseconds now) co
     case Standing::kIdle:
       return "idle for " + time_text(now - connection.active_at);
     case Standing::kAsks:
-      return "it had only asked";
+      return "the client had sent requests only, no act";
     case Standing::kListens:
-      return "it only listened, with a lower role";
+      return "the client had subscriptions only, and a lower role";
     case Standing::kActs:
       break;  // does not give way
   }
@@ -271,9 +271,9 @@ bool ControlServer::is_over(Connection& connection, Nanoseconds now) {
 /// For which it is closed now; null: none.
 const char* ControlServer::fault_of(Connection& connection, Nanoseconds now) const {
   if (connection.is_closing() || connection.is_gone) return nullptr;
-  if (connection.patience_ends() <= now) return "it took nothing for 5 s";
+  if (connection.patience_ends() <= now) return "the client read nothing for 5 s";
   const Nanoseconds half = connection.has_line() ? kNever : connection.half_since();
-  return half != kNever && now - half >= kPatience ? "its line did not end within 5 s" : nullptr;
+  return half != kNever && now - half >= kPatience ? "the client sent a line without its end for 5 s" : nullptr;
 }
 
 void ControlServer::settle(Nanoseconds now) {

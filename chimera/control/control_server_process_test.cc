@@ -72,7 +72,7 @@ TEST_F(DoorTest, RefusesWhatIsNoRequestAndGoesOn) {
   EXPECT_EQ(ask(fd, "no json\n"), error("null", -32700, "this is no JSON"));
   EXPECT_EQ(ask(fd, "\n"), error("null", -32700, "this is no JSON"));
   EXPECT_EQ(ask(fd, std::string("\xff\xfe\0{}\n", 6)), error("null", -32700, "this is no JSON"));
-  EXPECT_EQ(ask(fd, "[]\n"), error("null", -32600, "batches are not taken: one message a line"));
+  EXPECT_EQ(ask(fd, "[]\n"), error("null", -32600, "batches are not supported: send one message a line"));
   EXPECT_NE(ask(fd, request("hello")).find("\"result\""), std::string::npos);
   ::close(fd);
 }

@@ -16,7 +16,8 @@ using DoorLimits = DoorTest;
 TEST_F(DoorLimits, ClosesAfterALineThatIsTooDeep) {
   const int fd = plain();
   const std::string deep = std::string(31, '[') + std::string(31, ']');
-  EXPECT_EQ(ask(fd, request("set", R"({"values":)" + deep + "}")), error("null", -32001, "nested deeper than 32"));
+  EXPECT_EQ(ask(fd, request("set", R"({"values":)" + deep + "}")),
+            error("null", -32001, "nested deeper than 32 levels"));
   EXPECT_TRUE(is_closed(fd));
   EXPECT_EQ(door->connections(), 0u);
   ::close(fd);
@@ -37,7 +38,7 @@ TEST_F(DoorLimits, ClosesAfterADepthBomb) {
     serve();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  EXPECT_EQ(got, error("null", -32001, "nested deeper than 32"));
+  EXPECT_EQ(got, error("null", -32001, "nested deeper than 32 levels"));
   writer.join();
   EXPECT_TRUE(is_closed(fd));
   ::close(fd);
@@ -54,7 +55,7 @@ TEST_F(DoorLimits, ClosesAfterALineThatIsTooLong) {
     serve();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  EXPECT_EQ(got, error("null", -32001, "a line may have 1 MiB"));
+  EXPECT_EQ(got, error("null", -32001, "the line is longer than 1 MiB"));
   ::shutdown(fd, SHUT_RDWR);
   writer.join();
   ::close(fd);
@@ -126,8 +127,8 @@ TEST_F(DoorLimits, TakesThirtyTwoSubscriptionsOfAConnection) {
   for (int i = 0; i < 32; ++i)
     EXPECT_NE(ask(fd, request("subscribe", R"({"to":"events"})")).find("\"result\""), std::string::npos);
   const std::string got = ask(fd, request("subscribe", R"({"to":"events"})", 33));
-  EXPECT_NE(got.find(R"({"code":-32602,"data":{"where":"to"},"message":"a connection may have 32 subscriptions"},)"
-                     R"("id":33,)"),
+  EXPECT_NE(got.find(R"({"code":-32602,"data":{"where":"to"},"message":"this connection has 32 subscriptions already, )"
+                     R"(and no more are allowed"},"id":33,)"),
             std::string::npos)
       << got;
   ::close(fd);

@@ -131,7 +131,7 @@ TEST_F(DoorPlaces, AHigherRoleTakesThePlaceOfALowerOneThatOnlyListens) {
   EXPECT_NE(ask(as(9, Role::kConfigure), request("hello")).find("\"result\""), std::string::npos);
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0],
-            "a connection of user 61001 (process 4711, operate): it only listened, with a lower role; its "
+            "a connection of user 61001 (process 4711, operate): the client had subscriptions only, and a lower role; its "
             "place was needed");
 }
 
@@ -152,9 +152,9 @@ TEST_F(DoorPlaces, ALineThatDoesNotEndWithinFiveSecondsIsClosedInAnyCase) {
   serve();
   EXPECT_EQ(door->next_due(), begun + seconds(5));
   serve(begun + seconds(5) - now);
-  EXPECT_EQ(take(slow), closed("its line did not end within 5 s"));
+  EXPECT_EQ(take(slow), closed("the client sent a line without its end for 5 s"));
   EXPECT_TRUE(is_closed(slow));
-  EXPECT_EQ(told, std::vector<std::string>{mine("its line did not end within 5 s")});
+  EXPECT_EQ(told, std::vector<std::string>{mine("the client sent a line without its end for 5 s")});
   serve(seconds(3));
   EXPECT_EQ(door->connections(), 1u) << "its second line began later";
   serve(seconds(2));
@@ -184,7 +184,7 @@ TEST_F(DoorPlaces, WhoTakesNothingForFiveSecondsIsToldOf) {
   say(fd, request("hello"));
   serve();
   serve(seconds(5));
-  EXPECT_EQ(told, std::vector<std::string>{mine("it took nothing for 5 s")});
+  EXPECT_EQ(told, std::vector<std::string>{mine("the client read nothing for 5 s")});
 }
 
 }  // namespace

@@ -64,15 +64,15 @@ TextCost text_cost(std::string_view text) noexcept {
 }
 
 Request read_request(std::string_view line) {
-  if (line.size() > kMaxLine) return refused(nullptr, kTooLarge, "a line may have 1 MiB", true);
+  if (line.size() > kMaxLine) return refused(nullptr, kTooLarge, "the line is longer than 1 MiB", true);
   const TextCost cost = text_cost(line);
-  if (cost.depth > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32", true);
-  if (cost.commas >= kMaxValues) return refused(nullptr, kTooLarge, "a line may have 10,000 values", true);
+  if (cost.depth > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32 levels", true);
+  if (cost.commas >= kMaxValues) return refused(nullptr, kTooLarge, "the line has more than 10,000 values", true);
   std::optional<std::string> twice;
   const Json message = parse(line, twice);
   if (message.is_discarded()) return refused(nullptr, kParseError, "this is no JSON");
   if (twice) return refused(nullptr, kNoRequest, "the key '" + *twice + "' stands twice");
-  if (message.is_array()) return refused(nullptr, kNoRequest, "batches are not taken: one message a line");
+  if (message.is_array()) return refused(nullptr, kNoRequest, "batches are not supported: send one message a line");
   if (!message.is_object()) return refused(nullptr, kNoRequest, "a request is an object");
   const auto id = message.find("id");
   if (id != message.end() && !is_id(*id)) return refused(nullptr, kNoRequest, "'id' must be a text or a whole number");

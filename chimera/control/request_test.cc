@@ -28,7 +28,7 @@ TEST(Request, SaysWhyItIsNone) {
   EXPECT_EQ(read(""), "-32700 this is no JSON null");
   EXPECT_EQ(read("{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"\xff\"}"), "-32700 this is no JSON null");
   EXPECT_EQ(read("1e999"), "-32700 this is no JSON null");
-  EXPECT_EQ(read("[]"), "-32600 batches are not taken: one message a line null");
+  EXPECT_EQ(read("[]"), "-32600 batches are not supported: send one message a line null");
   EXPECT_EQ(read("7"), "-32600 a request is an object null");
   EXPECT_EQ(read(R"({"id":1,"method":"hello"})"), R"(-32600 'jsonrpc' must be "2.0" 1)");
   EXPECT_EQ(read(R"({"jsonrpc":"2.0","id":{},"method":"hello"})"), "-32600 'id' must be a text or a whole number null");
@@ -45,7 +45,7 @@ TEST(Request, BeyondALimitItEndsTheConnection) {
   const std::string deep = std::string(33, '[') + std::string(33, ']');
   EXPECT_EQ(read(deep), "-32001 nested deeper than 32 null");
   EXPECT_TRUE(read_request(deep).must_close);
-  EXPECT_EQ(read(std::string(kMaxLine + 1, ' ')), "-32001 a line may have 1 MiB null");
+  EXPECT_EQ(read(std::string(kMaxLine + 1, ' ')), "-32001 the line is longer than 1 MiB null");
   EXPECT_TRUE(read_request(std::string(kMaxLine + 1, ' ')).must_close);
   EXPECT_FALSE(read_request("7").must_close);
   EXPECT_EQ(read(std::string(kMaxLine - 1, ' ') + "7"), "-32600 a request is an object null");
@@ -68,7 +68,7 @@ TEST(Request, ALineOfTooManyValuesIsNotRead) {
   EXPECT_TRUE(read_request(line(9990)).refusal.is_good());
   const Request refused = read_request(line(10'001));
   EXPECT_EQ(refused.refusal.code, kTooLarge);
-  EXPECT_EQ(refused.refusal.message, "a line may have 10,000 values");
+  EXPECT_EQ(refused.refusal.message, "the line has more than 10,000 values");
   EXPECT_TRUE(refused.must_close);
   EXPECT_EQ(text_cost(R"({"a,b": "c,d", "e": [1, 2]})").commas, 2u) << "commas in texts do not count";
 }

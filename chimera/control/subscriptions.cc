@@ -18,7 +18,8 @@ constexpr int kNewsAtOnce = 64;                        // messages of one subscr
 
 RpcResponse Subscriptions::open(std::uint64_t connection, const Json& parameters, Nanoseconds now) {
   if (count_of(connection) >= kMaxSubscriptions)
-    return RpcResponse::error(kBadParameters, "a connection may have 32 subscriptions", {{"where", "to"}});
+    return RpcResponse::error(kBadParameters, "this connection has 32 subscriptions already, and no more are allowed",
+                              {{"where", "to"}});
   const std::uint64_t number = ++last_;
   RpcResponse opened = backend_.open(number, parameters);
   if (!opened.is_good()) return opened;

@@ -100,13 +100,13 @@ void Keeper::look_at_face() {
   if (fate == KeptFace::Fate::kExited) {
     end_asked_ = true;
   } else if (phase_ != Phase::kRunning || end_asked_) {
-    end_badly(said << "of " << face_.cause().view() << " while everything ends: how the run went is not judged");
+    end_badly(said << "of " << face_.cause().view() << " while the run was ending: how the run went is not judged");
   } else if (fate == KeptFace::Fate::kGivenUp) {
     end_badly(said << kMostFaceDeaths << " times in 10 s, the last time of " << face_.cause().view()
-                   << ": everything ends");
+                   << ": the run ends");
   } else if (const auto started = face_.start(); !started) {
     end_badly(said << "of " << face_.cause().view() << ", and no other can be started ("
-                   << started.error().message.view() << "): everything ends");
+                   << started.error().message.view() << "): the run ends");
   }
 }
 
@@ -115,7 +115,7 @@ void Keeper::count_refusal(Nanoseconds lived) {
   const bool refused = lived < kQuickDeath && !peers_.by_signal(peers_.manager());
   if (!refused) manager_refusals_ = -1;
   if (manager_refusals_ < 0 || ++manager_refusals_ != kMostRefusals) return;
-  end_badly(Message("the manager could not start, ") << kMostRefusals << " times: nothing is run");
+  end_badly(Message("the manager could not start, ") << kMostRefusals << " times: the run ends");
 }
 
 void Keeper::obey(const KeeperMessage& wish) {

@@ -67,7 +67,8 @@ void KeptPeers::look_at_orphans(pid_t other) {
 }
 
 Result<void> KeptPeers::start_all() {
-  if (plan_.n_rtpus > kMaxRtpus) return Message("more rtpus than a subsystem can have").error(ErrorCode::kBadInput);
+  if (plan_.n_rtpus > kMaxRtpus)
+    return (Message() << plan_.n_rtpus << " rtpus; a subsystem has at most " << kMaxRtpus).error(ErrorCode::kBadInput);
   auto decision = SharedPages::create("chimera-decision", sizeof(DecisionPage));
   if (!decision) return decision.error();
   auto keeper = MemoryRegion::create("chimera-keeper", sizeof(KeeperPage));

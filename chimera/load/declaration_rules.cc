@@ -126,7 +126,7 @@ Verdict words_rule(const PortDescriptor& port) {
     }
     if (std::find(port.one_of.begin(), port.one_of.begin() + static_cast<std::ptrdiff_t>(i), word) !=
         port.one_of.begin() + static_cast<std::ptrdiff_t>(i)) {
-      return "the word \"" + word + "\" stands twice";
+      return "the word \"" + word + "\" is listed twice";
     }
   }
   return {};

@@ -42,7 +42,8 @@ TEST(DeclarationRules, AnOrderStandsBetweenTwoConstantsOfOneKind) {
   EXPECT_EQ(sample.refusal(), kinds);
   sample.ports[2].kind = CHIMERA_IN_CONST;
   sample.component.n_orders = 2;
-  EXPECT_EQ(sample.refusal(), "component tderiv: port high: is at least two others");
+  EXPECT_EQ(sample.refusal(),
+            "component tderiv: port high: is declared to be at least two other ports; one is allowed");
   orders[0] = {"low", "heigh"};
   EXPECT_EQ(sample.refusal(), "component tderiv: no port \"heigh\" is there to be at least low");
   orders[0] = {"high", "high"};
@@ -70,12 +71,12 @@ TEST(DeclarationRules, WordsBelongToAConstantOfText) {
   choices[0].words = "sine  step";
   EXPECT_EQ(sample.refusal(), "component tderiv: port wave: the word \"\": expected text without a space");
   choices[0].words = "step step";
-  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: the word \"step\" stands twice");
+  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: the word \"step\" is listed twice");
   choices[0].words = "step sawtooth";
   EXPECT_EQ(sample.refusal(), "component tderiv: port wave: the word \"sawtooth\" is longer than the port's 7 bytes");
   choices[0].words = "step";
   sample.component.n_choices = 2;
-  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: says twice what words it may be");
+  EXPECT_EQ(sample.refusal(), "component tderiv: port wave: has two lists of words it may be; one is allowed");
   sample.component.n_choices = 65;
   EXPECT_EQ(sample.refusal(), "component tderiv: has more choices than ports");
   sample.component.n_choices = 1;

@@ -53,7 +53,7 @@ Result<void> check_pointers(const std::string& place, const chimera_port_decl& p
   const std::uint64_t live_end = port.live_offset + std::uint64_t{sizeof(chimera_port)} * port.max_instances;
   if (port.max_instances > CHIMERA_MAX_INSTANCES || live_end > component.state_size ||
       port.live_offset % alignof(chimera_port) != 0) {
-    return refused(place, "its live half at offset " + std::to_string(port.live_offset) + " with " +
+    return refused(place, "its chimera_port at offset " + std::to_string(port.live_offset) + " with " +
                               std::to_string(port.max_instances) + " instances does not lie in the state of " +
                               std::to_string(component.state_size) + " bytes");
   }
@@ -130,7 +130,8 @@ Result<void> copy_orders(const std::string& place, const chimera_component& comp
     const std::string lower = text_of(order.lower), upper = text_of(order.upper);
     const auto port = std::find_if(to.ports.begin(), to.ports.end(), [&](const auto& p) { return p.name == upper; });
     if (port == to.ports.end()) return refused(place, "no port \"" + upper + "\" is there to be at least " + lower);
-    if (!port->at_least.empty()) return refused(place + ": port " + upper, "is at least two others");
+    if (!port->at_least.empty())
+      return refused(place + ": port " + upper, "is declared to be at least two other ports; one is allowed");
     port->at_least = lower;
   }
   return {};
@@ -151,7 +152,8 @@ Result<void> copy_choices(const std::string& place, const chimera_component& com
     const std::string name = text_of(choice.port);
     const auto port = std::find_if(to.ports.begin(), to.ports.end(), [&](const auto& p) { return p.name == name; });
     if (port == to.ports.end()) return refused(place, "no port \"" + name + "\" is there to be one of some words");
-    if (!port->one_of.empty()) return refused(place + ": port " + name, "says twice what words it may be");
+    if (!port->one_of.empty())
+      return refused(place + ": port " + name, "has two lists of words it may be; one is allowed");
     port->one_of = words_of(text_of(choice.words));
   }
   return {};
@@ -159,8 +161,9 @@ Result<void> copy_choices(const std::string& place, const chimera_component& com
 
 Result<void> check_version(const chimera_component& component) {
   if (component.abi_version != CHIMERA_ABI_VERSION) {
-    return refused("component", "ABI version " + std::to_string(component.abi_version) + ", this framework speaks " +
-                                    std::to_string(CHIMERA_ABI_VERSION));
+    return refused("component", "it was built for ABI " + std::to_string(component.abi_version) +
+                                    ", and this chimera needs ABI " + std::to_string(CHIMERA_ABI_VERSION) +
+                                    ": rebuild it");
   }
   // One that ends before a member was built before there was one.
   if (component.struct_size != sizeof(chimera_component) &&
@@ -174,7 +177,7 @@ Result<void> check_version(const chimera_component& component) {
   }
   const bool knows_host = component.struct_size == sizeof(chimera_component);
   if (knows_host && component.host_size > sizeof(chimera_host))
-    return refused("component", "it asks for more than this framework has: it was built with a newer one");
+    return refused("component", "it was built with a newer chimera than this one: rebuild it, or install that chimera");
   return {};
 }
 

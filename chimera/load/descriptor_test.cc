@@ -31,7 +31,7 @@ TEST(Describe, CopiesTheWholeDeclaration) {
 TEST(Describe, RefusesAnotherVersionOfTheInterface) {
   Sample sample;
   sample.component.abi_version = 7;
-  EXPECT_EQ(sample.refusal(), "component: ABI version 7, this framework speaks 1");
+  EXPECT_EQ(sample.refusal(), "component: it was built for ABI 7, and this chimera needs ABI 1: rebuild it");
 }
 
 TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
@@ -64,7 +64,8 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   sample.component.host_size = sizeof(chimera_host) + 8;
   EXPECT_TRUE(sample.described());  // what stands there is none of its
   sample.component.struct_size = size;
-  EXPECT_EQ(sample.refusal(), "component: it asks for more than this framework has: it was built with a newer one");
+  EXPECT_EQ(sample.refusal(),
+            "component: it was built with a newer chimera than this one: rebuild it, or install that chimera");
   sample.component.host_size = sizeof(chimera_host);
   EXPECT_TRUE(sample.described());
   sample.component.struct_size = size + 8;
@@ -75,8 +76,9 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
 TEST(Describe, RefusesALiveHalfOutsideTheState) {
   Sample sample;
   sample.ports[0].live_offset = 4090;
-  EXPECT_EQ(sample.refusal(), "component tderiv: port x: its live half at offset 4090 with 1 instances does not lie "
-                              "in the state of 4096 bytes");
+  EXPECT_EQ(sample.refusal(),
+            "component tderiv: port x: its chimera_port at offset 4090 with 1 instances does not lie "
+            "in the state of 4096 bytes");
 }
 
 TEST(Describe, LeavesTheBytesBetweenFieldsOut) {

@@ -172,7 +172,8 @@ class ControlServer(unittest.TestCase):
             for pid in reversed(stopped):
                 self.system.kill(pid, signal.SIGCONT)
         await_that(lambda: is_closed(half), 5, "the end of the half line")
-        self.assertTrue(any("its line did not end within 5 s" in text for text in self.closings()), self.closings())
+        told = "the client sent a line without its end for 5 s"
+        self.assertTrue(any(told in text for text in self.closings()), self.closings())
         self.assertEqual([t["state"] for t in self.system.call("status")["tasks"]], ["ON", "ON"])
 
 

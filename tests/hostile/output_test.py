@@ -214,7 +214,7 @@ class TheFaceDies(unittest.TestCase):
                 self.kill_face(system)
             self.assertTrue(system.kill(self.face_of(system)))
             self.assertEqual(system.process.wait(10), 1)
-            self.assertIn("3 times in 10 s, the last time of signal 9 (SIGKILL): everything ends", system.said())
+            self.assertIn("3 times in 10 s, the last time of signal 9 (SIGKILL): the run ends", system.said())
             system.await_nothing_left()
 
 

@@ -260,7 +260,7 @@ class Faults(unittest.TestCase):
                 self.assertTrue(system.kill(system.pids()["manager"]))
                 out, said = scope.communicate(timeout=20)
             self.assertEqual(scope.returncode, 1, said)
-            self.assertIn("ended before its time: the connection to the subsystem was lost\n", said)
+            self.assertIn("the recording ended early: the connection to the subsystem was lost\n", said)
             self.assertGreater(len(out.splitlines()), 10)
 
     def test_a_command_waits_for_a_manager_that_is_being_restarted(self):

@@ -66,9 +66,9 @@ class Run(unittest.TestCase):
                 system.process.send_signal(signal.SIGINT)
                 self.assertEqual(system.process.wait(30), 1 if strict else 0, system.said())
                 said = system.said()
-                self.assertRegex(said, r"\nfirst: what its tasks count is since its restart at \d+\.\d+ s\n"
+                self.assertRegex(said, r"\nfirst: the counts of its tasks begin at its restart at \d+\.\d+ s\n"
                                        r"not clean: .*1 restart of first")
-                self.assertEqual("FAILED: not clean, and --strict asks for that\n" in said, strict, said)
+                self.assertEqual("FAILED: not clean, and --strict makes that a failure\n" in said, strict, said)
 
     def test_with_every_unit_dead_the_flag_is_up(self):
         one = "subject\nrtpus: {first: {cpu: 0}}\ntasks:\n" + counter("one", "first")

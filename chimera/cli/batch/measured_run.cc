@@ -231,7 +231,7 @@ MeasuredRun decode_measured(const std::string& text) {
           {judged.at(0).get<std::string>(), judged.at(1).get<std::string>(), judged.at(2).get<bool>()});
   } catch (const Json::exception&) {
     run = {};
-    run.failure = "ended without an answer";
+    run.failure = "the process of this run ended without a result";
   }
   return run;
 }

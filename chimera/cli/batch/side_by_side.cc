@@ -108,7 +108,7 @@ class Crowd {
     for (const int descriptor : {errors, answer[0]})
       if (descriptor >= 0) ::close(descriptor);
     if (!children_.empty()) return false;
-    ends_[next_++].failure = std::string("no process for it: ") + std::strerror(why);
+    ends_[next_++].failure = std::string("no process could be started: ") + std::strerror(why);
     plan_.told(++done_);
     return true;
   }

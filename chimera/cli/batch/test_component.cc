@@ -159,7 +159,7 @@ std::string text_of(const component_test::TrialReport& report) {
   if (report.measured.cycles > 0)
     text += "  measured    time          " + short_text(report.measured.typical_ns) + " (mean of the middle half), " +
             short_text(static_cast<double>(report.measured.worst_ns)) + " worst of " +
-            std::to_string(report.measured.cycles) + " cycles, each the least of three\n";
+            std::to_string(report.measured.cycles) + " cycles, each the shortest of three runs\n";
   return text;
 }
 

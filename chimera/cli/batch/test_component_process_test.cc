@@ -86,7 +86,7 @@ TEST_F(TestComponent, FindsSystemCalls) {
   if (found.find("lets no process trace") != std::string::npos) GTEST_SKIP() << "the system allows no tracing";
   EXPECT_EQ(found,
             "  fails       system calls  cycle: at most 1 in one call, 200 in 200 calls, the first system call 110; "
-            "it has no resource port to speak to");
+            "and the component has no resource port");
 }
 
 TEST_F(TestComponent, FindsWhatDoesNotRepeat) {
@@ -98,7 +98,7 @@ TEST_F(TestComponent, FindsWhatDoesNotComeBackFromAFault) {
   EXPECT_EQ(misdeed(8, "faults"),
             "  fails       faults        after a fault in on it does not come back: \"does not forgive\"");
   EXPECT_EQ(misdeed(9, "faults"),
-            "  fails       faults        after a fault in on clear says no, though the cause is gone");
+            "  fails       faults        after a fault in on clear returns false although the cause is gone");
 }
 
 TEST_F(TestComponent, FindsAStateThatABadInputSpoilt) {
@@ -109,7 +109,7 @@ TEST_F(TestComponent, FindsAStateThatABadInputSpoilt) {
 TEST_F(TestComponent, SurvivesACrashAndAHang) {
   EXPECT_EQ(misdeed(11, "cycles"), "  fails       cycles        killed by signal 6 (Aborted) in cycle 3");
   options_.patience = milliseconds(300);
-  EXPECT_EQ(misdeed(12, "cycles"), "  fails       cycles        nothing moved any more in cycle 3");
+  EXPECT_EQ(misdeed(12, "cycles"), "  fails       cycles        no progress, ended in cycle 3");
 }
 
 TEST_F(TestComponent, FindsWhatKillLeaves) {

@@ -224,7 +224,8 @@ TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
                             "chimera profile --save FILE, then --profile FILE\n"),
             std::string::npos)
       << output.out;
-  EXPECT_NE(output.out.find("  nothing to judge: no task has a time\n"), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("  nothing to judge: no task has a budget or a recorded time\n"), std::string::npos)
+      << output.out;
 }
 
 TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {

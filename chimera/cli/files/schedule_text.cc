@@ -49,11 +49,11 @@ class ScheduleLines {
   std::string dispatch(const ScheduleReport& report) const {
     const std::string kind = report.dispatch_name();
     if (kind == "preemptive") return ", preemptive";
-    if (kind == "executive") return ", executives: a job that runs is not taken off";
+    if (kind == "executive") return ", executives: a running job is not preempted";
     std::vector<std::string> names;
     for (std::size_t r = 0; r < report.dispatch.size(); ++r)
       if (report.dispatch[r] == Dispatch::kPreemptive) names.push_back(rtpu(r));
-    return ", preemptive in " + list(names) + "; in the other rtpus a job that runs is not taken off";
+    return ", preemptive in " + list(names) + "; in the other rtpus a running job is not preempted";
   }
 
   std::string cpu(const CpuSchedule& cpu) const {
@@ -65,7 +65,8 @@ class ScheduleLines {
   }
 
   std::string verdict(const CpuSchedule& cpu) const {
-    if (cpu.verdict.unstated == cpu.verdict.tasks) return "  nothing to judge: no task has a time\n";
+    if (cpu.verdict.unstated == cpu.verdict.tasks)
+      return "  nothing to judge: no task has a budget or a recorded time\n";
     const char* who = cpu.verdict.unstated > 0 ? "every task with a time" : "every task";
     if (cpu.fits())
       return std::string("  fits: ") + who + " keeps its deadline" +
@@ -225,7 +226,7 @@ std::string paths_text(const ScheduleLines& lines, const SetSchedule& set) {
   if (set.paths.empty()) return "";
   std::string text = "data age, from the release of the sensor's job until what it caused is replaced:\n";
   for (const PathAge& path : set.paths) text += "  " + lines.path(path) + "\n";
-  return text + (set.has_more_paths ? "  and more ways than were followed\n" : "");
+  return text + (set.has_more_paths ? "  and more paths than were searched\n" : "");
 }
 
 }  // namespace

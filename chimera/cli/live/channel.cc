@@ -16,7 +16,9 @@ bool is_name_letter(char c) { return std::isalnum(static_cast<unsigned char>(c))
 
 Error not_a_channel(std::string_view text) {
   return {ErrorCode::kBadInput,
-          std::string_view("'" + std::string(text) + "' is no variable; expected such as q, q[2] or pose.x"), {}};
+          std::string_view("'" + std::string(text) +
+                           "' is not the name of a variable; expected a name such as q, q[2] or pose.x"),
+          {}};
 }
 
 /// Length of one step of a part ("[12]" or ".name") at the beginning of `text`; 0 when there is none.

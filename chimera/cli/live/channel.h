@@ -28,7 +28,7 @@ struct ChannelNumber {
 };
 
 /// Every number under `part` of a value as docs/formats/control.md has it; a truth is 0 or 1; texts give none. Empty
-/// when there is no such part.
+/// when there is no such element.
 std::vector<ChannelNumber> numbers_of(const nlohmann::json& value, const std::string& part);
 
 }  // namespace chimera::cli

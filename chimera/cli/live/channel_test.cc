@@ -44,7 +44,7 @@ TEST(Channel, NamesAreReadToTheirEnd) {
     const auto refused = read_channel(wrong);
     ASSERT_FALSE(refused) << wrong;
     EXPECT_EQ(std::string(refused.error().message.view()),
-              "'" + std::string(wrong) + "' is no variable; expected such as q, q[2] or pose.x");
+              "'" + std::string(wrong) + "' is not the name of a variable; expected a name such as q, q[2] or pose.x");
   }
 }
 

@@ -51,8 +51,8 @@ RunningCommand end_row() {
 
 RunningCommand events_row() {
   return {.words = {.name = "events",
-                    .help = "What happened, numbered without a gap",
-                    .options = {{.name = "--since", .value = "N", .help = "from this number on"},
+                    .help = "Print the events of the subsystem, numbered without a gap",
+                    .options = {{.name = "--since", .value = "N", .help = "events from this number on"},
                                 {.name = "--kind",
                                  .value = "KIND,...",
                                  .help = "only these, such as 'set,fault'",
@@ -62,9 +62,10 @@ RunningCommand events_row() {
                                  .manual = "A line for every event. Else deadlines that are missed within 100 ms of "
                                            "each other are one line: the tasks, the first cause, how many events, and "
                                            "the number of the last."},
-                                {.name = "--follow", .help = "go on with what happens, until Ctrl-C"}},
+                                {.name = "--follow", .help = "print new events as they happen, until Ctrl-C"}},
                     .example = "chimera events --follow",
-                    .manual = "Prints what happened, numbered without a gap; says how many events are gone."},
+                    .manual = "Prints the events of the subsystem, numbered without a gap; says how many older ones "
+                              "were overwritten."},
           .method = "events",
           .once = events,
           .live = follow_events,
@@ -89,13 +90,13 @@ RunningCommand flag_row() {
 
 RunningCommand get_row() {
   return {.words = {.name = "get",
-                    .help = "Present values; without a name all",
+                    .help = "Print present values; without a name all",
                     .operands = "VAR...",
                     .most = kAnyNumber,
                     .operand_kind = WordKind::kVariable,
                     .options = {{.name = "--every",
                                  .value = "TIME",
-                                 .help = "again and again, such as '1 s', until Ctrl-C"}},
+                                 .help = "repeat at this interval, such as '1 s', until Ctrl-C"}},
                     .example = "chimera get q kp",
                     .manual = "Prints present values with their producer and age; without a name all."},
           .method = "get",
@@ -132,7 +133,7 @@ RunningCommand on_row() {
 RunningCommand profile_row() {
   return {
       .words = {.name = "profile",
-                .help = "What each task costs and how punctual it is",
+                .help = "Print what each task costs and how punctual it is",
                 .options = {{.name = "--save",
                              .value = "FILE",
                              .help = "write it into this file, for `chimera schedule --profile`",
@@ -190,7 +191,7 @@ RunningCommand scope_row() {
   return {
       .words =
           {.name = "scope",
-           .help = "Record everything that is published, round a trigger",
+           .help = "Record everything that is published before and after a trigger",
            .operands = "VAR...",
            .least = 1,
            .most = kAnyNumber,
@@ -201,7 +202,10 @@ RunningCommand scope_row() {
                 {.name = "--for", .value = "TIME", .help = "how long from the trigger on ('1 s')"},
                 {.name = "--wait", .value = "TIME", .help = "how long to wait for the trigger ('60 s')"},
                 {.name = "--csv", .value = "FILE", .help = "write the rows to this file", .kind = WordKind::kFile},
-                {.name = "--svg", .value = "FILE", .help = "draw them into this file", .kind = WordKind::kFile}},
+                {.name = "--svg",
+                 .value = "FILE",
+                 .help = "draw the rows into this file (SVG)",
+                 .kind = WordKind::kFile}},
            .example = "chimera scope q tau --trigger 'error > 2 mrad' --pre '50 ms' --for '200 ms' --svg "
                       "scope.svg",
            .manual = "Records everything that the producers of the variables publish. VAR is a variable, an "
@@ -240,16 +244,16 @@ RunningCommand spawn_row() {
 
 RunningCommand status_row() {
   return {.words = {.name = "status",
-                    .help = "Real-time units, tasks, flag",
+                    .help = "Print the real-time units, the tasks and the illegal-configuration flag",
                     .options = {{.name = "--pid",
                                  .value = "RTPU",
-                                 .help = "only the number of the process of this real-time unit ('keeper', 'manager': "
-                                         "of theirs)",
+                                 .help = "only the process number of this real-time unit, of 'keeper' or of "
+                                         "'manager'",
                                  .manual = "Only the number of the process of this real-time unit, for `kill`; "
                                            "`keeper` and `manager` are names, too.",
                                  .is_act = true}},
                     .example = "chimera status",
-                    .manual = "Prints the real-time units, the tasks and the flag."},
+                    .manual = "Prints the real-time units, the tasks and the illegal-configuration flag."},
           .method = "status",
           .once = status,
           .names_its_subsystem = true};
@@ -260,12 +264,13 @@ constexpr Option kEvery{.name = "--every", .value = "TIME", .help = "how often, 
 RunningCommand top_row() {
   return {
       .words = {.name = "top",
-                .help = "The same live, on the whole screen: q ends it",
+                .help = "Show the real-time units and tasks live, on the whole screen: q ends it",
                 .options = {kEvery},
-                .footer = "EXEC: mean execution time since the last look; MAX: longest so far; USED: MAX of BUDGET; "
+                .footer = "EXEC: mean execution time since the last update; MAX: longest so far; USED: MAX of BUDGET; "
                           "INPUT: age of the\noldest input",
                 .example = "chimera top",
-                .manual = "Shows the same live on the whole screen. EXEC is the mean execution time since the last "
+                .manual = "Shows the real-time units and tasks live on the whole screen. EXEC is the mean execution "
+                          "time since the last "
                           "look, MAX the longest so far, USED that of BUDGET, INPUT the age of the oldest input. A "
                           "task that is not created has the state `none`. The keys o n e b j m a sort, the arrows "
                           "scroll, `q` ends. Without a terminal it prints one screen."},
@@ -276,14 +281,14 @@ RunningCommand top_row() {
 
 RunningCommand watch_row() {
   return {.words = {.name = "watch",
-                    .help = "Values live, with their recent course",
+                    .help = "Show values live, with their recent history",
                     .operands = "VAR...",
                     .least = 1,
                     .most = kAnyNumber,
                     .operand_kind = WordKind::kVariable,
                     .options = {kEvery},
                     .example = "chimera watch q tau[2]",
-                    .manual = "Shows values live, one line each, with their recent course. Without a terminal it "
+                    .manual = "Shows values live, one line each, with their recent history. Without a terminal it "
                               "prints a line each time."},
           .method = "subscribe",
           .live = watch};
@@ -291,7 +296,7 @@ RunningCommand watch_row() {
 
 RunningCommand why_row() {
   return {.words = {.name = "why",
-                    .help = "Where a value comes from, and what is wrong with it",
+                    .help = "Tell where a value comes from, and what is wrong with it",
                     .operands = "VAR",
                     .least = 1,
                     .most = 1,
@@ -321,7 +326,7 @@ std::span<const RunningCommand> running_commands() {
 
 const Command& help_words() {
   static const Command kWords{.name = "help",
-                              .help = "This list, or more about one command",
+                              .help = "List the commands, or tell more about one",
                               .operands = "[COMMAND]",
                               .most = 1,
                               .operand_kind = WordKind::kCommand,

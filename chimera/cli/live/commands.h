@@ -14,7 +14,8 @@
 namespace chimera::cli {
 
 /// The help of --subsystem.
-inline constexpr const char* kWhichOne = "which one: needed to act on one of another terminal and folder";
+inline constexpr const char* kWhichOne =
+    "name of the subsystem; needed to act on one that was started in another terminal and folder";
 
 /// Where the result of a command is shown.
 struct Screen {

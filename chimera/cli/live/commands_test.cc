@@ -105,11 +105,11 @@ TEST(Command, ControlMdNamesEveryMethodAndEveryAct) {
 TEST(Command, HelpTellsUsageOptionsAndAnExample) {
   EXPECT_EQ(help_text("events"),
             "events [--since N] [--kind KIND,...] [--each] [--follow]\n"
-            "  What happened, numbered without a gap\n"
+            "  Print the events of the subsystem, numbered without a gap\n"
             "  --since N         from this number on\n"
             "  --kind KIND,...   only these, such as 'set,fault'\n"
             "  --each            a line for every event; else misses within 100 ms of each other are one\n"
-            "  --follow          go on with what happens, until Ctrl-C\n"
+            "  --follow          print new events as they happen, until Ctrl-C\n"
             "  Example: chimera events --follow\n");
   EXPECT_EQ(help_text("nonsense"), "");
   EXPECT_NE(help_text("top").find("INPUT: age of the\n  oldest input\n  Example: chimera top\n"), std::string::npos);

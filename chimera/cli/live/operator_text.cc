@@ -164,7 +164,8 @@ Result<std::string> with_operator_values(std::string_view text, const std::map<s
     if (!now) return now.error();
     if (same_value(given->value, now.value(), units)) continue;
     if (!add_edits(given->value, now.value(), words, {text, units, is_in_brackets(text, draft)}, edits))
-      return no_edit("is written over several lines and has another number of them now", name);
+      return no_edit("is written over several lines, and its number of elements has changed: edit the file by hand",
+                     name);
   }
   std::sort(edits.begin(), edits.end(), [](const Edit& a, const Edit& b) { return a.from > b.from; });
   std::string result(text);

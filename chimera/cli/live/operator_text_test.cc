@@ -59,7 +59,7 @@ TEST(OperatorText, ReplacesValuesThatHaveLinesOfTheirOwnOneByOne) {
 TEST(OperatorText, RefusesWhatItCannotPlace) {
   EXPECT_EQ(edited(kText, {{"kd", "1"}}), "kd: is not under `operator:`");
   EXPECT_EQ(edited("subsystem: s\ntasks: {a: }\noperator:\n  kp:\n    - 1\n    - 2\n", {{"kp", "[1, 3, 4]"}}),
-            "kp: is written over several lines and has another number of them now");
+            "kp: is written over several lines, and its number of elements has changed: edit the file by hand");
   EXPECT_EQ(edited("[", {{"kp", "1"}}), ": the description cannot be read");
   EXPECT_EQ(edited(kText, {{"kp", "[1"}}), "kp: '[1' is no value");
 }

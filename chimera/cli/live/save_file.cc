@@ -119,7 +119,7 @@ CommandResult save_to_file(Session& session, const Call& call) {
       std::ofstream(record_path(subsystem), std::ios::binary) << own_record(written);
   }
   if (call.json) return {Json{{"file", file->path}, {"changed", is_new}, {"operator", values}}.dump() + "\n", "", kOk};
-  return {file->path + (is_new ? ": written\n" : ": says so already\n"), "", kOk};
+  return {file->path + (is_new ? ": written\n" : ": has these values already\n"), "", kOk};
 }
 
 }  // namespace chimera::cli

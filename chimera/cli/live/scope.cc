@@ -172,7 +172,7 @@ std::string Scope::summary() const {
   std::string text = plural(rows(), "row");
   text += gaps() == 0 ? ", no gap" : "; " + plural(gaps(), "gap") + ", " + plural(lost_rows(), "row") + " lost";
   if (is_full_) text += "; cut at " + std::to_string(kScopeRows) + " rows";
-  if (early_edges_ > 0) text += "; " + plural(early_edges_, "edge") + " before the pre-trigger was full passed over";
+  if (early_edges_ > 0) text += "; " + plural(early_edges_, "edge") + " before the pre-trigger was full ignored";
   return text;
 }
 

@@ -182,7 +182,7 @@ CommandResult scope(Session& session, const Call& call, const Screen& screen) {
   if (!subscribed.is_good()) return refused(subscribed, call.json);
   Scope scope(asked.value().request);
   if (asked->request.pre.count > 0 && !call.json && screen.err != nullptr) {
-    std::fprintf(screen.err, "the pre-trigger of %s fills first; then the trigger is looked at\n",
+    std::fprintf(screen.err, "recording the pre-trigger of %s first; the trigger is armed after that\n",
                  duration_text(asked->request.pre.count).c_str());
     std::fflush(screen.err);
   }
@@ -190,9 +190,9 @@ CommandResult scope(Session& session, const Call& call, const Screen& screen) {
   session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
   if (end && !scope.is_triggered()) return refused(*end, call.json);
   if (!scope.is_triggered()) {
-    const std::string early = scope.early_edges() == 0
-                                  ? ""
-                                  : " of a full pre-trigger (" + std::to_string(scope.early_edges()) + " came before)";
+    const std::string early = scope.early_edges() == 0 ? ""
+                                                       : " after the pre-trigger was full (" +
+                                                             std::to_string(scope.early_edges()) + " came before that)";
     const std::string within = " within " + duration_text(asked.value().wait.count) + early;
     return refused(wrong(asked.value().request.trigger ? "no trigger '" + call.value("--trigger") + "'" + within
                                                        : "nothing was published" + within),
@@ -200,7 +200,7 @@ CommandResult scope(Session& session, const Call& call, const Screen& screen) {
   }
   CommandResult said = tell(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "", screen.width);
   if (end && said.code == kOk) {  // what was recorded is kept; what came after is not known to anybody
-    said.err += "ended before its time: " + std::string(end->message.view()) + "\n";
+    said.err += "the recording ended early: " + std::string(end->message.view()) + "\n";
     said.code = kRefused;
   }
   return said;

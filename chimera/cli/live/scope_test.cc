@@ -74,7 +74,7 @@ TEST(Scope, IsNotArmedBeforeThePreTriggerIsFull) {
   ASSERT_TRUE(scope.is_triggered());
   EXPECT_EQ(scope.begin(), milliseconds(6));
   EXPECT_EQ(scope.csv().substr(0, 80).find("-0.005000000,0,7,7"), scope.csv().find('\n') + 1) << scope.csv();
-  EXPECT_NE(scope.summary().find("; 2 edges before the pre-trigger was full passed over"), std::string::npos)
+  EXPECT_NE(scope.summary().find("; 2 edges before the pre-trigger was full ignored"), std::string::npos)
       << scope.summary();
 }
 

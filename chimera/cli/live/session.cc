@@ -70,7 +70,7 @@ const std::string& Session::subsystem() { return home().subsystem; }
 Result<void> Session::may_act() {
   if (is_named_ || control::is_here(home())) return {};
   const std::string name = home().subsystem;
-  if (name.empty()) return Error{ErrorCode::kRefused, {"the subsystem does not say which it is"}, {}};
+  if (name.empty()) return Error{ErrorCode::kRefused, {"the subsystem did not tell its name"}, {}};
   const std::string folder = home().folder.empty() ? "elsewhere" : "in " + plain_line(home().folder);
   const std::string message =
       "'" + name + "' was started " + folder + " (process " + std::to_string(home().keeper_pid) +

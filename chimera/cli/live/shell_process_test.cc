@@ -327,7 +327,7 @@ TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyWhenItIsAsItWas) {
   EXPECT_EQ(run({"save", "--write"}), "0|[puma_pid] " + subject.file + ": written\n|");
   const std::string after = "subsystem: puma_pid\ntasks: {a: }\noperator:\n  kp: [1 N.m/rad, 2 N.m/rad]  # gains\n";
   EXPECT_EQ(content(subject.file), after);
-  EXPECT_EQ(run({"save", "--write"}), "0|[puma_pid] " + subject.file + ": says so already\n|")
+  EXPECT_EQ(run({"save", "--write"}), "0|[puma_pid] " + subject.file + ": has these values already\n|")
       << "its own writing is no change";
   std::ofstream(subject.file, std::ios::app) << "# by hand\n";
   EXPECT_EQ(run({"save", "--write"}), refusal);

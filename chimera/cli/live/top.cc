@@ -186,13 +186,13 @@ std::size_t most_skipped(const Json& status, const TopView& view) {
 
 std::vector<TopLine> help_lines(const TopView& view) {
   constexpr const char* kHelp[] = {
-      "RATE    cycles in each second since the last look",
-      "EXEC    mean execution time of a cycle since the last look; MAX: the longest so far",
+      "RATE    cycles in each second since the last update",
+      "EXEC    mean execution time of a cycle since the last update; MAX: the longest so far",
       "USED    MAX as a part of BUDGET; above 100 % the stated budget is wrong",
       "JITTER  latest start minus earliest, each after its release",
       "MISSED  deadlines missed since the task was made, or its real-time unit restarted",
       "INPUT   age of the oldest input; never: nobody has written it",
-      "red     in ERROR, or more missed since the last look; faint: not ON",
+      "red     in ERROR, or more missed since the last update; faint: not ON",
       "keys    q quits, h leaves this page; o n e b j m a sort; up and down move",
       "narrow  a screen below 80 columns leaves out BUDGET, then JITTER, RATE, EXEC"};
   std::vector<TopLine> lines;

@@ -54,7 +54,8 @@ TEST(Trigger, ANumberThatIsNoneHoldsNoComparison) {
 
 TEST(Trigger, RefusesWithTheWordsOfWhatIsWrong) {
   EXPECT_EQ(refusal("error"), "trigger 'error': expected VARIABLE, one of > >= < <= == !=, QUANTITY");
-  EXPECT_EQ(refusal("> 2 rad"), "trigger '> 2 rad': '' is no variable; expected such as q, q[2] or pose.x");
+  EXPECT_EQ(refusal("> 2 rad"),
+            "trigger '> 2 rad': '' is not the name of a variable; expected a name such as q, q[2] or pose.x");
   EXPECT_EQ(refusal("error > 2 kg").rfind("trigger 'error > 2 kg': ", 0), 0u) << refusal("error > 2 kg");
   EXPECT_EQ(refusal("error > 2").rfind("trigger 'error > 2': ", 0), 0u) << refusal("error > 2");
   EXPECT_EQ(refusal("error > 2 mradd").rfind("trigger 'error > 2 mradd': ", 0), 0u);

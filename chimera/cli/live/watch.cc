@@ -26,7 +26,7 @@ std::string number_text(double value) {
 /// The text of a reading; of a part its numbers with the unit.
 std::string text_of_part(const Json& reading, const std::string& part, const std::vector<ChannelNumber>& numbers) {
   if (part.empty() || !truth_of(reading, "valid")) return text_of(reading, "text");
-  if (numbers.empty()) return "no such part";
+  if (numbers.empty()) return "no such element";
   std::string text;
   char number[40];
   for (const ChannelNumber& n : numbers) {

@@ -52,7 +52,7 @@ TEST(Watch, PlainLinesSayOnlyTheValues) {
   Watch shown = watch({"error", "q[0]", "x", "q[9]"});
   EXPECT_EQ(shown.plain(), "error = ?  q[0] = ?  x = ?  q[9] = ?");
   shown.take(readings(0.25, 3));
-  EXPECT_EQ(shown.plain(), "error = 0.25 rad  q[0] = 3 rad  x = never written (walker is OFF)  q[9] = no such part");
+  EXPECT_EQ(shown.plain(), "error = 0.25 rad  q[0] = 3 rad  x = never written (walker is OFF)  q[9] = no such element");
 }
 
 }  // namespace

@@ -362,11 +362,11 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
     report.verdict.remarks.push_back("the process that prints and ends the run died " + std::to_string(page_.deaths) +
                                      (page_.deaths == 1 ? " time" : " times"));
   if (const std::uint32_t lost = page_.acts_begun - page_.acts_done; lost > 0)
-    report.verdict.failures.push_back("of " + std::to_string(lost) +
-                                      " of the acts of --at it is not known whether they were done: the process that "
-                                      "asked for them died");
+    report.verdict.failures.push_back(
+        "it is not known whether " + std::to_string(lost) +
+        " of the acts of --at were carried out: the process that asked for them died");
   if (ended.empty() && !names_.tasks.empty())
-    report.verdict.failures.emplace_back("nobody answered at the end: how the tasks ended is not known");
+    report.verdict.failures.emplace_back("the manager did not answer at the end: how the tasks ended is not known");
 }
 
 /// What was made is turned off and killed all the same, and that is judged.

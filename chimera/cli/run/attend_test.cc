@@ -246,13 +246,13 @@ TEST_F(Attend, ARestartIsToldAndFailsAStrictRunOnly) {
                       {"rtpu", "servo"},
                       {"text", "servo is restarted"}}};
   EXPECT_EQ(attend(), kOk);
-  EXPECT_NE(out_.find("servo: what its tasks count is since its restart at 0.030 s\n"
+  EXPECT_NE(out_.find("servo: the counts of its tasks begin at its restart at 0.030 s\n"
                       "not clean: 1 restart of servo\n"),
             std::string::npos)
       << out_;
   request_.run.strict = true;
   EXPECT_EQ(attend(), kRefused);
-  EXPECT_NE(out_.find("FAILED: not clean, and --strict asks for that\n"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("FAILED: not clean, and --strict makes that a failure\n"), std::string::npos) << out_;
 }
 
 TEST_F(Attend, AUnitThatWasGivenUpIsNoSuccess) {

@@ -47,12 +47,12 @@ std::string not_ready(const Json& status) {
       under_way.push_back("the process of real-time unit " + name + " is dead");
     else if (word_of(rtpu, "phase") == "starting")
       under_way.push_back("real-time unit " + name + " still makes its tasks (" + tasks_of(status, name) +
-                          "): a shared object that is loaded, or a constructor, is under way");
+                          "): it loads a shared object or runs a constructor");
     else if (!running.empty())
       under_way.push_back("`" + running + "` is under way");
   }
   if (!under_way.empty()) return joined(under_way);
-  return idle.empty() ? "nothing is known of its tasks" : joined(idle);
+  return idle.empty() ? "the states of its tasks are not known" : joined(idle);
 }
 
 }  // namespace chimera::cli

@@ -37,7 +37,7 @@ TEST(NotReady, NamesAProcessThatDoesNotComeUp) {
 TEST(NotReady, TellsStatesWhenNobodyStandsOut) {
   EXPECT_EQ(not_ready({{"tasks", {task("a", "OFF", false), task("b", "ON", false)}}, {"rtpus", {rtpu("serving")}}}),
             "a is OFF");
-  EXPECT_EQ(not_ready(Json::object()), "nothing is known of its tasks");
+  EXPECT_EQ(not_ready(Json::object()), "the states of its tasks are not known");
 }
 
 }  // namespace

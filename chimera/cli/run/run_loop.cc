@@ -24,8 +24,8 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
   std::string why = task.faults.last.text;
   if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
   const bool is_ring = refused.signal == Signal::kWakeup;
-  if (is_ring && !task.spec->server) why = "it is not behind a server";
-  if (refused.why == Refusal::kIllegalSet) why = "the tasks ON would not be a legal set";
+  if (is_ring && !task.spec->server) why = "it has no server";
+  if (refused.why == Refusal::kIllegalSet) why = "the tasks that would be ON are not a legal set";
   char at[32];
   std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
   const std::string signal = is_ring ? "ring" : signal_name(refused.signal);

@@ -43,7 +43,7 @@ void add_unit(RunVerdict& verdict, const UnitFate& unit, bool is_told) {
     verdict.remarks.push_back(counted(unit.restarts, "restart", "restarts") + " of " + unit.name);
     char at[40] = "";
     if (unit.restarted != kNever) std::snprintf(at, sizeof at, " at %.3f s", to_seconds(unit.restarted));
-    verdict.since.push_back(unit.name + ": what its tasks count is since its restart" + at);
+    verdict.since.push_back(unit.name + ": the counts of its tasks begin at its restart" + at);
   }
   if (unit.is_given_up)
     verdict.failures.push_back(unit.name + " was given up: its process ended too often, its tasks did not run");
@@ -109,7 +109,7 @@ std::string RunVerdict::text() const {
   else if (!listed.empty())
     text += "not clean: " + listed + "\n";
   for (const std::string& failure : failures) text += "FAILED: " + failure + "\n";
-  if (failures.empty() && is_failure()) text += "FAILED: not clean, and --strict asks for that\n";
+  if (failures.empty() && is_failure()) text += "FAILED: not clean, and --strict makes that a failure\n";
   return text;
 }
 

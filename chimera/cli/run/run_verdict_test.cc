@@ -49,7 +49,7 @@ TEST(RunVerdict, CountsAreToldByTaskAndFailOnlyAStrictRun) {
   const RunVerdict strict = judged({pi}, {}, false, true);
   EXPECT_EQ(strict.text(),
             "not clean: 12 deadlines missed (pi 12), 1 release dropped (pi 1)\n"
-            "FAILED: not clean, and --strict asks for that\n");
+            "FAILED: not clean, and --strict makes that a failure\n");
   EXPECT_TRUE(strict.is_failure());
 }
 
@@ -63,8 +63,8 @@ TEST(RunVerdict, MissesThatMayBeAreNoneAndTheFlagAloneIsNotClean) {
 TEST(RunVerdict, ARestartSaysFromWhereItCounts) {
   const RunVerdict verdict = judged({task("pi")}, {{"servo", 2, milliseconds(3214)}, {"plan", 1}});
   EXPECT_EQ(verdict.text(),
-            "servo: what its tasks count is since its restart at 3.214 s\n"
-            "plan: what its tasks count is since its restart\n"
+            "servo: the counts of its tasks begin at its restart at 3.214 s\n"
+            "plan: the counts of its tasks begin at its restart\n"
             "not clean: 2 restarts of servo, 1 restart of plan\n");
   EXPECT_FALSE(verdict.is_failure());
 }
@@ -114,7 +114,7 @@ TEST(RunVerdict, ProgramsReadTheSame) {
             "{\"clean\": false, \"strict\": true, \"missed\": 1, \"dropped\": 0, \"faults\": 0, \"restarts\": 1, "
             "\"remarks\": [\"1 deadline missed (pi 1)\", \"1 restart of servo\", "
             "\"the illegal-configuration flag is up\"], "
-            "\"since\": [\"servo: what its tasks count is since its restart\"], \"not_off\": [], \"failures\": []}");
+            "\"since\": [\"servo: the counts of its tasks begin at its restart\"], \"not_off\": [], \"failures\": []}");
 }
 
 }  // namespace

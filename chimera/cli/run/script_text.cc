@@ -22,7 +22,7 @@ std::string unknown(const char* what, const std::string& found, std::span<const 
 }
 
 Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, ScriptAct act) {
-  if (which != "up" && which != "down") return wrong_act(text, "the flag goes 'up' or 'down'");
+  if (which != "up" && which != "down") return wrong_act(text, "write 'flag up' or 'flag down'");
   act.kind = which == "up" ? ScriptAct::Kind::kRaiseFlag : ScriptAct::Kind::kLowerFlag;
   return act;
 }

@@ -63,7 +63,7 @@ TEST_F(ScriptText, RefusesWhatIsNoAct) {
   EXPECT_EQ(refusal("2 s:   "), std::string("--at '2 s:   ': ") + object);
   EXPECT_EQ(refusal("2 s: off"), std::string("--at '2 s: off': ") + object);
   EXPECT_EQ(refusal("2 s: off   "), std::string("--at '2 s: off   ': ") + object);
-  EXPECT_EQ(refusal("1 s: flag sideways"), "--at '1 s: flag sideways': the flag goes 'up' or 'down'");
+  EXPECT_EQ(refusal("1 s: flag sideways"), "--at '1 s: flag sideways': write 'flag up' or 'flag down'");
 }
 
 TEST_F(ScriptText, NamesTheNearestSignalAndTask) {

@@ -47,7 +47,7 @@ void refuse(Model& model, const LinkedPort& lower, const LinkedPort& upper, std:
   const std::string found = number_text(upper, high), least = number_text(lower, low);
   model.error("constant-order", node != nullptr ? node->at : upper.at,
               "constant '" + upper.declared->name + place + "' of task '" + task + "' is " + found + ", below '" +
-                  lower.declared->name + place + "', " + least + "; expected at least that",
+                  lower.declared->name + place + "'; expected at least " + least,
               found, "at least " + least, {},
               "let '" + lower.declared->name + "' be at most '" + upper.declared->name + "'");
 }
