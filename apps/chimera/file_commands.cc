@@ -97,8 +97,8 @@ FileCommand schedule_row() {
                                  .kind = WordKind::kFile},
                                 {.name = "--dispatch",
                                  .value = "HOW",
-                                 .help = "judge all rtpus as 'preemptive' or 'executive' (non-preemptive); else each as "
-                                         "described",
+                                 .help = "judge all rtpus as 'preemptive' or 'executive' (non-preemptive); else each "
+                                         "as described",
                                  .manual = "Whether a running job can be preempted, in all rtpus: `preemptive` or "
                                            "`executive`; without it each as the description says.",
                                  .kind = WordKind::kOneOf,

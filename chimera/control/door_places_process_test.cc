@@ -131,8 +131,8 @@ TEST_F(DoorPlaces, AHigherRoleTakesThePlaceOfALowerOneThatOnlyListens) {
   EXPECT_NE(ask(as(9, Role::kConfigure), request("hello")).find("\"result\""), std::string::npos);
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0],
-            "a connection of user 61001 (process 4711, operate): the client had subscriptions only, and a lower role; its "
-            "place was needed");
+            "a connection of user 61001 (process 4711, operate): the client had subscriptions only, and a lower role; "
+            "its place was needed");
 }
 
 TEST_F(DoorPlaces, ALineThatDoesNotEndWithinFiveSecondsIsClosedInAnyCase) {
