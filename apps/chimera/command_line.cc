@@ -189,7 +189,7 @@ std::optional<cli::Call> CommandLine::read(int argc, char** argv) {
   try {
     parser_->app.parse(argc, argv);
   } catch (const CLI::ParseError& fault) {
-    return exit_code_ = tell_wrong_usage(parser_->app, fault, argc, argv), std::nullopt;
+    return exit_code_ = report_wrong_usage(parser_->app, fault, argc, argv), std::nullopt;
   }
   for (const Subcommand& sub : parser_->subcommands)
     if (!sub.row->has_commands && sub.app->parsed()) return call_of(sub);

@@ -37,7 +37,7 @@ void RecordFiles::begin(const chimera::ApplicationSpec& spec, Nanoseconds origin
         std::make_unique<chimera::ChromeTrace>(trace_->file, std::string(spec.name), rtpus_, names_, origin);
 }
 
-void RecordFiles::take(std::span<const chimera::TapRecord> records) {
+void RecordFiles::on_records(std::span<const chimera::TapRecord> records) {
   if (trace_ != nullptr) trace_->writer->add(records);
   if (unit_.count == 0) return;
   for (const chimera::TapRecord& record : records) {

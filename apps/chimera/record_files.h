@@ -20,7 +20,7 @@ class RecordFiles final : public chimera::cli::RecordSink {
   const std::string& why() const noexcept { return why_; }
   void begin(const chimera::ApplicationSpec& spec, chimera::Nanoseconds origin,
              chimera::Nanoseconds start) override;
-  void take(std::span<const chimera::TapRecord> records) override;
+  void on_records(std::span<const chimera::TapRecord> records) override;
   void end(std::uint64_t lost, std::uint64_t missed) override;
   /// Prints the timeline and closes the file; false when something was lost or could not be written.
   bool finish(std::FILE* out, std::FILE* err);

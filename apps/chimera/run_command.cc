@@ -255,7 +255,7 @@ int run(const Call& call, const cli::Workplace& workplace) {
                         [&](cli::RecordSink* sink) { return cli::run(asked.run, workplace, sink, stdout, stderr); });
   };
   return cli::in_own_process(
-      body, [&](const cli::BrokenRun& broken) { return cli::tell_broken(asked.run, broken, stdout, stderr); });
+      body, [&](const cli::BrokenRun& broken) { return cli::report_broken_run(asked.run, broken, stdout, stderr); });
 }
 
 int idle(const Call& call, const cli::Workplace& workplace) {

@@ -71,7 +71,7 @@ std::string about_operands(const CLI::ParseError& fault, const CLI::App& command
 
 }  // namespace
 
-int tell_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv) {
+int report_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv) {
   if (fault.get_exit_code() == 0) {  // --help and --version
     std::ostringstream text;
     const int code = app.exit(fault, text, text);

@@ -9,4 +9,4 @@ class ParseError;
 
 /// Prints the fault and what to write instead; `argv` is the command line that `app` refused with `fault`. The exit
 /// code: 0 after --help and --version. Context: setup.
-int tell_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv);
+int report_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv);

@@ -18,7 +18,7 @@ class Allowance {
       : interval_(interval), burst_(burst), left_(burst) {}
 
   /// Takes `n`, at most the burst; takes nothing and is false when there are not so many left at `now`.
-  constexpr bool take(Nanoseconds now, std::int64_t n = 1) noexcept {
+  constexpr bool try_take(Nanoseconds now, std::int64_t n = 1) noexcept {
     if (now > filled_) {
       const std::int64_t gained = (now - filled_).count / interval_.count;
       left_ = std::min(burst_, left_ + std::min(burst_, gained));
@@ -28,7 +28,7 @@ class Allowance {
     left_ -= n;
     return true;
   }
-  /// After take(now, n) said no: how long until it will not.
+  /// After try_take(now, n) said no: how long until it will not.
   constexpr Nanoseconds wait(Nanoseconds now, std::int64_t n = 1) const noexcept {
     return left_ >= n ? Nanoseconds{} : interval_ * (n - left_) - (now - filled_);
   }

@@ -179,7 +179,7 @@ Client::Got Client::receive(std::string& line, Nanoseconds until) {
 }
 
 /// Keeps a note, or takes the answer to `id` and is true; what is neither is passed over.
-bool Client::take(const std::string& line, std::uint64_t id, RpcResponse& answer) {
+bool Client::match_response(const std::string& line, std::uint64_t id, RpcResponse& answer) {
   const Json message = Json::parse(line, nullptr, false);
   if (!message.is_object()) return false;
   const auto method = message.find("method");
@@ -213,7 +213,7 @@ Client::Got Client::exchange(std::uint64_t id, std::string_view line, Nanosecond
     }
     if (got != Got::kLine) return sent == Got::kReset && got == Got::kClosed ? sent : got;
     is_asked = false;
-    if (take(text, id, answer)) return got;
+    if (match_response(text, id, answer)) return got;
   }
 }
 
@@ -262,7 +262,7 @@ Result<std::optional<Note>> Client::next(Nanoseconds limit) {
       (void)lost(kLost);
       return Message(kLost).error(ErrorCode::kSystem, path_);
     }
-    (void)take(line, 0, ignored);
+    (void)match_response(line, 0, ignored);
   }
   std::optional<Note> note = std::move(notes_.front());
   notes_.pop_front();

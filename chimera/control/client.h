@@ -72,7 +72,7 @@ class Client {
   bool reconnect(Nanoseconds until);
   bool comes_again(int code, Nanoseconds until);
   RpcResponse lost(const char* why);
-  bool take(const std::string& line, std::uint64_t id, RpcResponse& answer);
+  bool match_response(const std::string& line, std::uint64_t id, RpcResponse& answer);
 
   OwnedDescriptor socket_;
   std::string path_;

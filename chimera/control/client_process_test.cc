@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "chimera/control/testing/door_rig.h"
+#include "chimera/control/testing/control_server_rig.h"
 #include "chimera/control/running.h"
 #include "chimera/platform/socket_folder.h"
 

@@ -10,16 +10,16 @@ void Closings::add(uid_t user, std::string text, Nanoseconds now) {
   OfUser& one = users_[user];
   ++one.untold;
   one.last = std::move(text);
-  look(one, now);
+  report_due(one, now);
 }
 
-void Closings::look(Nanoseconds now) {
-  for (auto& [user, one] : users_) look(one, now);
+void Closings::report_due(Nanoseconds now) {
+  for (auto& [user, one] : users_) report_due(one, now);
 }
 
-void Closings::look(OfUser& one, Nanoseconds now) {
+void Closings::report_due(OfUser& one, Nanoseconds now) {
   if (one.untold == 0) return;
-  if (!one.at_once.take(now)) {
+  if (!one.at_once.try_take(now)) {
     one.due = now + one.at_once.wait(now);
     return;
   }

@@ -18,12 +18,12 @@ class Closings {
  public:
   using Tell = std::function<void(const std::string&)>;
 
-  void tell_by(Tell tell) { tell_ = std::move(tell); }
+  void report_to(Tell tell) { tell_ = std::move(tell); }
   /// The first sixteen of a user are told at once, then one in 10 s, with the number of those that were not.
   void add(uid_t user, std::string text, Nanoseconds now);
   /// Tells of those that wait, when it is time.
-  void look(Nanoseconds now);
-  /// When look() has something to tell; kNever: nothing waits.
+  void report_due(Nanoseconds now);
+  /// When report_due() has something to tell; kNever: nothing waits.
   Nanoseconds next_due() const noexcept;
 
  private:
@@ -33,7 +33,7 @@ class Closings {
     std::string last = {};
     Nanoseconds due = kNever;
   };
-  void look(OfUser& one, Nanoseconds now);
+  void report_due(OfUser& one, Nanoseconds now);
 
   Tell tell_;
   std::map<uid_t, OfUser> users_;  // who has a role: few

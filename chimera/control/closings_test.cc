@@ -11,7 +11,7 @@ namespace {
 TEST(Closings, TellsEachOfAFewAndACrowdInOneSentence) {
   std::vector<std::string> told;
   Closings closings;
-  closings.tell_by([&](const std::string& text) { told.push_back(text); });
+  closings.report_to([&](const std::string& text) { told.push_back(text); });
   Nanoseconds now = seconds(100);
   for (int i = 0; i < 16; ++i) closings.add(7, "number " + std::to_string(i), now);
   EXPECT_EQ(told.size(), 16u);
@@ -23,9 +23,9 @@ TEST(Closings, TellsEachOfAFewAndACrowdInOneSentence) {
   closings.add(8, "another's", now);
   EXPECT_EQ(told.back(), "another's") << "nobody hides what happens to another";
   told.pop_back();
-  closings.look(now += seconds(9));
+  closings.report_due(now += seconds(9));
   EXPECT_EQ(told.size(), 16u);
-  closings.look(now += seconds(1));
+  closings.report_due(now += seconds(1));
   ASSERT_EQ(told.size(), 17u);
   EXPECT_EQ(told[16], "5000 connections were closed; the last: more");
   EXPECT_EQ(closings.next_due(), kNever);

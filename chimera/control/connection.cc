@@ -58,7 +58,7 @@ bool Connection::take_line(std::string& line) {
   return true;
 }
 
-void Connection::say(const std::string& line, Nanoseconds now) {
+void Connection::queue(const std::string& line, Nanoseconds now) {
   if (!has_output()) moved_ = now;
   output_ += line;
 }

@@ -29,7 +29,7 @@ class Connection {
   /// When the first byte came of a line that has no end yet; kNever: there is none.
   Nanoseconds half_since() const noexcept { return half_since_; }
   /// Nobody listens to the peer now: a half line is no fault of its own.
-  void excuse(Nanoseconds now) noexcept { half_since_ = half_since_ == kNever ? kNever : now; }
+  void restart_line_timer(Nanoseconds now) noexcept { half_since_ = half_since_ == kNever ? kNever : now; }
   /// The peer says nothing more; it may still listen.
   bool has_ended() const noexcept { return has_ended_; }
   /// The next whole line, without its end. A line longer than the limit comes cut behind it, or whole.
@@ -40,7 +40,7 @@ class Connection {
   bool has_short_line() const noexcept;
 
   /// Queues a line that has its end.
-  void say(const std::string& line, Nanoseconds now);
+  void queue(const std::string& line, Nanoseconds now);
   /// Sends what can be sent. False when the connection is over: the peer is gone, took nothing for too long, or
   /// everything was sent and it is closing.
   bool flush(Nanoseconds now);
@@ -50,7 +50,7 @@ class Connection {
   /// Has the peer read all that was sent, or some of it within the last kPatience?
   bool is_read(Nanoseconds now);
   /// When flush() will find that the peer took nothing for too long; kNever: nothing waits.
-  Nanoseconds patience_ends() const noexcept { return has_output() ? moved_ + kPatience : kNever; }
+  Nanoseconds send_timeout() const noexcept { return has_output() ? moved_ + kPatience : kNever; }
   /// After what is queued the connection ends.
   void close_after() noexcept { is_closing_ = true; }
   bool is_closing() const noexcept { return is_closing_; }

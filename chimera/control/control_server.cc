@@ -49,15 +49,15 @@ struct ControlServer::Call {
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
   ~Call() {
-    if (!is_answered) take(RpcResponse::error(kNoAnswer, "the subsystem gave no answer"));
+    if (!is_answered) finish(RpcResponse::error(kNoAnswer, "the subsystem gave no answer"));
   }
-  void take(const RpcResponse& said) {
+  void finish(const RpcResponse& response) {
     if (std::exchange(is_answered, true) || !*is_alive) return;
     const auto found = door->connections_.find(connection);
     if (found == door->connections_.end()) return;
     --found->second->open_calls;
     found->second->open_acts -= acts;
-    door->answer(*found->second, request, said);
+    door->answer(*found->second, request, response);
   }
 
   ControlServer* door;
@@ -100,7 +100,7 @@ void ControlServer::serve(Nanoseconds now) {
     found->second->receive(now);
     if (ready[i].has_ended) found->second->is_gone = true;
   }
-  take_turn(now);
+  run_turn(now);
   if (has_callers) accept(now);  // when those inside have been heard: who has just asked is not idle
   subscriptions_.notify([this](std::uint64_t number) -> Connection& { return *connections_.at(number); }, now);
   settle(now);
@@ -127,7 +127,7 @@ RpcResponse ControlServer::admit(const PeerIdentity& peer, Nanoseconds now) {
   if (!placement.is_granted) return RpcResponse::error(kTooMany, "too many connections: " + placement.refusal);
   if (placement.in_place_of == 0) return {};
   Connection& first = *connections_.at(placement.in_place_of);
-  turn_out(first, idle_text(first, now) + "; its place was needed", now);
+  evict(first, idle_text(first, now) + "; its place was needed", now);
   end(first.number());
   return {};
 }
@@ -149,8 +149,8 @@ std::string ControlServer::idle_text(Connection& connection, Nanoseconds now) co
 }
 
 /// Tells the peer, if that can be done at once, and whoever wants to know what was closed.
-void ControlServer::turn_out(Connection& connection, const std::string& why, Nanoseconds now) {
-  connection.say(answer_line(nullptr, RpcResponse::error(kClosed, "closed: " + why)), now);
+void ControlServer::evict(Connection& connection, const std::string& why, Nanoseconds now) {
+  connection.queue(answer_line(nullptr, RpcResponse::error(kClosed, "closed: " + why)), now);
   (void)connection.flush(now);
   const PeerIdentity& peer = connection.peer();
   const std::string process = peer.process > 0 ? "process " + std::to_string(peer.process) + ", " : "";
@@ -180,29 +180,29 @@ void ControlServer::enter(OwnedDescriptor connected, const PeerIdentity& peer, N
   if (peer.role != Role::kNone) connection->receive(now);  // whoever has only one question has asked it by now
   if (connection->has_ended() && !connection->has_line()) return;
   if (const RpcResponse refusal = admit(peer, now); !refusal.is_good()) {
-    connection->say(answer_line(nullptr, refusal), now);
+    connection->queue(answer_line(nullptr, refusal), now);
     (void)connection->flush(now);
     return;
   }
   connection->watched = kToRead;
   if (!watched_.add(connection->descriptor(), kToRead, connection->number())) return;
   Connection& entered = *connections_.emplace(connection->number(), std::move(connection)).first->second;
-  take_first(entered, now);  // the next one in the queue may need its place
+  answer_first(entered, now);  // the next one in the queue may need its place
   (void)entered.flush(now);
 }
 
 /// Reads a line: what is no request, or may not be one now, is answered; else it is the connection's next.
-void ControlServer::take(Connection& connection, const std::string& line, Nanoseconds now) {
+void ControlServer::on_line(Connection& connection, const std::string& line, Nanoseconds now) {
   connection.active_at = now;
   const std::size_t pieces = 1 + std::min(line.size(), kMaxLine) / kLongLine;
-  const bool may = connection.requests.take(now, static_cast<std::int64_t>(pieces));
+  const bool may = connection.requests.try_take(now, static_cast<std::int64_t>(pieces));
   const RpcResponse refusal =
       may ? RpcResponse{} : too_fast(connection.requests.wait(now, static_cast<std::int64_t>(pieces)));
   const bool is_long = pieces > 1 && line.size() <= kMaxLine;
-  if (!may && is_long) return connection.say(answer_line(nullptr, refusal), now);  // its id is not worth the search
+  if (!may && is_long) return connection.queue(answer_line(nullptr, refusal), now);  // its id is not worth the search
   const Request request = read_request(line);
   if (!request.refusal.is_good()) {
-    connection.say(answer_line(*request.id, request.refusal), now);
+    connection.queue(answer_line(*request.id, request.refusal), now);
     if (request.must_close) connection.close_after();
   } else if (!may) {
     answer(connection, request, refusal);
@@ -221,7 +221,7 @@ void ControlServer::carry_out(Connection& connection, const Request& request, Na
     return answer(connection, request, subscriptions_.close(connection.number(), *request.parameters));
   auto call = std::make_shared<Call>(*this, connection, request, rule->is_act);
   backend_.call(*rule, *request.parameters, {connection.peer().role, connection.number()},
-                [call = std::move(call)](const RpcResponse& said) { call->take(said); });
+                [call = std::move(call)](const RpcResponse& said) { call->finish(said); });
 }
 
 RpcResponse ControlServer::judge(Connection& connection, const Request& request, const MethodRule* rule,
@@ -233,7 +233,7 @@ RpcResponse ControlServer::judge(Connection& connection, const Request& request,
         kNoRight,
         std::string("'") + rule->name + "' needs the role " + role_name(rule->role) + ", you have " + role_name(has),
         {{"needs", role_name(rule->role)}, {"has", role_name(has)}});
-  if ((rule->is_act || rule->is_costly) && !connection.acts.take(now)) return too_fast(connection.acts.wait(now));
+  if ((rule->is_act || rule->is_costly) && !connection.acts.try_take(now)) return too_fast(connection.acts.wait(now));
   return check_parameters(*rule, *request.parameters);
 }
 
@@ -252,7 +252,7 @@ RpcResponse ControlServer::subscribe(Connection& connection, const Json& paramet
 void ControlServer::answer(Connection& connection, const Request& request, const RpcResponse& answer) {
   connection.active_at = now_;
   if (!request.wants_answer) return;
-  connection.say(answer_line(*request.id, answer), now_);
+  connection.queue(answer_line(*request.id, answer), now_);
   has_more_ = true;  // outside of serve(): to be sent
 }
 
@@ -271,7 +271,7 @@ bool ControlServer::is_over(Connection& connection, Nanoseconds now) {
 /// For which it is closed now; null: none.
 const char* ControlServer::fault_of(Connection& connection, Nanoseconds now) const {
   if (connection.is_closing() || connection.is_gone) return nullptr;
-  if (connection.patience_ends() <= now) return "the client read nothing for 5 s";
+  if (connection.send_timeout() <= now) return "the client read nothing for 5 s";
   const Nanoseconds half = connection.has_line() ? kNever : connection.half_since();
   return half != kNever && now - half >= kPatience ? "the client sent a line without its end for 5 s" : nullptr;
 }
@@ -282,20 +282,20 @@ void ControlServer::settle(Nanoseconds now) {
   for (const auto& [number, connection] : connections_) {
     const bool is_gone = is_over(*connection, now);
     const char* fault = fault_of(*connection, now);
-    if (fault != nullptr) turn_out(*connection, fault, now);
+    if (fault != nullptr) evict(*connection, fault, now);
     if (is_gone || fault != nullptr) {
       over.push_back(number);
       continue;
     }
     const bool listens = connection->has_room() && !connection->is_closing() && !connection->has_ended();
-    if (!listens) connection->excuse(now);
+    if (!listens) connection->restart_line_timer(now);
     const std::uint32_t wanted = (listens ? kToRead : 0u) | (connection->has_output() ? kToWrite : 0u);
     if (wanted != connection->watched) watched_.change(connection->descriptor(), wanted, number);
     connection->watched = wanted;
     waits = waits || (!connection->is_closing() && connection->has_room() && connection->has_line());
   }
   for (const std::uint64_t number : over) end(number);
-  closings_.look(now);
+  closings_.report_due(now);
   has_more_ = waits;
 }
 
@@ -310,7 +310,7 @@ Nanoseconds ControlServer::next_due() const noexcept {
   Nanoseconds next = std::min({subscriptions_.next_due(), accepts_again_, closings_.next_due()});
   for (const auto& [number, connection] : connections_) {
     const bool has_half = connection->half_since() != kNever && !connection->has_line();
-    next = std::min({next, connection->patience_ends(), has_half ? connection->half_since() + kPatience : kNever});
+    next = std::min({next, connection->send_timeout(), has_half ? connection->half_since() + kPatience : kNever});
   }
   return next;
 }

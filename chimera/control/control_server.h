@@ -38,7 +38,7 @@ class ControlServer {
   /// serve() when an answer has been given since.
   Nanoseconds next_due() const noexcept;
   /// `tell` is told, in words for people, of every connection that the door closes though its peer had no part in it.
-  void tell_closings_by(Closings::Tell tell) { closings_.tell_by(std::move(tell)); }
+  void report_closings_to(Closings::Tell tell) { closings_.report_to(std::move(tell)); }
   /// Takes over a connected socket whose other end is known; refuses it with words when it has no role or finds no
   /// place. Another one may have to give way to it.
   void enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now);
@@ -53,16 +53,16 @@ class ControlServer {
   RpcResponse admit(const PeerIdentity& peer, Nanoseconds now);
   Standing standing(Connection& connection, Nanoseconds now) const;
   std::string idle_text(Connection& connection, Nanoseconds now) const;
-  void turn_out(Connection& connection, const std::string& why, Nanoseconds now);
-  // door_turn.cc
-  void take_turn(Nanoseconds now);
+  void evict(Connection& connection, const std::string& why, Nanoseconds now);
+  // control_server_turn.cc
+  void run_turn(Nanoseconds now);
   bool act(Nanoseconds now);
   bool act_of(Connection& connection, Nanoseconds now);
   bool ask(Nanoseconds now);
-  void take_first(Connection& connection, Nanoseconds now);
+  void answer_first(Connection& connection, Nanoseconds now);
   void carry_out_next(Connection& connection, Nanoseconds now);
-  // door.cc
-  void take(Connection& connection, const std::string& line, Nanoseconds now);
+  // control_server.cc
+  void on_line(Connection& connection, const std::string& line, Nanoseconds now);
   void carry_out(Connection& connection, const Request& request, Nanoseconds now);
   RpcResponse judge(Connection& connection, const Request& request, const MethodRule* rule, Nanoseconds now);
   RpcResponse subscribe(Connection& connection, const Json& parameters, Nanoseconds now);

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "chimera/control/testing/door_rig.h"
+#include "chimera/control/testing/control_server_rig.h"
 
 namespace chimera::control {
 

@@ -6,7 +6,7 @@
 
 #include <csignal>
 
-#include "chimera/control/testing/door_rig.h"
+#include "chimera/control/testing/control_server_rig.h"
 
 namespace chimera::control {
 namespace {

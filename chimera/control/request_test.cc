@@ -43,7 +43,7 @@ TEST(Request, SaysWhyItIsNone) {
 
 TEST(Request, BeyondALimitItEndsTheConnection) {
   const std::string deep = std::string(33, '[') + std::string(33, ']');
-  EXPECT_EQ(read(deep), "-32001 nested deeper than 32 null");
+  EXPECT_EQ(read(deep), "-32001 nested deeper than 32 levels null");
   EXPECT_TRUE(read_request(deep).must_close);
   EXPECT_EQ(read(std::string(kMaxLine + 1, ' ')), "-32001 the line is longer than 1 MiB null");
   EXPECT_TRUE(read_request(std::string(kMaxLine + 1, ' ')).must_close);

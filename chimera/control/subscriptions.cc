@@ -71,7 +71,7 @@ void Subscriptions::notify(const std::function<Connection&(std::uint64_t)>& conn
     for (int told = 0; told < (one.skips ? 1 : kNewsAtOnce) && may() && (told == 0 || !turn.is_over()); ++told) {
       const auto news = backend_.pull(number);
       if (news == nullptr) break;
-      connection.say(note_line(one.to, number, *news), now);
+      connection.queue(note_line(one.to, number, *news), now);
     }
   }
 }

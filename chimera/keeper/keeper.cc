@@ -36,7 +36,7 @@ Result<void> Keeper::start() {
 int Keeper::run() {
   while (phase_ != Phase::kDone) {
     wait();
-    look();
+    poll();
     watch_manager();
     while (advance()) {
     }
@@ -57,7 +57,7 @@ void Keeper::wait() {
 }
 
 /// Takes everything that has happened.
-void Keeper::look() {
+void Keeper::poll() {
   SignalQueue::Arrived signal;
   while (signals_.take(signal)) {
     const bool is_of_face = face_.lives() && signal.from == face_.pid();
@@ -71,7 +71,7 @@ void Keeper::look() {
   end_asked_ = end_asked_ || face_has_looked_;
   std::vector<KeeperMessage> wishes;
   for (std::uint32_t index = 0; index < peers_.size(); ++index) {
-    peers_.take_messages(index, wishes);
+    peers_.read_messages(index, wishes);
     const Nanoseconds started = peers_.since(index);
     if (!peers_.has_ended(index, wishes) || index != peers_.manager()) continue;
     manager_life_ = {};
@@ -81,9 +81,9 @@ void Keeper::look() {
     manager_due_ = peers_.since(index) + manager_pause_;
     manager_pause_ = std::clamp(manager_pause_ * 2, milliseconds(10), kLongestPause);
   }
-  for (const KeeperMessage& wish : wishes) obey(wish);
-  look_at_face();
-  peers_.look_at_orphans(face_.pid());
+  for (const KeeperMessage& wish : wishes) on_message(wish);
+  check_face();
+  peers_.check_orphans(face_.pid());
 }
 
 void Keeper::end_badly(const Message& why) {
@@ -92,8 +92,8 @@ void Keeper::end_badly(const Message& why) {
   end_code_ = 1;
 }
 
-void Keeper::look_at_face() {
-  const KeptFace::Fate fate = face_.look();
+void Keeper::check_face() {
+  const KeptFace::Fate fate = face_.poll();
   if (fate == KeptFace::Fate::kNothingNew) return;
   peers_.publish_face(face_.page());
   Message said("the process that prints and ends this run died ");
@@ -118,7 +118,7 @@ void Keeper::count_refusal(Nanoseconds lived) {
   end_badly(Message("the manager could not start, ") << kMostRefusals << " times: the run ends");
 }
 
-void Keeper::obey(const KeeperMessage& wish) {
+void Keeper::on_message(const KeeperMessage& wish) {
   if (wish.kind == KeeperMessage::Kind::kBeat) ++manager_beats_;
   if (wish.kind == KeeperMessage::Kind::kEnd) {
     end_asked_ = true;
@@ -159,7 +159,7 @@ void Keeper::watch_manager() {
 
 /// To the manager that runs now, be it another one.
 void Keeper::report_hang() {
-  if (hung_.kind == KeeperMessage::Kind::kHung) peers_.tell_manager(hung_);
+  if (hung_.kind == KeeperMessage::Kind::kHung) peers_.send_to_manager(hung_);
   hung_ = {};
 }
 

@@ -52,11 +52,11 @@ class Keeper {
   };
 
   void wait();
-  void look();
-  void look_at_face();
+  void poll();
+  void check_face();
   void end_badly(const Message& why);
   void count_refusal(Nanoseconds lived);
-  void obey(const KeeperMessage& wish);
+  void on_message(const KeeperMessage& wish);
   bool advance();
   void enter(Phase phase, Nanoseconds limit);
   void watch_manager();

@@ -29,7 +29,7 @@ Result<void> KeptFace::start() {
   return {};
 }
 
-KeptFace::Fate KeptFace::look() {
+KeptFace::Fate KeptFace::poll() {
   ProcessEnd end;
   if (!process_.has_ended(end)) return Fate::kNothingNew;
   if (!end.by_signal) {

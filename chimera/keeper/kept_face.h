@@ -34,7 +34,7 @@ class KeptFace {
     kGivenUp,  ///< so too, too often in a short time
   };
   /// What has happened since the last look.
-  Fate look();
+  Fate poll();
   /// "signal 9 (SIGKILL)": of what it died last.
   Message cause() const noexcept { return signal_text(page().last_signal); }
   bool lives() const noexcept { return process_.is_held(); }

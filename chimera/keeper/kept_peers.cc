@@ -56,7 +56,7 @@ void KeptPeers::end_all() {
   orphans_.end_all(kDyingLimit);
 }
 
-void KeptPeers::look_at_orphans(pid_t other) {
+void KeptPeers::check_orphans(pid_t other) {
   std::vector<pid_t> held = {other};
   for (const Peer& peer : peers_) held.push_back(peer.process.pid());
   const auto lives = [this](std::string_view origin) {
@@ -85,7 +85,7 @@ Result<void> KeptPeers::start_all() {
     if (auto started = start(rtpu); !started) return started;
     introduce(rtpu);
   }
-  tell(manager(), {.kind = Kind::kComplete});
+  send(manager(), {.kind = Kind::kComplete});
   return {};
 }
 
@@ -129,32 +129,32 @@ void KeptPeers::restart(std::uint32_t index) {
 void KeptPeers::introduce(std::uint32_t newcomer) {
   if (newcomer != manager()) {
     for (std::uint32_t other = 0; other < size(); ++other)
-      if (other != newcomer) tell_segment(newcomer, other);
-    return tell_life(newcomer);
+      if (other != newcomer) send_segment(newcomer, other);
+    return send_life(newcomer);
   }
   for (std::uint32_t rtpu = 0; rtpu < manager(); ++rtpu) {
-    if (lives(rtpu)) tell_life(rtpu);
-    tell_segment(newcomer, rtpu);
-    if (!lives(rtpu)) tell_life(rtpu);
+    if (lives(rtpu)) send_life(rtpu);
+    send_segment(newcomer, rtpu);
+    if (!lives(rtpu)) send_life(rtpu);
   }
-  tell_segment(newcomer, newcomer);  // its predecessor's
-  tell(newcomer, {.kind = Kind::kComplete});
+  send_segment(newcomer, newcomer);  // its predecessor's
+  send(newcomer, {.kind = Kind::kComplete});
 }
 
 /// A child that does not take its messages any more would see a world that is not there: it is ended.
-void KeptPeers::tell(std::uint32_t index, const KeeperMessage& message, int passed) {
+void KeptPeers::send(std::uint32_t index, const KeeperMessage& message, int passed) {
   const Peer& peer = peers_[index];
   if (peer.channel.is_open() && !peer.channel.send(bytes_of(message), passed) && errno == EAGAIN)
     peer.process.signal(SIGKILL);
 }
 
-void KeptPeers::tell_segment(std::uint32_t to, std::uint32_t of) {
+void KeptPeers::send_segment(std::uint32_t to, std::uint32_t of) {
   const Peer& peer = peers_[of];
   if (peer.segment.fd < 0) return;
-  tell(to, {.kind = Kind::kPeer, .index = of, .incarnation = peer.segment_incarnation}, peer.segment.fd);
+  send(to, {.kind = Kind::kPeer, .index = of, .incarnation = peer.segment_incarnation}, peer.segment.fd);
 }
 
-void KeptPeers::tell_life(std::uint32_t of) { tell(manager(), peers_[of].last, peers_[of].process.pidfd()); }
+void KeptPeers::send_life(std::uint32_t of) { send(manager(), peers_[of].last, peers_[of].process.pidfd()); }
 
 void KeptPeers::publish_life(std::uint32_t index, std::uint32_t incarnation) {
   page().alive[index].store(incarnation, std::memory_order_release);
@@ -167,7 +167,7 @@ void KeptPeers::ring_all() {
   for (std::uint32_t i = 0; i < size(); ++i) Doorbell(decision->bells[i].word).ring();
 }
 
-void KeptPeers::take_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
+void KeptPeers::read_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
   Peer& peer = peers_[index];
   KeeperMessage message;
   int passed = -1;
@@ -183,7 +183,7 @@ void KeptPeers::take_messages(std::uint32_t index, std::vector<KeeperMessage>& w
       peer.segment = std::move(segment);
       peer.segment_incarnation = peer.last.incarnation;
       for (std::uint32_t other = 0; other < size(); ++other)
-        if (other != index) tell_segment(other, index);
+        if (other != index) send_segment(other, index);
     } else if (index == manager()) {
       wishes.push_back(message);
     }
@@ -193,7 +193,7 @@ void KeptPeers::take_messages(std::uint32_t index, std::vector<KeeperMessage>& w
 bool KeptPeers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
   ProcessEnd how;
   if (!peers_[index].process.has_ended(how)) return false;
-  take_messages(index, wishes);  // its last words
+  read_messages(index, wishes);  // its last words
   end(index, how);
   return true;
 }
@@ -209,7 +209,7 @@ void KeptPeers::end(std::uint32_t index, const ProcessEnd& how) {
                .core_dumped = how.core_dumped,
                .at = clock_.now()};
   publish_life(index, 0);
-  if (index != manager()) tell_life(index);  // before the bells: each of them is a system call
+  if (index != manager()) send_life(index);  // before the bells: each of them is a system call
   ring_all();
 }
 
@@ -222,7 +222,7 @@ void KeptPeers::publish_face(const FacePage& face) {
 
 void KeptPeers::finish_rtpus() {
   page().ending.store(1, std::memory_order_release);
-  for (std::uint32_t index = 0; index < manager(); ++index) tell(index, {.kind = Kind::kFinish});
+  for (std::uint32_t index = 0; index < manager(); ++index) send(index, {.kind = Kind::kFinish});
 }
 
 bool KeptPeers::any_rtpu_lives() const noexcept {

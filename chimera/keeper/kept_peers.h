@@ -41,11 +41,11 @@ class KeptPeers {
   /// Starts the next incarnation of one that does not live. One that cannot be started counts as ended with 127.
   void restart(std::uint32_t index);
   /// Takes what `index` has sent; its new memory goes to all others. What the manager wants is added to `wishes`.
-  void take_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes);
+  void read_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes);
   /// True, once, when `index` has ended: then the others know.
   bool has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes);
   /// Tells the manager; one that does not take its messages any more is ended.
-  void tell_manager(const KeeperMessage& message) { tell(manager(), message); }
+  void send_to_manager(const KeeperMessage& message) { send(manager(), message); }
   /// Shows all that the keeper came round.
   void beat() noexcept { page().beats.fetch_add(1, std::memory_order_release); }
   /// Everybody may know this of the face of the run.
@@ -53,7 +53,7 @@ class KeptPeers {
   /// Tells every rtpu to end its tasks; from here on everybody sees that it ends.
   void finish_rtpus();
   /// Ends what dead rtpus left behind; `other` is a child of somebody else in this process. Due again at orphans_due().
-  void look_at_orphans(pid_t other);
+  void check_orphans(pid_t other);
   Nanoseconds orphans_due() const noexcept { return orphans_.due(); }
   /// SIGKILL for whoever is left, and for what they left behind: nobody outlives it. Blocks for 2 s at most.
   void end_all();
@@ -85,9 +85,9 @@ class KeptPeers {
   KeeperPage& page() const noexcept { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
   Result<void> start(std::uint32_t index);
   void introduce(std::uint32_t newcomer);
-  void tell(std::uint32_t index, const KeeperMessage& message, int passed = -1);
-  void tell_segment(std::uint32_t to, std::uint32_t of);
-  void tell_life(std::uint32_t of);
+  void send(std::uint32_t index, const KeeperMessage& message, int passed = -1);
+  void send_segment(std::uint32_t to, std::uint32_t of);
+  void send_life(std::uint32_t of);
   void end(std::uint32_t index, const ProcessEnd& how);
   void publish_life(std::uint32_t index, std::uint32_t incarnation);
   void ring_all();

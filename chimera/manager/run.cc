@@ -29,7 +29,7 @@ Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int3
   auto door = control::ControlServer::open(driver.take_listening(), backend, own_user(),
                                            {bundle.observe_group, bundle.operate_group, bundle.configure_group});
   if (!door) return door.error();
-  (*door)->tell_closings_by(
+  (*door)->report_closings_to(
       [&driver](const std::string& text) { driver.world().tell("closed", TaskId{}, RtpuId{}, text, now()); });
   do {
     (*door)->serve(now());

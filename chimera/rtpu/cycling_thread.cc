@@ -36,7 +36,7 @@ Nanoseconds share(const ApplicationSpec& spec, std::uint32_t me, Nanoseconds win
 
 }  // namespace
 
-void say(BlockHead& head, std::string_view text, PeerPhase phase) noexcept {
+void publish_phase(BlockHead& head, std::string_view text, PeerPhase phase) noexcept {
   const std::size_t n = std::min(text.size(), sizeof head.grant - 1);
   std::memcpy(head.grant, text.data(), n);
   head.grant[n] = '\0';
@@ -56,7 +56,7 @@ void CyclingThread::run() {
     make_threads(grant.priority ? ceiling : 0);
   else
     make_loop();
-  say(head(), grant.report.view(), PeerPhase::kServing);
+  publish_phase(head(), grant.report.view(), PeerPhase::kServing);
   if (self().preemptive)
     run_threads();
   else

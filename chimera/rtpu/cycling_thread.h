@@ -18,7 +18,7 @@
 namespace chimera {
 
 /// Leaves what a unit says of itself in its block, cut to the room there is. Context: setup.
-void say(BlockHead& head, std::string_view text, PeerPhase phase) noexcept;
+void publish_phase(BlockHead& head, std::string_view text, PeerPhase phase) noexcept;
 
 /// What a unit's real-time thread works with; all of it outlives the thread.
 struct CyclingPlace {

@@ -116,7 +116,7 @@ bool PeerLinks::publish_status(const Task& task, TaskStatus before, TaskStatus n
   post.happening = EventKind::kState;
   post.before = before.state;
   post.after = now.state;
-  tell(post);
+  send(post);
   return true;
 }
 
@@ -133,7 +133,7 @@ bool PeerLinks::publish_flag(const IllegalFlag& flag) noexcept {
   post.kind = PostKind::kEvent;
   post.happening = EventKind::kFlag;
   post.detail = now;
-  tell(post);
+  send(post);
   return true;
 }
 
@@ -145,9 +145,9 @@ void PeerLinks::publish_fault(const Task& task) noexcept {
   std::memcpy(writer.staging(), &task.faults, sizeof task.faults);
   writer.publish(task.faults.at, 1);
   if (std::exchange(faults_[task.id.index], task.faults.count) != task.faults.count)
-    tell(EventKind::kFault, task.id, static_cast<std::uint64_t>(task.faults.method), task.faults.at);
+    send_event(EventKind::kFault, task.id, static_cast<std::uint64_t>(task.faults.method), task.faults.at);
   if (std::exchange(notes_[task.id.index], task.faults.notes) != task.faults.notes)
-    tell(EventKind::kNote, task.id, 0, LinuxClock().now());
+    send_event(EventKind::kNote, task.id, 0, LinuxClock().now());
 }
 
 void PeerLinks::ring_all() noexcept {
@@ -191,32 +191,32 @@ bool PeerLinks::adopt(TaskSet& tasks) noexcept {
 void PeerLinks::let_go_unread(const Sources& sources) noexcept {
   if (sources.is_any_behind()) return;
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
-    if (is_read_[peer]) peers_->let_go(peer);
+    if (is_read_[peer]) peers_->release_mapping(peer);
     is_read_[peer] = false;
   }
 }
 
-bool PeerLinks::take(Post& post) noexcept {
+bool PeerLinks::pop(Post& post) noexcept {
   for (Inbox& inbox : inboxes_)
     if (inbox.is_attached() && inbox.take(post)) return true;
   return false;
 }
 
-void PeerLinks::tell(const Post& post) noexcept {
+void PeerLinks::send(const Post& post) noexcept {
   if (outboxes_[manager()].is_followed() && outboxes_[manager()].try_post(post))
     ring(manager());
   else
     block_.head().lost_posts.fetch_add(1, std::memory_order_relaxed);
 }
 
-void PeerLinks::tell(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
+void PeerLinks::send_event(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
   Post post;
   post.at = at;
   post.task = task;
   post.kind = PostKind::kEvent;
   post.happening = happening;
   post.detail = detail;
-  tell(post);
+  send(post);
 }
 
 }  // namespace chimera

@@ -42,11 +42,11 @@ class PeerLinks final : public PeerView {
   /// Context: cycle boundary.
   void watch_flags(IllegalFlag& flag) noexcept;
   /// The next post of any peer. Context: cycle boundary; wait-free.
-  bool take(Post& post) noexcept;
+  bool pop(Post& post) noexcept;
   /// To the manager; what finds no room is counted. Context: cycle boundary; wait-free.
-  void tell(const Post& post) noexcept;
+  void send(const Post& post) noexcept;
   /// An event for the manager's log.
-  void tell(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
+  void send_event(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept;
   /// The count of changes of the decision page. Context: cycle; wait-free.
   std::uint32_t changes() const noexcept { return decision_->changes.load(std::memory_order_acquire); }
   /// Does the manager want the task's publications on the tap? Not while there is no manager. Context: cycle boundary;

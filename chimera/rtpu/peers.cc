@@ -40,20 +40,20 @@ Result<void> MappedPeers::offer(std::uint32_t peer, std::uint32_t incarnation, i
 }
 
 void MappedPeers::clear() {
-  Mapping* at = released_.exchange(nullptr, std::memory_order_acquire);  // pairs with let_go()
+  Mapping* at = released_.exchange(nullptr, std::memory_order_acquire);  // pairs with release_mapping()
   while (at != nullptr) delete std::exchange(at, at->next);
 }
 
 bool MappedPeers::adopt(std::uint32_t peer) noexcept {
   Slot& slot = *slots_[peer];
   if (slot.offered.load(std::memory_order_relaxed) == nullptr) return false;
-  let_go(peer);
+  release_mapping(peer);
   slot.previous = slot.present;
   slot.present = slot.offered.exchange(nullptr, std::memory_order_acquire);  // pairs with offer()
   return true;
 }
 
-void MappedPeers::let_go(std::uint32_t peer) noexcept {
+void MappedPeers::release_mapping(std::uint32_t peer) noexcept {
   Mapping* gone = std::exchange(slots_[peer]->previous, nullptr);
   if (gone == nullptr) return;
   gone->next = released_.load(std::memory_order_relaxed);

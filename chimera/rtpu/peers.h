@@ -31,11 +31,12 @@ class MappedPeers {
   /// Unmaps what was let go. Context: main thread; may block.
   void clear();
 
-  /// Takes over a segment that was offered; true when there is a new one. The one before stays mapped until let_go().
+  /// Takes over a segment that was offered; true when there is a new one. The one before stays mapped until
+  /// release_mapping().
   /// Context: cycle boundary; wait-free.
   bool adopt(std::uint32_t peer) noexcept;
   /// Nothing reads the predecessor of the adopted segment any more. Context: cycle boundary; wait-free.
-  void let_go(std::uint32_t peer) noexcept;
+  void release_mapping(std::uint32_t peer) noexcept;
   /// The adopted segment; nullptr: none yet. Context: cycle boundary; wait-free.
   const PeerSegment* at(std::uint32_t peer) const noexcept {
     const Mapping* present = slots_[peer]->present;
@@ -58,7 +59,7 @@ class MappedPeers {
   const ApplicationSpec* spec_ = nullptr;
   std::vector<std::unique_ptr<PeerLayout>> layouts_;
   std::vector<std::unique_ptr<Slot>> slots_;
-  // SYNC: let_go() (thread that cycles) releases the list; clear() (main thread) acquires it and unmaps.
+  // SYNC: release_mapping() (thread that cycles) releases the list; clear() (main thread) acquires it and unmaps.
   std::atomic<Mapping*> released_{nullptr};
 };
 

@@ -51,8 +51,8 @@ class Rtpu {
   void announce();
   void listen(int timeout_ms);
   void attend();
-  void take_messages();
-  void take_peer(const KeeperMessage& message, int descriptor);
+  void read_messages();
+  void add_peer(const KeeperMessage& message, int descriptor);
   void end(bool is_alone);
   bool hangs();
   bool loop_hangs();
@@ -109,7 +109,7 @@ Result<void> Rtpu::prepare() {
   if (auto made = make_segment(); !made) return made;
   announce();  // whoever watches sees from here on what it is at
   if (auto made = make_tasks(); !made) {
-    say(block_.head(), made.error().message.view(), PeerPhase::kEnded);
+    publish_phase(block_.head(), made.error().message.view(), PeerPhase::kEnded);
     return made;
   }
   return {};
@@ -244,12 +244,12 @@ void Rtpu::listen(int timeout_ms) {
   for (const Watched& one : watched)
     if (one.is_lost) end_without_descriptor();
   over_.reset();
-  if (watched[0].is_ready) take_messages();
+  if (watched[0].is_ready) read_messages();
   for (SignalQueue::Arrived signal; watched[2].is_ready && signals_.take(signal);)
     end(keeper_->ending.load(std::memory_order_acquire) == 0 && parent_process_id() == start_.parent);
 }
 
-void Rtpu::take_messages() {
+void Rtpu::read_messages() {
   KeeperMessage message;
   for (int descriptor = -1;;) {
     const Channel::Got got = channel_.receive(bytes_of(message), descriptor);
@@ -259,14 +259,14 @@ void Rtpu::take_messages() {
       return end(false);
     }
     if (message.kind == KeeperMessage::Kind::kFinish) end(false);
-    if (message.kind == KeeperMessage::Kind::kPeer) take_peer(message, descriptor);
+    if (message.kind == KeeperMessage::Kind::kPeer) add_peer(message, descriptor);
     if (descriptor >= 0) ::close(descriptor);
   }
 }
 
 // A segment that is not what the application says is passed over: its owner is not who the keeper takes it for. One
 // that there is no memory for is missed, and nothing that runs here ends for it.
-void Rtpu::take_peer(const KeeperMessage& message, int descriptor) {
+void Rtpu::add_peer(const KeeperMessage& message, int descriptor) {
   if (message.index == start_.peer) return;
   if (const auto offered = peers_->offer(message.index, message.incarnation, descriptor); offered)
     return Doorbell(bell()).ring();

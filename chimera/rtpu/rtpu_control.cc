@@ -60,14 +60,14 @@ void RtpuControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
   listen();
   set_due(kNever);
   others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
-  look_around();
+  check_peers();
   take_slow(signals, now);
   if (ending_) return go_on_ending(signals, now);  // nothing is begun any more
-  take_posts();
+  read_posts();
   act_on_waiting(signals, now);
 }
 
-void RtpuControl::look_around() noexcept {
+void RtpuControl::check_peers() noexcept {
   const bool is_new = others_.adopt(tasks_);
   const std::uint32_t changes = others_.changes();
   if (!is_new && changes == seen_changes_) return;
@@ -79,8 +79,8 @@ void RtpuControl::look_around() noexcept {
   others_.block().head().seen_changes.store(changes, std::memory_order_release);
 }
 
-void RtpuControl::take_posts() noexcept {
-  for (Post post; !waiting_.is_full() && others_.take(post);) {
+void RtpuControl::read_posts() noexcept {
+  for (Post post; !waiting_.is_full() && others_.pop(post);) {
     const bool is_for_us =
         post.kind == PostKind::kSignal && post.task.index < spec_.tasks.size() && tasks_.is_mine(post.task);
     if (!is_for_us) continue;
@@ -202,12 +202,12 @@ void RtpuControl::report(const Post& signal, State before, State after, Refusal 
 // What the manager's log says comes after what it is about.
 void RtpuControl::post(const Post& post) noexcept {
   publish();
-  others_.tell(post);
+  others_.send(post);
 }
 
 void RtpuControl::post_event(EventKind happening, TaskId task, std::uint64_t detail, Nanoseconds at) noexcept {
   publish();
-  others_.tell(happening, task, detail, at);
+  others_.send_event(happening, task, detail, at);
 }
 
 void RtpuControl::told(const SignalReport& done, Nanoseconds now) noexcept {

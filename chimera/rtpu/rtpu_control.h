@@ -70,8 +70,8 @@ class RtpuControl final : public BoundaryListener {
   const std::atomic<bool>& is_over() const noexcept { return over_; }
 
  private:
-  void look_around() noexcept;
-  void take_posts() noexcept;
+  void check_peers() noexcept;
+  void read_posts() noexcept;
   void take_slow(BoundarySignals& signals, Nanoseconds now) noexcept;
   void act_on_waiting(BoundarySignals& signals, Nanoseconds now) noexcept;
   std::size_t step_length(std::size_t first) const noexcept;

@@ -126,8 +126,8 @@ Result<void> Measure::bind(const Application& application) {
   return {};
 }
 
-void Measure::take(Nanoseconds at) {
-  const Seen seen = probe_->look();
+void Measure::add_sample(Nanoseconds at) {
+  const Seen seen = probe_->sample();
   if (!seen.is_written) return;
   Seen chosen{true, {}, {}};
   for (std::size_t i = 0; i < chosen_.size(); ++i) {

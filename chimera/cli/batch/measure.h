@@ -34,7 +34,7 @@ class Measure {
   /// Once the extents are known. Refuses an element that the variable does not have.
   Result<void> bind(const Application& application);
   /// The values at `at` since the start. Requires: bound; times grow.
-  void take(Nanoseconds at);
+  void add_sample(Nanoseconds at);
   std::vector<Number> numbers() const;
   /// Of parse_expectation(): whether every number satisfies it; `said` tells them.
   bool holds(std::string& said) const;

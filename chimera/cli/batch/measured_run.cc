@@ -143,7 +143,7 @@ class Measuring {
       const auto end = loop_->advance(at);
       ran = end ? std::min(loop_->now(), request_.run.duration) : at;
       for (auto* list : {&parsed_.measures, &parsed_.expectations})
-        for (Measure& measure : *list) measure.take(ran);
+        for (Measure& measure : *list) measure.add_sample(ran);
       if (end) return *end;
     }
   }

@@ -18,7 +18,7 @@ std::string pieces_text(std::size_t done, std::size_t all, const std::string& no
 PieceProgress::PieceProgress(std::size_t all, std::string noun, std::FILE* err)
     : all_(all), noun_(std::move(noun)), err_(err), is_on_(is_terminal(::fileno(err))) {}
 
-void PieceProgress::look(std::size_t done) {
+void PieceProgress::show(std::size_t done) {
   const auto now = std::chrono::steady_clock::now();
   if (!is_on_ || now < next_) return;
   const Nanoseconds wall{std::chrono::nanoseconds(now - begin_).count()};

@@ -17,7 +17,7 @@ std::string pieces_text(std::size_t done, std::size_t all, const std::string& no
 class PieceProgress {
  public:
   PieceProgress(std::size_t all, std::string noun, std::FILE* err);
-  void look(std::size_t done);
+  void show(std::size_t done);
   void wipe();
 
  private:

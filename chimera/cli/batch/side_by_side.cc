@@ -109,7 +109,7 @@ class Crowd {
       if (descriptor >= 0) ::close(descriptor);
     if (!children_.empty()) return false;
     ends_[next_++].failure = std::string("no process could be started: ") + std::strerror(why);
-    plan_.told(++done_);
+    plan_.on_done(++done_);
     return true;
   }
 
@@ -119,7 +119,7 @@ class Crowd {
     if (::poll(waits.data(), waits.size(), kLookEvery) < 0) return;  // a signal: looked at next
     for (std::size_t i = waits.size(); i-- > 0;) {
       if (waits[i].revents != 0)
-        take(i);
+        collect(i);
       else if (wall() - children_[i].began > plan_.limit && !children_[i].is_late) {
         children_[i].is_late = true;
         ::kill(children_[i].pid, SIGKILL);  // still ours: not reaped
@@ -127,7 +127,7 @@ class Crowd {
     }
   }
 
-  void take(std::size_t index) {
+  void collect(std::size_t index) {
     Child& child = children_[index];
     char part[4096];
     const ssize_t n = ::read(child.answer, part, sizeof part);
@@ -135,7 +135,7 @@ class Crowd {
     if (n > 0 || (n < 0 && errno == EINTR)) return;
     finish(child);
     children_.erase(children_.begin() + static_cast<std::ptrdiff_t>(index));
-    plan_.told(++done_);
+    plan_.on_done(++done_);
   }
 
   void finish(Child& child) {

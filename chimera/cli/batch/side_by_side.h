@@ -24,7 +24,7 @@ struct SideBySide {
   std::size_t jobs = 1;                                 ///< at a time
   Nanoseconds limit = kNever;                           ///< of the clock on the wall, for each piece
   std::function<std::string(std::size_t)> work;         ///< runs in the child; its output goes nowhere
-  std::function<void(std::size_t)> told = [](auto) {};  ///< after each, how many are done
+  std::function<void(std::size_t)> on_done = [](auto) {};  ///< after each, how many are done
 };
 
 /// The ends in the order of the pieces, whichever was ready first. After request_stop() what still runs is ended, and

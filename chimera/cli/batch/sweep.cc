@@ -63,7 +63,7 @@ void run_all(const SweepRequest& request, SweepTable& table, const Library& libr
   plan.jobs = request.jobs == 0 ? processors() : request.jobs;
   plan.limit = request.limit;
   plan.work = [&](std::size_t run) { return encode(measured_run(request_of(request, table, run), library)); };
-  plan.told = [&](std::size_t done) { progress.look(done); };
+  plan.on_done = [&](std::size_t done) { progress.show(done); };
   std::vector<PieceEnd> ends = side_by_side(plan);
   progress.wipe();
   for (std::size_t r = 0; r < ends.size(); ++r) {

@@ -100,7 +100,7 @@ CaseReport run_all(const CasesRequest& request, std::vector<CaseFile>& files, co
   plan.jobs = request.jobs == 0 ? processors() : request.jobs;
   plan.limit = request.limit;
   plan.work = [&](std::size_t i) { return encode(measured_run(cases[i].second->request, library)); };
-  plan.told = [&](std::size_t done) { progress.look(done); };
+  plan.on_done = [&](std::size_t done) { progress.show(done); };
   const std::vector<PieceEnd> ends = side_by_side(plan);
   progress.wipe();
   CaseReport report;

@@ -188,8 +188,8 @@ TEST(Schedule, JudgesEachUnitAsTheDescriptionHasIt) {
   text.replace(text.find("policy: rm"), 10, "policy: rm, executor: preemptive");
   const CommandResult mixed = scheduled(text, "");
   EXPECT_EQ(mixed.code, kOk) << mixed.err;
-  EXPECT_TRUE(mixed.out.starts_with("two: configuration 'all' (start), preemptive in fast; in the other rtpus a job "
-                                    "that runs is not taken off\n"))
+  EXPECT_TRUE(mixed.out.starts_with("two: configuration 'all' (start), preemptive in fast; in the other rtpus a "
+                                    "running job is not preempted\n"))
       << mixed.out;
   EXPECT_EQ(scheduled(kTwo, "").out, scheduled(kTwo, "executive").out);
 }

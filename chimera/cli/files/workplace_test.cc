@@ -41,7 +41,7 @@ TEST(Workplace, RefusesToGuessUnits) {
       << library.error().message.c_str();
 }
 
-TEST(ProgramPath, IsThisProgram) { EXPECT_NE(program_path().find("/desk_test"), std::string::npos); }
+TEST(ProgramPath, IsThisProgram) { EXPECT_NE(program_path().find("/cli_test"), std::string::npos); }
 
 }  // namespace
 }  // namespace chimera::cli

@@ -59,7 +59,7 @@ int carry_out(const Surroundings& surroundings, const Call& call, std::FILE* out
   auto session = Session::open(known);
   if (!session) return print(refused(session.error(), call.json), out, err);
   // Whoever does not answer now will not answer the command either: one limit, not one for each question of it.
-  if (const control::RpcResponse hello = session->hear(); !hello.is_good())
+  if (const control::RpcResponse hello = session->hello(); !hello.is_good())
     return print(refused(hello, call.json), out, err);
   // Who did not say which one learns which one it is; status and top head with it, an act says it in every line.
   const bool says_itself = call.json || call.is_act() || row_of(call).names_its_subsystem;

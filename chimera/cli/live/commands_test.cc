@@ -106,14 +106,14 @@ TEST(Command, HelpTellsUsageOptionsAndAnExample) {
   EXPECT_EQ(help_text("events"),
             "events [--since N] [--kind KIND,...] [--each] [--follow]\n"
             "  Print the events of the subsystem, numbered without a gap\n"
-            "  --since N         from this number on\n"
+            "  --since N         events from this number on\n"
             "  --kind KIND,...   only these, such as 'set,fault'\n"
             "  --each            a line for every event; else misses within 100 ms of each other are one\n"
             "  --follow          print new events as they happen, until Ctrl-C\n"
             "  Example: chimera events --follow\n");
   EXPECT_EQ(help_text("nonsense"), "");
   EXPECT_NE(help_text("top").find("INPUT: age of the\n  oldest input\n  Example: chimera top\n"), std::string::npos);
-  EXPECT_NE(help_text().find("why VAR           Where a value comes from, and what is wrong with it\n"),
+  EXPECT_NE(help_text().find("why VAR           Tell where a value comes from, and what is wrong with it\n"),
             std::string::npos);
 }
 

@@ -102,7 +102,7 @@ bool EventLines::is_wanted(const Json& event) const {
   return kinds_.empty() || std::ranges::find(kinds_, text_of(event, "kind")) != kinds_.end();
 }
 
-std::string EventLines::take(const Json& json) {
+std::string EventLines::add(const Json& json) {
   if (!is_wanted(json)) return "";
   Event event = read(json);
   if (each_) return line_of(event);
@@ -127,7 +127,7 @@ std::string events_text(const Json& answer, std::int64_t since, EventLines lines
   const std::int64_t first = whole_of(answer, "first");
   if (since > 0 && first > since && whole_of(answer, "last") >= since)
     text = "(" + std::to_string(first - since) + " older events are gone)\n";
-  for (const Json& event : field(answer, "events")) text += lines.take(event);
+  for (const Json& event : field(answer, "events")) text += lines.add(event);
   return text + lines.end();
 }
 

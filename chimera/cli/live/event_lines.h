@@ -27,7 +27,7 @@ class EventLines {
   explicit EventLines(std::vector<std::string> kinds = {}, bool each = false) : kinds_(std::move(kinds)), each_(each) {}
 
   /// The lines that `event` completes; what may go on is kept back until end().
-  std::string take(const nlohmann::json& event);
+  std::string add(const nlohmann::json& event);
   std::string end();
   bool is_wanted(const nlohmann::json& event) const;
 

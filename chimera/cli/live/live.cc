@@ -72,7 +72,7 @@ std::string printed(const Json& status) {
 }
 
 /// Moves the view as a key asks; false when it asks for the end.
-bool obey(int key, TopView& view, const Json& status) {
+bool apply_key(int key, TopView& view, const Json& status) {
   if (key == 'q' || key == 'Q' || key == kKeyEnd) return false;
   if (key == 'h' || key == '?') view.is_help = !view.is_help;
   if (const auto order = order_of_key(key)) view.order = *order, view.skipped = 0;
@@ -95,7 +95,7 @@ std::optional<Error> top_on_screen(Session& session, const Json& first, const Js
     view.height = size.height;
     screen.show(drawn(view.is_help ? help_lines(view) : top_lines(now, before, view)));
     Wakeup woken = attention.wait(&session.client(), seconds(60));
-    if (woken.by == By::kStop || (woken.by == By::kKey && !obey(woken.key, view, now))) return std::nullopt;
+    if (woken.by == By::kStop || (woken.by == By::kKey && !apply_key(woken.key, view, now))) return std::nullopt;
     if (woken.by == By::kLost && !session.ask("subscribe", subscription).is_good())
       return woken.error;
     if (woken.by == By::kNote && woken.note.method == "status") before = std::move(now), now = *woken.note.parameters;
@@ -174,7 +174,7 @@ int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   const Json wanted = {{"to", "values"}, {"period_ms", period.value()}, {"variables", variables_of(channels.value())}};
   return follow(session, call, wanted, out, err, [&](const control::Note& note, Json&) {
     if (call.json) return;
-    shown.take(field(*note.parameters, "values"));
+    shown.add(field(*note.parameters, "values"));
     const std::size_t width = screen_size(kStandardOutput).width;
     if (is_live)
       redraw(shown.lines(width > 1 ? width - 1 : 1, writes_unicode()), is_first, out);
@@ -200,7 +200,7 @@ int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE*
     if (call.json) return;
     if (const std::int64_t gone = whole_of(*note.parameters, "lost"); gone > 0)
       std::fprintf(out, "(%lld older events are gone)\n", static_cast<long long>(gone));
-    for (const Json& event : field(*note.parameters, "events")) std::fputs(lines.take(event).c_str(), out);
+    for (const Json& event : field(*note.parameters, "events")) std::fputs(lines.add(event).c_str(), out);
     std::fputs(lines.end().c_str(), out);
   });
 }

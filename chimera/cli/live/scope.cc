@@ -51,7 +51,7 @@ bool Scope::is_in_window(Nanoseconds at) const noexcept {
   return begin_ && at >= *begin_ - request_.pre && at <= *begin_ + request_.duration;
 }
 
-void Scope::look_at_trigger(const Json& row, const std::vector<std::string>& variables, Nanoseconds at) {
+void Scope::check_trigger(const Json& row, const std::vector<std::string>& variables, Nanoseconds at) {
   if (begin_) return;
   if (!request_.trigger) {
     begin_ = at;
@@ -96,7 +96,7 @@ void Scope::add_row(Stream& stream, const Json& row, const std::vector<std::stri
   stream.sequence = kept.sequence;
   stream.newest = kept.at;
   if (!stream.oldest) stream.oldest = kept.at;
-  look_at_trigger(row, variables, kept.at);
+  check_trigger(row, variables, kept.at);
   kept.values.assign(stream.columns.size(), kNothing);
   for (std::size_t c = 0; c < request_.channels.size(); ++c) {
     const ScopeChannel& channel = request_.channels[c];
@@ -123,7 +123,7 @@ void Scope::prune() {
     while (stream.rows.size() > 1 && stream.rows[1].at < oldest) stream.rows.pop_front();  // one holds into the window
 }
 
-void Scope::take(const Json& params) {
+void Scope::add(const Json& params) {
   const Json& rows = field(params, "rows");
   if (!rows.is_array()) return;
   Stream& of = stream(text_of(params, "rtpu"), text_of(params, "task"));

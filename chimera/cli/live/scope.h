@@ -42,7 +42,7 @@ class Scope {
   explicit Scope(ScopeRequest request) : request_(std::move(request)) {}
 
   /// Takes the parameters of a `tap` notification (docs/formats/control.md); others are passed over.
-  void take(const nlohmann::json& params);
+  void add(const nlohmann::json& params);
   bool is_triggered() const noexcept { return begin_.has_value(); }
   /// Edges of the trigger that came before there was a whole pre-trigger, and so did not begin it.
   std::uint64_t early_edges() const noexcept { return early_edges_; }
@@ -96,7 +96,7 @@ class Scope {
   Stream& stream(const std::string& rtpu, const std::string& task);
   void add_row(Stream& stream, const nlohmann::json& row, const std::vector<std::string>& variables,
                std::uint64_t lost);
-  void look_at_trigger(const nlohmann::json& row, const std::vector<std::string>& variables, Nanoseconds at);
+  void check_trigger(const nlohmann::json& row, const std::vector<std::string>& variables, Nanoseconds at);
   bool is_armed(Nanoseconds at) const;
   bool has_every_channel() const;
   void prune();

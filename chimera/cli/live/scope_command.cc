@@ -125,7 +125,7 @@ std::optional<Error> record(Session& session, Scope& scope, const Asked& asked) 
     const Wakeup woken = attention.wait(&session.client(), until - clock.now());
     if (woken.by == By::kStop) return std::nullopt;
     if (woken.by == By::kLost) return woken.error;
-    if (woken.by == By::kNote && woken.note.method == "tap") scope.take(*woken.note.parameters);
+    if (woken.by == By::kNote && woken.note.method == "tap") scope.add(*woken.note.parameters);
     if (scope.is_triggered() && !was_triggered) {
       was_triggered = true;
       until = scope.begin() + asked.request.duration + kGrace;
@@ -143,7 +143,7 @@ Result<void> write(const std::string& path, const std::string& text) {
   return Error{ErrorCode::kSystem, {std::string("cannot be written: ") + std::strerror(why)}, std::string_view(path)};
 }
 
-CommandResult tell(const Scope& scope, const Call& call, const std::string& subsystem, std::size_t width) {
+CommandResult show_recording(const Scope& scope, const Call& call, const std::string& subsystem, std::size_t width) {
   const std::string note = (call.has("--trigger") ? "trigger " + call.value("--trigger") + "; " : "") + scope.summary();
   for (const auto& [option, text] : {std::pair{"--csv", scope.csv()}, {"--svg", svg(scope.plot(subsystem, note))}})
     if (call.has(option))
@@ -198,7 +198,8 @@ CommandResult scope(Session& session, const Call& call, const Screen& screen) {
                                                        : "nothing was published" + within),
                    call.json);
   }
-  CommandResult said = tell(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "", screen.width);
+  CommandResult said =
+      show_recording(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "", screen.width);
   if (end && said.code == kOk) {  // what was recorded is kept; what came after is not known to anybody
     said.err += "the recording ended early: " + std::string(end->message.view()) + "\n";
     said.code = kRefused;

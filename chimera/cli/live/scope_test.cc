@@ -46,14 +46,14 @@ Json arm(std::uint64_t first, std::int64_t at_ms, double value) {
 
 TEST(Scope, KeepsWhatWasBeforeTheTriggerAndEndsAfterIt) {
   Scope scope(request("error > 2 mrad", 2, 1));
-  scope.take(pid(0, {{1000, 1, 0}, {1001, 2, 0}, {1002, 3, 0.001}, {1003, 4, 0.002}}));
-  scope.take(arm(0, 1002, 7));
+  scope.add(pid(0, {{1000, 1, 0}, {1001, 2, 0}, {1002, 3, 0.001}, {1003, 4, 0.002}}));
+  scope.add(arm(0, 1002, 7));
   EXPECT_FALSE(scope.is_triggered());
-  scope.take(pid(4, {{1004, 5, 0.003}, {1005, 6, 0.004}, {1006, 7, 0}}));
+  scope.add(pid(4, {{1004, 5, 0.003}, {1005, 6, 0.004}, {1006, 7, 0}}));
   ASSERT_TRUE(scope.is_triggered());
   EXPECT_EQ(scope.begin(), milliseconds(1004));
   EXPECT_FALSE(scope.is_complete()) << "arm has not come so far";
-  scope.take(arm(1, 1005, 8));
+  scope.add(arm(1, 1005, 8));
   EXPECT_TRUE(scope.is_complete());
   EXPECT_EQ(scope.csv(),
             "t(s),error(rad),q[0](rad),q[1](rad),lost\n"
@@ -66,11 +66,11 @@ TEST(Scope, KeepsWhatWasBeforeTheTriggerAndEndsAfterIt) {
 
 TEST(Scope, IsNotArmedBeforeThePreTriggerIsFull) {
   Scope scope(request("error > 2 mrad", 5, 1));
-  scope.take(arm(0, 1, 7));
-  scope.take(pid(0, {{1, 1, 0}, {2, 2, 0.003}, {3, 3, 0}, {5.5, 4, 0.003}, {5.7, 5, 0}}));
+  scope.add(arm(0, 1, 7));
+  scope.add(pid(0, {{1, 1, 0}, {2, 2, 0.003}, {3, 3, 0}, {5.5, 4, 0.003}, {5.7, 5, 0}}));
   EXPECT_FALSE(scope.is_triggered()) << "an edge 4.5 ms after the first row has no 5 ms before it";
   EXPECT_EQ(scope.early_edges(), 2u);
-  scope.take(pid(5, {{6, 6, 0.003}, {8, 7, 0}}));
+  scope.add(pid(5, {{6, 6, 0.003}, {8, 7, 0}}));
   ASSERT_TRUE(scope.is_triggered());
   EXPECT_EQ(scope.begin(), milliseconds(6));
   EXPECT_EQ(scope.csv().substr(0, 80).find("-0.005000000,0,7,7"), scope.csv().find('\n') + 1) << scope.csv();
@@ -80,27 +80,27 @@ TEST(Scope, IsNotArmedBeforeThePreTriggerIsFull) {
 
 TEST(Scope, WaitsForEveryTaskButNotForOneThatIsOff) {
   Scope slow(request("error > 2 mrad", 2, 1));
-  slow.take(pid(0, {{1, 1, 0}, {9, 2, 0.003}, {10, 3, 0}}));
+  slow.add(pid(0, {{1, 1, 0}, {9, 2, 0.003}, {10, 3, 0}}));
   EXPECT_FALSE(slow.is_triggered()) << "arm has told nothing so far";
-  slow.take(arm(0, 10, 7));
-  slow.take(pid(3, {{11, 4, 0.003}, {11.5, 5, 0}}));
+  slow.add(arm(0, 10, 7));
+  slow.add(pid(3, {{11, 4, 0.003}, {11.5, 5, 0}}));
   EXPECT_FALSE(slow.is_triggered()) << "arm has told of 1 ms only";
-  slow.take(pid(5, {{12, 6, 0.003}}));
+  slow.add(pid(5, {{12, 6, 0.003}}));
   EXPECT_TRUE(slow.is_triggered());
   Scope alone(request("error > 2 mrad", 2, 1));
-  alone.take(pid(0, {{1, 1, 0}, {1002, 2, 0.003}, {1002.5, 3, 0}}));
+  alone.add(pid(0, {{1, 1, 0}, {1002, 2, 0.003}, {1002.5, 3, 0}}));
   EXPECT_FALSE(alone.is_triggered());
-  alone.take(pid(3, {{1003, 4, 0.003}}));
+  alone.add(pid(3, {{1003, 4, 0.003}}));
   EXPECT_TRUE(alone.is_triggered()) << "a second longer than the pre-trigger is enough";
 }
 
 TEST(Scope, AValueHoldsUntilTheNextOneAndToTheEdgesOfThePicture) {
   Scope scope(request("error > 2 mrad", 4, 4));
-  scope.take(arm(0, 1, 7));
-  scope.take(arm(1, 4, 8));
-  scope.take(pid(0, {{1, 1, 0}, {6, 2, 0}, {7, 3, 0.003}, {12, 4, 0}}));
-  scope.take(arm(2, 9, 9));
-  scope.take(arm(3, 13, 7));
+  scope.add(arm(0, 1, 7));
+  scope.add(arm(1, 4, 8));
+  scope.add(pid(0, {{1, 1, 0}, {6, 2, 0}, {7, 3, 0.003}, {12, 4, 0}}));
+  scope.add(arm(2, 9, 9));
+  scope.add(arm(3, 13, 7));
   ASSERT_TRUE(scope.is_complete());
   const draw::Plot plot = scope.plot("t", "");
   const draw::Curve& q = plot.curves[1];
@@ -118,9 +118,9 @@ TEST(Scope, AValueHoldsUntilTheNextOneAndToTheEdgesOfThePicture) {
 
 TEST(Scope, WhatWasPublishedBeforeTheWindowHoldsIntoIt) {
   Scope scope(request("error > 2 mrad", 1, 1));
-  scope.take(arm(0, 1000, 7));
-  scope.take(arm(1, 1001, 9));
-  scope.take(pid(0, {{1000, 1, 0}, {1005, 2, 0.003}, {1006, 3, 0.004}}));
+  scope.add(arm(0, 1000, 7));
+  scope.add(arm(1, 1001, 9));
+  scope.add(pid(0, {{1000, 1, 0}, {1005, 2, 0.003}, {1006, 3, 0.004}}));
   EXPECT_EQ(scope.csv(), "t(s),error(rad),q[0](rad),q[1](rad),lost\n"
                          "0.000000000,0.0030000000000000001,9,9,0\n"
                          "0.001000000,0.0040000000000000001,9,9,0\n");
@@ -131,10 +131,10 @@ TEST(Scope, WithoutATriggerItBeginsWithTheFirstRow) {
   ScopeRequest asked = request("", 0, 2);
   asked.channels.pop_back();
   Scope scope(asked);
-  scope.take(pid(0, {{5, 1, 1}, {6, 2, 2}}));
+  scope.add(pid(0, {{5, 1, 1}, {6, 2, 2}}));
   EXPECT_TRUE(scope.is_triggered());
   EXPECT_FALSE(scope.is_complete());
-  scope.take(pid(2, {{7, 3, 3}, {8, 4, 4}}));
+  scope.add(pid(2, {{7, 3, 3}, {8, 4, 4}}));
   EXPECT_TRUE(scope.is_complete());
   EXPECT_EQ(scope.rows(), 3u);
 }
@@ -143,8 +143,8 @@ TEST(Scope, RowsThatWereLostAreCountedAndShown) {
   ScopeRequest asked = request("", 0, 10);
   asked.channels.pop_back();
   Scope scope(asked);
-  scope.take(pid(0, {{1, 1, 1}, {2, 2, 2}}));
-  scope.take(pid(5, {{6, 6, 3}, {7, 7, 4}, {9, 9, 5}}));  // three rows of the tap, then one publication
+  scope.add(pid(0, {{1, 1, 1}, {2, 2, 2}}));
+  scope.add(pid(5, {{6, 6, 3}, {7, 7, 4}, {9, 9, 5}}));  // three rows of the tap, then one publication
   EXPECT_EQ(scope.summary(), "5 rows; 2 gaps, 4 rows lost");
   EXPECT_EQ(scope.csv(),
             "t(s),error(rad),lost\n0.000000000,1,0\n0.001000000,2,0\n0.005000000,3,3\n0.006000000,4,0\n"
@@ -164,7 +164,7 @@ TEST(Scope, ATaskThatWasMadeAnewBreaksTheLineButLosesNothing) {
   ScopeRequest asked = request("", 0, 10);
   asked.channels.pop_back();
   Scope scope(asked);
-  scope.take(pid(0, {{1, 100, 1}, {2, 1, 2}}));
+  scope.add(pid(0, {{1, 100, 1}, {2, 1, 2}}));
   EXPECT_EQ(scope.lost_rows(), 0u);
   EXPECT_EQ(scope.plot("t", "").curves[0].points.size(), 3u);
 }
@@ -173,7 +173,7 @@ TEST(Scope, ThePictureHasTheTriggerAndItsLevel) {
   ScopeRequest asked = request("error > 2 mrad", 1, 5);
   asked.channels.pop_back();
   Scope scope(asked);
-  scope.take(pid(0, {{1, 1, 0}, {2, 2, 0.003}}));
+  scope.add(pid(0, {{1, 1, 0}, {2, 2, 0.003}}));
   const draw::Plot plot = scope.plot("arm", "note");
   EXPECT_EQ(plot.mark, 0);
   EXPECT_DOUBLE_EQ(plot.level, 0.002);
@@ -185,8 +185,8 @@ TEST(Scope, MemoryIsBoundedWhileItWaits) {
   ScopeRequest asked = request("error > 2 mrad", 3, 1);
   asked.channels.pop_back();
   Scope scope(asked);
-  for (int i = 0; i < 1000; ++i) scope.take(pid(std::uint64_t(i), {{i * 1.0, i + 1.0, 0}}));
-  scope.take(pid(1000, {{1000, 1001, 1}}));
+  for (int i = 0; i < 1000; ++i) scope.add(pid(std::uint64_t(i), {{i * 1.0, i + 1.0, 0}}));
+  scope.add(pid(1000, {{1000, 1001, 1}}));
   EXPECT_EQ(scope.rows(), 4u);
 }
 
@@ -194,7 +194,7 @@ TEST(Scope, OddMessagesArePassedOver) {
   Scope scope(request("", 0, 1));
   for (const char* odd : {"null", "{}", R"({"rows": 3})", R"({"rows": [1, [], ["a", 1], [1]]})",
                           R"({"variables": ["q"], "rows": [[1, 2]]})", R"({"variables": ["x"], "rows": [[1, 2, 3]]})"})
-    scope.take(Json::parse(odd));
+    scope.add(Json::parse(odd));
   EXPECT_EQ(scope.lost_rows(), 0u);
   EXPECT_EQ(scope.csv().substr(0, 10), "t(s),lost\n");
 }

@@ -55,11 +55,11 @@ Result<Session> Session::open(const Surroundings& surroundings) {
 }
 
 const control::Home& Session::home() {
-  if (home_.subsystem.empty()) (void)hear();
+  if (home_.subsystem.empty()) (void)hello();
   return home_;
 }
 
-control::RpcResponse Session::hear() {
+control::RpcResponse Session::hello() {
   const control::RpcResponse hello = ask("hello");
   if (hello.is_good()) home_ = control::home_of(*hello.result);
   return hello;

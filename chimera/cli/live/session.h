@@ -40,7 +40,7 @@ class Session {
   /// Did somebody name the subsystem, by option or by CHIMERA_SUBSYSTEM?
   bool is_named() const noexcept { return is_named_; }
   /// Asks who it is: what every command begins with. The answer of `hello`.
-  control::RpcResponse hear();
+  control::RpcResponse hello();
   /// Its name, as it says itself; "" when it does not answer.
   const std::string& subsystem();
   /// May an act go to it? Named, or of this terminal or folder: else refused, with what is to be typed.

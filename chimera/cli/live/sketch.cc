@@ -21,7 +21,7 @@ constexpr std::size_t kLeastCourse = 8;
 struct Span {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
 
-  void take(double value) {
+  void include(double value) {
     if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
   }
   bool empty() const { return low > high; }
@@ -29,7 +29,7 @@ struct Span {
 
 std::string range_text(const draw::Curve& curve) {
   Span range;
-  for (const draw::PlotPoint& point : curve.points) range.take(point.value);
+  for (const draw::PlotPoint& point : curve.points) range.include(point.value);
   if (range.empty()) return "nothing";
   char text[80];
   std::snprintf(text, sizeof text, "%.4g .. %.4g", range.low, range.high);
@@ -56,7 +56,7 @@ std::string sketch(const draw::Plot& plot, std::size_t width, bool unicode) {
   Span time;
   for (const draw::Curve& curve : plot.curves) {
     name_width = std::max(name_width, width_of(curve.name));
-    for (const draw::PlotPoint& point : curve.points) time.take(point.at);
+    for (const draw::PlotPoint& point : curve.points) time.include(point.at);
   }
   const std::size_t taken = name_width + kRangeWidth + 4;
   const std::size_t course = width > taken + kLeastCourse ? width - taken : kLeastCourse;

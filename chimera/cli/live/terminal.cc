@@ -26,10 +26,10 @@ InputWait::InputWait(bool keys) : keys_(keys) {
 
 InputWait::~InputWait() {
   // What has come but was not read would act as soon as it may: it has been obeyed by ending.
-  while (take_signal()) {}
+  while (read_signal()) {}
 }
 
-std::optional<Wakeup> InputWait::take_signal() {
+std::optional<Wakeup> InputWait::read_signal() {
   SignalQueue::Arrived signal;
   if (!signals_.take(signal)) return std::nullopt;
   Wakeup woken;
@@ -37,7 +37,7 @@ std::optional<Wakeup> InputWait::take_signal() {
   return woken;
 }
 
-Wakeup InputWait::take_key() {
+Wakeup InputWait::read_key() {
   constexpr std::pair<std::string_view, int> kArrows[] = {{"\x1b[A", kKeyUp},      {"\x1bOA", kKeyUp},
                                                           {"\x1b[B", kKeyDown},    {"\x1bOB", kKeyDown},
                                                           {"\x1b[5~", kKeyPageUp}, {"\x1b[6~", kKeyPageDown}};
@@ -55,8 +55,8 @@ Wakeup InputWait::wait(control::Client* client, Nanoseconds limit) {
   LinuxClock clock;
   const Nanoseconds until = clock.now() + limit;
   for (;;) {
-    if (auto woken = take_signal()) return std::move(*woken);
-    if (!typed_.empty()) return take_key();
+    if (auto woken = read_signal()) return std::move(*woken);
+    if (!typed_.empty()) return read_key();
     Wakeup woken;
     if (client != nullptr) {
       auto note = client->next(Nanoseconds{0});
@@ -68,7 +68,7 @@ Wakeup InputWait::wait(control::Client* client, Nanoseconds limit) {
     const int n = await_ready(all, std::min(until - clock.now(), seconds(60)));
     if (n > 0 && all[2].is_ready) {
       keys_ = read_keys(typed_);
-      return take_key();
+      return read_key();
     }
     if (n == 0 && clock.now() >= until) return woken;
   }

@@ -51,8 +51,8 @@ class InputWait {
   Wakeup wait(control::Client* client, Nanoseconds limit);
 
  private:
-  std::optional<Wakeup> take_signal();
-  Wakeup take_key();
+  std::optional<Wakeup> read_signal();
+  Wakeup read_key();
 
   SignalQueue signals_;
   bool keys_;

@@ -51,7 +51,7 @@ Watch::Watch(std::vector<ChannelName> channels) {
   for (ChannelName& name : channels) watched_.push_back({std::move(name), "?", "", {}});
 }
 
-void Watch::take(const Json& values) {
+void Watch::add(const Json& values) {
   for (Watched& watched : watched_) {
     const Json& reading = field(values, watched.name.variable);
     if (!reading.is_object()) continue;

@@ -29,7 +29,7 @@ Watch watch(const std::vector<std::string>& names) {
 
 TEST(Watch, ALineForEachVariableToTheLetter) {
   Watch shown = watch({"error", "q", "q[1]", "x", "x.y"});
-  for (int i = 0; i < 8; ++i) shown.take(readings(i, -i));
+  for (int i = 0; i < 8; ++i) shown.add(readings(i, -i));
   const std::vector<std::string> expected = {
       "error  7.0 rad           _.-=+*##                 0 .. 7                ",
       "q      [-7.0 7.5] rad    ##*+=-._                 -7 .. 0               ",
@@ -43,7 +43,7 @@ TEST(Watch, ALineForEachVariableToTheLetter) {
 
 TEST(Watch, FillsAnyWidth) {
   Watch shown = watch({"error", "q"});
-  for (int i = 0; i < 1000; ++i) shown.take(readings(i, -i));
+  for (int i = 0; i < 1000; ++i) shown.add(readings(i, -i));
   for (std::size_t width : {0, 1, 10, 40, 80, 200})
     for (const std::string& line : shown.lines(width, true)) EXPECT_EQ(width_of(line), width) << line;
 }
@@ -51,7 +51,7 @@ TEST(Watch, FillsAnyWidth) {
 TEST(Watch, PlainLinesSayOnlyTheValues) {
   Watch shown = watch({"error", "q[0]", "x", "q[9]"});
   EXPECT_EQ(shown.plain(), "error = ?  q[0] = ?  x = ?  q[9] = ?");
-  shown.take(readings(0.25, 3));
+  shown.add(readings(0.25, 3));
   EXPECT_EQ(shown.plain(), "error = 0.25 rad  q[0] = 3 rad  x = never written (walker is OFF)  q[9] = no such element");
 }
 

@@ -101,7 +101,7 @@ bool Probe::read(std::vector<std::byte>& value) const {
   return is_valid;
 }
 
-Seen Probe::look() const {
+Seen Probe::sample() const {
   std::vector<std::byte> bytes;
   if (!read(bytes)) return {};
   return {true, value_text(form, bytes), numbers(form, bytes)};

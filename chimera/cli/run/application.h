@@ -21,7 +21,7 @@ class Probe {
   /// The latest publication among `readers`; false when nobody has written it yet. Context: any thread; bounded.
   bool read(std::vector<std::byte>& value) const;
   /// The same as text and numbers.
-  Seen look() const;
+  Seen sample() const;
 
   std::string name;
   ValueForm form;

@@ -91,9 +91,9 @@ class RemoteTarget final : public RunTarget {
  private:
   Result<void> know_tasks(const Json& status);
   void print_grants(const Json& status);
-  void look_at_events();
-  void take_event(const Json& event);
-  void look_at_output();
+  void poll_events();
+  void on_event(const Json& event);
+  void check_output();
   void act_next();
   void act(const TimedAct& timed);
   std::vector<UnitFate> units_of(const Json& status) const;
@@ -135,7 +135,7 @@ Result<void> RemoteTarget::start() {
     last = *status;
     // What went wrong before the start comes first, also when the start was told meanwhile.
     started_ = instant((*status)["started_ns"]);
-    look_at_events();
+    poll_events();
     if (failure_) return *failure_;
     if (started_ != kNever) {
       print_grants(*status);
@@ -194,18 +194,18 @@ void RemoteTarget::print_grants(const Json& status) {
 }
 
 /// Before the start a task that cannot be made, or an `on` refused, is the end of it.
-void RemoteTarget::look_at_events() {
+void RemoteTarget::poll_events() {
   for (bool is_all = false; !is_all;) {
     const auto answer = line_.ask("events", {{"since", next_event_}, {"limit", kEventsAtOnce}});
     if (!answer) return;
     is_all = (*answer)["events"].size() < kEventsAtOnce;
-    for (const Json& event : (*answer)["events"]) take_event(event);
+    for (const Json& event : (*answer)["events"]) on_event(event);
   }
   page_.events_seen = std::max<std::uint64_t>(page_.events_seen, next_event_);
 }
 
 /// What is printed may be lost: that is told, and nothing else changes.
-void RemoteTarget::look_at_output() {
+void RemoteTarget::check_output() {
   const int why = request_.outlet == nullptr ? 0 : request_.outlet->why_lost();
   if (why == 0 || page_.lost_output != 0) return;
   page_.lost_output = why;
@@ -213,7 +213,7 @@ void RemoteTarget::look_at_output() {
   if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR2);
 }
 
-void RemoteTarget::take_event(const Json& event) {
+void RemoteTarget::on_event(const Json& event) {
   next_event_ = event["number"].get<std::uint64_t>() + 1;
   const std::string kind = event.value("kind", ""), text = event.value("text", "");
   const Json about = event.value("task", Json());
@@ -285,7 +285,7 @@ std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
     const Nanoseconds next = std::min({next_look_, act_at, end});
     while (clock_.now() < next && !stop_is_requested()) {
       if (records_)
-        records_->take(next, *sink_);
+        records_->poll(next, *sink_);
       else
         clock_.wait_until(next);
     }
@@ -293,8 +293,8 @@ std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
     if (next == act_at) act_next();
     if (next == end && !is_last) return std::nullopt;  // the values are shown first
     if (next == next_look_) {
-      look_at_events();
-      look_at_output();
+      poll_events();
+      check_output();
       next_look_ += kLookEvery;
     }
     if (task_stopped_) return RunEnd::kTaskStopped;
@@ -334,7 +334,7 @@ std::optional<Json> RemoteTarget::await_end() {
     clock_.wait_until(clock_.now() + kStartLook);
     after = line_.ask("status", Json::object());
   }
-  look_at_events();
+  poll_events();
   return after ? std::optional<Json>(*after) : std::nullopt;
 }
 
@@ -384,7 +384,7 @@ void RemoteTarget::finish(RunReport& report) {
   const auto status = line_.ask("status", Json::object());
   if (status) report.profiles = profiles((*status)["origin_ns"]);
   report.is_flag_up = status && status->value(Json::json_pointer("/flag/up"), false);
-  look_at_events();
+  poll_events();
   report.subsystem = names_.subsystem;
   report.executor = grants_;
   report.origin = started_;
@@ -397,7 +397,7 @@ void RemoteTarget::finish(RunReport& report) {
 bool RemoteTarget::is_output_complete(const RunReport& report) {
   if (request_.outlet == nullptr) return true;
   request_.outlet->finish(kLastOutput);
-  look_at_output();
+  check_output();
   if (page_.lost_output != 0) std::fputs(report.verdict.text().c_str(), err_);  // what somebody must know
   return page_.lost_output == 0;
 }

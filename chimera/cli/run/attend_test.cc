@@ -284,7 +284,7 @@ TEST_F(Attend, HandsTheRecordsOfTheTapOn) {
       text = std::string(spec.name) + " " + std::string(spec.tasks[0].name) + " " + std::string(spec.rtpus[1].name);
       origin = at;
     }
-    void take(std::span<const TapRecord> records) override {
+    void on_records(std::span<const TapRecord> records) override {
       for (const TapRecord& r : records)
         text += " | " + std::to_string((r.at - origin).count) + " " + std::to_string(static_cast<int>(r.kind)) + " " +
                 std::to_string(r.task.index) + " " + std::to_string(r.a) + " " + std::to_string(r.b) + " " +

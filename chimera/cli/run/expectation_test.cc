@@ -50,7 +50,7 @@ TEST_F(ExpectationText, WhatWasNeverWrittenSatisfiesNothing) {
   const auto made = Expectation::parse("x >= 0 m", source.configuration(), library_.units());
   ASSERT_TRUE(made);
   std::string said;
-  EXPECT_FALSE(made->holds(source.probe("x")->look(), said));
+  EXPECT_FALSE(made->holds(source.probe("x")->sample(), said));
   EXPECT_EQ(said, "x was never written");
 }
 

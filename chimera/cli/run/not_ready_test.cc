@@ -28,8 +28,7 @@ TEST(NotReady, NamesTheTaskAndTheMethod) {
 
 TEST(NotReady, NamesAProcessThatDoesNotComeUp) {
   EXPECT_EQ(not_ready({{"tasks", {task("log", "NOT-CREATED", false)}}, {"rtpus", {rtpu("starting")}}}),
-            "real-time unit servo still makes its tasks (log): a shared object that is loaded, or a constructor, is "
-            "under way");
+            "real-time unit servo still makes its tasks (log): it loads a shared object or runs a constructor");
   EXPECT_EQ(not_ready({{"tasks", {task("log", "NOT-CREATED", false)}}, {"rtpus", {rtpu("ended", nullptr, false)}}}),
             "the process of real-time unit servo is dead");
 }

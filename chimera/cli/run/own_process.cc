@@ -44,8 +44,8 @@ class HeldSignals {
   }
   HeldSignals(const HeldSignals&) = delete;
   HeldSignals& operator=(const HeldSignals&) = delete;
-  ~HeldSignals() { let_go(); }
-  void let_go() { ::sigprocmask(SIG_SETMASK, &before_, nullptr); }
+  ~HeldSignals() { release(); }
+  void release() { ::sigprocmask(SIG_SETMASK, &before_, nullptr); }
   /// The next of them within 100 ms; 0: none came.
   int next(siginfo_t& about) const {
     const timespec limit{0, kLongestWaitNs};
@@ -58,7 +58,7 @@ class HeldSignals {
 
 [[noreturn]] void live(const std::function<int()>& work, pid_t parent, UnderWay& place, HeldSignals& held) {
   (void)follow_parent(parent, SIGKILL);
-  held.let_go();
+  held.release();
   write_under_way_to(place);
   const int code = report_lost_output(work());
   place.has_returned = true;
@@ -84,7 +84,7 @@ class Patience {
 /// What has gone on for too long; "" when nothing has.
 class Limits {
  public:
-  std::string look(const UnderWay& place, bool is_asked) {
+  std::string exceeded(const UnderWay& place, bool is_asked) {
     if (making_.is_over(place.making))
       return "the run did not end within " + std::to_string(kMakingLimitSeconds) + " s " + place.text();
     if (!method_.is_over(is_asked || place.is_ending ? place.words() : 0)) return "";
@@ -114,7 +114,7 @@ std::string watch(pid_t child, const UnderWay& place, const HeldSignals& held, i
       is_asked = true;
     }
     if (!why.empty()) continue;
-    why = limits.look(place, is_asked);
+    why = limits.exceeded(place, is_asked);
     if (!why.empty()) ::kill(child, SIGKILL);  // still ours: not reaped
   }
 }
@@ -137,7 +137,7 @@ int in_own_process(const std::function<int()>& work, const std::function<int(con
   const pid_t child = ::fork();
   if (child == 0) live(work, parent, *place, held);
   if (child < 0) {
-    held.let_go();
+    held.release();
     release(place);
     return work();
   }

@@ -46,7 +46,7 @@ Result<void> RecordLine::subscribe(From from) {
   return {};
 }
 
-void RecordLine::take(Nanoseconds instant, RecordSink& sink) {
+void RecordLine::poll(Nanoseconds instant, RecordSink& sink) {
   if (!line_.is_connected() && !subscribe(From::kNow)) {
     LinuxClock().wait_until(std::min(instant, LinuxClock().now() + milliseconds(10)));
     return;
@@ -70,12 +70,12 @@ void RecordLine::take(Nanoseconds instant, RecordSink& sink) {
     record.rtpu = static_cast<std::uint8_t>(index_of(names_.rtpus, heard->value("rtpu", "")));
     records.push_back(record);
   }
-  sink.take(records);
+  sink.on_records(records);
 }
 
 void RecordLine::finish(RecordSink& sink) {
   const Nanoseconds until = LinuxClock().now() + kLastRecords;
-  while (line_.is_connected() && LinuxClock().now() < until) take(until, sink);
+  while (line_.is_connected() && LinuxClock().now() < until) poll(until, sink);
   sink.end(lost_, missed_);
 }
 

@@ -37,7 +37,7 @@ class RecordLine {
   enum class From : unsigned char { kOldest, kNow };
   Result<void> subscribe(From from);
   /// Hands what comes until `instant` to `sink`; returns with the first, or earlier when a signal came.
-  void take(Nanoseconds instant, RecordSink& sink);
+  void poll(Nanoseconds instant, RecordSink& sink);
   /// Hands on what is there, and ends.
   void finish(RecordSink& sink);
 

@@ -38,7 +38,7 @@ class ProgressLine {
       : all_(request.duration), err_(err), is_on_(request.virtual_time && is_terminal(::fileno(err))) {}
 
   bool is_on() const noexcept { return is_on_; }
-  void look(Nanoseconds done) {
+  void show(Nanoseconds done) {
     const Nanoseconds wall = spent();
     if (wall < next_) return;
     std::fprintf(err_, "\r%s\033[K", progress_text(done, all_, wall).c_str());
@@ -87,7 +87,7 @@ class LocalTarget final : public RunTarget {
 
  private:
   void drain();
-  void tell_notes();
+  void print_notes();
 
   const RunRequest& request_;
   const RunPlan& plan_;
@@ -124,13 +124,13 @@ Result<void> LocalTarget::start() {
   if (!request_.svg.empty())
     for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
-  if (request_.virtual_time) tell_notes();  // else the loop runs by now: they are told at the end
+  if (request_.virtual_time) print_notes();  // else the loop runs by now: they are told at the end
   if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin(), loop_->origin());
   return {};
 }
 
 // What components have to say beside their values, once each.
-void LocalTarget::tell_notes() {
+void LocalTarget::print_notes() {
   const auto tasks = application_.tasks().tasks();
   notes_told_.resize(tasks.size());
   for (const Task& task : tasks) {
@@ -142,7 +142,7 @@ void LocalTarget::tell_notes() {
 void LocalTarget::drain() {
   if (sink_ == nullptr) return;
   TapRecord records[512];
-  for (std::size_t n; (n = reader_.read(records)) > 0;) sink_->take({records, n});
+  for (std::size_t n; (n = reader_.read(records)) > 0;) sink_->on_records({records, n});
 }
 
 std::optional<RunEnd> LocalTarget::advance(Nanoseconds until) {
@@ -154,7 +154,7 @@ std::optional<RunEnd> LocalTarget::advance(Nanoseconds until) {
     const std::optional<RunEnd> end = loop_->advance(next);
     drain();
     at_ = next;
-    if (progress_.is_on() && !end) progress_.look(at_);
+    if (progress_.is_on() && !end) progress_.show(at_);
     if (!end && next != until) continue;
     progress_.wipe();
     return end;
@@ -163,7 +163,7 @@ std::optional<RunEnd> LocalTarget::advance(Nanoseconds until) {
 
 bool LocalTarget::draws(Nanoseconds at) {
   if (request_.svg.empty()) return false;
-  plot_.take(at, drawn_);
+  plot_.add_sample(at, drawn_);
   return true;
 }
 
@@ -173,7 +173,7 @@ std::vector<Reading> LocalTarget::read(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (!probes_.contains(name)) probes_.emplace(name, *application_.probe(name));
     const Probe& probe = probes_.at(name);
-    readings.push_back({probe.look(), probe.form.unit, probe.read(value) ? value_json(probe.form, value) : "null"});
+    readings.push_back({probe.sample(), probe.form.unit, probe.read(value) ? value_json(probe.form, value) : "null"});
   }
   return readings;
 }
@@ -202,7 +202,7 @@ void LocalTarget::finish(RunReport& report) {
     drain();
     sink_->end(reader_.lost(), 0);
   }
-  tell_notes();
+  print_notes();
 }
 
 bool LocalTarget::is_output_complete(const RunReport& report) {

@@ -44,7 +44,7 @@ class RecordSink {
   virtual ~RecordSink() = default;
   /// `origin` is that of the grid of releases, `start` the beginning of the run; kNever: its first release on record.
   virtual void begin(const ApplicationSpec& spec, Nanoseconds origin, Nanoseconds start) = 0;
-  virtual void take(std::span<const TapRecord> records) = 0;
+  virtual void on_records(std::span<const TapRecord> records) = 0;
   /// `lost` records were overwritten before they were read; `missed` of those before the first that was read.
   virtual void end(std::uint64_t lost, std::uint64_t missed) = 0;
 };

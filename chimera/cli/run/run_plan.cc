@@ -140,7 +140,7 @@ int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, st
   return output.code;
 }
 
-int tell_broken(const RunRequest& request, const BrokenRun& broken, std::FILE* out, std::FILE* err) {
+int report_broken_run(const RunRequest& request, const BrokenRun& broken, std::FILE* out, std::FILE* err) {
   if (broken.task.empty() || request.json)
     return refuse_run(request, {ErrorCode::kRefused, {broken.text}, {broken.task.empty() ? request.file : broken.task}},
                       out, err);

@@ -11,7 +11,7 @@ namespace {
 class Records final : public RecordSink {
  public:
   void begin(const ApplicationSpec&, Nanoseconds origin, Nanoseconds) override { origin_ = origin; }
-  void take(std::span<const TapRecord> records) override {
+  void on_records(std::span<const TapRecord> records) override {
     for (const TapRecord& r : records)
       text += std::to_string((r.at - origin_).count) + " " + std::to_string(static_cast<int>(r.kind)) + " " +
               std::to_string(r.a) + " " + std::to_string(r.b) + "\n";

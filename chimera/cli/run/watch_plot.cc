@@ -8,7 +8,7 @@
 
 namespace chimera::cli {
 
-void WatchPlot::take(Nanoseconds at, std::span<const Probe> probes) {
+void WatchPlot::add_sample(Nanoseconds at, std::span<const Probe> probes) {
   if (first_.empty()) {
     for (const Probe& probe : probes) {
       first_.push_back(curves_.size());
@@ -18,7 +18,7 @@ void WatchPlot::take(Nanoseconds at, std::span<const Probe> probes) {
     first_.push_back(curves_.size());
   }
   for (std::size_t p = 0; p < probes.size(); ++p) {
-    const Seen seen = probes[p].look();
+    const Seen seen = probes[p].sample();
     if (points_ + seen.numbers.size() > kMostPoints) return;
     const std::size_t n = std::min(seen.numbers.size(), first_[p + 1] - first_[p]);
     for (std::size_t i = 0; i < n; ++i) curves_[first_[p] + i].points.push_back({to_seconds(at), seen.numbers[i]});

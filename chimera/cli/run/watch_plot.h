@@ -18,7 +18,7 @@ class WatchPlot {
   static constexpr std::size_t kMostPoints = 1'000'000;  ///< of all curves together; more are left out
 
   /// The values of `probes` at `at`; the same probes at each call. One that was not written yet has no point.
-  void take(Nanoseconds at, std::span<const Probe> probes);
+  void add_sample(Nanoseconds at, std::span<const Probe> probes);
   /// A curve for each number: "q[0]". Context: setup.
   draw::Plot plot(const std::string& title) const;
 

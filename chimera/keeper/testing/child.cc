@@ -106,8 +106,8 @@ class Child {
       pollfd events{kChannelDescriptor, POLLIN, 0};
       ::poll(&events, 1, 1);
       if ((code = take()) >= 0) return code;
-      if ((code = obey(next_order(me, own_))) >= 0) return code;
-      if ((code = obey(next_order(peer_, all_))) >= 0) return code;
+      if ((code = on_message(next_order(me, own_))) >= 0) return code;
+      if ((code = on_message(next_order(peer_, all_))) >= 0) return code;
       if (told_to_end == 0 || stubborn_) continue;
       log("terminated");
       return 0;
@@ -142,7 +142,7 @@ class Child {
     return got == Channel::Got::kClosed ? 8 : -1;
   }
 
-  int obey(const std::string& order) {
+  int on_message(const std::string& order) {
     const std::string what = order.substr(0, order.find(' '));
     const int number = what == order ? 0 : std::stoi(order.substr(what.size()));
     const auto index = static_cast<std::uint32_t>(number);

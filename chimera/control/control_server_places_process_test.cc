@@ -2,7 +2,7 @@
 // Who gets in when places are short, and who is turned out: by a stepped clock.
 #include <algorithm>
 
-#include "chimera/control/testing/door_rig.h"
+#include "chimera/control/testing/control_server_rig.h"
 #include "chimera/control/request.h"
 
 namespace chimera::control {
@@ -13,7 +13,7 @@ constexpr const char* kOff = R"({"signal":"off","tasks":["a"]})";
 struct DoorPlaces : DoorTest {
   void SetUp() override {
     DoorTest::SetUp();
-    door->tell_closings_by([this](const std::string& text) { told.push_back(text); });
+    door->report_closings_to([this](const std::string& text) { told.push_back(text); });
   }
   void TearDown() override {
     for (const int fd : fds) ::close(fd);

@@ -18,7 +18,7 @@ bool is_act(const Request& request) {
 
 }  // namespace
 
-void ControlServer::take_turn(Nanoseconds now) {
+void ControlServer::run_turn(Nanoseconds now) {
   const Turn turn;
   for (const auto& [number, connection] : connections_)
     if (connection->has_output()) (void)connection->flush(now);  // answers that came since the last turn
@@ -41,7 +41,7 @@ bool ControlServer::act_of(Connection& connection, Nanoseconds now) {
   if (!is_open(connection)) return false;
   std::string line;
   const bool reads = connection.next == nullptr && connection.has_short_line() && connection.take_line(line);
-  if (reads) take(connection, line, now);
+  if (reads) on_line(connection, line, now);
   if (connection.next == nullptr || !is_act(*connection.next)) return reads;
   carry_out_next(connection, now);
   (void)connection.flush(now);
@@ -57,7 +57,7 @@ bool ControlServer::ask(Nanoseconds now) {
     std::string line;
     if (!is_open(connection) || (connection.next == nullptr && !connection.take_line(line))) continue;
     last_asked_ = at->first;
-    if (connection.next == nullptr) take(connection, line, now);
+    if (connection.next == nullptr) on_line(connection, line, now);
     if (connection.next != nullptr) carry_out_next(connection, now);
     return true;
   }
@@ -65,9 +65,9 @@ bool ControlServer::ask(Nanoseconds now) {
 }
 
 /// What a new connection has brought, so that it is answered before its place is wanted.
-void ControlServer::take_first(Connection& connection, Nanoseconds now) {
+void ControlServer::answer_first(Connection& connection, Nanoseconds now) {
   std::string line;
-  if (is_open(connection) && connection.take_line(line)) take(connection, line, now);
+  if (is_open(connection) && connection.take_line(line)) on_line(connection, line, now);
   if (connection.next != nullptr) carry_out_next(connection, now);
 }
 
