@@ -35,7 +35,7 @@ class Library {
 
   /// A library of the given descriptors, for tests and tools that have no files.
   static Library of(std::vector<Descriptor> descriptors, UnitSystem units);
-  /// The same with the names of their files, as another process found them.
+  /// A library of descriptors with the names of their files, as another process found them.
   static Library of_entries(std::vector<LibraryEntry> entries, UnitSystem units);
 
   /// By name, in alphabetical order.

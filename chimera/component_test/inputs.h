@@ -23,7 +23,7 @@ inline constexpr std::size_t kMaxColumns = 256;
 /// One number of an in-var.
 struct InputChannel {
   std::string name;        ///< as a recording calls it: "q_ref[2]"
-  std::string port_name;   ///< the same by the port, for a repeated one: "in[0][2]"
+  std::string port_name;   ///< the name by the port, of a repeated port: "in[0][2]"
   std::string unit;        ///< of its values
   std::size_t offset = 0;  ///< in the row
   std::uint32_t type = CHIMERA_FLOAT64;

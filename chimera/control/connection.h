@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One connection at the door: lines in, lines out, within the limits. Knows no method.
+// One connection of the control server: lines in, lines out, within the limits. Knows no method.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ class Connection {
   void receive(Nanoseconds now);
   /// When the first byte came of a line that has no end yet; kNever: there is none.
   Nanoseconds half_since() const noexcept { return half_since_; }
-  /// Nobody listens to the peer now: a half line is no fault of its own.
+  /// The server did not read from the peer until now: the time of a half line begins anew.
   void restart_line_timer(Nanoseconds now) noexcept { half_since_ = half_since_ == kNever ? kNever : now; }
   /// The peer says nothing more; it may still listen.
   bool has_ended() const noexcept { return has_ended_; }
@@ -56,11 +56,11 @@ class Connection {
   bool is_closing() const noexcept { return is_closing_; }
 
   Allowance requests{kRequestsPerSecond, kRequestBurst}, acts{kActsPerSecond, kActBurst};
-  Nanoseconds active_at;       ///< when the peer last said a line or was answered, kept by the door
+  Nanoseconds active_at;       ///< when the peer last said a line or was answered, kept by the server
   std::size_t open_calls = 0;  ///< whose answers are still to come
   std::size_t open_acts = 0;   ///< those of them that change something
   bool is_gone = false;        ///< the peer closed: nobody will read
-  std::uint32_t watched = 0;   ///< what the door asks its DescriptorSet for
+  std::uint32_t watched = 0;   ///< what the server asks its DescriptorSet for
   /// The request that is read and not carried out yet: what it is decides whether it waits. Null: none.
   std::unique_ptr<const Request> next;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one door to a subsystem: serves the control protocol on a listening Unix socket, within its limits and rights.
+// The one interface to a subsystem: serves the control protocol on a listening Unix socket, within its limits and rights.
 // docs/formats/control.md. Single-threaded, never blocks; driven by the loop of its owner.
 #pragma once
 
@@ -23,7 +23,7 @@ namespace chimera::control {
 class ControlServer {
  public:
   /// Takes over `listening` (-1: connections only come by enter()). `owner` is the user of the keeper; `backend`
-  /// outlives the door.
+  /// outlives the server.
   static Result<std::unique_ptr<ControlServer>> open(int listening, ControlBackend& backend, uid_t owner,
                                                      const RoleGroups& groups);
   ControlServer(const ControlServer&) = delete;
@@ -37,7 +37,7 @@ class ControlServer {
   /// When serve() is due though nothing came; kNever: not before something comes. Never later than `now` of the last
   /// serve() when an answer has been given since.
   Nanoseconds next_due() const noexcept;
-  /// `tell` is told, in words for people, of every connection that the door closes though its peer had no part in it.
+  /// `tell` gets a sentence for people about every connection that the server closes and not its peer.
   void report_closings_to(Closings::Tell tell) { closings_.report_to(std::move(tell)); }
   /// Takes over a connected socket whose other end is known; refuses it with words when it has no role or finds no
   /// place. Another one may have to give way to it.

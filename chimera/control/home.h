@@ -9,7 +9,7 @@
 
 namespace chimera::control {
 
-/// As `hello` tells (docs/formats/control.md). Plain value.
+/// What the answer of `hello` says of a subsystem (docs/formats/control.md). Plain value.
 struct Home {
   std::string subsystem;
   std::int64_t keeper_pid = 0;

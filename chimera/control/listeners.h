@@ -14,10 +14,10 @@ struct Listeners {
   bool is_stopped = false;  ///< the manager, by a signal or a debugger
 };
 
-/// Those that hold the socket that listens at `path`. Context: setup; looks at every process of the machine.
+/// Those that hold the socket that listens at `path`. Context: setup; reads /proc of every process of the machine.
 Listeners listeners_at(const std::string& path);
 
-/// That the manager behind `path` did not answer for so long, with its process and what to do about it.
+/// The sentence that the manager behind `path` did not answer for `limit`, with its process and what to do.
 std::string silence_text(const std::string& path, const Listeners& listeners, Nanoseconds limit);
 
 }  // namespace chimera::control

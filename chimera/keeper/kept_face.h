@@ -19,7 +19,7 @@ class KeptFace {
  public:
   /// `words`: program and arguments; none: a run without a face, of which nothing else is to be asked but is_wanted().
   explicit KeptFace(std::vector<std::string> words) : words_(std::move(words)) {}
-  /// It does not outlive this.
+  /// Ends the process of the face.
   ~KeptFace() { end(); }
   KeptFace(const KeptFace&) = delete;
   KeptFace& operator=(const KeptFace&) = delete;

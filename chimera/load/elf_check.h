@@ -13,7 +13,7 @@ namespace chimera {
 /// goes after the file's name. Context: setup; may block.
 Message elf_fault(int file) noexcept;
 
-/// The same, and whether the file offers components, and one of that name, as far as can be told without running code
+/// As elf_fault(file), and whether the file offers components, and one of that name, as far as can be told without running code
 /// of it: the symbol is exported, and the name stands in the file. Context: setup; may block.
 Message elf_fault(int file, std::string_view component);
 

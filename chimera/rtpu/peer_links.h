@@ -23,7 +23,7 @@ class PeerLinks final : public PeerView {
   /// fault group and then the event for the manager's log; after the last of them all bells are rung, once.
   /// Context: cycle boundary; wait-free.
   void publish(TaskSet& tasks) noexcept;
-  /// The same for all that is not shown as it is, listed or not: at the start. Context: cycle boundary.
+  /// publish() of every task whose shown state is not its own, listed or not: at the start. Context: cycle boundary.
   void publish_all(TaskSet& tasks) noexcept;
   /// While it keeps them nobody is shown states: what was ON when the unit began to end alone comes back with its
   /// successor. When it does not any more, all are shown. Context: cycle boundary.

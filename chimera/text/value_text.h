@@ -24,7 +24,7 @@ struct ValueForm {
 
 /// "27.7778 m/s", "[0.1 0.2] rad", "{x: 1 m, y: 2 m}"; six significant digits.
 std::string value_text(const ValueForm& form, std::span<const std::byte> bytes);
-/// The same as JSON, numbers exact; NaN and infinity become null.
+/// The value as JSON, numbers exact; NaN and infinity become null.
 std::string value_json(const ValueForm& form, std::span<const std::byte> bytes);
 /// Every number of the value in order; texts give none.
 std::vector<double> numbers(const ValueForm& form, std::span<const std::byte> bytes);

@@ -22,14 +22,14 @@ class UnitSystem {
   /// Refuses when there is none or when it is no unit file, naming it. Context: setup; may block.
   static Result<UnitSystem> load(std::span<const std::string> files);
 
-  /// The same from the text of a unit file; `file` is its name for messages. Context: setup; may block.
+  /// Reads the text of a unit file; `file` is its name for messages. Context: setup; may block.
   static Result<UnitSystem> of(std::string text, std::string file);
 
   /// The unit of "N.m/rad", "m/s2", "kg.m^2.s^-1", "%", "1". Refuses, naming the word that is wrong and the nearest
   /// known unit, unknown words, unit variables, numbers other than 1, and a product after a "/". Context: setup.
   Result<Unit> parse(std::string_view text) const;
 
-  /// The same with the unit variables U X Y Z: "U", "U/s". Context: setup.
+  /// As parse(), but the unit variables U X Y Z are legal: "U", "U/s". Context: setup.
   Result<UnitExpression> parse_expression(std::string_view text) const;
 
   /// Every symbol and name of the file, without prefixes; the candidates of "nearest". Context: setup.

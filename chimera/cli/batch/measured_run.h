@@ -35,7 +35,7 @@ MeasuredRun measured_run(const MeasuredRequest& request, const Library& library)
 /// Context: setup.
 Result<void> judge_measured(const MeasuredRequest& request, const Library& library);
 
-/// As a text and back; what is no such text is a failure. Context: setup.
+/// A run as text, and a run from such a text; any other text gives a run with a failure. Context: setup.
 std::string encode(const MeasuredRun& run);
 MeasuredRun decode_measured(const std::string& text);
 

@@ -31,7 +31,7 @@ struct SideBySide {
 /// whatever has no answer failed by that. Call it with one thread. Context: setup; blocks.
 std::vector<PieceEnd> side_by_side(const SideBySide& plan);
 
-/// As many as this process may use.
+/// The number of processors that this process may use.
 std::size_t processors();
 
 }  // namespace chimera::cli

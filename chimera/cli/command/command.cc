@@ -43,7 +43,7 @@ Result<void> read_option(Call& call, const std::vector<std::string>& words, std:
   return bad_call(with_nearest(std::string(call.command->name) + " has no option '" + words[i] + "'", words[i], names));
 }
 
-/// As a shell takes it for one word.
+/// `word` in quotes where a shell would else cut or change it.
 std::string quoted(const std::string& word) {
   const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,@%-";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;

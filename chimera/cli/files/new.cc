@@ -55,7 +55,7 @@ std::string without_licence(const std::string& text) {
   return kept;
 }
 
-/// As a shell reads it back.
+/// `path` in quotes where a shell would else cut or change it.
 std::string shell_word(const std::string& path) {
   constexpr std::string_view kPlain = "_./+-";
   const auto is_plain = [kPlain](char c) {

@@ -23,7 +23,7 @@ struct Workplace {
   Result<Library> library() const;
 };
 
-/// That no component of this name is installed, with the nearest one that is. Context: setup.
+/// The error "no component NAME is installed", with the nearest installed name. Context: setup.
 Error no_component(const std::string& name, const Library& library);
 
 /// The path of the running program. Context: setup.

@@ -13,7 +13,7 @@ namespace chimera::cli {
 /// Context: setup; blocks until it is over.
 int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err);
 
-/// The same over a connection of its own.
+/// carry_out() over a new connection to the subsystem that `surroundings` names.
 int carry_out(const Surroundings& surroundings, const Call& call, std::FILE* out, std::FILE* err);
 
 }  // namespace chimera::cli

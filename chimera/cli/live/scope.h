@@ -62,7 +62,7 @@ class Scope {
   /// counted. What was not published then holds the value it had; a channel that nothing was seen of yet is empty;
   /// `lost`: rows that are missing just before this one.
   std::string csv() const;
-  /// The same as a picture; every gap is hatched.
+  /// The recording as a picture; every gap is hatched.
   draw::Plot plot(const std::string& title, const std::string& note) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the faces remember things between two calls: the history of the shell, what `save` wrote.
+// The folder in which commands keep files between two calls: the history of the shell, the record of `save`.
 #pragma once
 
 #include <string>

@@ -20,7 +20,7 @@ class Probe {
  public:
   /// The latest publication among `readers`; false when nobody has written it yet. Context: any thread; bounded.
   bool read(std::vector<std::byte>& value) const;
-  /// The same as text and numbers.
+  /// The latest publication as text and numbers.
   Seen sample() const;
 
   std::string name;

@@ -34,7 +34,7 @@ struct RunPlan {
 std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err,
                                 int* code = nullptr);
 
-/// The same with a library that is there already.
+/// plan_run() with a library that was read before.
 std::optional<RunPlan> plan_run(const RunRequest& request, const Library& library, std::FILE* out, std::FILE* err,
                                 int* code = nullptr);
 

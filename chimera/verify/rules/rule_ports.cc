@@ -104,7 +104,7 @@ Instances count_instances(const TaskModel& task, const PortDescriptor& port, con
   return {port.kind == CHIMERA_RESOURCE ? 1u : 0u, task.draft->name.at};  // require_resources asks for the text
 }
 
-/// The same, or nullopt and a fault when it cannot be.
+/// The number of instances of the port, or nullopt and a fault when it is not legal.
 std::optional<std::size_t> instances(Model& model, const TaskModel& task, const PortDescriptor& port,
                                      const DraftAlias* alias) {
   const Instances found = count_instances(task, port, alias);
