@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one interface to a subsystem: serves the control protocol on a listening Unix socket, within its limits and rights.
+// The interface to a subsystem: serves the control protocol on a listening Unix socket, within its limits and rights.
 // docs/formats/control.md. Single-threaded, never blocks; driven by the loop of its owner.
 #pragma once
 

@@ -13,8 +13,8 @@ namespace chimera {
 /// goes after the file's name. Context: setup; may block.
 Message elf_fault(int file) noexcept;
 
-/// As elf_fault(file), and whether the file offers components, and one of that name, as far as can be told without running code
-/// of it: the symbol is exported, and the name stands in the file. Context: setup; may block.
+/// As elf_fault(file), and whether the file offers components, and one of that name, as far as that is seen without
+/// running code of the file: the symbol is exported, and the name stands in the file. Context: setup; may block.
 Message elf_fault(int file, std::string_view component);
 
 }  // namespace chimera
