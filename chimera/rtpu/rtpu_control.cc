@@ -73,7 +73,8 @@ void RtpuControl::check_peers() noexcept {
   if (!is_new && changes == seen_changes_) return;
   seen_changes_ = changes;
   others_.watch_flags(tasks_.flag());  // others may live now, or be dead
-  tasks_.follow_others();
+  tasks_.sources().follow_others();
+  tasks_.on_set_changed();
   for (Task& task : tasks_.tasks()) task.is_tapped = tasks_.is_mine(task.id) && others_.is_wanted_on_tap(task.id);
   publish();
   others_.block().head().seen_changes.store(changes, std::memory_order_release);
@@ -155,7 +156,8 @@ void RtpuControl::act(std::span<const Post> step, BoundarySignals& signals, Nano
   if (step[0].signal == Signal::kOn) return turn_on(step, signals, now);
   for (const Post& post : step) {
     const bool is_echo = post.signal == Signal::kReinit && post.detail != 0;
-    if (is_echo && !tasks_.uses_changed_constants(post.task)) continue;
+    if (is_echo) tasks_.constants().read_foreign();
+    if (is_echo && !tasks_.constants().uses_changed(post.task)) continue;
     const SignalReport done = carry_out(signals, {&post.task, 1}, post.signal, now);
     if (done.is_deferred)
       commands_[post.task.index] = post;

@@ -20,7 +20,7 @@ void BoundarySignals::act(Nanoseconds now) noexcept {
 }
 
 void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
-  if (act.kind == ScriptAct::Kind::kSet) return set_.set_operator(act.operator_index, act.value, now);
+  if (act.kind == ScriptAct::Kind::kSet) return set_.table().set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
     set_.flag().raise(up);

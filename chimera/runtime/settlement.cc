@@ -50,7 +50,8 @@ void Settlement::record_faults(Task& task) noexcept {
 void Settlement::raise_flag(TaskId by, Nanoseconds at) noexcept {
   if (parts_.set.flag().raises(by)) return;
   if (!parts_.set.flag().is_up()) parts_.tap.record(TapKind::kFlag, at, TaskId(), 1);
-  parts_.set.raise_flag_for(by);
+  parts_.set.flag().raise_for(by);
+  parts_.set.on_set_changed();
 }
 
 void Settlement::give_up_starved(Nanoseconds now) noexcept {

@@ -29,28 +29,26 @@ void fill_output(const PortSpec& port, std::span<std::byte> to) noexcept {
 
 }  // namespace
 
-void Sources::prepare(const Variables& variables, const PeerLayout& everything, std::span<Task> tasks,
-                      std::span<TaskMemory> memories, std::span<const GroupReader> operators, const PeerView* others,
-                      bool preemptive) {
+void Sources::prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<Task> tasks,
+                      std::span<TaskMemory> memories, const PeerView* others, bool preemptive) {
   preemptive_ = preemptive;
-  variables_ = &variables;
-  everything_ = &everything;
+  spec_ = &spec;
+  table_ = &table;
   tasks_ = tasks;
   memories_ = memories;
-  operators_ = operators;
   others_ = others;
-  sources_.resize(variables.all().size());
+  sources_.resize(spec.variables.size());
   used_.resize(tasks.size());
   is_behind_.resize(tasks.size());
-  for (const Variable& variable : variables.all()) plan_copies(variable);
+  for (const Variable& variable : spec.variables) plan_copies(variable);
   std::vector<std::size_t> n(tasks.size());
   std::uint32_t largest = 0;
   for (const Copy& copy : copies_) ++n[copy.consumer.index];
   for (std::size_t t = 0; t < n.size(); ++t) used_[t].reserve(n[t]);
-  for (const GroupPlace& group : everything.table().groups()) largest = std::max(largest, group.payload_bytes);
+  for (const GroupPlace& group : table.everything().table().groups()) largest = std::max(largest, group.payload_bytes);
   scratch_ = AlignedBytes(sizeof(chimera_slot) + largest, kCacheLine);
   for (std::size_t v = 0; v < sources_.size(); ++v) {
-    const Variable& variable = variables.all()[v];
+    const Variable& variable = spec.variables[v];
     if (variable.operator_index != UINT32_MAX) bind(VariableId(v), operator_source(variable));
     else if (!variable.producers.empty()) bind(VariableId(v), source_from(variable.producers[0]));
   }
@@ -58,20 +56,20 @@ void Sources::prepare(const Variables& variables, const PeerLayout& everything, 
 }
 
 std::uint32_t Sources::payload_of(const Source& source) const noexcept {
-  const GroupId group = source.task.is_valid() ? everything_->outputs(source.task, 0)
-                                               : everything_->operator_group(source.operator_index);
-  return everything_->place(group).payload_bytes;
+  const GroupId group = source.task.is_valid() ? table_->everything().outputs(source.task, 0)
+                                               : table_->everything().operator_group(source.operator_index);
+  return table_->everything().place(group).payload_bytes;
 }
 
 GroupReader Sources::reader_of(const Source& source) const noexcept {
   if (source.here.is_bound()) return source.here;
-  if (!source.task.is_valid() && !operators_.empty()) return operators_[source.operator_index];
+  if (!source.task.is_valid() && !table_->operators().empty()) return table_->operators()[source.operator_index];
   if (others_ == nullptr) return {};
   return source.task.is_valid() ? others_->outputs(source.task) : others_->operator_variable(source.operator_index);
 }
 
 Source Sources::source_from(const PortOf& producer) const noexcept {
-  const auto places = everything_->variables(everything_->outputs(producer.task, 0));
+  const auto places = table_->everything().variables(table_->everything().outputs(producer.task, 0));
   Source source{producer.task, 0, places[producer.index].offset, producer.index, {}};
   if (is_mine(producer.task)) source.here = memories_[producer.task.index].reader();
   return source;
@@ -98,7 +96,7 @@ void Sources::plan_copy(TaskId consumer, const Source& source) {
 // What stands in a copy before its producer was ever seen.
 void Sources::fill(const Source& source, std::span<std::byte> values) const noexcept {
   if (!source.task.is_valid()) return;
-  const auto places = everything_->variables(everything_->outputs(source.task, 0));
+  const auto places = table_->everything().variables(table_->everything().outputs(source.task, 0));
   std::size_t i = 0;
   for (const PortSpec& port : tasks_[source.task.index].spec->ports)
     if (port.kind == CHIMERA_OUT_VAR) {
@@ -115,7 +113,7 @@ Sources::Copy* Sources::copy_for(TaskId consumer, const Source& source) noexcept
 
 void Sources::bind(VariableId variable, const Source& source) noexcept {
   sources_[variable.index] = source;
-  for (const PortOf& consumer : variables_->all()[variable.index].consumers) {
+  for (const PortOf& consumer : spec_->variables[variable.index].consumers) {
     if (!is_mine(consumer.task)) continue;
     if (preemptive_ && tasks_[consumer.task.index].is_busy) is_behind_[consumer.task.index] = true;
     else bind_input(tasks_[consumer.task.index].inputs[consumer.index], consumer.task, source);
@@ -147,7 +145,7 @@ void Sources::take_outputs_of(const Task& task) noexcept {
 void Sources::follow_others() noexcept {
   if (others_ == nullptr) return;
   for (std::size_t v = 0; v < sources_.size(); ++v) {
-    const Variable& variable = variables_->all()[v];
+    const Variable& variable = spec_->variables[v];
     for (const PortOf& producer : variable.producers) {
       if (is_mine(producer.task) || producer.task == sources_[v].task) continue;
       if (others_->state(producer.task) == State::kOn) bind(VariableId(v), source_from(producer));
@@ -225,6 +223,28 @@ const chimera_slot* Sources::latest(VariableId variable) noexcept {
   if (source.here.is_bound()) return reader.published();
   auto* slot = reinterpret_cast<chimera_slot*>(scratch_.data());
   return reader.try_read(slot) ? slot : nullptr;
+}
+
+VariableView Sources::view(VariableId variable) const noexcept {
+  const Source& source = sources_[variable.index];
+  const bool is_operators = !source.task.is_valid();
+  const GroupReader reader = is_operators ? table_->operators()[source.operator_index] : source.here;
+  const chimera_slot* slot = reader.published();
+  if (slot == nullptr) return {};
+  VariableView view;
+  view.slot = slot;
+  view.value = reinterpret_cast<const std::byte*>(slot + 1) + source.offset;
+  view.is_valid = ((slot->valid >> source.bit) & 1u) != 0;
+  if (is_operators) {
+    const GivenSpec& given = spec_->operators[source.operator_index];
+    view.count = given.extent[0].max * given.extent[1].max;
+    return view;
+  }
+  const TaskMemory& producer = memories_[source.task.index];
+  view.spec = producer.output_spec(source.bit);
+  const chimera_port* port = producer.output_port(source.bit);
+  view.count = port == nullptr ? view.spec->max_count() : port->count;
+  return view;
 }
 
 }  // namespace chimera

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "chimera/runtime/aligned_bytes.h"
-#include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/context_table.h"
 #include "chimera/runtime/peer_view.h"
 #include "chimera/runtime/task_memory.h"
-#include "chimera/runtime/variables.h"
+#include "chimera/runtime/variable_view.h"
 #include "chimera/table/local_group.h"
 
 namespace chimera {
@@ -34,12 +34,10 @@ struct Source {
 /// Context of everything not marked: edge; no allocation. Everything given to prepare() outlives it.
 class Sources {
  public:
-  /// `everything` lays out all groups of the application; `memories[t]` is planned for the tasks of this context and
-  /// empty for those of others; `operators[o]` is the group of operator variable o where this context holds it itself.
-  /// `preemptive`: tasks of this context read each other through copies too. Context: setup.
-  void prepare(const Variables& variables, const PeerLayout& everything, std::span<Task> tasks,
-               std::span<TaskMemory> memories, std::span<const GroupReader> operators, const PeerView* others,
-               bool preemptive = false);
+  /// `memories[t]` is planned for the tasks of this context and empty for those of others; `others` null: there are
+  /// none. `preemptive`: tasks of this context read each other through copies too. Context: setup.
+  void prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<Task> tasks,
+               std::span<TaskMemory> memories, const PeerView* others, bool preemptive);
 
   /// The task, of this context, went ON: whoever reads its variables reads them from its group now.
   void take_outputs_of(const Task& task) noexcept;
@@ -59,6 +57,8 @@ class Sources {
   /// The latest slot of the group that the variable comes from: in place, or copied into memory of this object that is
   /// good until the next call. Null when there is none yet.
   const chimera_slot* latest(VariableId variable) noexcept;
+  /// The present value. Requires: the variable is produced, or held, in this context.
+  VariableView view(VariableId variable) const noexcept;
 
  private:
   /// A task's copy of a group produced elsewhere.
@@ -86,11 +86,10 @@ class Sources {
   void everybody_follows() noexcept;
   bool is_on(TaskId task) const noexcept;
 
-  const Variables* variables_ = nullptr;
-  const PeerLayout* everything_ = nullptr;
+  const ApplicationSpec* spec_ = nullptr;
+  const ContextTable* table_ = nullptr;
   std::span<Task> tasks_;
   std::span<TaskMemory> memories_;
-  std::span<const GroupReader> operators_;
   const PeerView* others_ = nullptr;
   std::vector<Source> sources_;  // by variable
   std::deque<Copy> copies_;

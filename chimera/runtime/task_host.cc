@@ -21,9 +21,15 @@ std::int32_t host_expired(void* context) {
   return clock_of(host).now().count > host.task->call.deadline_ns ? 1 : 0;
 }
 
+TaskId task_named(std::string_view name, std::span<const TaskSpec> tasks) noexcept {
+  for (std::size_t t = 0; t < tasks.size(); ++t)
+    if (tasks[t].name == name) return TaskId(t);
+  return TaskId{};
+}
+
 std::int32_t host_signal(void* context, std::uint32_t signal, const char* name) {
   const TaskHost& host = host_of(context);
-  const TaskId target = name == nullptr ? host.task->id : host.set->find(name);
+  const TaskId target = name == nullptr ? host.task->id : task_named(name, host.set->spec().tasks);
   if (!target.is_valid() || signal > CHIMERA_SIGNAL_WAKEUP) return CHIMERA_FAULT;
   // Only a task behind a server has a doorbell: others are woken by time.
   if (signal == CHIMERA_SIGNAL_WAKEUP && !host.set->spec().tasks[target.index].server) return CHIMERA_FAULT;

@@ -13,7 +13,7 @@ class TaskSet;
 
 /// Of one task; chimera_call::context points at it.
 struct TaskHost {
-  const TaskSet* set = nullptr;
+  TaskSet* set = nullptr;
   Task* task = nullptr;
   JobClock* clock = nullptr;  ///< of the thread that runs the method; null: that of the context
 

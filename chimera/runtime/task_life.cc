@@ -50,7 +50,7 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
     return report;
   }
   // With other contexts only the manager turns tasks ON: it has judged the whole set.
-  if (signal == Signal::kOn && set_.is_alone() && !would_be_legal(tasks)) {
+  if (signal == Signal::kOn && set_.others() == nullptr && !would_be_legal(tasks)) {
     report.why = Refusal::kIllegalSet;
     return report;
   }
@@ -166,7 +166,7 @@ Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanosec
   progress.has_new_constants = false;
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
   task.profile.execution[static_cast<int>(step.method)].add(progress.used + (read_clock(now) - began));
-  if (progress.has_new_constants) set_.reinit_users(task.id, now);
+  if (progress.has_new_constants) reinit_users(task.id, now);
   return step.next[static_cast<int>(answer)];
 }
 
@@ -175,9 +175,8 @@ bool TaskLife::before_step(Task& task, const StepRule& step, Nanoseconds now) {
   stage_outputs(task);
   if (step.before & kReadOut) take_over(task);
   if (step.before & kReadConst) {
-    set_.read_foreign_constants();
     FixedString<160> why;
-    if (!set_.memories_[task.id.index].read_constants(set_.constants_, why) || !set_.lists_fit(task, why)) {
+    if (!set_.constants().give(task.id, why)) {
       record_fault(task, step.method, why.c_str(), now);
       return false;
     }
@@ -186,16 +185,13 @@ bool TaskLife::before_step(Task& task, const StepRule& step, Nanoseconds now) {
 }
 
 Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
-  TaskMemory& memory = set_.memories_[task.id.index];
   if (step.after_ok & kWriteConst) {
-    const int changed = memory.write_constants(set_.constants_);
     FixedString<160> why;
-    if (!memory.fix_extents(set_.constants_, why) || !set_.lists_fit(task, why)) {
+    if (!set_.constants().collect(task.id, why)) {
       record_fault(task, step.method, why.c_str(), now);
       return Answer::kFault;
     }
-    if (!set_.is_alone()) set_.publish_constants(task);
-    progress_[task.id.index].has_new_constants = changed > 0;
+    progress_[task.id.index].has_new_constants = set_.constants().has_new();
   }
   if (step.after_ok & kWriteOut) {
     const bool turns_on = step.step == Step::kOn;
@@ -204,6 +200,26 @@ Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
     return answer;
   }
   return Answer::kOk;
+}
+
+// Exactly the users of the constants that changed, in the order of initialisation; a circle is refused by
+// verification, so this ends. Users in other contexts are sent the signal and compare for themselves.
+void TaskLife::reinit_users(TaskId of, Nanoseconds now) {
+  const ApplicationSpec& spec = set_.spec();
+  for (TaskId id : spec.init_order) {
+    if (id == of) continue;
+    if (!set_.is_mine(id)) {
+      const State there = set_.others()->state(id);
+      if ((there == State::kOff || there == State::kOn) && spec.uses_constant_of(id, of))
+        (void)set_.others()->post(Signal::kReinit, id, of, true);
+      continue;
+    }
+    Task& user = set_.tasks()[id.index];
+    const bool waits = user.in_service || user.is_busy;
+    if (waits && spec.uses_constant_of(id, of)) set_.sent().defer(user, Signal::kReinit);
+    if (waits || (user.state != State::kOff && user.state != State::kOn)) continue;
+    if (set_.constants().uses_changed(id)) (void)carry_out(id, Signal::kReinit, now);
+  }
 }
 
 // >out-var: what a predecessor left is where this task starts from (2000 paper 5.1).

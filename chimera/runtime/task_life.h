@@ -47,8 +47,6 @@ class TaskLife {
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now);
   /// Goes on with the signal of which the service thread has run a method; deferred again while there is more.
   SignalReport finish_slow(TaskId task, Nanoseconds now);
-  /// Reinitialises the task, which uses a constant that has changed, within the signal that changed it.
-  void reinit(TaskId task, Nanoseconds now) { (void)carry_out(task, Signal::kReinit, now); }
 
   /// A refused report in words, with the smallest legal set where that helps; "" when it was accepted. For a report of
   /// the last call of signal(). Context: setup; may block.
@@ -70,6 +68,7 @@ class TaskLife {
   Next conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began);
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
   Answer after_ok(Task& task, const StepRule& step, Nanoseconds now);
+  void reinit_users(TaskId of, Nanoseconds now);
   void take_over(Task& task) noexcept;
   std::uint64_t valid_after_on(const Task& task) const noexcept;
   bool would_be_legal(std::span<const TaskId> tasks) noexcept;

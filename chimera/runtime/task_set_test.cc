@@ -63,10 +63,13 @@ struct Boss {  // sends signals to others
   bool sent_ = false;
 };
 
-double number(const TaskSet& set, const char* variable) {
-  const VariableView view = set.view(set.variables().find(variable));
+VariableView view(TaskSet& set, const char* variable) {
+  return set.sources().view(VariableId(set.variables().find(variable)));
+}
+
+double number(TaskSet& set, const char* variable) {
   double value;
-  std::memcpy(&value, view.value, sizeof value);
+  std::memcpy(&value, view(set, variable).value, sizeof value);
   return value;
 }
 
@@ -99,12 +102,12 @@ struct CounterAndReader : ::testing::Test {
 TEST_F(CounterAndReader, SpawnsTurnsOnAndMovesValues) {
   ASSERT_TRUE(set->life().start({}));
   EXPECT_EQ(set->tasks()[0].state, State::kOn);
-  EXPECT_FALSE(set->view(set->variables().find("seen")).is_valid);
+  EXPECT_FALSE(view(*set, "seen").is_valid);
   EXPECT_TRUE(std::isnan(number(*set, "seen")));  // never written
   run_cycle(*set, 0, milliseconds(1));
   run_cycle(*set, 1, milliseconds(1));
   EXPECT_EQ(number(*set, "seen"), 1);
-  EXPECT_TRUE(set->view(set->variables().find("seen")).is_valid);
+  EXPECT_TRUE(view(*set, "seen").is_valid);
 }
 
 TEST_F(CounterAndReader, AFailingCyclePublishesNothingAndSaysWhy) {
@@ -191,13 +194,13 @@ TEST(TaskSet, ConstantsFixExtentsAndReinitialiseExactlyTheirUsers) {
   ASSERT_TRUE(set->life().start({}));
   run_cycle(*set, 1, milliseconds(1));
   std::int32_t inits;
-  std::memcpy(&inits, set->view(set->variables().find("inits")).value, sizeof inits);
+  std::memcpy(&inits, view(*set, "inits").value, sizeof inits);
   EXPECT_EQ(inits, 103);  // one init, three elements
   EXPECT_EQ(set->tasks()[2].profile.execution[CHIMERA_REINIT].count, 0u);
   static_cast<Arm*>(set->tasks()[0].instance)->wanted_ = 4;
   ASSERT_TRUE(set->life().signal(TaskId{std::size_t{0}}, Signal::kReinit, {}).is_accepted);
   run_cycle(*set, 1, milliseconds(2));
-  std::memcpy(&inits, set->view(set->variables().find("inits")).value, sizeof inits);
+  std::memcpy(&inits, view(*set, "inits").value, sizeof inits);
   EXPECT_EQ(inits, 204);
   EXPECT_EQ(set->tasks()[2].profile.execution[CHIMERA_REINIT].count, 0u);
 }

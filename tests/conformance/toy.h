@@ -195,7 +195,7 @@ class Application {
   }
   const Task& task(const std::string& name) const { return set_->tasks()[id(name).index]; }
   double published(const std::string& name) const {
-    const VariableView view = set_->view(set_->variables().find("x_" + name));
+    const VariableView view = set_->sources().view(VariableId(set_->variables().find("x_" + name)));
     double value = 0;
     std::memcpy(&value, view.value, sizeof value);
     return value;

@@ -62,7 +62,7 @@ class Logging {
   const Profile& profile(std::uint32_t task) const { return set_->tasks()[task].profile; }
   std::string fault() const { return set_->tasks()[1].faults.last.text; }
   std::int64_t output(const char* variable) const {
-    const VariableView view = set_->view(set_->variables().find(variable));
+    const VariableView view = set_->sources().view(VariableId(set_->variables().find(variable)));
     if (view.spec->element_bytes == 4) return *reinterpret_cast<const std::int32_t*>(view.value);
     return *reinterpret_cast<const std::int64_t*>(view.value);
   }

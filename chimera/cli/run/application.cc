@@ -66,10 +66,10 @@ Result<Probe> Application::probe(const std::string& variable) const {
   CHIMERA_ASSERT(index < all.size());  // whatever is configured is laid out
   Probe probe;
   probe.name = variable;
-  probe.readers = tasks_->readers_of(index);
+  probe.readers = tasks_->table().readers_of(all[index]);
   probe.form.unit = (*found)->unit;
   probe.form.is_scalar = (*found)->shape.empty();
-  const VariableView view = tasks_->view(index);
+  const VariableView view = tasks_->sources().view(VariableId(index));
   probe.form.count = view.count;
   if (view.spec != nullptr) {
     const PortOf& producer = all[index].producers[0];

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moves constants between tasks, the store of their context, and other contexts.
+#include "chimera/runtime/context_constants.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+namespace chimera {
+
+void ContextConstants::prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<TaskMemory> memories,
+                               const PeerView* others) {
+  spec_ = &spec;
+  table_ = &table;
+  memories_ = memories;
+  others_ = others;
+  store_ = ConstantStore(spec);
+  plan_foreign();
+}
+
+void ContextConstants::plan_foreign() {
+  std::uint32_t largest = 0;
+  const PeerLayout& layout = table_->everything();
+  for (std::size_t t = 0; t < spec_->tasks.size(); ++t) {
+    if (memories_[t].is_planned()) continue;
+    const GroupId group = layout.constants(TaskId(t));
+    largest = std::max(largest, layout.place(group).payload_bytes);
+    std::size_t i = 0;
+    for (const PortSpec& port : spec_->tasks[t].ports) {
+      if (port.kind != CHIMERA_OUT_CONST) continue;
+      foreign_.push_back({TaskId(t), port.constant, layout.variables(group)[i].offset, port.max_bytes()});
+      ++i;
+    }
+  }
+  scratch_ = AlignedBytes(largest, kCacheLine);
+}
+
+void ContextConstants::read_foreign() noexcept {
+  for (const Foreign& constant : foreign_) {
+    const GroupReader reader = others_->constants(constant.producer);
+    chimera_slot slot;
+    if (!reader.is_bound() || !reader.try_read(slot, scratch_.data()) || slot.sequence == 0) continue;
+    store_.set(constant.id, {scratch_.data() + constant.offset, constant.bytes});
+  }
+}
+
+bool ContextConstants::give(TaskId task, FixedString<160>& why) noexcept {
+  read_foreign();
+  return memories_[task.index].read_constants(store_, why) && lists_fit(task, why);
+}
+
+bool ContextConstants::collect(TaskId task, FixedString<160>& why) noexcept {
+  TaskMemory& memory = memories_[task.index];
+  const int changed = memory.write_constants(store_);
+  has_new_ = false;
+  if (!memory.fix_extents(store_, why) || !lists_fit(task, why)) return false;
+  if (others_ != nullptr) publish(task);
+  has_new_ = changed > 0;
+  return true;
+}
+
+void ContextConstants::publish(TaskId task) noexcept {
+  const auto places = table_->constant_places(task);
+  if (places.empty()) return;
+  GroupWriter writer = table_->constant_writer(task);
+  std::size_t i = 0;
+  for (const PortSpec& port : spec_->tasks[task.index].ports) {
+    if (port.kind != CHIMERA_OUT_CONST) continue;
+    std::memcpy(writer.staging() + places[i].offset, store_[port.constant].value.data(), places[i].bytes);
+    ++i;
+  }
+  writer.publish(Nanoseconds{}, ~std::uint64_t{0});
+}
+
+// The entries, by dimension, of the list that the description gives for what the port is linked to: its constant, or
+// its operator variable; else of the port's own value.
+std::span<const std::uint32_t> ContextConstants::listed(const PortSpec& port) const noexcept {
+  if (!port.value.empty()) return port.listed;
+  if (port.constant.is_valid()) return spec_->constants[port.constant.index].listed;
+  if (!port.variable.is_valid()) return port.listed;
+  const std::uint32_t given = spec_->variables[port.variable.index].operator_index;
+  return given == UINT32_MAX ? port.listed : spec_->operators[given].listed;
+}
+
+// A value written as a list has as many entries as the constant says that fixes the extent.
+bool ContextConstants::lists_fit(TaskId task, FixedString<160>& why) const noexcept {
+  for (const PortSpec& port : spec_->tasks[task.index].ports) {
+    const std::span<const std::uint32_t> entries = listed(port);
+    for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
+      const ExtentSpec& extent = port.extent[d];
+      if (!extent.constant.is_valid() || entries[d] == 0) continue;
+      const std::int64_t n = store_.integer(extent.constant, entries[d]);
+      if (n == entries[d]) continue;
+      const std::string_view link = spec_->link_name(port), constant = spec_->constants[extent.constant.index].name;
+      char text[160];
+      std::snprintf(text, sizeof text, "%.*s has a list of %u values, but %.*s is %lld", static_cast<int>(link.size()),
+                    link.data(), entries[d], static_cast<int>(constant.size()), constant.data(),
+                    static_cast<long long>(n));
+      why.assign(text);
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace chimera

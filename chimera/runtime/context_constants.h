@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The constants of one context, from those who make them to those who are initialised with them: its own, and those of
+// tasks of other contexts, which are read from the groups that these publish.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chimera/base/fixed.h"
+#include "chimera/runtime/aligned_bytes.h"
+#include "chimera/runtime/constant_store.h"
+#include "chimera/runtime/context_table.h"
+#include "chimera/runtime/peer_view.h"
+#include "chimera/runtime/task_memory.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+/// Context of everything not marked: edge; no allocation.
+class ContextConstants {
+ public:
+  /// `memories[t]` is planned for the tasks of this context and empty for those of others; `others` null: there are
+  /// none. Everything given outlives this. Context: setup.
+  void prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<TaskMemory> memories,
+               const PeerView* others);
+
+  /// Copies the present constants into the task and fixes its extents, before init or reinit. False with `why` when one
+  /// has no value, an extent is out of range, or a list of values has another length than the constant says.
+  bool give(TaskId task, FixedString<160>& why) noexcept;
+  /// Takes over what init or reinit of the task made, fixes its extents, and shows the constants to other contexts.
+  /// False with `why` as give().
+  bool collect(TaskId task, FixedString<160>& why) noexcept;
+  /// The last collect() brought a value that is another than before.
+  bool has_new() const noexcept { return has_new_; }
+  /// A constant that the task was initialised with has another value by now.
+  bool uses_changed(TaskId task) const noexcept { return memories_[task.index].uses_changed(store_); }
+  /// Takes over what tasks of other contexts have made since. O(constants of others).
+  void read_foreign() noexcept;
+
+ private:
+  struct Foreign {
+    TaskId producer;
+    ConstantId id;
+    std::uint32_t offset = 0, bytes = 0;  // in the group of the producer's constants
+  };
+
+  void plan_foreign();
+  void publish(TaskId task) noexcept;
+  std::span<const std::uint32_t> listed(const PortSpec& port) const noexcept;
+  bool lists_fit(TaskId task, FixedString<160>& why) const noexcept;
+
+  const ApplicationSpec* spec_ = nullptr;
+  const ContextTable* table_ = nullptr;
+  std::span<TaskMemory> memories_;
+  const PeerView* others_ = nullptr;
+  ConstantStore store_;
+  std::vector<Foreign> foreign_;
+  AlignedBytes scratch_;  // a payload of the largest group of foreign constants
+  bool has_new_ = false;
+};
+
+}  // namespace chimera

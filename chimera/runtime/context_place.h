@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where one context stands in the application: whose tasks it runs, in which memory, beside which others.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chimera/runtime/peer_view.h"
+#include "chimera/runtime/service.h"
+#include "chimera/task/task.h"
+
+namespace chimera {
+
+/// By default a context is alone: all tasks and operator variables are its own. What it points at outlives the context.
+struct ContextPlace {
+  RtpuId rtpu;                     ///< whose tasks are its own; invalid: all
+  std::span<std::byte> table;      ///< zeroed bytes for PeerLayout::of(spec, rtpu); empty: memory of its own
+  PeerView* others = nullptr;
+  Service* service = nullptr;  ///< null: init and kill run where the signal is taken
+  // Words for whoever finds the process dead or hanging (TaskWord): written relaxed, pair with nothing.
+  /// Told which task and method runs, as BlockHead::running says: by the context, and by the service thread.
+  std::atomic<std::uint32_t>* running = &running_untold;
+  std::atomic<std::uint32_t>* serving = &running_untold;
+  bool preemptive = false;  ///< tasks preempt each other: each reads through copies of its own
+  /// Told which method is called where a signal is taken; `running` goes on telling of jobs meanwhile.
+  std::atomic<std::uint32_t>* at_edge = &running_untold;
+  /// Told for which task a state is constructed, by show_making().
+  std::atomic<std::uint32_t>* making = &running_untold;
+};
+
+}  // namespace chimera

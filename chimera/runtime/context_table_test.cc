@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/context_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "chimera/runtime/testing/test_application.h"
+
+namespace chimera {
+namespace {
+
+struct Maker {
+  Out<double> a{"a", "1", initial = 1.0};
+  Out<double> b{"b", "1", initial = 2.0};
+  OutConst<std::int32_t> n{"n", "1"};
+  void cycle(Cycle) {}
+};
+
+struct Taker {
+  In<double> a{"a", "1"};
+  In<double> gain{"gain", "1"};
+  void cycle(Cycle) {}
+};
+
+constexpr TaskId kMaker{0u}, kTaker{1u};
+
+double number(const GroupReader& reader, std::uint32_t offset) {
+  double value;
+  std::memcpy(&value, reinterpret_cast<const std::byte*>(reader.published() + 1) + offset, sizeof value);
+  return value;
+}
+
+struct ContextTableTest : ::testing::Test {
+  ContextTableTest() {
+    app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
+    app.add("maker", testing::component<Maker>("maker")).rtpu = RtpuId(1u);
+    app.add("taker", testing::component<Taker>("taker")).rtpu = RtpuId(0u);
+    app.give(app.operators, "gain", CHIMERA_FLOAT64, testing::bytes_of(0.5));
+    app.make();
+  }
+  const Variable& variable(std::string_view name) const {
+    for (const Variable& one : app.spec.variables)
+      if (one.name == name) return one;
+    ADD_FAILURE() << "no variable " << name;
+    return app.spec.variables[0];
+  }
+
+  testing::TestApplication app;
+  ContextTable table;
+};
+
+TEST_F(ContextTableTest, HoldsTheOperatorVariablesOfAContextThatIsAlone) {
+  ASSERT_TRUE(table.prepare(app.spec, {}));
+  ASSERT_EQ(table.operators().size(), 1u);
+  EXPECT_EQ(number(table.operators()[0], 0), 0.5);
+  table.set_operator(0, testing::bytes_of(2.5), milliseconds(3));
+  EXPECT_EQ(number(table.operators()[0], 0), 2.5);
+  EXPECT_EQ(table.operators()[0].published()->sequence, 2u);
+  EXPECT_EQ(table.operators()[0].published()->published_ns, 3'000'000);
+  const auto readers = table.readers_of(variable("gain"));
+  ASSERT_EQ(readers.size(), 1u);
+  EXPECT_EQ(number(readers[0].reader, 0), 2.5);
+}
+
+TEST_F(ContextTableTest, FindsBothGroupsInWhichAVariableMayStand) {
+  ASSERT_TRUE(table.prepare(app.spec, {}));
+  TaskMemory memory = *TaskMemory::create(app.tasks[0], *app.components[0]);
+  table.place_outputs(kMaker, memory);
+  const auto readers = table.readers_of(variable("b"));
+  ASSERT_EQ(readers.size(), 2u);
+  EXPECT_NE(readers[0].reader.published(), readers[1].reader.published());
+  for (const VariableReader& one : readers) {
+    EXPECT_EQ(one.bit, 1u);
+    EXPECT_EQ(number(one.reader, one.offset), 2.0) << "the initial value is published in both";
+  }
+}
+
+TEST_F(ContextTableTest, LaysItsOwnGroupsInTheBytesThatItIsGiven) {
+  const auto layout = PeerLayout::of(app.spec, 1);
+  ASSERT_TRUE(layout);
+  AlignedBytes bytes(layout->table().region_bytes(), kCacheLine);
+  ContextPlace place;
+  place.rtpu = RtpuId(1u);
+  place.table = bytes.span();
+  ASSERT_TRUE(table.prepare(app.spec, place));
+  EXPECT_TRUE(table.operators().empty()) << "they are the manager's";
+  EXPECT_TRUE(table.everything().has(kTaker)) << "the plan of the whole application is known";
+  const std::int32_t n = 7;
+  GroupWriter writer = table.constant_writer(kMaker);
+  std::memcpy(writer.staging() + table.constant_places(kMaker)[0].offset, &n, sizeof n);
+  writer.publish(Nanoseconds{}, 1);
+  const GroupPlace& at = layout->place(layout->constants(kMaker));
+  const GroupReader reader(bytes.data() + at.offset, at.payload_bytes);
+  EXPECT_EQ(reader.published()->sequence, 1u);
+  EXPECT_EQ(table.constant_writer(kMaker).sequence(), 1u) << "goes on where the last writer stopped";
+}
+
+}  // namespace
+}  // namespace chimera
