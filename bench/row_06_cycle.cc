@@ -42,7 +42,7 @@ void run(int repetitions) {
       const Job job{TaskId(0u), start, start + milliseconds(1)};
       if (!releases.may_start(job, start)) continue;
       CycleTime time;
-      const BodyEnd body = releases.begin_job(job, time, false);
+      const BodyEnd body = releases.jobs().open_and_begin(job, time, false);
       const Nanoseconds end = clock.now();
       releases.end_job(job, time, body, start, end, end - start);
     }

@@ -66,7 +66,7 @@ struct EdgeSignalsTest : ::testing::Test {
     CycleTime time;
     const Job job{task, at, at + milliseconds(1)};
     ASSERT_TRUE(releases->may_start(job, at));
-    const BodyEnd body = releases->begin_job(job, time, false);
+    const BodyEnd body = releases->jobs().open_and_begin(job, time, false);
     releases->end_job(job, time, body, at, at + microseconds(10), microseconds(10));
   }
   State state(TaskId task) const { return set->tasks()[task.index].state; }

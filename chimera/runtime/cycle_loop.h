@@ -3,6 +3,8 @@
 // One loop for real and for virtual time; `Time` says what the clock shows and how long a job took.
 #pragma once
 
+#include <algorithm>
+
 #include "chimera/runtime/releases.h"
 
 namespace chimera {
@@ -32,7 +34,7 @@ RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
     }
     if (queue.is_empty()) {
       if (!releases.anything_left()) return RunEnd::kNothingLeft;
-      const Nanoseconds next = releases.next_event();
+      const Nanoseconds next = std::min(queue.next_release(), releases.next_edge());
       time.wait_until(next < until ? next : until);
       now = time.now();
       continue;
@@ -40,7 +42,7 @@ RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
     const Job job = queue.pop();
     if (!releases.may_start(job, now)) continue;
     CycleTime cycle;
-    const BodyEnd body = releases.begin_job(job, cycle, releases.is_illegal());
+    const BodyEnd body = releases.jobs().open_and_begin(job, cycle, releases.is_illegal());
     const Nanoseconds end = time.end_of(job, body, now);
     if (releases.tap().is_on()) releases.tap().record(TapKind::kRun, now, job.task, CHIMERA_CYCLE, (end - now).count);
     releases.end_job(job, cycle, body, now, end, end - now);

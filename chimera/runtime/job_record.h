@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "chimera/base/time.h"
+#include "chimera/runtime/miss_history.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -42,9 +43,7 @@ struct alignas(64) JobRecord {
   /// fetch_or by whoever reports (an edge, the supervisor) pairs with the one at the end of the job, both acq_rel:
   /// of a report and the end exactly one sees the other. Cleared before anybody knows of the next job.
   std::atomic<std::uint8_t> reported{0};
-  /// Of the last cycles one bit each, 1: the deadline was missed. Relaxed, pairs with nothing: written at the end of
-  /// jobs, read by the supervisor to see whether a miss is tolerated.
-  std::atomic<std::uint64_t> history{0};
+  MissHistory history;  ///< kept where misses are tolerated
 };
 
 }  // namespace chimera

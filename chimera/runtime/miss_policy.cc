@@ -2,8 +2,6 @@
 // Counts the failures of time of jobs and carries out the reactions that a task has for them.
 #include "chimera/runtime/miss_policy.h"
 
-#include <bit>
-
 namespace chimera {
 namespace {
 
@@ -47,8 +45,9 @@ std::uint8_t MissPolicy::end_reports(TaskId task) noexcept {
 bool MissPolicy::judge(const Job& job, BodyEnd& body, Nanoseconds end, Nanoseconds used,
                        std::uint8_t reported) noexcept {
   Task& task = tasks_[job.task.index];
+  JobRecord& record = records_[job.task.index];
   bool may_publish = true;
-  if (used > records_[job.task.index].budget) {
+  if (used > record.budget) {
     const bool is_reported = (reported & JobRecord::kOverrun) != 0;
     ++task.profile.overrun;
     if (!is_reported) tap_.record(TapKind::kOverrun, end, task.id, task.call.cycle, used.count);
@@ -56,7 +55,7 @@ bool MissPolicy::judge(const Job& job, BodyEnd& body, Nanoseconds end, Nanosecon
     may_publish = react(reaction, task, body, "used more execution time than its budget", end);
   }
   const bool is_late = end > job.deadline;
-  const bool tolerated = task.spec->tolerated_of > 0 && remember(task, is_late) && is_late;
+  const bool tolerated = task.spec->tolerated_of > 0 && record.history.add(is_late, *task.spec) && is_late;
   if (!is_late) {
     task.profile.missed_in_a_row = 0;
     return may_publish;
@@ -73,7 +72,7 @@ bool MissPolicy::judge(const Job& job, BodyEnd& body, Nanoseconds end, Nanosecon
 
 void MissPolicy::count_good(Task& task) noexcept {
   task.profile.missed_in_a_row = 0;
-  if (task.spec->tolerated_of > 0) (void)remember(task, false);
+  if (task.spec->tolerated_of > 0) (void)records_[task.id.index].history.add(false, *task.spec);
 }
 
 void MissPolicy::abandon(const Job& job) noexcept {
@@ -113,8 +112,7 @@ bool MissPolicy::report_once(TaskId task, JobRecord::Report what) noexcept {
 void MissPolicy::report_late(const Job& job, bool has_begun) noexcept {
   const Task& task = tasks_[job.task.index];
   // Read before the report: the end of the job, which may come at any instant, adds to the history.
-  const std::uint64_t history = records_[job.task.index].history.load(std::memory_order_relaxed);
-  const bool tolerated = is_tolerated(task, history << 1 | 1u);
+  const bool tolerated = records_[job.task.index].history.would_tolerate(*task.spec);
   if (!report_once(job.task, has_begun ? JobRecord::kLate : JobRecord::kLateUnstarted)) return;
   leave_cause(job.task, job.release);
   if (has_begun && !tolerated) leave_reaction(job.task, task.spec->on_miss);
@@ -142,21 +140,6 @@ void MissPolicy::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) no
   ++task.profile.missed;
   ++task.profile.missed_in_a_row;
   tap_.record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);
-}
-
-// tolerate M in N: at most M of the last N cycles, those of `history`, missed their deadlines.
-bool MissPolicy::is_tolerated(const Task& task, std::uint64_t history) const noexcept {
-  const TaskSpec& s = *task.spec;
-  const std::uint64_t window = s.tolerated_of >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << s.tolerated_of) - 1;
-  return s.tolerated_of > 0 && static_cast<std::uint32_t>(std::popcount(history & window)) <= s.tolerated_misses;
-}
-
-// Adds the cycle that has just ended to the history; true when a miss of it is tolerated.
-bool MissPolicy::remember(Task& task, bool missed) noexcept {
-  std::atomic<std::uint64_t>& history = records_[task.id.index].history;
-  const std::uint64_t now = history.load(std::memory_order_relaxed) << 1 | (missed ? 1u : 0u);
-  history.store(now, std::memory_order_relaxed);
-  return is_tolerated(task, now);
 }
 
 bool MissPolicy::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept {

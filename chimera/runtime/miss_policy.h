@@ -93,8 +93,6 @@ class MissPolicy {
   void leave_cause(TaskId task, Nanoseconds release) noexcept;
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
   void drop_on_purpose(const DroppedRelease& dropped) noexcept;
-  bool is_tolerated(const Task& task, std::uint64_t history) const noexcept;
-  bool remember(Task& task, bool missed) noexcept;
   bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
 
   std::span<Task> tasks_;

@@ -71,9 +71,4 @@ void Releases::settle_job(TaskId task, Nanoseconds now) noexcept {
   settlement_.settle_job(task, now);
 }
 
-void Releases::give_up_starved(Nanoseconds now) noexcept {
-  look_again();
-  settlement_.give_up_starved(now);
-}
-
 }  // namespace chimera

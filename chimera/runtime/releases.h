@@ -8,8 +8,8 @@
 //   settle: what jobs left for others to see                                                Settlement
 //
 // Executors differ in how long a job takes, in how they wait, and in who runs a job. Those whose jobs run in the thread
-// that takes the edges use may_start(), begin_job() and end_job() of this class, which settle at once; those with a
-// thread for each task use jobs() and misses() by that thread, and settlement() at edges.
+// that takes the edges use may_start() and end_job() of this class, which settle at once; those with a thread for each
+// task use jobs() and misses() by that thread, and settlement() at edges.
 #pragma once
 
 #include <algorithm>
@@ -61,9 +61,7 @@ class Releases {
   }
   /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
   void take_edge(Nanoseconds now) noexcept;
-  /// The next instant at which an edge or a release may be due.
-  Nanoseconds next_event() const noexcept { return std::min(queue_.next_release(), next_edge()); }
-  /// The same for edges alone, where releases have threads of their own.
+  /// The next instant at which an edge may be due.
   Nanoseconds next_edge() const noexcept {
     return guest_ == nullptr ? signals_.next_act() : std::min(signals_.next_act(), guest_->next_due());
   }
@@ -76,7 +74,9 @@ class Releases {
   void release_due(Nanoseconds now) noexcept {
     if (queue_.next_release() > now) return;
     queue_.release_due(now, [this](const DroppedRelease& d) { misses_.drop(d); });
-    if (misses_.has_lost_patience()) give_up_starved(now);
+    if (!misses_.has_lost_patience()) return;
+    look_again();
+    settlement_.give_up_starved(now);
   }
 
   /// The illegal-configuration flag, to be read once for each job.
@@ -88,11 +88,7 @@ class Releases {
   [[gnu::always_inline]] bool may_start(const Job& job, Nanoseconds now) noexcept {
     return jobs_.can_start(job, now) || decide_start(job, now);
   }
-  /// Runs the body: inputs are read at this moment, nothing is published. `time` is for end_job().
-  [[gnu::always_inline]] BodyEnd begin_job(const Job& job, CycleTime& time, bool illegal) noexcept {
-    return jobs_.open_and_begin(job, time, illegal);
-  }
-  /// The job ended at `end`, begun at `start`, having used `used` of execution time.
+  /// The job ended at `end`, begun at `start` by JobCycle::open_and_begin(), having used `used` of execution time.
   [[gnu::always_inline]] void end_job(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start,
                                       Nanoseconds end, Nanoseconds used) noexcept {
     if (jobs_.close_and_conclude(job, time, body, start, end, used)) settle_job(job.task, end);
@@ -106,7 +102,6 @@ class Releases {
   MissPolicy& misses() noexcept { return misses_; }
   Members& members() noexcept { return members_; }
   BoundarySignals& signals() noexcept { return signals_; }
-  const BoundarySignals& signals() const noexcept { return signals_; }
   Settlement& settlement() noexcept { return settlement_; }
   /// What happens is recorded here.
   ContextTap& tap() noexcept { return tap_; }
@@ -116,7 +111,6 @@ class Releases {
   static constexpr std::atomic<bool> kNoStop{false};
 
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
-  void give_up_starved(Nanoseconds now) noexcept;
 
   TaskSet& set_;
   BoundaryListener* guest_;

@@ -59,7 +59,7 @@ class VirtualLoop final : public RunLoop {
   Nanoseconds now() const override { return executor_.now() - executor_.origin(); }
   Nanoseconds origin() const override { return executor_.origin(); }
   void shut_down() override { executor_.shut_down(); }
-  std::span<const RefusedSignal> refused() const override { return executor_.refused(); }
+  std::span<const RefusedSignal> refused() override { return executor_.refused(); }
   std::string description() const override {
     std::string text = is_preemptive_ ? "virtual time, preemptive" : "virtual time, non-preemptive";
     return request_.seed ? text + ", seed " + std::to_string(*request_.seed) : text;
@@ -113,7 +113,7 @@ class RealTimeLoop final : public RunLoop {
   Nanoseconds now() const override { return looking_on_.now() - executive_.origin(); }
   Nanoseconds origin() const override { return executive_.origin(); }
   void shut_down() override { executive_.shut_down(); }
-  std::span<const RefusedSignal> refused() const override { return executive_.refused(); }
+  std::span<const RefusedSignal> refused() override { return executive_.refused(); }
   std::string description() const override { return grant_; }
 
  private:

@@ -22,7 +22,7 @@ class RunLoop {
   virtual Nanoseconds origin() const = 0;
   virtual void shut_down() = 0;
   /// What was refused while it ran; after the end only.
-  virtual std::span<const RefusedSignal> refused() const = 0;
+  virtual std::span<const RefusedSignal> refused() = 0;
   /// One line about how it is run, for people.
   virtual std::string description() const = 0;
 };

@@ -45,7 +45,7 @@ class Executive {
   /// When the grid of releases began. Context: any.
   Nanoseconds origin() const noexcept { return releases_.origin(); }
   /// Context: setup, between runs.
-  std::span<const RefusedSignal> refused() const noexcept { return releases_.signals().refused(); }
+  std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
 
  private:
   TaskSet& set_;

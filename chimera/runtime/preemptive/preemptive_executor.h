@@ -45,7 +45,7 @@ class PreemptiveExecutor final {
   void shut_down() noexcept;
 
   Nanoseconds origin() const noexcept { return releases_.origin(); }
-  std::span<const RefusedSignal> refused() const noexcept { return releases_.signals().refused(); }
+  std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
   /// Context: between runs.
   ProcessorCounts counts() const noexcept { return processor_.seen(); }
 

@@ -48,7 +48,7 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
 }
 
 Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
-  Nanoseconds next = releases_.next_event();
+  Nanoseconds next = std::min(releases_.queue().next_release(), releases_.next_edge());
   if (has_exceptions()) next = std::min(next, next_exception(now));
   if (!running_.is_valid()) return next;
   next = std::min(next, now + active_[running_.index].remaining);
@@ -256,7 +256,7 @@ bool Preemptive::run_job(const Job& job, Nanoseconds now) noexcept {
     }
     clock_.set(now);
     a.job = job;
-    a.body = releases_.begin_job(own, a.time, releases_.is_illegal());
+    a.body = releases_.jobs().open_and_begin(own, a.time, releases_.is_illegal());
     a.first_start = now;
     a.used = Nanoseconds{};
     const bool had_event = a.body.answer != Answer::kNoEvent;

@@ -36,7 +36,7 @@ class VirtualExecutor {
   Nanoseconds now() const noexcept { return now_; }
   Nanoseconds origin() const noexcept { return releases_.origin(); }
   /// Context: setup, between runs.
-  std::span<const RefusedSignal> refused() const noexcept { return releases_.signals().refused(); }
+  std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
 
  private:
   TaskSet& set_;
