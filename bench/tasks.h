@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/named_links.h"
 
 namespace chimera::bench {
@@ -116,7 +116,7 @@ class Axes {
     links_.finish(spec_);
     ContextPlace place;
     place.preemptive = form.preemptive;
-    auto made = TaskSet::create(spec_, components_, place);
+    auto made = HeapTaskSet::create(spec_, components_, place);
     if (!made) std::fprintf(stderr, "%s\n", made.error().message.c_str()), std::exit(1);
     set_ = *std::move(made);
   }
@@ -132,7 +132,7 @@ class Axes {
   std::vector<TaskSpec> tasks_;
   chimera::NamedLinks links_;
   ApplicationSpec spec_;
-  std::unique_ptr<TaskSet> set_;
+  std::unique_ptr<HeapTaskSet> set_;
 };
 
 /// How many whole periods make up n jobs of `tasks`, what is left kept for the next call.

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Floors 0, 2, 3 and 4, and components build freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3),
-what a cycle needs of floor 5 for the latter, without exceptions or RTTI, and ask for no heap, stream, thread or file.
-The hosted halves of these floors lie in subfolders (base/hosted), which a microcontroller replaces."""
+"""Floors 0, 2, 3 and 4, the runtime half for every machine (chimera/runtime, runtime/executive) and components build
+freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for no
+heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted), which a
+microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import os
 import pathlib
@@ -14,11 +15,9 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
-FLOORS = ("base", "table", "task", "schedule")
-SOURCE = re.compile(rf"chimera/({'|'.join(FLOORS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.cc$")
-CYCLE = tuple(f"chimera/runtime/{name}.cc" for name in (
-    "job_step", "job_cycle", "miss_policy", "members", "settlement", "boundary_signals", "sent_signals", "task_host",
-    "task_methods", "outbox", "safety", "tap_ring", "executive/executive"))
+FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/executive")
+FILE = re.compile(rf"chimera/({'|'.join(FOLDERS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
+HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
 COMPONENTS = ("library/gain/gain.cc", "library/pid_joint/pid_joint.cc", "library/tderiv/tderiv.cc")
 FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
 ARM = "arm-none-eabi-g++"
@@ -28,17 +27,16 @@ MACHINES = {"x86-64": ("g++", "-O1", *FREESTANDING),
 OURS = re.compile(r"_ZN[KVR]*7chimera|_ZT[VSI]N7chimera|chimera_|_GLOBAL_OFFSET_TABLE_$|__cxa_pure_virtual$")
 C_MEMORY = {"memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strcmp", "strncmp", "strcpy", "strncpy"}
 # What a processor does not do itself: arithmetic of double and of 64 bits, and 64-bit atomics of a single context.
-ARITHMETIC = re.compile(r"__aeabi_(?!read_tp)\w+$|__atomic_(load|store)_8$|__popcountdi2$")
+ARITHMETIC = re.compile(r"__aeabi_(?!read_tp)\w+$|__atomic_(load|store|exchange)_8$|__popcountdi2$")
 # std::string_view and std::span out of range: ends the program, never in a cycle.
 ENDING = re.compile(r"_ZSt\d+__throw_\w+|abort$|_ZSt21__glibcxx_assert_failPKciS0_S0_$")
-# The text of a refused output, and the making and declaring of a component: setup, to be replaced on a target.
-TEXT = {"snprintf"}
-DECLARING = re.compile(r"snprintf$|_ZSt7nothrow$|_Zn[wa][jm]|_Zd[la]Pv|__aeabi_read_tp$|__tls_get_addr$")
+# A number of type double in the text of a refused output (%g): every C library for microcontrollers can write it.
+TEXT = {"chimera/runtime/safety.cc": {"snprintf"}}
 
 
 def is_known(name, symbol):
     return (OURS.match(symbol) or ENDING.match(symbol) or ARITHMETIC.match(symbol) or symbol in C_MEMORY
-            or (name in CYCLE and symbol in TEXT) or (name in COMPONENTS and DECLARING.match(symbol)))
+            or symbol in TEXT.get(name, ()))
 
 
 def undefined_symbols(root, name, machine, folder):
@@ -62,18 +60,20 @@ def complaints_about(root, name, machine, folder):
 
 def check(root, machine):
     there = list(sources.files(root))
-    known = COMPONENTS if machine == "x86-64" else (*CYCLE, *COMPONENTS)  # those of a cycle run on x86-64 every day
-    names = [name for name in there if SOURCE.match(name) or name in known]
+    for name in filter(FILE.match, there):
+        yield from (f"{name}: includes {path}, which a microcontroller does not have"
+                    for path in HOSTED.findall(sources.text(root, name)))
+    names = [name for name in there if (FILE.match(name) and name.endswith(".cc")) or name in COMPONENTS]
     if "CONTRIBUTING.md" in there:  # not of a planted tree
         yield from (f"{name}: is not there, but tools/check_freestanding.py lists it"
-                    for name in known if name not in names)
+                    for name in (*COMPONENTS, *TEXT) if name not in names)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
         for complaints in pool.map(lambda name: complaints_about(root, name, machine, folder), names):
             yield from complaints
 
 
 _NAME = "chimera/table/x.cc"
-_COMPONENT = '#include <new>\n#include <cstdio>\nint* f() { return new (std::nothrow) int; }\n'
+_HOSTED = "chimera/runtime/hosted/y.h"
 _PRINTF = "#include <cstdio>\nvoid f(int n) { std::printf(\"%d\", n); }\n"
 _MUTEX = {_NAME: "#include <mutex>\nstd::mutex m;\n"}
 
@@ -86,10 +86,17 @@ def planted(machine):
     yield {_NAME: "double f(double a, long long b) { return a / static_cast<double>(b); }\n"}, None
     yield {"chimera/text/x.cc": "#include <string>\nstd::string s(100, 'x');\n"}, None
     yield {"chimera/table/x_test.cc": "int* p = new int;\n"}, None
-    yield {COMPONENTS[0]: _COMPONENT}, None
-    yield ({"CONTRIBUTING.md": "", **dict.fromkeys((*CYCLE, *COMPONENTS[1:]), "")},
+    yield {"chimera/runtime/hosted/x.cc": _MUTEX[_NAME]}, None
+    yield {"chimera/runtime/x.cc": _PRINTF}, asks("printf", "chimera/runtime/x.cc")
+    yield {next(iter(TEXT)): "#include <cstdio>\nint f(char* t) { return std::snprintf(t, 9, \"%g\", 0.1); }\n"}, None
+    yield ({"chimera/runtime/executive/x.h": f'#include "{_HOSTED}"\n', _HOSTED: ""},
+           f"chimera/runtime/executive/x.h: includes {_HOSTED}, which a microcontroller does not have")
+    yield {"chimera/runtime/x_test.cc": f'#include "{_HOSTED}"\n', _HOSTED: ""}, None
+    new = "_Znwj" if machine == "ARM" else "_Znwm"
+    yield {COMPONENTS[0]: "int* f() { return new int; }\n"}, asks(new, COMPONENTS[0])
+    yield ({"CONTRIBUTING.md": "", **dict.fromkeys((*TEXT, *COMPONENTS[1:]), "")},
            f"{COMPONENTS[0]}: is not there, but tools/check_freestanding.py lists it")
-    yield {_NAME: "int* f() { return new int; }\n"}, asks("_Znwj" if machine == "ARM" else "_Znwm")
+    yield {_NAME: "int* f() { return new int; }\n"}, asks(new)
     yield {_NAME: "#include <cstdlib>\nvoid* f() { return std::malloc(8); }\n"}, asks("malloc")
     yield {_NAME: _PRINTF}, asks("printf")
     yield {_NAME: "extern int g();\nint f() { return g(); }\n"}, asks("_Z1gv")
@@ -100,7 +107,6 @@ def planted(machine):
         yield ({_NAME: "#include <pthread.h>\nvoid f(pthread_mutex_t* m) { pthread_mutex_lock(m); }\n"},
                asks("pthread_mutex_lock"))
     if machine == "ARM":
-        yield {CYCLE[0]: _PRINTF}, asks("printf", CYCLE[0])
         yield (_MUTEX, f"{_NAME}: does not compile freestanding for ARM: "
                        "'mutex' in namespace 'std' does not name a type")
         yield {_NAME: "static_assert(sizeof(void*) == 4);\n"}, None

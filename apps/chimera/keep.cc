@@ -19,7 +19,7 @@
 #include "chimera/platform/socket_folder.h"
 #include "chimera/platform/socket_place.h"
 #include "chimera/platform/standard_output.h"
-#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/hosted/application_image.h"
 
 namespace {
 

@@ -20,31 +20,20 @@ Result<void> SingleTask::build(const LibraryEntry& entry) {
   if (!component) return component.error();
   component_ = std::make_unique<InstrumentedComponent>(**component, record_);
   const ApplicationSpec& spec = configuration_.spec();
-  const auto layout = PeerLayout::of_everything(spec);
-  if (!layout) return layout.error();
-  table_ = AlignedBytes(layout->table().region_bytes(), kCacheLine);
-  ContextPlace place;
-  place.table = table_.span();
   const chimera_component* components[] = {&component_->component()};
-  auto set = TaskSet::create(spec, components, place);
+  auto set = HeapTaskSet::create(spec, components);
   if (!set) return set.error();
   set_ = *std::move(set);
   set_->methods().run_by({&clock_});
-  for (std::size_t o = 0; o < spec.operators.size(); ++o) {
-    const GroupPlace& group = layout->place(layout->operator_group(o));
-    writers_.emplace_back(table_.span().subspan(group.offset, group_bytes(group.payload_bytes)), group.payload_bytes);
-  }
   std::size_t payload = 0;
   places_ = output_places(spec, payload);
   return {};
 }
 
 void SingleTask::feed(std::span<const std::byte> row) noexcept {
-  for (std::size_t o = 0; o < writers_.size(); ++o) {
-    const std::size_t bytes = configuration_.spec().operators[o].value.size();
-    std::memcpy(writers_[o].staging(), row.data() + form_.offsets[o], bytes);
-    writers_[o].publish(now_, 1);
-  }
+  const std::span<const GivenSpec> operators = configuration_.spec().operators;
+  for (std::size_t o = 0; o < operators.size(); ++o)
+    set_->table().set_operator(o, row.subspan(form_.offsets[o], operators[o].value.size()), now_);
 }
 
 State SingleTask::signal(Signal signal) {

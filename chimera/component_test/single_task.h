@@ -12,8 +12,7 @@
 #include "chimera/component_test/instrumented_component.h"
 #include "chimera/component_test/record.h"
 #include "chimera/load/shared_object.h"
-#include "chimera/runtime/aligned_bytes.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 
 namespace chimera::component_test {
@@ -55,9 +54,7 @@ class SingleTask {
   ModelledClock clock_;
   Nanoseconds now_;
   std::unique_ptr<InstrumentedComponent> component_;
-  AlignedBytes table_;
-  std::unique_ptr<TaskSet> set_;
-  std::vector<GroupWriter> writers_;
+  std::unique_ptr<HeapTaskSet> set_;
   std::vector<OutputPlace> places_;
 };
 

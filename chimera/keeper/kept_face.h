@@ -10,7 +10,7 @@
 #include "chimera/platform/linux_clock.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
-#include "chimera/runtime/face_page.h"
+#include "chimera/runtime/hosted/face_page.h"
 
 namespace chimera {
 

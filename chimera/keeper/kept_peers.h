@@ -16,8 +16,8 @@
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/rtpu/keeper_message.h"
-#include "chimera/runtime/face_page.h"
-#include "chimera/runtime/pages.h"
+#include "chimera/runtime/hosted/face_page.h"
+#include "chimera/runtime/hosted/pages.h"
 
 namespace chimera {
 

@@ -6,7 +6,7 @@
 
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/runtime/application_spec.h"
-#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/hosted/rtpu_block.h"
 
 namespace chimera::manager {
 

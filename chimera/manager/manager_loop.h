@@ -15,7 +15,7 @@
 #include "chimera/platform/channel.h"
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/shared_pages.h"
-#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/hosted/application_image.h"
 
 namespace chimera::manager {
 

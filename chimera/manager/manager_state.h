@@ -12,7 +12,7 @@
 #include "chimera/manager/own_segment.h"
 #include "chimera/manager/peers.h"
 #include "chimera/manager/readings.h"
-#include "chimera/runtime/pages.h"
+#include "chimera/runtime/hosted/pages.h"
 #include "chimera/subsystem/subsystem.h"
 
 namespace chimera::manager {

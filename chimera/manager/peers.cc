@@ -11,9 +11,9 @@ namespace chimera::manager {
 Result<Peers> Peers::create(const ApplicationSpec& spec) {
   Peers made(spec);
   for (std::uint32_t peer = 0; peer <= spec.rtpus.size(); ++peer) {
-    auto layout = PeerLayout::of(spec, peer);
+    auto layout = PeerLayout::of(spec, peer, *made.memory_);
     if (!layout) return layout.error();
-    made.layouts_.push_back(*std::move(layout));
+    made.layouts_.push_back(*layout);
   }
   made.segments_.assign(spec.rtpus.size(), std::make_shared<const PeerSegment>());
   return made;

@@ -7,7 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "chimera/runtime/peer_segment.h"
+#include "chimera/runtime/hosted/heap_memory.h"
+#include "chimera/runtime/hosted/peer_segment.h"
 #include "chimera/task/fault_record.h"
 
 namespace chimera::manager {
@@ -39,6 +40,7 @@ class Peers {
   explicit Peers(const ApplicationSpec& spec) noexcept : spec_(&spec) {}
 
   const ApplicationSpec* spec_;
+  std::unique_ptr<HeapMemory> memory_ = std::make_unique<HeapMemory>();  // behind the layouts
   std::vector<PeerLayout> layouts_;  // of the rtpus, then of the manager
   std::vector<std::shared_ptr<const PeerSegment>> segments_;  // never null
 };

@@ -13,7 +13,7 @@
 #include "chimera/catalogue/library.h"
 #include "chimera/manager/own_segment.h"
 #include "chimera/manager/peers.h"
-#include "chimera/runtime/variables.h"
+#include "chimera/runtime/hosted/variables.h"
 #include "chimera/text/value_text.h"
 #include "chimera/verify/configuration.h"
 

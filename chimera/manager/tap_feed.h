@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chimera/manager/manager_state.h"
-#include "chimera/runtime/tap_rows.h"
+#include "chimera/runtime/hosted/tap_rows.h"
 
 namespace chimera::manager {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/hosted/application_image.h"
 #include "chimera/task/abi.h"
 
 namespace chimera {

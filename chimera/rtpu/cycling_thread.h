@@ -13,6 +13,7 @@
 #include "chimera/rtpu/bell_clock.h"
 #include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/hosted/background_writer.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 
 namespace chimera {

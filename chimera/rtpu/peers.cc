@@ -10,9 +10,9 @@ Result<std::unique_ptr<MappedPeers>> MappedPeers::create(const ApplicationSpec& 
   std::unique_ptr<MappedPeers> made(new MappedPeers);
   made->spec_ = &spec;
   for (std::uint32_t peer = 0; peer <= spec.rtpus.size(); ++peer) {
-    auto layout = PeerLayout::of(spec, peer);
+    auto layout = PeerLayout::of(spec, peer, made->memory_);
     if (!layout) return layout.error();
-    made->layouts_.push_back(std::make_unique<PeerLayout>(*std::move(layout)));
+    made->layouts_.push_back(*layout);
     made->slots_.push_back(std::make_unique<Slot>());
   }
   return made;

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/runtime/peer_segment.h"
+#include "chimera/runtime/hosted/heap_memory.h"
+#include "chimera/runtime/hosted/peer_segment.h"
 
 namespace chimera {
 
@@ -23,7 +24,7 @@ class MappedPeers {
   ~MappedPeers();
 
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(slots_.size()); }
-  const PeerLayout& layout(std::uint32_t peer) const noexcept { return *layouts_[peer]; }
+  const PeerLayout& layout(std::uint32_t peer) const noexcept { return layouts_[peer]; }
 
   /// Maps a segment and checks that it is what the application says; adopted at the next edge. Refuses strangers.
   /// Context: main thread; may block.
@@ -57,7 +58,8 @@ class MappedPeers {
 
   MappedPeers() = default;
   const ApplicationSpec* spec_ = nullptr;
-  std::vector<std::unique_ptr<PeerLayout>> layouts_;
+  HeapMemory memory_;  // behind the layouts
+  std::vector<PeerLayout> layouts_;
   std::vector<std::unique_ptr<Slot>> slots_;
   // SYNC: release_mapping() (thread that cycles) releases the list; clear() (main thread) acquires it and unmaps.
   std::atomic<Mapping*> released_{nullptr};

@@ -25,6 +25,7 @@
 #include "chimera/rtpu/hang_watch.h"
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/service_thread.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/making.h"
 #include "chimera/runtime/task_word.h"
 
@@ -80,7 +81,7 @@ class Rtpu {
   std::unique_ptr<ServiceThread> service_;
   std::unique_ptr<PeerLinks> others_;
   BackgroundWriter writer_;
-  std::unique_ptr<TaskSet> tasks_;
+  std::unique_ptr<HeapTaskSet> tasks_;
   std::unique_ptr<RtpuControl> edge_;
   std::unique_ptr<HangWatch> hang_watch_;
   std::unique_ptr<CyclingThread> cycling_;
@@ -170,7 +171,7 @@ Result<void> Rtpu::make_tasks() {
   place.preemptive = self().preemptive;
   place.at_edge = &head.at_edge;
   place.making = &making;
-  auto tasks = TaskSet::create(spec, components_, place);
+  auto tasks = HeapTaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);
   edge_ = std::make_unique<RtpuControl>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "chimera/rtpu/testing/test_units.h"
+#include "chimera/runtime/hosted/heap_memory.h"
 
 namespace chimera {
 namespace {
@@ -73,7 +74,8 @@ struct EdgeTest : ::testing::Test {
   testing::Unit& second() { return *units->units[1]; }
   /// What its fault group shows to others.
   FaultRecord shown_of_follower() {
-    const auto layout = PeerLayout::of(app.spec, 1);
+    HeapMemory heap;
+    const auto layout = PeerLayout::of(app.spec, 1, heap);
     const GroupPlace& place = layout->place(layout->fault(kFollower));
     const std::byte* at = second().segment.region.bytes().data() + sizeof(SegmentHeader) + place.offset;
     FaultRecord record;

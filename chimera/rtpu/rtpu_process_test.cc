@@ -19,7 +19,8 @@
 #include "chimera/platform/shared_pages.h"
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/peers.h"
-#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/hosted/application_image.h"
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
@@ -43,7 +44,8 @@ struct RtpuProcess : ::testing::Test {
     keeper = new (keeper_pages.writable().data()) KeeperPage;
     keeper->origin = LinuxClock().now();
     keeper->alive[0] = keeper->alive[1] = 1;
-    const auto layout = PeerLayout::of(app.spec, 1);
+    HeapMemory heap;
+    const auto layout = PeerLayout::of(app.spec, 1, heap);
     own = *MemoryRegion::create("manager", peer_segment_bytes(layout->table(), 1));
     ASSERT_TRUE(SegmentOwner::format(own.writable(), layout->table()));
     block = BlockOwner(own.writable().data() + block_offset(layout->table()), 1, 1, 1, 2);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "chimera/base/testing/property.h"
-#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/hosted/application_image.h"
 
 namespace {
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/releases.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
@@ -52,7 +53,7 @@ struct EdgeSignalsTest : ::testing::Test {
     app.add("sender", testing::component<Sender>("sender"));
     app.add("reader", testing::component<Reader>("reader"));
     app.make();
-    set = *TaskSet::create(app.spec, app.components);
+    set = *HeapTaskSet::create(app.spec, app.components);
     options.tap = &tap;
     options.guest = &guest;
   }
@@ -79,7 +80,7 @@ struct EdgeSignalsTest : ::testing::Test {
   }
 
   testing::TestApplication app;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
   std::unique_ptr<TapRing> ring = std::make_unique<TapRing>();
   Tap tap{*ring};
   TapReader reader{*ring};

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "chimera/base/ids.h"
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/task_status.h"
 
 namespace chimera {
@@ -30,7 +30,7 @@ struct Change {
 class Changes {
  public:
   /// Room for everything that `n_tasks` tasks can change. Nothing is listed before that. Context: setup.
-  void prepare(std::size_t n_tasks) { places_.resize(2 * n_tasks + 1); }
+  void prepare(std::size_t n_tasks, SetupMemory& memory) { places_ = memory.take<Change>(2 * n_tasks + 1); }
 
   void add_status(TaskId task, TaskStatus before, TaskStatus now) noexcept {
     if (Change* listed = add(Change::Kind::kStatus, task, before)) listed->now = now;
@@ -53,7 +53,7 @@ class Changes {
     return &places_[n_++];
   }
 
-  std::vector<Change> places_;
+  std::span<Change> places_;
   std::size_t n_ = 0;  // of them are listed
 };
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "chimera/runtime/hosted/heap_memory.h"
+
 namespace chimera {
 namespace {
 
@@ -10,7 +12,8 @@ constexpr TaskId kFirst{0u}, kSecond{1u};
 constexpr TaskStatus kOff{State::kOff, false, 1}, kOn{State::kOn, false, 1}, kError{State::kError, false, 1};
 
 struct ChangesTest : ::testing::Test {
-  ChangesTest() { changes.prepare(2); }
+  ChangesTest() { changes.prepare(2, heap); }
+  HeapMemory heap;
   Changes changes;
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "chimera/table/slot.h"
+
 namespace chimera {
 namespace {
 
@@ -18,20 +20,22 @@ std::int64_t whole(const Constant& constant, std::int64_t fallback) noexcept {
 
 }  // namespace
 
-ConstantStore::ConstantStore(const ApplicationSpec& spec) : constants_(spec.constants.size()) {
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
-    constants_[c].spec = &spec.constants[c];
-    constants_[c].value.resize(spec.constants[c].value.size());
-  }
+ConstantStore::ConstantStore(const ApplicationSpec& spec, SetupMemory& memory)
+    : constants_(memory.take<Constant>(spec.constants.size())) {
+  const std::span<std::size_t> bytes = memory.take<std::size_t>(constants_.size());
+  for (std::size_t c = 0; c < constants_.size(); ++c) bytes[c] = spec.constants[c].value.size();
   for (const TaskSpec& task : spec.tasks) {
     for (const PortSpec& port : task.ports) {
       if (!port.constant.is_valid()) continue;
-      std::vector<std::byte>& value = constants_[port.constant.index].value;
-      value.resize(std::max<std::size_t>(value.size(), port.max_bytes()));
+      std::size_t& most = bytes[port.constant.index];
+      most = std::max<std::size_t>(most, port.max_bytes());
     }
   }
-  for (std::size_t c = 0; c < constants_.size(); ++c)
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    constants_[c].spec = &spec.constants[c];
+    constants_[c].value = memory.take_bytes(bytes[c], kCacheLine);
     if (!spec.constants[c].value.empty()) set(ConstantId(c), spec.constants[c].value);
+  }
 }
 
 bool ConstantStore::set(ConstantId id, std::span<const std::byte> value) noexcept {

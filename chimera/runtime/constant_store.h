@@ -5,9 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
-#include <vector>
 
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
 
 namespace chimera {
@@ -15,7 +14,7 @@ namespace chimera {
 /// One constant with its present value.
 struct Constant {
   const ConstantSpec* spec = nullptr;
-  std::vector<std::byte> value;  ///< at the size of the largest port that is linked to it
+  std::span<std::byte> value;  ///< at the size of the largest port that is linked to it
   bool is_known = false;
 };
 
@@ -24,7 +23,7 @@ class ConstantStore {
  public:
   ConstantStore() = default;
   /// Makes room for every constant and sets those that the description gives. Context: setup.
-  explicit ConstantStore(const ApplicationSpec& spec);
+  ConstantStore(const ApplicationSpec& spec, SetupMemory& memory);
 
   /// Requires: a valid id.
   const Constant& operator[](ConstantId id) const noexcept { return constants_[id.index]; }
@@ -34,7 +33,7 @@ class ConstantStore {
   std::int64_t integer(ConstantId id, std::int64_t fallback) const noexcept;
 
  private:
-  std::vector<Constant> constants_;
+  std::span<Constant> constants_;
 };
 
 }  // namespace chimera

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "chimera/runtime/hosted/heap_memory.h"
+
 namespace chimera {
 namespace {
 
@@ -35,20 +37,21 @@ struct ConstantStoreTest : ::testing::Test {
   PortSpec ports[2];
   TaskSpec task;
   ApplicationSpec spec;
+  HeapMemory heap;
 };
 
 TEST_F(ConstantStoreTest, KnowsWhatTheDescriptionGives) {
-  const ConstantStore store(spec);
+  const ConstantStore store(spec, heap);
   EXPECT_TRUE(store[kGiven].is_known);
   EXPECT_EQ(store.integer(kGiven, -1), 7);
   EXPECT_FALSE(store[kMade].is_known);
   EXPECT_EQ(store.integer(kMade, -1), -1);
 }
 
-TEST_F(ConstantStoreTest, HasRoomForTheLargestPort) { EXPECT_EQ(ConstantStore(spec)[kMade].value.size(), 24u); }
+TEST_F(ConstantStoreTest, HasRoomForTheLargestPort) { EXPECT_EQ(ConstantStore(spec, heap)[kMade].value.size(), 24u); }
 
 TEST_F(ConstantStoreTest, TellsWhetherAValueIsAnother) {
-  ConstantStore store(spec);
+  ConstantStore store(spec, heap);
   const std::int64_t one[3] = {1, 2, 3}, other[3] = {1, 2, 4};
   EXPECT_TRUE(store.set(kMade, bytes_of(one)));
   EXPECT_FALSE(store.set(kMade, bytes_of(one)));
@@ -58,7 +61,7 @@ TEST_F(ConstantStoreTest, TellsWhetherAValueIsAnother) {
 
 TEST_F(ConstantStoreTest, ANumberThatDoesNotFitItsBytesIsNone) {  // an image may say so
   constants[0].type = CHIMERA_INT64;
-  EXPECT_EQ(ConstantStore(spec).integer(kGiven, -1), -1);
+  EXPECT_EQ(ConstantStore(spec, heap).integer(kGiven, -1), -1);
 }
 
 }  // namespace

@@ -3,36 +3,42 @@
 #include "chimera/runtime/context_constants.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
+
+#include "chimera/base/message.h"
 
 namespace chimera {
 
 void ContextConstants::prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<TaskMemory> memories,
-                               const PeerView* others) {
+                               const PeerView* others, SetupMemory& memory) {
   spec_ = &spec;
   table_ = &table;
   memories_ = memories;
   others_ = others;
-  store_ = ConstantStore(spec);
-  plan_foreign();
+  store_ = ConstantStore(spec, memory);
+  plan_foreign(memory);
 }
 
-void ContextConstants::plan_foreign() {
+void ContextConstants::plan_foreign(SetupMemory& memory) {
   std::uint32_t largest = 0;
+  std::size_t n = 0;
   const PeerLayout& layout = table_->everything();
-  for (std::size_t t = 0; t < spec_->tasks.size(); ++t) {
+  const auto of_task = [&layout](std::size_t t) { return layout.variables(layout.constants(TaskId(t))); };
+  for (std::size_t t = 0; t < memories_.size(); ++t) {
     if (memories_[t].is_planned()) continue;
-    const GroupId group = layout.constants(TaskId(t));
-    largest = std::max(largest, layout.place(group).payload_bytes);
-    std::size_t i = 0;
-    for (const PortSpec& port : spec_->tasks[t].ports) {
-      if (port.kind != CHIMERA_OUT_CONST) continue;
-      foreign_.push_back({TaskId(t), port.constant, layout.variables(group)[i].offset, port.max_bytes()});
-      ++i;
-    }
+    largest = std::max(largest, layout.place(layout.constants(TaskId(t))).payload_bytes);
+    n += of_task(t).size();
   }
-  scratch_ = AlignedBytes(largest, kCacheLine);
+  scratch_ = memory.take_bytes(largest, kCacheLine);
+  foreign_ = memory.take<Foreign>(n);
+  n = 0;
+  for (std::size_t t = 0; t < memories_.size(); ++t) {
+    if (memories_[t].is_planned()) continue;
+    std::size_t i = 0;
+    for (const PortSpec& port : spec_->tasks[t].ports)
+      if (port.kind == CHIMERA_OUT_CONST)
+        foreign_[n++] = {TaskId(t), port.constant, of_task(t)[i++].offset, port.max_bytes()};
+  }
 }
 
 void ContextConstants::read_foreign() noexcept {
@@ -92,11 +98,9 @@ bool ContextConstants::lists_fit(TaskId task, FixedString<160>& why) const noexc
       const std::int64_t n = store_.integer(extent.constant, entries[d]);
       if (n == entries[d]) continue;
       const std::string_view link = spec_->link_name(port), constant = spec_->constants[extent.constant.index].name;
-      char text[160];
-      std::snprintf(text, sizeof text, "%.*s has a list of %u values, but %.*s is %lld", static_cast<int>(link.size()),
-                    link.data(), entries[d], static_cast<int>(constant.size()), constant.data(),
-                    static_cast<long long>(n));
-      why.assign(text);
+      Message text(link);
+      text << " has a list of " << entries[d] << " values, but " << constant << " is " << n;
+      why.assign(text.view());
       return false;
     }
   }

@@ -5,10 +5,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "chimera/base/fixed.h"
-#include "chimera/runtime/aligned_bytes.h"
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/constant_store.h"
 #include "chimera/runtime/context_table.h"
 #include "chimera/runtime/peer_view.h"
@@ -23,7 +22,7 @@ class ContextConstants {
   /// `memories[t]` is planned for the tasks of this context and empty for those of others; `others` null: there are
   /// none. Everything given outlives this. Context: setup.
   void prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<TaskMemory> memories,
-               const PeerView* others);
+               const PeerView* others, SetupMemory& memory);
 
   /// Copies the present constants into the task and fixes its extents, before init or reinit. False with `why` when one
   /// has no value, an extent is out of range, or a list of values has another length than the constant says.
@@ -45,7 +44,7 @@ class ContextConstants {
     std::uint32_t offset = 0, bytes = 0;  // in the group of the producer's constants
   };
 
-  void plan_foreign();
+  void plan_foreign(SetupMemory& memory);
   void publish(TaskId task) noexcept;
   std::span<const std::uint32_t> listed(const PortSpec& port) const noexcept;
   bool lists_fit(TaskId task, FixedString<160>& why) const noexcept;
@@ -55,8 +54,8 @@ class ContextConstants {
   std::span<TaskMemory> memories_;
   const PeerView* others_ = nullptr;
   ConstantStore store_;
-  std::vector<Foreign> foreign_;
-  AlignedBytes scratch_;  // a payload of the largest group of foreign constants
+  std::span<Foreign> foreign_;
+  std::span<std::byte> scratch_;  // a payload of the largest group of foreign constants
   bool has_new_ = false;
 };
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
@@ -57,10 +58,10 @@ struct ContextConstantsTest : ::testing::Test {
     app.make();
     ContextPlace place;
     place.rtpu = rtpu;
-    ASSERT_TRUE(table.prepare(app.spec, place));
+    ASSERT_TRUE(table.prepare(app.spec, place, heap));
     for (std::size_t t = 0; t < 2; ++t) {
       const bool is_mine = !rtpu.is_valid() || app.tasks[t].rtpu == rtpu;
-      if (is_mine) memories.push_back(*TaskMemory::create(app.tasks[t], *app.components[t]));
+      if (is_mine) memories.push_back(*TaskMemory::create(app.tasks[t], *app.components[t], heap));
       else memories.emplace_back();
     }
     for (std::size_t t = 0; t < 2; ++t) {
@@ -69,7 +70,7 @@ struct ContextConstantsTest : ::testing::Test {
       tasks[t].id = TaskId(t);
       ASSERT_TRUE(memories[t].construct(tasks[t], {}));
     }
-    constants.prepare(app.spec, table, memories, others);
+    constants.prepare(app.spec, table, memories, others, heap);
   }
   ~ContextConstantsTest() override {
     for (std::size_t t = 0; t < memories.size(); ++t) memories[t].destroy(tasks[t]);
@@ -83,6 +84,7 @@ struct ContextConstantsTest : ::testing::Test {
   }
 
   testing::TestApplication app;
+  HeapMemory heap;
   ContextTable table;
   std::array<Task, 2> tasks;
   std::vector<TaskMemory> memories;

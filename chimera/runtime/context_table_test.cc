@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
@@ -39,36 +40,28 @@ struct ContextTableTest : ::testing::Test {
     app.give(app.operators, "gain", CHIMERA_FLOAT64, testing::bytes_of(0.5));
     app.make();
   }
-  const Variable& variable(std::string_view name) const {
-    for (const Variable& one : app.spec.variables)
-      if (one.name == name) return one;
-    ADD_FAILURE() << "no variable " << name;
-    return app.spec.variables[0];
-  }
 
   testing::TestApplication app;
+  HeapMemory heap;
   ContextTable table;
 };
 
 TEST_F(ContextTableTest, HoldsTheOperatorVariablesOfAContextThatIsAlone) {
-  ASSERT_TRUE(table.prepare(app.spec, {}));
+  ASSERT_TRUE(table.prepare(app.spec, {}, heap));
   ASSERT_EQ(table.operators().size(), 1u);
   EXPECT_EQ(number(table.operators()[0], 0), 0.5);
   table.set_operator(0, testing::bytes_of(2.5), milliseconds(3));
   EXPECT_EQ(number(table.operators()[0], 0), 2.5);
   EXPECT_EQ(table.operators()[0].published()->sequence, 2u);
   EXPECT_EQ(table.operators()[0].published()->published_ns, 3'000'000);
-  const auto readers = table.readers_of(variable("gain"));
-  ASSERT_EQ(readers.size(), 1u);
-  EXPECT_EQ(number(readers[0].reader, 0), 2.5);
 }
 
 TEST_F(ContextTableTest, FindsBothGroupsInWhichAVariableMayStand) {
-  ASSERT_TRUE(table.prepare(app.spec, {}));
-  TaskMemory memory = *TaskMemory::create(app.tasks[0], *app.components[0]);
+  ASSERT_TRUE(table.prepare(app.spec, {}, heap));
+  TaskMemory memory = *TaskMemory::create(app.tasks[0], *app.components[0], heap);
   table.place_outputs(kMaker, memory);
-  const auto readers = table.readers_of(variable("b"));
-  ASSERT_EQ(readers.size(), 2u);
+  const PortOf b{kMaker, 1};
+  const VariableReader readers[] = {table.reader_of(b, 0), table.reader_of(b, 1)};
   EXPECT_NE(readers[0].reader.published(), readers[1].reader.published());
   for (const VariableReader& one : readers) {
     EXPECT_EQ(one.bit, 1u);
@@ -77,13 +70,13 @@ TEST_F(ContextTableTest, FindsBothGroupsInWhichAVariableMayStand) {
 }
 
 TEST_F(ContextTableTest, LaysItsOwnGroupsInTheBytesThatItIsGiven) {
-  const auto layout = PeerLayout::of(app.spec, 1);
+  const auto layout = PeerLayout::of(app.spec, 1, heap);
   ASSERT_TRUE(layout);
-  AlignedBytes bytes(layout->table().region_bytes(), kCacheLine);
+  const auto bytes = heap.take_bytes(layout->table().region_bytes(), kCacheLine);
   ContextPlace place;
   place.rtpu = RtpuId(1u);
-  place.table = bytes.span();
-  ASSERT_TRUE(table.prepare(app.spec, place));
+  place.table = bytes;
+  ASSERT_TRUE(table.prepare(app.spec, place, heap));
   EXPECT_TRUE(table.operators().empty()) << "they are the manager's";
   EXPECT_TRUE(table.everything().has(kTaker)) << "the plan of the whole application is known";
   const std::int32_t n = 7;

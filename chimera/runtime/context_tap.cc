@@ -4,8 +4,10 @@
 
 namespace chimera {
 
-ContextTap::ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps)
-    : tasks_(tasks), tap_(tap), rtpu_(rtpu), rows_(tasks.size()), kept_(keeps ? tasks.size() : 0) {}
+ContextTap::ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps,
+                       SetupMemory& memory)
+    : tasks_(tasks), tap_(tap), rtpu_(rtpu), rows_(memory.take<Rows>(tasks.size())),
+      kept_(memory.take<Kept>(keeps ? tasks.size() : 0)) {}
 
 void ContextTap::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
   const TapRecord r = record_of(kind, at, task, a, b);

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "chimera/base/fixed.h"
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/schedule/ready_queue.h"
 #include "chimera/task/task.h"
@@ -18,7 +18,7 @@ class ContextTap {
  public:
   /// `tap` null: nothing is recorded. With `keeps`, records of a task with a job under way stay with the thread of the
   /// task until flush(). The tasks and the tap outlive this. Context: setup.
-  ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps);
+  ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps, SetupMemory& memory);
 
   bool is_on() const noexcept { return tap_ != nullptr; }
   /// Writes one record, if anybody wants it. An invalid task: of the context. Also by the thread of a task, about it,
@@ -57,8 +57,8 @@ class ContextTap {
   Tap* tap_;
   std::uint8_t rtpu_;
   // By task.
-  std::vector<Rows> rows_;
-  std::vector<Kept> kept_;  // empty: none are
+  std::span<Rows> rows_;
+  std::span<Kept> kept_;  // empty: none are
 };
 
 }  // namespace chimera

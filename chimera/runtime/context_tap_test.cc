@@ -8,6 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "chimera/runtime/hosted/heap_memory.h"
+
 namespace chimera {
 namespace {
 
@@ -41,10 +43,11 @@ class ContextTapTest : public testing::Test {
   std::unique_ptr<TapRing> ring = std::make_unique<TapRing>();
   Tap ring_tap{*ring};
   TapReader reader{*ring};
+  HeapMemory heap;
 };
 
 TEST_F(ContextTapTest, RecordsUnderTheNumberOfItsRtpu) {
-  ContextTap tap(tasks, &ring_tap, 3, false);
+  ContextTap tap(tasks, &ring_tap, 3, false, heap);
   EXPECT_TRUE(tap.is_on());
   tap.record(TapKind::kMiss, milliseconds(5), kSecond, 7, -8);
   const auto all = records();
@@ -58,7 +61,7 @@ TEST_F(ContextTapTest, RecordsUnderTheNumberOfItsRtpu) {
 }
 
 TEST_F(ContextTapTest, WithoutATapDoesNothing) {
-  ContextTap tap(tasks, nullptr, 3, true);
+  ContextTap tap(tasks, nullptr, 3, true, heap);
   EXPECT_FALSE(tap.is_on());
   publish(kFirst, 1);
   tasks[0].is_tapped = true;
@@ -70,7 +73,7 @@ TEST_F(ContextTapTest, WithoutATapDoesNothing) {
 }
 
 TEST_F(ContextTapTest, KeepsWhatHappensToABusyTaskUntilItIsFlushed) {
-  ContextTap tap(tasks, &ring_tap, 0, true);
+  ContextTap tap(tasks, &ring_tap, 0, true, heap);
   tasks[0].is_busy = true;
   tap.record(TapKind::kMiss, milliseconds(1), kFirst, 0);
   tap.record(TapKind::kFault, milliseconds(2), kFirst, 0);
@@ -90,14 +93,14 @@ TEST_F(ContextTapTest, KeepsWhatHappensToABusyTaskUntilItIsFlushed) {
 }
 
 TEST_F(ContextTapTest, WithoutThreadsNothingIsKept) {
-  ContextTap tap(tasks, &ring_tap, 0, false);
+  ContextTap tap(tasks, &ring_tap, 0, false, heap);
   tasks[0].is_busy = true;
   tap.record(TapKind::kMiss, {}, kFirst, 0);
   EXPECT_EQ(records().size(), 1u);
 }
 
 TEST_F(ContextTapTest, AppendsEveryPublicationOnceAndNumbersThem) {
-  ContextTap tap(tasks, &ring_tap, 0, true);
+  ContextTap tap(tasks, &ring_tap, 0, true, heap);
   tap.append_row(tasks[0]);
   EXPECT_TRUE(records().empty()) << "nothing was published";
   publish(kFirst, 42);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera::testing {
@@ -66,13 +67,13 @@ class LookingClock final : public Clock {
 struct ExecutionTime : ::testing::Test {
   void make() {
     app.make();
-    auto made = TaskSet::create(app.spec, app.components);
+    auto made = HeapTaskSet::create(app.spec, app.components);
     ASSERT_TRUE(made) << made.error().message.view();
     set = *std::move(made);
     clock.watch(set->tasks()[0]);
   }
   TestApplication app;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
   LookingClock clock;
   ComputingClock job_clock{clock};
 };

@@ -2,12 +2,14 @@
 // Judges the illegal-configuration flag of one context.
 #include "chimera/runtime/illegal_flag.h"
 
+#include "chimera/runtime/set_equations.h"
+
 namespace chimera {
 
-void IllegalFlag::prepare(const Variables& variables, std::span<const Task> tasks) {
-  variables_ = &variables;
+void IllegalFlag::prepare(std::span<const Variable> variables, std::span<const Task> tasks, SetupMemory& memory) {
+  variables_ = variables;
   tasks_ = tasks;
-  raises_.assign(tasks.size(), false);
+  raises_ = memory.take<bool>(tasks.size());
 }
 
 void IllegalFlag::raise(bool up) noexcept {
@@ -22,8 +24,8 @@ void IllegalFlag::raise_for(TaskId task) noexcept {
   judge();
 }
 
-void IllegalFlag::follow(const std::vector<bool>& on) noexcept {
-  is_on_set_legal_ = variables_->is_legal(on);
+void IllegalFlag::follow(std::span<const bool> on) noexcept {
+  is_on_set_legal_ = is_legal_set(variables_, on);
   if (raised_by_.is_valid()) lower(false);
   judge();
 }

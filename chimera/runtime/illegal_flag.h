@@ -6,10 +6,10 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "chimera/base/ids.h"
-#include "chimera/runtime/variables.h"
+#include "chimera/base/setup_memory.h"
+#include "chimera/runtime/application_spec.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -18,7 +18,7 @@ namespace chimera {
 class IllegalFlag {
  public:
   /// Down until the first follow(). Everything given outlives this. Context: setup.
-  void prepare(const Variables& variables, std::span<const Task> tasks);
+  void prepare(std::span<const Variable> variables, std::span<const Task> tasks, SetupMemory& memory);
 
   /// To be read once for each job. Context: cycle; wait-free; O(other processes).
   bool is_up() const noexcept {
@@ -42,17 +42,17 @@ class IllegalFlag {
   /// The flag words of the other processes, read from here on by is_up(). The words and the span outlive this.
   void watch(std::span<const std::atomic<std::uint32_t>* const> flags) noexcept { foreign_ = flags; }
   /// `on[t]`: task t is ON, over all contexts.
-  void follow(const std::vector<bool>& on) noexcept;
+  void follow(std::span<const bool> on) noexcept;
 
  private:
   void lower(bool for_all) noexcept;
   void judge() noexcept { is_up_here_ = is_raised() || !is_on_set_legal_; }
 
-  const Variables* variables_ = nullptr;
+  std::span<const Variable> variables_;
   std::span<const Task> tasks_;
   // Relaxed, pair with nothing: a job that reads one a cycle late is a job that ran a cycle earlier.
   std::span<const std::atomic<std::uint32_t>* const> foreign_;
-  std::vector<bool> raises_;  // by task: its reaction holds the flag up
+  std::span<bool> raises_;  // by task: its reaction holds the flag up
   TaskId raised_by_;          // one of them
   bool is_raised_ = false;
   bool is_on_set_legal_ = true;

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
@@ -28,17 +29,17 @@ struct IllegalFlagTest : ::testing::Test {
     app.add("consumer", testing::component<Consumer>("consumer"));
     app.make();
     for (std::size_t t = 0; t < tasks.size(); ++t) tasks[t].id = TaskId(t);
-    variables.emplace(app.spec);
-    flag.prepare(*variables, tasks);
+    flag.prepare(app.spec.variables, tasks, heap);
   }
   void turn(TaskId task, bool on) {
     tasks[task.index].state = on ? State::kOn : State::kOff;
-    flag.follow({tasks[0].state == State::kOn, tasks[1].state == State::kOn});
+    const bool now[] = {tasks[0].state == State::kOn, tasks[1].state == State::kOn};
+    flag.follow(now);
   }
 
   testing::TestApplication app;
   std::array<Task, 2> tasks;
-  std::optional<Variables> variables;
+  HeapMemory heap;
   IllegalFlag flag;
 };
 

@@ -4,9 +4,8 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
-#include <string>
-#include <string_view>
 
 #include "chimera/runtime/task_word.h"
 
@@ -22,9 +21,11 @@ inline void show_making(std::atomic<std::uint32_t>& cell, std::size_t task, Maki
 inline void show_made(std::atomic<std::uint32_t>& cell) noexcept { cell.store(0, std::memory_order_relaxed); }
 
 /// The index of the task that `word` speaks of; UINT32_MAX for a word that nobody would write.
-std::uint32_t task_of_making(std::uint32_t word, std::size_t n_tasks) noexcept;
-
-/// "while it loaded /lib/gain.so, the component of task 'amp'". Context: setup.
-std::string making_text(std::uint32_t word, std::string_view task, std::string_view object);
+inline std::uint32_t task_of_making(std::uint32_t word, std::size_t n_tasks) noexcept {
+  const std::uint32_t task = TaskWord::found(word).task().index, what = TaskWord::found(word).what();
+  const bool is_known = what == static_cast<std::uint32_t>(Making::kLoads) ||
+                        what == static_cast<std::uint32_t>(Making::kConstructs);
+  return is_known && task < n_tasks ? task : UINT32_MAX;
+}
 
 }  // namespace chimera

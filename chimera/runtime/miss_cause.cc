@@ -23,9 +23,11 @@ Nanoseconds MissCause::Recent::sum_since(Nanoseconds since) const noexcept {
   return n == kJobs ? kNever : Nanoseconds{sum};
 }
 
-MissCause::MissCause(std::span<const Task> tasks, JobThreads& threads)
-    : tasks_(tasks), threads_(threads), recent_(tasks.size()), judged_(tasks.size(), Nanoseconds{INT64_MIN / 2}),
-      waits_(tasks.size()) {}
+MissCause::MissCause(std::span<const Task> tasks, JobThreads& threads, SetupMemory& memory)
+    : tasks_(tasks), threads_(threads), recent_(memory.take<Recent>(tasks.size())),
+      judged_(memory.take<Nanoseconds>(tasks.size())), waits_(memory.take<Waits>(tasks.size())) {
+  for (Nanoseconds& judged : judged_) judged = Nanoseconds{INT64_MIN / 2};
+}
 
 // For how long, at least, no task of this context had the processor although one wanted it; 0: not known.
 Nanoseconds MissCause::taken_away(Nanoseconds since, Nanoseconds now) const noexcept {

@@ -18,8 +18,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/task/task.h"
 
@@ -34,8 +34,8 @@ class MissCause {
     bool is_blocked = false;  ///< the culprit is the task itself, which waits in a system call
   };
 
-  /// Both outlive this. Context: setup.
-  MissCause(std::span<const Task> tasks, JobThreads& threads);
+  /// All outlive this. Context: setup.
+  MissCause(std::span<const Task> tasks, JobThreads& threads, SetupMemory& memory);
 
   /// A job of the task ended at `end` and had used `used`. Context: cycle, on the task's own thread; wait-free.
   void ended(TaskId task, Nanoseconds used, Nanoseconds end) noexcept { recent_[task.index].add(used, end); }
@@ -86,9 +86,9 @@ class MissCause {
   std::span<const Task> tasks_;
   JobThreads& threads_;
   // By task.
-  std::vector<Recent> recent_;
-  std::vector<Nanoseconds> judged_;  // when, last
-  std::vector<Waits> waits_;
+  std::span<Recent> recent_;
+  std::span<Nanoseconds> judged_;  // when, last
+  std::span<Waits> waits_;
 };
 
 }  // namespace chimera

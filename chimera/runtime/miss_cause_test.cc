@@ -6,6 +6,8 @@
 #include <array>
 #include <map>
 
+#include "chimera/runtime/hosted/heap_memory.h"
+
 namespace chimera {
 namespace {
 
@@ -44,7 +46,8 @@ class MissCauseTest : public testing::Test {
   std::array<TaskSpec, 3> specs;
   std::array<Task, 3> tasks;
   JobsUnderWay under_way;
-  MissCause cause{tasks, under_way};
+  HeapMemory heap;
+  MissCause cause{tasks, under_way, heap};
 };
 
 TEST_F(MissCauseTest, FindsWhoWentFurthestBeyondItsBudget) {
@@ -180,7 +183,7 @@ TEST_F(MissCauseTest, BlamesAJobWithoutABudgetForItsOwnLateness) {
 
 TEST_F(MissCauseTest, WorksWithoutThreads) {
   JobsInLoop in_loop(tasks);
-  MissCause alone(tasks, in_loop);
+  MissCause alone(tasks, in_loop, heap);
   alone.ended(kSecond, milliseconds(5), milliseconds(15));
   alone.missed(kFirst, milliseconds(10));
   EXPECT_EQ(alone.judge(kFirst, milliseconds(20))->culprit, kSecond);

@@ -25,7 +25,7 @@ struct MissPolicyTest : ::testing::Test {
 
   BareTasks bare;
   JobsInLoop in_loop{bare.tasks};
-  MissCause cause{bare.tasks, in_loop};
+  MissCause cause{bare.tasks, in_loop, bare.heap};
   MissPolicy misses{bare.tasks, bare.records, bare.context_tap, &cause, bare.clock};
   BodyEnd body;
 };

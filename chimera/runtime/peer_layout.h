@@ -3,12 +3,11 @@
 // docs/formats/processes.md, "Groups of an rtpu's segment".
 #pragma once
 
-#include <deque>
-#include <memory>
+#include <span>
 #include <string_view>
-#include <vector>
 
 #include "chimera/base/result.h"
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/table/layout.h"
 
@@ -17,15 +16,16 @@ namespace chimera {
 /// Payload of a task's fault group: a FaultRecord as it lies in memory.
 inline constexpr std::string_view kFaultVariable = "fault";
 
-/// The plan of one peer's groups. Movable; immutable. Context of making: setup; of reading: any, wait-free.
+/// The plan of one peer's groups, in memory that it is given. Copyable; immutable.
+/// Context of making: setup; of reading: any, wait-free.
 class PeerLayout {
  public:
   /// Of rtpu number `peer`, or of the manager when `peer` is the number of rtpus. Refuses what TableLayout refuses.
-  static Result<PeerLayout> of(const ApplicationSpec& spec, std::uint32_t peer);
+  static Result<PeerLayout> of(const ApplicationSpec& spec, std::uint32_t peer, SetupMemory& memory);
   /// Of all tasks and all operator variables together: a single context without other processes.
-  static Result<PeerLayout> of_everything(const ApplicationSpec& spec);
+  static Result<PeerLayout> of_everything(const ApplicationSpec& spec, SetupMemory& memory);
 
-  const TableLayout& table() const noexcept { return *table_; }
+  const TableLayout& table() const noexcept { return table_; }
   bool has(TaskId task) const noexcept { return first_group_[task.index] != UINT32_MAX; }
   /// The groups of a task of this peer. `half` is the incarnation modulo 2. Requires: has(task).
   GroupId outputs(TaskId task, std::uint32_t half) const noexcept {
@@ -36,18 +36,15 @@ class PeerLayout {
   /// Of operator variable `index` of the specs; of the manager only.
   GroupId operator_group(std::size_t index) const noexcept { return GroupId(first_operator_ + index); }
 
-  const GroupPlace& place(GroupId group) const noexcept { return table_->group(group); }
+  const GroupPlace& place(GroupId group) const noexcept { return table_.group(group); }
   /// Places of the variables of a group, in the order of the task's ports of that kind.
   std::span<const VariablePlace> variables(GroupId group) const noexcept;
 
  private:
-  struct Storage;
-  static Result<PeerLayout> make(const ApplicationSpec& spec, bool everything, std::uint32_t peer);
-  static void plan_task(const ApplicationSpec& spec, const TaskSpec& task, Storage& storage);
+  static Result<PeerLayout> make(const ApplicationSpec& spec, bool everything, std::uint32_t peer, SetupMemory& memory);
 
-  std::shared_ptr<const TableLayout> table_;
-  std::shared_ptr<Storage> storage_;
-  std::vector<std::uint32_t> first_group_;  // by task
+  TableLayout table_;
+  std::span<std::uint32_t> first_group_;  // by task
   std::size_t first_operator_ = 0;
 };
 

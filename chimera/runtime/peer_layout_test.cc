@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/task/fault_record.h"
 
@@ -31,10 +32,11 @@ struct PeerLayoutTest : ::testing::Test {
     app.make();
   }
   testing::TestApplication app;
+  HeapMemory heap;
 };
 
 TEST_F(PeerLayoutTest, GivesATaskFourGroupsInTheSegmentOfItsRtpuOnly) {
-  const auto first = PeerLayout::of(app.spec, 0), second = PeerLayout::of(app.spec, 1);
+  const auto first = PeerLayout::of(app.spec, 0, heap), second = PeerLayout::of(app.spec, 1, heap);
   ASSERT_TRUE(first && second);
   EXPECT_FALSE(first->has(TaskId(0u)));
   EXPECT_TRUE(first->has(TaskId(1u)));
@@ -47,14 +49,14 @@ TEST_F(PeerLayoutTest, GivesATaskFourGroupsInTheSegmentOfItsRtpuOnly) {
 }
 
 TEST_F(PeerLayoutTest, PutsOperatorVariablesIntoTheManagersSegment) {
-  const auto manager = PeerLayout::of(app.spec, 2);
+  const auto manager = PeerLayout::of(app.spec, 2, heap);
   ASSERT_TRUE(manager);
   EXPECT_EQ(manager->table().groups().size(), 1u);
   EXPECT_EQ(manager->place(manager->operator_group(0)).payload_bytes, 8u);
 }
 
 TEST_F(PeerLayoutTest, HoldsEverythingInASingleContext) {
-  const auto all = PeerLayout::of_everything(app.spec);
+  const auto all = PeerLayout::of_everything(app.spec, heap);
   ASSERT_TRUE(all);
   EXPECT_EQ(all->table().groups().size(), 9u);
   EXPECT_EQ(all->operator_group(0), GroupId(8u));

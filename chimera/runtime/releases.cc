@@ -17,17 +17,21 @@ bool is_built(OnMiss reaction, bool can_demote) noexcept {
   return reaction != OnMiss::kSwitch && (can_demote || reaction != OnMiss::kDemote);
 }
 
+QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
+  return {memory.take<QueueMember>(n), memory.take<QueueClass>(n),    memory.take<QueueTask>(n),
+          memory.take<LooseJob>(n),    memory.take<std::uint32_t>(n), memory.take<std::uint32_t>(n)};
+}
+
 }  // namespace
 
 Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
-      records_(set.tasks().size()), tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr),
+      records_(set.setup_memory().take<JobRecord>(set.tasks().size())),
+      tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr, set.setup_memory()),
       in_loop_(set.tasks()), threads_(options.threads != nullptr ? *options.threads : in_loop_),
-      queue_members_(records_.size()), queue_classes_(records_.size()), queue_tasks_(records_.size()),
-      loose_(records_.size()), pauses_(records_.size()), runs_(records_.size()),
-      queue_(options.policy, set.spec().tasks,
-             {queue_members_, queue_classes_, queue_tasks_, loose_, pauses_, runs_}),
-      misses_(set.tasks(), records_, tap_, guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_) : nullptr, clock),
+      queue_(options.policy, set.spec().tasks, storage_for(records_.size(), set.setup_memory())),
+      misses_(set.tasks(), records_, tap_,
+              guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_, set.setup_memory()) : nullptr, clock),
       jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock, tap_.is_on() || guest_ != nullptr),
       members_(set.tasks(), records_, queue_, tap_, guest_),
       settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),

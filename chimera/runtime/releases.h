@@ -16,7 +16,6 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "chimera/runtime/boundary_signals.h"
 #include "chimera/runtime/job_cycle.h"
@@ -30,7 +29,8 @@
 
 namespace chimera {
 
-/// Owns the parts and their memory. Context of everything not marked: cycle; no allocation, no system call.
+/// Owns the parts, which work in the memory that the set was built in. Context of everything not marked: cycle; no
+/// allocation, no system call.
 class Releases {
  public:
   /// `clock` is what methods see, and is made the clock of the set. Requires: no task of this context with the reaction
@@ -74,9 +74,10 @@ class Releases {
   void release_due(Nanoseconds now) noexcept {
     if (queue_.next_release() > now) return;
     queue_.release_due(now, [this](const DroppedRelease& d) { misses_.drop(d); });
-    if (!misses_.has_lost_patience()) return;
-    look_again();
-    settlement_.give_up_starved(now);
+    if (misses_.has_lost_patience()) [[unlikely]] {
+      look_again();
+      settlement_.give_up_starved(now);
+    }
   }
 
   /// The illegal-configuration flag, to be read once for each job.
@@ -117,16 +118,11 @@ class Releases {
   const std::atomic<bool>* stop_;  // set by other threads and by signal handlers; relaxed, pairs with nothing
   Nanoseconds origin_;
   Nanoseconds calm_until_ = kAtOnce;
-  std::vector<JobRecord> records_;
+  std::span<JobRecord> records_;
   ContextTap tap_;
   JobsInLoop in_loop_;
   JobThreads& threads_;
   std::optional<MissCause> cause_;  // with a guest, which reports it
-  std::vector<QueueMember> queue_members_;
-  std::vector<QueueClass> queue_classes_;
-  std::vector<QueueTask> queue_tasks_;
-  std::vector<LooseJob> loose_;
-  std::vector<std::uint32_t> pauses_, runs_;
   ReadyQueue queue_;
   MissPolicy misses_;
   JobCycle jobs_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 
@@ -36,7 +37,7 @@ struct ReleasesTest : ::testing::Test {
   }
   /// The grid of releases begins at 10 ms.
   void begin() {
-    set = *TaskSet::create(app.make(), app.components);
+    set = *HeapTaskSet::create(app.make(), app.components);
     releases.emplace(*set, clock, options);
     ASSERT_TRUE(set->life().start({}));
     releases->begin(milliseconds(10));
@@ -61,7 +62,7 @@ struct ReleasesTest : ::testing::Test {
   testing::TestApplication app;
   ModelledClock clock;
   RunOptions options;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
   std::optional<Releases> releases;
 };
 

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "chimera/runtime/background_writer.h"
+#include "chimera/runtime/background_threads.h"
 #include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
@@ -23,7 +23,7 @@ struct RunOptions {
   BoundaryListener* guest = nullptr;         ///< null: nobody else takes part in the edges
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
   JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
-  BackgroundWriter* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer
+  BackgroundThreads* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer
   bool can_demote = false;                   ///< jobs may go on below all others
 };
 

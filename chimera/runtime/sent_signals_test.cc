@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
@@ -45,7 +46,7 @@ struct SentSignalsTest : ::testing::Test {
       tasks[t].spec = &specs[t];
       tasks[t].state = State::kOn;
       if (TaskId(t) == kForeign) memories.emplace_back();
-      else memories.push_back(*TaskMemory::create(app.tasks[0], *app.components[0]));
+      else memories.push_back(*TaskMemory::create(app.tasks[0], *app.components[0], heap));
     }
     sent.prepare(tasks, memories, &elsewhere);
   }
@@ -54,6 +55,7 @@ struct SentSignalsTest : ::testing::Test {
   testing::TestApplication app;
   std::array<TaskSpec, 3> specs;
   std::array<Task, 3> tasks;
+  HeapMemory heap;
   std::vector<TaskMemory> memories;
   Elsewhere elsewhere;
   SentSignals sent;

@@ -28,4 +28,16 @@ SetFault set_fault(const Ports& producers, const Ports& consumers, bool is_given
   return SetFault::kNone;
 }
 
+/// True when the set obeys both equations for each of the `variables` (runtime/application_spec.h). `on[t]`: task t is
+/// in the set. Context: any; O(ports).
+template <class Variables, class Set>
+bool is_legal_set(const Variables& variables, const Set& on) {
+  const auto is_on = [&on](const auto& port) -> bool { return on[port.task.index]; };
+  for (const auto& variable : variables) {
+    const bool is_given = variable.operator_index != UINT32_MAX;
+    if (set_fault(variable.producers, variable.consumers, is_given, is_on, is_on) != SetFault::kNone) return false;
+  }
+  return true;
+}
+
 }  // namespace chimera

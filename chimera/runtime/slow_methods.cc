@@ -7,13 +7,13 @@
 namespace chimera {
 
 void SlowMethods::prepare(std::span<Task> tasks, std::span<TaskHost> hosts, TaskMethods& methods, Service* service,
-                          std::atomic<std::uint32_t>& serving) {
+                          std::atomic<std::uint32_t>& serving, SetupMemory& memory) {
   tasks_ = tasks;
   hosts_ = hosts;
   methods_ = &methods;
   service_ = service;
   serving_ = &serving;
-  asked_.resize(tasks.size());
+  asked_ = memory.take<Asked>(tasks.size());
 }
 
 void SlowMethods::ask(Task& task, const Asked& asked) noexcept {

@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <span>
-#include <vector>
 
 #include "chimera/runtime/service.h"
 #include "chimera/runtime/task_host.h"
@@ -27,7 +26,7 @@ class SlowMethods {
   /// `service` null: there is no such thread. `serving` is told which task and method it runs, as BlockHead::serving;
   /// `hosts[t]` is what task t asks of the framework. Everything given outlives this. Context: setup.
   void prepare(std::span<Task> tasks, std::span<TaskHost> hosts, TaskMethods& methods, Service* service,
-               std::atomic<std::uint32_t>& serving);
+               std::atomic<std::uint32_t>& serving, SetupMemory& memory);
 
   /// True when there is a service thread.
   bool is_there() const noexcept { return service_ != nullptr; }
@@ -57,7 +56,7 @@ class SlowMethods {
   TaskMethods* methods_ = nullptr;
   Service* service_ = nullptr;
   std::atomic<std::uint32_t>* serving_ = nullptr;  // relaxed, pairs with nothing: as TaskMethods::Words
-  std::vector<Asked> asked_;                       // by task
+  std::span<Asked> asked_;                         // by task
 };
 
 }  // namespace chimera

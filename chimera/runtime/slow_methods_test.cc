@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
@@ -54,7 +54,7 @@ struct SlowMethodsTest : ::testing::Test {
     place.service = &service;
     place.serving = &serving;
     place.at_edge = &at_edge;
-    set = *TaskSet::create(app.spec, app.components, place);
+    set = *HeapTaskSet::create(app.spec, app.components, place);
     set->methods().run_by({&edge_clock});
   }
   Task& task() { return set->tasks()[0]; }
@@ -74,7 +74,7 @@ struct SlowMethodsTest : ::testing::Test {
   testing::TestApplication app;
   HandService service;
   ModelledClock edge_clock, service_clock;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
 };
 
 TEST_F(SlowMethodsTest, ConstructionAndInitAreRunByTheServiceThreadOneAfterTheOther) {

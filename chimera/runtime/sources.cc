@@ -30,23 +30,19 @@ void fill_output(const PortSpec& port, std::span<std::byte> to) noexcept {
 }  // namespace
 
 void Sources::prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<Task> tasks,
-                      std::span<TaskMemory> memories, const PeerView* others, bool preemptive) {
+                      std::span<TaskMemory> memories, const PeerView* others, bool preemptive, SetupMemory& memory) {
   preemptive_ = preemptive;
   spec_ = &spec;
   table_ = &table;
   tasks_ = tasks;
   memories_ = memories;
   others_ = others;
-  sources_.resize(spec.variables.size());
-  used_.resize(tasks.size());
-  is_behind_.resize(tasks.size());
-  for (const Variable& variable : spec.variables) plan_copies(variable);
-  std::vector<std::size_t> n(tasks.size());
+  sources_ = memory.take<Source>(spec.variables.size());
+  is_behind_ = memory.take<bool>(tasks.size());
+  plan_copies(memory);
   std::uint32_t largest = 0;
-  for (const Copy& copy : copies_) ++n[copy.consumer.index];
-  for (std::size_t t = 0; t < n.size(); ++t) used_[t].reserve(n[t]);
   for (const GroupPlace& group : table.everything().table().groups()) largest = std::max(largest, group.payload_bytes);
-  scratch_ = AlignedBytes(sizeof(chimera_slot) + largest, kCacheLine);
+  scratch_ = memory.take_bytes(sizeof(chimera_slot) + largest, kCacheLine);
   for (std::size_t v = 0; v < sources_.size(); ++v) {
     const Variable& variable = spec.variables[v];
     if (variable.operator_index != UINT32_MAX) bind(VariableId(v), operator_source(variable));
@@ -75,21 +71,41 @@ Source Sources::source_from(const PortOf& producer) const noexcept {
   return source;
 }
 
-void Sources::plan_copies(const Variable& variable) {
-  for (const PortOf& consumer : variable.consumers) {
-    if (!is_mine(consumer.task)) continue;
-    if (variable.operator_index != UINT32_MAX) plan_copy(consumer.task, operator_source(variable));
-    for (const PortOf& producer : variable.producers)
-      if (preemptive_ || !is_mine(producer.task)) plan_copy(consumer.task, source_from(producer));
+void Sources::plan_copies(SetupMemory& memory) {
+  std::size_t most = 0;  // a task that reads two variables of one group is counted twice
+  for (const Variable& variable : spec_->variables) {
+    const auto is_copied = [this](const PortOf& producer) { return preemptive_ || !is_mine(producer.task); };
+    auto n = std::count_if(variable.producers.begin(), variable.producers.end(), is_copied);
+    if (variable.operator_index != UINT32_MAX) ++n;
+    for (const PortOf& consumer : variable.consumers)
+      if (is_mine(consumer.task)) most += static_cast<std::size_t>(n);
+  }
+  copies_ = memory.take<Copy>(most).first(0);
+  for (const Variable& variable : spec_->variables) plan_copies(variable, memory);
+  used_ = memory.take<std::span<LocalGroup*>>(tasks_.size());
+  for (const Task& task : tasks_) {
+    const auto is_its = [&task](const Copy& copy) { return copy.consumer == task.id; };
+    const auto n = std::count_if(copies_.begin(), copies_.end(), is_its);
+    used_[task.id.index] = memory.take<LocalGroup*>(static_cast<std::size_t>(n));
   }
 }
 
-void Sources::plan_copy(TaskId consumer, const Source& source) {
+void Sources::plan_copies(const Variable& variable, SetupMemory& memory) {
+  for (const PortOf& consumer : variable.consumers) {
+    if (!is_mine(consumer.task)) continue;
+    if (variable.operator_index != UINT32_MAX) plan_copy(consumer.task, operator_source(variable), memory);
+    for (const PortOf& producer : variable.producers)
+      if (preemptive_ || !is_mine(producer.task)) plan_copy(consumer.task, source_from(producer), memory);
+  }
+}
+
+// Requires: there is room behind copies_.
+void Sources::plan_copy(TaskId consumer, const Source& source, SetupMemory& memory) {
   if (copy_for(consumer, source) != nullptr) return;
   const std::uint32_t payload = payload_of(source);
-  copy_memory_.emplace_back(local_group_bytes(payload), kCacheLine);
-  copies_.push_back(
-      {LocalGroup(GroupReader(nullptr, payload), copy_memory_.back().span()), consumer, source, false, false});
+  const std::span<std::byte> bytes = memory.take_bytes(local_group_bytes(payload), kCacheLine);
+  copies_ = {copies_.data(), copies_.size() + 1};
+  copies_.back() = {LocalGroup(GroupReader(nullptr, payload), bytes), consumer, source, false, false};
   for (std::uint32_t half = 0; half < 2; ++half) fill(source, copies_.back().group.values_of_half(half));
 }
 
@@ -205,15 +221,15 @@ bool Sources::is_any_behind() const noexcept {
 }
 
 void Sources::collect_copies(TaskId consumer) noexcept {
-  std::vector<LocalGroup*>& used = used_[consumer.index];
+  const std::span<LocalGroup*> used = used_[consumer.index];
   Task& task = tasks_[consumer.index];
-  used.clear();
+  std::size_t n = 0;
   for (Copy& copy : copies_) {
     if (copy.consumer != consumer || !copy.is_bound) continue;
     const auto reads = [&copy](const Input& input) { return input.group.follows(copy.group); };
-    if (std::any_of(task.inputs.begin(), task.inputs.end(), reads)) used.push_back(&copy.group);
+    if (std::any_of(task.inputs.begin(), task.inputs.end(), reads)) used[n++] = &copy.group;
   }
-  task.copies = used;
+  task.copies = used.first(n);
 }
 
 const chimera_slot* Sources::latest(VariableId variable) noexcept {

@@ -9,11 +9,9 @@
 // Until a producer goes ON its consumers look at the initial values, or the never-written fill, of the first one.
 #pragma once
 
-#include <deque>
 #include <span>
-#include <vector>
 
-#include "chimera/runtime/aligned_bytes.h"
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/context_table.h"
 #include "chimera/runtime/peer_view.h"
 #include "chimera/runtime/task_memory.h"
@@ -37,7 +35,7 @@ class Sources {
   /// `memories[t]` is planned for the tasks of this context and empty for those of others; `others` null: there are
   /// none. `preemptive`: tasks of this context read each other through copies too. Context: setup.
   void prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<Task> tasks,
-               std::span<TaskMemory> memories, const PeerView* others, bool preemptive);
+               std::span<TaskMemory> memories, const PeerView* others, bool preemptive, SetupMemory& memory);
 
   /// The task, of this context, went ON: whoever reads its variables reads them from its group now.
   void take_outputs_of(const Task& task) noexcept;
@@ -74,8 +72,9 @@ class Sources {
   std::uint32_t payload_of(const Source& source) const noexcept;
   GroupReader reader_of(const Source& source) const noexcept;
   Source source_from(const PortOf& producer) const noexcept;
-  void plan_copies(const Variable& variable);
-  void plan_copy(TaskId consumer, const Source& source);
+  void plan_copies(SetupMemory& memory);
+  void plan_copies(const Variable& variable, SetupMemory& memory);
+  void plan_copy(TaskId consumer, const Source& source, SetupMemory& memory);
   void fill(const Source& source, std::span<std::byte> values) const noexcept;
   Copy* copy_for(TaskId consumer, const Source& source) noexcept;
   void bind(VariableId variable, const Source& source) noexcept;
@@ -91,13 +90,12 @@ class Sources {
   std::span<Task> tasks_;
   std::span<TaskMemory> memories_;
   const PeerView* others_ = nullptr;
-  std::vector<Source> sources_;  // by variable
-  std::deque<Copy> copies_;
-  std::vector<AlignedBytes> copy_memory_;
-  std::vector<std::vector<LocalGroup*>> used_;  // by task: bound copies that an input follows
-  std::vector<bool> is_behind_;                 // by task
+  std::span<Source> sources_;  // by variable
+  std::span<Copy> copies_;
+  std::span<std::span<LocalGroup*>> used_;  // by task: room for the bound copies that an input follows
+  std::span<bool> is_behind_;               // by task
   bool preemptive_ = false;
-  AlignedBytes scratch_;                        // a slot of the largest group
+  std::span<std::byte> scratch_;            // a slot of the largest group
 };
 
 }  // namespace chimera

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 
@@ -35,7 +35,7 @@ struct TaskHostTest : ::testing::Test {
     app.port(0, 0).unit = "rad";
     app.link(0, 1, {});
     app.give(app.operators, "q", CHIMERA_FLOAT64, testing::bytes_of(0.5));
-    set = *TaskSet::create(app.make(), app.components);
+    set = *HeapTaskSet::create(app.make(), app.components);
     set->methods().run_by({&clock});
     EXPECT_TRUE(set->life().start({}));
     task().has_news = false;
@@ -52,7 +52,7 @@ struct TaskHostTest : ::testing::Test {
   }
 
   testing::TestApplication app;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
   ModelledClock clock;
 };
 

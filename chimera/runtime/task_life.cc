@@ -4,26 +4,26 @@
 
 #include <cstring>
 
+#include "chimera/runtime/set_equations.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
 
-void TaskLife::prepare(std::size_t n_tasks) {
-  progress_.resize(n_tasks);
-  wanted_.assign(n_tasks, false);
+void TaskLife::prepare(std::size_t n_tasks, SetupMemory& memory) {
+  progress_ = memory.take<Progress>(n_tasks);
+  wanted_ = memory.take<bool>(n_tasks);
 }
 
-Result<void> TaskLife::start(Nanoseconds now) {
+SignalReport TaskLife::start(Nanoseconds now) {
   const ApplicationSpec& spec = set_.spec();
   for (TaskId id : spec.init_order) {
-    carry_out(id, Signal::kSpawn, now);
-    const Task& task = set_.tasks()[id.index];
-    if (task.state != State::kOff)
-      return Error{ErrorCode::kRefused, {std::string("init: ") + task.faults.last.text}, {task.spec->name}};
+    SignalReport report = carry_out(id, Signal::kSpawn, now);
+    if (set_.tasks()[id.index].state == State::kOff) continue;
+    report.is_accepted = false;
+    report.why = Refusal::kFault;
+    return report;
   }
-  const SignalReport report = signal(spec.start, Signal::kOn, now);
-  if (!report.is_accepted) return Error{ErrorCode::kRefused, {explain(report)}, {spec.name}};
-  return {};
+  return signal(spec.start, Signal::kOn, now);
 }
 
 void TaskLife::shut_down(Nanoseconds now) {
@@ -72,16 +72,7 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
 bool TaskLife::would_be_legal(std::span<const TaskId> tasks) noexcept {
   for (const Task& task : set_.tasks()) wanted_[task.id.index] = task.state == State::kOn;
   for (TaskId id : tasks) wanted_[id.index] = true;
-  return set_.variables().is_legal(wanted_);
-}
-
-std::string TaskLife::explain(const SignalReport& report) const {
-  if (report.is_accepted) return {};
-  if (report.why == Refusal::kIllegalSet) return set_.variables().explain(wanted_, set_.spec().tasks);
-  const Task& task = set_.tasks()[report.task.index];
-  const std::string what = signal_name(report.signal);
-  if (report.why == Refusal::kFault) return what + ": " + std::string(task.spec->name) + ": " + task.faults.last.text;
-  return what + " is not legal for " + std::string(task.spec->name) + " in state " + state_name(report.before);
+  return is_legal_set(set_.spec().variables, wanted_);
 }
 
 SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {

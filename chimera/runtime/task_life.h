@@ -5,10 +5,8 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
-#include "chimera/base/result.h"
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/job_clock.h"
 #include "chimera/runtime/refusal.h"
 #include "chimera/task/task.h"
@@ -26,6 +24,8 @@ struct SignalReport {
   TaskId task;  ///< the one it failed at, else the last
   State before = State::kNotCreated;
   State after = State::kNotCreated;
+
+  explicit operator bool() const noexcept { return is_accepted; }
 };
 
 /// Acts on the tasks that a TaskSet holds. Context of everything not marked: edge; as long as the methods take.
@@ -33,11 +33,11 @@ class TaskLife {
  public:
   explicit TaskLife(TaskSet& set) noexcept : set_(set) {}
   /// For as many tasks as the set has. Context: setup.
-  void prepare(std::size_t n_tasks);
+  void prepare(std::size_t n_tasks, SetupMemory& memory);
 
-  /// Spawns all tasks in the order of their constants and turns the start set ON as one transaction.
-  /// Refuses with the first task that said no; whatever was spawned stays as it is.
-  Result<void> start(Nanoseconds now);
+  /// Spawns all tasks in the order of their constants and turns the start set ON as one transaction. Reports the first
+  /// task that said no; whatever was spawned stays as it is. In words: refusal_text.h.
+  SignalReport start(Nanoseconds now);
   /// off (reverse of the start order), then kill, for every task that is there.
   void shut_down(Nanoseconds now);
   /// Carries out one signal and all that follows from it (re-initialisation of users of a changed constant, the
@@ -48,9 +48,8 @@ class TaskLife {
   /// Goes on with the signal of which the service thread has run a method; deferred again while there is more.
   SignalReport finish_slow(TaskId task, Nanoseconds now);
 
-  /// A refused report in words, with the smallest legal set where that helps; "" when it was accepted. For a report of
-  /// the last call of signal(). Context: setup; may block.
-  std::string explain(const SignalReport& report) const;
+  /// The set that the last call of signal() with `on` would have turned ON: wanted()[t] says whether task t is in it.
+  std::span<const bool> wanted() const noexcept { return wanted_; }
 
  private:
   /// The signal that a task is carrying out.
@@ -75,8 +74,8 @@ class TaskLife {
   Nanoseconds read_clock(Nanoseconds otherwise) const noexcept;
 
   TaskSet& set_;
-  std::vector<Progress> progress_;  // by task
-  std::vector<bool> wanted_;        // the ON set that was asked for last
+  std::span<Progress> progress_;  // by task
+  std::span<bool> wanted_;        // the ON set that was asked for last
   std::uint64_t taken_over_valid_ = 0;
 };
 

@@ -3,11 +3,9 @@
 #include "chimera/runtime/task_memory.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
-#include <mutex>
-#include <utility>
 
+#include "chimera/base/message.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/table/never_written.h"
 
@@ -20,13 +18,14 @@ std::uint32_t round_up(std::uint32_t bytes) noexcept {
   return (bytes + kValueAlignment - 1) / kValueAlignment * kValueAlignment;
 }
 
+bool is_variable(std::uint32_t kind) noexcept { return kind == CHIMERA_IN_VAR || kind == CHIMERA_OUT_VAR; }
+
+bool is_constant(std::uint32_t kind) noexcept { return kind == CHIMERA_IN_CONST || kind == CHIMERA_OUT_CONST; }
+
 Error misfit(const TaskSpec& spec, const char* what, const char* port) {
-  Error error{ErrorCode::kBadInput, {}, {spec.name}};
-  char text[300];
-  std::snprintf(text, sizeof text, "component %.*s: %s%s%s; was it built from another source than its descriptor?",
-                static_cast<int>(spec.component.size()), spec.component.data(), what, *port ? " " : "", port);
-  error.message.assign(text);
-  return error;
+  Message text;
+  text << "component " << spec.component << ": " << what << (*port ? " " : "") << port;
+  return (text << "; was it built from another source than its descriptor?").error(ErrorCode::kBadInput, spec.name);
 }
 
 void never_written(std::byte* at, std::uint32_t type, std::uint32_t bytes) noexcept {
@@ -48,13 +47,15 @@ void never_written(std::byte* at, const chimera_port_decl& decl, const PortSpec&
 
 }  // namespace
 
-Result<TaskMemory> TaskMemory::create(const TaskSpec& spec, const chimera_component& component) {
+Result<TaskMemory> TaskMemory::create(const TaskSpec& spec, const chimera_component& component, SetupMemory& memory) {
   TaskMemory made;
   made.spec_ = &spec;
   made.component_ = &component;
-  if (auto planned = made.plan(spec); !planned) return planned.error();
-  made.state_ = AlignedBytes(component.state_size, component.state_align);
-  made.constant_memory_ = AlignedBytes(made.constant_bytes_, kCacheLine);
+  made.memory_ = &memory;
+  if (auto planned = made.plan(); !planned) return planned.error();
+  made.take_lists(memory);
+  made.state_ = memory.take_bytes(component.state_size, component.state_align);
+  made.constant_memory_ = memory.take_bytes(made.constant_bytes_, kCacheLine);
   return made;
 }
 
@@ -72,42 +73,56 @@ void TaskMemory::place(std::span<std::byte> first, std::span<std::byte> second, 
   }
 }
 
-Result<void> TaskMemory::plan(const TaskSpec& spec) {
-  for (const PortSpec& port : spec.ports) {
-    if (port.declared >= component_->n_ports) return misfit(spec, "it declares fewer ports", "");
-    if (auto planned = plan_port(port); !planned) return planned;
+Result<void> TaskMemory::plan() {
+  std::size_t outputs = 0;
+  for (const PortSpec& port : spec_->ports) {
+    if (port.declared >= component_->n_ports) return misfit(*spec_, "it declares fewer ports", "");
+    if (auto checked = check_port(port); !checked) return checked;
+    if (port.kind != CHIMERA_OUT_VAR) continue;
+    if (outputs == 64) return misfit(*spec_, "more than 64 out-vars, at port", component_->ports[port.declared].name);
+    if (!port.value.empty()) initial_valid_ |= std::uint64_t{1} << outputs;
+    ++outputs;
   }
   return {};
 }
 
-Result<void> TaskMemory::plan_port(const PortSpec& port) {
+Result<void> TaskMemory::check_port(const PortSpec& port) const {
   const chimera_port_decl& decl = component_->ports[port.declared];
   if (decl.kind != port.kind) return misfit(*spec_, "another kind of port", decl.name);
   if (port.instance >= decl.max_instances) return misfit(*spec_, "too many instances of port", decl.name);
   if (decl.type != CHIMERA_ANY && decl.kind != CHIMERA_RESOURCE && decl.element_size != port.element_bytes)
     return misfit(*spec_, "another element size at port", decl.name);
-  switch (decl.kind) {
-    case CHIMERA_IN_VAR:
-      inputs_.emplace_back();
-      input_specs_.push_back(&port);
-      break;
-    case CHIMERA_OUT_VAR:
-      if (outputs_.size() == 64) return misfit(*spec_, "more than 64 out-vars, at port", decl.name);
-      if (!port.value.empty()) initial_valid_ |= std::uint64_t{1} << outputs_.size();
-      outputs_.push_back({nullptr, &port, 0, port.max_bytes()});
-      break;
-    case CHIMERA_IN_CONST:
-    case CHIMERA_OUT_CONST:
-      constants_.push_back({nullptr, &port, &decl, nullptr});
-      constant_bytes_ += round_up(port.max_bytes());
-      break;
-    case CHIMERA_RESOURCE:
-      resources_.emplace_back(&port, std::string(reinterpret_cast<const char*>(port.value.data()), port.value.size()));
-      break;
-    default:
-      return misfit(*spec_, "streams cannot be bound yet, port", decl.name);
-  }
+  if (!is_variable(decl.kind) && !is_constant(decl.kind) && decl.kind != CHIMERA_RESOURCE)
+    return misfit(*spec_, "streams cannot be bound yet, port", decl.name);
   return {};
+}
+
+void TaskMemory::take_lists(SetupMemory& memory) {
+  std::size_t inputs = 0, outputs = 0, constants = 0, resources = 0;
+  for (const PortSpec& port : spec_->ports)
+    ++(port.kind == CHIMERA_IN_VAR ? inputs : port.kind == CHIMERA_OUT_VAR ? outputs
+                                          : is_constant(port.kind)         ? constants
+                                                                           : resources);
+  inputs_ = memory.take<Input>(inputs);
+  input_specs_ = memory.take<const PortSpec*>(inputs);
+  outputs_ = memory.take<Output>(outputs);
+  constants_ = memory.take<ConstantPort>(constants);
+  resources_ = memory.take<ResourcePort>(resources);
+  inputs = outputs = constants = resources = 0;
+  for (const PortSpec& port : spec_->ports) {
+    if (port.kind == CHIMERA_IN_VAR) {
+      input_specs_[inputs++] = &port;
+    } else if (port.kind == CHIMERA_OUT_VAR) {
+      outputs_[outputs++] = {nullptr, &port, 0, port.max_bytes()};
+    } else if (is_constant(port.kind)) {
+      constants_[constants++] = {nullptr, &port, &component_->ports[port.declared], nullptr};
+      constant_bytes_ += round_up(port.max_bytes());
+    } else {
+      const std::span<std::byte> text = memory.take_bytes(port.value.size() + 1, 1);  // a zero behind it
+      std::copy(port.value.begin(), port.value.end(), text.begin());
+      resources_[resources++] = {&port, reinterpret_cast<const char*>(text.data())};
+    }
+  }
 }
 
 chimera_port* TaskMemory::live(const PortSpec& port) const noexcept {
@@ -122,7 +137,7 @@ const PortSpec* TaskMemory::spec_of(const chimera_port* port) const noexcept {
 }
 
 void TaskMemory::make_fill() {
-  fill_.resize(payload_bytes_);
+  fill_ = memory_->take_bytes(payload_bytes_, kCacheLine);
   for (const Output& output : outputs_) {
     const PortSpec& spec = *output.spec;
     std::byte* to = fill_.data() + output.offset;
@@ -141,7 +156,7 @@ GroupReader TaskMemory::reader() const noexcept {
 }
 
 Result<void> TaskMemory::construct(Task& task, Nanoseconds now) {
-  state_.clear();
+  std::fill(state_.begin(), state_.end(), std::byte{});
   task.faults.last = {};
   if (component_->construct(state_.data(), &task.faults.last) != CHIMERA_OK)
     return Error{ErrorCode::kRefused, {task.faults.last.text}, {spec_->name}};
@@ -190,7 +205,7 @@ void TaskMemory::wire(Task& task) noexcept {
     if (!constant.spec->value.empty())
       std::memcpy(constant.local, constant.spec->value.data(), constant.spec->value.size());
   }
-  for (auto& [port, text] : resources_) live(*port)->value = text.data();
+  for (const ResourcePort& resource : resources_) live(*resource.spec)->value = const_cast<char*>(resource.text);
   task.inputs = inputs_;
   task.outputs = outputs_;
   task.all_outputs = outputs_.size() >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << outputs_.size()) - 1;
@@ -206,12 +221,8 @@ void TaskMemory::destroy(Task& task) noexcept {
 }
 
 void TaskMemory::abandon(Task& task) {
-  static auto& never_freed = *new std::vector<AlignedBytes>;
-  static std::mutex guard;
-  AlignedBytes left(component_->state_size, component_->state_align);
-  std::swap(state_, left);
-  const std::lock_guard lock(guard);
-  never_freed.push_back(std::move(left));
+  memory_->keep_for_ever();
+  state_ = memory_->take_bytes(component_->state_size, component_->state_align);
   is_constructed_ = false;
   task.instance = nullptr;
 }
@@ -224,10 +235,8 @@ bool TaskMemory::read_constants(const ConstantStore& store, FixedString<160>& wh
       std::memcpy(constant.local, found.value.data(),
                   std::min<std::size_t>(found.value.size(), constant.spec->max_bytes()));
     } else if (constant.spec->value.empty()) {
-      char text[160];
-      std::snprintf(text, sizeof text, "constant %.*s has no value: its producer was not initialised",
-                    static_cast<int>(found.spec->name.size()), found.spec->name.data());
-      why.assign(text);
+      const std::string_view name = found.spec->name;
+      why.assign((Message("constant ") << name << " has no value: its producer was not initialised").view());
       return false;
     }
   }
@@ -263,11 +272,9 @@ bool TaskMemory::fix_extents(const ConstantStore& store, FixedString<160>& why) 
       const std::int64_t n = !extent.constant.is_valid() ? extent.max : store.integer(extent.constant, extent.max);
       if (n < 1 || n > extent.max) {
         const std::string_view name = extent.constant.is_valid() ? store[extent.constant].spec->name : "";
-        char text[160];
-        std::snprintf(text, sizeof text, "extent %.*s = %lld of port %s is outside 1 to %u",
-                      static_cast<int>(name.size()), name.data(), static_cast<long long>(n),
-                      component_->ports[port.declared].name, extent.max);
-        why.assign(text);
+        Message text("extent ");
+        text << name << " = " << n << " of port " << component_->ports[port.declared].name;
+        why.assign((text << " is outside 1 to " << extent.max).view());
         return false;
       }
       to.extent[d] = static_cast<std::uint32_t>(n);

@@ -2,11 +2,10 @@
 // The memory behind one task: component state, constants, resources, groups, and the wiring of every port.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <span>
 
 #include "chimera/base/result.h"
-#include "chimera/runtime/aligned_bytes.h"
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/constant_store.h"
 #include "chimera/table/layout.h"
 #include "chimera/task/task.h"
@@ -21,12 +20,13 @@ struct ConstantPort {
   std::byte* local = nullptr;
 };
 
-/// Owns what a Task points at. Context: setup and edge.
+/// Knows what a Task points at, all of it taken from given memory. Copyable before construct(). Context: setup and
+/// edge.
 class TaskMemory {
  public:
   /// Plans the memory for `spec`. Refuses a specification that does not fit the component's declaration
   /// (a descriptor of another build): names task and port.
-  static Result<TaskMemory> create(const TaskSpec& spec, const chimera_component& component);
+  static Result<TaskMemory> create(const TaskSpec& spec, const chimera_component& component, SetupMemory& memory);
 
   /// Gives the task its places in the table: two groups, used in turn by its incarnations, with the never-written
   /// fill and initial values published in both. `places` are those of the first one's variables.
@@ -70,28 +70,36 @@ class TaskMemory {
   bool is_unwritten(const Task& task, std::size_t i) const noexcept;
 
  private:
-  Result<void> plan(const TaskSpec& spec);
-  Result<void> plan_port(const PortSpec& port);
+  Result<void> plan();
+  void take_lists(SetupMemory& memory);
+  Result<void> check_port(const PortSpec& port) const;
   void wire(Task& task) noexcept;
   void make_fill();
   chimera_port* live(const PortSpec& port) const noexcept;
 
+  /// A resource port: `text` is what the component sees.
+  struct ResourcePort {
+    const PortSpec* spec = nullptr;
+    const char* text = nullptr;
+  };
+
   const TaskSpec* spec_ = nullptr;
   const chimera_component* component_ = nullptr;
-  AlignedBytes state_;
-  AlignedBytes constant_memory_;
+  SetupMemory* memory_ = nullptr;
+  std::span<std::byte> state_;
+  std::span<std::byte> constant_memory_;
   std::span<std::byte> groups_[2];
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t constant_bytes_ = 0;
   std::uint32_t incarnation_ = 0;
   std::uint64_t initial_valid_ = 0;
   bool is_constructed_ = false;
-  std::vector<Input> inputs_;
-  std::vector<const PortSpec*> input_specs_;  ///< of inputs_, in the same order
-  std::vector<Output> outputs_;
-  std::vector<std::byte> fill_;  ///< payload of a group at spawn: initial values, else the never-written fill
-  std::vector<ConstantPort> constants_;
-  std::vector<std::pair<const PortSpec*, std::string>> resources_;
+  std::span<Input> inputs_;
+  std::span<const PortSpec*> input_specs_;  ///< of inputs_, in the same order
+  std::span<Output> outputs_;
+  std::span<std::byte> fill_;  ///< payload of a group at spawn: initial values, else the never-written fill
+  std::span<ConstantPort> constants_;
+  std::span<ResourcePort> resources_;
 };
 
 }  // namespace chimera

@@ -56,9 +56,9 @@ bool TaskMethods::end_background(Task& task, Nanoseconds now) {
   }
   task.background = nullptr;
   chimera_fault fault{};
-  const BackgroundWriter::End end = runner_.writer->remove(task.instance, fault);
-  if (end != BackgroundWriter::End::kDone) record_fault(task, Method::kKill, fault.text, now);
-  if (end != BackgroundWriter::End::kStalled) return true;
+  const BackgroundThreads::End end = runner_.writer->remove(task.instance, fault);
+  if (end != BackgroundThreads::End::kDone) record_fault(task, Method::kKill, fault.text, now);
+  if (end != BackgroundThreads::End::kStalled) return true;
   memories_[task.id.index].abandon(task);
   return false;
 }

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <span>
 
-#include "chimera/runtime/background_writer.h"
+#include "chimera/runtime/background_threads.h"
 #include "chimera/runtime/job_clock.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/job_threads.h"
@@ -20,7 +20,7 @@ struct MethodRunner {
   JobThreads* threads = nullptr;  ///< calls methods at edges; null: the caller does
   /// Whose threads run what components do beside their cycles. Null: that is done before kill alone (and by executors
   /// of virtual time).
-  BackgroundWriter* writer = nullptr;
+  BackgroundThreads* writer = nullptr;
 };
 
 /// Context of everything not marked: edge, or the service thread; as long as the methods of components take.

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "chimera/runtime/context_table.h"
+#include "chimera/runtime/hosted/background_writer.h"
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/making.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/runtime/testing/test_application.h"
@@ -58,8 +60,8 @@ struct TaskMethodsTest : ::testing::Test {
     is_checked = Device::refuses = Device::fails = false;
     app.add("device", testing::component<Device>("device"));
     app.make();
-    memories.push_back(*TaskMemory::create(app.tasks[0], *app.components[0]));
-    EXPECT_TRUE(table.prepare(app.spec, {}));
+    memories.push_back(*TaskMemory::create(app.tasks[0], *app.components[0], heap));
+    EXPECT_TRUE(table.prepare(app.spec, {}, heap));
     table.place_outputs(TaskId(0u), memories[0]);
     task.spec = &app.tasks[0];
     task.component = app.components[0];
@@ -72,6 +74,7 @@ struct TaskMethodsTest : ::testing::Test {
   ~TaskMethodsTest() override { methods.destroy(task); }
 
   testing::TestApplication app;
+  HeapMemory heap;
   ContextTable table;
   std::vector<TaskMemory> memories;
   Task task;

@@ -6,32 +6,27 @@
 
 namespace chimera {
 
-Result<std::unique_ptr<TaskSet>> TaskSet::create(const ApplicationSpec& spec,
-                                                 std::span<const chimera_component* const> components,
-                                                 const ContextPlace& place) {
-  CHIMERA_ASSERT(components.size() == spec.tasks.size());
-  std::unique_ptr<TaskSet> made(new TaskSet(spec, place));
-  if (auto built = made->build(components); !built) return built.error();
-  return made;
-}
-
 TaskSet::~TaskSet() {
-  for (std::size_t t = 0; t < memories_.size(); ++t) {
-    if (!memories_[t].is_planned()) continue;
-    (void)methods_.end_background(tasks_[t], {});
-    methods_.destroy(tasks_[t]);
+  for (Task& task : tasks_) {
+    TaskMemory& memory = memories_[task.id.index];
+    if (!memory.is_planned()) continue;
+    (void)methods_.end_background(task, {});
+    memory.destroy(task);
   }
 }
 
 Result<void> TaskSet::build(std::span<const chimera_component* const> components) {
+  const std::size_t n = spec_.tasks.size();
+  CHIMERA_ASSERT(components.size() == n && tasks_.empty());
+  memories_ = memory_.take<TaskMemory>(n);
   if (auto planned = plan_memories(components); !planned) return planned;
-  tasks_.resize(spec_.tasks.size());
-  hosts_.resize(tasks_.size());
-  on_.assign(tasks_.size(), false);
-  listed_.resize(tasks_.size());
-  for (std::size_t t = 0; t < tasks_.size(); ++t) prepare_task(t, components[t]);
+  tasks_ = memory_.take<Task>(n);
+  hosts_ = memory_.take<TaskHost>(n);
+  on_ = memory_.take<bool>(n);
+  listed_ = memory_.take<TaskStatus>(n);
+  for (std::size_t t = 0; t < n; ++t) prepare_task(t, components[t]);
   if (auto produced = check_producers(); !produced) return produced;
-  if (auto laid = table_.prepare(spec_, place_); !laid) return laid;
+  if (auto laid = table_.prepare(spec_, place_, memory_); !laid) return laid;
   for (const Task& task : tasks_)
     if (is_mine(task.id)) table_.place_outputs(task.id, memories_[task.id.index]);
   prepare_parts();
@@ -39,15 +34,11 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
 }
 
 Result<void> TaskSet::plan_memories(std::span<const chimera_component* const> components) {
-  memories_.reserve(spec_.tasks.size());
   for (std::size_t t = 0; t < spec_.tasks.size(); ++t) {
-    if (place_.rtpu.is_valid() && spec_.tasks[t].rtpu != place_.rtpu) {
-      memories_.emplace_back();
-      continue;
-    }
-    auto memory = TaskMemory::create(spec_.tasks[t], *components[t]);
-    if (!memory) return memory.error();
-    memories_.push_back(*std::move(memory));
+    if (place_.rtpu.is_valid() && spec_.tasks[t].rtpu != place_.rtpu) continue;
+    const auto planned = TaskMemory::create(spec_.tasks[t], *components[t], memory_);
+    if (!planned) return planned.error();
+    memories_[t] = *planned;
   }
   return {};
 }
@@ -76,13 +67,13 @@ Result<void> TaskSet::check_producers() const {
 
 void TaskSet::prepare_parts() {
   methods_.prepare(memories_, {place_.at_edge, place_.making});
-  slow_.prepare(tasks_, hosts_, methods_, place_.service, *place_.serving);
+  slow_.prepare(tasks_, hosts_, methods_, place_.service, *place_.serving, memory_);
   sent_.prepare(tasks_, memories_, place_.others);
-  flag_.prepare(variables_, tasks_);
-  life_.prepare(tasks_.size());
-  if (place_.others != nullptr) changes_.prepare(tasks_.size());
-  constants_.prepare(spec_, table_, memories_, place_.others);
-  sources_.prepare(spec_, table_, tasks_, memories_, place_.others, place_.preemptive);
+  flag_.prepare(spec_.variables, tasks_, memory_);
+  life_.prepare(tasks_.size(), memory_);
+  if (place_.others != nullptr) changes_.prepare(tasks_.size(), memory_);
+  constants_.prepare(spec_, table_, memories_, place_.others, memory_);
+  sources_.prepare(spec_, table_, tasks_, memories_, place_.others, place_.preemptive, memory_);
 }
 
 void TaskSet::on_set_changed() noexcept {

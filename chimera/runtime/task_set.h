@@ -2,11 +2,10 @@
 // The tasks of one context: their memory, their wiring, and the parts that act on them. The executors add time.
 #pragma once
 
-#include <memory>
 #include <span>
-#include <vector>
 
 #include "chimera/base/result.h"
+#include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/changes.h"
 #include "chimera/runtime/context_constants.h"
@@ -20,7 +19,6 @@
 #include "chimera/runtime/task_life.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/task_methods.h"
-#include "chimera/runtime/variables.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -29,15 +27,16 @@ namespace chimera {
 /// SlowMethods::run().
 class TaskSet {
  public:
-  /// Plans memory for every task and binds what can be bound. `components[i]` runs task i (not looked at for tasks of
-  /// other contexts); `spec`, the components and what `place` names outlive the set. Refuses tasks that do not fit
-  /// their component. Context: setup.
-  static Result<std::unique_ptr<TaskSet>> create(const ApplicationSpec& spec,
-                                                 std::span<const chimera_component* const> components,
-                                                 const ContextPlace& place = {});
+  /// Everything that the set and its executors work in is taken from `memory`; all of it outlives the set. Context:
+  /// setup.
+  TaskSet(const ApplicationSpec& spec, const ContextPlace& place, SetupMemory& memory) noexcept
+      : spec_(spec), place_(place), memory_(memory) {}
   TaskSet(const TaskSet&) = delete;
   TaskSet& operator=(const TaskSet&) = delete;
   ~TaskSet();
+  /// Plans memory for every task and binds what can be bound, once. `components[i]` runs task i (not looked at for
+  /// tasks of other contexts), and outlives the set. Refuses tasks that do not fit their component. Context: setup.
+  Result<void> build(std::span<const chimera_component* const> components);
 
   /// Signals to tasks, and what follows from them.
   TaskLife& life() noexcept { return life_; }
@@ -75,11 +74,10 @@ class TaskSet {
   /// What is known of other contexts; null: there is none.
   PeerView* others() const noexcept { return place_.others; }
   const ApplicationSpec& spec() const noexcept { return spec_; }
-  const Variables& variables() const noexcept { return variables_; }
+  /// Where the set and its executors take their memory from. Context: setup.
+  SetupMemory& setup_memory() noexcept { return memory_; }
 
  private:
-  TaskSet(const ApplicationSpec& spec, const ContextPlace& place) : spec_(spec), place_(place), variables_(spec) {}
-  Result<void> build(std::span<const chimera_component* const> components);
   Result<void> plan_memories(std::span<const chimera_component* const> components);
   Result<void> check_producers() const;
   void prepare_parts();
@@ -87,10 +85,10 @@ class TaskSet {
 
   const ApplicationSpec& spec_;
   ContextPlace place_;
-  Variables variables_;
-  std::vector<TaskMemory> memories_;
-  std::vector<Task> tasks_;
-  std::vector<TaskHost> hosts_;
+  SetupMemory& memory_;
+  std::span<TaskMemory> memories_;
+  std::span<Task> tasks_;
+  std::span<TaskHost> hosts_;
   ContextTable table_;
   Sources sources_;
   ContextConstants constants_;
@@ -100,8 +98,8 @@ class TaskSet {
   IllegalFlag flag_;
   Changes changes_;
   TaskLife life_{*this};
-  std::vector<bool> on_;            // by task, over all contexts: ON at the last on_set_changed()
-  std::vector<TaskStatus> listed_;  // by task: the status that was listed in changes_ last
+  std::span<bool> on_;            // by task, over all contexts: ON at the last on_set_changed()
+  std::span<TaskStatus> listed_;  // by task: the status that was listed in changes_ last
 };
 
 }  // namespace chimera

@@ -8,8 +8,8 @@
 #include <string>
 #include <thread>
 
-#include "chimera/runtime/background_writer.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/background_writer.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 
@@ -49,11 +49,11 @@ struct TaskSetBackground : ::testing::Test {
   Story told;
   chimera::testing::TestApplication app;
   BackgroundWriter writer{milliseconds(1), milliseconds(100)};
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
 
   void make() {
     app.add("w", chimera::testing::component<Writer>("writer"));
-    auto made = TaskSet::create(app.make(), app.components);
+    auto made = HeapTaskSet::create(app.make(), app.components);
     ASSERT_TRUE(made);
     set = *std::move(made);
     told.letters.clear();

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 
@@ -31,7 +31,7 @@ struct Teller {
 
 struct TaskSetNotes : ::testing::Test {
   chimera::testing::TestApplication app;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
 
   TaskSetNotes() {
     app.add("teller", chimera::testing::component<Teller>("teller"));
@@ -41,7 +41,7 @@ struct TaskSetNotes : ::testing::Test {
     app.link(0, 1, {});
     app.link(0, 3, "sum");
     app.give(app.operators, "q", CHIMERA_FLOAT64, chimera::testing::bytes_of(0.5));
-    auto made = TaskSet::create(app.make(), app.components);
+    auto made = HeapTaskSet::create(app.make(), app.components);
     if (made) set = *std::move(made);
   }
   const FaultRecord& record() const { return set->tasks()[0].faults; }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
+#include "chimera/runtime/hosted/refusal_text.h"
+#include "chimera/runtime/hosted/variables.h"
 
 #include <gtest/gtest.h>
 
@@ -64,7 +66,7 @@ struct Boss {  // sends signals to others
 };
 
 VariableView view(TaskSet& set, const char* variable) {
-  return set.sources().view(VariableId(set.variables().find(variable)));
+  return set.sources().view(VariableId(Variables(set.spec()).find(variable)));
 }
 
 double number(TaskSet& set, const char* variable) {
@@ -82,8 +84,8 @@ State run_cycle(TaskSet& set, std::size_t task, Nanoseconds at) {
   return state;
 }
 
-std::unique_ptr<TaskSet> make(TestApplication& app) {
-  auto set = TaskSet::create(app.spec, app.components);
+std::unique_ptr<HeapTaskSet> make(TestApplication& app) {
+  auto set = HeapTaskSet::create(app.spec, app.components);
   EXPECT_TRUE(set) << set.error().message.view();
   return *std::move(set);
 }
@@ -96,7 +98,7 @@ struct CounterAndReader : ::testing::Test {
     set = make(app);
   }
   TestApplication app;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
 };
 
 TEST_F(CounterAndReader, SpawnsTurnsOnAndMovesValues) {
@@ -146,13 +148,13 @@ TEST_F(CounterAndReader, RefusesWhatIsNotLegalAndChangesNothing) {
   ASSERT_TRUE(set->life().start({}));
   const SignalReport again = set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, {});
   EXPECT_FALSE(again.is_accepted);
-  EXPECT_EQ(set->life().explain(again), "on is not legal for counter in state ON");
+  EXPECT_EQ(refusal_text(*set, again), "on is not legal for counter in state ON");
   set->life().signal(TaskId{std::size_t{0}}, Signal::kOff, {});
   EXPECT_TRUE(set->flag().is_up());
   set->life().signal(TaskId{std::size_t{1}}, Signal::kOff, {});
   EXPECT_FALSE(set->flag().is_up());
   const SignalReport alone = set->life().signal(TaskId{std::size_t{1}}, Signal::kOn, {});
-  EXPECT_EQ(set->life().explain(alone), "n would have no producer; the smallest legal set is: counter reader");
+  EXPECT_EQ(refusal_text(*set, alone), "n would have no producer; the smallest legal set is: counter reader");
   EXPECT_EQ(set->tasks()[1].state, State::kOff);
 }
 
@@ -179,7 +181,7 @@ TEST(TaskSet, TwoProducersOfOneVariableCannotBothBeOn) {
   auto set = make(app);
   ASSERT_TRUE(set->life().start({}));
   const SignalReport both = set->life().signal(TaskId{std::size_t{1}}, Signal::kOn, {});
-  EXPECT_EQ(set->life().explain(both), "n would have two producers: a and b");
+  EXPECT_EQ(refusal_text(*set, both), "n would have two producers: a and b");
 }
 
 TEST(TaskSet, ConstantsFixExtentsAndReinitialiseExactlyTheirUsers) {
@@ -211,7 +213,7 @@ TEST(TaskSet, AnExtentAboveItsMaximumIsAFaultOfInit) {
   app.extend(0, 1, 2, "ndof");
   app.make();
   auto set = make(app);
-  const auto started = set->life().start({});
+  const auto started = start_result(*set, set->life().start({}));
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().message.view(), "init: extent ndof = 3 of port q is outside 1 to 2");
   EXPECT_EQ(set->tasks()[0].state, State::kNotCreated);
@@ -226,7 +228,7 @@ TEST(TaskSet, AListMustBeAsLongAsTheConstantSays) {
   app.port(1, 1).listed[0] = 4;
   app.make();
   auto set = make(app);
-  const auto started = set->life().start({});
+  const auto started = start_result(*set, set->life().start({}));
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().message.view(), "init: q has a list of 4 values, but ndof is 3");
 }
@@ -270,9 +272,35 @@ TEST(TaskSet, RefusesAVariableThatNobodyProduces) {
   TestApplication app;
   app.add("reader", component<Reader>("reader"));
   app.make();
-  const auto set = TaskSet::create(app.spec, app.components);
+  const auto set = HeapTaskSet::create(app.spec, app.components);
   ASSERT_FALSE(set);
   EXPECT_EQ(set.error().message.view(), "nobody produces state variable n");
+}
+
+TEST(TaskSet, WorksInBytesThatItIsGivenAndTakesNoMoreWhileItRuns) {
+  TestApplication app;
+  app.add("arm", component<Arm>("arm"));
+  app.add("user", component<User>("user"));
+  app.extend(0, 1, 10, "ndof");
+  app.extend(1, 1, 10, "ndof");
+  app.give(app.operators, "gain", CHIMERA_FLOAT64, testing::bytes_of(1.0));
+  app.make();
+  alignas(kCacheLine) static std::byte bytes[96 * 1024];
+  GivenMemory memory(bytes);
+  TaskSet set(app.spec, {}, memory);
+  ASSERT_TRUE(set.build(app.components));
+  ASSERT_TRUE(set.life().start({}));
+  const std::size_t used = memory.used();
+  EXPECT_GT(used, 0u);
+  for (int i = 1; i < 10; ++i) run_cycle(set, 1, milliseconds(i));
+  static_cast<Arm*>(set.tasks()[0].instance)->wanted_ = 4;
+  ASSERT_TRUE(set.life().signal(TaskId{std::size_t{0}}, Signal::kReinit, {}));
+  run_cycle(set, 1, milliseconds(10));
+  std::int32_t inits;
+  std::memcpy(&inits, view(set, "inits").value, sizeof inits);
+  EXPECT_EQ(inits, 204) << "initialised twice, four elements";
+  set.life().shut_down(milliseconds(11));
+  EXPECT_EQ(memory.used(), used);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "chimera/base/ids.h"
 #include "chimera/runtime/application_spec.h"
-#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/hosted/rtpu_block.h"
 
 namespace chimera::subsystem {
 

@@ -32,7 +32,7 @@
 
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/refusal.h"
-#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/hosted/rtpu_block.h"
 #include "chimera/subsystem/signal_refusal.h"
 
 namespace chimera::subsystem {

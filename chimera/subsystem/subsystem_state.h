@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/variables.h"
+#include "chimera/runtime/hosted/variables.h"
 #include "chimera/subsystem/observed_state.h"
 #include "chimera/subsystem/pending_signals.h"
 #include "chimera/subsystem/subsystem.h"

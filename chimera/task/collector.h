@@ -5,12 +5,23 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
+#include <initializer_list>
+#include <string_view>
 
 #include "chimera/task/abi.h"
 
 namespace chimera::component_api {
+
+/// Puts the parts one behind the other into `size` bytes, cut to what fits with the zero behind them. Context: any;
+/// wait-free.
+inline void put_text(char* to, std::size_t size, std::initializer_list<std::string_view> parts) noexcept {
+  std::size_t n = 0;
+  for (const std::string_view part : parts)
+    for (const char c : part)
+      if (n + 1 < size) to[n++] = c;
+  to[n] = '\0';
+}
 
 /// Everything declared about one component. Lives in the object's static storage.
 struct Declaration {
@@ -70,7 +81,7 @@ class Collector {
 
   /// Notes the first reason why the component cannot be used.
   void refuse(const char* port, const char* reason) noexcept {
-    if (to_.error[0] == '\0') std::snprintf(to_.error, sizeof(to_.error), "port %s %s", port, reason);
+    if (to_.error[0] == '\0') put_text(to_.error, sizeof(to_.error), {"port ", port, " ", reason});
   }
 
  private:
@@ -81,8 +92,12 @@ class Collector {
     return true;
   }
 
+#if __STDC_HOSTED__
   // One per thread: another thread may construct an instance to run at the same time.
   static inline thread_local Collector* current_ = nullptr;
+#else
+  static inline Collector* current_ = nullptr;  // there is one thread
+#endif
 
   Declaration& to_;
   const std::byte* sample_;

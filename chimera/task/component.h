@@ -25,7 +25,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -42,7 +41,7 @@ namespace chimera::component_api {
 
 inline std::int32_t note_fault(chimera_fault* fault, std::int32_t code, const char* text) noexcept {
   fault->code = code;
-  std::snprintf(fault->text, sizeof(fault->text), "%s", text);
+  put_text(fault->text, sizeof(fault->text), {text});
   return CHIMERA_FAULT;
 }
 
@@ -137,11 +136,33 @@ std::int32_t construct(void* state, chimera_fault* fault) noexcept {
   });
 }
 
+/// Memory for an instance that is made once, to be looked at: from the heap, where there is one.
+template <class T>
+class SampleMemory {
+ public:
+  SampleMemory() noexcept = default;
+  SampleMemory(const SampleMemory&) = delete;
+  SampleMemory& operator=(const SampleMemory&) = delete;
+#if __STDC_HOSTED__
+  ~SampleMemory() { ::operator delete(at_, std::align_val_t{alignof(T)}); }
+#endif
+  /// Null: there is none.
+  void* at() noexcept { return at_; }
+
+ private:
+#if __STDC_HOSTED__
+  void* at_ = ::operator new(sizeof(T), std::align_val_t{alignof(T)}, std::nothrow);
+#else
+  alignas(T) static inline std::byte at_[sizeof(T)];
+#endif
+};
+
 /// Constructs one instance under a collector: its port handles declare themselves.
 template <class T>
 void collect_ports(Declaration& to) noexcept {
-  void* sample = ::operator new(sizeof(T), std::align_val_t{alignof(T)}, std::nothrow);
-  if (sample == nullptr) return void(std::snprintf(to.error, sizeof(to.error), "no memory for a sample instance"));
+  SampleMemory<T> memory;
+  void* const sample = memory.at();
+  if (sample == nullptr) return put_text(to.error, sizeof(to.error), {"no memory for a sample instance"});
   std::memset(sample, 0, sizeof(T));
   chimera_fault fault{};
   {
@@ -149,8 +170,7 @@ void collect_ports(Declaration& to) noexcept {
     if (construct<T>(sample, &fault) == CHIMERA_OK) static_cast<T*>(sample)->~T();
   }
   if (fault.text[0] != '\0' && to.error[0] == '\0')
-    std::snprintf(to.error, sizeof(to.error), "the constructor failed: %.120s", fault.text);
-  ::operator delete(sample, std::align_val_t{alignof(T)});
+    put_text(to.error, sizeof(to.error), {"the constructor failed: ", std::string_view(fault.text).substr(0, 120)});
 }
 
 template <class T>

@@ -6,11 +6,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <span>
-#include <stdexcept>
 #include <type_traits>
+#ifdef __cpp_exceptions
+#include <cstdio>
+#include <stdexcept>
+#endif
 
 #include "chimera/base/assert.h"
 #include "chimera/task/abi.h"
@@ -25,7 +27,8 @@ namespace chimera::component_api {
   std::snprintf(text, sizeof(text), "index %zu of a port that has %zu", index, size);
   throw std::out_of_range(text);
 #else
-  CHIMERA_ASSERT(index < size);
+  static_cast<void>(index), static_cast<void>(size);
+  assertion_failed("index < size", __FILE__, __LINE__);
 #endif
 }
 

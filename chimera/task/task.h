@@ -47,19 +47,6 @@ inline constexpr std::size_t kOutboxSize = 16;
 /// Where a task tells that nobody wants to know.
 inline std::atomic<std::uint32_t> running_untold{0};
 
-/// A flag that one thread raises and another one sees. Copied by nobody but the memory of tasks, at set-up.
-class GiveUp {
- public:
-  GiveUp() noexcept = default;
-  GiveUp(const GiveUp&) noexcept {}
-  GiveUp& operator=(const GiveUp&) = delete;
-  void store(bool up, std::memory_order order) noexcept { up_.store(up, order); }
-  bool load(std::memory_order order) const noexcept { return up_.load(order); }
-
- private:
-  std::atomic<bool> up_{false};
-};
-
 /// What every job touches comes first, on as few cache lines as it takes: with a thousand tasks a job costs what it
 /// brings into the cache.
 struct alignas(64) Task {
@@ -94,7 +81,9 @@ struct alignas(64) Task {
   const chimera_component* component = nullptr;
   FaultRecord faults;
   FixedVector<SentSignal, kOutboxSize> outbox;
-  GiveUp give_up;        ///< the present job was told to: it used up its budget
+  /// The present job was told to: it used up its budget. Relaxed, pairs with nothing: a job that sees it late gives up
+  /// late.
+  std::atomic<bool> give_up{false};
   std::uint32_t events = 0;  ///< behind a server: rings of its doorbell that no job has answered; by the executor
   int descriptor = -1;   ///< readable while there is an event, from the end of init to kill; below 0: none
 

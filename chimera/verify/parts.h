@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/links.h"
+#include "chimera/runtime/hosted/links.h"
 #include "chimera/verify/configuration.h"
 #include "chimera/verify/model.h"
 

@@ -3,7 +3,7 @@
 // every name a view into Parts.
 #include <cstring>
 
-#include "chimera/runtime/task_orders.h"
+#include "chimera/runtime/hosted/task_orders.h"
 #include "chimera/verify/parts.h"
 
 namespace chimera {

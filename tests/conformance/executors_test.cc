@@ -2,7 +2,7 @@
 // What every executor of one context must do, whatever its idea of time.
 #include <gtest/gtest.h>
 
-#include "chimera/runtime/tap_rows.h"
+#include "chimera/runtime/hosted/tap_rows.h"
 #include "tests/conformance/runner.h"
 
 namespace chimera::toy {

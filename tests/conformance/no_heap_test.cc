@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 #include "tests/conformance/runner.h"
 
@@ -113,7 +114,7 @@ Counted count(const ContextPlace& place, Run run) {
   spec.tasks = tasks;
   spec.init_order = spec.start = ids;
   links.finish(spec);
-  auto set = TaskSet::create(spec, components, place);
+  auto set = HeapTaskSet::create(spec, components, place);
   EXPECT_TRUE(set);
   const std::array<ScriptAct, 6> acts = {
       ScriptAct{milliseconds(50), ScriptAct::Kind::kRaiseFlag, Signal::kOn, TaskId()},

@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
+#include "chimera/runtime/hosted/variables.h"
 #include "chimera/runtime/testing/named_links.h"
 
 namespace chimera::toy {
@@ -185,7 +186,7 @@ class Application {
     spec_.init_order = order_;
     spec_.start = start_;
     links_.finish(spec_);
-    auto made = TaskSet::create(spec_, components_, place);
+    auto made = HeapTaskSet::create(spec_, components_, place);
     if (!made) {
       ADD_FAILURE() << made.error().message.c_str();
       std::abort();
@@ -195,7 +196,7 @@ class Application {
   }
   const Task& task(const std::string& name) const { return set_->tasks()[id(name).index]; }
   double published(const std::string& name) const {
-    const VariableView view = set_->sources().view(VariableId(set_->variables().find("x_" + name)));
+    const VariableView view = set_->sources().view(VariableId(Variables(set_->spec()).find("x_" + name)));
     double value = 0;
     std::memcpy(&value, view.value, sizeof value);
     return value;
@@ -238,7 +239,7 @@ class Application {
   std::vector<RtpuSpec> rtpus_{RtpuSpec{"only", 0, Policy::kEdf}};
   chimera::NamedLinks links_;
   ApplicationSpec spec_;
-  std::unique_ptr<TaskSet> set_;
+  std::unique_ptr<HeapTaskSet> set_;
 };
 
 }  // namespace chimera::toy

@@ -6,7 +6,7 @@
 
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/library.h"
-#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/hosted/application_image.h"
 #include "chimera/runtime/testing/spec_equal.h"
 #include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"

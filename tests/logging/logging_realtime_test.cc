@@ -17,6 +17,9 @@
 #include "chimera/load/shared_object.h"
 #include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/hosted/background_writer.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
+#include "chimera/runtime/hosted/variables.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "tests/conformance/witness.h"
 
@@ -43,7 +46,7 @@ class Logging {
     app_.add("counter", testing::component<Counter>("counter"), milliseconds(2));
     app_.add("logger", csv_log(), milliseconds(2));
     for (std::size_t p = 0; p < csv_log()->n_ports; ++p) fill(p, csv_log()->ports[p].name);
-    auto made = TaskSet::create(app_.make(), app_.components);
+    auto made = HeapTaskSet::create(app_.make(), app_.components);
     if (!made) ADD_FAILURE() << made.error().message.c_str();
     set_ = *std::move(made);
     RunOptions options;
@@ -62,7 +65,7 @@ class Logging {
   const Profile& profile(std::uint32_t task) const { return set_->tasks()[task].profile; }
   std::string fault() const { return set_->tasks()[1].faults.last.text; }
   std::int64_t output(const char* variable) const {
-    const VariableView view = set_->sources().view(VariableId(set_->variables().find(variable)));
+    const VariableView view = set_->sources().view(VariableId(Variables(set_->spec()).find(variable)));
     if (view.spec->element_bytes == 4) return *reinterpret_cast<const std::int32_t*>(view.value);
     return *reinterpret_cast<const std::int64_t*>(view.value);
   }
@@ -83,7 +86,7 @@ class Logging {
   std::int32_t capacity_ = kRoom;
   testing::TestApplication app_;
   BackgroundWriter writer_;
-  std::unique_ptr<TaskSet> set_;
+  std::unique_ptr<HeapTaskSet> set_;
   CounterClock clock_;
   ComputingClock job_clock_{clock_};
   std::unique_ptr<Executive> executive_;

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/hosted/rtpu_block.h"
 #include "tests/subsystem/world.h"
 
 namespace chimera::simulated {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/variables.h"
+#include "chimera/runtime/hosted/variables.h"
 #include "chimera/subsystem/subsystem.h"
 #include "tests/subsystem/agenda.h"
 #include "tests/subsystem/chance.h"

@@ -7,6 +7,7 @@
 
 #include "chimera/cli/run/under_way.h"
 #include "chimera/load/shared_object.h"
+#include "chimera/runtime/hosted/variables.h"
 #include "chimera/runtime/making.h"
 
 namespace chimera::cli {
@@ -52,7 +53,7 @@ Result<Application> Application::load(Configuration configuration, const Library
   place.serving = &told.serving;
   place.making = &told.making;
   show_made(told.making);
-  auto tasks = TaskSet::create(made.configuration_.spec(), made.components_, place);
+  auto tasks = HeapTaskSet::create(made.configuration_.spec(), made.components_, place);
   if (!tasks) return tasks.error();
   made.tasks_ = *std::move(tasks);
   return made;
@@ -61,12 +62,16 @@ Result<Application> Application::load(Configuration configuration, const Library
 Result<Probe> Application::probe(const std::string& variable) const {
   const auto found = find_variable(configuration_, variable);
   if (!found) return found.error();
-  const auto all = tasks_->variables().all();
-  const std::size_t index = tasks_->variables().find(variable);
+  const auto all = tasks_->spec().variables;
+  const std::size_t index = Variables(tasks_->spec()).find(variable);
   CHIMERA_ASSERT(index < all.size());  // whatever is configured is laid out
   Probe probe;
   probe.name = variable;
-  probe.readers = tasks_->table().readers_of(all[index]);
+  const std::uint32_t by_operator = all[index].operator_index;
+  if (by_operator != UINT32_MAX) probe.readers.push_back({tasks_->table().operators()[by_operator], 0, 0});
+  for (const PortOf& producer : all[index].producers)
+    for (std::uint32_t half = 0; half < 2; ++half)
+      probe.readers.push_back(tasks_->table().reader_of(producer, half));
   probe.form.unit = (*found)->unit;
   probe.form.is_scalar = (*found)->shape.empty();
   const VariableView view = tasks_->sources().view(VariableId(index));

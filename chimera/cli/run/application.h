@@ -8,7 +8,8 @@
 
 #include "chimera/catalogue/library.h"
 #include "chimera/cli/run/expectation.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/hosted/background_writer.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/text/value_text.h"
 #include "chimera/verify/configuration.h"
 #include "chimera/verify/verify.h"
@@ -48,7 +49,7 @@ class Application {
   Configuration configuration_;
   std::vector<const chimera_component*> components_;
   std::unique_ptr<BackgroundWriter> writer_ = std::make_unique<BackgroundWriter>();
-  std::unique_ptr<TaskSet> tasks_;
+  std::unique_ptr<HeapTaskSet> tasks_;
 };
 
 }  // namespace chimera::cli

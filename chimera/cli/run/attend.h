@@ -9,7 +9,7 @@
 
 #include "chimera/cli/run/outlet.h"
 #include "chimera/cli/run/run.h"
-#include "chimera/runtime/face_page.h"
+#include "chimera/runtime/hosted/face_page.h"
 
 namespace chimera::cli {
 

@@ -10,6 +10,8 @@
 #include "chimera/platform/realtime.h"
 #include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/hosted/background_writer.h"
+#include "chimera/runtime/hosted/refusal_text.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 
 namespace chimera::cli {
@@ -81,7 +83,8 @@ class RealTimeLoop final : public RunLoop {
  public:
   RealTimeLoop(Application& application, const RunRequest& request, const RunOptions& options)
       : request_(request), cpu_(static_cast<int>(application.configuration().rtpus()[0].cpu)), job_clock_(clock_),
-        executive_(application.tasks(), clock_, job_clock_, with_threads(options, application.background_writer())) {
+        set_(application.tasks()),
+        executive_(set_, clock_, job_clock_, with_threads(options, application.background_writer())) {
     const auto rtpus = application.configuration().rtpus();
     if (rtpus.size() > 1)
       grant_ =
@@ -97,7 +100,7 @@ class RealTimeLoop final : public RunLoop {
     thread_ = std::thread([this, &started] {
       const RealtimeRequest wanted{request_.priority, cpu_, true};
       grant_ += enter_realtime(wanted).report.c_str();
-      const Result<void> result = executive_.start();
+      const Result<void> result = start_result(set_, executive_.start());
       started.set_value(result);
       ended_.set_value(result ? executive_.run(request_.duration) : RunEnd::kStopped);
     });
@@ -122,6 +125,7 @@ class RealTimeLoop final : public RunLoop {
   CounterClock clock_;             // of the executive's thread
   mutable LinuxClock looking_on_;  // of this side
   ComputingClock job_clock_;
+  TaskSet& set_;
   Executive executive_;
   std::string grant_;
   std::promise<RunEnd> ended_;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <new>
 
+#include "chimera/runtime/hosted/making_text.h"
 #include "chimera/runtime/making.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/task/signal.h"

@@ -20,7 +20,7 @@
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_pages.h"
 #include "chimera/rtpu/keeper_message.h"
-#include "chimera/runtime/pages.h"
+#include "chimera/runtime/hosted/pages.h"
 
 namespace {
 

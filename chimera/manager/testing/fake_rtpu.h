@@ -17,6 +17,7 @@
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/linux_clock.h"
 #include "chimera/platform/owned_descriptor.h"
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/task/fault_record.h"
 
 namespace chimera::manager {
@@ -25,8 +26,8 @@ namespace chimera::manager {
 class FakeRtpu {
  public:
   FakeRtpu(const ApplicationSpec& spec, std::uint32_t peer, std::uint32_t incarnation, DecisionPage& page)
-      : spec_(spec), layout_(*PeerLayout::of(spec, peer)), manager_layout_(*PeerLayout::of(spec, manager())),
-        page_(page), peer_(peer), incarnation_(incarnation) {
+      : spec_(spec), layout_(*PeerLayout::of(spec, peer, heap_)),
+        manager_layout_(*PeerLayout::of(spec, manager(), heap_)), page_(page), peer_(peer), incarnation_(incarnation) {
     const auto tasks = static_cast<std::uint32_t>(spec.tasks.size());
     region_ = *MemoryRegion::create("fake-rtpu", peer_segment_bytes(layout_.table(), tasks));
     const auto table = SegmentOwner::format(region_.writable(), layout_.table());
@@ -212,6 +213,7 @@ class FakeRtpu {
   }
 
   const ApplicationSpec& spec_;
+  HeapMemory heap_;
   PeerLayout layout_, manager_layout_;
   DecisionPage& page_;
   std::uint32_t peer_, incarnation_;

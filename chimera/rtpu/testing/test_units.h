@@ -12,6 +12,7 @@
 #include "chimera/platform/virtual/virtual_clock.h"
 #include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera::testing {
@@ -32,7 +33,8 @@ class HandService final : public Service {
 /// A segment of a peer, formatted, with its block.
 struct OwnSegment {
   OwnSegment(const ApplicationSpec& spec, std::uint32_t peer, std::uint32_t incarnation) {
-    const auto layout = PeerLayout::of(spec, peer);
+    HeapMemory heap;
+    const auto layout = PeerLayout::of(spec, peer, heap);
     const auto n_tasks = static_cast<std::uint32_t>(spec.tasks.size());
     region = *MemoryRegion::create("test", peer_segment_bytes(layout->table(), n_tasks));
     EXPECT_TRUE(SegmentOwner::format(region.writable(), layout->table()).has_value());
@@ -50,7 +52,7 @@ struct Unit {
         clock(decision_now), others(spec, me, segment.region.writable(), segment.block, decision, keeper, *peers) {
     const ContextPlace place{RtpuId(me), segment.region.writable().subspan(sizeof(SegmentHeader)), &others, &service,
                              &segment.block.head().running, &segment.block.head().serving};
-    auto made = TaskSet::create(spec, components, place);
+    auto made = HeapTaskSet::create(spec, components, place);
     EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message.c_str());
     tasks = *std::move(made);
     edge = std::make_unique<RtpuControl>(spec, *tasks, others, service, decision, me, seconds(1));
@@ -88,7 +90,7 @@ struct Unit {
   ComputingClock job_clock{clock};
   HandService service;
   PeerLinks others;
-  std::unique_ptr<TaskSet> tasks;
+  std::unique_ptr<HeapTaskSet> tasks;
   std::unique_ptr<RtpuControl> edge;
   std::unique_ptr<Executive> executive;
 };

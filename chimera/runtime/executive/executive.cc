@@ -22,8 +22,8 @@ struct RealTime {
 Executive::Executive(TaskSet& set, Clock& clock, JobClock& job_clock, const RunOptions& options)
     : set_(set), clock_(clock), releases_(set, job_clock, options) {}
 
-Result<void> Executive::start() {
-  Result<void> started = set_.life().start(clock_.now());
+SignalReport Executive::start() {
+  const SignalReport started = set_.life().start(clock_.now());
   if (started) releases_.begin(clock_.now());
   return started;
 }

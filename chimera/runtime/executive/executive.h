@@ -30,9 +30,9 @@ class Executive {
   /// `job_clock` is what methods see of `clock`: ComputingClock, or a twin that steps it. Context: setup.
   Executive(TaskSet& set, Clock& clock, JobClock& job_clock, const RunOptions& options);
 
-  /// Spawns all tasks and turns the start set ON; the grid of releases begins when that is done. Refuses as
+  /// Spawns all tasks and turns the start set ON; the grid of releases begins when that is done. Refused as
   /// TaskLife::start. Context: setup; as long as init and on take.
-  Result<void> start();
+  SignalReport start();
   /// Begins with nothing spawned, on a grid of releases that others share. Context: setup.
   void start(Nanoseconds origin) { releases_.begin(origin); }
   Releases& releases() noexcept { return releases_; }

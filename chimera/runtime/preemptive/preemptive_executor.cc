@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "chimera/platform/thread_stack.h"
+#include "chimera/runtime/hosted/refusal_text.h"
 
 namespace chimera {
 namespace {
@@ -59,7 +60,7 @@ PreemptiveExecutor::~PreemptiveExecutor() {
 }
 
 Result<void> PreemptiveExecutor::start() {
-  Result<void> started = set_.life().start(clock_.now());
+  Result<void> started = start_result(set_, set_.life().start(clock_.now()));
   if (started) start(clock_.now());
   return started;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chimera/runtime/context_tap.h"
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/job_record.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 
@@ -61,7 +62,8 @@ struct BareTasks {
   std::unique_ptr<TapRing> ring = std::make_unique<TapRing>();
   Tap tap{*ring};
   TapReader reader{*ring};
-  ContextTap context_tap{tasks, &tap, 0, false};
+  HeapMemory heap;
+  ContextTap context_tap{tasks, &tap, 0, false, heap};
   ModelledClock clock;
 };
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "chimera/runtime/links.h"
-#include "chimera/runtime/task_orders.h"
+#include "chimera/runtime/hosted/links.h"
+#include "chimera/runtime/hosted/task_orders.h"
 
 namespace chimera {
 

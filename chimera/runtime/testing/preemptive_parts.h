@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chimera/platform/linux_clock.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/preemptive/edge_access.h"
 #include "chimera/runtime/preemptive/supervisor.h"
 #include "chimera/runtime/testing/test_application.h"
@@ -51,7 +52,7 @@ class PreemptiveParts {
     place = where;
     ContextPlace context;
     context.preemptive = true;
-    auto made = TaskSet::create(app.make(), app.components, context);
+    auto made = HeapTaskSet::create(app.make(), app.components, context);
     set = *std::move(made);
     parts = std::make_unique<Parts>(*this, policy);
     (void)set->life().start(origin);
@@ -142,7 +143,7 @@ class PreemptiveParts {
   TestApplication app;
   ProcessorPlace place;
   Clock clock;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
   std::unique_ptr<Parts> parts;
 };
 

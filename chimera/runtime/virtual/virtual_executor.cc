@@ -4,6 +4,7 @@
 
 #include "chimera/base/assert.h"
 #include "chimera/runtime/cycle_loop.h"
+#include "chimera/runtime/hosted/refusal_text.h"
 
 namespace chimera {
 namespace {
@@ -56,7 +57,7 @@ VirtualExecutor::VirtualExecutor(TaskSet& set, const RunOptions& options, const 
 
 Result<void> VirtualExecutor::start() {
   clock_.set(now_);
-  Result<void> started = set_.life().start(now_);
+  Result<void> started = start_result(set_, set_.life().start(now_));
   now_ = clock_.now();
   if (started) releases_.begin(now_);
   return started;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes the places of the parts of a block, and reads and writes them.
-#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/hosted/rtpu_block.h"
 
 #include <array>
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls each background method at its interval in an ordinary thread, and ends it within a limit.
-#include "chimera/runtime/background_writer.h"
+#include "chimera/runtime/hosted/background_writer.h"
 
 #include <algorithm>
 #include <atomic>

@@ -13,7 +13,7 @@
 
 #include "chimera/base/ids.h"
 #include "chimera/runtime/outbox.h"
-#include "chimera/runtime/pages.h"
+#include "chimera/runtime/hosted/pages.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/runtime/task_status.h"
 #include "chimera/table/segment.h"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/making.h"
+#include "chimera/runtime/hosted/making_text.h"
 
 #include <gtest/gtest.h>
+
+#include "chimera/runtime/making.h"
 
 namespace chimera {
 namespace {

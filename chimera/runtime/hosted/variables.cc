@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Variables: legality of a set of tasks, and the search for the smallest legal set around one.
-#include "chimera/runtime/variables.h"
+#include "chimera/runtime/hosted/variables.h"
 
 #include <algorithm>
 
@@ -20,11 +20,7 @@ std::size_t Variables::find(std::string_view name) const noexcept {
   return variables_.size();
 }
 
-bool Variables::is_legal(const std::vector<bool>& on) const noexcept {
-  for (const Variable& variable : variables_)
-    if (fault_of(variable, on) != SetFault::kNone) return false;
-  return true;
-}
+bool Variables::is_legal(const std::vector<bool>& on) const noexcept { return is_legal_set(variables_, on); }
 
 std::string Variables::explain(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
   const std::string text = fault(on, tasks), help = text.empty() ? "" : remedy(on, tasks);

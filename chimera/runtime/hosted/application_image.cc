@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Encoding and decoding of an image: the fields are listed once, and the reader judges each of them.
-#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/hosted/application_image.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,9 +9,9 @@
 #include <type_traits>
 
 #include "chimera/base/assert.h"
-#include "chimera/runtime/image_archive.h"
-#include "chimera/runtime/links.h"
-#include "chimera/runtime/pages.h"
+#include "chimera/runtime/hosted/image_archive.h"
+#include "chimera/runtime/hosted/links.h"
+#include "chimera/runtime/hosted/pages.h"
 #include "chimera/table/layout.h"
 
 namespace chimera {

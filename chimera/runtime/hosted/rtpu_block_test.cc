@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/hosted/rtpu_block.h"
 
 #include <gtest/gtest.h>
 

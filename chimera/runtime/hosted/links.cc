@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Links: two passes over all ports, the first counts the entries of each list, the second writes them side by side.
-#include "chimera/runtime/links.h"
+#include "chimera/runtime/hosted/links.h"
 
 #include <cstddef>
 

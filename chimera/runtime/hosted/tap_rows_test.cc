@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/tap_rows.h"
+#include "chimera/runtime/hosted/tap_rows.h"
 
 #include <gtest/gtest.h>
 

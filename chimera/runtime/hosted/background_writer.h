@@ -7,12 +7,12 @@
 #include <memory>
 
 #include "chimera/base/time.h"
-#include "chimera/task/abi.h"
+#include "chimera/runtime/background_threads.h"
 
 namespace chimera {
 
 /// Context of everything: setup, or where init and kill run; may block. Called by one thread at a time.
-class BackgroundWriter {
+class BackgroundWriter final : public BackgroundThreads {
  public:
   /// Each instance is called `every` so often; remove() waits at most `limit`.
   explicit BackgroundWriter(Nanoseconds every = milliseconds(10), Nanoseconds limit = seconds(1)) noexcept;
@@ -21,28 +21,19 @@ class BackgroundWriter {
   /// As remove() for each that is left.
   ~BackgroundWriter();
 
-  /// From now on `background` is called with `instance`, until it answers with a fault. False when the system gives no
-  /// thread. `tag` is for longest().
-  [[nodiscard]] bool add(void* instance, chimera_background background, std::uint32_t tag = 0);
-
+  [[nodiscard]] bool add(void* instance, chimera_background background, std::uint32_t tag = 0) override;
   /// Tag of the one whose call has been under way longest, when that is longer than `longer_than`; 0: none is. Any
   /// thread.
   std::uint32_t longest(Nanoseconds longer_than) const;
 
-  enum class End {
-    kDone,    ///< called once more, and never again
-    kFault,   ///< it answered with a fault, now or before: `fault` says which
-    kStalled  ///< it has not returned: the instance must stay as it is for ever; `fault` says so
-  };
-  /// Calls it a last time and ends its thread. Requires: add() was given `instance`.
-  End remove(void* instance, chimera_fault& fault);
+  End remove(void* instance, chimera_fault& fault) override;
 
  private:
   struct Worker;
   End end(Worker& worker, chimera_fault& fault) const;
 
   Nanoseconds every_, limit_;
-  struct Workers;  // not here: a header that cycles include is compiled where there are no threads
+  struct Workers;  // not here: whoever includes this needs no threads and locks
   std::unique_ptr<Workers> workers_;
 };
 

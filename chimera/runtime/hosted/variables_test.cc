@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/variables.h"
+#include "chimera/runtime/hosted/variables.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Maps and checks the shared-memory segment of another process.
-#include "chimera/runtime/peer_segment.h"
+#include "chimera/runtime/hosted/peer_segment.h"
 
 #include <utility>
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/peer_segment.h"
+#include "chimera/runtime/hosted/peer_segment.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
@@ -22,7 +23,7 @@ struct PeerSegmentTest : ::testing::Test {
     app.rtpus = {{"first", 0, Policy::kEdf}};
     app.add("producer", testing::component<Producer>("producer")).rtpu = RtpuId(0u);
     app.make();
-    layout = std::make_unique<PeerLayout>(*PeerLayout::of(app.spec, kPeer));
+    layout = std::make_unique<PeerLayout>(*PeerLayout::of(app.spec, kPeer, heap));
     region = *MemoryRegion::create("test", peer_segment_bytes(layout->table(), kTasks));
     EXPECT_TRUE(SegmentOwner::format(region.writable(), layout->table()));
     block = BlockOwner(region.writable().data() + block_offset(layout->table()), kPeer, kIncarnation, kTasks, 2);
@@ -35,6 +36,7 @@ struct PeerSegmentTest : ::testing::Test {
   }
 
   testing::TestApplication app;
+  HeapMemory heap;
   std::unique_ptr<PeerLayout> layout;
   MemoryRegion region;
   BlockOwner block;
@@ -80,7 +82,7 @@ TEST_F(PeerSegmentTest, RefusesAnotherNumberOfTasks) {
 }
 
 TEST_F(PeerSegmentTest, RefusesTheLayoutOfAnotherApplication) {
-  const PeerLayout managers = *PeerLayout::of(app.spec, 1);
+  const PeerLayout managers = *PeerLayout::of(app.spec, 1, heap);
   EXPECT_FALSE(PeerSegment::open(region.descriptor(), managers, kTasks, kPeer, kIncarnation));
 }
 

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Puts into words at which step of making a task a process died.
+#include "chimera/runtime/hosted/making_text.h"
+
 #include "chimera/runtime/making.h"
 
 namespace chimera {
-
-std::uint32_t task_of_making(std::uint32_t word, std::size_t n_tasks) noexcept {
-  const std::uint32_t task = TaskWord::found(word).task().index, what = TaskWord::found(word).what();
-  const bool is_known = what == static_cast<std::uint32_t>(Making::kLoads) ||
-                        what == static_cast<std::uint32_t>(Making::kConstructs);
-  return is_known && task < n_tasks ? task : UINT32_MAX;
-}
 
 std::string making_text(std::uint32_t word, std::string_view task, std::string_view object) {
   const bool loads = TaskWord::found(word).what() == static_cast<std::uint32_t>(Making::kLoads);

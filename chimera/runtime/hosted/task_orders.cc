@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orders of tasks from the links: a list of tasks that wait, of which the first whose producers are all placed is next.
-#include "chimera/runtime/task_orders.h"
+#include "chimera/runtime/hosted/task_orders.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/application_image.h"
+#include "chimera/runtime/hosted/application_image.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "chimera/runtime/links.h"
+#include "chimera/runtime/hosted/links.h"
 #include "chimera/runtime/testing/spec_equal.h"
 
 namespace chimera {

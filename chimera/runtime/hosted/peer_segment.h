@@ -8,7 +8,7 @@
 #include "chimera/base/result.h"
 #include "chimera/platform/memory_region.h"
 #include "chimera/runtime/peer_layout.h"
-#include "chimera/runtime/rtpu_block.h"
+#include "chimera/runtime/hosted/rtpu_block.h"
 #include "chimera/table/group.h"
 
 namespace chimera {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/task_orders.h"
+#include "chimera/runtime/hosted/task_orders.h"
 
 #include <gtest/gtest.h>
 

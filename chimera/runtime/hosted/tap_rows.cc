@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Puts the pieces of a published row together again.
-#include "chimera/runtime/tap_rows.h"
+#include "chimera/runtime/hosted/tap_rows.h"
 
 namespace chimera {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/background_writer.h"
+#include "chimera/runtime/hosted/background_writer.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>

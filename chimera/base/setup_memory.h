@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where setup takes its memory from. What is taken stays until the whole of it is given back: from a heap
+// (runtime/hosted/heap_memory.h), or, on a machine without one, from bytes that the image reserves (GivenMemory).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <new>
+#include <span>
+#include <type_traits>
+
+#include "chimera/base/assert.h"
+
+namespace chimera {
+
+/// Context of everything: setup.
+class SetupMemory {
+ public:
+  /// `n` values of T, as T() makes them. Nobody destroys them.
+  template <class T>
+  std::span<T> take(std::size_t n) {
+    static_assert(std::is_trivially_destructible_v<T>);
+    const std::span<std::byte> bytes = take_bytes(n * sizeof(T), alignof(T));
+    T* const first = reinterpret_cast<T*>(bytes.data());
+    for (std::size_t i = 0; i < n; ++i) ::new (static_cast<void*>(first + i)) T();
+    return {first, n};
+  }
+  /// `size` zeroed bytes; `alignment` is a power of two.
+  virtual std::span<std::byte> take_bytes(std::size_t size, std::size_t alignment) = 0;
+  /// A thread that hangs may be in what was taken: none of it is ever given back.
+  virtual void keep_for_ever() noexcept = 0;
+
+ protected:
+  ~SetupMemory() = default;
+};
+
+/// Memory from given bytes, which outlive what is taken. Requires: there are enough; used() says how many that is.
+class GivenMemory final : public SetupMemory {
+ public:
+  explicit GivenMemory(std::span<std::byte> bytes) noexcept : bytes_(bytes) {}
+
+  std::span<std::byte> take_bytes(std::size_t size, std::size_t alignment) override {
+    const auto begin = reinterpret_cast<std::uintptr_t>(bytes_.data());
+    const std::size_t at = ((begin + used_ + alignment - 1) & ~(alignment - 1)) - begin;
+    CHIMERA_ASSERT(at <= bytes_.size() && size <= bytes_.size() - at);
+    used_ = at + size;
+    if (size != 0) std::memset(bytes_.data() + at, 0, size);
+    return bytes_.subspan(at, size);
+  }
+  void keep_for_ever() noexcept override {}
+  std::size_t used() const noexcept { return used_; }
+
+ private:
+  std::span<std::byte> bytes_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace chimera

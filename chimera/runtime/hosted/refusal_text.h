@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a signal, or the start of an application, was refused, in words.
+#pragma once
+
+#include <string>
+
+#include "chimera/base/result.h"
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+/// A refused report with the smallest legal set where that helps; "" when it was accepted. For a report of the last
+/// call of TaskLife::signal(). Context: setup; may block.
+std::string refusal_text(TaskSet& set, const SignalReport& report);
+
+/// What TaskLife::start() of the set reported, as a result. Context: setup; may block.
+Result<void> start_result(TaskSet& set, const SignalReport& report);
+
+}  // namespace chimera
