@@ -101,7 +101,7 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
       return "missed its deadline: it waits in a system call (it used " + milliseconds_text(post.detail) + ")";
     case EventKind::kHang:
       if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";
-      return "a cycle used " + milliseconds_text(post.detail) + " and does not end: this real-time unit ends";
+      return "its job has not ended " + milliseconds_text(post.detail) + " after its release: this real-time unit ends";
     case EventKind::kGaveWay:
       return "goes on below all others: the tasks of its real-time unit used " + milliseconds_text(post.detail) +
              " lately, nearly all that the kernel leaves to real-time threads";

@@ -114,6 +114,10 @@ void Questions::pass_on(Nanoseconds now) {
   since_ = now;
   is_under_way_ = true;
   ++number_;
+  if (send_first()) return;
+  tell_("the analyst of descriptions " + how_it_ended());  // since the question before: another one is asked
+  if (!start(now)) return;
+  is_under_way_ = true;
   if (!send_first())
     answer_first(given_up("the analysis could not be begun: " + std::string(std::strerror(errno))), now);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/wait.h>
 
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -99,6 +100,18 @@ TEST_F(QuestionsTest, ADeathCostsOneQuestion) {
     EXPECT_EQ(answers_["dies"].message, "the analysis failed: its process ended by signal 9 (SIGKILL)");
   }
   EXPECT_TRUE(answers_["lives"].is_good()) << answers_["lives"].message;
+  EXPECT_EQ(told_, "the analyst of descriptions ended by signal 9 (SIGKILL)\n");
+}
+
+TEST_F(QuestionsTest, ADeathBetweenTwoQuestionsCostsNone) {
+  ask("one", 1);
+  ASSERT_TRUE(until(1));
+  ::kill(questions_->analyst(), SIGKILL);  // still ours: nobody has reaped it
+  siginfo_t dead{};
+  ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(questions_->analyst()), &dead, WEXITED | WNOWAIT), 0);
+  ask("two", 1);
+  ASSERT_TRUE(until(2));
+  EXPECT_TRUE(answers_["two"].is_good()) << answers_["two"].message;
   EXPECT_EQ(told_, "the analyst of descriptions ended by signal 9 (SIGKILL)\n");
 }
 

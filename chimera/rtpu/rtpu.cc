@@ -200,7 +200,7 @@ int Rtpu::run() {
     attend();
     if (hangs()) return kMethodHangs;
     if (!is_ending_ && edge_->has_hanging()) {
-      is_giving_up_ = give_up(edge_->hanging(), edge_->hanging_used());
+      is_giving_up_ = give_up(edge_->hanging(), edge_->hanging_age());
       end(true);
     }
     if (is_giving_up_ && edge_->is_over()) return kMethodHangs;  // but for the job that does not end

@@ -240,12 +240,12 @@ void RtpuControl::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexc
   post_event(EventKind::kGaveWay, task, static_cast<std::uint64_t>(used.count), now);
 }
 
-void RtpuControl::hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept {
-  post_event(EventKind::kHang, task, static_cast<std::uint64_t>(used.count), now);
-  hangs_[task.index] = true;
+void RtpuControl::hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept {
+  post_event(EventKind::kHang, job.task(), static_cast<std::uint64_t>(age.count), now);
+  hangs_[job.task().index] = true;
   others_.keep_last_words(true, tasks_);
-  hanging_used_ = used.count;
-  hanging_job_ = TaskWord(task, Method::kCycle).word();
+  hanging_age_ = age.count;
+  hanging_job_ = job.word();
   hanging_ = true;
   wake_supervisor();
 }

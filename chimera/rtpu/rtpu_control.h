@@ -41,7 +41,7 @@ class RtpuControl final : public BoundaryListener {
   void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
   void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept override;
   void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
-  void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
+  void hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept override;
   /// Shows the others how the unit is before its first edge. Setup.
   void begin() noexcept;
   /// An event descriptor that is written to when a job hangs and when all is over. Setup.
@@ -63,9 +63,10 @@ class RtpuControl final : public BoundaryListener {
   std::uint32_t progress() const noexcept { return progress_; }
   /// The method that an edge has called, as BlockHead::running; 0: none. Any thread.
   std::uint32_t acting() const noexcept { return acting_; }
-  /// The job that does not end, likewise, and what it has used. After has_hanging(). Any thread.
+  /// The job that does not end, likewise, and the time since its release (zero: its thread is gone). After
+  /// has_hanging(). Any thread.
   std::uint32_t hanging() const noexcept { return hanging_job_; }
-  Nanoseconds hanging_used() const noexcept { return {hanging_used_}; }
+  Nanoseconds hanging_age() const noexcept { return {hanging_age_}; }
   /// Set when all tasks are killed: the loop's RunOptions::stop.
   const std::atomic<bool>& is_over() const noexcept { return over_; }
 
@@ -111,7 +112,7 @@ class RtpuControl final : public BoundaryListener {
   // hangs() at an edge, read by the main thread: hanging_ is stored last and loaded first, so that the others are seen.
   std::atomic<bool> hanging_{false};
   std::atomic<std::uint32_t> hanging_job_{0};
-  std::atomic<std::int64_t> hanging_used_{0};
+  std::atomic<std::int64_t> hanging_age_{0};
   // Stored at an edge, loaded by the loop (RunOptions::stop) and by the main thread; pairs with nothing.
   std::atomic<bool> over_{false};
   // Counted and told at edges, watched by the main thread (HangWatch); pair with nothing.

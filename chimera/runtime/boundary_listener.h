@@ -7,6 +7,7 @@
 
 #include "chimera/runtime/miss_cause.h"
 #include "chimera/runtime/task_set.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera {
 
@@ -34,8 +35,9 @@ class BoundaryListener {
   virtual void told(const SignalReport& report, Nanoseconds now) noexcept = 0;
   /// The task missed a deadline, maybe with a job that is under way; the verdict says why. Context: cycle boundary.
   virtual void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept = 0;
-  /// A job of the task has used `used` and does not end by itself. Context: cycle boundary.
-  virtual void hangs(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
+  /// A job does not end by itself: `job` is its task and method, `age` the time since its release; zero: its thread is
+  /// gone. Context: cycle boundary.
+  virtual void hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept = 0;
   /// Jobs here used `used` of the time that the kernel looks back to, about all it lets real-time threads have: one of
   /// the task went on below all others. Context: cycle boundary.
   virtual void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;

@@ -2,6 +2,7 @@
 // Reads inputs, calls a method, takes its faults, checks safety ports and publishes the outputs.
 #include "chimera/runtime/job_step.h"
 
+#include <atomic>
 #include <cstring>
 
 #include "chimera/runtime/cycle_step.h"
@@ -102,7 +103,12 @@ State follow_error(Task& task, Next at, Nanoseconds now, JobClock* clock) noexce
 
 BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept { return cycle_step::begin(task, time); }
 
-Answer cycle_step::ask_sync(Task& task, Nanoseconds at) noexcept { return call_method(task, Method::kSync, at); }
+Answer cycle_step::ask_sync(Task& task, Nanoseconds at) noexcept {
+  std::atomic_ref(task.in_sync).store(true, std::memory_order_relaxed);  // pairs with nothing: told, not acted upon
+  const Answer answer = call_method(task, Method::kSync, at);
+  std::atomic_ref(task.in_sync).store(false, std::memory_order_relaxed);
+  return answer;
+}
 
 BodyEnd cycle_step::judge_body(Task& task, std::int32_t value, Nanoseconds at) noexcept {
   BodyEnd body;

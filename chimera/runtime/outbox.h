@@ -32,7 +32,8 @@ enum class EventKind : std::uint8_t {
   kStop,       ///< reaction `stop` of the task: the rtpu turned all its tasks OFF
   kMissed,     ///< the task missed its deadline; `from` used the processor most, for `detail` ns: more than its budget
                ///< when somebody did. Invalid `from`: for so long nobody here had the processor
-  kHang,       ///< a job of the task does not end: it used `detail` ns by now. The rtpu ends
+  kHang,       ///< a job of the task does not end: it was released `detail` ns ago; 0: its thread is gone. The rtpu
+               ///< ends
   kGaveWay,    ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns lately, nearly all
                ///< that the kernel lets real-time threads have
   kBlocked,    ///< the task missed its deadline with a job that waits in a system call, having used `detail` ns

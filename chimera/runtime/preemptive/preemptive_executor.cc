@@ -132,8 +132,11 @@ void PreemptiveExecutor::run_edge(Nanoseconds now) noexcept {
 
 // Jobs that do not end by themselves, and one that was demoted for the share of the processor.
 void PreemptiveExecutor::report_hanging(Nanoseconds now) noexcept {
-  for (const JobThread& job : ready_.threads())
-    if (supervisor_.pop_hanging(job)) guest_->hangs(job.id, job.used(), now);
+  for (const JobThread& job : ready_.threads()) {
+    if (!supervisor_.pop_hanging(job)) continue;
+    const bool is_gone = job.used() == Nanoseconds{};
+    guest_->hangs(TaskWord(job.id, job.method()), is_gone ? Nanoseconds{} : now - job.job.release, now);
+  }
   if (const TaskId task = share_.pop_demoted(); task.is_valid()) guest_->gave_way(task, share_.used(now), now);
 }
 

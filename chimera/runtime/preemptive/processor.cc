@@ -63,7 +63,7 @@ void Processor::record_slice(const JobThread& job, Nanoseconds now) noexcept {
 
 void Processor::show_running() noexcept {
   const bool is_begun = on_processor_ != nullptr && on_processor_->is_running();
-  const TaskWord word = is_begun ? TaskWord(on_processor_->id, Method::kCycle) : TaskWord();
+  const TaskWord word = is_begun ? TaskWord(on_processor_->id, on_processor_->method()) : TaskWord();
   tasks_[0].running->store(word.word(), std::memory_order_relaxed);
 }
 
