@@ -98,8 +98,8 @@ def by_protocol(system):
 
 def by_command(system):
     def ask():
-        done = subprocess.run([str(processes.CHIMERA), "status", "--subsystem", "subject", "--json"], capture_output=True,
-                              text=True, env=system.environment, timeout=2 * COMMAND_LIMIT)
+        words = [str(processes.CHIMERA), "status", "--subsystem", "subject", "--json"]
+        done = subprocess.run(words, capture_output=True, text=True, env=system.environment, timeout=2 * COMMAND_LIMIT)
         if done.returncode != 0:
             raise OSError(json.loads(done.stdout)["error"]["message"])  # else it says nothing, or not in JSON
         json.loads(done.stdout)
