@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kLost = "the connection to the subsystem was lost";
 constexpr Nanoseconds kWhoIsIt = milliseconds(500);       // for one of several to say where it was started
 constexpr Nanoseconds kTryAgain = milliseconds(50);       // when there was no place
-constexpr std::size_t kMaxInput = std::size_t{64} << 20;  // of one line: whoever sends more is no subsystem of ours
+constexpr std::size_t kMaxInput = std::size_t{64} << 20;  // of one line
 
 Nanoseconds now() { return LinuxClock().now(); }
 
@@ -165,11 +165,12 @@ Client::Got Client::receive(std::string& line, Nanoseconds until) {
       return Got::kLine;
     }
     looked = input_.size();
+    if (looked > kMaxInput) return Got::kTooLong;
     char bytes[1 << 16];
     const std::int64_t got = receive_now(socket_.fd, bytes);
     if (got > 0)
       input_.append(bytes, static_cast<std::size_t>(got));
-    else if (got == 0 || input_.size() > kMaxInput)
+    else if (got == 0)
       return Got::kClosed;
     else if (errno == EAGAIN && !wait_for({socket_.fd}, until))
       return Got::kLate;
@@ -246,6 +247,8 @@ RpcResponse Client::call(std::string_view method, const Json& parameters, Nanose
                                 "no answer within " + time_text(limit) + "; `chimera status` says what was done");
     if (got == Got::kLate || got == Got::kSilent)
       return RpcResponse::error(kNoAnswer, silent(path_, std::min(limit, silence)));
+    if (got == Got::kTooLong)
+      return lost("the answer has more than 64 MiB: ask for less, of `get` for some of the variables only");
     if (got == Got::kClosed && !may_be_sent_twice(method))
       return lost("the manager ended before it answered; `chimera status` says what was done");
     if (has_subscribed_ || now() >= until || !reconnect(until)) return lost(kLost);

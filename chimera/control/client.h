@@ -63,7 +63,7 @@ class Client {
   const std::string& path() const noexcept { return path_; }
 
  private:
-  enum class Got { kLine, kLate, kSilent, kClosed, kReset };  ///< kReset: what was sent last was not read
+  enum class Got { kLine, kLate, kSilent, kClosed, kReset, kTooLong };  ///< kReset: what was sent last was not read
 
   Client(OwnedDescriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
   Got send(std::string_view line, Nanoseconds until);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "chimera/platform/local_socket.h"
 
@@ -59,8 +60,29 @@ bool Connection::take_line(std::string& line) {
 }
 
 void Connection::queue(const std::string& line, Nanoseconds now) {
-  if (!has_output()) moved_ = now;
+  if (!behind_.empty()) {
+    const auto kept = std::make_shared<const std::string>(line);
+    behind_.push_back(std::make_shared<TextPieces>(kept, *kept));
+    return;
+  }
+  if (!has_bytes()) moved_ = now;
   output_ += line;
+}
+
+void Connection::queue_in_pieces(const std::string& begin, std::shared_ptr<Pieces> pieces, const std::string& end,
+                               Nanoseconds now) {
+  say(begin, now);
+  behind_.push_back(std::move(pieces));
+  say(end, now);
+}
+
+bool Connection::go_on(Nanoseconds now) {
+  if (!can_go_on()) return false;
+  if (!has_bytes()) moved_ = now;
+  if (sent_ > kAhead) output_.erase(0, std::exchange(sent_, 0));  // not whole before the last piece is sent
+  if (!behind_.front()->append_to(output_)) behind_.pop_front();
+  (void)flush(now);
+  return true;
 }
 
 bool Connection::is_read(Nanoseconds now) {
@@ -72,7 +94,7 @@ bool Connection::is_read(Nanoseconds now) {
 }
 
 bool Connection::flush(Nanoseconds now) {
-  if (!has_output()) return !is_closing_;
+  if (!has_bytes()) return !is_done();
   (void)is_read(now);  // before there is more to read
   const bool goes_on = send(now);
   if (const int unread = unread_by_other_end(socket_.fd); unread >= 0) unread_ = unread;
@@ -80,7 +102,7 @@ bool Connection::flush(Nanoseconds now) {
 }
 
 bool Connection::send(Nanoseconds now) {
-  while (has_output()) {
+  while (has_bytes()) {
     const std::int64_t sent = send_now(socket_.fd, std::string_view(output_).substr(sent_));
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && errno != EAGAIN) return false;
@@ -90,7 +112,7 @@ bool Connection::send(Nanoseconds now) {
   }
   output_.clear();
   sent_ = 0;
-  return !is_closing_;
+  return !is_done();
 }
 
 }  // namespace chimera::control

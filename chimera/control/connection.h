@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <string>
 
 #include "chimera/control/allowance.h"
 #include "chimera/control/limits.h"
+#include "chimera/control/pieces.h"
 #include "chimera/control/request.h"
 #include "chimera/control/rights.h"
 #include "chimera/platform/owned_descriptor.h"
@@ -41,16 +43,23 @@ class Connection {
 
   /// Queues a line that has its end.
   void queue(const std::string& line, Nanoseconds now);
+  /// Queues a line that begins with `begin`, goes on with `pieces` and ends with `end`. It is made by go_on(), as the
+  /// peer takes it; what is said meanwhile goes behind it.
+  void queue_in_pieces(const std::string& begin, std::shared_ptr<Pieces> pieces, const std::string& end, Nanoseconds now);
+  /// Makes the next piece of such a line and sends what can be sent. False: there is none, or no room for it.
+  bool go_on(Nanoseconds now);
+  /// go_on() has something to make.
+  bool can_go_on() const noexcept { return !behind_.empty() && output_.size() - sent_ < kAhead; }
   /// Sends what can be sent. False when the connection is over: the peer is gone, took nothing for too long, or
   /// everything was sent and it is closing.
   bool flush(Nanoseconds now);
-  bool has_output() const noexcept { return sent_ < output_.size(); }
-  /// The peer takes what it is sent: more may be read from it and made for it.
-  bool has_room() const noexcept { return output_.size() - sent_ < kMaxOutput; }
+  bool has_output() const noexcept { return has_bytes() || !behind_.empty(); }
+  /// The peer takes what it is sent, and no line is made piece by piece: more may be read from it and made for it.
+  bool has_room() const noexcept { return behind_.empty() && output_.size() - sent_ < kMaxOutput; }
   /// Has the peer read all that was sent, or some of it within the last kPatience?
   bool is_read(Nanoseconds now);
   /// When flush() will find that the peer took nothing for too long; kNever: nothing waits.
-  Nanoseconds send_timeout() const noexcept { return has_output() ? moved_ + kPatience : kNever; }
+  Nanoseconds send_timeout() const noexcept { return has_bytes() ? moved_ + kPatience : kNever; }
   /// After what is queued the connection ends.
   void close_after() noexcept { is_closing_ = true; }
   bool is_closing() const noexcept { return is_closing_; }
@@ -65,6 +74,10 @@ class Connection {
   std::unique_ptr<const Request> next;
 
  private:
+  static constexpr std::size_t kAhead = 4 * kPiece;  // bytes that wait before the next piece is made
+
+  bool has_bytes() const noexcept { return sent_ < output_.size(); }
+  bool is_done() const noexcept { return is_closing_ && behind_.empty(); }
   bool send(Nanoseconds now);
 
   std::uint64_t number_;
@@ -73,6 +86,7 @@ class Connection {
   std::string input_, output_;
   std::size_t taken_ = 0, looked_ = 0;  // of the input: handed out; known to hold no line end
   std::size_t sent_ = 0;
+  std::deque<std::shared_ptr<Pieces>> behind_;  // the output, but not made yet; the first is under way
   Nanoseconds moved_;  // when output last went, or the first of it was queued
   Nanoseconds half_since_ = kNever;
   int unread_ = 0;        // what the kernel held of it when looked at last, in the kernel's measure

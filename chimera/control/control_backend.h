@@ -32,6 +32,9 @@ class ControlBackend {
   /// nothing new. Asked at each period (status, values), or whenever the peer has room (events, tap): who is slow is
   /// asked less often, and what is gone by then is counted in the answer.
   virtual std::shared_ptr<const Json> pull(std::uint64_t subscription) = 0;
+  /// Asked before pull(): the parameters of a notification that is too large to be made at once, `subscription` among
+  /// them. Null: pull() is to be asked.
+  virtual std::shared_ptr<Pieces> pull_pieces(std::uint64_t /*subscription*/) { return nullptr; }
 
  protected:
   ~ControlBackend() = default;

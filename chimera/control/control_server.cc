@@ -27,6 +27,12 @@ RpcResponse no_role() {
       {{"needs", "observe"}, {"has", "nothing"}});
 }
 
+/// Null: it is small enough to be sent at once.
+std::shared_ptr<Pieces> pieces_of(const RpcResponse& answer) {
+  if (answer.text == nullptr || answer.text->size() <= kPiece) return answer.pieces;
+  return std::make_shared<TextPieces>(answer.text, *answer.text);
+}
+
 RpcResponse no_method(const std::string& name) {
   std::vector<std::string> names;
   for (const MethodRule& known : methods()) names.emplace_back(known.name);
@@ -252,7 +258,10 @@ RpcResponse ControlServer::subscribe(Connection& connection, const Json& paramet
 void ControlServer::answer(Connection& connection, const Request& request, const RpcResponse& answer) {
   connection.active_at = now_;
   if (!request.wants_answer) return;
-  connection.queue(answer_line(*request.id, answer), now_);
+  if (auto pieces = pieces_of(answer); pieces != nullptr)
+    connection.queue_in_pieces(result_begin(*request.id), std::move(pieces), kResultEnd, now_);
+  else
+    connection.queue(answer_line(*request.id, answer), now_);
   has_more_ = true;  // outside of serve(): to be sent
 }
 
@@ -292,7 +301,8 @@ void ControlServer::settle(Nanoseconds now) {
     const std::uint32_t wanted = (listens ? kToRead : 0u) | (connection->has_output() ? kToWrite : 0u);
     if (wanted != connection->watched) watched_.change(connection->descriptor(), wanted, number);
     connection->watched = wanted;
-    waits = waits || (!connection->is_closing() && connection->has_room() && connection->has_line());
+    waits = waits || connection->can_go_on() ||
+            (!connection->is_closing() && connection->has_room() && connection->has_line());
   }
   for (const std::uint64_t number : over) end(number);
   closings_.report_due(now);

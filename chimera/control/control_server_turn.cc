@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // In which order the door does what its peers ask for: acts before questions, those of higher roles first; then one
-// question of each connection in turn, as long as a turn lasts. Within a connection nothing is overtaken.
+// question, or one piece of a large answer, of each connection in turn, as long as a turn lasts. Within a connection
+// nothing is overtaken.
 #include "chimera/control/control_server.h"
 #include "chimera/control/methods.h"
 #include "chimera/control/turn.h"
@@ -48,12 +49,16 @@ bool ControlServer::act_of(Connection& connection, Nanoseconds now) {
   return true;
 }
 
-/// One question of the connection whose turn it is. False: there was none.
+/// One question of the connection whose turn it is, or a piece of the answer to one. False: there was none.
 bool ControlServer::ask(Nanoseconds now) {
   auto at = connections_.upper_bound(last_asked_);
   for (std::size_t n = connections_.size(); n > 0; --n, ++at) {
     if (at == connections_.end()) at = connections_.begin();
     Connection& connection = *at->second;
+    if (connection.go_on(now)) {
+      last_asked_ = at->first;
+      return true;
+    }
     std::string line;
     if (!is_open(connection) || (connection.next == nullptr && !connection.take_line(line))) continue;
     last_asked_ = at->first;

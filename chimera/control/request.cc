@@ -93,11 +93,15 @@ Request read_request(std::string_view line) {
   return request;
 }
 
+std::string result_begin(const Json& id) {
+  return R"({"id":)" + id.dump(-1, ' ', false, Json::error_handler_t::replace) + R"(,"jsonrpc":"2.0","result":)";
+}
+
 std::string answer_line(const Json& id, const RpcResponse& answer) {
   if (answer.is_good() && answer.text != nullptr) {
-    std::string line = R"({"id":)" + id.dump(-1, ' ', false, Json::error_handler_t::replace);
-    line.reserve(line.size() + answer.text->size() + 32);
-    return line.append(R"(,"jsonrpc":"2.0","result":)").append(*answer.text).append("}\n");
+    std::string line = result_begin(id);
+    line.reserve(line.size() + answer.text->size() + 2);
+    return line.append(*answer.text).append(kResultEnd);
   }
   Json message{{"jsonrpc", "2.0"}, {"id", id}};
   if (answer.is_good()) {
@@ -107,6 +111,10 @@ std::string answer_line(const Json& id, const RpcResponse& answer) {
     if (answer.data != nullptr) message["error"]["data"] = *answer.data;
   }
   return line_of(message);
+}
+
+std::string note_begin(std::string_view method) {
+  return R"({"jsonrpc":"2.0","method":")" + std::string(method) + R"(","params":)";
 }
 
 std::string note_line(std::string_view method, std::uint64_t subscription, const Json& parameters) {

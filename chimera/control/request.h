@@ -25,7 +25,13 @@ struct Request {
 Request read_request(std::string_view line);
 /// The lines to send, each with its line end. Text that is no UTF-8 is sent with replacements.
 std::string answer_line(const Json& id, const RpcResponse& answer);
+/// What stands before and behind the text of a result.
+std::string result_begin(const Json& id);
+inline constexpr const char* kResultEnd = "}\n";
 std::string note_line(std::string_view method, std::uint64_t subscription, const Json& parameters);
+/// What stands before and behind the text of the parameters of a notification.
+std::string note_begin(std::string_view method);
+inline constexpr const char* kNoteEnd = "}\n";
 std::string request_line(std::uint64_t id, std::string_view method, const Json& parameters);
 
 /// What a text costs its reader, as far as brackets and commas outside of texts tell.

@@ -12,6 +12,10 @@ RpcResponse RpcResponse::ready(std::shared_ptr<const std::string> text) {
   return {0, {}, nullptr, nullptr, std::move(text)};
 }
 
+RpcResponse RpcResponse::in_pieces(std::shared_ptr<Pieces> pieces) {
+  return {0, {}, nullptr, nullptr, nullptr, std::move(pieces)};
+}
+
 RpcResponse RpcResponse::error(int code, std::string message) { return {code, std::move(message), nullptr, nullptr}; }
 
 RpcResponse RpcResponse::error(int code, std::string message, const Json& data) {

@@ -7,6 +7,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "chimera/control/pieces.h"
+
 namespace chimera::control {
 
 using Json = nlohmann::json;
@@ -36,10 +38,13 @@ struct RpcResponse {
   std::shared_ptr<const Json> result;
   std::shared_ptr<const Json> data;                   ///< of an error; may be null
   std::shared_ptr<const std::string> text = nullptr;  ///< in the place of `result`: the same as one line of JSON
+  std::shared_ptr<Pieces> pieces = nullptr;           ///< in the place of `result`: the same, made while it is sent
 
   static RpcResponse good(const Json& result);
   /// A result that is JSON already: whoever sends it has nothing to do but to copy it.
   static RpcResponse ready(std::shared_ptr<const std::string> text);
+  /// A result that is made while it is sent.
+  static RpcResponse in_pieces(std::shared_ptr<Pieces> pieces);
   static RpcResponse error(int code, std::string message);
   static RpcResponse error(int code, std::string message, const Json& data);
   /// Error kRefused. `kind` is a word for programs (docs/formats/control.md), `where` names a task, a variable or

@@ -68,11 +68,18 @@ void Subscriptions::notify(const std::function<Connection&(std::uint64_t)>& conn
     const auto may = [&connection, skips = one.skips] {
       return skips ? !connection.has_output() : connection.has_room();
     };
+    bool has_more = false;
     for (int told = 0; told < (one.skips ? 1 : kNewsAtOnce) && may() && (told == 0 || !turn.is_over()); ++told) {
+      if (auto pieces = backend_.pull_pieces(number); pieces != nullptr) {
+        connection.queue_in_pieces(note_begin(one.to), std::move(pieces), kNoteEnd, now);
+        continue;
+      }
       const auto news = backend_.pull(number);
-      if (news == nullptr) break;
+      has_more = news != nullptr;
+      if (!has_more) break;
       connection.queue(note_line(one.to, number, *news), now);
     }
+    if (has_more && !one.skips && turn.is_over()) one.due = now;  // there is more, and only no time for it
   }
 }
 

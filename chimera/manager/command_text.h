@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 
@@ -9,12 +10,14 @@
 
 namespace chimera::manager {
 
-/// "off pid, arm", "ring lamp". Context: setup.
+inline constexpr std::size_t kTasksNamed = 16;  ///< of a command that names more
+
+/// "off pid, arm", "ring lamp", "ring a, ..., p and 9984 more". Context: setup.
 inline std::string command_text(const ApplicationSpec& spec, Signal signal, std::span<const TaskId> tasks) {
   std::string text = signal == Signal::kWakeup ? "ring" : signal_name(signal);
-  for (std::size_t i = 0; i < tasks.size(); ++i)
+  for (std::size_t i = 0; i < std::min(tasks.size(), kTasksNamed); ++i)
     text += (i == 0 ? " " : ", ") + std::string(spec.tasks[tasks[i].index].name);
-  return text;
+  return tasks.size() <= kTasksNamed ? text : text + " and " + std::to_string(tasks.size() - kTasksNamed) + " more";
 }
 
 }  // namespace chimera::manager

@@ -10,6 +10,7 @@
 #include "chimera/platform/process_id.h"
 #include "chimera/text/nearest.h"
 #include "chimera/manager/command_text.h"
+#include "chimera/manager/large_readings.h"
 #include "chimera/manager/operator_acts.h"
 #include "chimera/manager/parameters.h"
 #include "chimera/manager/signal_answer.h"
@@ -98,7 +99,10 @@ void ManagerBackend::profile(const Request& request) { request.reply(RpcResponse
 void ManagerBackend::get(const Request& request) {
   const auto variables = variables_named(world(), texts(request.parameters, "variables"));
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return request.reply(*refused);
-  request.reply(RpcResponse::good({{"values", readings_json(world(), std::get<0>(variables), now())}}));
+  const auto& named = std::get<0>(variables);
+  if (bytes_of(world(), named) <= kLargeReadings)
+    return request.reply(RpcResponse::good({{"values", readings_json(world(), named, now())}}));
+  request.reply(RpcResponse::in_pieces(std::make_shared<LargeReadings>(world(), named, R"({"values":)", "}")));
 }
 
 void ManagerBackend::events(const Request& request) {

@@ -30,6 +30,9 @@ class ManagerBackend final : public control::ControlBackend {
     return feeds_.open(subscription, parameters);
   }
   void close(std::uint64_t subscription) override { feeds_.close(subscription); }
+  std::shared_ptr<control::Pieces> pull_pieces(std::uint64_t subscription) override {
+    return feeds_.pull_pieces(subscription);
+  }
   std::shared_ptr<const control::Json> pull(std::uint64_t subscription) override { return feeds_.pull(subscription); }
 
  private:

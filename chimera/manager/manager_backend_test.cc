@@ -8,7 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "chimera/manager/large_readings.h"
+#include "chimera/manager/operator_acts.h"
 #include "chimera/manager/testing/fake_subsystem.h"
+#include "chimera/manager/value_json.h"
 #include "chimera/runtime/task_word.h"
 
 namespace chimera::manager {
@@ -127,6 +130,34 @@ TEST_F(ManagerBackendTest, DescribeTellsWhatVerificationKnows) {
     if (variable["variable"] != "y") continue;
     EXPECT_EQ(variable["consumers"], (Json::array({Json{{"task", "law"}, {"port", "y"}}})));
   }
+}
+
+TEST_F(ManagerBackendTest, AVariableThatIsNamedTwiceIsReadOnce) {
+  const auto named = variables_named(world(), {"kp", "x", "kp"});
+  EXPECT_EQ(std::get<0>(named), (std::vector{*world().readings->find("kp"), *world().readings->find("x")}));
+}
+
+TEST_F(ManagerBackendTest, ReadingsInPiecesAreTheSameAsAtOnce) {
+  fake_.rtpu(0).die();  // so that nothing is written meanwhile
+  fake_.rtpu(1).die();
+  const std::vector<VariableId> variables = std::get<0>(variables_named(world(), {}));
+  LargeReadings pieces(world(), variables, R"({"values":)", "}");
+  std::string text;
+  while (pieces.append_to(text)) {
+  }
+  Json made = Json::parse(text)["values"], whole = readings_json(world(), variables, now());
+  ASSERT_GT(made.size(), 3u);
+  for (Json* one : {&made, &whole})
+    for (auto& reading : *one) reading.erase("age_ns");
+  EXPECT_EQ(made, whole);
+}
+
+TEST_F(ManagerBackendTest, NoReadingsInPiecesAreAnEmptyObject) {
+  LargeReadings pieces(world(), {}, R"({"values":)", "}");
+  std::string text;
+  while (pieces.append_to(text)) {
+  }
+  EXPECT_EQ(Json::parse(text), (Json{{"values", Json::object()}}));
 }
 
 TEST_F(ManagerBackendTest, GetReadsTheRegisters) {

@@ -49,10 +49,12 @@ std::variant<std::vector<VariableId>, RpcResponse> variables_named(const Manager
   std::vector<VariableId> found;
   if (names.empty() && world.readings)
     for (std::size_t v = 0; v < world.readings->size(); ++v) found.emplace_back(v);
+  std::vector<bool> is_named(world.readings ? world.readings->size() : 0);
   for (const std::string& name : names) {
     const auto variable = world.readings ? world.readings->find(name) : std::nullopt;
     if (!variable) return unknown("state variable", name, variable_names(world));
-    found.push_back(*variable);
+    if (!is_named[variable->index]) found.push_back(*variable);
+    is_named[variable->index] = true;
   }
   return found;
 }

@@ -14,7 +14,7 @@
 namespace chimera::manager {
 
 /// Context of all: setup.
-/// The variables of these names, none: all of them; refuses an unknown one with the nearest.
+/// The variables of these names, each once, none: all of them; refuses an unknown one with the nearest.
 std::variant<std::vector<VariableId>, control::RpcResponse> variables_named(const ManagerState& world,
                                                                             const std::vector<std::string>& names);
 /// The tasks of these names; refuses none at all, and an unknown one with the nearest.

@@ -26,6 +26,16 @@ RpcResponse given_up(const std::string& why) {
   return RpcResponse::refused("analysis", why, "text", "ask `chimera check` or `chimera schedule` with the file");
 }
 
+/// A large text is sent out of the memory in which it came.
+RpcResponse answer_in(int passed, std::size_t text_bytes) {
+  auto opened = FrozenBytes::open(passed);
+  if (!opened || opened->bytes().size() < text_bytes) return given_up("the answer of the analysis cannot be read");
+  const auto frozen = std::make_shared<const FrozenBytes>(*std::move(opened));
+  const std::string_view text(reinterpret_cast<const char*>(frozen->bytes().data()), text_bytes);
+  if (text_bytes > control::kPiece) return RpcResponse::in_pieces(std::make_shared<control::TextPieces>(frozen, text));
+  return RpcResponse::ready(std::make_shared<const std::string>(text));
+}
+
 }  // namespace
 
 Questions::~Questions() { end_analyst(); }
@@ -74,12 +84,7 @@ void Questions::take_answer(Nanoseconds now) {
   if (is_asked && told.what == QuestionMessage::What::kNoMemory) {
     answer_first(given_up("the analysis was given up: it needs more than 1 GiB of memory, or its answer 32 MiB"), now);
   } else if (is_asked) {
-    const auto frozen = FrozenBytes::open(passed);
-    const bool is_whole = frozen && frozen->bytes().size() >= told.text_bytes;
-    const char* text = is_whole ? reinterpret_cast<const char*>(frozen->bytes().data()) : nullptr;
-    answer_first(is_whole ? RpcResponse::ready(std::make_shared<const std::string>(text, told.text_bytes))
-                          : given_up("the answer of the analysis cannot be read"),
-                 now);
+    answer_first(answer_in(passed, told.text_bytes), now);
   } else if (got == Channel::Got::kClosed) {
     const bool was_under_way = is_under_way_;
     const std::string how = how_it_ended();

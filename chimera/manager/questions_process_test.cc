@@ -70,6 +70,13 @@ TEST_F(QuestionsTest, RefusesWhatIsTooManyAtOnce) {
   EXPECT_EQ(answers_["last"].message, "64 analyses are under way");
 }
 
+TEST_F(QuestionsTest, RefusesWhatIsTooMuchTextAtOnce) {
+  const std::string text(kMaxQuestionBytes / 16, '#');
+  for (std::uint64_t n = 0; n < 16; ++n) ask("n" + std::to_string(n), n, text);
+  ask("last", 1000, "#");
+  EXPECT_EQ(answers_["last"].message, "analyses of 16 MiB of text are under way");
+}
+
 TEST_F(QuestionsTest, RefusesTooMuchText) {
   const std::string large(std::size_t{1} << 20, '#');
   for (std::uint64_t n = 0; n < 16; ++n) ask("n" + std::to_string(n), n, large);

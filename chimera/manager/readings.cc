@@ -26,8 +26,10 @@ std::vector<FieldDescriptor> fields_of(const Library& library, std::string_view 
 Readings::Readings(const Peers& peers, const OwnSegment& own, const Configuration& configuration,
                    const Library& library, StateOf state_of)
     : peers_(peers), own_(own), state_of_(std::move(state_of)), variables_(peers.spec()) {
-  for (std::size_t v = 0; v < variables_.all().size(); ++v)
+  for (std::size_t v = 0; v < variables_.all().size(); ++v) {
     forms_.push_back(form_of(v, configuration, library));
+    by_name_.emplace(variables_.all()[v].name, v);
+  }
 }
 
 Readings::Form Readings::form_of(std::size_t variable, const Configuration& configuration,
@@ -51,8 +53,8 @@ Readings::Form Readings::form_of(std::size_t variable, const Configuration& conf
 }
 
 std::optional<VariableId> Readings::find(std::string_view name) const noexcept {
-  const std::size_t found = variables_.find(name);
-  return found < size() ? std::optional(VariableId(found)) : std::nullopt;
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? std::nullopt : std::optional(found->second);
 }
 
 TaskId Readings::producer(VariableId variable) const {
@@ -61,45 +63,49 @@ TaskId Readings::producer(VariableId variable) const {
   std::int64_t latest = INT64_MIN;
   for (const PortOf& port : v.producers) {
     if (state_of_(port.task) == State::kOn) return port.task;
-    VariableReading reading;
-    if (!read_output(port, reading) || reading.slot.sequence == 0 || reading.slot.published_ns <= latest) continue;
-    latest = reading.slot.published_ns;
+    chimera_slot slot{};
+    if (!read_output(port, slot, nullptr) || slot.sequence == 0 || slot.published_ns <= latest) continue;
+    latest = slot.published_ns;
     last = port.task;
   }
   return last;
 }
 
-VariableReading Readings::read(VariableId variable) const {
+VariableReading Readings::read(VariableId variable) const { return read(variable, true); }
+
+VariableReading Readings::read_header(VariableId variable) const { return read(variable, false); }
+
+VariableReading Readings::read(VariableId variable, bool with_value) const {
   const Variable& v = variables_.all()[variable.index];
   VariableReading reading;
   reading.form = form(variable);
   if (is_operators(variable)) {
     const GroupReader reader = own_.operator_reader(v.operator_index);
-    reading.value.resize(reader.payload_bytes());
-    reading.is_valid = reader.try_read(reading.slot, reading.value.data()) && (reading.slot.valid & 1u) != 0;
+    if (with_value) reading.value.resize(reader.payload_bytes());
+    reading.is_valid = reader.try_read_part(reading.slot, 0, reading.value) && (reading.slot.valid & 1u) != 0;
   } else {
     const TaskId from = producer(variable);
     const auto at = std::find_if(v.producers.begin(), v.producers.end(),
                                  [&](const PortOf& port) { return port.task == from; });
-    if (at != v.producers.end() && read_output(*at, reading)) {
+    if (at != v.producers.end() && read_output(*at, reading.slot, with_value ? &reading.value : nullptr)) {
       reading.producer = from;
       reading.is_valid = ((reading.slot.valid >> at->index) & 1u) != 0;
     }
   }
-  reading.value.resize(std::size_t{reading.form.count} * reading.form.element_bytes);
+  if (with_value) reading.value.resize(std::size_t{reading.form.count} * reading.form.element_bytes);
   return reading;
 }
 
-bool Readings::read_output(const PortOf& port, VariableReading& reading) const {
+/// Only what is asked for is copied: the other outputs of the task may be large.
+bool Readings::read_output(const PortOf& port, chimera_slot& slot, std::vector<std::byte>* value) const {
   const PeerSegment& segment = peers_.of(port.task);
   if (!segment.is_there()) return false;
   const PeerLayout& layout = peers_.layout(peers_.spec().tasks[port.task.index].rtpu);
   const GroupId group = layout.outputs(port.task, peers_.status(port.task).incarnation);
   const VariablePlace& place = layout.variables(group)[port.index];
-  std::vector<std::byte> payload(layout.place(group).payload_bytes);
-  if (!segment.group(group).try_read(reading.slot, payload.data())) return false;
-  reading.value.assign(payload.begin() + place.offset, payload.begin() + place.offset + place.bytes);
-  return true;
+  if (value == nullptr) return segment.group(group).try_read_part(slot, 0, {});
+  value->resize(place.bytes);
+  return segment.group(group).try_read_part(slot, place.offset, *value);
 }
 
 ValueForm Readings::form(VariableId variable) const {

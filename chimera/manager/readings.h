@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "chimera/catalogue/library.h"
@@ -55,6 +56,8 @@ class Readings {
   /// Who produces it now, or did last; invalid: the operator, or no task that does was ever created.
   TaskId producer(VariableId variable) const;
   VariableReading read(VariableId variable) const;
+  /// The same without the value, which may be large.
+  VariableReading read_header(VariableId variable) const;
   /// How a value of the variable is to be read, with its present extents.
   ValueForm form(VariableId variable) const;
 
@@ -67,13 +70,15 @@ class Readings {
   Form form_of(std::size_t variable, const Configuration& configuration, const Library& library) const;
   std::uint32_t extent(const ExtentSpec& extent) const;
   std::optional<std::int64_t> constant(ConstantId id) const;
-  bool read_output(const PortOf& port, VariableReading& reading) const;
+  VariableReading read(VariableId variable, bool with_value) const;
+  bool read_output(const PortOf& port, chimera_slot& slot, std::vector<std::byte>* value) const;
 
   const Peers& peers_;
   const OwnSegment& own_;
   StateOf state_of_;
   Variables variables_;
   std::vector<Form> forms_;
+  std::unordered_map<std::string_view, VariableId> by_name_;
 };
 
 }  // namespace chimera::manager

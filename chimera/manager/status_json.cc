@@ -99,7 +99,7 @@ Json inputs_json(const ManagerState& world, TaskId task, Nanoseconds at) {
     if (port.kind != CHIMERA_IN_VAR) continue;
     const auto variable = world.readings->find(port.variable);
     if (!variable) continue;
-    const VariableReading reading = world.readings->read(*variable);
+    const VariableReading reading = world.readings->read_header(*variable);
     const bool is_operators = world.readings->is_operators(*variable);  // holds until it is set: never old
     const bool is_there = reading.is_valid && reading.slot.sequence > 0;
     inputs.push_back({{"port", port.name},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "chimera/manager/large_readings.h"
 #include "chimera/manager/operator_acts.h"
 #include "chimera/manager/parameters.h"
 #include "chimera/manager/status_json.h"
@@ -37,6 +38,14 @@ RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& para
         number(parameters, "since", 1) == 0);
   feeds_[subscription] = std::move(made);
   return RpcResponse{};
+}
+
+std::shared_ptr<control::Pieces> SubscriptionFeeds::pull_pieces(std::uint64_t subscription) {
+  const Feed& feed = feeds_.at(subscription);
+  if (feed.to != Feed::To::kValues || bytes_of(world_, feed.variables) <= kLargeReadings) return nullptr;
+  const std::string begin = R"({"at_ns":)" + std::to_string(now().count) + R"(,"subscription":)" +
+                            std::to_string(subscription) + R"(,"values":)";
+  return std::make_shared<LargeReadings>(world_, feed.variables, begin, "}");
 }
 
 std::shared_ptr<const Json> SubscriptionFeeds::pull(std::uint64_t subscription) {

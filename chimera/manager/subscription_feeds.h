@@ -24,6 +24,7 @@ class SubscriptionFeeds {
 
   control::RpcResponse open(std::uint64_t subscription, const control::Json& parameters);
   void close(std::uint64_t subscription) { feeds_.erase(subscription); }
+  std::shared_ptr<control::Pieces> pull_pieces(std::uint64_t subscription);
   std::shared_ptr<const control::Json> pull(std::uint64_t subscription);
 
  private:

@@ -77,24 +77,27 @@ bool TapFeed::follow(Ring& ring) {
   return true;
 }
 
+/// At most kAtOnce records of all rings, the ring after the last one first: others are to be served, too.
 void TapFeed::pump(const TapSink& sink) {
-  for (Ring& ring : rings_) {
-    drain(ring, sink);
-    if (follow(ring)) drain(ring, sink);
+  std::size_t left = kAtOnce;
+  for (std::size_t n = rings_.size(); n > 0 && left > 0; --n) {
+    Ring& ring = rings_[next_++ % rings_.size()];
+    while (drain(ring, left, sink) && follow(ring)) {
+    }
     flush(ring, 0, sink);
   }
   for (Rows& rows : rows_) flush(rows, sink);
 }
 
-void TapFeed::drain(Ring& ring, const TapSink& sink) {
-  for (std::size_t rounds = 0; rounds < kTapRecords / kAtOnce; ++rounds) {
-    const std::size_t n = ring.reader.read(buffer_);
-    const std::uint64_t lost = ring.reader.lost() - std::exchange(ring.lost_before, ring.reader.lost()) +
-                               std::exchange(ring.gone, 0);
-    if (rows_.empty() && lost > 0) flush(ring, lost, sink);
-    for (std::size_t i = 0; i < n; ++i) take(ring, buffer_[i], sink);
-    if (n < buffer_.size()) return;
-  }
+/// Takes up to `left` records, and these from `left`. True: there were no more.
+bool TapFeed::drain(Ring& ring, std::size_t& left, const TapSink& sink) {
+  const std::size_t n = ring.reader.read(std::span(buffer_).first(left));
+  const std::uint64_t lost = ring.reader.lost() - std::exchange(ring.lost_before, ring.reader.lost()) +
+                             std::exchange(ring.gone, 0);
+  if (rows_.empty() && lost > 0) flush(ring, lost, sink);
+  for (std::size_t i = 0; i < n; ++i) take(ring, buffer_[i], sink);
+  left -= n;
+  return left > 0;
 }
 
 void TapFeed::take(Ring& ring, const TapRecord& record, const TapSink& sink) {

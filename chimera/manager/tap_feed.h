@@ -27,7 +27,8 @@ class TapFeed {
   TapFeed(const TapFeed&) = delete;
   TapFeed& operator=(const TapFeed&) = delete;
 
-  /// Hands on what has come since: to be called several times within 0.3 s, for the ring holds no more.
+  /// Hands on what has come since, at most 4096 records: to be called as long as it hands on, and several times within
+  /// 0.3 s, for the ring holds no more.
   void pump(const TapSink& sink);
 
  private:
@@ -56,7 +57,7 @@ class TapFeed {
   void add_producer(VariableId variable, const PortOf& port);
   void tap(TaskId task, bool up);
   bool follow(Ring& ring);
-  void drain(Ring& ring, const TapSink& sink);
+  bool drain(Ring& ring, std::size_t& left, const TapSink& sink);
   void take(Ring& ring, const TapRecord& record, const TapSink& sink);
   void take_row(const TapRow& row, const TapSink& sink);
   void flush(Rows& rows, const TapSink& sink);
@@ -67,6 +68,7 @@ class TapFeed {
   std::vector<Rows> rows_;
   std::vector<Ring> rings_;
   std::vector<TapRecord> buffer_;
+  std::size_t next_ = 0;  // ring that is read first, counted on and on
 };
 
 }  // namespace chimera::manager

@@ -23,6 +23,10 @@ class TapFeedTest : public testing::Test {
   void pump(TapFeed& feed) {
     feed.pump([this](Json message) { messages_.push_back(std::move(message)); });
   }
+  /// As often as a whole ring takes, and one that nearly stands still.
+  void pump_a_ring(TapFeed& feed) {
+    for (std::size_t taken = 0; taken < 2 * kTapRecords; taken += 4096) pump(feed);
+  }
   bool pump_until(TapFeed& feed, std::size_t rows, const char* key = "rows") {
     return fake_.until([&] {
       pump(feed);
@@ -105,7 +109,7 @@ TEST_F(TapFeedTest, WithoutVariablesItGivesTheSchedulingRecords) {
 TEST_F(TapFeedTest, WhatWasOverwrittenIsCounted) {
   TapFeed feed(world(), {});
   overwrite_spare();
-  pump(feed);
+  pump_a_ring(feed);
   const Seen spare = seen_of_spare();
   EXPECT_GE(spare.lost, 10u);
   EXPECT_GE(spare.lost + spare.records, kTapRecords + 10);
@@ -129,10 +133,24 @@ TEST_F(TapFeedTest, FromTheOldestWhatIsGoneByThenCountsAsLost) {
   overwrite_spare();
   const std::uint64_t written = fake_.rtpu(1).block().tap().head;
   TapFeed feed(world(), {}, true);
-  pump(feed);
+  pump_a_ring(feed);
   const Seen spare = seen_of_spare();
   EXPECT_GE(spare.lost, 10u);
   EXPECT_EQ(spare.lost + spare.records, written);
+  fake_.kill_rtpu(1, SIGKILL);
+}
+
+TEST_F(TapFeedTest, OnePumpTakesABoundedNumberOfRecordsAndTheRestComesNext) {
+  TapFeed feed(world(), {});
+  overwrite_spare();
+  std::uint64_t before = 0;
+  for (int n = 0; n < 5; ++n) {
+    pump(feed);
+    const std::uint64_t now = seen_of_spare().records;
+    EXPECT_LE(now - before, 4096u);
+    before = now;
+  }
+  EXPECT_GT(before, 8000u) << "two rings share";
   fake_.kill_rtpu(1, SIGKILL);
 }
 

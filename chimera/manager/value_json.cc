@@ -8,11 +8,20 @@
 
 #include "chimera/catalogue/descriptor_value.h"
 #include "chimera/manager/status_json.h"
+#include "chimera/text/value_renderer.h"
 
 namespace chimera::manager {
 namespace {
 
 using Json = nlohmann::json;
+
+/// For people, who read no thousand numbers.
+std::string short_text(const ValueForm& form, std::span<const std::byte> bytes) {
+  constexpr std::size_t kValues = 100;
+  std::string text;
+  if (!ValueRenderer(form, bytes, ValueRenderer::As::kText).append_to(text, kValues)) return text;
+  return text + " ...: " + std::to_string(form.count) + " elements";
+}
 
 bool is_finite(const ValueForm& form, std::span<const std::byte> bytes) {
   const std::vector<double> all = numbers(form, bytes);
@@ -106,7 +115,7 @@ VariableFacts facts_of(const ManagerState& world, VariableId variable, Nanosecon
   facts.published = {reading.slot.published_ns};
   facts.age = reading.age(at);
   facts.is_finite = is_finite(reading.form, reading.value);
-  facts.value = value_text(reading.form, reading.value);
+  facts.value = short_text(reading.form, reading.value);
   if (world.readings->is_operators(variable)) {
     facts.producer = "operator";
     facts.state = State::kOn;
@@ -145,20 +154,29 @@ Json value_of(const ValueForm& form, std::span<const std::byte> bytes) {
   return list;
 }
 
+Json reading_head_json(const ManagerState& world, VariableId variable, const VariableReading& reading,
+                       Nanoseconds at) {
+  const ConfiguredVariable& known = world.readings->configured(variable);
+  Json head = {{"unit", known.unit},
+               {"type", known.type},
+               {"shape", known.shape},
+               {"producer", producer_name(world, variable, reading.producer)},
+               {"state", state_text(world, variable, reading.producer)},
+               {"published_ns", reading.slot.published_ns},
+               {"age_ns", reading.age(at).count},
+               {"sequence", reading.slot.sequence},
+               {"valid", reading.is_valid}};
+  if (!reading.is_valid) head.update({{"value", nullptr}, {"text", "never written"}});
+  return head;
+}
+
 Json reading_json(const ManagerState& world, VariableId variable, Nanoseconds at) {
   const VariableReading reading = world.readings->read(variable);
-  const ConfiguredVariable& known = world.readings->configured(variable);
-  return {{"value", reading.is_valid ? value_of(reading.form, reading.value) : Json()},
-          {"text", reading.is_valid ? value_text(reading.form, reading.value) : "never written"},
-          {"unit", known.unit},
-          {"type", known.type},
-          {"shape", known.shape},
-          {"producer", producer_name(world, variable, reading.producer)},
-          {"state", state_text(world, variable, reading.producer)},
-          {"published_ns", reading.slot.published_ns},
-          {"age_ns", reading.age(at).count},
-          {"sequence", reading.slot.sequence},
-          {"valid", reading.is_valid}};
+  Json json = reading_head_json(world, variable, reading, at);
+  if (!reading.is_valid) return json;
+  json["value"] = value_of(reading.form, reading.value);
+  json["text"] = value_text(reading.form, reading.value);
+  return json;
 }
 
 Json readings_json(const ManagerState& world, std::span<const VariableId> variables, Nanoseconds at) {

@@ -13,6 +13,9 @@ namespace chimera::manager {
 
 /// A value as docs/formats/control.md has it: number, boolean, text, array or object. Context of all: setup.
 nlohmann::json value_of(const ValueForm& form, std::span<const std::byte> bytes);
+/// What is known about a value beside itself. Of one that was never written all there is to say.
+nlohmann::json reading_head_json(const ManagerState& world, VariableId variable, const VariableReading& reading,
+                                 Nanoseconds at);
 /// One reading; its age is told at `at`.
 nlohmann::json reading_json(const ManagerState& world, VariableId variable, Nanoseconds at);
 /// {name: reading} of these variables.

@@ -32,6 +32,19 @@ GroupReader::GroupReader(const std::byte* memory, std::uint32_t payload_bytes) n
   CHIMERA_ASSERT(is_aligned(base_, kCacheLine));
 }
 
+bool GroupReader::try_read_part(chimera_slot& header, std::uint32_t offset,
+                                std::span<std::byte> values) const noexcept {
+  CHIMERA_ASSERT(offset % sizeof(std::uint64_t) == 0 && offset + values.size() <= payload_bytes_);
+  std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
+  for (std::uint32_t tries = 0; tries < kReadTries; ++tries) {
+    const std::byte* from = slot(n);
+    shared_copy::load_header(header, from);
+    shared_copy::copy_out(values.data(), from + sizeof header + offset, values.size());
+    if (was_whole(base_, n)) return true;
+  }
+  return false;
+}
+
 bool GroupReader::try_again(std::uint64_t n, chimera_slot& header, std::byte* values) const noexcept {
   for (std::uint32_t tries = 1; tries < kReadTries; ++tries)
     if (read_slot(n, header, values)) return true;

@@ -85,6 +85,11 @@ class GroupReader {
     std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
     return read_slot(n, to) || try_again(n, to);
   }
+  /// Copies `values.size()` bytes from `offset` on, and the header: of a large group no more than is wanted.
+  /// Requires: offset divisible by 8, offset + values.size() <= payload_bytes(). Context: cycle; bounded; plain loads
+  /// only.
+  [[nodiscard]] bool try_read_part(chimera_slot& header, std::uint32_t offset,
+                                   std::span<std::byte> values) const noexcept;
   /// The latest published slot in place: its values follow the header. Only where writer and reader run
   /// in one context, so that nothing is published while the pointer is in use.
   /// Context: cycle; wait-free.

@@ -57,6 +57,23 @@ TEST(Group, ReaderGetsTheLatestPublicationWhole) {
   EXPECT_EQ(writer.sequence(), 11u);
 }
 
+TEST(Group, ReaderGetsThePartThatItAsksFor) {
+  AlignedMemory memory(kPayload);
+  GroupWriter writer(memory.bytes(), kPayload);
+  GroupReader reader(memory.bytes().data(), kPayload);
+  const Values written{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  for (int k = 1; k <= 5; ++k) writer.write(bytes_of(written), Nanoseconds{1000 * k}, 0b101);
+  chimera_slot header{};
+  Values values{};
+  ASSERT_TRUE(reader.try_read_part(header, 3 * sizeof(double), std::span(bytes_of(values), 2 * sizeof(double))));
+  EXPECT_EQ(values, (Values{3, 4}));
+  EXPECT_EQ(header.sequence, 5u);
+  EXPECT_EQ(header.published_ns, 5000);
+  EXPECT_EQ(header.valid, 0b101u);
+  ASSERT_TRUE(reader.try_read_part(header, kPayload, {}));
+  EXPECT_EQ(header.sequence, 5u);
+}
+
 TEST(Group, StagedValuesAreNotSeenBeforePublish) {
   AlignedMemory memory(kPayload);
   GroupWriter writer(memory.bytes(), kPayload);

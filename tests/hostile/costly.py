@@ -13,6 +13,22 @@ from system import await_that  # noqa: E402, F401
 
 TASKS = 256
 
+# Two units, and in a third values of 3.9 MiB: nearly what all outputs of an application together may have.
+LARGE_VALUES = """
+subsystem: subject
+rtpus:
+  first: {cpu: 0, policy: edf}
+  second: {cpu: 1, policy: edf}
+  third: {cpu: 1, policy: edf}
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  beside: {component: t_source, rtpu: second, rate: 100 Hz}
+  large: {component: t_large, rtpu: third, rate: 1 Hz}
+  reader: {component: t_reads_large, rtpu: third, rate: 1 Hz}
+configurations: {all: [steady, beside, large, reader]}
+start: all
+"""
+
 
 def loops(inputs=16, configurations=80):
     """256 joins of 16 inputs each, all in loops, in 80 configurations: 160 kB."""
@@ -87,6 +103,15 @@ class Load:
         self.stops = True
         for thread in self.threads:
             thread.join()
+
+
+def worst_of_values():
+    """As many connections, all for the values of LARGE_VALUES: all at once, one a thousand times, each value's reason,
+    how old the inputs are, and each publication."""
+    again = request("get", variables=["a"] * 9000)
+    return [(request("get"), 5, 32), (again, 2, 8), (request("why", variable="sum"), 2, 32), (request("status"), 1, 32),
+            (request("subscribe", to="values", period_ms=20), 2, 12), (request("subscribe", to="tap",
+             variables=["n", "count", "x"]), 1, 12), (request("get", variables=["g"]), 1, 32)]
 
 
 def worst():

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Acts never wait for questions: beside the most costly permitted questions of all other connections `off` and `flag`
 are answered within 100 ms; who goes takes his questions along; the process that answers them may die."""
+import json
 import pathlib
 import signal
+import subprocess
 import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from costly import Load, loops, worst  # noqa: E402, I100
-from system import TWO_UNITS, Client, Refused, System, await_that, processes_of  # noqa: E402
+from costly import LARGE_VALUES, Load, loops, request, worst, worst_of_values  # noqa: E402, I100
+from system import CHIMERA, TWO_UNITS, Client, Refused, System, await_that, processes_of  # noqa: E402
 
 LIMIT_S = 0.1
 TRIES = 8  # one is enough: the machine may be busy with something else
@@ -35,9 +37,9 @@ def acts(system):
     return slowest
 
 
-def acts_are_quick_beside_the_worst_load(system):
-    with Load(system.socket, worst()) as load:
-        await_that(lambda: analysts(system), 10, "an analysis")
+def acts_are_quick_beside(system, asked, begun):
+    with Load(system.socket, asked) as load:
+        await_that(lambda: begun(load), 10, "the load")
         took = []
         while len(took) < TRIES and (not took or min(took) > LIMIT_S):
             time.sleep(0.05)
@@ -46,6 +48,30 @@ def acts_are_quick_beside_the_worst_load(system):
         assert load.answers > 0
     assert system.state("beside") == "OFF"
     print(f"acts beside the worst load: {min(took) * 1e3:.0f} ms, {load.answers} answers")
+
+
+def large_values_are_answered_whole(system):
+    """Made while they are sent, they are what was asked for, and what is asked behind them is answered behind them."""
+    client = Client(system.socket)
+    client.socket.sendall(request("get") + request("hello"))
+    values = client.line()["result"]["values"]
+    assert [len(values[name]["value"]) for name in "abg"] == [65536] * 3, values.keys()
+    assert values["b"]["value"][65535] == 0.2 and values["b"]["text"].startswith("[0.2 0.2 "), values["b"]["text"][:99]
+    assert values["b"]["text"].endswith(" 0.2] m") and values["l"]["value"][0] is False
+    assert {*values["a"]} == {*values["n"]} and values["n"]["valid"]
+    assert client.line()["result"]["subsystem"] == "subject"
+    client.socket.sendall(request("subscribe", to="values", period_ms=20, variables=["c", "n"]))
+    opened = client.line()["result"]["subscription"]
+    for _ in range(3):
+        note = client.line()
+        assert note["method"] == "values" and note["params"]["subscription"] == opened, note.keys()
+        assert note["params"]["values"]["c"]["value"][0] == 0.3 and note["params"]["at_ns"] > 0
+    client.close()
+    words = subprocess.run([CHIMERA, "get", "a", "--subsystem", str(system.socket)], env=system.environment, text=True,
+                           capture_output=True, timeout=20)
+    assert words.returncode == 0 and words.stdout.count("0.1") == 65536, words.stdout[:200] + words.stderr
+    reason = system.call("why", variable="sum")
+    assert len(json.dumps(reason)) < 10_000 and "65536 elements" in json.dumps(reason), json.dumps(reason)[:1000]
 
 
 def who_goes_takes_his_questions_along(system):
@@ -90,7 +116,7 @@ def it_ends_in_order_while_an_analysis_is_under_way(system):
 
 def main():
     with System(TWO_UNITS) as system:
-        acts_are_quick_beside_the_worst_load(system)
+        acts_are_quick_beside(system, worst(), lambda _: analysts(system))
         who_goes_takes_his_questions_along(system)
         a_death_takes_only_the_question_along(system)
         try:
@@ -98,6 +124,9 @@ def main():
         except Refused as refusal:
             raise AssertionError(refusal) from refusal
         it_ends_in_order_while_an_analysis_is_under_way(system)
+    with System(LARGE_VALUES) as system:
+        large_values_are_answered_whole(system)
+        acts_are_quick_beside(system, worst_of_values(), lambda load: load.answers > 2)
 
 
 main()
