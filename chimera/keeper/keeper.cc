@@ -16,6 +16,7 @@ constexpr int kMostRefusals = 10;               // of the manager, before anybod
 constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to be carried out
 constexpr Nanoseconds kWatchEvery = milliseconds(250);
 constexpr Nanoseconds kManagerPatience = milliseconds(1500);  // it is replaced within 20 ms
+constexpr Nanoseconds kFacePatience = seconds(30);            // longer than it waits for any answer, 20 s
 constexpr Nanoseconds kStartPatience = seconds(10);           // until it serves: it verifies the whole description
 
 }  // namespace
@@ -95,6 +96,7 @@ void Keeper::end_badly(const Message& why) {
 void Keeper::check_face() {
   const KeptFace::Fate fate = face_.poll();
   if (fate == KeptFace::Fate::kNothingNew) return;
+  face_life_ = {};
   peers_.publish_face(face_.page());
   Message said("the process that prints and ends this run died ");
   if (fate == KeptFace::Fate::kExited) {
@@ -137,6 +139,7 @@ void Keeper::watch_manager() {
   if (now < watch_due_) return;
   watch_due_ = now + kWatchEvery;
   peers_.beat();
+  watch_face(now);
   if (!peers_.lives(peers_.manager()) || phase_ >= Phase::kRtpusFinish) return;
   const ProcessState process = process_state(peers_.pid(peers_.manager()));
   const bool is_slow_start = manager_beats_ == 0 && process.letter != 'T';
@@ -155,6 +158,15 @@ void Keeper::watch_manager() {
   } else if (verdict.is_news) {
     report_hang();
   }
+}
+
+/// The face ends the run in time: one that is stopped, or does not come round, is replaced. At the end of the run each
+/// phase has its limit whatever the face does.
+void Keeper::watch_face(Nanoseconds now) {
+  if (phase_ != Phase::kRunning || !face_.lives()) return;
+  const LifeVerdict verdict =
+      face_life_.look({now, face_.page().beats, process_state(face_.pid())}, {kManagerPatience, kFacePatience});
+  if (verdict.is_over || verdict.life == Life::kStopped) face_.signal(SIGKILL);
 }
 
 /// To the manager that runs now, be it another one.

@@ -33,9 +33,10 @@ class Keeper {
   /// them.
   Result<void> start();
   /// Keeps until the face exits or says SIGUSR1, the manager says so, or a signal does; then ends everybody: the face
-  /// has taken its last values by then, and sees how the tasks end. A face that dies by a signal is replaced, and so
-  /// are its successors; when one dies too often, or while everything ends, that is told on standard error and the exit
-  /// code is 1. Else the manager's if it gave one above 0, else that of the face, 0 without one.
+  /// has taken its last values by then, and sees how the tasks end. A face that dies by a signal is replaced (one that
+  /// is stopped or hangs is sent SIGKILL), and so are its successors; when one dies too often, or while everything
+  /// ends, that is told on standard error and the exit code is 1. Else the manager's if it gave one above 0, else that
+  /// of the face, 0 without one.
   int run();
   /// The face has told that what it printed is lost. Requires: start() was called.
   bool output_is_lost() const noexcept { return face_.is_wanted() && face_.page().lost_output != 0; }
@@ -60,6 +61,7 @@ class Keeper {
   bool advance();
   void enter(Phase phase, Nanoseconds limit);
   void watch_manager();
+  void watch_face(Nanoseconds now);
   void report_hang();
 
   const KeeperPlan plan_;
@@ -70,7 +72,7 @@ class Keeper {
   Phase phase_ = Phase::kRunning;
   Nanoseconds phase_due_ = kNever;
   Nanoseconds watch_due_ = {};
-  LifeWatch manager_life_;
+  LifeWatch manager_life_, face_life_;
   std::uint64_t manager_beats_ = 0;   // of the present one; 0: it has not come to serve
   KeeperMessage hung_;                // kHung: of the manager, to be told when one runs again
   Nanoseconds manager_due_ = kNever;  // when it is started again

@@ -207,6 +207,18 @@ class TheFaceDies(unittest.TestCase):
                 self.assertIn("signal 9 (SIGKILL)", got["told"][0])
                 self.assertIn("not clean: ", got["said"])
 
+    def test_one_that_is_stopped_ends_the_run_in_time_all_the_same(self):
+        with System(TWO_UNITS, ("--for", "1 s", "--expect", "count >= 100")) as system:
+            begun = system.call("status")["started_ns"]
+            stopped = self.face_of(system)
+            self.assertTrue(system.kill(stopped, signal.SIGSTOP))
+            code = system.process.wait(20)
+            ran, said = time.monotonic() - begun / 1e9, system.said()
+        self.assertEqual(code, 0, said)
+        self.assertTrue(1.0 <= ran < 1 + 2 + 3, ran)  # told within 2 s; the rest is the end, and a busy machine
+        self.assertIn("holds: count >= 100", said)
+        self.assertIn("died 1 time", said)
+
     def test_one_that_dies_again_and_again_ends_everything_in_order(self):
         with System(TWO_UNITS, ("--for", "60 s"), wait=False) as system:
             await_that(system.socket.exists, 10, "the socket")

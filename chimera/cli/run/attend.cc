@@ -129,6 +129,7 @@ Result<void> RemoteTarget::start() {
   Json last = Json::object();
   const Nanoseconds until = run_.start_limit == kNever ? kNever : clock_.now() + run_.start_limit;
   for (bool is_last = false; !is_last;) {
+    ++page_.beats;
     is_last = stop_is_requested();  // also then: it may have started long ago
     const auto status = line_.ask("status", Json::object(), seconds(20));
     if (!status) return status.error();
@@ -283,6 +284,7 @@ std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
     const std::size_t next_act = page_.acts_begun;
     const Nanoseconds act_at = next_act < acts_.size() ? started_ + acts_[next_act].act.at : kNever;
     const Nanoseconds next = std::min({next_look_, act_at, end});
+    ++page_.beats;
     while (clock_.now() < next && !stop_is_requested()) {
       if (records_)
         records_->poll(next, *sink_);
