@@ -12,6 +12,21 @@ using control::Json;
 using control::RpcResponse;
 using subsystem::RefusalKind;
 
+namespace {
+
+/// The slow method that the unit is known to hang in, and what a person can do; "": nothing is known. Of a cycle the
+/// data of the error tell.
+std::string under_way(const ManagerState& world, RtpuId rtpu) {
+  const RtpuRecord& record = world.rtpus[rtpu.index];
+  const PeerSegment& segment = world.peers[rtpu];
+  const bool serves = segment.is_there() && segment.block().head().serving.load(std::memory_order_relaxed) != 0;
+  if (!serves || !record.is_alive || record.hang.empty()) return "";
+  return ": " + record.hang + "; it goes on: `chimera status` tells when it has ended, `kill -KILL " +
+         std::to_string(record.pid) + "` ends the process of " + world.name(rtpu) + ", and what was ON comes back";
+}
+
+}  // namespace
+
 RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer) {
   if (answer.is_accepted()) {
     Json tasks = Json::array();
@@ -33,8 +48,9 @@ RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAns
 RpcResponse no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text) {
   const PeerSegment& segment = world.peers[rtpu];
   const std::string running = segment.is_there() ? running_text(world.spec(), segment.block().head().running) : "";
-  return RpcResponse::error(control::kNoAnswer, text,
-                            {{"rtpu", world.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
+  const std::string why = under_way(world, rtpu);
+  return RpcResponse::error(control::kNoAnswer, text + why,
+                       {{"rtpu", world.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
 }
 
 }  // namespace chimera::manager

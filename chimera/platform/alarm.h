@@ -15,9 +15,10 @@ class Alarm {
   bool is_there() const noexcept { return timer_.fd >= 0; }
 
   /// Rings at `instant` (at once when it has passed; kNever: not at all), instead of when it was set before.
+  /// Ends the process when somebody closed its descriptor, or opened something else in its place: lost_descriptor.h.
   /// Context: cycle; wait-free (one system call); any thread.
   void set(Nanoseconds instant) noexcept;
-  /// Waits until it rings. Context: cycle; blocks.
+  /// Waits until it rings; ends the process as set() does. Context: cycle; blocks.
   void wait() noexcept;
 
  private:

@@ -91,6 +91,12 @@ Nanoseconds CommandQueue::due_for_rtpu(const Command& command, const Part& part)
   return kNever;
 }
 
+// Until when a `kill` waits for an `init` that is under way; kNever: for none.
+Nanoseconds CommandQueue::due_for_spawn(const Command& command, const Part& part) const noexcept {
+  const bool waits = command.signal == Signal::kKill && state_.is_spawning(part.task);
+  return waits ? command.arrived + kKillLimit : kNever;
+}
+
 CommandQueue::Verdict CommandQueue::judge(const Command& command, const Part& part) const {
   const Nanoseconds due = due_for_rtpu(command, part);
   if (due <= state_.now) return Verdict::kNoAnswer;
@@ -116,7 +122,8 @@ CommandQueue::Verdict CommandQueue::judge_taking_down(const Command& command, co
   const bool is_off = !is_kill && state == State::kOff && !state_.pending.is_possible(part.task, Signal::kOn);
   const bool can_go = is_off || is_legal(state, command.signal);
   if (!can_go && !part.is_taken_back && !can_be_taken_back(command.signal, part.task)) return Verdict::kIllegal;
-  if (is_kill && state_.is_spawning(part.task)) return Verdict::kWait;
+  if (const Nanoseconds due = due_for_spawn(command, part); due != kNever)
+    return state_.now < due ? Verdict::kWait : Verdict::kNoAnswer;
   if (!is_kill && part.is_taken_back && state_.pending.is_awaited(part.task, Signal::kOff)) return Verdict::kWait;
   return waits_for_rtpu && can_go ? Verdict::kWait : Verdict::kGo;
 }
@@ -245,7 +252,7 @@ Nanoseconds CommandQueue::next_due() const noexcept {
   Nanoseconds next = kNever;
   for (const Command& command : commands_)
     for (const Part& part : command.parts)
-      if (!command.is_begun) next = std::min(next, due_for_rtpu(command, part));
+      if (!command.is_begun) next = std::min({next, due_for_rtpu(command, part), due_for_spawn(command, part)});
   return next;
 }
 

@@ -66,6 +66,7 @@ class CommandQueue {
   Verdict judge(const Command& command, const Part& part) const;
   Verdict judge_taking_down(const Command& command, const Part& part, bool waits_for_rtpu) const;
   Nanoseconds due_for_rtpu(const Command& command, const Part& part) const noexcept;
+  Nanoseconds due_for_spawn(const Command& command, const Part& part) const noexcept;
   bool try_begin(Command& command, bool& changed);
   bool refuse_or_wait(Command& command);
   bool take_back(Command& command);

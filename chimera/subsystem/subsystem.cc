@@ -14,7 +14,7 @@
 namespace chimera::subsystem {
 namespace {
 
-/// `init` and `kill` may take longer than an answer: while one is under way, it is waited for at most this long.
+/// `init` may take longer than an answer: while one is under way, it is waited for at most this long.
 constexpr Nanoseconds kServiceLimit = seconds(60);
 
 }  // namespace
@@ -124,8 +124,9 @@ void Subsystem::Parts::expire() {
     std::vector<SignalResult> expired;
     for (PendingSignal& entry : state.pending.of(task)) {
       if (entry.due > state.now) continue;
-      const bool serves = state.observed.status(task).in_service && state.now < entry.sent + kServiceLimit;
-      entry.due = serves ? state.now + kAnswerLimit : kNever;
+      const Nanoseconds limit = entry.sent + (entry.signal == Signal::kKill ? kKillLimit : kServiceLimit);
+      const bool serves = state.observed.status(task).in_service && state.now < limit;
+      entry.due = serves ? std::min(state.now + kAnswerLimit, limit) : kNever;
       const State now = state.observed.state(task);
       if (!serves) expired.push_back({entry.command, task, entry.signal, now, now, state.no_answer(task)});
     }

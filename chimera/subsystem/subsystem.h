@@ -45,6 +45,9 @@ inline constexpr int kRestartIntensity = 3;
 inline constexpr Nanoseconds kRestartWindow = seconds(10);
 /// A signal that is not reported on within this time fails.
 inline constexpr Nanoseconds kAnswerLimit = seconds(2);
+/// A `kill` that is under way, or that waits for an `init` under way, is waited for at most so long: by then the watch
+/// over the methods of units has told which one it is.
+inline constexpr Nanoseconds kKillLimit = milliseconds(2500);
 
 // ---- events ----
 

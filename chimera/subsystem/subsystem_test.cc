@@ -178,6 +178,32 @@ TEST_F(SubsystemTest, AnInitThatIsUnderWayIsWaitedFor) {
   EXPECT_EQ(report(kReserve, State::kOff), "goal reserve 0\nanswer 2 yes reserve NOT-CREATED>OFF\n");
 }
 
+TEST_F(SubsystemTest, AKillThatIsUnderWayIsWaitedForNoLongerThanItsLimit) {
+  EXPECT_EQ(command(Signal::kKill, {kReserve}), "send spare: kill reserve\n");
+  seen(kReserve, State::kOff, true);
+  now += seconds(2);
+  EXPECT_EQ(step(Tick{}), "");
+  EXPECT_EQ(subsystem->next_due(), seconds(100) + kKillLimit);
+  now = subsystem->next_due();
+  EXPECT_EQ(step(Tick{}), "answer 1 no: no answer from rtpu spare reserve OFF>OFF\n");
+  EXPECT_EQ(subsystem->next_due(), kNever);
+  EXPECT_EQ(report(kReserve, State::kNotCreated), "") << "it ends later all the same";
+}
+
+TEST_F(SubsystemTest, AKillWaitsForAnInitNoLongerThanItsLimitEither) {
+  command(Signal::kKill, {kReserve});
+  report(kReserve, State::kNotCreated);
+  command(Signal::kSpawn, {kReserve});
+  seen(kReserve, State::kNotCreated, true);
+  now += seconds(10);
+  (void)step(Tick{});
+  (void)command(Signal::kKill, {kReserve});
+  EXPECT_LE(subsystem->next_due(), now + kKillLimit);
+  now += kKillLimit;
+  const std::string said = step(Tick{});
+  EXPECT_NE(said.find("answer 3 no: no answer from rtpu spare"), std::string::npos) << said;
+}
+
 TEST_F(SubsystemTest, ARequestOfATaskIsJudgedAndItsRefusalTold) {
   EXPECT_EQ(step(Requested{kReserve, Signal::kOn, kTraj}),
             "refused: on sent by traj: tau would have two producers: pid and reserve\n");

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -16,12 +17,16 @@ using namespace chimera;
 struct Misdeed {
   InConst<Text<16>> how{"how", initial = "nothing",
                         doc =
-                            "child daemon chain exec stays: a child that outlives the cycle; leak; "
-                            "ordinary top strays unlocked: the rights of its thread; close; spin"};
+                            "child daemon chain exec stays: a child that outlives the cycle; leak; ordinary top strays "
+                            "unlocked: the rights of its thread; close; timer: closes those in init; spin"};
+  InConst<std::int64_t> number{"number", "1", initial = -1, doc = "the one descriptor to close; -1: all above 2"};
   InConst<std::int64_t> for_ns{"for_ns", "ns", initial = 20'000'000, doc = "how long each spin takes"};
   Resource armed{"armed", doc = "the file whose existence lets it happen"};
   Out<double> y{"y", "1", initial = 0.0};
 
+  void init() {
+    if (is("timer") && ::access(armed.c_str(), F_OK) == 0) close_timers();
+  }
   void cycle(Cycle c) {
     *y = static_cast<double>(c.count());
     if (is("nothing") || ::access(armed.c_str(), F_OK) != 0) return;
@@ -50,9 +55,17 @@ struct Misdeed {
     if (is("top")) set_policy(SCHED_FIFO, 99);
     if (is("strays")) stray();
     if (is("unlocked")) ::munlockall();
-    if (is("close")) ::close_range(3, ~0u, 0);
+    if (is("close") && *number < 0) ::close_range(3, ~0u, 0);
+    if (is("close") && *number >= 0) ::close(static_cast<int>(*number));
   }
 
+  static void close_timers() {
+    for (int fd = 3; fd < 256; ++fd) {
+      char link[64], what[64] = {};
+      std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
+      if (::readlink(link, what, sizeof what - 1) > 0 && std::strstr(what, "timerfd") != nullptr) ::close(fd);
+    }
+  }
   // In a process whose parent has ended, in a session of its own.
   static bool detached() {
     const pid_t middle = ::fork();

@@ -110,7 +110,9 @@ RunningCommand get_row() {
 }
 
 RunningCommand kill_row() {
-  return signal_row(Signal::kKill, "End tasks: back to NOT-CREATED", "Ends tasks: back to NOT-CREATED.",
+  return signal_row(Signal::kKill, "End tasks: back to NOT-CREATED; waits 3 s for `kill`",
+                    "Ends tasks: back to NOT-CREATED. A `kill` that takes longer than 2.5 s is not waited for: it "
+                    "goes on, and the refusal names it.",
                     "chimera kill pid");
 }
 
@@ -238,7 +240,8 @@ RunningCommand set_row() {
 }
 
 RunningCommand spawn_row() {
-  return signal_row(Signal::kSpawn, "Create and init tasks: OFF", "Creates tasks and calls their `init`: they are OFF.",
+  return signal_row(Signal::kSpawn, "Create and init tasks: OFF; waits up to 65 s for `init`",
+                    "Creates tasks and calls their `init`: they are OFF. Waits for it up to 65 s.",
                     "chimera spawn pid");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An alarm is a futex wait whose instant another thread may change.
+// An alarm is a timer of the kernel whose instant another thread may change.
 #include "chimera/platform/alarm.h"
 
 #include <sys/timerfd.h>
@@ -21,7 +21,8 @@ void Alarm::set(Nanoseconds instant) noexcept {
     const std::int64_t ns = std::max<std::int64_t>(instant.count, 1);  // zero would switch it off
     when.it_value = {ns / 1'000'000'000, ns % 1'000'000'000};
   }
-  ::timerfd_settime(timer_.fd, TFD_TIMER_ABSTIME, &when, nullptr);
+  // Whoever waits holds what was closed: he would sleep on, and nobody else would know.
+  if (::timerfd_settime(timer_.fd, TFD_TIMER_ABSTIME, &when, nullptr) != 0) end_without_descriptor();
 }
 
 void Alarm::wait() noexcept {
