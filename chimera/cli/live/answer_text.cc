@@ -56,6 +56,8 @@ std::string why_head(const Json& link) {
 
 }  // namespace
 
+std::string json_line(const Json& answer) { return answer.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
 std::string readings_text(const Json& answer) {
   std::string text;
   const Json& values = field(answer, "values");

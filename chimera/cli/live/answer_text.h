@@ -8,7 +8,10 @@
 
 namespace chimera::cli {
 
-/// `get` and `set`: one line a variable, "kp = [100 90] N.m/rad  (operator, 1.20 s ago)". Context of all: setup.
+/// The one line of `--json`, its end included. File names and arguments may be no UTF-8: what is not becomes the
+/// replacement character. Context of all: setup.
+std::string json_line(const nlohmann::json& answer);
+/// `get` and `set`: one line a variable, "kp = [100 90] N.m/rad  (operator, 1.20 s ago)".
 std::string readings_text(const nlohmann::json& answer);
 /// `signal`: "pid: ON -> OFF", one line a task.
 std::string signal_text(const nlohmann::json& answer);

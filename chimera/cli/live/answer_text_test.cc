@@ -10,6 +10,10 @@ namespace {
 
 using Json = nlohmann::json;
 
+TEST(AnswerText, JsonIsWrittenWhateverBytesANameHas) {
+  EXPECT_EQ(json_line({{"file", "a\xff"}}), "{\"file\":\"a\xef\xbf\xbd\"}\n");
+}
+
 TEST(AnswerText, ReadingsSayTheirProducerAndTheirAge) {
   EXPECT_EQ(readings_text(Json::parse(R"({"values": {
               "kp": {"value": [100, 90], "text": "[100 90] N.m/rad", "producer": "operator", "state": "ON",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/terminal.h"
 
 namespace chimera::cli {
@@ -27,7 +28,7 @@ std::string with_subsystem(const std::string& text, const std::string& subsystem
   nlohmann::json answer = nlohmann::json::parse(text, nullptr, false);
   if (!answer.is_object()) return text;
   answer["subsystem"] = subsystem;
-  return answer.dump() + "\n";
+  return json_line(answer);
 }
 
 /// An act and its refusal tell whom they reached.

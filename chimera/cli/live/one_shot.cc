@@ -57,7 +57,7 @@ CommandResult pid(Session& session, const Call& call) {
     pids[text_of(rtpu, "name")] = truth_of(rtpu, "alive") ? whole_of(rtpu, "pid") : 0;
   const auto found = pids.find(name);
   if (found != pids.end() && found->second > 0)
-    return {call.json ? Json{{"name", name}, {"pid", found->second}}.dump() + "\n"
+    return {call.json ? json_line({{"name", name}, {"pid", found->second}})
                       : std::to_string(found->second) + "\n", "", kOk};
   std::vector<std::string> names;
   for (const auto& [one, number] : pids) names.push_back(one);
@@ -92,7 +92,7 @@ CommandResult profile(Session& session, const Call& call, const Screen&) {
   const std::string file = call.value("--save");
   const auto written = write_recorded_profile(file, recorded(text_of(*hello.result, "subsystem"), *tasks));
   if (!written) return refused(written.error(), call.json);
-  return {call.json ? Json{{"file", file}}.dump() + "\n" : file + ": written\n", "", kOk};
+  return {call.json ? json_line({{"file", file}}) : file + ": written\n", "", kOk};
 }
 
 CommandResult events(Session& session, const Call& call, const Screen&) {

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/operator_text.h"
 #include "chimera/cli/live/state_folder.h"
@@ -118,7 +119,7 @@ CommandResult save_to_file(Session& session, const Call& call) {
     if (state && make_state_folder())
       std::ofstream(record_path(subsystem), std::ios::binary) << own_record(written);
   }
-  if (call.json) return {Json{{"file", file->path}, {"changed", is_new}, {"operator", values}}.dump() + "\n", "", kOk};
+  if (call.json) return {json_line({{"file", file->path}, {"changed", is_new}, {"operator", values}}), "", kOk};
   return {file->path + (is_new ? ": written\n" : ": has these values already\n"), "", kOk};
 }
 

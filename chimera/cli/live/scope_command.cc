@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/analysis/recorded_profile.h"
+#include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/figures.h"
 #include "chimera/cli/live/scope.h"
@@ -149,15 +150,13 @@ CommandResult show_recording(const Scope& scope, const Call& call, const std::st
     if (call.has(option))
       if (const auto written = write(call.value(option), text); !written) return refused(written.error(), call.json);
   if (call.json)
-    return {Json{{"began_ns", scope.begin().count},
-                 {"rows", scope.rows()},
-                 {"gaps", scope.gaps()},
-                 {"lost", scope.lost_rows()},
-                 {"early_edges", scope.early_edges()},
-                 {"csv", call.value("--csv")},
-                 {"svg", call.value("--svg")}}
-                    .dump() +
-                "\n",
+    return {json_line({{"began_ns", scope.begin().count},
+                       {"rows", scope.rows()},
+                       {"gaps", scope.gaps()},
+                       {"lost", scope.lost_rows()},
+                       {"early_edges", scope.early_edges()},
+                       {"csv", call.value("--csv")},
+                       {"svg", call.value("--svg")}}),
             "", kOk};
   const bool is_plain = !call.has("--csv") && !call.has("--svg");
   if (is_plain && width > 0)

@@ -30,12 +30,12 @@ CommandResult refused(const control::RpcResponse& answer, bool json) {
   error["message"] = answer.message;
   error["code"] = answer.code;
   if (!error.contains("where")) error["where"] = "";
-  return {nlohmann::json{{"error", std::move(error)}}.dump() + "\n", "", kRefused};
+  return {json_line({{"error", std::move(error)}}), "", kRefused};
 }
 
 CommandResult refused(const Error& error, bool json, int code) {
   const std::string message(error.message.view()), where(error.where.view());
-  if (json) return {nlohmann::json{{"error", {{"where", where}, {"message", message}}}}.dump() + "\n", "", code};
+  if (json) return {json_line({{"error", {{"where", where}, {"message", message}}}}), "", code};
   return {"", (where.empty() ? "" : where + ": ") + plain_line(message) + "\n", code};
 }
 
