@@ -45,7 +45,8 @@ class Connection {
   void queue(const std::string& line, Nanoseconds now);
   /// Queues a line that begins with `begin`, goes on with `pieces` and ends with `end`. It is made by go_on(), as the
   /// peer takes it; what is said meanwhile goes behind it.
-  void queue_in_pieces(const std::string& begin, std::shared_ptr<Pieces> pieces, const std::string& end, Nanoseconds now);
+  void queue_in_pieces(const std::string& begin, std::shared_ptr<Pieces> pieces, const std::string& end,
+                       Nanoseconds now);
   /// Makes the next piece of such a line and sends what can be sent. False: there is none, or no room for it.
   bool go_on(Nanoseconds now);
   /// go_on() has something to make.
