@@ -71,9 +71,9 @@ void Connection::queue(const std::string& line, Nanoseconds now) {
 
 void Connection::queue_in_pieces(const std::string& begin, std::shared_ptr<Pieces> pieces, const std::string& end,
                                Nanoseconds now) {
-  say(begin, now);
+  queue(begin, now);
   behind_.push_back(std::move(pieces));
-  say(end, now);
+  queue(end, now);
 }
 
 bool Connection::go_on(Nanoseconds now) {
