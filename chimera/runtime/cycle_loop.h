@@ -3,8 +3,6 @@
 // One loop for real and for virtual time; `Time` says what the clock shows and how long a job took.
 #pragma once
 
-#include <algorithm>
-
 #include "chimera/runtime/releases.h"
 
 namespace chimera {
@@ -34,7 +32,7 @@ RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
     }
     if (queue.is_empty()) {
       if (!releases.anything_left()) return RunEnd::kNothingLeft;
-      const Nanoseconds next = std::min(queue.next_release(), releases.next_edge());
+      const Nanoseconds next = releases.next_event();
       time.wait_until(next < until ? next : until);
       now = time.now();
       continue;

@@ -61,7 +61,9 @@ class Releases {
   }
   /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
   void take_edge(Nanoseconds now) noexcept;
-  /// The next instant at which an edge may be due.
+  /// The next instant at which an edge or a release may be due.
+  Nanoseconds next_event() const noexcept { return std::min(queue_.next_release(), next_edge()); }
+  /// The same for edges alone, where releases have threads of their own.
   Nanoseconds next_edge() const noexcept {
     return guest_ == nullptr ? signals_.next_act() : std::min(signals_.next_act(), guest_->next_due());
   }

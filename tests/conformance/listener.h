@@ -38,7 +38,7 @@ class Listener final : public BoundaryListener {
     misses.push_back({task, verdict.culprit, verdict.is_blocked, now});
     if (on_miss) on_miss(task, verdict);
   }
-  void hangs(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
+  void hangs(TaskWord, Nanoseconds, Nanoseconds) noexcept override {}
   void gave_way(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
   void show(const Task&) noexcept override {}
 

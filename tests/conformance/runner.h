@@ -7,6 +7,7 @@
 
 #include "chimera/platform/virtual/virtual_clock.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/hosted/refusal_text.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 #include "tests/conformance/toy.h"
 
@@ -58,7 +59,7 @@ class Runner {
  public:
   Runner(TaskSet& set, Kind kind, Policy policy = Policy::kEdf, std::span<const ScriptAct> acts = {},
       const VirtualOptions& how = {})
-      : job_clock_(clock_) {
+      : set_(set), job_clock_(clock_) {
     RunOptions options;
     options.policy = policy;
     options.script = Script(acts);
@@ -69,7 +70,7 @@ class Runner {
     else virtual_ = std::make_unique<VirtualExecutor>(set, options, virtual_options);
   }
 
-  Result<void> start() { return executive_ ? executive_->start() : virtual_->start(); }
+  Result<void> start() { return executive_ ? start_result(set_, executive_->start()) : virtual_->start(); }
   RunEnd run(Nanoseconds duration) { return executive_ ? executive_->run(duration) : virtual_->run(duration); }
   void shut_down() { executive_ ? executive_->shut_down() : virtual_->shut_down(); }
 
@@ -77,6 +78,7 @@ class Runner {
   std::vector<TapRecord> records() { return listened_.records(); }
 
  private:
+  TaskSet& set_;
   Listened listened_;
   VirtualClock clock_;
   TwinClock job_clock_;

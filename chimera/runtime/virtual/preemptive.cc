@@ -48,7 +48,7 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
 }
 
 Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
-  Nanoseconds next = std::min(releases_.queue().next_release(), releases_.next_edge());
+  Nanoseconds next = releases_.next_event();
   if (has_exceptions()) next = std::min(next, next_exception(now));
   if (!running_.is_valid()) return next;
   next = std::min(next, now + active_[running_.index].remaining);
