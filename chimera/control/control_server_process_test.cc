@@ -291,8 +291,8 @@ struct StrangerTest : DoorTest {
 
 TEST_F(StrangerTest, IsToldThatItHasNoRightAndNothingElse) {
   const auto got = as_stranger(path, 65534, request("hello") + request("flag", R"({"up":true})"), [&] { serve(); });
-  EXPECT_EQ(got, R"({"error":{"code":-32004,"data":{"has":"nothing","needs":"observe"},"message":"you have no right )"
-                 R"(here: you are neither the user of the subsystem nor in a group with a role"},"id":null,)"
+  EXPECT_EQ(got, R"({"error":{"code":-32004,"data":{"has":"nothing","needs":"observe"},"message":"you have no role )"
+                 R"(in this subsystem: you are neither its user nor in a group that has a role"},"id":null,)"
                  R"("jsonrpc":"2.0"})"
                  "\n");
   EXPECT_EQ(backend.calls, 0);

@@ -210,7 +210,7 @@ class Attack(unittest.TestCase):
 
     def expected(self, method, has):
         if has is None:
-            return [-32004, "you have no right here: you are neither the user of the subsystem nor in a group with a "
+            return [-32004, "you have no role in this subsystem: you are neither its user nor in a group that has a "
                     "role", {"needs": "observe", "has": "nothing"}]
         if RANKS.index(has) >= RANKS.index(ROLES[method]):
             return "good"
