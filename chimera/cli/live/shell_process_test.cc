@@ -273,7 +273,7 @@ TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
   const std::string said = run({"scope", "error", "--trigger", "error > 9.5 mrad", "--pre", "5 ms", "--for", "5 ms",
                                 "--csv", path("a.csv"), "--svg", path("a.svg"), "--wait", "10 s"});
   EXPECT_EQ(said.substr(0, 14), "0||[puma_pid]\n") << said;
-  EXPECT_NE(said.find("the pre-trigger of 5.00 ms fills first"), std::string::npos) << said;
+  EXPECT_NE(said.find("recording the pre-trigger of 5.00 ms first"), std::string::npos) << said;
   EXPECT_NE(said.find("; 1 gap, 3 rows lost\n"), std::string::npos) << said;
   const std::string csv = content(path("a.csv"));
   EXPECT_EQ(csv.rfind("t(s),error(rad),lost\n", 0), 0u) << csv;
