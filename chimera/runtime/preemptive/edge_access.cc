@@ -12,19 +12,19 @@ void EdgeAccess::attach() noexcept { thread_ = this_thread(); }
 
 bool EdgeAccess::claim(TaskId task) noexcept {
   JobThread& job = *ready_.of(task);
-  if (job.try_claim()) {
+  if (job.phase.try_claim()) {
     job.next_release = job.job.release;  // it comes again
     processor_.cancel(job, clock_.now());
     return true;
   }
-  const bool is_free = job.is_free();
+  const bool is_free = job.phase.is_free();
   job.is_awaited = !is_free;
   return is_free;
 }
 
 Nanoseconds EdgeAccess::used_by_job(TaskId task) noexcept {
   const JobThread* job = ready_.of(task);
-  return job != nullptr && job->is_running() ? job->used() : Nanoseconds{};
+  return job != nullptr && job->phase.is_running() ? job->used() : Nanoseconds{};
 }
 
 bool EdgeAccess::is_blocked(TaskId task) noexcept { return look_ups_[task.index].is_blocked; }
@@ -39,12 +39,12 @@ Answer EdgeAccess::call(Task& task, Method method, Nanoseconds now) noexcept {
 // Out of the section, to the label of the task; null: stays.
 JobThread* EdgeAccess::leave_for(TaskId task) noexcept {
   JobThread* const job = ready_.of(task);
-  if (job == nullptr || thread_ == 0 || !job->is_free()) return nullptr;
+  if (job == nullptr || thread_ == 0 || !job->phase.is_free()) return nullptr;
   const Nanoseconds now = clock_.now(), deadline = now + job->spec.deadline;
   job->is_held = true;
   job->carrier = thread_;
   job->job = {task, now, deadline};
-  job->begin_method();
+  job->phase.begin_method();
   const int level = ready_.insert(*job, deadline, job->spec.budget, job);
   processor_.leave();
   ready_.lower(level);
@@ -52,12 +52,12 @@ JobThread* EdgeAccess::leave_for(TaskId task) noexcept {
 }
 
 void EdgeAccess::return_from(JobThread& job) noexcept {
-  job.end_method();
+  job.phase.end_method();
   ready_.raise();
   processor_.enter();
   ready_.remove(job);
   job.carrier = job.thread();
-  job.retire();
+  job.phase.retire();
   processor_.show_running();
 }
 
@@ -65,7 +65,8 @@ bool EdgeAccess::collect_late(Nanoseconds now) noexcept {
   bool are_some = false;
   for (const JobThread& job : ready_.threads()) {
     LookUp& look_up = look_ups_[job.id.index];
-    look_up.is_due = !look_up.is_done && releases_.settlement().has_unreported_miss(job.id, now) && job.is_running();
+    look_up.is_due = !look_up.is_done && releases_.settlement().has_unreported_miss(job.id, now) &&
+                     job.phase.is_running();
     are_some = are_some || look_up.is_due;
   }
   return are_some;

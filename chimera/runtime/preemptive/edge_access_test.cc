@@ -39,7 +39,7 @@ TEST_F(EdgeAccessTest, ClaimsATaskWithoutAJob) {
 TEST_F(EdgeAccessTest, TakesAJobBackThatHasNotBegun) {
   JobThread& one = release(0, at(10));
   EXPECT_TRUE(access().claim(TaskId(0u)));
-  EXPECT_EQ(one.phase(), JobPhase::kCancelled);
+  EXPECT_EQ(one.phase.value(), JobPhase::kCancelled);
   EXPECT_EQ(one.next_release, at(10)) << "it comes again";
   EXPECT_EQ(ready().size(), 0u);
   EXPECT_TRUE(access().claim(TaskId(0u))) << "its thread has not noticed yet";
@@ -49,7 +49,7 @@ TEST_F(EdgeAccessTest, ComesAgainAtTheEndOfAJobThatHasBegun) {
   JobThread& one = begin(0, at(10));
   EXPECT_FALSE(access().claim(TaskId(0u)));
   EXPECT_TRUE(one.is_awaited);
-  EXPECT_TRUE(one.is_running());
+  EXPECT_TRUE(one.phase.is_running());
 }
 
 TEST_F(EdgeAccessTest, RunsAMethodAtTheLabelOfTheTask) {
@@ -58,14 +58,14 @@ TEST_F(EdgeAccessTest, RunsAMethodAtTheLabelOfTheTask) {
   processor().enter();
   off(0, [&] {
     was_called = true;
-    EXPECT_EQ(job(0).phase(), JobPhase::kMethod);
+    EXPECT_EQ(job(0).phase.value(), JobPhase::kMethod);
     EXPECT_TRUE(job(0).is_held);
     EXPECT_EQ(ready().size(), 2u);
     processor().enter();  // the section is free meanwhile
     processor().leave();
   });
   EXPECT_TRUE(was_called);
-  EXPECT_TRUE(job(0).is_idle());
+  EXPECT_TRUE(job(0).phase.is_idle());
   EXPECT_EQ(ready().size(), 1u);
   processor().leave();
 }
@@ -76,19 +76,19 @@ TEST_F(EdgeAccessTest, AMethodIsNotOverWhenTheThreadNoticesThatItsJobWasTakenBac
   EXPECT_TRUE(access().claim(TaskId(0u)));
   processor().enter();
   off(0, [&] {
-    EXPECT_FALSE(one.try_begin());
-    one.acknowledge_cancel();
-    EXPECT_EQ(one.phase(), JobPhase::kMethod);
+    EXPECT_FALSE(one.phase.try_begin());
+    one.phase.acknowledge_cancel();
+    EXPECT_EQ(one.phase.value(), JobPhase::kMethod);
   });
-  EXPECT_TRUE(one.is_idle());
+  EXPECT_TRUE(one.phase.is_idle());
   processor().leave();
 }
 
 TEST_F(EdgeAccessTest, KeepsTheSectionForATaskWithAJobUnderWay) {
   JobThread& one = begin(0, at(10));
   processor().enter();
-  off(0, [&] { EXPECT_TRUE(one.is_running()); });
-  EXPECT_TRUE(one.is_running());
+  off(0, [&] { EXPECT_TRUE(one.phase.is_running()); });
+  EXPECT_TRUE(one.phase.is_running());
   processor().leave();
 }
 

@@ -86,7 +86,7 @@ void JobLoop::run_job(JobThread& me, Nanoseconds now) noexcept {
     return;
   }
   processor_.enter();  // at the ceiling: who cancelled the job has raised this thread
-  me.acknowledge_cancel();
+  me.phase.acknowledge_cancel();
 }
 
 // Takes the newest release that has come; what came before it is dropped. False: nothing may begin.
@@ -122,7 +122,7 @@ void JobLoop::prepare(JobThread& me, const Job& job) noexcept {
 
 // The job is one of those that are ready. Its level is for its thread to take.
 int JobLoop::make_ready(JobThread& me, Nanoseconds now) noexcept {
-  me.release();
+  me.phase.release();
   const int level = ready_.insert(me, ReadyJobs::deadline_of(me), me.spec.budget, &me);
   processor_.dispatch(now);
   supervisor_.watch_released(me, now);
@@ -132,9 +132,9 @@ int JobLoop::make_ready(JobThread& me, Nanoseconds now) noexcept {
 
 // Outside the section, but for a second look.
 bool JobLoop::begin(JobThread& me) noexcept {
-  if (me.try_begin()) return true;
+  if (me.phase.try_begin()) return true;
   processor_.enter();
-  const bool begins = me.try_begin();
+  const bool begins = me.phase.try_begin();
   processor_.leave();
   return begins;
 }
@@ -157,7 +157,7 @@ Nanoseconds JobLoop::run_body(JobThread& me) noexcept {
     releases_.jobs().conclude(job, time, body, start, end, used);
   }
   if (me.sporadic) me.sporadic->close();
-  me.finish();
+  me.phase.finish();
   return end;
 }
 
@@ -167,7 +167,7 @@ void JobLoop::end(JobThread& me, Nanoseconds now) noexcept {
   if (!me.is_demoted) processor_.record_slice(me, now);
   ready_.remove(me);
   if (me.sporadic) me.sporadic->finish(me.thread(), me.is_demoted);
-  me.retire();
+  me.phase.retire();
   me.is_demoted = false;
   supervisor_.forget(me);
   checks_.clear(me);

@@ -1,23 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The moves of a job from phase to phase, and the thread that runs it.
+// The thread that runs the jobs of one task: how it is woken, and what its present job has used.
 #include "chimera/runtime/preemptive/job_thread.h"
-
-#include "chimera/base/assert.h"
 
 namespace chimera {
 
 JobThread::JobThread(Task& owner) noexcept : task(owner), spec(*owner.spec), id(owner.id) {
   if (spec.server) sporadic.emplace(*spec.server);
-}
-
-void JobThread::move(JobPhase from, JobPhase to) noexcept {
-  CHIMERA_ASSERT(phase() == from);
-  phase_.store(to, std::memory_order_release);
-}
-
-void JobThread::begin_method() noexcept {
-  CHIMERA_ASSERT(is_free());
-  phase_.store(JobPhase::kMethod, std::memory_order_release);
 }
 
 void JobThread::attach() noexcept {

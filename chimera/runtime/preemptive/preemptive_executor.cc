@@ -126,7 +126,7 @@ void PreemptiveExecutor::run_edge(Nanoseconds now) noexcept {
   if (releases_.misses().has_lost_patience()) settlement.give_up_starved(now);
   if (releases_.edge_is_due(now)) releases_.take_edge(now);
   for (JobThread& job : ready_.threads())  // events are counted also while no job is run
-    if ((job.sporadic || !job.is_shown) && job.is_idle()) jobs_.show(job, now);
+    if ((job.sporadic || !job.is_shown) && job.phase.is_idle()) jobs_.show(job, now);
   notify_threads(false);
 }
 
@@ -164,14 +164,14 @@ bool PreemptiveExecutor::is_over(RunEnd& end, Nanoseconds until, Nanoseconds now
 
 bool PreemptiveExecutor::is_idle() const noexcept {
   return std::all_of(ready_.threads().begin(), ready_.threads().end(),
-                     [](const JobThread& job) { return job.is_idle(); });
+                     [](const JobThread& job) { return job.phase.is_idle(); });
 }
 
 // No job is released from here on; those under way end. The reaction `stop` does not wait for one that is late: it may
 // never end.
 void PreemptiveExecutor::stop_jobs(RunEnd end) noexcept {
   const auto is_over = [this, end](const JobThread& job) {
-    return job.is_idle() || (end == RunEnd::kTaskStopped && releases_.misses().is_reported_late(job.id));
+    return job.phase.is_idle() || (end == RunEnd::kTaskStopped && releases_.misses().is_reported_late(job.id));
   };
   Settlement& settlement = releases_.settlement();
   processor_.enter();
@@ -179,7 +179,7 @@ void PreemptiveExecutor::stop_jobs(RunEnd end) noexcept {
   for (JobThread& job : ready_.threads()) (void)access_.claim(job.id);
   for (;;) {
     for (JobThread& job : ready_.threads())
-      if (job.is_idle() && settlement.is_unsettled(job.id)) settlement.settle_job(job.id, clock_.now());
+      if (job.phase.is_idle() && settlement.is_unsettled(job.id)) settlement.settle_job(job.id, clock_.now());
     const bool all_are = std::all_of(ready_.threads().begin(), ready_.threads().end(), is_over);
     const std::uint32_t heard = processor_.edge_bell().read();
     processor_.leave();

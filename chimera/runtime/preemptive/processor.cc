@@ -15,12 +15,12 @@ void Processor::dispatch(Nanoseconds now) noexcept {
   JobThread* const top = ready_.most_urgent();
   share_.set_running(top == nullptr ? TaskId() : top->id, now);
   if (top == on_processor_) return;
-  if (on_processor_ != nullptr && on_processor_->is_running() && !on_processor_->is_demoted)
+  if (on_processor_ != nullptr && on_processor_->phase.is_running() && !on_processor_->is_demoted)
     note_preempted(*on_processor_, now);
   on_processor_ = top;
-  const bool goes_on = top != nullptr && top->is_running();
+  const bool goes_on = top != nullptr && top->phase.is_running();
   if (goes_on) top->begin_slice(now);  // a job that begins says so itself
-  if (goes_on || (top != nullptr && top->sporadic && top->is_ready())) {
+  if (goes_on || (top != nullptr && top->sporadic && top->phase.is_ready())) {
     const Nanoseconds budget = goes_on ? end_of_budget(*top, now) : kNever;
     const Nanoseconds check = std::min(budget, JobChecks::end_of_capacity(*top, now));
     if (check < checks_.due(*top)) checks_.watch(*top, check, ready_.size());
@@ -38,7 +38,7 @@ void Processor::note_preempted(const JobThread& job, Nanoseconds now) noexcept {
 
 void Processor::demote(JobThread& job, Nanoseconds now) noexcept {
   if (job.is_demoted) return;
-  if (job.is_running()) record_slice(job, now);
+  if (job.phase.is_running()) record_slice(job, now);
   job.is_demoted = true;
   if (job.sporadic) job.sporadic->resume();
   ++job.task.profile.demoted;
@@ -48,7 +48,7 @@ void Processor::demote(JobThread& job, Nanoseconds now) noexcept {
 }
 
 void Processor::cancel(JobThread& job, Nanoseconds now) noexcept {
-  job.cancel();
+  job.phase.cancel();
   checks_.clear(job);
   releases_.jobs().close(job.id);
   ready_.remove(job);
@@ -62,7 +62,7 @@ void Processor::record_slice(const JobThread& job, Nanoseconds now) noexcept {
 }
 
 void Processor::show_running() noexcept {
-  const bool is_begun = on_processor_ != nullptr && on_processor_->is_running();
+  const bool is_begun = on_processor_ != nullptr && on_processor_->phase.is_running();
   const TaskWord word = is_begun ? TaskWord(on_processor_->id, on_processor_->method()) : TaskWord();
   tasks_[0].running->store(word.word(), std::memory_order_relaxed);
 }
@@ -74,7 +74,7 @@ Nanoseconds Processor::end_of_budget(const JobThread& job, Nanoseconds now) noex
 Nanoseconds Processor::next_server_check(JobThread& job, Nanoseconds now) noexcept {
   const Nanoseconds change = job.sporadic->job().next_change(now);
   if (&job != on_processor_) return change;
-  const bool is_begun = job.is_running();
+  const bool is_begun = job.phase.is_running();
   const Nanoseconds end = is_begun ? end_of_budget(job, now) : kNever;
   return std::min({change, end, JobChecks::end_of_capacity(job, now)});
 }

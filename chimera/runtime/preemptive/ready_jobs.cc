@@ -43,7 +43,7 @@ int ReadyJobs::apply(std::span<const LevelChange> changes, const JobThread* own)
       level = change.level;
       continue;
     }
-    if (!has_levels_ || job.has_ended()) continue;  // one that has ended is on its way to the ceiling
+    if (!has_levels_ || job.phase.has_ended()) continue;  // one that has ended is on its way to the ceiling
     ++level_changes_;
     set_level(job.carrier, change.level);
   }
@@ -59,7 +59,7 @@ Urgency ReadyJobs::urgency_of(const JobThread& job, Nanoseconds deadline, Nanose
 
 JobThread* ReadyJobs::most_urgent_running() noexcept {
   for (std::size_t i = size(); i-- > 0;)
-    if (JobThread& job = (*this)[i]; job.is_running()) return &job;
+    if (JobThread& job = (*this)[i]; job.phase.is_running()) return &job;
   return nullptr;
 }
 
@@ -90,7 +90,7 @@ std::size_t ReadyJobs::count_wrong() const noexcept {
     const JobThread& job = *of_task_[jobs[i].task.index];
     const bool ascends = i == 0 || i < labels_.parked() || jobs[i].level > jobs[i - 1].level;
     const bool is_ordered = i == 0 || !is_more_urgent(labels_.policy(), jobs[i - 1].urgency, jobs[i].urgency);
-    const bool is_at_label = !has_levels_ || job.has_ended() || level_of(job.carrier) == jobs[i].level;
+    const bool is_at_label = !has_levels_ || job.phase.has_ended() || level_of(job.carrier) == jobs[i].level;
     if (!ascends || !is_ordered || !is_at_label) ++wrong;
   }
   return wrong;

@@ -67,7 +67,7 @@ TEST_F(ReadyJobsTest, FindsTheMostUrgentJobThatHasBegun) {
   JobThread& slow = begin(1, at(0));
   release(0, at(1));
   EXPECT_EQ(ready().most_urgent_running(), &slow);
-  EXPECT_TRUE(job(0).try_begin());
+  EXPECT_TRUE(job(0).phase.try_begin());
   EXPECT_EQ(ready().most_urgent_running(), &job(0));
 }
 

@@ -66,7 +66,7 @@ void Supervisor::check_jobs(Nanoseconds now) noexcept {
 Nanoseconds Supervisor::next_late(Nanoseconds now) const noexcept {
   Nanoseconds next = kNever;
   for (const JobThread& job : std::as_const(ready_).threads()) {
-    const bool comes = job.is_on && !job.sporadic && job.is_idle() && job.next_release < processor_.window().end;
+    const bool comes = job.is_on && !job.sporadic && job.phase.is_idle() && job.next_release < processor_.window().end;
     const Nanoseconds late = comes ? job.next_release + job.spec.deadline + JobChecks::kCoalesceWindow : kNever;
     if (late > now) next = std::min(next, late);  // else something keeps the job from being released
   }
@@ -74,8 +74,8 @@ Nanoseconds Supervisor::next_late(Nanoseconds now) const noexcept {
 }
 
 void Supervisor::check(JobThread& job, Nanoseconds now) noexcept {
-  if (job.try_claim()) return check_claimed(job, now);
-  if (job.is_running()) return check_begun(job, now);
+  if (job.phase.try_claim()) return check_claimed(job, now);
+  if (job.phase.is_running()) return check_begun(job, now);
   checks_.clear(job);
 }
 
@@ -83,7 +83,7 @@ void Supervisor::check(JobThread& job, Nanoseconds now) noexcept {
 void Supervisor::check_claimed(JobThread& job, Nanoseconds now) noexcept {
   if (job.sporadic) {
     follow_server(job, now);
-    return job.unclaim();
+    return job.phase.unclaim();
   }
   if (now >= job.job.deadline) report_late(job, false);
   const bool is_expired = job.spec.on_miss == OnMiss::kAbort && now >= job.job.deadline;
@@ -95,7 +95,7 @@ void Supervisor::check_claimed(JobThread& job, Nanoseconds now) noexcept {
     processor_.edge_bell().ring();
   }
   if (is_expired || is_starved) return processor_.cancel(job, now);
-  job.unclaim();
+  job.phase.unclaim();
   const Nanoseconds next = job.next_release < processor_.window().end ? job.next_release : kNever;
   checks_.set(job, now < job.job.deadline ? std::min(next, job.job.deadline) : next);
 }
@@ -116,7 +116,7 @@ void Supervisor::follow_release(JobThread& job, Nanoseconds now) noexcept {
 void Supervisor::check_begun(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = job.spec;
   charge(job, now);
-  if (!job.is_running()) return;  // its thread is gone, or it has ended meanwhile
+  if (!job.phase.is_running()) return;  // its thread is gone, or it has ended meanwhile
   const bool is_late = now >= job.job.deadline;
   if (is_late) report_late(job, true);
   if (is_late && s.on_miss == OnMiss::kDemote) processor_.demote(job, now);
@@ -130,7 +130,7 @@ void Supervisor::check_begun(JobThread& job, Nanoseconds now) noexcept {
 // Where the most urgent job has not begun yet, no other job of the list has run since the last look.
 void Supervisor::check_running(Nanoseconds now) noexcept {
   JobThread* const top = ready_.most_urgent();
-  if (top != nullptr && top->is_running()) charge(*top, now);
+  if (top != nullptr && top->phase.is_running()) charge(*top, now);
 }
 
 void Supervisor::charge(JobThread& job, Nanoseconds now) noexcept {
@@ -187,7 +187,7 @@ void Supervisor::give_up(JobThread& job, Nanoseconds used, Nanoseconds now) noex
 
 // The thread ended in the body: nobody else says that the job is over, and its task has no thread any more.
 void Supervisor::reap(JobThread& job, Nanoseconds now) noexcept {
-  job.lose_thread();
+  job.phase.lose_thread();
   checks_.clear(job);
   seen(job).is_unreported = true;
   releases_.jobs().close(job.id);
@@ -217,7 +217,7 @@ void Supervisor::follow_server(JobThread& job, Nanoseconds now) noexcept {
   SporadicThread& server = *job.sporadic;
   server.charge(job.thread(), job.is_demoted);
   const SporadicJob::Grant grant = server.job().grant(now);
-  const bool has_begun = job.is_running();
+  const bool has_begun = job.phase.is_running();
   if (has_begun && !grant.may_run && !server.is_halted()) {
     server.halt();
     ++job.task.profile.exhausted;
@@ -241,7 +241,7 @@ void Supervisor::keep_share(Nanoseconds now, const JobThread* own) noexcept {
   const Nanoseconds left = share_.left(now);
   for (std::size_t i = 0; left <= Nanoseconds{} && i < ready_.size(); ++i) {
     JobThread& job = ready_[i];
-    const bool is_there = &job != own && (job.is_ready() || job.is_running());
+    const bool is_there = &job != own && (job.phase.is_ready() || job.phase.is_running());
     const bool is_most_urgent = i + 1 == ready_.size();
     const bool is_over_budget = releases_.misses().is_reported_overrun(job.id);
     if (!is_there || !share_.may_demote(job.id, is_over_budget, is_most_urgent, now)) continue;
@@ -252,10 +252,10 @@ void Supervisor::keep_share(Nanoseconds now, const JobThread* own) noexcept {
 }
 
 void Supervisor::demote_for_share(JobThread& job, Nanoseconds now) noexcept {
-  const bool is_claimed = job.try_claim();
-  if (!is_claimed && !job.is_running()) return;
+  const bool is_claimed = job.phase.try_claim();
+  if (!is_claimed && !job.phase.is_running()) return;
   processor_.demote(job, now);
-  if (is_claimed) job.unclaim();
+  if (is_claimed) job.phase.unclaim();
   if (share_.note_demoted(job.id, now)) processor_.edge_bell().ring();
 }
 

@@ -20,7 +20,7 @@ TEST_F(SupervisorTest, GivesAJobThatWaitsTheNewestReleaseAndDropsTheOthers) {
   make();
   JobThread& job = release(0, origin);
   supervisor().check_jobs(at(35));
-  EXPECT_TRUE(job.is_ready());
+  EXPECT_TRUE(job.phase.is_ready());
   EXPECT_EQ(job.job.release, at(30));
   EXPECT_EQ(job.job.deadline, at(40));
   EXPECT_EQ(job.next_release, at(40));
@@ -33,7 +33,7 @@ TEST_F(SupervisorTest, TakesAWaitingJobBackAtItsDeadlineWhenTheReactionIsAbort) 
   make();
   JobThread& job = release(0, origin);
   supervisor().check_jobs(at(10));
-  EXPECT_EQ(job.phase(), JobPhase::kCancelled);
+  EXPECT_EQ(job.phase.value(), JobPhase::kCancelled);
   EXPECT_FALSE(job.task.is_busy);
   EXPECT_EQ(ready().size(), 0u);
   EXPECT_EQ(job.task.profile.missed, 1u);
@@ -46,10 +46,10 @@ TEST_F(SupervisorTest, HoldsATaskThatOthersNeverLetStart) {
   JobThread& job = release(0, origin);
   const std::uint32_t rung = processor().edge_bell().read();
   supervisor().check_jobs(at(15));
-  EXPECT_TRUE(job.is_ready()) << "one miss";
+  EXPECT_TRUE(job.phase.is_ready()) << "one miss";
   EXPECT_FALSE(job.is_held);
   supervisor().check_jobs(at(25));
-  EXPECT_EQ(job.phase(), JobPhase::kCancelled);
+  EXPECT_EQ(job.phase.value(), JobPhase::kCancelled);
   EXPECT_TRUE(job.is_held);
   EXPECT_NE(processor().edge_bell().read(), rung);
 }
@@ -59,7 +59,7 @@ TEST_F(SupervisorTest, DemotesAJobThatIsNotOverAtItsDeadline) {
   make();
   JobThread& job = begin(0, origin);
   supervisor().check_jobs(at(10));
-  EXPECT_TRUE(job.is_running());
+  EXPECT_TRUE(job.phase.is_running());
   EXPECT_TRUE(job.is_demoted);
   EXPECT_EQ(job.task.profile.demoted, 1u);
   EXPECT_EQ(ready().size(), 0u);
@@ -100,7 +100,7 @@ TEST_F(SupervisorTest, NoticesThatTheThreadOfAJobIsGone) {
   job.start([&job] { job.attach(); });
   job.join();
   supervisor().check_running(at(1));
-  EXPECT_TRUE(job.is_idle());
+  EXPECT_TRUE(job.phase.is_idle());
   EXPECT_FALSE(job.task.is_busy);
   EXPECT_TRUE(supervisor().pop_hanging(job));
   EXPECT_EQ(ready().size(), 0u);
@@ -148,7 +148,7 @@ TEST_F(SupervisorTest, HaltsAJobWithoutCapacityAndResumesItWhenThereIsSome) {
   supervisor().check_jobs(at(20));
   EXPECT_FALSE(job.sporadic->is_halted());
   EXPECT_EQ(ready().most_urgent(), &job);
-  EXPECT_TRUE(job.is_running());
+  EXPECT_TRUE(job.phase.is_running());
 }
 
 TEST_F(SupervisorTest, DemotesTheLeastImportantReadyJobWhenTheShareIsUsedUp) {
@@ -164,7 +164,7 @@ TEST_F(SupervisorTest, DemotesTheLeastImportantReadyJobWhenTheShareIsUsedUp) {
   JobThread& important = release(0, at(6));
   supervisor().keep_share(at(6), &important);
   EXPECT_TRUE(less.is_demoted);
-  EXPECT_TRUE(important.is_ready());
+  EXPECT_TRUE(important.phase.is_ready());
   EXPECT_EQ(parts->share.pop_demoted(), less.id);
 }
 

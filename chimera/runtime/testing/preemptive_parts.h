@@ -83,7 +83,7 @@ class PreemptiveParts {
     one.next_release = now + one.spec.period;
     one.is_demoted = false;
     releases().misses().forget_reports(one.id);
-    one.release();
+    one.phase.release();
     one.task.is_busy = true;
     (void)ready().insert(one, ReadyJobs::deadline_of(one), one.spec.budget, &one);
     processor().dispatch(now);
@@ -95,7 +95,7 @@ class PreemptiveParts {
     JobThread& one = release(task, now);
     one.begin_use();
     one.begin_slice(now);
-    (void)one.try_begin();
+    (void)one.phase.try_begin();
     return one;
   }
   /// Execution time of the thread of the test.

@@ -5,25 +5,21 @@
 #include <atomic>
 #include <thread>
 
-#include "chimera/runtime/preemptive/job_thread.h"
+#include "chimera/runtime/preemptive/job_phase.h"
 
 namespace chimera {
 namespace {
 
 // One thread begins what another one claims and gives back, or cancels: one of them has it at a time.
-TEST(JobThreadThreads, IsBegunOrCancelledWheneverBothAreTried) {
+TEST(JobPhaseThreads, IsBegunOrCancelledWheneverBothAreTried) {
   constexpr int kRounds = 5'000;
-  TaskSpec spec;
-  Task task;
-  task.spec = &spec;
-  task.id = TaskId(0u);
-  JobThread job(task);
+  JobPhase job;
   std::atomic<int> round{0}, done{0};
   int begun = 0, cancelled = 0;
-  job.start([&] {
+  std::thread thread([&] {
     for (int i = 1; i <= kRounds; ++i) {
       while (round.load() < i) std::this_thread::yield();
-      while (job.is_ready() || job.phase() == JobPhase::kClaimed)
+      while (job.is_ready() || job.value() == JobPhase::kClaimed)
         if (job.try_begin()) {
           ++begun;
           job.finish();
@@ -45,7 +41,7 @@ TEST(JobThreadThreads, IsBegunOrCancelledWheneverBothAreTried) {
     job.acknowledge_cancel();
     EXPECT_TRUE(job.is_idle());
   }
-  job.join();
+  thread.join();
   EXPECT_EQ(begun + cancelled, kRounds);
   EXPECT_GE(begun, kRounds / 2);
 }
