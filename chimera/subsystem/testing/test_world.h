@@ -41,6 +41,9 @@ class TestWorld {
   std::string step(const Event& event) {
     std::vector<Action> actions;
     subsystem->step(event, now, actions);
+    return lines(actions);
+  }
+  std::string lines(const std::vector<Action>& actions) {
     std::string text;
     for (const Action& action : actions) text += line(action);
     return text;
