@@ -17,11 +17,13 @@ namespace chimera::testing {
 
 struct Idle {
   Out<double> y{"y", "1", initial = 0.0};
-  void cycle(Cycle) {}
+  void cycle(Cycle) {
+    if (during_cycle) during_cycle();
+  }
   void off(Cycle) {
     if (during_off) during_off();
   }
-  static inline std::function<void()> during_off;
+  static inline std::function<void()> during_cycle, during_off;
 };
 
 /// Counts what is reported.
@@ -34,9 +36,10 @@ class CountingGuest final : public BoundaryListener {
   void missed(TaskId, const MissCause::Verdict& verdict, Nanoseconds) noexcept override { verdicts.push_back(verdict); }
   void hangs(TaskWord, Nanoseconds, Nanoseconds) noexcept override {}
   void gave_way(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
-  void show(const Task&) noexcept override {}
+  void show(const Task&) noexcept override { ++shown; }
 
   std::vector<MissCause::Verdict> verdicts;
+  int shown = 0;
 };
 
 /// Tasks are added first; then make().
