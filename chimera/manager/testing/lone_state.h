@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: the state of a manager of the application of fake_subsystem.h to which no real-time unit has spoken yet:
+// no process, no thread, no segment but its own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "chimera/manager/testing/fake_subsystem.h"
+
+namespace chimera::manager {
+
+class LoneState {
+ public:
+  LoneState() {
+    Bundle bundle = fake_bundle();
+    configuration_ = verify(bundle).configuration;
+    EXPECT_TRUE(configuration_);
+    keeper_.n_rtpus = static_cast<std::uint32_t>(spec().rtpus.size());
+    Peers peers = *Peers::create(spec());
+    OwnSegment own = *OwnSegment::make(peers, 1, nullptr, now());
+    world_ = std::make_unique<ManagerState>(std::move(bundle), std::move(peers), std::move(own), page_, keeper_);
+  }
+
+  ManagerState& world() { return *world_; }
+  const ApplicationSpec& spec() const { return configuration_->spec(); }
+  TaskId task(std::string_view name) const {
+    for (std::size_t t = 0; t < spec().tasks.size(); ++t)
+      if (spec().tasks[t].name == name) return TaskId(t);
+    ADD_FAILURE() << "no task " << name;
+    return TaskId(std::size_t{0});
+  }
+  /// "KIND: TEXT" of each event after number `last`, a line each.
+  std::string told(std::uint64_t last = 0) const {
+    std::string text;
+    for (std::uint64_t n = std::max(last + 1, world_->log.first()); n <= world_->log.last(); ++n)
+      text += world_->log.at(n).kind + ": " + world_->log.at(n).text + "\n";
+    return text;
+  }
+
+ private:
+  std::optional<Configuration> configuration_;
+  DecisionPage page_;
+  KeeperPage keeper_;
+  std::unique_ptr<ManagerState> world_;
+};
+
+}  // namespace chimera::manager
