@@ -8,20 +8,19 @@ namespace chimera {
 
 Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, ModelledClock& clock,
                        const PreemptiveOptions& options)
-    : releases_(releases), tasks_(tasks), clock_(clock), options_(options), active_(tasks.size()),
-      demoted_(tasks.size()) {
+    : releases_(releases), tasks_(tasks), clock_(clock), options_(options),
+      processor_(releases.tap(), tasks.size()), sporadic_(releases, tasks, processor_), demoted_(tasks.size()) {
   const Policy policy = releases.queue().policy();
   by_laxity_ = policy == Policy::kLlf || policy == Policy::kMufLaxity;
   for (std::uint32_t i = 0; i < tasks.size(); ++i) {
-    if (tasks[i].server) sporadic_.push_back({TaskId(i), SporadicJob(*tasks[i].server)});
-    else if (tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back(i);
-    if (tasks[i].on_miss == OnMiss::kDemote) demoters_.push_back(i);
+    if (!tasks[i].server && tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back({TaskId(i)});
+    if (tasks[i].on_miss == OnMiss::kDemote) demoters_.push_back(TaskId(i));
     if (tasks[i].on_miss == OnMiss::kDemote || tasks[i].on_overrun == OnMiss::kDemote) has_demotion_ = true;
   }
 }
 
 RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
-  open_servers();
+  sporadic_.open();
   releases_.look_again();
   for (;;) {
     use_processor(now);
@@ -32,16 +31,16 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
       if (releases_.stop_requested()) return RunEnd::kStopped;
       if (releases_.settlement().task_stopped()) return RunEnd::kTaskStopped;
       if (now >= until) {
-        leave_processor();
+        processor_.record_slice();
         return RunEnd::kTime;
       }
       if (releases_.edge_is_due(now)) run_edge(now);
       releases_.release_due(now);
       releases_.rest(until);
     }
-    if (!sporadic_.empty()) follow_servers(now);
+    if (!sporadic_.are_none()) sporadic_.follow(now);
     if (dispatch(now)) continue;
-    const bool idle = !running_.is_valid() && releases_.queue().is_empty();
+    const bool idle = processor_.is_idle() && releases_.queue().is_empty();
     if (idle && !releases_.anything_left()) return RunEnd::kNothingLeft;
     now = std::clamp(next_event(now), now, until);
   }
@@ -50,8 +49,8 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
 Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
   Nanoseconds next = releases_.next_event();
   if (has_exceptions()) next = std::min(next, next_exception(now));
-  if (!running_.is_valid()) return next;
-  next = std::min(next, now + active_[running_.index].remaining);
+  if (processor_.is_idle()) return next;
+  next = std::min(next, now + processor_.job().remaining);
   if (!by_laxity_ || releases_.queue().is_empty()) return next;
   const Nanoseconds since = now - releases_.origin();
   return std::min(next, releases_.origin() + options_.quantum * (since / options_.quantum + 1));
@@ -59,18 +58,16 @@ Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
 
 // What only tasks with the reactions abort and demote and those behind servers have.
 Nanoseconds Preemptive::next_exception(Nanoseconds now) noexcept {
-  return std::min({next_deadline(), next_demotion(now), next_server(now)});
+  return std::min({next_deadline(), next_demotion(now), sporadic_.next_change(now)});
 }
 
 // Deadlines lie on the grid of releases, so they are known without looking at any job.
 Nanoseconds Preemptive::next_deadline() noexcept {
   Nanoseconds next = kNever;
-  for (const std::uint32_t i : abandoners_) {
-    Active& a = active_[i];
-    const bool on = releases_.members().is_on(TaskId(i));
-    if (!on) a.next_deadline = kNever;
+  for (Abandoner& a : abandoners_) {
+    if (!releases_.members().is_on(a.task)) a.next_deadline = kNever;
     else if (a.next_deadline == kNever)
-      a.next_deadline = releases_.queue().first_release(TaskId(i)) + tasks_[i].deadline;
+      a.next_deadline = releases_.queue().first_release(a.task) + tasks_[a.task.index].deadline;
     next = std::min(next, a.next_deadline);
   }
   return next;
@@ -78,82 +75,64 @@ Nanoseconds Preemptive::next_deadline() noexcept {
 
 Nanoseconds Preemptive::next_demotion(Nanoseconds now) noexcept {
   Nanoseconds next = kNever;
-  for (const std::uint32_t i : demoters_)
-    if (active_[i].has_begun && !active_[i].is_demoted) next = std::min(next, active_[i].job.deadline);
-  if (!running_.is_valid()) return next;
-  const Nanoseconds left = budget_left(running_);
+  for (const TaskId task : demoters_)
+    if (const BegunJob& a = processor_.of(task); a.has_begun && !a.is_demoted) next = std::min(next, a.job.deadline);
+  if (processor_.is_idle()) return next;
+  const Nanoseconds left = budget_left(processor_.running());
   return left == kNever ? next : std::min(next, now + left);
 }
 
 // Of the task's job that has begun, where its end is a demotion; else kNever.
 Nanoseconds Preemptive::budget_left(TaskId task) const noexcept {
   const TaskSpec& spec = tasks_[task.index];
-  const Active& a = active_[task.index];
+  const BegunJob& a = processor_.of(task);
   const bool counts = spec.on_overrun == OnMiss::kDemote && spec.budget > Nanoseconds{} && !a.is_demoted;
   return counts ? std::max(spec.budget - a.used, Nanoseconds{}) : kNever;
 }
 
 void Preemptive::use_processor(Nanoseconds until) noexcept {
-  if (!running_.is_valid()) return;
-  Active& a = active_[running_.index];
-  a.used += until - mark_;
-  a.remaining -= until - mark_;
-  if (sporadic_.empty()) {
-    mark_ = until;
-    return;
-  }
-  if (SporadicTask* s = sporadic(running_); s != nullptr && !a.is_demoted) s->job.charge(until - mark_);
-  mark_ = until;
-}
-
-// Ends the slice of the running job; the job itself stays where it is.
-void Preemptive::leave_processor() noexcept {
-  if (!running_.is_valid()) return;
-  if (mark_ > slice_start_) {
-    releases_.tap().record(TapKind::kRun, slice_start_, running_, CHIMERA_CYCLE, (mark_ - slice_start_).count);
-  }
-  slice_start_ = mark_;
+  if (processor_.is_idle()) return;
+  const Nanoseconds used = processor_.use(until);
+  if (!sporadic_.are_none()) sporadic_.charge(processor_.running(), used);
 }
 
 void Preemptive::complete() noexcept {
-  if (!running_.is_valid() || active_[running_.index].remaining > Nanoseconds{}) return;
-  leave_processor();
-  Active& a = active_[running_.index];
-  running_ = TaskId();
-  end(a, mark_);
+  if (processor_.is_idle() || processor_.job().remaining > Nanoseconds{}) return;
+  BegunJob& a = processor_.job();
+  processor_.take();
+  end(a, processor_.counted_until());
 }
 
-void Preemptive::end(Active& a, Nanoseconds now) noexcept {
+void Preemptive::end(BegunJob& a, Nanoseconds now) noexcept {
   a.has_begun = false;
   if (a.is_demoted) (void)std::remove(demoted_.begin(), demoted_.begin() + n_demoted_--, a.job.task);
   a.is_demoted = false;
   releases_.queue().finish(a.job.task);
-  if (!sporadic_.empty()) finish_event(a.job.task);
-  releases_.end_job(sporadic_.empty() ? a.job : without_server(a.job), a.time, a.body, a.first_start, now, a.used);
+  if (!sporadic_.are_none()) sporadic_.finish(a.job.task);
+  const Job own = sporadic_.are_none() ? a.job : sporadic_.without_server(a.job);
+  releases_.end_job(own, a.time, a.body, a.first_start, now, a.used);
 }
 
 void Preemptive::expire(Nanoseconds now) noexcept {
   if (next_deadline() > now) return;
-  for (const std::uint32_t i : abandoners_) {
-    if (active_[i].next_deadline > now) continue;
-    expire(TaskId(i));
-    if (active_[i].next_deadline != kNever) active_[i].next_deadline += tasks_[i].period;
+  for (Abandoner& a : abandoners_) {
+    if (a.next_deadline > now) continue;
+    expire(a.task, a.next_deadline);
+    if (a.next_deadline != kNever) a.next_deadline += tasks_[a.task.index].period;
   }
 }
 
 // The deadline of the task's present job has come; if it is unfinished it is over.
-void Preemptive::expire(TaskId task) noexcept {
-  Active& a = active_[task.index];
-  const Nanoseconds deadline = a.next_deadline;
+void Preemptive::expire(TaskId task, Nanoseconds deadline) noexcept {
+  BegunJob& a = processor_.of(task);
   Job waiting;
   if (!a.has_begun) {
     if (releases_.queue().remove(task, waiting)) releases_.misses().expire_unstarted(waiting);
     return;
   }
   if (a.job.deadline != deadline) return;
-  if (running_ == task) {
-    leave_processor();
-    running_ = TaskId();
+  if (processor_.running() == task) {
+    processor_.take();
   } else {
     (void)releases_.queue().remove(task, waiting);
   }
@@ -164,26 +143,24 @@ void Preemptive::expire(TaskId task) noexcept {
 
 // What is over at this instant has ended by now: these need more.
 void Preemptive::demote_due(Nanoseconds now) noexcept {
-  if (running_.is_valid() && budget_left(running_) == Nanoseconds{}) {
-    const Active& a = active_[running_.index];
-    (void)releases_.misses().report_overrun(running_, releases_.task(running_).call.cycle, a.used, now);
-    demote(running_);
+  if (const TaskId task = processor_.running(); task.is_valid() && budget_left(task) == Nanoseconds{}) {
+    (void)releases_.misses().report_overrun(task, releases_.task(task).call.cycle, processor_.job().used, now);
+    demote(task);
   }
-  for (const std::uint32_t i : demoters_) {
-    const Active& a = active_[i];
-    if (a.has_begun && !a.is_demoted && a.job.deadline <= now) demote(TaskId(i));
+  for (const TaskId task : demoters_) {
+    const BegunJob& a = processor_.of(task);
+    if (a.has_begun && !a.is_demoted && a.job.deadline <= now) demote(task);
   }
 }
 
 void Preemptive::demote(TaskId task) noexcept {
   Job job;
-  if (running_ == task) {
-    leave_processor();
-    running_ = TaskId();
+  if (processor_.running() == task) {
+    processor_.take();
   } else {
     (void)releases_.queue().remove(task, job);
   }
-  active_[task.index].is_demoted = true;
+  processor_.of(task).is_demoted = true;
   demoted_[static_cast<std::size_t>(n_demoted_++)] = task;
   ++releases_.task(task).profile.demoted;
 }
@@ -192,9 +169,9 @@ void Preemptive::run_edge(Nanoseconds& now) noexcept {
   clock_.set(now);
   releases_.take_edge(now);
   if (clock_.spent() == Nanoseconds{}) return;
-  leave_processor();  // methods at an edge hold the processor
+  processor_.record_slice();  // methods at an edge hold the processor
   now += clock_.spent();
-  mark_ = slice_start_ = now;
+  processor_.resume(now);
 }
 
 // Nothing can happen before `end`: a job that begins now and ends then needs no look in between.
@@ -207,51 +184,48 @@ bool Preemptive::runs_through(Nanoseconds end) const noexcept {
 bool Preemptive::dispatch(Nanoseconds& now) noexcept {
   ReadyQueue& queue = releases_.queue();
   while (!queue.is_empty()) {
-    if (running_.is_valid()) {
+    if (!processor_.is_idle()) {
       if (!must_yield()) return false;
       preempt(now);
     }
     if (!run_job(queue.pop(), now)) continue;
-    if (const Nanoseconds end = now + active_[running_.index].remaining; runs_through(end)) {
+    if (const Nanoseconds end = now + processor_.job().remaining; runs_through(end)) {
       now = end;
       use_processor(end);
     }
     complete();
-    if (!running_.is_valid()) return true;
+    if (processor_.is_idle()) return true;
     if (!by_laxity_) return false;  // it was the most urgent one
   }
-  if (!running_.is_valid() && n_demoted_ > 0) {
-    running_ = demoted_[0];
-    slice_start_ = mark_ = now;
-  }
+  if (processor_.is_idle() && n_demoted_ > 0) processor_.give(demoted_[0], now);
   return false;
 }
 
 void Preemptive::preempt(Nanoseconds now) noexcept {
-  const Active& a = active_[running_.index];
-  leave_processor();
+  const TaskId task = processor_.running();
+  const BegunJob& a = processor_.job();
+  processor_.take();
   if (!a.is_demoted) {
-    releases_.tap().record(TapKind::kPreempt, now, running_, 0);
-    ++releases_.task(running_).profile.preempted;
+    releases_.tap().record(TapKind::kPreempt, now, task, 0);
+    ++releases_.task(task).profile.preempted;
     releases_.queue().put_back(a.job, a.remaining);
   }
-  running_ = TaskId();
 }
 
 bool Preemptive::must_yield() noexcept {
-  const Active& a = active_[running_.index];
+  const BegunJob& a = processor_.job();
   if (a.is_demoted) return true;
-  const TaskSpec& spec = tasks_[running_.index];
+  const TaskSpec& spec = tasks_[a.job.task.index];
   const Urgency mine{spec.criticality, spec.user_priority, spec.period, a.job.deadline, a.remaining};
   return is_more_urgent(releases_.queue().policy(), releases_.queue().top_urgency(), mine);
 }
 
 bool Preemptive::run_job(const Job& job, Nanoseconds now) noexcept {
-  Active& a = active_[job.task.index];
+  BegunJob& a = processor_.of(job.task);
   if (!a.has_begun) {
-    const Job own = sporadic_.empty() ? job : without_server(job);
+    const Job own = sporadic_.are_none() ? job : sporadic_.without_server(job);
     if (!releases_.may_start(own, now)) {
-      finish_event(job.task);
+      sporadic_.finish(job.task);
       return false;
     }
     clock_.set(now);
@@ -268,8 +242,7 @@ bool Preemptive::run_job(const Job& job, Nanoseconds now) noexcept {
     releases_.queue().occupy(job.task);
   }
   a.job.deadline = job.deadline;
-  running_ = job.task;
-  slice_start_ = mark_ = now;
+  processor_.give(job.task, now);
   return true;
 }
 

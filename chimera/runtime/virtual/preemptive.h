@@ -15,8 +15,9 @@
 #include <vector>
 
 #include "chimera/runtime/releases.h"
-#include "chimera/runtime/sporadic_job.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
+#include "chimera/runtime/virtual/sporadic_tasks.h"
+#include "chimera/runtime/virtual/virtual_processor.h"
 
 namespace chimera {
 
@@ -37,35 +38,22 @@ class Preemptive {
   RunEnd run(Nanoseconds& now, Nanoseconds until) noexcept;
 
  private:
-  /// A job that has begun and not ended.
-  struct Active {
-    Job job;
-    CycleTime time;
-    BodyEnd body;
-    Nanoseconds first_start, used, remaining;
-    Nanoseconds next_deadline = kNever;  // of the task, when its reaction is abort and it is ON
-    bool has_begun = false;
-    bool is_demoted = false;
-  };
-
-  /// A task behind a server.
-  struct SporadicTask {
+  /// A task whose jobs are ended at their deadline.
+  struct Abandoner {
     TaskId task;
-    SporadicJob job;
-    bool is_ready = false;  // the job is in the queue or has the processor
+    Nanoseconds next_deadline = kNever;  // of the task while it is ON
   };
 
   Nanoseconds next_event(Nanoseconds now) noexcept;
   Nanoseconds next_exception(Nanoseconds now) noexcept;
-  bool has_exceptions() const noexcept { return !abandoners_.empty() || has_demotion_ || !sporadic_.empty(); }
+  bool has_exceptions() const noexcept { return !abandoners_.empty() || has_demotion_ || !sporadic_.are_none(); }
   Nanoseconds next_deadline() noexcept;
   Nanoseconds next_demotion(Nanoseconds now) noexcept;
   Nanoseconds budget_left(TaskId task) const noexcept;
   void use_processor(Nanoseconds until) noexcept;
-  void leave_processor() noexcept;
   void complete() noexcept;
   void expire(Nanoseconds now) noexcept;
-  void expire(TaskId task) noexcept;
+  void expire(TaskId task, Nanoseconds deadline) noexcept;
   void demote_due(Nanoseconds now) noexcept;
   void demote(TaskId task) noexcept;
   void run_edge(Nanoseconds& now) noexcept;
@@ -74,32 +62,20 @@ class Preemptive {
   bool must_yield() noexcept;
   void preempt(Nanoseconds now) noexcept;
   bool run_job(const Job& job, Nanoseconds now) noexcept;
-  void end(Active& active, Nanoseconds now) noexcept;
-  void open_servers() noexcept;
-  Nanoseconds next_server(Nanoseconds now) noexcept;
-  void follow_servers(Nanoseconds now) noexcept;
-  bool accept_event(SporadicTask& task, Nanoseconds now) noexcept;
-  void apply_grant(SporadicTask& task, Nanoseconds now) noexcept;
-  void halt(SporadicTask& task, Nanoseconds now) noexcept;
-  void finish_event(TaskId task) noexcept;
-  SporadicTask* sporadic(TaskId task) noexcept;
-  Job without_server(Job job) noexcept;
+  void end(BegunJob& ended, Nanoseconds now) noexcept;
 
   Releases& releases_;
   std::span<const TaskSpec> tasks_;
   ModelledClock& clock_;
   PreemptiveOptions options_;
-  std::vector<Active> active_;            // one per task
-  std::vector<std::uint32_t> abandoners_;  // tasks with the reaction abort
-  std::vector<SporadicTask> sporadic_;
-  std::vector<std::uint32_t> demoters_;    // tasks with the reaction demote to a missed deadline
-  std::vector<TaskId> demoted_;            // their jobs run when nobody else does, the first until it ends
+  VirtualProcessor processor_;
+  SporadicTasks sporadic_;
+  std::vector<Abandoner> abandoners_;   // tasks with the reaction abort
+  std::vector<TaskId> demoters_;        // tasks with the reaction demote to a missed deadline
+  std::vector<TaskId> demoted_;         // their jobs run when nobody else does, the first until it ends
   std::ptrdiff_t n_demoted_ = 0;
-  TaskId running_;
-  Nanoseconds slice_start_, mark_;  // of the running job: start of its slice, up to where its time is counted
   bool by_laxity_;
   bool has_demotion_ = false;  // some task has it as a reaction
-  bool has_begun_ = false;
 };
 
 }  // namespace chimera

@@ -1,45 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks behind servers in virtual time: their events, and whether their jobs may run now.
-#include <algorithm>
+// Accepts the events of tasks behind servers and applies what their servers grant.
+#include "chimera/runtime/virtual/sporadic_tasks.h"
 
-#include "chimera/runtime/virtual/preemptive.h"
+#include <algorithm>
 
 namespace chimera {
 
-// The periods of servers count from the origin of the grid.
-void Preemptive::open_servers() noexcept {
-  if (has_begun_) return;
-  has_begun_ = true;
+SporadicTasks::SporadicTasks(Releases& releases, std::span<const TaskSpec> tasks, VirtualProcessor& processor)
+    : releases_(releases), tasks_(tasks), processor_(processor) {
+  for (std::uint32_t i = 0; i < tasks.size(); ++i)
+    if (tasks[i].server) sporadic_.push_back({TaskId(i), SporadicJob(*tasks[i].server)});
+}
+
+void SporadicTasks::open() noexcept {
+  if (is_open_) return;
+  is_open_ = true;
   for (SporadicTask& s : sporadic_) s.job.start(releases_.origin());
 }
 
-Preemptive::SporadicTask* Preemptive::sporadic(TaskId task) noexcept {
+SporadicTasks::SporadicTask* SporadicTasks::find(TaskId task) noexcept {
   if (!tasks_[task.index].server) return nullptr;
   return &*std::find_if(sporadic_.begin(), sporadic_.end(), [task](const SporadicTask& s) { return s.task == task; });
 }
 
-Nanoseconds Preemptive::next_server(Nanoseconds now) noexcept {
+Nanoseconds SporadicTasks::next_change(Nanoseconds now) noexcept {
   Nanoseconds next = kNever;
   for (const SporadicTask& s : sporadic_) {
-    if (active_[s.task.index].is_demoted) continue;
+    if (processor_.of(s.task).is_demoted) continue;
     if (!s.job.has_event()) {
       if (releases_.task(s.task).events > 0) return now;
       continue;
     }
     next = std::min(next, s.job.next_change(now));
-    if (running_ == s.task) next = std::min(next, now + s.job.allowance(now));
+    if (processor_.running() == s.task) next = std::min(next, now + s.job.allowance(now));
   }
   return next;
 }
 
-void Preemptive::follow_servers(Nanoseconds now) noexcept {
+void SporadicTasks::follow(Nanoseconds now) noexcept {
   for (SporadicTask& s : sporadic_)
     if (accept_event(s, now)) apply_grant(s, now);
 }
 
 // True when the server has a job.
-bool Preemptive::accept_event(SporadicTask& s, Nanoseconds now) noexcept {
-  if (active_[s.task.index].is_demoted) return false;  // below all others no server counts
+bool SporadicTasks::accept_event(SporadicTask& s, Nanoseconds now) noexcept {
+  if (processor_.of(s.task).is_demoted) return false;  // below all others no server counts
   Task& task = releases_.task(s.task);
   if (releases_.members().is_on(s.task)) return s.job.accept(task.events, now);
   Job forgotten;
@@ -50,10 +55,10 @@ bool Preemptive::accept_event(SporadicTask& s, Nanoseconds now) noexcept {
 }
 
 // Puts the job where it belongs by what the server has: on the processor, into the queue, or nowhere.
-void Preemptive::apply_grant(SporadicTask& s, Nanoseconds now) noexcept {
+void SporadicTasks::apply_grant(SporadicTask& s, Nanoseconds now) noexcept {
   const SporadicJob::Grant grant = s.job.grant(now);
-  Active& a = active_[s.task.index];
-  if (running_ == s.task) {
+  BegunJob& a = processor_.of(s.task);
+  if (processor_.running() == s.task) {
     a.job.deadline = s.job.deadline();
     if (!grant.may_run) halt(s, now);
     return;
@@ -68,25 +73,26 @@ void Preemptive::apply_grant(SporadicTask& s, Nanoseconds now) noexcept {
 }
 
 // The job leaves the processor until its server has capacity again.
-void Preemptive::halt(SporadicTask& s, Nanoseconds now) noexcept {
-  leave_processor();
+void SporadicTasks::halt(SporadicTask& s, Nanoseconds now) noexcept {
+  processor_.take();
   releases_.tap().record(TapKind::kPreempt, now, s.task, 0);
   ++releases_.task(s.task).profile.exhausted;
   ++releases_.task(s.task).profile.preempted;
-  running_ = TaskId();
   s.is_ready = false;
 }
 
-// The job of the task is over, or never began.
-void Preemptive::finish_event(TaskId task) noexcept {
-  SporadicTask* s = sporadic(task);
+void SporadicTasks::charge(TaskId task, Nanoseconds used) noexcept {
+  if (SporadicTask* s = find(task); s != nullptr && !processor_.of(task).is_demoted) s->job.charge(used);
+}
+
+void SporadicTasks::finish(TaskId task) noexcept {
+  SporadicTask* s = find(task);
   if (s == nullptr) return;
   s->job.finish();
   s->is_ready = false;
 }
 
-// As the failures of time see it: only its server is due at an instant.
-Job Preemptive::without_server(Job job) noexcept {
+Job SporadicTasks::without_server(Job job) const noexcept {
   if (tasks_[job.task.index].server) job.deadline = kNever;
   return job;
 }
