@@ -15,7 +15,7 @@ using control::Json;
 class SubscriptionFeedsTest : public testing::Test, public LoneState {
  protected:
   void open(std::uint64_t subscription, const Json& parameters) {
-    const control::Answer answer = feeds_.open(subscription, parameters);
+    const control::RpcResponse answer = feeds_.open(subscription, parameters);
     EXPECT_TRUE(answer.is_good()) << answer.message;
   }
   /// What the subscription is to be sent; null: nothing.
@@ -99,7 +99,7 @@ TEST_F(SubscriptionFeedsTest, ValuesAreThoseOfTheVariablesThatWereNamed) {
 }
 
 TEST_F(SubscriptionFeedsTest, RefusesAVariableThatDoesNotExist) {
-  const control::Answer answer = feeds_.open(1, {{"to", "values"}, {"variables", {"kq"}}});
+  const control::RpcResponse answer = feeds_.open(1, {{"to", "values"}, {"variables", {"kq"}}});
   EXPECT_FALSE(answer.is_good());
   EXPECT_NE(answer.message.find("kq"), std::string::npos) << answer.message;
 }
