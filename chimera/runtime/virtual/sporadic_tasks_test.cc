@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 
@@ -27,7 +28,7 @@ class SporadicTasksTest : public ::testing::Test {
       app.link(app.tasks.size() - 1, 0, name);
     }
     app.tasks[kServed.index].server = ServerSpec{ServerKind::kSporadic, milliseconds(2), milliseconds(10)};
-    auto made = TaskSet::create(app.make(), app.components, ContextPlace{});
+    auto made = HeapTaskSet::create(app.make(), app.components, ContextPlace{});
     set = *std::move(made);
     RunOptions options;
     options.can_demote = true;
@@ -52,7 +53,7 @@ class SporadicTasksTest : public ::testing::Test {
 
   testing::TestApplication app;
   ModelledClock clock;
-  std::unique_ptr<TaskSet> set;
+  std::unique_ptr<HeapTaskSet> set;
   std::unique_ptr<Releases> releases;
   std::unique_ptr<VirtualProcessor> processor;
   std::unique_ptr<SporadicTasks> sporadic;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "chimera/runtime/hosted/heap_memory.h"
+
 namespace chimera {
 namespace {
 
@@ -38,7 +40,8 @@ class VirtualProcessorTest : public testing::Test {
   std::unique_ptr<TapRing> ring = std::make_unique<TapRing>();
   Tap ring_tap{*ring};
   TapReader reader{*ring};
-  ContextTap tap{tasks, &ring_tap, 0, false};
+  HeapMemory heap;
+  ContextTap tap{tasks, &ring_tap, 0, false, heap};
   VirtualProcessor processor{tap, 2};
 };
 
