@@ -7,7 +7,8 @@ The machine loses some by itself: a quiet span says how many.
 
 usage: isolation.py --build TREE [--seconds N] [--span S] [MISDEED...]
 The last line is {"name": ..., "n": cycles beside misdeeds, "faults": misdeeds beside which `good` lost clearly more
-than in its quiet spans, or its unit was restarted}. Exit 77: no real-time rights, or only one CPU.
+than in its quiet spans in each of five tries, or its unit was restarted; "tries_with_loss": tries that lost clearly
+more}. A misdeed that costs something costs it every time, what the host takes does not. Exit 77: no real-time rights, or only one CPU.
 """
 import argparse
 import json
@@ -24,6 +25,7 @@ PRIORITY = 40
 DEADLINE_US = 900
 # More than this beyond the quiet span is no chance: what a virtual machine's host takes away comes in such pieces.
 CHANCE = 6
+TRIES = 5
 
 
 def text_of(way, executor):
@@ -62,6 +64,22 @@ def measure(way, executor, span):
         return quiet, beside, system.rtpu("good")["restarts"], system.rtpu("evil")["restarts"]
 
 
+def judge(way, executor, span, count):
+    """Counts what was seen; True for a misdeed that costs the other unit something in each try, or harms it."""
+    for _ in range(TRIES):
+        (quiet, n_quiet), (beside, n_beside), harmed, restarts = measure(way, executor, span)
+        is_loss = beside > quiet + CHANCE
+        print(f"{way:9} quiet: lost {quiet} of {n_quiet}, beside it: lost {beside} of {n_beside}, evil restarted "
+              f"{restarts} times{'  HARMED' if harmed else '  MORE' if is_loss else ''}", flush=True)
+        count["n"] += n_beside
+        count["lost_beside"] += beside
+        count["lost_quiet"] += quiet
+        count["tries_with_loss"] += is_loss
+        if harmed or not is_loss:
+            return harmed > 0
+    return True
+
+
 def why_not():
     if len(os.sched_getaffinity(0)) < 2:
         return "isolation with a CPU for each unit needs two CPUs"
@@ -89,20 +107,14 @@ def main():
         return 77
     os.environ["CHIMERA_BUILD"] = arguments.build
     end = time.monotonic() + arguments.seconds
-    n = lost_beside = lost_quiet = faults = 0
-    while n == 0 or time.monotonic() < end:
+    count = {"n": 0, "faults": 0, "counted": "cycles", "lost_beside": 0, "lost_quiet": 0, "tries_with_loss": 0}
+    while count["n"] == 0 or time.monotonic() < end:
         for way in arguments.misdeeds or CRASHES + OTHERS:
-            (quiet, n_quiet), (beside, n_beside), harmed, restarts = measure(way, arguments.executor, arguments.span)
-            is_fault = beside > quiet + CHANCE or harmed > 0
-            print(f"{way:9} quiet: lost {quiet} of {n_quiet}, beside it: lost {beside} of {n_beside}, evil restarted "
-                  f"{restarts} times{'  FAULT' if is_fault else ''}", flush=True)
-            n, faults = n + n_beside, faults + is_fault
-            lost_beside, lost_quiet = lost_beside + beside, lost_quiet + quiet
+            count["faults"] += judge(way, arguments.executor, arguments.span, count)
             if arguments.seconds and time.monotonic() > end:
                 break
-    print(json.dumps({"name": "hostile_isolation", "n": n, "faults": faults, "counted": "cycles",
-                      "lost_beside": lost_beside, "lost_quiet": lost_quiet}))
-    return 1 if faults else 0
+    print(json.dumps({"name": "hostile_isolation", **count}))
+    return 1 if count["faults"] else 0
 
 
 if __name__ == "__main__":
