@@ -8,7 +8,8 @@ The machine loses some by itself: a quiet span says how many.
 usage: isolation.py --build TREE [--seconds N] [--span S] [MISDEED...]
 The last line is {"name": ..., "n": cycles beside misdeeds, "faults": misdeeds beside which `good` lost clearly more
 than in its quiet spans in each of five tries, or its unit was restarted; "tries_with_loss": tries that lost clearly
-more}. A misdeed that costs something costs it every time, what the host takes does not. Exit 77: no real-time rights, or only one CPU.
+more}. A misdeed that costs something costs it every time, what the host takes does not.
+Exit 77: no real-time rights, or only one CPU.
 """
 import argparse
 import json
