@@ -85,13 +85,25 @@ Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) 
   return Answer::kOk;
 }
 
+namespace {
+
+// Says meanwhile which method it is. Relaxed, pairs with nothing: it is told, and not acted upon.
+Answer call_beside_cycle(Task& task, Method method, Nanoseconds at) noexcept {
+  std::atomic_ref(task.job_method).store(method, std::memory_order_relaxed);
+  const Answer answer = call_method(task, method, at);
+  std::atomic_ref(task.job_method).store(Method::kCycle, std::memory_order_relaxed);
+  return answer;
+}
+
+}  // namespace
+
 State follow_error(Task& task, Next at, Nanoseconds now, JobClock* clock) noexcept {
   while (at.kind == Next::Kind::kStep) {
     const StepRule& step = rule(at.step);
     const Nanoseconds began = clock == nullptr ? now : clock->now();
     if (step.before & kReadIn) read_inputs(task);
     stage_outputs(task);
-    Answer answer = call_method(task, step.method, now);
+    Answer answer = call_beside_cycle(task, step.method, now);
     if (answer == Answer::kOk && (step.after_ok & kWriteOut)) answer = publish(task, step.method, task.valid, now);
     const Nanoseconds ended = clock == nullptr ? now : clock->now();
     task.profile.execution[static_cast<int>(step.method)].add(ended - began);
@@ -104,10 +116,7 @@ State follow_error(Task& task, Next at, Nanoseconds now, JobClock* clock) noexce
 BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept { return cycle_step::begin(task, time); }
 
 Answer cycle_step::ask_sync(Task& task, Nanoseconds at) noexcept {
-  std::atomic_ref(task.in_sync).store(true, std::memory_order_relaxed);  // pairs with nothing: told, not acted upon
-  const Answer answer = call_method(task, Method::kSync, at);
-  std::atomic_ref(task.in_sync).store(false, std::memory_order_relaxed);
-  return answer;
+  return call_beside_cycle(task, Method::kSync, at);
 }
 
 BodyEnd cycle_step::judge_body(Task& task, std::int32_t value, Nanoseconds at) noexcept {

@@ -64,7 +64,7 @@ struct alignas(64) Task {
   // Written by the job step, or at edges.
   bool is_tapped = false;  ///< set at edges: every publication goes to the tap as a row
   bool is_busy = false;    ///< a job of it is under way; by the executor
-  bool in_sync = false;    ///< its job is in sync, not yet in cycle; by atomic_ref, for whoever says what hangs
+  Method job_method = Method::kCycle;  ///< which its job is in, sync or error for a time; by atomic_ref, to be told
   bool has_news = false;   ///< a fault was recorded or a signal sent that nobody has looked at
   State state = State::kNotCreated;
   std::span<Input> inputs;               ///< rebound at an edge when producers change

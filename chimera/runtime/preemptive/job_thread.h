@@ -46,10 +46,8 @@ class JobThread {
   Nanoseconds used_before() const noexcept { return Nanoseconds{used_before_.load(std::memory_order_relaxed)}; }
   /// Execution time of the job that runs, or hangs; zero when its thread is gone.
   Nanoseconds used() const noexcept;
-  /// What a job of the task runs now: sync or cycle. Context: any.
-  Method method() const noexcept {
-    return std::atomic_ref(task.in_sync).load(std::memory_order_relaxed) ? Method::kSync : Method::kCycle;
-  }
+  /// What a job of the task runs now: cycle, sync or error. Context: any.
+  Method method() const noexcept { return std::atomic_ref(task.job_method).load(std::memory_order_relaxed); }
 
   /// From here on the job has the processor, as far as can be told. kNever: it has not had the processor yet.
   /// Context: any.

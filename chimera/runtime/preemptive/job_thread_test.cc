@@ -57,5 +57,12 @@ TEST_F(JobThreadTest, TheFirstSliceBeginsOnce) {
   EXPECT_EQ(job.slice(), milliseconds(5));
 }
 
+TEST_F(JobThreadTest, SaysInWhichMethodItsJobIs) {
+  JobThread job(task_);
+  EXPECT_EQ(job.method(), Method::kCycle);
+  task_.job_method = Method::kError;
+  EXPECT_EQ(job.method(), Method::kError);
+}
+
 }  // namespace
 }  // namespace chimera
