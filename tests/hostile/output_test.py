@@ -234,7 +234,7 @@ def hang_at_start():
     """Exit code, duration and words of a run whose logger waits for a reader."""
     with tempfile.TemporaryDirectory() as folder:
         os.mkfifo(folder + "/pipe")
-        words = ("--for", "0.2 s", "--start-limit", "0.3 s")
+        words = ("--for", "0.2 s", "--start-limit", "2 s")
         with System(LOGGING.replace("PIPE", folder + "/pipe"), words, wait=False) as system:
             begun = time.monotonic()
             return system.process.wait(30), time.monotonic() - begun, system.said()
@@ -245,7 +245,7 @@ class TheStartHangs(unittest.TestCase):
         code, lasted, said = meanwhile.result()
         self.assertEqual(code, 1)
         self.assertLess(lasted, 10, "the limit, twice what a method has at the end, and what a slow machine needs")
-        self.assertIn("not ON after 0.3 s (--start-limit): log (csv_log): its `init` is under way", said)
+        self.assertIn("not ON after 2 s (--start-limit): log (csv_log): its `init` is under way", said)
 
 
 class Limits(unittest.TestCase):
