@@ -28,6 +28,7 @@ class PeerLinks final : public PeerView {
   /// While it keeps them nobody is shown states: what was ON when the unit began to end alone comes back with its
   /// successor. When it does not any more, all are shown. Context: cycle boundary.
   void keep_last_words(bool keeps, TaskSet& tasks) noexcept;
+  bool keeps_last_words() const noexcept { return keeps_last_words_; }
 
   State state(TaskId task) const noexcept override;
   GroupReader outputs(TaskId task) const noexcept override;

@@ -183,8 +183,11 @@ void RtpuControl::report(const Post& signal, const SignalReport& done, Nanosecon
   report(signal, done.before, done.after, why, arrived, now);
 }
 
+// What is carried out behind the last words is undone by the end of the process: its death is the answer, so that the
+// successor is asked again.
 void RtpuControl::report(const Post& signal, State before, State after, Refusal why, bool accepted,
                          Nanoseconds now) noexcept {
+  if (others_.keeps_last_words()) return;
   Post post = signal;
   post.at = now;
   post.kind = PostKind::kReport;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "chimera/rtpu/testing/test_units.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 
@@ -292,6 +294,26 @@ TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllUnits) {
   EXPECT_EQ(first().state(kSource), State::kNotCreated);
   EXPECT_TRUE(first().edge->is_over());
   EXPECT_TRUE(second().edge->is_over());
+}
+
+TEST_F(EdgeTest, AnInitThatEndsWhileItsUnitEndsAloneIsNotReportedForItsSuccessorDoesItAgain) {
+  for (const bool is_alone : {true, false}) {
+    SCOPED_TRACE(is_alone ? "alone" : "with everything");
+    units = std::make_unique<Units>(app);
+    units->run(milliseconds(1));
+    units->send(Signal::kSpawn, {kSource}, 11);
+    units->run(microseconds(100));
+    const auto in_init = std::exchange(first().service.asked, {});
+    ASSERT_EQ(in_init.size(), 1u);
+    first().edge->end(is_alone);
+    units->change();
+    units->run(milliseconds(1));
+    first().service.asked = in_init;
+    units->run(milliseconds(3));
+    EXPECT_TRUE(first().edge->is_over());
+    EXPECT_EQ(first().state(kSource), State::kNotCreated);
+    EXPECT_EQ(units->take(PostKind::kReport).size(), is_alone ? 0u : 1u);
+  }
 }
 
 TEST_F(EdgeTest, TheEndDoesNotWaitForEverForAnotherUnit) {

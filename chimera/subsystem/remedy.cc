@@ -57,4 +57,10 @@ std::string way_back(const SubsystemState& subsystem, std::span<const TaskId> lo
   return joined(commands);
 }
 
+std::string spawning(const SubsystemState& subsystem, std::span<const TaskId> absent) {
+  std::vector<std::string> commands;
+  add(commands, subsystem, "spawn", absent);
+  return joined(commands);
+}
+
 }  // namespace chimera::subsystem

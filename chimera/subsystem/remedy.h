@@ -15,6 +15,8 @@ namespace chimera::subsystem {
 std::string remedy(const SubsystemState& subsystem, Signal signal, std::span<const TaskId> tasks);
 /// The same for tasks that were lost with their process: those of `were_on` are ON again after it.
 std::string way_back(const SubsystemState& subsystem, std::span<const TaskId> lost, std::span<const TaskId> were_on);
+/// The same for tasks that are not there: `chimera spawn`.
+std::string spawning(const SubsystemState& subsystem, std::span<const TaskId> absent);
 /// "type `chimera clear pi`": the commands as the remedy of a refusal; "" when there are none.
 inline std::string typed(const std::string& commands) { return commands.empty() ? "" : "type " + commands; }
 

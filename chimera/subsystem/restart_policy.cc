@@ -103,13 +103,15 @@ void RestartPolicy::give_up(const RtpuDown& down) {
 }
 
 std::string RestartPolicy::way_back(RtpuId rtpu) const {
-  std::vector<TaskId> lost, were_on;
+  std::vector<TaskId> lost, absent, were_on;
   for (const TaskId task : state_.spec.on_order) {
-    if (!is_of(task, rtpu) || !state_.observed.is_lost(task)) continue;
-    lost.push_back(task);
-    if (was_on_[task.index]) were_on.push_back(task);
+    if (!is_of(task, rtpu)) continue;
+    const bool is_lost = state_.observed.is_lost(task);
+    (is_lost ? lost : absent).push_back(task);
+    if (is_lost && was_on_[task.index]) were_on.push_back(task);
   }
-  return subsystem::way_back(state_, lost, were_on);
+  // A manager that came after its predecessor gave up does not know what was lost before.
+  return lost.empty() ? spawning(state_, absent) : subsystem::way_back(state_, lost, were_on);
 }
 
 void RestartPolicy::start_for_goals(RtpuId rtpu) {

@@ -23,7 +23,7 @@ class RestartPolicy {
   bool on_rtpu_down(const RtpuDown& down);
   /// Asks for a dead rtpu that has goals, with what is left of its budget.
   void start_for_goals(RtpuId rtpu);
-  /// What to type so that what it had comes back; "": nothing was lost.
+  /// What to type so that what it had comes back; `chimera spawn` of its tasks where nothing is known to be lost.
   std::string way_back(RtpuId rtpu) const;
 
  private:

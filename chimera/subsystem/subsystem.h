@@ -140,7 +140,8 @@ class Subsystem {
   bool is_settled() const noexcept;
   /// Is the rtpu dead, and nobody is to start it?
   bool is_given_up(RtpuId rtpu) const noexcept;
-  /// What to type so that what it had comes back: "`chimera clear pi motor`, then `chimera on pi motor`"; "": nothing.
+  /// What to type so that what it had comes back: "`chimera clear pi motor`, then `chimera on pi motor`";
+  /// `chimera spawn` of its tasks where nothing is known to be lost.
   std::string way_back(RtpuId rtpu) const;
   /// Why the flag is up: "u (pi is OFF)"; "" when the tasks ON are a legal set.
   std::string missing() const;

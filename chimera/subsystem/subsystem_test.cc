@@ -270,6 +270,16 @@ TEST_F(SubsystemTest, ClearOfOneTaskBringsBackWhatWasLostWithItButNotWhatWasKill
   EXPECT_EQ(subsystem->state(kReserve), State::kNotCreated);
 }
 
+TEST_F(SubsystemTest, AManagerThatMeetsAGivenUpUnitSaysHowItsTasksComeBack) {
+  start();
+  remembered.started = true;
+  remembered.handled[kServo.index] = 4;
+  rebirth();
+  die(kServo, 4);
+  EXPECT_TRUE(subsystem->is_given_up(kServo));
+  EXPECT_EQ(subsystem->way_back(kServo), "`chimera spawn arm pid`");
+}
+
 TEST_F(SubsystemTest, SaysWhichInputHasNoRunningProducer) {
   EXPECT_EQ(subsystem->missing(), "");
   command(Signal::kOff, {kTraj});
