@@ -31,12 +31,15 @@ bool is_told_again(Nanoseconds before, Nanoseconds now) noexcept {
   return before.count / seconds(600).count != now.count / seconds(600).count;
 }
 
-Life LifeWatch::life_of(const LifeSample& sample, Nanoseconds silent) const noexcept {
+// A loop is known by what it has used, however many others share the processor with it.
+Life LifeWatch::life_of(const LifeSample& sample, Nanoseconds told) const noexcept {
   const ProcessState& process = sample.process;
+  const Nanoseconds used = process.used - used_;
   if (process.tracer != 0) return Life::kTraced;
   if (process.letter == 'T' || process.letter == 't') return Life::kStopped;
-  if ((process.used - used_) * 2 > silent) return Life::kLoops;
-  return process.letter == 'R' ? Life::kStarves : Life::kWaits;
+  const bool would_run = process.letter == 'R';
+  if (used * 2 > silent_ || (would_run && used * 2 >= told)) return Life::kLoops;
+  return would_run ? Life::kStarves : Life::kWaits;
 }
 
 // Nine tenths of a whole window.
@@ -52,33 +55,28 @@ LifeVerdict LifeWatch::look(const LifeSample& sample, const LifeLimits& limits) 
   LifeVerdict verdict;
   verdict.letter = sample.process.letter;
   verdict.tracer = sample.process.tracer;
-  const bool was_away = has_begun_ && sample.at - last_ > kWatchGap;
   const bool came_round = !has_begun_ || sample.beats != beats_;
-  const Nanoseconds silent_before = last_ - since_;
-  verdict.silent = sample.at - since_;
+  const Nanoseconds silent_before = silent_, since_last = sample.at - last_;
+  if (has_begun_ && since_last <= kWatchGap) silent_ = silent_ + since_last;
+  verdict.silent = silent_;
   has_begun_ = true;
   last_ = sample.at;
   beats_ = sample.beats;
-  if (came_round || was_away) {
-    verdict.is_news = is_told_ && came_round;
-    is_told_ = is_told_ && !came_round;
-    since_ = sample.at;
+  if (came_round) {
+    silent_ = {};
     used_ = sample.process.used;
-    if (came_round) {
-      const bool spun = is_spinning_;
-      is_spinning_ = limits.spins != kNever && spins(sample, limits.spins);
-      if (is_spinning_) verdict.life = Life::kSpins;
-      verdict.is_news = verdict.is_news || spun != is_spinning_;
-      return verdict;
-    }
-    verdict.silent = {};
+    const bool was_told = is_told_, spun = is_spinning_;
+    is_told_ = false;
+    is_spinning_ = limits.spins != kNever && spins(sample, limits.spins);
+    if (is_spinning_) verdict.life = Life::kSpins;
+    verdict.is_news = was_told || spun != is_spinning_;
+    return verdict;
   }
-  if (verdict.silent < limits.told) return verdict;
-  verdict.life = life_of(sample, verdict.silent);
-  verdict.is_news = !is_told_ || is_told_again(silent_before, verdict.silent);
+  if (silent_ < limits.told) return verdict;
+  verdict.life = life_of(sample, limits.told);
+  verdict.is_news = !is_told_ || is_told_again(silent_before, silent_);
   is_told_ = true;
-  verdict.is_over =
-      verdict.silent >= limits.patience && verdict.life != Life::kTraced && verdict.life != Life::kStarves;
+  verdict.is_over = silent_ >= limits.patience && verdict.life != Life::kTraced && verdict.life != Life::kStarves;
   return verdict;
 }
 

@@ -16,7 +16,7 @@ enum class Life : std::uint8_t {
   kStopped,  ///< by a signal
   kTraced,   ///< a debugger holds it, or looked at it when it was last seen
   kWaits,    ///< in a system call that does not return
-  kLoops,    ///< uses the processor and does not come round
+  kLoops,    ///< has not come round, and used the processor half of that time, or half of LifeLimits::told
   kStarves,  ///< gets no processor
   kSpins     ///< comes round, and uses a processor whole although it should wait
 };
@@ -29,7 +29,7 @@ struct LifeSample {
 
 struct LifeVerdict {
   Life life = Life::kRuns;
-  Nanoseconds silent;  ///< how long it has not come round, or had not when it did again
+  Nanoseconds silent;  ///< how long it has not come round while the watch ran, or had not when it did again
   char letter = 0;     ///< ProcessState::letter
   pid_t tracer = 0;
   bool is_news = false;  ///< to be told now: it hangs, it still hangs, or it runs again
@@ -48,7 +48,7 @@ struct LifeLimits {
 };
 /// When what goes on is told again: 10 s, 60 s, 600 s, 1200 s ... Pure.
 bool is_told_again(Nanoseconds before, Nanoseconds now) noexcept;
-/// Longer between two samples, and the watch itself did not run: it knows nothing of the others.
+/// Longer between two samples, and the watch itself did not run: that time counts as silence of nobody.
 inline constexpr Nanoseconds kWatchGap = seconds(1);
 
 /// Of one process; another one begins with another watch.
@@ -59,13 +59,13 @@ class LifeWatch {
   LifeVerdict look(const LifeSample& sample, const LifeLimits& limits) noexcept;
 
  private:
-  Life life_of(const LifeSample& sample, Nanoseconds silent) const noexcept;
-
+  Life life_of(const LifeSample& sample, Nanoseconds told) const noexcept;
   bool spins(const LifeSample& sample, Nanoseconds window) noexcept;
 
   bool has_begun_ = false, is_told_ = false, is_spinning_ = false;
   Nanoseconds window_, window_used_;  // where the present look at its load began
-  Nanoseconds last_, since_, used_;  // the last sample; when its loop came round, and what it had used until then
+  Nanoseconds last_, silent_;  // the last sample; for how long its loop had not come round then
+  Nanoseconds used_;           // what it had used when its loop came round
   std::uint64_t beats_ = 0;
 };
 

@@ -109,16 +109,39 @@ TEST(LifeWatch, TellsOfOneThatComesRoundAndNeverWaits) {
   EXPECT_EQ(scene.news, 2);
 }
 
+TEST(LifeWatch, KnowsALoopThatSharesItsProcessor) {
+  Scene scene;
+  scene.look();
+  scene.sample.process.letter = 'R';
+  EXPECT_EQ(scene.after(milliseconds(2750), false, 0.25).life, Life::kStarves);
+  const LifeVerdict used = scene.after(kEvery, false, 0.25);
+  EXPECT_EQ(used.life, Life::kLoops) << "it has used 0.75 s";
+  EXPECT_TRUE(used.is_over);
+}
+
 TEST(LifeWatch, TakesNobodyForHungWhenItWasAwayItself) {
   Scene scene;
   scene.look();
-  scene.after(seconds(1));
+  scene.after(kEvery);
   scene.sample.at = scene.sample.at + seconds(60);  // who watches was stopped, and all others with it
   const LifeVerdict back = scene.look();
   EXPECT_EQ(back.life, Life::kRuns);
   EXPECT_FALSE(back.is_news);
-  EXPECT_EQ(scene.after(milliseconds(1250)).life, Life::kRuns);
+  EXPECT_EQ(back.silent, kEvery);
+  EXPECT_EQ(scene.after(milliseconds(1000)).life, Life::kRuns);
   EXPECT_EQ(scene.after(kEvery).life, Life::kWaits) << "but it goes on watching";
+}
+
+TEST(LifeWatch, ThatIsOftenAwayLosesOnlyThatTime) {
+  Scene scene;
+  scene.look();
+  LifeVerdict verdict;
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(scene.after(kEvery).life, i < 5 ? Life::kRuns : Life::kWaits) << i;
+    scene.sample.at = scene.sample.at + seconds(2);
+    verdict = scene.look();
+  }
+  EXPECT_EQ(verdict.silent, milliseconds(1500));
 }
 
 TEST(LifeWatch, ThatWasAwayForgetsNothingItTold) {
