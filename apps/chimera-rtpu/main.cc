@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   start.image = chimera::kImageDescriptor;
   start.decision_page = chimera::kDecisionPageDescriptor;
   start.keeper_page = chimera::kKeeperPageDescriptor;
+  start.objects = chimera::kObjectsDescriptor;
   int code = 1;
   try {
     code = chimera::run_rtpu(start);

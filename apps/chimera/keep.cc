@@ -11,6 +11,7 @@
 #include "chimera/cli/run/run_plan.h"
 #include "chimera/keeper/keeper.h"
 #include "chimera/load/descriptor.h"
+#include "chimera/load/sealed_objects.h"
 #include "chimera/manager/bundle.h"
 #include "chimera/platform/cpu_claim.h"
 #include "chimera/platform/frozen_bytes.h"
@@ -33,6 +34,16 @@ Result<FrozenBytes> make_image(const cli::RunPlan& plan, const RunSettings& sett
     places.push_back({entry->object_file, fingerprint(entry->descriptor)});
   }
   return FrozenBytes::create("chimera-image", encode(plan.configuration.spec(), places, settings));
+}
+
+/// What every unit loads from: the files may change from now on.
+Result<FrozenBytes> make_objects(const cli::RunPlan& plan) {
+  std::vector<std::string> paths;
+  for (const ConfiguredTask& task : plan.configuration.tasks())
+    paths.push_back(plan.library.find(task.component)->object_file);
+  const auto packed = SealedObjects::pack(paths);
+  if (!packed) return packed.error();
+  return FrozenBytes::create("chimera-objects", *packed);
 }
 
 Result<FrozenBytes> make_bundle(const KeepRequest& request, const cli::RunPlan& plan) {
@@ -86,6 +97,8 @@ Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
   if (!claims) return claims.error();
   const auto image = make_image(plan, settings);
   if (!image) return image.error();
+  const auto objects = make_objects(plan);
+  if (!objects) return objects.error();
   const auto bundle = make_bundle(request, plan);
   if (!bundle) return bundle.error();
   const bool for_others = request.observe_group || request.operate_group || request.configure_group;
@@ -96,6 +109,7 @@ Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
                            .manager_program = sibling("chimera-manager"),
                            .n_rtpus = n_rtpus,
                            .image = image->descriptor(),
+                           .objects = objects->descriptor(),
                            .bundle = bundle->descriptor(),
                            .listening = place->descriptor()},
                  .face = face_of(request, plan, place->path()),

@@ -50,6 +50,7 @@ class KeeperProcess : public ::testing::Test {
                               .manager_program = KEEPER_TEST_CHILD,
                               .n_rtpus = n,
                               .image = image->descriptor(),
+                              .objects = image->descriptor(),
                               .bundle = bundle->descriptor(),
                               .listening = 0},
                     .face = {},
@@ -309,6 +310,7 @@ TEST(Keeper, RefusesProgramsThatCannotBeStartedAndLeavesNobody) {
                        .manager_program = "/bin/true",
                        .n_rtpus = 1,
                        .image = 0,
+                       .objects = 0,
                        .bundle = 0,
                        .listening = 0};
   Keeper keeper({.peers = peers, .face = {}});

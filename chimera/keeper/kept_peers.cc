@@ -99,13 +99,14 @@ Result<void> KeptPeers::start(std::uint32_t index) {
   const std::string numbers[] = {std::to_string(index), std::to_string(incarnation), std::to_string(own_process_id())};
   const std::array words = {program.c_str(),    "--peer",   numbers[0].c_str(), "--incarnation",
                             numbers[1].c_str(), "--parent", numbers[2].c_str()};
-  const std::array passed = {ends->second.descriptor(), plan_.image,     decision_.descriptor(),
-                             keeper_.descriptor(),      plan_.listening, plan_.bundle};
+  std::vector<int> passed = {ends->second.descriptor(), plan_.image, decision_.descriptor(), keeper_.descriptor()};
+  if (is_manager) passed.insert(passed.end(), {plan_.listening, plan_.bundle});
+  else passed.push_back(plan_.objects);
   publish_life(index, incarnation);  // before it can look
   ring_all();
   peer.origin = orphans_.prefix() + numbers[0] + "." + numbers[1];
   const StartsFrom origin(peer.origin);
-  auto process = Process::start(program.c_str(), words, std::span(passed).first(is_manager ? 6 : 4));
+  auto process = Process::start(program.c_str(), words, passed);
   if (!process) return process.error();
   peer.process = *std::move(process);
   peer.channel = std::move(ends->first);

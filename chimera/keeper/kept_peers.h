@@ -25,7 +25,7 @@ namespace chimera {
 struct PeerPlan {
   std::string rtpu_program, manager_program;
   std::uint32_t n_rtpus = 0;
-  int image = -1, bundle = -1, listening = -1;
+  int image = -1, objects = -1, bundle = -1, listening = -1;
 };
 
 /// By number: the rtpus, then the manager. Single-threaded. Context: setup; never blocks.

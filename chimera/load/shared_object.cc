@@ -18,16 +18,9 @@ Error unfit(const std::string& path, std::string_view clause, ErrorCode code = E
   return (Message() << name << " " << clause << kRebuild).error(code, path);
 }
 
-/// A sealed copy of the file.
-Result<OwnedDescriptor> copy_of(const std::string& path) {
-  const auto opened = open_ordinary(path, kMostObjectBytes);
-  if (!opened) return opened.error();
-  const OwnedDescriptor file(*opened);
-  const std::string name = path.substr(path.rfind('/') + 1).substr(0, 200);  // npos + 1: the whole path
-  auto copy = sealed_copy(file.fd, name.c_str(), path);
-  if (!copy) return copy.error();
-  if (const auto why = elf_fault(copy->fd); !why.empty()) return unfit(path, why.view());
-  return copy;
+/// Shown in /proc.
+std::string name_of(const std::string& path) {
+  return path.substr(path.rfind('/') + 1).substr(0, 200);  // npos + 1: the whole path
 }
 
 Result<std::span<const chimera_component* const>> components_of(void* handle, const std::string& path) {
@@ -51,8 +44,25 @@ Result<std::span<const chimera_component* const>> components_of(void* handle, co
 }  // namespace
 
 Result<SharedObject> SharedObject::open(const std::string& path) {
-  auto copy = copy_of(path);
+  const auto opened = open_ordinary(path, kMostObjectBytes);
+  if (!opened) return opened.error();
+  const OwnedDescriptor file(*opened);
+  return link(sealed_copy(file.fd, name_of(path).c_str(), path), path);
+}
+
+Result<SharedObject> SharedObject::open(std::span<const std::byte> bytes, const std::string& path) {
+  return link(sealed_copy(bytes, name_of(path).c_str(), path), path);
+}
+
+Result<std::string> SharedObject::read(const std::string& path) {
+  if (const auto opened = open_ordinary(path, kMostObjectBytes); !opened) return opened.error();
+  else const OwnedDescriptor file(*opened);
+  return read_ordinary(path, kMostObjectBytes);
+}
+
+Result<SharedObject> SharedObject::link(Result<OwnedDescriptor> copy, const std::string& path) {
   if (!copy) return copy.error();
+  if (const auto why = elf_fault(copy->fd); !why.empty()) return unfit(path, why.view());
   const auto object = link_object(*std::move(copy));
   if (!object)
     return (Message() << "cannot be loaded: " << object.error().message.view()).error(ErrorCode::kBadInput, path);

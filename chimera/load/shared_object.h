@@ -14,6 +14,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/load/descriptor.h"
+#include "chimera/platform/owned_descriptor.h"
 #include "chimera/task/abi.h"
 
 namespace chimera {
@@ -31,6 +32,11 @@ class SharedObject {
   /// components, one built for another version of the component interface.
   /// Context: setup; may block.
   static Result<SharedObject> open(const std::string& path);
+  /// The same of bytes that were read from `path`. Context: setup; may block.
+  static Result<SharedObject> open(std::span<const std::byte> bytes, const std::string& path);
+  /// The bytes of the file, for the other open(). Refuses one that is no ordinary file, or has more than 256 MiB.
+  /// Context: setup; may block.
+  static Result<std::string> read(const std::string& path);
 
   /// Refuses what open() and component() would refuse, as far as that can be seen without running code of the file:
   /// for whoever checks and does not load. Context: setup; may block.
@@ -48,6 +54,8 @@ class SharedObject {
   Result<const chimera_component*> matching(const Descriptor& file) const;
 
  private:
+  static Result<SharedObject> link(Result<OwnedDescriptor> copy, const std::string& path);
+
   SharedObject(std::string path, std::span<const chimera_component* const> components)
       : path_(std::move(path)), components_(components) {}
 

@@ -2,6 +2,7 @@
 // A shared object of code: copied so that nobody can change it any more, and linked into this process for good.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "chimera/base/result.h"
@@ -12,6 +13,10 @@ namespace chimera {
 /// A copy in memory of the open file `from`, sealed against every change. `name` shows in /proc only. Refuses, with
 /// `path` in `where`, what the system refuses. Context: setup; may block.
 Result<OwnedDescriptor> sealed_copy(int from, const char* name, const std::string& path) noexcept;
+
+/// The same of bytes in memory.
+Result<OwnedDescriptor> sealed_copy(std::span<const std::byte> from, const char* name,
+                                    const std::string& path) noexcept;
 
 /// Links the object behind `descriptor` and runs its static constructors. The descriptor stays open for ever: the
 /// linker knows an object by its path in /proc, and a second object must not get this number. Refuses with the

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "chimera/load/descriptor.h"
-#include "chimera/load/shared_object.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/runtime/making.h"
 
@@ -27,7 +26,8 @@ Result<const chimera_component*> verified(const SharedObject& object, const Task
 
 }  // namespace
 
-Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image, RtpuId rtpu,
+Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image,
+                                                              const SealedObjects& objects, RtpuId rtpu,
                                                               std::atomic<std::uint32_t>& serving,
                                                               std::atomic<std::uint32_t>& making) {
   const auto tasks = image.spec().tasks;
@@ -40,7 +40,7 @@ Result<std::vector<const chimera_component*>> load_components(const ApplicationI
     show_making(making, t, Making::kLoads);
     auto found = opened.find(place.object_file);
     if (found == opened.end()) {
-      auto object = SharedObject::open(std::string(place.object_file));
+      auto object = objects.link(std::string(place.object_file));
       if (!object) return object.error();
       found = opened.emplace(place.object_file, *std::move(object)).first;
     }

@@ -17,6 +17,7 @@ enum : int {
   kImageDescriptor = 4,
   kDecisionPageDescriptor = 5,
   kKeeperPageDescriptor = 6,
+  kObjectsDescriptor = 7,    ///< rtpus only: load/sealed_objects.h
   kListeningDescriptor = 7,  ///< manager only: the subsystem's socket
   kBundleDescriptor = 8,     ///< manager only: description, descriptors and units, as read at the start
 };

@@ -156,7 +156,11 @@ Result<void> Rtpu::make_tasks() {
   const ApplicationSpec& spec = image_->spec();
   BlockHead& head = block_.head();
   std::atomic<std::uint32_t>& making = decision_->making[start_.peer];
-  auto components = load_components(*image_, RtpuId(start_.peer), head.serving, making);
+  const auto object_bytes = FrozenBytes::open(start_.objects);
+  if (!object_bytes) return object_bytes.error();
+  const auto objects = SealedObjects::open(object_bytes->bytes());
+  if (!objects) return objects.error();
+  auto components = load_components(*image_, *objects, RtpuId(start_.peer), head.serving, making);
   if (!components) return components.error();
   components_ = *std::move(components);
   service_ = std::make_unique<ServiceThread>(spec.tasks.size(), Doorbell(bell()));

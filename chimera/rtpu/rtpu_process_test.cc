@@ -10,7 +10,7 @@
 
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/load/descriptor.h"
-#include "chimera/load/shared_object.h"
+#include "chimera/load/sealed_objects.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/frozen_bytes.h"
@@ -37,6 +37,7 @@ struct RtpuProcess : ::testing::Test {
     app.add("counter", component).rtpu = RtpuId(0u);
     app.make({kCounter}, false);
     const ComponentPlace place{object_file, fingerprint(*describe(*component)) + spoiled};
+    objects = *FrozenBytes::create("objects", *SealedObjects::pack({&object_file, 1}));
     image = *FrozenBytes::create("image", encode(app.spec, {&place, 1}, {0, milliseconds(500)}));
     decision_pages = *SharedPages::create("decision", sizeof(DecisionPage));
     decision = new (decision_pages.bytes().data()) DecisionPage;
@@ -58,7 +59,7 @@ struct RtpuProcess : ::testing::Test {
     const std::string parent = std::to_string(::getpid()), program = build_path("bin/chimera-rtpu");
     const char* arguments[] = {"chimera-rtpu", "--peer", "0", "--incarnation", "1", "--parent", parent.c_str()};
     const int descriptors[] = {pair->second.descriptor(), image.descriptor(), decision_pages.descriptor(),
-                               keeper_pages.descriptor()};
+                               keeper_pages.descriptor(), objects.descriptor()};
     auto started = Process::start(program.c_str(), arguments, descriptors);
     ASSERT_TRUE(started) << started.error().message.c_str();
     process = *std::move(started);
@@ -123,7 +124,7 @@ struct RtpuProcess : ::testing::Test {
 
   std::uint64_t spoiled = 0;
   testing::TestApplication app;
-  FrozenBytes image;
+  FrozenBytes image, objects;
   SharedPages decision_pages;
   MemoryRegion keeper_pages, own;
   DecisionPage* decision = nullptr;

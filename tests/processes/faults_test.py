@@ -2,14 +2,17 @@
 """What a fault of one real-time unit does to the others: nothing but what is declared. Bounded counts here; the same
 with more of them is the campaign `process_faults`. CHIMERA_ROUNDS says how often each is repeated."""
 import os
+import pathlib
 import random
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
-from system import CHIMERA, UNITS, Client, Refused, System, await_that
+from system import BUILD, CHIMERA, UNITS, Client, Refused, System, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
 
@@ -101,6 +104,26 @@ class Faults(unittest.TestCase):
                 for text in told:
                     self.assertIn(words, text)
                     self.assertIn("victim.cycle", text)
+
+    def test_a_unit_comes_back_with_the_code_that_was_verified_whatever_becomes_of_the_file(self):
+        for what in ("removed", "not finished", "built anew"):
+            with self.subTest(what), tempfile.TemporaryDirectory() as folder:
+                for name in ("t_source.so", "t_source.component.json"):
+                    shutil.copy(BUILD / "components" / name, folder)
+                path = f"{folder}:{BUILD / 'components'}"
+                text = filled(APPLICATION, where="cycle", how="none")
+                with System(text, environment={"CHIMERA_PATH": path}) as system:
+                    file, unit = pathlib.Path(folder, "t_source.so"), system.rtpu("second")
+                    if what == "removed":
+                        file.unlink()
+                    elif what == "not finished":  # in place, as a linker writes
+                        file.write_bytes(file.read_bytes()[:1000])
+                    else:
+                        shutil.copy(BUILD / "components" / "t_counter.so", file)
+                    system.kill(unit["pid"])
+                    self.await_successor(system, unit)
+                    system.await_state("beside", "ON", 15)
+                    self.count("restarts with another file", 1)
 
     def test_a_unit_that_dies_too_often_is_given_up_until_a_person_says_clear(self):
         with System(filled(APPLICATION, where="cycle", how="segv")) as system:

@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <span>
 #include <string_view>
 
 namespace chimera {
@@ -20,18 +21,33 @@ Error failed(std::string_view what, const std::string& path) noexcept {
   return (Message() << what << ": " << std::strerror(errno)).error(ErrorCode::kSystem, path);
 }
 
+Result<void> write_all(int to, std::span<const std::byte> bytes, const std::string& path) noexcept {
+  while (!bytes.empty()) {
+    const ssize_t put = ::write(to, bytes.data(), bytes.size());
+    if (put < 0) return failed("cannot be copied into memory", path);
+    bytes = bytes.subspan(static_cast<std::size_t>(put));
+  }
+  return {};
+}
+
 Result<void> copy_all(int from, int to, const std::string& path) noexcept {
-  char block[65536];
+  std::byte block[65536];
   for (;;) {
     const ssize_t got = ::read(from, block, sizeof block);
     if (got == 0) return {};
     if (got < 0) return failed("cannot be read", path);
-    for (ssize_t done = 0; done < got;) {
-      const ssize_t put = ::write(to, block + done, static_cast<std::size_t>(got - done));
-      if (put < 0) return failed("cannot be copied into memory", path);
-      done += put;
-    }
+    if (const auto put = write_all(to, {block, static_cast<std::size_t>(got)}, path); !put) return put.error();
   }
+}
+
+/// Memory that `fill` writes into, then sealed.
+template <class Fill>
+Result<OwnedDescriptor> sealed(const char* name, const std::string& path, Fill fill) noexcept {
+  OwnedDescriptor copy(::memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (copy.fd < 0) return failed("no memory for a copy", path);
+  if (const Result<void> filled = fill(copy.fd); !filled) return filled.error();
+  if (::fcntl(copy.fd, F_ADD_SEALS, kSeals) != 0) return failed("the copy cannot be sealed", path);
+  return copy;
 }
 
 /// The linker's reason without the place in /proc, which nobody else knows.
@@ -44,11 +60,12 @@ std::string_view reason(const char* text) noexcept {
 }  // namespace
 
 Result<OwnedDescriptor> sealed_copy(int from, const char* name, const std::string& path) noexcept {
-  OwnedDescriptor copy(::memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  if (copy.fd < 0) return failed("no memory for a copy", path);
-  if (const auto copied = copy_all(from, copy.fd, path); !copied) return copied.error();
-  if (::fcntl(copy.fd, F_ADD_SEALS, kSeals) != 0) return failed("the copy cannot be sealed", path);
-  return copy;
+  return sealed(name, path, [&](int to) { return copy_all(from, to, path); });
+}
+
+Result<OwnedDescriptor> sealed_copy(std::span<const std::byte> from, const char* name,
+                                    const std::string& path) noexcept {
+  return sealed(name, path, [&](int to) { return write_all(to, from, path); });
 }
 
 Result<void*> link_object(OwnedDescriptor descriptor) {
