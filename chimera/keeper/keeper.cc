@@ -102,7 +102,7 @@ void Keeper::check_face() {
   if (fate == KeptFace::Fate::kExited) {
     end_asked_ = true;
   } else if (phase_ != Phase::kRunning || end_asked_) {
-    end_badly(said << "of " << face_.cause().view() << " while the run was ending: how the run went is not judged");
+    end_badly(said << "of " << face_.cause().view() << " while the run was ending: the result of the run is unknown");
   } else if (fate == KeptFace::Fate::kGivenUp) {
     end_badly(said << kMostFaceDeaths << " times in 10 s, the last time of " << face_.cause().view()
                    << ": the run ends");
@@ -160,8 +160,8 @@ void Keeper::watch_manager() {
   }
 }
 
-/// The face ends the run in time: one that is stopped, or does not come round, is replaced. At the end of the run each
-/// phase has its limit whatever the face does.
+/// The face ends the run in time: a face that is stopped, or whose main loop does not go on, is replaced. At the end of
+/// the run each phase has its limit, which the face cannot extend.
 void Keeper::watch_face(Nanoseconds now) {
   if (phase_ != Phase::kRunning || !face_.lives()) return;
   const LifeVerdict verdict =
@@ -203,7 +203,7 @@ bool Keeper::advance() {
     enter(Phase::kFaceFinishes, plan_.face_limit);
   } else if (phase_ == Phase::kFaceFinishes && (!face_.lives() || is_late)) {
     if (face_.lives())
-      end_badly(Message("the process that prints did not come to its end: how the run went is not told"));
+      end_badly(Message("the process that prints did not end in time: the result of the run is not printed"));
     peers_.signal(manager, SIGTERM);
     enter(Phase::kManagerFinishes, kLastLimit);
   } else if (phase_ == Phase::kManagerFinishes && (!peers_.lives(manager) || is_late)) {

@@ -46,16 +46,17 @@ class KeptPeers {
   bool has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes);
   /// Tells the manager; one that does not take its messages any more is ended.
   void send_to_manager(const KeeperMessage& message) { send(manager(), message); }
-  /// Shows all that the keeper came round.
+  /// Shows all peers that the loop of the keeper went round once more.
   void beat() noexcept { page().beats.fetch_add(1, std::memory_order_release); }
   /// Everybody may know this of the face of the run.
   void publish_face(const FacePage& face);
   /// Tells every rtpu to end its tasks; from here on everybody sees that it ends.
   void finish_rtpus();
-  /// Ends what dead rtpus left behind; `other` is a child of somebody else in this process. Due again at orphans_due().
+  /// Ends the processes that dead rtpus left behind; `other` is a child that other code of this process waits for. Due
+  /// again at orphans_due().
   void check_orphans(pid_t other);
   Nanoseconds orphans_due() const noexcept { return orphans_.due(); }
-  /// SIGKILL for whoever is left, and for what they left behind: nobody outlives it. Blocks for 2 s at most.
+  /// SIGKILL for every child that is left, and for its orphans, until none is left. Blocks for 2 s at most.
   void end_all();
 
   std::uint32_t size() const noexcept { return plan_.n_rtpus + 1; }

@@ -29,7 +29,7 @@ Result<Question> question_in(const QuestionMessage& asked, int passed) {
   if (!frozen) return frozen.error();
   const auto bytes = frozen->bytes();
   if (bytes.size() <= asked.file_bytes + asked.text_bytes)
-    return Error{ErrorCode::kBadInput, std::string_view("cut short"), std::string_view("question")};
+    return Error{ErrorCode::kBadInput, std::string_view("truncated"), std::string_view("question")};
   const char* begin = reinterpret_cast<const char*>(bytes.data());
   return Question{asked.kind, {begin, asked.file_bytes}, {begin + asked.file_bytes, asked.text_bytes}};
 }

@@ -36,7 +36,7 @@ std::string encode(const Bundle& bundle);
 /// bundle of this version, and a descriptor or unit text that their readers refuse. Context: setup; may block.
 Result<Bundle> decode_bundle(std::string_view text);
 
-/// Verifies the description, with the settings, of a bundle that is not idle: the same verdict wherever it is made.
+/// Verifies the description, with the settings, of a bundle that is not idle: keeper and manager come to one verdict.
 /// Context: setup.
 Verdict verify(const Bundle& bundle);
 

@@ -43,7 +43,7 @@ std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, 
     if (!running.empty() || !service.empty())
       text += " in " + running + (running.empty() || service.empty() ? "" : " or ") + service;
     else if (ended.by_signal == 0 && ended.code == 0)
-      text += ", which nobody had told it to";
+      text += " without being told to end";
   } else if (!left.is_there()) {
     text += " before it was ready";
   }

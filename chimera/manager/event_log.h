@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happened, numbered without a gap from the start of the subsystem, over every restart of the manager. The last
-// ten thousand are kept; whoever asks for older ones learns how many are gone.
+// The events of a subsystem, numbered without a gap from its start, over every restart of the manager. The last 10,000
+// are kept; a client that asks for older events learns how many are lost.
 #pragma once
 
 #include <cstdint>

@@ -59,7 +59,7 @@ void ManagerBackend::call(const control::MethodRule& method, const Json& paramet
 }
 
 void ManagerBackend::unknown(const Request& request) {
-  request.reply(RpcResponse::error(control::kNoMethod, "no such method of a subsystem"));
+  request.reply(RpcResponse::error(control::kNoMethod, "a running subsystem has no such method"));
 }
 
 void ManagerBackend::analyse(Question::Kind kind, const Request& request) {
@@ -127,7 +127,7 @@ void ManagerBackend::signal(const Request& request) {
   }
   auto tasks = tasks_named(world(), texts(request.parameters, "tasks"));
   if (const auto* refused = std::get_if<RpcResponse>(&tasks)) return request.reply(*refused);
-  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "everything ends"));
+  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   driver_.command(static_cast<Signal>(at - std::begin(kSignals)), std::get<0>(std::move(tasks)),
                   [this, reply = request.reply](const subsystem::CommandAnswer& answer) {
                     reply(signal_answer(world(), answer));
@@ -138,7 +138,7 @@ void ManagerBackend::ring(const Request& request) {
   const auto named = tasks_named(world(), texts(request.parameters, "tasks"));
   if (const auto* refused = std::get_if<RpcResponse>(&named)) return request.reply(*refused);
   const auto& tasks = std::get<0>(named);
-  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "everything ends"));
+  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   const std::string words = command_text(world().spec(), Signal::kWakeup, tasks);
   const auto refuse = [&](const RpcResponse& answer, TaskId task) {
     world().tell("command", task, RtpuId{}, words + ": refused: " + answer.message, now());

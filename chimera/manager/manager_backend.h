@@ -71,7 +71,7 @@ class ManagerBackend final : public control::ControlBackend {
   ManagerLoop& driver_;
   Questions* questions_;
   SubscriptionFeeds feeds_;
-  std::shared_ptr<const std::string> library_, description_;  // what never changes, once somebody asked for it
+  std::shared_ptr<const std::string> library_, description_;  // answers that never change, made at the first request
 };
 
 }  // namespace chimera::manager

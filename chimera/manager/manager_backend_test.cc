@@ -269,7 +269,7 @@ TEST_F(ManagerBackendTest, EndGoesToTheKeeper) {
 
 TEST_F(ManagerBackendTest, WhileEverythingEndsNoSignalIsTaken) {
   fake_.page().ending = 1;
-  EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}), "-32007 everything ends");
+  EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}), "-32007 the subsystem is ending");
   ASSERT_TRUE(fake_.until([&] { return !fake_.told("ending").empty(); }));
 }
 
@@ -387,11 +387,11 @@ TEST_F(ServedTest, ARingThatNobodyWouldAnswerIsRefusedAndRingsNothing) {
   EXPECT_EQ(refusal("ring", {{"tasks", Json::array()}}), "-32602 'tasks' must name at least one {\"where\":\"tasks\"}");
   (void)good("signal", {{"signal", "off"}, {"tasks", {"lamp"}}});
   EXPECT_EQ(refusal("ring", {{"tasks", {"lamp"}}}),
-            "-32000 lamp is OFF: nobody would answer the event "
+            "-32000 lamp is OFF: no job would answer the event "
             "{\"kind\":\"state\",\"remedy\":\"turn it ON first\",\"where\":\"lamp\"}");
   EXPECT_EQ(fake_.rtpu(0).rings, 0);
   fake_.page().ending = 1;
-  EXPECT_EQ(refusal("ring", {{"tasks", {"lamp"}}}), "-32007 everything ends");
+  EXPECT_EQ(refusal("ring", {{"tasks", {"lamp"}}}), "-32007 the subsystem is ending");
 }
 
 TEST_F(ServedTest, MoreRingsThanAUnitTakesAreRefusedAsAWhole) {

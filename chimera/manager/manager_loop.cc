@@ -126,7 +126,7 @@ void ManagerLoop::say_hello() {
   std::string text = "manager started";
   if (world_->own.incarnation() > 1)
     text += " again, incarnation " + std::to_string(world_->own.incarnation()) +
-            (gone == 0 ? "" : "; events 1 to " + std::to_string(gone) + " are not kept");
+            (gone == 0 ? "" : "; events 1 to " + std::to_string(gone) + " are lost");
   world_->tell("manager-started", TaskId{}, RtpuId{}, text, now());
 }
 
@@ -194,7 +194,7 @@ void ManagerLoop::look_at_keeper() {
   face_watch_.look(*world_, now());
   if (is_ending_ || !world_->is_ending()) return;
   is_ending_ = true;
-  world_->tell("ending", TaskId{}, RtpuId{}, "everything ends", now());
+  world_->tell("ending", TaskId{}, RtpuId{}, "the subsystem is ending", now());
 }
 
 /// Each beat of the keeper is answered by one of the manager's: never more of them than the keeper takes.

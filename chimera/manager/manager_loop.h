@@ -49,7 +49,7 @@ class ManagerLoop {
   }
   /// Rings doorbells, as RtpuLinks::ring.
   RtpuId ring(std::span<const TaskId> tasks);
-  /// Has the keeper end everything; it is told in the next step(), when whoever asked has been answered.
+  /// Has the keeper end everything; the keeper is told in the next step(), after the request was answered.
   void end(std::int32_t code);
   /// Hands over the listening socket, once.
   int take_listening() noexcept;

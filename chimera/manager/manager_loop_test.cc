@@ -76,7 +76,7 @@ TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   ManagerState& world = fake.driver().world();
   EXPECT_EQ(world.log.first(), last + 1);
   EXPECT_EQ(fake.told("manager-started"),
-            "manager started again, incarnation 2; events 1 to " + std::to_string(last) + " are not kept\n");
+            "manager started again, incarnation 2; events 1 to " + std::to_string(last) + " are lost\n");
   EXPECT_EQ(fake.told("started"), "");
   const VariableReading kp = world.readings->read(*world.readings->find("kp"));
   EXPECT_EQ(numbers(kp.form, kp.value), (std::vector<double>{7, 8}));
@@ -152,7 +152,7 @@ TEST(ManagerLoop, CountersThatCannotBeTrueAreToldAsThatAndNotAsNumbers) {
   ASSERT_TRUE(fake.until_on("law"));
   fake.rtpu(1).block().profile(fake.task("law")).overrun = 6'510'615'555'426'900'570u;
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
-  EXPECT_EQ(fake.told("fault"), "law: its counters cannot be true: something in its unit wrote over them\n");
+  EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its unit has overwritten them\n");
   EXPECT_EQ(fake.told("overrun"), "");
 }
 

@@ -20,13 +20,13 @@ struct MethodVerdict {
 /// Of one word: runtime/task_word.h. Context: setup.
 class MethodWatch {
  public:
-  /// `told`: how long one and the same is looked at until it is told; `head_start`: what it had taken before it was
-  /// shown.
+  /// `told`: a method under way for this long is reported; `head_start`: the time that it took before its word was
+  /// published.
   explicit MethodWatch(Nanoseconds told = milliseconds(1500), Nanoseconds head_start = {}) noexcept
       : told_(told), head_start_(head_start) {}
 
   /// Samples come in the order of time, a few in each second; after a gap longer than kWatchGap nothing is known.
-  /// `progress`: what grows while the same word means another call.
+  /// `progress` grows when an equal word means another call of the method.
   MethodVerdict look(std::uint32_t word, std::uint64_t progress, Nanoseconds at) noexcept;
 
  private:

@@ -81,7 +81,7 @@ RpcResponse judge_ring(const ManagerState& world, TaskId task) {
                                 "give it 'server:' in the description");
   const State state = world.state(task);
   if (state == State::kOn) return {};
-  return RpcResponse::refused("state", name + " is " + state_name(state) + ": nobody would answer the event", name,
+  return RpcResponse::refused("state", name + " is " + state_name(state) + ": no job would answer the event", name,
                               "turn it ON first");
 }
 

@@ -25,7 +25,7 @@ class Peers {
   const PeerLayout& layout(RtpuId rtpu) const noexcept { return layouts_[rtpu.index]; }
   const PeerLayout& manager_layout() const noexcept { return layouts_.back(); }
   const PeerSegment& operator[](RtpuId rtpu) const noexcept { return *segments_[rtpu.index]; }
-  /// The same to be kept: it stays mapped as long as somebody holds it.
+  /// The segment, which stays mapped as long as the pointer lives.
   std::shared_ptr<const PeerSegment> hold(RtpuId rtpu) const noexcept { return segments_[rtpu.index]; }
   /// Puts another incarnation in the place of the present one. Closes `descriptor` in any case.
   Result<void> map(RtpuId rtpu, std::uint32_t incarnation, int descriptor);

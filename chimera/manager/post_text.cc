@@ -21,7 +21,7 @@ std::string refusal(const Post& post, const std::string& fault) {
     case Refusal::kFault: return fault;
     case Refusal::kNone: break;
   }
-  return "another task of the same list refused";
+  return "another task of the list was refused";
 }
 
 std::string flag_text(const ApplicationSpec& spec, const Post& post) {
@@ -44,7 +44,7 @@ std::string milliseconds_text(std::uint64_t ns) {
 std::string missed_text(const ApplicationSpec& spec, const Post& post) {
   std::string text = "missed its deadline";
   if (post.from.index >= spec.tasks.size())
-    return text + ": none of our tasks ran for " + milliseconds_text(post.detail) +
+    return text + ": no task of its real-time unit ran for " + milliseconds_text(post.detail) +
            ": the CPU was taken by the kernel, RT throttling or another process";
   const TaskSpec& culprit = spec.tasks[post.from.index];
   text += post.from == post.task ? ": it used " : ": " + std::string(culprit.name) + " used ";
@@ -103,7 +103,7 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
       if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";
       return "its job has not ended " + milliseconds_text(post.detail) + " after its release: this real-time unit ends";
     case EventKind::kGaveWay:
-      return "goes on below all others: the tasks of its real-time unit used " + milliseconds_text(post.detail) +
+      return "demoted below all other threads: the tasks of its real-time unit used " + milliseconds_text(post.detail) +
              " lately, nearly all that the kernel leaves to real-time threads";
     case EventKind::kStop:
       break;

@@ -82,7 +82,8 @@ void Questions::take_answer(Nanoseconds now) {
   const OwnedDescriptor received(passed);
   const bool is_asked = got == Channel::Got::kMessage && is_under_way_ && told.number == number_;
   if (is_asked && told.what == QuestionMessage::What::kNoMemory) {
-    answer_first(given_up("the analysis was given up: it needs more than 1 GiB of memory, or its answer 32 MiB"), now);
+    answer_first(
+        given_up("the analysis was given up: it needs more than 1 GiB of memory, or its answer more than 32 MiB"), now);
   } else if (is_asked) {
     answer_first(answer_in(passed, told.text_bytes), now);
   } else if (got == Channel::Got::kClosed) {
@@ -124,7 +125,7 @@ void Questions::pass_on(Nanoseconds now) {
   if (!start(now)) return;
   is_under_way_ = true;
   if (!send_first())
-    answer_first(given_up("the analysis could not be begun: " + std::string(std::strerror(errno))), now);
+    answer_first(given_up("the analysis could not be started: " + std::string(std::strerror(errno))), now);
 }
 
 bool Questions::start(Nanoseconds now) {
@@ -135,7 +136,7 @@ bool Questions::start(Nanoseconds now) {
                       : Result<Process>(ends.error());
   if (!started) {
     const std::string why = started.error().message.c_str();
-    while (!waiting_.empty()) answer_first(given_up("the analysis could not be begun: " + why), now);
+    while (!waiting_.empty()) answer_first(given_up("the analysis could not be started: " + why), now);
     return false;
   }
   analyst_ = *std::move(started);

@@ -30,7 +30,7 @@ class Questions {
       : program_(std::move(program)), bundle_(bundle), tell_(std::move(tell)) {}
   Questions(const Questions&) = delete;
   Questions& operator=(const Questions&) = delete;
-  /// Ends the analyst, whatever it is at.
+  /// Ends the analyst, also in the middle of a question.
   ~Questions();
 
   /// Queues a question of a connection; `reply` takes its one answer, maybe at once: a refusal when too many wait.

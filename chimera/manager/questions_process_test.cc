@@ -151,7 +151,7 @@ TEST_F(QuestionsTest, WithoutAProgramThereIsAnAnswerAllTheSame) {
   ask("one", 1);
   ASSERT_EQ(answers_.size(), 1u);
   EXPECT_EQ(answers_["one"].code, control::kRefused);
-  EXPECT_NE(answers_["one"].message.find("the analysis could not be begun: "), std::string::npos);
+  EXPECT_NE(answers_["one"].message.find("the analysis could not be started: "), std::string::npos);
 }
 
 }  // namespace

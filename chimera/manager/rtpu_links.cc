@@ -163,7 +163,7 @@ void RtpuLinks::log(const Post& post, RtpuId rtpu) {
 
 void RtpuLinks::tell_not_off(TaskId task, Method method, RtpuId rtpu, Nanoseconds at) {
   const FaultRecord fault = world_.peers.fault(task);
-  const char* words = fault.method == method ? fault.last.text : "its words were replaced by those of a later fault";
+  const char* words = fault.method == method ? fault.last.text : "its text was replaced by that of a later fault";
   world_.tell("not-off", task, rtpu, not_off_text(method, words), at);
 }
 
@@ -173,7 +173,8 @@ void RtpuLinks::look_at_counters(Nanoseconds at) {
     for (const TaskId task : links_[r].tasks) count(task, at);
     const std::uint64_t lost = world_.peers[RtpuId(r)].block().head().lost_posts;
     if (lost > links_[r].lost)
-      world_.tell("lost", TaskId{}, RtpuId(r), counted("event", "found no room", lost - links_[r].lost, lost), at);
+      world_.tell("lost", TaskId{}, RtpuId(r), counted("event", "lost for lack of room", lost - links_[r].lost, lost),
+                  at);
     links_[r].lost = lost;
   }
 }
@@ -184,7 +185,7 @@ void RtpuLinks::count(TaskId task, Nanoseconds at) {
   const RtpuId rtpu = world_.spec().tasks[task.index].rtpu;
   if (!is_credible(p, at - world_.keeper.origin)) {
     if (!std::exchange(before.is_untrue, true))
-      world_.tell("fault", task, rtpu, "its counters cannot be true: something in its unit wrote over them", at);
+      world_.tell("fault", task, rtpu, "its counters are wrong: something in its unit has overwritten them", at);
     return;
   }
   if (p.missed > before.missed)

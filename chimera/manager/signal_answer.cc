@@ -21,8 +21,9 @@ std::string under_way(const ManagerState& world, RtpuId rtpu) {
   const PeerSegment& segment = world.peers[rtpu];
   const bool serves = segment.is_there() && segment.block().head().serving.load(std::memory_order_relaxed) != 0;
   if (!serves || !record.is_alive || record.hang.empty()) return "";
-  return ": " + record.hang + "; it goes on: `chimera status` tells when it has ended, `kill -KILL " +
-         std::to_string(record.pid) + "` ends the process of " + world.name(rtpu) + ", and what was ON comes back";
+  return ": " + record.hang + "; it goes on: `chimera status` shows when it has ended, `kill -KILL " +
+         std::to_string(record.pid) + "` ends the process of " + world.name(rtpu) +
+         ", and the tasks that were ON come back";
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ void TapFeed::add_producer(VariableId variable, const PortOf& port) {
   rows->columns.push_back({variable, places[port.index].offset});
 }
 
-/// Several subscriptions may want the same task: the first turns the tap on, the last off.
+/// Several subscriptions may want one task: the first turns the tap on, the end of the last turns it off.
 void TapFeed::tap(TaskId task, bool up) {
   std::uint32_t& users = world_.tap_users[task.index];
   users += up ? 1 : -1u;

@@ -12,7 +12,7 @@ namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kWatchEvery = milliseconds(250);
-constexpr Nanoseconds kStartPatience = seconds(10);  // until a unit is at its first method or serves
+constexpr Nanoseconds kStartPatience = seconds(10);  // until a unit has begun its first method or answers the manager
 
 std::string seconds_text(Nanoseconds time) {
   char text[32];
@@ -52,7 +52,7 @@ std::vector<RtpuId> UnitWatch::look(Nanoseconds at) {
   return over;
 }
 
-/// True when there is no more patience with it.
+/// True when the unit has not run for so long that it is to be ended.
 bool UnitWatch::look_at_life(RtpuId rtpu, Nanoseconds at) {
   RtpuRecord& record = world_.rtpus[rtpu.index];
   const BlockHead* head = head_of(world_, rtpu);
@@ -60,7 +60,7 @@ bool UnitWatch::look_at_life(RtpuId rtpu, Nanoseconds at) {
   const ProcessState process = process_state(record.pid);
   LifeLimits limits;
   limits.spins = milliseconds(900);  // the second window, at the latest, is spun through whole
-  // What it is at before it serves is told by name, and may take its time.
+  // Before the unit answers the manager, the object or method under way is reported by name and has no limit of time.
   const bool is_opening = head != nullptr && head->serving != 0;
   if (beats == 0 && process.letter != 'T') limits = {is_opening ? kNever : kStartPatience, kNever, kNever};
   const LifeVerdict verdict = units_[rtpu.index]->life.look({at, beats, process}, limits);
@@ -69,7 +69,7 @@ bool UnitWatch::look_at_life(RtpuId rtpu, Nanoseconds at) {
   if (spins) record.hang = "its main thread " + verdict.text();
   if (record.is_away) record.hang = "does not run: " + verdict.text() + ", for " + seconds_text(verdict.silent);
   std::string news = record.hang;
-  if (runs) news = verdict.silent < seconds(1) ? "waits again" : "runs again; it did not for ";
+  if (runs) news = verdict.silent < seconds(1) ? "no longer loops" : "runs again after ";
   if (runs && verdict.silent >= seconds(1)) news += seconds_text(verdict.silent);
   const std::string unit = "rtpu " + world_.name(rtpu) + (spins ? ": " : " ");
   if (verdict.is_news) world_.tell("hang", TaskId{}, rtpu, unit + news, at);
@@ -112,7 +112,7 @@ void UnitWatch::look_at_keeper(Nanoseconds at) {
       verdict.life == Life::kRuns ? "" : "does not run: " + verdict.text() + ", for " + seconds_text(verdict.silent);
   if (!verdict.is_news) return;
   world_.tell("hang", TaskId{}, RtpuId{},
-              verdict.life == Life::kRuns ? "keeper runs again; it did not for " + seconds_text(verdict.silent)
+              verdict.life == Life::kRuns ? "keeper runs again after " + seconds_text(verdict.silent)
                                           : "keeper " + world_.keeper_hang,
               at);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Watches the processes that do not watch the manager: the real-time units, what each of them is at, and the keeper.
+// Watches the processes that do not watch the manager: the real-time units, the method under way in each of them, and
+// the keeper.
 // docs/formats/processes.md, "Who watches whom".
 #pragma once
 
@@ -19,10 +20,10 @@ class UnitWatch {
 
   /// When look() is due.
   Nanoseconds due() const noexcept { return due_; }
-  /// Looks at everybody, tells what is new, says in the records who does not run and what does not end. The units with
-  /// which there is no more patience.
+  /// Checks all units and the keeper, reports what is new, and records which unit does not run and which method does
+  /// not return. Returns the units that are to be ended.
   std::vector<RtpuId> look(Nanoseconds at);
-  /// What the keeper says of a manager that did not answer.
+  /// The keeper reports a manager that did not answer.
   void told(const KeeperMessage& hung, Nanoseconds at);
 
  private:

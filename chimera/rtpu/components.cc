@@ -20,7 +20,7 @@ Result<const chimera_component*> verified(const SharedObject& object, const Task
   if (!descriptor) return descriptor.error();
   if (fingerprint(*descriptor) == place.fingerprint) return component;
   return Error{ErrorCode::kRefused,
-               {"component " + std::string(task.component) + " was built anew since it was verified; run again"},
+               {"component " + std::string(task.component) + " was rebuilt after it was verified; run again"},
                {place.object_file}};
 }
 

@@ -14,7 +14,7 @@ class HangWatch {
   /// `method_limit`: how long one method may take.
   explicit HangWatch(Nanoseconds method_limit) noexcept : limit_(method_limit) {}
 
-  /// True when the one loop has been in the same method for longer than the limit: nobody else takes edges then.
+  /// True when the one loop has been in one method for longer than the limit: no cycle boundary comes then.
   /// `running` is the method (BlockHead::running; 0: it waits), `beats` grows with each edge and each job that has
   /// ended. Context: main thread; wait-free.
   bool loop_hangs(std::uint32_t running, std::uint64_t beats, Nanoseconds now) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps the segments of other processes for one real-time unit, and unmaps what it let go.
+// Maps the segments of other processes for one real-time unit, and unmaps those that it no longer reads.
 #include "chimera/rtpu/peers.h"
 
 #include <utility>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The segments of the other peers as one real-time unit maps them. The process's main thread offers new ones, the
-// thread that cycles adopts them at an edge; what it let go is unmapped by the main thread again.
+// thread that cycles takes them at a cycle boundary; the main thread unmaps those that are no longer read.
 #pragma once
 
 #include <atomic>

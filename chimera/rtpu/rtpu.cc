@@ -108,7 +108,7 @@ Result<void> Rtpu::prepare() {
   over_ = *std::move(over);
   if (auto mapped = map(); !mapped) return mapped;
   if (auto made = make_segment(); !made) return made;
-  announce();  // whoever watches sees from here on what it is at
+  announce();  // from here on the manager sees which object or method is under way
   if (auto made = make_tasks(); !made) {
     publish_phase(block_.head(), made.error().message.view(), PeerPhase::kEnded);
     return made;
@@ -235,7 +235,7 @@ bool Rtpu::give_up(std::uint32_t method, Nanoseconds waited) {
   return true;
 }
 
-// For whoever watches this process: BlockHead.
+// Signs of life for the manager, which watches this process: BlockHead.
 void Rtpu::attend() {
   BlockHead& head = block_.head();
   head.jobs.store(static_cast<std::uint32_t>(jobs_of(TaskWord::found(head.running).task())), std::memory_order_relaxed);
@@ -320,7 +320,7 @@ int run_rtpu(const RtpuStart& start) {
   }
   const int code = rtpu.run();
   end_children_without_keeper(start);
-  if (code == kTerminated) end_by_signal(SIGTERM);  // as somebody wished who is not the keeper, who sees it as such
+  if (code == kTerminated) end_by_signal(SIGTERM);  // of a process that is not the keeper: the keeper sees the death
   if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads are still in components: nothing can be taken down
   return code;
 }

@@ -253,7 +253,7 @@ void RtpuControl::hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept
   wake_supervisor();
 }
 
-// Carries out a signal in sight of whoever supervises: its method may not come to its end.
+// Carries out a signal and publishes its method for the supervisor, because the method may not return.
 SignalReport RtpuControl::carry_out(BoundarySignals& signals, std::span<const TaskId> tasks, Signal signal,
                                     Nanoseconds now) noexcept {
   acting_ = TaskWord(tasks[0], method_of(signal)).word();

@@ -59,7 +59,7 @@ class RtpuControl final : public BoundaryListener {
     ends_alone_ = is_alone;
     ending_ = true;
   }
-  /// Grows with each method that an edge begins or is done with: for whoever supervises. Any thread.
+  /// Grows at the begin and the end of each method that a cycle boundary calls: for the supervisor. Any thread.
   std::uint32_t progress() const noexcept { return progress_; }
   /// The method that an edge has called, as BlockHead::running; 0: none. Any thread.
   std::uint32_t acting() const noexcept { return acting_; }

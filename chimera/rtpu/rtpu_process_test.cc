@@ -191,7 +191,7 @@ TEST_F(RtpuWithAnotherComponent, SaysWhyItCannotStart) {
   ASSERT_TRUE(soon([&] { return take_segment(); }));
   EXPECT_EQ(end().code, 1);
   EXPECT_STREQ(peers->at(0)->block().head().grant,
-               "component t_counter was built anew since it was verified; run again");
+               "component t_counter was rebuilt after it was verified; run again");
 }
 
 TEST(RtpuProgram, SaysThatItIsNotForPeople) {

@@ -34,7 +34,7 @@ class ObservedState {
   void starting(RtpuId rtpu, Nanoseconds now) noexcept;
   /// A lost task that nobody wants any more is NOT-CREATED.
   void forget(TaskId task) noexcept { tasks_[task.index].is_lost = false; }
-  /// When its process died somebody still wanted it: nobody had asked for its kill, its init did not end the process.
+  /// `wanted`: at the death of its process no `kill` of the task had been requested and its `init` was not the cause.
   void want_back(TaskId task, bool wanted) noexcept { tasks_[task.index].is_wanted = wanted; }
   bool is_wanted_back(TaskId task) const noexcept { return is_lost(task) && tasks_[task.index].is_wanted; }
 

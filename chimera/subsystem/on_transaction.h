@@ -55,7 +55,7 @@ class OnTransaction {
     TaskId task;
     State before = State::kOff;
     Stage stage = Stage::kOpen;
-    bool is_withdrawn = false;  // somebody else turns it OFF
+    bool is_withdrawn = false;  // another command turns it OFF
     std::uint64_t command = 0;
   };
   Member* find(TaskId task) noexcept;

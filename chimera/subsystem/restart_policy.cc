@@ -23,8 +23,8 @@ void RestartPolicy::recall(const Begun& begun) {
   }
 }
 
-// What is remembered comes in an order in which every beginning of it leads the next manager to the same end: goals
-// first, then the start, then that the death was dealt with: that alone says given up.
+// Goals are remembered first, then the start, then that the death was handled. A manager that dies between two of these
+// steps leaves a state from which the next manager comes to an equal result. Only the last step can say "given up".
 bool RestartPolicy::on_rtpu_down(const RtpuDown& down) {
   const RtpuLife life = state_.observed.life(down.rtpu);
   const bool is_old = life == RtpuLife::kDown || life == RtpuLife::kStarting;

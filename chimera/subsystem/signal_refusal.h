@@ -16,7 +16,7 @@ enum class RefusalKind : std::uint8_t {
   kEnded,      ///< the process of the task ended
   kNoAnswer,   ///< the real-time unit of the task does not report
   kOvertaken,  ///< another signal for the task was asked for meanwhile
-  kOther,      ///< the real-time unit named no reason: another task of the same list has one
+  kOther,      ///< the real-time unit named no reason: the refusal of another task of the list has it
 };
 /// "state", "no-answer"; "" of kNone.
 const char* refusal_kind_name(RefusalKind kind) noexcept;

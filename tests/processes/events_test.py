@@ -126,14 +126,14 @@ class Events(unittest.TestCase):
                 "data": {"kind": "no-server", "where": "steady", "remedy": "give it 'server:' in the description"}})
             system.signal("off", "alarm")
             self.assertEqual(refusal("alarm"), {
-                "code": -32000, "message": "alarm is OFF: nobody would answer the event",
+                "code": -32000, "message": "alarm is OFF: no job would answer the event",
                 "data": {"kind": "state", "where": "alarm", "remedy": "turn it ON first"}})
             alarm = system.task("alarm")
             self.assertEqual((alarm["events"], alarm["events_lost"], alarm["cycles"]), (8, 0, 8))
             self.assertEqual(client.faults, [])
             told = [e["text"] for e in client.exchange("events")["events"] if e["kind"] == "command"]
             self.assertEqual(told[0], "ring alarm: done")
-            self.assertEqual(told[-1], "ring alarm, alarm: refused: alarm is OFF: nobody would answer the event")
+            self.assertEqual(told[-1], "ring alarm, alarm: refused: alarm is OFF: no job would answer the event")
 
     def test_of_other_rtpus_are_answered_each_by_one_job(self):
         with System(APPLICATION) as system:

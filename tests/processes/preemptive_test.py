@@ -73,15 +73,15 @@ rtpus:
 tasks:
   brief: {component: t_source, rate: 100 Hz, budget: 1 ms}
 """
-AWAY = re.compile(r"^missed its deadline: none of our tasks ran for ([0-9.]+) ms: the CPU was taken")
+AWAY = re.compile(r"^missed its deadline: no task of its real-time unit ran for ([0-9.]+) ms: the CPU was taken")
 
 BLOCKED = re.compile(r"^missed its deadline: it waits in a system call \(it used [0-9.]+ ms\)$")
 PERIOD_MS = 5  # of those that do not end in time
 
 WHOSE = re.compile(r"^missed its deadline: (bad used |it used [0-9.]+ ms \(budget 0.3 ms\)|"
                    r"for [0-9.]+ ms nobody here )")
-GAVE_WAY = re.compile(r"^goes on below all others: the tasks of its real-time unit used [0-9.]+ ms lately, nearly all "
-                      r"that the kernel leaves to real-time threads$")
+GAVE_WAY = re.compile(r"^demoted below all other threads: the tasks of its real-time unit used [0-9.]+ ms lately, "
+                      r"nearly all that the kernel leaves to real-time threads$")
 
 # Every task but the guarded ones is an endless loop, and all begin at once, on all processors.
 LOOPS = """

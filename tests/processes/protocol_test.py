@@ -281,7 +281,7 @@ class Protocol(unittest.TestCase):
             self.assertEqual(client.exchange("end"), {})
             await_that(lambda: other.exchange("status")["ending"], 5, "the end")
             self.assertIsNone(other.exchange("signal", signal="on", tasks=["steady"]))
-            self.assertEqual(other.last["error"], {"code": -32007, "message": "everything ends"})
+            self.assertEqual(other.last["error"], {"code": -32007, "message": "the subsystem is ending"})
             self.assertEqual(client.faults + other.faults, [])
             self.assertEqual(system.process.wait(15), 0, system.said())
 

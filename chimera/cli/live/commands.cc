@@ -199,7 +199,9 @@ RunningCommand scope_row() {
            .most = kAnyNumber,
            .operand_kind = WordKind::kVariable,
            .options =
-               {{.name = "--trigger", .value = "EXPR", .help = "begin when this comes true, such as 'error > 2 mrad'"},
+               {{.name = "--trigger",
+                 .value = "EXPR",
+                 .help = "begin when this comes true, such as 'error_now > 2 mrad'"},
                 {.name = "--pre", .value = "TIME", .help = "keep this much from before the trigger, such as '50 ms'"},
                 {.name = "--for", .value = "TIME", .help = "how long from the trigger on ('1 s')"},
                 {.name = "--wait", .value = "TIME", .help = "how long to wait for the trigger ('60 s')"},
@@ -208,7 +210,7 @@ RunningCommand scope_row() {
                  .value = "FILE",
                  .help = "draw the rows into this file (SVG)",
                  .kind = WordKind::kFile}},
-           .example = "chimera scope q tau --trigger 'error > 2 mrad' --pre '50 ms' --for '200 ms' --svg "
+           .example = "chimera scope q tau --trigger 'error_now > 2 mrad' --pre '50 ms' --for '200 ms' --svg "
                       "scope.svg",
            .manual = "Records everything that the producers of the variables publish. VAR is a variable, an "
                      "element such as `q[2]` or a field such as `pose.x`. Without `--csv` and `--svg` the "

@@ -24,7 +24,7 @@ Result<void> may_run_here() noexcept {
 }
 
 Result<void> may_share_memory_here() noexcept {
-  return at_least(RLIMIT_FSIZE, kLeastMemoryFile, "the size of files, which shared memory counts as,",
+  return at_least(RLIMIT_FSIZE, kLeastMemoryFile, "the file size (shared memory counts as a file)",
                   "ulimit -f unlimited, or LimitFSIZE= of the service");
 }
 

@@ -35,6 +35,11 @@ bool set_fifo(int priority) noexcept {
   return ::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &param) == 0;
 }
 
+/// Why a right is not in force: the kernel may accept a request and not follow it.
+const char* reason_text(int error) noexcept {
+  return error != 0 ? ::strerrordesc_np(error) : "the call succeeded without effect";
+}
+
 /// What the report is made of: what is in force, and a line for each thing that is not.
 struct Parts {
   Message granted;
@@ -58,8 +63,8 @@ void set_priority(const RealtimeRequest& request, RealtimeGrant& grant, Parts& r
   }
   rlimit limit{};
   ::getrlimit(RLIMIT_RTPRIO, &limit);
-  report.miss() << kLevelWords << request.priority << kRefusedWords << " ("
-                << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards") << "): set RLIMIT_RTPRIO to "
+  report.miss() << kLevelWords << request.priority << kRefusedWords << " (" << reason_text(error)
+                << "): set RLIMIT_RTPRIO to "
                 << request.priority << " (is " << limit.rlim_cur << "; ulimit -r, LimitRTPRIO=) or give CAP_SYS_NICE";
 }
 
@@ -92,7 +97,7 @@ void set_cpu(const RealtimeRequest& request, RealtimeGrant& grant, Parts& report
   if (request.cpu > last)
     report.missing << ": this machine has CPU 0 to " << last;
   else
-    report.missing << " (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards") << ")";
+    report.missing << " (" << reason_text(error) << ")";
   report.missing << ", runs unpinned";
 }
 
@@ -114,7 +119,7 @@ void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Parts& re
     report.grant() << kLockedWords;
     return;
   }
-  report.miss() << "memory not locked (" << (error != 0 ? ::strerrordesc_np(error) : "not in force afterwards")
+  report.miss() << "memory not locked (" << reason_text(error)
                 << "): set RLIMIT_MEMLOCK to unlimited (ulimit -l, LimitMEMLOCK=) or give CAP_IPC_LOCK";
 }
 
