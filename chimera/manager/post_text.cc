@@ -2,9 +2,8 @@
 // Puts the messages of real-time units into sentences of the event log.
 #include "chimera/manager/post_text.h"
 
-#include <cstdio>
-
 #include "chimera/runtime/refusal.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::manager {
 namespace {
@@ -35,22 +34,20 @@ std::string flag_text(const ApplicationSpec& spec, const Post& post) {
   return text + std::string(spec.tasks[post.from.index].name) + "'";
 }
 
-std::string milliseconds_text(std::uint64_t ns) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g ms", static_cast<double>(ns) / 1e6);
-  return text;
+std::string duration_of(const Post& post) {
+  return chimera::time_text(Nanoseconds{static_cast<std::int64_t>(post.detail)});
 }
 
 std::string missed_text(const ApplicationSpec& spec, const Post& post) {
   std::string text = "missed its deadline";
   if (post.from.index >= spec.tasks.size())
-    return text + ": no task of its real-time unit ran for " + milliseconds_text(post.detail) +
+    return text + ": no task of its real-time unit ran for " + duration_of(post) +
            ": the CPU was taken by the kernel, RT throttling or another process";
   const TaskSpec& culprit = spec.tasks[post.from.index];
   text += post.from == post.task ? ": it used " : ": " + std::string(culprit.name) + " used ";
-  text += milliseconds_text(post.detail);
+  text += duration_of(post);
   if (culprit.budget == Nanoseconds{}) return text + " (no budget stated)";
-  return text + " (budget " + milliseconds_text(static_cast<std::uint64_t>(culprit.budget.count)) + ")";
+  return text + " (budget " + chimera::time_text(culprit.budget) + ")";
 }
 
 }  // namespace
@@ -98,12 +95,12 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
     case EventKind::kMissed:
       return missed_text(spec, post);
     case EventKind::kBlocked:
-      return "missed its deadline: it waits in a system call (it used " + milliseconds_text(post.detail) + ")";
+      return "missed its deadline: it waits in a system call (it used " + duration_of(post) + ")";
     case EventKind::kHang:
       if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";
-      return "its job has not ended " + milliseconds_text(post.detail) + " after its release: this real-time unit ends";
+      return "its job has not ended " + duration_of(post) + " after its release: this real-time unit ends";
     case EventKind::kGaveWay:
-      return "demoted below all other threads: the tasks of its real-time unit used " + milliseconds_text(post.detail) +
+      return "demoted below all other threads: the tasks of its real-time unit used " + duration_of(post) +
              " lately, nearly all that the kernel leaves to real-time threads";
     case EventKind::kStop:
       break;
