@@ -27,7 +27,8 @@ LEVELS = r'|sched_setscheduler|timerfd_settime|read|ppoll|__libc_current_sigrtmi
 ASSERTS = {r'chimera::(assertion_failed|end_without_descriptor)\(': 'ends the program'}
 # on and off begin and end background methods, spawn runs init; for the others no_heap_test.cc counts
 SIGNALS = {r'chimera::BoundarySignals::(carry_out|signal|finish_slow)\(': 'a signal at an edge'}
-# Vectors within the room reserved at setup, which cannot be seen here; no_heap_test.cc and edge_no_heap_test.cc count.
+# Vectors within the room reserved at setup, which cannot be seen here; no_heap_test.cc and
+# rtpu_control_no_heap_test.cc count.
 RESERVED = {r'(chimera::LabelList::set\(|std::vector<chimera::LabelledJob)': 'a place for every task of the context',
             r'chimera::PeerLinks::watch_flags\(': 'a place for every peer'}
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The edges of real-time units ask the heap for nothing: counted while signals, changes, faults, a restarted unit and
 // a restarted manager come by. What tools/check_cycle_path.py cannot see, vectors within their reserved room, is seen
-// here. Units are stepped by hand, as in edge_test.cc.
+// here. Units are stepped by hand, as in rtpu_control_test.cc.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

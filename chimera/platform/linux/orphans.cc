@@ -16,7 +16,7 @@
 namespace chimera {
 namespace {
 
-constexpr Nanoseconds kUndertakersTime = milliseconds(100);  // ten times what they wait
+constexpr Nanoseconds kMemoryHolderLimit = milliseconds(100);  // ten times what they wait
 // The origin of one that is just becoming another program cannot be read for a moment.
 constexpr Nanoseconds kDoubtful = seconds(1), kLookAgain = milliseconds(50);
 constexpr Nanoseconds kMoment = microseconds(200);  // for what was sent SIGKILL to end
@@ -56,7 +56,7 @@ std::vector<pid_t> Orphans::living(std::span<const pid_t> held) {
 
 /// A memory holder ends by itself, unless somebody stopped it.
 bool Orphans::has_time(pid_t pid, Nanoseconds now) {
-  const Nanoseconds due = first_seen(pid, now) + kUndertakersTime;
+  const Nanoseconds due = first_seen(pid, now) + kMemoryHolderLimit;
   if (now >= due || name_of(pid) != "memory-holder") return false;
   due_ = std::min(due_, due);
   return true;
