@@ -57,8 +57,7 @@ TEST_F(PostText, AJobThatWaitsHangsOrIsDemotedSaysItsTime) {
 }
 
 TEST_F(PostText, ARefusedListSaysThatAnotherTaskWasRefused) {
-  EXPECT_EQ(text(EventKind::kRefused, kLaw, kLog, {}),
-            "on sent by log: another task of the list was refused");
+  EXPECT_EQ(text(EventKind::kRefused, kLaw, kLog, {}), "on sent by log: another task of the list was refused");
 }
 
 }  // namespace
