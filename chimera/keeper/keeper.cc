@@ -50,8 +50,8 @@ int Keeper::run() {
 void Keeper::wait() {
   std::vector<int> descriptors = {signals_.descriptor(), face_.pidfd()};
   for (std::uint32_t index = 0; index < peers_.size(); ++index) {
-    descriptors.push_back(peers_.channel(index));
-    descriptors.push_back(peers_.pidfd(index));
+    descriptors.push_back(peers_[index].channel());
+    descriptors.push_back(peers_[index].pidfd());
   }
   const Nanoseconds due = std::min({phase_due_, manager_due_, watch_due_, peers_.orphans_due()});
   await_readable(descriptors, due - clock_.now());
@@ -65,7 +65,7 @@ void Keeper::poll() {
     if (signal.number == SIGUSR1)
       face_has_looked_ = face_has_looked_ || is_of_face;
     else if (signal.number == SIGUSR2 && is_of_face)
-      peers_.publish_face(face_.page());
+      peers_.pages().show_face(face_.page());
     else if (signal.number != SIGCHLD && signal.number != SIGUSR2)
       end_asked_ = true;
   }
@@ -73,13 +73,14 @@ void Keeper::poll() {
   std::vector<KeeperMessage> wishes;
   for (std::uint32_t index = 0; index < peers_.size(); ++index) {
     peers_.read_messages(index, wishes);
-    const Nanoseconds started = peers_.since(index);
-    if (!peers_.has_ended(index, wishes) || index != peers_.manager()) continue;
+    const Nanoseconds started = peers_[index].life().at;
+    if (!peers_.has_ended(index, wishes) || index != peers_.manager_index()) continue;
     manager_life_ = {};
     manager_beats_ = 0;
-    count_refusal(peers_.since(index) - started);
-    if (peers_.since(index) - started >= kQuickDeath) manager_pause_ = {0};
-    manager_due_ = peers_.since(index) + manager_pause_;
+    const Nanoseconds ended = peers_[index].life().at;
+    count_refusal(ended - started);
+    if (ended - started >= kQuickDeath) manager_pause_ = {0};
+    manager_due_ = ended + manager_pause_;
     manager_pause_ = std::clamp(manager_pause_ * 2, milliseconds(10), kLongestPause);
   }
   for (const KeeperMessage& wish : wishes) on_message(wish);
@@ -97,7 +98,7 @@ void Keeper::check_face() {
   const KeptFace::Fate fate = face_.poll();
   if (fate == KeptFace::Fate::kNothingNew) return;
   face_life_ = {};
-  peers_.publish_face(face_.page());
+  peers_.pages().show_face(face_.page());
   Message said("the process that prints and ends this run died ");
   if (fate == KeptFace::Fate::kExited) {
     end_asked_ = true;
@@ -114,7 +115,7 @@ void Keeper::check_face() {
 
 /// A manager that never came to serve is not tried for ever: there is nothing running yet that would go on without it.
 void Keeper::count_refusal(Nanoseconds lived) {
-  const bool refused = lived < kQuickDeath && !peers_.by_signal(peers_.manager());
+  const bool refused = lived < kQuickDeath && peers_.manager().life().by_signal == 0;
   if (!refused) manager_refusals_ = -1;
   if (manager_refusals_ < 0 || ++manager_refusals_ != kMostRefusals) return;
   end_badly(Message("the manager could not start, ") << kMostRefusals << " times: the run ends");
@@ -126,10 +127,11 @@ void Keeper::on_message(const KeeperMessage& wish) {
     end_asked_ = true;
     if (end_code_ == 0) end_code_ = wish.code;
   }
-  if (wish.index >= peers_.manager()) return;
-  const bool is_meant = wish.incarnation == 0 || wish.incarnation == peers_.incarnation(wish.index);
-  if (wish.kind == KeeperMessage::Kind::kEndChild && is_meant) peers_.signal(wish.index, SIGKILL);
-  if (wish.kind == KeeperMessage::Kind::kStart && !peers_.lives(wish.index) && phase_ < Phase::kRtpusFinish)
+  if (wish.index >= peers_.manager_index()) return;
+  const KeptPeer& meant = peers_[wish.index];
+  const bool is_meant = wish.incarnation == 0 || wish.incarnation == meant.incarnation();
+  if (wish.kind == KeeperMessage::Kind::kEndChild && is_meant) meant.signal(SIGKILL);
+  if (wish.kind == KeeperMessage::Kind::kStart && !meant.lives() && phase_ < Phase::kRtpusFinish)
     peers_.restart(wish.index);
 }
 
@@ -138,23 +140,24 @@ void Keeper::watch_manager() {
   const Nanoseconds now = clock_.now();
   if (now < watch_due_) return;
   watch_due_ = now + kWatchEvery;
-  peers_.beat();
+  peers_.pages().beat();
   watch_face(now);
-  if (!peers_.lives(peers_.manager()) || phase_ >= Phase::kRtpusFinish) return;
-  const ProcessState process = process_state(peers_.pid(peers_.manager()));
+  const KeptPeer& manager = peers_.manager();
+  if (!manager.lives() || phase_ >= Phase::kRtpusFinish) return;
+  const ProcessState process = process_state(manager.pid());
   const bool is_slow_start = manager_beats_ == 0 && process.letter != 'T';
   const Nanoseconds patience = is_slow_start ? kStartPatience : kManagerPatience;
   const LifeVerdict verdict = manager_life_.look({now, manager_beats_, process}, {patience, patience});
   if (verdict.life != Life::kRuns) {
     hung_ = {.kind = KeeperMessage::Kind::kHung,
-             .index = peers_.manager(),
-             .incarnation = peers_.incarnation(peers_.manager()),
+             .index = peers_.manager_index(),
+             .incarnation = manager.incarnation(),
              .code = static_cast<std::int32_t>(verdict.life),
              .pid = verdict.tracer,
              .silent = verdict.silent,
              .letter = static_cast<std::uint32_t>(verdict.letter),
              .was_ended = verdict.is_over};
-    if (verdict.is_over) peers_.signal(peers_.manager(), SIGKILL);
+    if (verdict.is_over) manager.signal(SIGKILL);
   } else if (verdict.is_news) {
     report_hang();
   }
@@ -171,7 +174,7 @@ void Keeper::watch_face(Nanoseconds now) {
 
 /// To the manager that runs now, be it another one.
 void Keeper::report_hang() {
-  if (hung_.kind == KeeperMessage::Kind::kHung) peers_.send_to_manager(hung_);
+  if (hung_.kind == KeeperMessage::Kind::kHung) peers_.manager().send(hung_);
   hung_ = {};
 }
 
@@ -184,12 +187,12 @@ void Keeper::enter(Phase phase, Nanoseconds limit) {
 bool Keeper::advance() {
   const Nanoseconds now = clock_.now();
   const bool is_late = now >= phase_due_;
-  const std::uint32_t manager = peers_.manager();
+  const KeptPeer& manager = peers_.manager();
   if (now >= manager_due_) {
     manager_due_ = kNever;
-    if (phase_ < Phase::kRtpusFinish) peers_.restart(manager);
-    if (phase_ < Phase::kRtpusFinish && !peers_.lives(manager)) manager_due_ = now + kLongestPause;
-    if (peers_.lives(manager)) report_hang();
+    if (phase_ < Phase::kRtpusFinish) peers_.restart(peers_.manager_index());
+    if (phase_ < Phase::kRtpusFinish && !manager.lives()) manager_due_ = now + kLongestPause;
+    if (manager.lives()) report_hang();
   } else if (phase_ == Phase::kRunning && end_asked_) {
     face_.signal(SIGTERM);
     enter(Phase::kFaceLooks, plan_.face_limit);
@@ -197,16 +200,16 @@ bool Keeper::advance() {
     peers_.finish_rtpus();
     enter(Phase::kRtpusFinish, plan_.ending_limit);
   } else if (phase_ == Phase::kRtpusFinish && (!peers_.any_rtpu_lives() || is_late)) {
-    for (std::uint32_t index = 0; index < manager; ++index) peers_.signal(index, SIGKILL);
+    for (std::uint32_t index = 0; index < peers_.manager_index(); ++index) peers_[index].signal(SIGKILL);
     enter(Phase::kRtpusDie, kLastLimit);
   } else if (phase_ == Phase::kRtpusDie && (!peers_.any_rtpu_lives() || is_late)) {
     enter(Phase::kFaceFinishes, plan_.face_limit);
   } else if (phase_ == Phase::kFaceFinishes && (!face_.lives() || is_late)) {
     if (face_.lives())
       end_badly(Message("the process that prints did not end in time: the result of the run is not printed"));
-    peers_.signal(manager, SIGTERM);
+    manager.signal(SIGTERM);
     enter(Phase::kManagerFinishes, kLastLimit);
-  } else if (phase_ == Phase::kManagerFinishes && (!peers_.lives(manager) || is_late)) {
+  } else if (phase_ == Phase::kManagerFinishes && (!manager.lives() || is_late)) {
     phase_ = Phase::kDone;  // what is left ends with this keeper
   } else {
     return false;

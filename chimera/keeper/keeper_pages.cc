@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes the decision page and the keeper page, and writes into them what every process of the run may see.
+#include "chimera/keeper/keeper_pages.h"
+
+#include <new>
+
+#include "chimera/platform/doorbell.h"
+
+namespace chimera {
+
+Result<KeeperPages> KeeperPages::create(std::uint32_t n_rtpus, Nanoseconds origin) {
+  auto decision = SharedPages::create("chimera-decision", sizeof(DecisionPage));
+  if (!decision) return decision.error();
+  auto keeper = MemoryRegion::create("chimera-keeper", sizeof(KeeperPage));
+  if (!keeper) return keeper.error();
+  KeeperPages pages;
+  pages.decision_ = *std::move(decision);
+  pages.keeper_ = *std::move(keeper);
+  new (pages.decision_.bytes().data()) DecisionPage;
+  new (pages.keeper_.writable().data()) KeeperPage;
+  pages.keeper().origin = origin;
+  pages.keeper().n_rtpus = n_rtpus;
+  return pages;
+}
+
+void KeeperPages::show_life(std::uint32_t index, std::uint32_t incarnation) noexcept {
+  keeper().alive[index].store(incarnation, std::memory_order_release);
+  decision().changes.fetch_add(1, std::memory_order_release);  // pairs with the look at a cycle boundary: who lives
+}
+
+void KeeperPages::ring_all() noexcept {
+  for (std::uint32_t i = 0; i <= keeper().n_rtpus; ++i) Doorbell(decision().bells[i].word).ring();
+}
+
+void KeeperPages::show_face(const FacePage& face) noexcept {
+  keeper().face_signal.store(face.last_signal, std::memory_order_relaxed);
+  keeper().face_deaths.store(face.deaths, std::memory_order_release);
+  keeper().lost_output.store(face.lost_output, std::memory_order_release);
+  ring_all();
+}
+
+}  // namespace chimera

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// One peer with a real process (testing/child.cc).
+#include "chimera/keeper/kept_peer.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "chimera/keeper/keeper_pages.h"
+#include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/linux_clock.h"
+
+namespace chimera {
+namespace {
+
+const std::string kPrefix = "test-";
+
+class KeptPeerTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    char name[] = "/tmp/kept_peer_test_XXXXXX";
+    folder_ = ::mkdtemp(name);
+    ::setenv("CHIMERA_TEST_LOG", (folder_ + "/log").c_str(), 1);
+    ::setenv("CHIMERA_TEST_ORDERS", folder_.c_str(), 1);
+    pages_ = *KeeperPages::create(2, {});
+  }
+  void TearDown() override {
+    peer_.signal(SIGKILL);
+    peer_.wait(seconds(20));
+    std::filesystem::remove_all(folder_);
+  }
+  Result<void> start(const std::string& program, Nanoseconds now) {
+    const int passed[] = {image_.descriptor(), pages_.decision_descriptor(), pages_.keeper_descriptor()};
+    return peer_.start({program, passed, kPrefix}, now);
+  }
+  std::string log() const {
+    std::stringstream all;
+    all << std::ifstream(folder_ + "/log").rdbuf();
+    return all.str();
+  }
+  static bool until(const std::function<bool()>& is_so) {
+    LinuxClock clock;
+    for (const Nanoseconds limit = clock.now() + seconds(20); clock.now() < limit; ::usleep(1000))
+      if (is_so()) return true;
+    return false;
+  }
+
+  std::string folder_;
+  FrozenBytes image_ = *FrozenBytes::create("image", std::as_bytes(std::span("image", 5)));
+  KeeperPages pages_;
+  KeptPeer peer_{1};
+};
+
+TEST_F(KeptPeerTest, OneThatCannotBeStartedHasEndedWith127AndItsNumberIsTaken) {
+  EXPECT_FALSE(start("/nowhere/rtpu", seconds(3)));
+  EXPECT_FALSE(start("/nowhere/rtpu", seconds(4)));
+  EXPECT_FALSE(peer_.lives());
+  EXPECT_EQ(peer_.life().kind, KeeperMessage::Kind::kEnded);
+  EXPECT_EQ(peer_.life().index, 1u);
+  EXPECT_EQ(peer_.life().incarnation, 2u);
+  EXPECT_EQ(peer_.life().code, 127);
+  EXPECT_EQ(peer_.life().at, seconds(4));
+}
+
+TEST_F(KeptPeerTest, PassesOnTheMemoryThatItMade) {
+  ASSERT_TRUE(start(KEEPER_TEST_CHILD, seconds(3)));
+  EXPECT_EQ(peer_.life().kind, KeeperMessage::Kind::kStarted);
+  EXPECT_EQ(peer_.life().pid, peer_.pid());
+  EXPECT_EQ(peer_.origin(), "test-1.1");
+  peer_.pass_segment_to(peer_);  // nothing yet
+  KeeperMessage message;
+  EXPECT_TRUE(until([&] { return peer_.receive(message) == KeptPeer::Said::kSegment; }));
+  peer_.pass_segment_to(peer_);
+  EXPECT_TRUE(until([&] { return log().find("1.1 peer 1 1 by-1.1\n") != std::string::npos; })) << log();
+}
+
+TEST_F(KeptPeerTest, ItsEndIsToldOnceAndWhatItSentIsStillThere) {
+  ASSERT_TRUE(start(KEEPER_TEST_CHILD, seconds(3)));
+  EXPECT_TRUE(until([&] { return log().find("begin") != std::string::npos; }));
+  std::ofstream(folder_ + "/1") << "kill 5\nexit 3\n";
+  ProcessEnd how;
+  ASSERT_TRUE(until([&] { return peer_.has_ended(how); }));
+  EXPECT_FALSE(peer_.has_ended(how));
+  EXPECT_FALSE(peer_.lives());
+  KeeperMessage message;
+  EXPECT_EQ(peer_.receive(message), KeptPeer::Said::kSegment);
+  EXPECT_EQ(peer_.receive(message), KeptPeer::Said::kMessage);
+  EXPECT_EQ(message.kind, KeeperMessage::Kind::kEndChild);
+  EXPECT_EQ(message.index, 5u);
+  peer_.note_end(how, seconds(9));
+  EXPECT_EQ(peer_.channel(), -1);
+  EXPECT_EQ(peer_.receive(message), KeptPeer::Said::kNothing);
+  EXPECT_EQ(peer_.life().code, 3);
+  EXPECT_EQ(peer_.life().by_signal, 0u);
+  EXPECT_EQ(peer_.life().at, seconds(9));
+}
+
+}  // namespace
+}  // namespace chimera
