@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -95,5 +96,8 @@ class Connection {
   bool is_closing_ = false;
   bool has_ended_ = false;
 };
+
+/// By number.
+using Connections = std::map<std::uint64_t, std::unique_ptr<Connection>>;
 
 }  // namespace chimera::control

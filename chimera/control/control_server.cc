@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accepts connections, takes requests in turn, judges them, and sends answers and notifications.
+// Accepts connections, gives them places, reads and sends for them, and ends them.
 #include "chimera/control/control_server.h"
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "chimera/platform/local_socket.h"
-#include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::control {
@@ -17,62 +16,13 @@ constexpr std::uint64_t kListening = 0;                  // in watched_; connect
 constexpr int kAcceptAtOnce = 64;                        // a crowd of strangers must not stop the others
 constexpr Nanoseconds kAcceptPause = milliseconds(100);  // when there is no descriptor left
 
-RpcResponse too_fast(Nanoseconds wait) {
-  return RpcResponse::error(kTooFast, "too many requests", {{"retry_ms", (wait.count + 999'999) / 1'000'000}});
-}
-
 RpcResponse no_role() {
   return RpcResponse::error(
       kNoRight, "you have no role in this subsystem: you are neither its user nor in a group that has a role",
       {{"needs", "observe"}, {"has", "nothing"}});
 }
 
-/// Null: it is small enough to be sent at once.
-std::shared_ptr<Pieces> pieces_of(const RpcResponse& answer) {
-  if (answer.text == nullptr || answer.text->size() <= kPiece) return answer.pieces;
-  return std::make_shared<TextPieces>(answer.text, *answer.text);
-}
-
-RpcResponse no_method(const std::string& name) {
-  std::vector<std::string> names;
-  for (const MethodRule& known : methods()) names.emplace_back(known.name);
-  const std::string near = name.size() < 40 ? nearest(name, names) : "";
-  RpcResponse unknown = RpcResponse::unknown("no method '" + name.substr(0, 40) + "'", "method", near);
-  unknown.code = kNoMethod;
-  return unknown;
-}
-
 }  // namespace
-
-/// The one answer of a call that was handed to the backend: the first one counts, and if its reply is dropped without
-/// any, the caller is told.
-struct ControlServer::Call {
-  Call(ControlServer& opened, Connection& from, const Request& asked, bool does_act)
-      : door(&opened), is_alive(opened.is_alive_), connection(from.number()), request(asked), acts(does_act) {
-    ++from.open_calls;
-    from.open_acts += acts;
-  }
-  Call(const Call&) = delete;
-  Call& operator=(const Call&) = delete;
-  ~Call() {
-    if (!is_answered) finish(RpcResponse::error(kNoAnswer, "the subsystem gave no answer"));
-  }
-  void finish(const RpcResponse& response) {
-    if (std::exchange(is_answered, true) || !*is_alive) return;
-    const auto found = door->connections_.find(connection);
-    if (found == door->connections_.end()) return;
-    --found->second->open_calls;
-    found->second->open_acts -= acts;
-    door->answer(*found->second, request, response);
-  }
-
-  ControlServer* door;
-  std::shared_ptr<bool> is_alive;
-  std::uint64_t connection;
-  Request request;
-  bool acts;
-  bool is_answered = false;
-};
 
 Result<std::unique_ptr<ControlServer>> ControlServer::open(int listening, ControlBackend& backend, uid_t owner,
                                                            const RoleGroups& groups) {
@@ -86,11 +36,8 @@ Result<std::unique_ptr<ControlServer>> ControlServer::open(int listening, Contro
   return door;
 }
 
-ControlServer::~ControlServer() { *is_alive_ = false; }
-
 void ControlServer::serve(Nanoseconds now) {
   now_ = now;
-  has_more_ = false;
   if (now >= accepts_again_) {
     accepts_again_ = kNever;
     watched_.change(listening_.fd, kToRead, kListening);
@@ -106,7 +53,7 @@ void ControlServer::serve(Nanoseconds now) {
     found->second->receive(now);
     if (ready[i].has_ended) found->second->is_gone = true;
   }
-  run_turn(now);
+  dispatcher_.run_turn(now);
   if (has_callers) accept(now);  // when those inside have been heard: who has just asked is not idle
   subscriptions_.notify([this](std::uint64_t number) -> Connection& { return *connections_.at(number); }, now);
   settle(now);
@@ -193,76 +140,8 @@ void ControlServer::enter(OwnedDescriptor connected, const PeerIdentity& peer, N
   connection->watched = kToRead;
   if (!watched_.add(connection->descriptor(), kToRead, connection->number())) return;
   Connection& entered = *connections_.emplace(connection->number(), std::move(connection)).first->second;
-  answer_first(entered, now);  // the next one in the queue may need its place
+  dispatcher_.answer_first(entered, now);  // the next one in the queue may need its place
   (void)entered.flush(now);
-}
-
-/// Reads a line: what is no request, or may not be one now, is answered; else it is the connection's next.
-void ControlServer::on_line(Connection& connection, const std::string& line, Nanoseconds now) {
-  connection.active_at = now;
-  const std::size_t pieces = 1 + std::min(line.size(), kMaxLine) / kLongLine;
-  const bool may = connection.requests.try_take(now, static_cast<std::int64_t>(pieces));
-  const RpcResponse refusal =
-      may ? RpcResponse{} : too_fast(connection.requests.wait(now, static_cast<std::int64_t>(pieces)));
-  const bool is_long = pieces > 1 && line.size() <= kMaxLine;
-  if (!may && is_long) return connection.queue(answer_line(nullptr, refusal), now);  // its id is not worth the search
-  const Request request = read_request(line);
-  if (!request.refusal.is_good()) {
-    connection.queue(answer_line(*request.id, request.refusal), now);
-    if (request.must_close) connection.close_after();
-  } else if (!may) {
-    answer(connection, request, refusal);
-  } else {
-    connection.next = std::make_unique<const Request>(request);
-  }
-}
-
-void ControlServer::carry_out(Connection& connection, const Request& request, Nanoseconds now) {
-  const MethodRule* rule = find_method(request.method);
-  const RpcResponse judged = judge(connection, request, rule, now);
-  if (!judged.is_good()) return answer(connection, request, judged);
-  if (rule->id == MethodId::kSubscribe)
-    return answer(connection, request, subscribe(connection, *request.parameters, now));
-  if (rule->id == MethodId::kUnsubscribe)
-    return answer(connection, request, subscriptions_.close(connection.number(), *request.parameters));
-  auto call = std::make_shared<Call>(*this, connection, request, rule->is_act);
-  backend_.call(*rule, *request.parameters, {connection.peer().role, connection.number()},
-                [call = std::move(call)](const RpcResponse& said) { call->finish(said); });
-}
-
-RpcResponse ControlServer::judge(Connection& connection, const Request& request, const MethodRule* rule,
-                                 Nanoseconds now) {
-  if (rule == nullptr) return no_method(request.method);
-  const Role has = connection.peer().role;
-  if (has < rule->role)
-    return RpcResponse::error(
-        kNoRight,
-        std::string("'") + rule->name + "' needs the role " + role_name(rule->role) + ", you have " + role_name(has),
-        {{"needs", role_name(rule->role)}, {"has", role_name(has)}});
-  if ((rule->is_act || rule->is_costly) && !connection.acts.try_take(now)) return too_fast(connection.acts.wait(now));
-  return check_parameters(*rule, *request.parameters);
-}
-
-/// Of a user's places some are kept for who comes with one question or act.
-RpcResponse ControlServer::subscribe(Connection& connection, const Json& parameters, Nanoseconds now) {
-  const auto is_one = [&](const auto& one) {
-    return one.second->peer().user == connection.peer().user && subscriptions_.count_of(one.first) > 0;
-  };
-  const auto listeners = std::count_if(connections_.begin(), connections_.end(), is_one);
-  if (subscriptions_.count_of(connection.number()) == 0 && listeners >= static_cast<long>(kMaxListenersOfUser))
-    return RpcResponse::error(kTooMany, "too many connections: " + std::to_string(kMaxListenersOfUser) + " of user " +
-                                            std::to_string(connection.peer().user) + " have subscriptions");
-  return subscriptions_.open(connection.number(), parameters, now);
-}
-
-void ControlServer::answer(Connection& connection, const Request& request, const RpcResponse& answer) {
-  connection.active_at = now_;
-  if (!request.wants_answer) return;
-  if (auto pieces = pieces_of(answer); pieces != nullptr)
-    connection.queue_in_pieces(result_begin(*request.id), std::move(pieces), kResultEnd, now_);
-  else
-    connection.queue(answer_line(*request.id, answer), now_);
-  has_more_ = true;  // outside of serve(): to be sent
 }
 
 /// What a peer said before it went is still carried out. One that says nothing more but listens is told what it asked
@@ -306,6 +185,7 @@ void ControlServer::settle(Nanoseconds now) {
   }
   for (const std::uint64_t number : over) end(number);
   closings_.report_due(now);
+  dispatcher_.settle();
   has_more_ = waits;
 }
 
@@ -316,7 +196,7 @@ void ControlServer::end(std::uint64_t connection) {
 }
 
 Nanoseconds ControlServer::next_due() const noexcept {
-  if (has_more_) return now_;
+  if (has_more_ || dispatcher_.has_answered()) return now_;
   Nanoseconds next = std::min({subscriptions_.next_due(), accepts_again_, closings_.next_due()});
   for (const auto& [number, connection] : connections_) {
     const bool has_half = connection->half_since() != kNever && !connection->has_line();

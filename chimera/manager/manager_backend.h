@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the door opens to: every method of the control protocol over the manager's world, one function each.
+// What the door opens to: the methods of the control protocol. Those that change nothing are ReadMethods; each of the
+// others is a function of its own.
 #pragma once
 
 #include <memory>
@@ -9,6 +10,7 @@
 #include "chimera/control/control_backend.h"
 #include "chimera/manager/manager_loop.h"
 #include "chimera/manager/questions.h"
+#include "chimera/manager/read_methods.h"
 #include "chimera/manager/subscription_feeds.h"
 
 namespace chimera::manager {
@@ -16,10 +18,9 @@ namespace chimera::manager {
 /// Context: setup.
 class ManagerBackend final : public control::ControlBackend {
  public:
-  /// `driver` outlives it.
-  /// So does `questions`; null: analyses are made here and now.
+  /// `driver` and `questions` outlive it. Without `questions` (null) analyses are made in the call.
   explicit ManagerBackend(ManagerLoop& driver, Questions* questions = nullptr)
-      : driver_(driver), questions_(questions), feeds_(driver.world()) {}
+      : driver_(driver), questions_(questions), reads_(driver.world()), feeds_(driver.world()) {}
 
   void call(const control::MethodRule& method, const control::Json& parameters, const control::Caller& caller,
             control::Reply reply) override;
@@ -45,16 +46,8 @@ class ManagerBackend final : public control::ControlBackend {
   using Handler = void (ManagerBackend::*)(const Request& request);
   static Handler handler(control::MethodId method) noexcept;
 
-  void hello(const Request& request);
-  void status(const Request& request);
-  void describe(const Request& request);
-  void get(const Request& request);
-  void profile(const Request& request);
-  void events(const Request& request);
-  void why(const Request& request);
   void check(const Request& request) { analyse(Question::Kind::kCheck, request); }
   void schedule(const Request& request) { analyse(Question::Kind::kSchedule, request); }
-  void library(const Request& request);
   void signal(const Request& request);
   void ring(const Request& request);
   void set(const Request& request);
@@ -65,13 +58,11 @@ class ManagerBackend final : public control::ControlBackend {
 
   ManagerState& world() const noexcept { return driver_.world(); }
   void analyse(Question::Kind kind, const Request& request);
-  control::RpcResponse always(std::shared_ptr<const std::string>& text,
-                              control::Json (*make)(const ManagerState&)) const;
 
   ManagerLoop& driver_;
   Questions* questions_;
+  ReadMethods reads_;
   SubscriptionFeeds feeds_;
-  std::shared_ptr<const std::string> library_, description_;  // answers that never change, made at the first request
 };
 
 }  // namespace chimera::manager

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers status, readings, events and the like out of the state of the manager.
+#include "chimera/manager/read_methods.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "chimera/manager/subscription_feeds.h"
+#include "chimera/manager/large_readings.h"
+#include "chimera/manager/operator_acts.h"
+#include "chimera/manager/parameters.h"
+#include "chimera/manager/status_json.h"
+#include "chimera/manager/value_json.h"
+#include "chimera/platform/process_id.h"
+
+namespace chimera::manager {
+
+using control::Json;
+using control::MethodId;
+using control::RpcResponse;
+
+namespace {
+
+std::string working_folder() {
+  std::error_code error;
+  return std::filesystem::current_path(error).string();
+}
+
+}  // namespace
+
+std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& parameters, control::Role role) {
+  switch (method) {
+    case MethodId::kHello:
+      return hello(role);
+    case MethodId::kStatus:
+      return RpcResponse::good(status_json(world_, now()));
+    case MethodId::kDescribe:
+      return made_once(description_, describe_json);
+    case MethodId::kGet:
+      return get(parameters);
+    case MethodId::kProfile:
+      return RpcResponse::good(profile_json(world_, now()));
+    case MethodId::kEvents:
+      return events(parameters);
+    case MethodId::kWhy:
+      return why(parameters);
+    case MethodId::kLibrary:
+      return made_once(library_, library_json);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// What the bundle says does not change as long as the manager lives.
+RpcResponse ReadMethods::made_once(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const {
+  if (text == nullptr)
+    text = std::make_shared<const std::string>(make(world_).dump(-1, ' ', false, Json::error_handler_t::replace));
+  return RpcResponse::ready(text);
+}
+
+RpcResponse ReadMethods::hello(control::Role role) const {
+  return RpcResponse::good({{"protocol", 1},
+                            {"program", world_.bundle.program},
+                            {"subsystem", world_.spec().name},
+                            {"role", control::role_name(role)},
+                            {"file", world_.bundle.file},
+                            {"keeper_pid", world_.keeper_pid},
+                            {"session", own_session()},  // the keeper's, as is the folder: both are inherited
+                            {"folder", working_folder()},
+                            {"manager", {{"pid", own_process_id()}, {"starts", world_.own.incarnation()}}}});
+}
+
+RpcResponse ReadMethods::get(const Json& parameters) const {
+  const auto variables = variables_named(world_, texts(parameters, "variables"));
+  if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
+  const auto& named = std::get<0>(variables);
+  if (bytes_of(world_, named) <= kLargeReadings)
+    return RpcResponse::good({{"values", readings_json(world_, named, now())}});
+  return RpcResponse::in_pieces(std::make_shared<LargeReadings>(world_, named, R"({"values":)", "}"));
+}
+
+RpcResponse ReadMethods::events(const Json& parameters) const {
+  const std::uint64_t asked = number(parameters, "limit", kEventsAtOnce);
+  const std::uint64_t limit = std::min<std::uint64_t>(asked, kEventsAtOnce);
+  return RpcResponse::good(events_json(world_, number(parameters, "since", 0), limit));
+}
+
+RpcResponse ReadMethods::why(const Json& parameters) const {
+  const auto variables = variables_named(world_, {parameters.at("variable").get<std::string>()});
+  if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
+  return RpcResponse::good(why_json(world_, std::get<0>(variables)[0], now()));
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/manager/read_methods.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "chimera/manager/testing/lone_state.h"
+
+namespace chimera::manager {
+namespace {
+
+using control::Json;
+using control::MethodId;
+using control::RpcResponse;
+
+class ReadMethodsTest : public testing::Test, public LoneState {
+ protected:
+  std::optional<RpcResponse> ask(MethodId method, const Json& parameters = Json::object()) {
+    return reads_.answer(method, parameters, control::Role::kObserve);
+  }
+  ReadMethods reads_{world()};
+};
+
+TEST_F(ReadMethodsTest, AnswersWhatChangesNothingAndNothingElse) {
+  std::string answered;
+  for (const control::MethodRule& rule : control::methods()) {
+    const Json parameters = rule.id == MethodId::kWhy ? Json{{"variable", "x"}} : Json::object();
+    if (ask(rule.id, parameters)) answered += std::string(rule.name) + " ";
+  }
+  EXPECT_EQ(answered, "hello status describe get profile events why library ");
+}
+
+TEST_F(ReadMethodsTest, HelloSaysTheRoleOfWhoAsks) {
+  EXPECT_EQ((*ask(MethodId::kHello)->result)["role"], "observe");
+  EXPECT_EQ((*reads_.answer(MethodId::kHello, Json::object(), control::Role::kOperate)->result)["role"], "operate");
+}
+
+TEST_F(ReadMethodsTest, WhatTheBundleSaysIsMadeIntoTextOnce) {
+  const auto first = ask(MethodId::kDescribe)->text;
+  EXPECT_EQ(Json::parse(*first)["start"], "run");
+  EXPECT_EQ(ask(MethodId::kDescribe)->text, first);
+  const auto library = ask(MethodId::kLibrary)->text;
+  EXPECT_NE(*library, *first);
+  EXPECT_EQ(ask(MethodId::kLibrary)->text, library);
+}
+
+TEST_F(ReadMethodsTest, AnUnknownVariableIsRefusedWithTheNearest) {
+  const RpcResponse got = *ask(MethodId::kGet, {{"variables", {"kq"}}});
+  EXPECT_EQ(got.code, control::kUnknown);
+  EXPECT_EQ(got.detail("nearest"), "kp");
+  const RpcResponse why = *ask(MethodId::kWhy, {{"variable", "kq"}});
+  EXPECT_EQ(why.message, got.message);
+}
+
+TEST_F(ReadMethodsTest, EventsBeginWhereTheyAreAskedForAndEndAtTheLimit) {
+  for (const char* text : {"one", "two", "three"}) world().tell("command", TaskId{}, RtpuId{}, text, seconds(1));
+  const auto texts = [&](const Json& parameters) {
+    std::string all;
+    const Json result = *ask(MethodId::kEvents, parameters)->result;
+    for (const Json& event : result["events"]) all += event["text"].get<std::string>() + " ";
+    return all;
+  };
+  EXPECT_EQ(texts(Json::object()), "one two three ");
+  EXPECT_EQ(texts({{"since", 2}, {"limit", 1}}), "two ");
+}
+
+}  // namespace
+}  // namespace chimera::manager
