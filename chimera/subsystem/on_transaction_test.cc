@@ -149,8 +149,7 @@ TEST_F(OnTransactionTest, OfATaskIsToldWithItsSender) {
   (void)advance();
   EXPECT_EQ(report(kTraj, State::kOn), "goal traj 0\nsignal: on sent by arm: traj is ON\n");
   transaction.begin({0, {kTraj}, kArm, false});
-  EXPECT_EQ(taken(), "refused: on sent by arm: traj is in state ON, where on is not legal; type "
-                     "`chimera on traj`\n");
+  EXPECT_EQ(taken(), "refused: on sent by arm: traj is in state ON, where on is not legal\n");
 }
 
 }  // namespace

@@ -21,13 +21,6 @@ std::string joined(const std::vector<std::string>& commands) {
   return text;
 }
 
-/// The states from which the signal leads on, or in which nothing is left to do.
-bool takes(Signal signal, State state) noexcept {
-  const bool is_there =
-      (signal == Signal::kOn && state == State::kOn) || (signal == Signal::kOff && state == State::kOff);
-  return is_there || is_legal(state, signal);
-}
-
 }  // namespace
 
 std::string remedy(const SubsystemState& subsystem, Signal signal, std::span<const TaskId> tasks) {
@@ -40,8 +33,9 @@ std::string remedy(const SubsystemState& subsystem, Signal signal, std::span<con
       clear.push_back(task);
     else if (state == State::kNotCreated && (needs_all || signal == Signal::kSpawn || signal == Signal::kClear))
       spawn.push_back(task);
-    if (signal != Signal::kSpawn && signal != Signal::kClear && (needs_all || takes(signal, state)))
-      rest.push_back(task);
+    // By then all others are OFF. A task that has arrived already needs nothing.
+    const State by_then = needs_all && state != State::kOn ? State::kOff : state;
+    if (signal != Signal::kSpawn && signal != Signal::kClear && is_legal(by_then, signal)) rest.push_back(task);
   }
   std::vector<std::string> commands;
   add(commands, subsystem, "spawn", spawn);

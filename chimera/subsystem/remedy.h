@@ -11,7 +11,8 @@
 namespace chimera::subsystem {
 
 /// "`chimera clear pi`, then `chimera on setpoint pi`": after it the signal has been carried out for as many of the
-/// tasks as it can be; "" when there is nothing to do. Context of all: setup.
+/// tasks as it can be. Names no task that is where the signal leads; "" when there is nothing to do. Context of all:
+/// setup.
 std::string remedy(const SubsystemState& subsystem, Signal signal, std::span<const TaskId> tasks);
 /// The same for tasks that were lost with their process: those of `were_on` are ON again after it.
 std::string way_back(const SubsystemState& subsystem, std::span<const TaskId> lost, std::span<const TaskId> were_on);

@@ -109,7 +109,7 @@ TEST_F(SubsystemTest, ARefusalSaysWhatToTypeForTheWholeList) {
   die(kServo, 4);
   EXPECT_EQ(command(Signal::kOn, {kArm, kPid, kTraj, kReserve}),
             "answer 2 no: arm is in state ERROR, where on is not legal; type `chimera spawn reserve`, "
-            "`chimera clear arm pid`, then `chimera on arm traj pid reserve`\n");
+            "`chimera clear arm pid`, then `chimera on arm pid reserve`\n");
 }
 
 TEST_F(SubsystemTest, ASecondProducerIsRefused) {

@@ -21,6 +21,7 @@ class TestFile {
  public:
   explicit TestFile(const std::string& text) {
     const int fd = ::mkstemps(path_, 5);
+    EXPECT_GE(fd, 0);
     std::ofstream(path_) << text;
     ::close(fd);
   }
