@@ -147,17 +147,47 @@ cli::Call call_of(const Subcommand& sub) {
   return call;
 }
 
+/// Behind the options that stand before a command; "": none.
+std::string first_word(int argc, char** argv) {
+  int i = 1;
+  for (; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--subsystem")
+      ++i;
+    else if (word != "--json" && !word.starts_with("--subsystem="))
+      break;
+  }
+  return i < argc ? argv[i] : "";
+}
+
 }  // namespace
 
 struct CommandLine::Parser {
   CLI::App app{"Real-time control software assembled from components: check it, run it, look at it."};
   std::deque<Subcommand> subcommands;
+  // Given before the command.
+  std::string subsystem;
+  bool json = false;
 
   CLI::App* add(const Command& row) {
     const std::string name = row.name;
     const std::size_t blank = name.find(' ');
     if (blank == std::string::npos) return app.add_subcommand(name, row.help);
     return app.get_subcommand(name.substr(0, blank))->add_subcommand(name.substr(blank + 1), row.help);
+  }
+
+  void add_options() {
+    app.add_flag("--json", json, "as behind a command that has it");
+    app.add_option("--subsystem", subsystem, "as behind a command on a running subsystem")->type_name("NAME");
+  }
+
+  /// The call with what stood before the command; "": it takes all that. Else the option that it does not have.
+  std::string complete(cli::Call& call) const {
+    if (json && call.command->json == nullptr) return "--json";
+    if (app.count("--subsystem") > 0 && call.command->which == nullptr) return "--subsystem";
+    call.json = call.json || json;
+    if (app.count("--subsystem") > 0 && !call.has("--subsystem")) call.options["--subsystem"] = {subsystem};
+    return "";
   }
 };
 
@@ -166,6 +196,7 @@ CommandLine::CommandLine(cli::Table table, const std::string& documents) : parse
   app.require_subcommand(1);
   app.footer("`chimera COMMAND --help` has an example. Documents and examples: " + documents);
   app.set_version_flag("--version", CHIMERA_VERSION);
+  parser_->add_options();
   for (const Command* row : table) {
     Subcommand& sub = parser_->subcommands.emplace_back();
     sub.row = row;
@@ -180,10 +211,11 @@ std::optional<cli::Call> CommandLine::read(int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* one : parser_->app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(one->get_name());
-  if (argc > 1 && argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end()) {
-    const std::string near = nearest(argv[1], names);
+  const std::string first = first_word(argc, argv);
+  if (!first.empty() && first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end()) {
+    const std::string near = nearest(first, names);
     const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
-    std::fprintf(stderr, "no command '%s'%s; `chimera --help` lists them\n", argv[1], hint.c_str());
+    std::fprintf(stderr, "no command '%s'%s; `chimera --help` lists them\n", first.c_str(), hint.c_str());
     return exit_code_ = cli::kUsage, std::nullopt;
   }
   try {
@@ -191,7 +223,12 @@ std::optional<cli::Call> CommandLine::read(int argc, char** argv) {
   } catch (const CLI::ParseError& fault) {
     return exit_code_ = report_wrong_usage(parser_->app, fault, argc, argv), std::nullopt;
   }
-  for (const Subcommand& sub : parser_->subcommands)
-    if (!sub.row->has_commands && sub.app->parsed()) return call_of(sub);
+  for (const Subcommand& sub : parser_->subcommands) {
+    if (sub.row->has_commands || !sub.app->parsed()) continue;
+    cli::Call call = call_of(sub);
+    const std::string option = parser_->complete(call);
+    if (option.empty()) return call;
+    return exit_code_ = report_no_option(option, *sub.app), std::nullopt;
+  }
   return std::nullopt;
 }

@@ -69,6 +69,13 @@ std::string about_operands(const CLI::ParseError& fault, const CLI::App& command
   return std::string(fault.what()) + "\n";
 }
 
+/// Prints what is wrong with the words of a command, and where more is to be read.
+int report(const std::string& what, const CLI::App& command) {
+  const std::string text = what + example_of(command) + "`" + name_of(command) + " --help` tells more\n";
+  std::fputs(text.c_str(), stderr);
+  return cli::kUsage;
+}
+
 }  // namespace
 
 int report_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv) {
@@ -88,7 +95,9 @@ int report_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int ar
   } else {
     text = about_operands(fault, command, argc, argv);
   }
-  text += example_of(command) + "`" + name_of(command) + " --help` tells more\n";
-  std::fputs(text.c_str(), stderr);
-  return cli::kUsage;
+  return report(text, command);
+}
+
+int report_no_option(const std::string& option, const CLI::App& command) {
+  return report(about_option(option, command), command);
 }

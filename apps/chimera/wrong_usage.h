@@ -2,6 +2,8 @@
 // What is said about a command line that cannot be read: the nearest option, a quote that is missing, an example.
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 class ParseError;
@@ -10,3 +12,5 @@ class ParseError;
 /// Prints the fault and what to write instead; `argv` is the command line that `app` refused with `fault`. The exit
 /// code: 0 after --help and --version. Context: setup.
 int report_wrong_usage(const CLI::App& app, const CLI::ParseError& fault, int argc, char** argv);
+/// The same for an option that stood before `command`, which does not have it.
+int report_no_option(const std::string& option, const CLI::App& command);

@@ -103,7 +103,9 @@ def main():
                            (["test", "--se"], {"--seed", "--setup"}),
                            (["test", "gai"], {"gain"}), (["flag", "u"], {"up"}), (["new", "app", ""], set()),
                            (["run", "--isolation", "n"], {"none"}), (["list", ""], set()),
-                           (["watch", "--every", ""], set())):
+                           (["watch", "--every", ""], set()), (["--json", "de"], {"describe"}),
+                           (["--subsystem", ""], set()), (["--subsystem", "a", "--json", "flag", "u"], {"up"}),
+                           (["--subsystem", "=", "a", "new", "c"], {"component"})):
         if (got := complete(completion, program, words)) != offered:
             faults.append(f"completion of {words}: {sorted(got)}, expected {sorted(offered)}")
     faults += lost_lines(manual)

@@ -58,6 +58,10 @@ class Naming(unittest.TestCase):
                 self.assertEqual(self.chimera(system, "off", "beside", folder=folder),
                                  (0, "[other] beside: ON -> OFF\n", ""))
                 self.assertEqual(self.chimera(system, "get", "x", folder=folder)[2], "[other]\n")
+                said = self.chimera(system, "--subsystem", "subject", "status", folder=folder)[1]
+                self.assertTrue(said.startswith("subject: "), said)
+                said = self.chimera(system, "--json", "--subsystem=subject", "get", "x", folder=folder)[1]
+                self.assertEqual(json.loads(said)["subsystem"], "subject")
                 self.assertEqual(self.chimera(system, "off", "beside"),
                                  (1, "", "several subsystems run: other, subject; say --subsystem NAME\n"))
                 self.assertEqual(system.state("beside"), "ON")

@@ -99,7 +99,7 @@ std::string names_of(const Visible& rows, const std::string& parent) {
 }
 
 std::string words(const Visible& rows) {
-  std::string text = "    '') echo '--help --version" + names_of(rows, "") + "' ;;\n";
+  std::string text = "    '') echo '--help --version --json --subsystem" + names_of(rows, "") + "' ;;\n";
   for (const Command* row : rows) {
     text += std::string("    '") + row->name + "') echo '--help";
     if (row->json != nullptr) text += " --json";
@@ -145,7 +145,7 @@ std::string branch(const std::string& words, const std::string& takes) {
 }
 
 std::string takes(const Visible& rows) {
-  std::string text;
+  std::string text = branch(" --subsystem", "text");  // before a command
   for (const Command* row : rows) {
     const std::string name = row->name;
     if (row->has_commands) text += branch(name, "command");

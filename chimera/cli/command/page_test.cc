@@ -61,7 +61,7 @@ TEST(Page, NoTextIsTakenForAMacroOfRoff) {
 
 TEST(Page, WordsOfEveryCommandButHiddenOnes) {
   EXPECT_EQ(made("@words@"),
-            "    '') echo '--help --version new draw' ;;\n"
+            "    '') echo '--help --version --json --subsystem new draw' ;;\n"
             "    'new') echo '--help app' ;;\n"
             "    'new app') echo '--help' ;;\n"
             "    'draw') echo '--help --json --subsystem --as --fast --to' ;;\n");
@@ -69,6 +69,7 @@ TEST(Page, WordsOfEveryCommandButHiddenOnes) {
 
 TEST(Page, EveryOperandAndOptionSaysWhatItTakes) {
   EXPECT_EQ(made("@takes@"),
+            "    ' --subsystem') echo 'text' ;;\n"
             "    'new') echo 'command' ;;\n"
             "    'new app') echo 'text' ;;\n"
             "    'draw') echo 'description' ;;\n"
