@@ -91,6 +91,8 @@ TEST_F(SupervisorTest, GivesUpAJobThatUsedTenTimesItsBudget) {
   EXPECT_FALSE(supervisor().pop_hanging(job)) << "reported once";
   supervisor().check_running(at(3));
   EXPECT_FALSE(supervisor().pop_hanging(job));
+  supervisor().check_jobs(at(10));
+  EXPECT_FALSE(supervisor().pop_hanging(job)) << "a job that was given up is looked at, and not given up again";
 }
 
 TEST_F(SupervisorTest, NoticesThatTheThreadOfAJobIsGone) {

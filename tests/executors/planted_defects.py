@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Plants defects in the executors, one at a time, in a copy of the source, and demands that the unit tests of the
+runtime or the conformance suite catch each of them. Its last line says how many were planted and how many were missed.
+
+usage: planted_defects.py --build TREE [--seconds N]     (every defect is planted once, however long that takes)
+       planted_defects.py --look                         (only that the text of each defect stands in its file once)
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+RUNTIME = "chimera/runtime/"
+TARGETS = ("runtime_test", "conformance_test")
+LIMIT = 300  # seconds for one test program; one that hangs has caught the defect
+
+# What is wrong, the file, its text, and the text with the defect.
+DEFECTS = (
+    ("each event makes an active server active anew", "sporadic_job.cc",
+     "if (!is_active_) server_.activate(now);", "server_.activate(now);"),
+    ("a rest below the granularity of the clock is still capacity", "sporadic_job.cc", "left < smallest_", "false"),
+    ("a job leaves a phase that it is not in", "preemptive/job_phase.cc",
+     "  CHIMERA_ASSERT(value() == from);\n", "  (void)from;\n"),
+    ("two ready jobs keep the late check of a lone one", "preemptive/job_checks.cc",
+     "  if (has_coalesced_ && n_ready > 1) {", "  if (false) {"),
+    ("an idle job is checked as often as a busy one", "preemptive/job_checks.cc",
+     "used == last ? kMinIdleGap", "used == last ? kMinBudgetGap"),
+    ("less important jobs use what is kept for the important", "preemptive/processor_share.cc",
+     "std::max(kept_for_important_, by_others)", "by_others"),
+    ("a job is stopped before the share is used", "preemptive/processor_share.cc",
+     "used(now) >= limit_.share && ", "used(now) >= Nanoseconds{} && "),
+    ("a job that has not begun counts as running", "preemptive/ready_jobs.cc",
+     "if (JobThread& job = (*this)[i]; job.phase.is_running())", "if (JobThread& job = (*this)[i]; true)"),
+    ("a miss is looked up again and again", "preemptive/edge_access.cc", "!look_up.is_done && ", ""),
+    ("a job that was withdrawn does not come again", "preemptive/edge_access.cc",
+     "    job.next_release = job.job.release;", "    //"),
+    ("an edge takes the task of a job that runs", "preemptive/edge_access.cc",
+     "|| !job->phase.is_free()) return nullptr;", ") return nullptr;"),
+    ("a job without capacity is not halted", "preemptive/supervisor.cc", "server.halt();", ""),
+    ("a job is given up twice", "preemptive/supervisor.cc", "if (of_job.is_given_up) return;", ""),
+    ("a release that was passed over is not counted", "preemptive/supervisor.cc", "passed + 1)});", "passed)});"),
+    ("preemptions are not counted", "preemptive/processor.cc",
+     "  if (job.sporadic && job.sporadic->is_halted()) return;\n  ++job.task.profile.preempted;", ""),
+)
+
+
+def faults_of_texts():
+    for what, name, text, _ in DEFECTS:
+        if (times := (ROOT / RUNTIME / name).read_text().count(text)) != 1:
+            yield f"'{what}': its text stands in {RUNTIME}{name} {times} times: {text.strip()}"
+
+
+def make(copy):
+    """The source without what is built, configured."""
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(ROOT, copy, symlinks=True, ignore=shutil.ignore_patterns("build", ".git", "__pycache__"))
+    subprocess.run(["cmake", "--preset", "debug"], cwd=copy, check=True, stdout=subprocess.DEVNULL)
+
+
+def build(copy):
+    """What the compiler said when it refused, else ""."""
+    done = subprocess.run(["ninja", "-C", str(copy / "build/debug"), "-j", str(len(os.sched_getaffinity(0))), *TARGETS],
+                          capture_output=True, text=True)
+    return done.stdout[-3000:] if done.returncode else ""
+
+
+def caught_by(copy):
+    """The first test that fails, or that its program died or hung; "": none."""
+    for folder, program in (("chimera/runtime", TARGETS[0]), ("tests/conformance", TARGETS[1])):
+        try:
+            done = subprocess.run([str(copy / "build/debug" / folder / program), "--gtest_fail_fast"], timeout=LIMIT,
+                                  cwd=copy / folder, capture_output=True, text=True, errors="replace")
+        except subprocess.TimeoutExpired:
+            return f"{program}, which hangs"
+        if done.returncode == 0:
+            continue
+        failed = re.search(r"^\[  FAILED  \] (\S+)", done.stdout, re.MULTILINE)
+        last = re.findall(r"^\[ RUN      \] (\S+)", done.stdout, re.MULTILINE)
+        return failed[1] if failed else f"{last[-1] if last else program}, which dies"
+    return ""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, help="the tree beside which the copy is made")
+    parser.add_argument("--seconds", type=float, help="taken, as by every campaign")
+    parser.add_argument("--look", action="store_true", help="look at the texts only")
+    arguments = parser.parse_args()
+    if wrong := list(faults_of_texts()):
+        print("\n".join(wrong))
+        return 1
+    if arguments.look:
+        print(f"{len(DEFECTS)} defects can be planted")
+        return 0
+    if arguments.build is None:
+        parser.error("--build or --look")
+    copy = arguments.build.resolve() / "planted_defects"
+    make(copy)
+    if (said := build(copy)) or (said := caught_by(copy)):
+        print(f"without any defect: {said}")
+        return 1
+    missed = 0
+    for number, (what, name, text, planted) in enumerate(DEFECTS, 1):
+        path, begun = copy / RUNTIME / name, time.monotonic()
+        sound = path.read_text()
+        path.write_text(sound.replace(text, planted))
+        refused = build(copy)
+        by = "" if refused else caught_by(copy)
+        path.write_text(sound)
+        missed += by == ""
+        told = f"caught by {by}" if by else f"does not compile:\n{refused}" if refused else "NOT CAUGHT"
+        print(f"{number} of {len(DEFECTS)}, {time.monotonic() - begun:.0f} s, {name}: {what}: {told}", flush=True)
+    shutil.rmtree(copy)
+    print(json.dumps({"name": "executor_defects", "n": len(DEFECTS), "faults": missed, "counted": "defects"}))
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
