@@ -5,26 +5,10 @@
 
 #include <cstring>
 
-#include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/testing/test_application.h"
+#include "chimera/runtime/testing/two_units.h"
 
 namespace chimera {
 namespace {
-
-struct Maker {
-  Out<double> a{"a", "1", initial = 1.0};
-  Out<double> b{"b", "1", initial = 2.0};
-  OutConst<std::int32_t> n{"n", "1"};
-  void cycle(Cycle) {}
-};
-
-struct Taker {
-  In<double> a{"a", "1"};
-  In<double> gain{"gain", "1"};
-  void cycle(Cycle) {}
-};
-
-constexpr TaskId kMaker{0u}, kTaker{1u};
 
 double number(const GroupReader& reader, std::uint32_t offset) {
   double value;
@@ -32,17 +16,10 @@ double number(const GroupReader& reader, std::uint32_t offset) {
   return value;
 }
 
-struct ContextTableTest : ::testing::Test {
-  ContextTableTest() {
-    app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
-    app.add("maker", testing::component<Maker>("maker")).rtpu = RtpuId(1u);
-    app.add("taker", testing::component<Taker>("taker")).rtpu = RtpuId(0u);
-    app.give(app.operators, "gain", CHIMERA_FLOAT64, testing::bytes_of(0.5));
-    app.make();
-  }
+using testing::kMaker;
+using testing::kTaker;
 
-  testing::TestApplication app;
-  HeapMemory heap;
+struct ContextTableTest : ::testing::Test, testing::TwoUnits {
   ContextTable table;
 };
 

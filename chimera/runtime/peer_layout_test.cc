@@ -3,37 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/testing/test_application.h"
+#include "chimera/runtime/testing/two_units.h"
 #include "chimera/task/fault_record.h"
 
 namespace chimera {
 namespace {
 
-struct Source {
-  Out<double> a{"a", "1"};
-  Out<double> b{"b", "1"};
-  OutConst<std::int32_t> n{"n", "1"};
-  void init() { *n = 3; }
-  void cycle(Cycle) {}
-};
-
-struct Sink {
-  In<double> a{"a", "1"};
-  void cycle(Cycle) {}
-};
-
-struct PeerLayoutTest : ::testing::Test {
-  PeerLayoutTest() {
-    app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
-    app.add("source", testing::component<Source>("source")).rtpu = RtpuId(1u);
-    app.add("sink", testing::component<Sink>("sink")).rtpu = RtpuId(0u);
-    app.give(app.operators, "gain", CHIMERA_FLOAT64, testing::bytes_of(1.0));
-    app.make();
-  }
-  testing::TestApplication app;
-  HeapMemory heap;
-};
+struct PeerLayoutTest : ::testing::Test, testing::TwoUnits {};
 
 TEST_F(PeerLayoutTest, GivesATaskFourGroupsInTheSegmentOfItsRtpuOnly) {
   const auto first = PeerLayout::of(app.spec, 0, heap), second = PeerLayout::of(app.spec, 1, heap);

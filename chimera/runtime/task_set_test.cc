@@ -173,6 +173,14 @@ TEST_F(CounterAndReader, ARespawnedProducerTakesOverWhatItsPredecessorLeft) {
   EXPECT_EQ(number(*set, "n"), 6);
 }
 
+/// The arm says by a constant how many joints both have, up to ten.
+void add_arm_and_user(TestApplication& app) {
+  app.add("arm", component<Arm>("arm"));
+  app.add("user", component<User>("user"));
+  app.extend(0, 1, 10, "ndof");
+  app.extend(1, 1, 10, "ndof");
+}
+
 TEST(TaskSet, TwoProducersOfOneVariableCannotBothBeOn) {
   TestApplication app;
   app.add("a", component<Counter>("counter"));
@@ -221,10 +229,7 @@ TEST(TaskSet, AnExtentAboveItsMaximumIsAFaultOfInit) {
 
 TEST(TaskSet, AListMustBeAsLongAsTheConstantSays) {
   TestApplication app;
-  app.add("arm", component<Arm>("arm"));
-  app.add("user", component<User>("user"));
-  app.extend(0, 1, 10, "ndof");
-  app.extend(1, 1, 10, "ndof");
+  add_arm_and_user(app);
   app.port(1, 1).listed[0] = 4;
   app.make();
   auto set = make(app);
@@ -279,10 +284,7 @@ TEST(TaskSet, RefusesAVariableThatNobodyProduces) {
 
 TEST(TaskSet, WorksInBytesThatItIsGivenAndTakesNoMoreWhileItRuns) {
   TestApplication app;
-  app.add("arm", component<Arm>("arm"));
-  app.add("user", component<User>("user"));
-  app.extend(0, 1, 10, "ndof");
-  app.extend(1, 1, 10, "ndof");
+  add_arm_and_user(app);
   app.give(app.operators, "gain", CHIMERA_FLOAT64, testing::bytes_of(1.0));
   app.make();
   alignas(kCacheLine) static std::byte bytes[96 * 1024];

@@ -131,12 +131,7 @@ class MuteOnQueueTest : public OnQueueTest {
 };
 
 TEST_F(MuteOnQueueTest, IsRefusedAfterTwoSeconds) {
-  EXPECT_EQ(queue.next_due(), state.now + seconds(2));
-  pass(seconds(2) - Nanoseconds{1});
-  EXPECT_EQ(advance(), "");
-  pass(Nanoseconds{1});
-  EXPECT_EQ(advance(), "answer 1 no: no answer from rtpu spare\n");
-  EXPECT_EQ(queue.next_due(), kNever);
+  EXPECT_EQ(waits(queue), "2 s: answer 1 no: no answer from rtpu spare\n");
 }
 
 TEST_F(MuteOnQueueTest, BeginsWhenTheRtpuServes) {

@@ -127,10 +127,15 @@ TEST(Scope, WhatWasPublishedBeforeTheWindowHoldsIntoIt) {
   EXPECT_EQ(scope.rows(), 2u);
 }
 
-TEST(Scope, WithoutATriggerItBeginsWithTheFirstRow) {
-  ScopeRequest asked = request("", 0, 2);
+/// That many rows of one channel, from the first one on.
+ScopeRequest of_error(std::size_t rows) {
+  ScopeRequest asked = request("", 0, rows);
   asked.channels.pop_back();
-  Scope scope(asked);
+  return asked;
+}
+
+TEST(Scope, WithoutATriggerItBeginsWithTheFirstRow) {
+  Scope scope(of_error(2));
   scope.add(pid(0, {{5, 1, 1}, {6, 2, 2}}));
   EXPECT_TRUE(scope.is_triggered());
   EXPECT_FALSE(scope.is_complete());
@@ -140,9 +145,7 @@ TEST(Scope, WithoutATriggerItBeginsWithTheFirstRow) {
 }
 
 TEST(Scope, RowsThatWereLostAreCountedAndShown) {
-  ScopeRequest asked = request("", 0, 10);
-  asked.channels.pop_back();
-  Scope scope(asked);
+  Scope scope(of_error(10));
   scope.add(pid(0, {{1, 1, 1}, {2, 2, 2}}));
   scope.add(pid(5, {{6, 6, 3}, {7, 7, 4}, {9, 9, 5}}));  // three rows of the tap, then one publication
   EXPECT_EQ(scope.summary(), "5 rows; 2 gaps, 4 rows lost");
@@ -161,9 +164,7 @@ TEST(Scope, RowsThatWereLostAreCountedAndShown) {
 }
 
 TEST(Scope, ATaskThatWasMadeAnewBreaksTheLineButLosesNothing) {
-  ScopeRequest asked = request("", 0, 10);
-  asked.channels.pop_back();
-  Scope scope(asked);
+  Scope scope(of_error(10));
   scope.add(pid(0, {{1, 100, 1}, {2, 1, 2}}));
   EXPECT_EQ(scope.lost_rows(), 0u);
   EXPECT_EQ(scope.plot("t", "").curves[0].points.size(), 3u);

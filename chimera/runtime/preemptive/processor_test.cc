@@ -17,16 +17,6 @@ struct ProcessorTest : testing::PreemptiveParts, ::testing::Test {
     add("slow", milliseconds(20));
     make(Policy::kEdf, where);
   }
-  /// A task behind a server of 1 ms in 10 ms that has an event to answer, and a periodic one.
-  void make_served() {
-    TaskSpec& spec = add("events", milliseconds(10));
-    spec.aperiodic = true;
-    spec.server = ServerSpec{ServerKind::kDeferrable, milliseconds(1), milliseconds(10)};
-    add("periodic", milliseconds(5));
-    make();
-    std::uint32_t waiting = 1;
-    (void)job(0).sporadic->job().accept(waiting, origin);
-  }
   /// Whose body runs, as another process reads it.
   TaskId shown() { return TaskWord::found(job(0).task.running->load()).task(); }
 };
@@ -93,7 +83,7 @@ TEST_F(ProcessorTest, AJobThatGoesOnIsCheckedWhenItsBudgetEnds) {
 }
 
 TEST_F(ProcessorTest, AServerIsCheckedAtTheEndOfItsCapacityWhileItsJobHasTheProcessor) {
-  make_served();
+  make_served(milliseconds(10), milliseconds(5), origin);
   JobThread& served = begin(0, at(0));
   EXPECT_EQ(processor().on_processor(), &served);
   const Nanoseconds alone = processor().next_server_check(served, at(0));
@@ -106,7 +96,7 @@ TEST_F(ProcessorTest, AServerIsCheckedAtTheEndOfItsCapacityWhileItsJobHasTheProc
 }
 
 TEST_F(ProcessorTest, AJobHaltedByItsServerIsNotPreempted) {
-  make_served();
+  make_served(milliseconds(10), milliseconds(5), origin);
   JobThread& served = begin(0, at(0));
   served.sporadic->halt();
   ready().remove(served);

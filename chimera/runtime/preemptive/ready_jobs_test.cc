@@ -72,13 +72,7 @@ TEST_F(ReadyJobsTest, FindsTheMostUrgentJobThatHasBegun) {
 }
 
 TEST_F(ReadyJobsTest, AJobBehindAServerIsDueWithItsServer) {
-  TaskSpec& spec = add("events", milliseconds(50));
-  spec.aperiodic = true;
-  spec.server = ServerSpec{ServerKind::kDeferrable, milliseconds(1), milliseconds(50)};
-  add("periodic", milliseconds(10));
-  make();
-  std::uint32_t waiting = 1;
-  (void)job(0).sporadic->job().accept(waiting, at(3));
+  make_served(milliseconds(50), milliseconds(10), at(3));
   release(0, at(3));
   EXPECT_EQ(ReadyJobs::deadline_of(job(0)), at(50));
   EXPECT_EQ(ReadyJobs::deadline_of(release(1, at(0))), at(10));

@@ -70,6 +70,18 @@ class PreemptiveParts {
     }
   }
 
+  /// Task 0 is behind a server of 1 ms in `server_period` and has one event to answer, that came at `event`; task 1 is
+  /// periodic.
+  void make_served(Nanoseconds server_period, Nanoseconds period, Nanoseconds event) {
+    TaskSpec& spec = add("events", server_period);
+    spec.aperiodic = true;
+    spec.server = ServerSpec{ServerKind::kDeferrable, milliseconds(1), server_period};
+    add("periodic", period);
+    make();
+    std::uint32_t waiting = 1;
+    (void)job(0).sporadic->job().accept(waiting, event);
+  }
+
   Releases& releases() { return parts->releases; }
   ReadyJobs& ready() { return parts->ready; }
   JobChecks& checks() { return parts->checks; }

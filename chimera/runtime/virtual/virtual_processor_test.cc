@@ -3,25 +3,21 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/hosted/heap_memory.h"
+#include "chimera/runtime/testing/bare_tasks.h"
 
 namespace chimera {
 namespace {
 
-constexpr TaskId kFirst{0u}, kSecond{1u};
+using testing::kFirst;
+using testing::kSecond;
 
-class VirtualProcessorTest : public testing::Test {
+class VirtualProcessorTest : public ::testing::Test, public testing::BareTasks {
  protected:
   VirtualProcessorTest() {
-    for (const TaskId task : {kFirst, kSecond}) {
-      tasks[task.index].id = task;
-      processor.of(task).remaining = milliseconds(10);
-    }
+    for (const TaskId task : {kFirst, kSecond}) processor.of(task).remaining = milliseconds(10);
   }
   /// "TASK START LENGTH" in milliseconds of each slice since the last call, a line each.
   std::string slices() {
@@ -36,13 +32,7 @@ class VirtualProcessorTest : public testing::Test {
     return text;
   }
 
-  std::array<Task, 2> tasks;
-  std::unique_ptr<TapRing> ring = std::make_unique<TapRing>();
-  Tap ring_tap{*ring};
-  TapReader reader{*ring};
-  HeapMemory heap;
-  ContextTap tap{tasks, &ring_tap, 0, false, heap};
-  VirtualProcessor processor{tap, 2};
+  VirtualProcessor processor{context_tap, 2};
 };
 
 TEST_F(VirtualProcessorTest, CountsWhatTheJobUses) {

@@ -41,6 +41,20 @@ class TestParts : public TestWorld {
   }
   void pass(Nanoseconds time) { state.now += time; }
 
+  /// "2 s: " and what the queue asks for when the time has come for which it waits, and not before.
+  template <class Queue>
+  std::string waits(Queue& queue) {
+    const Nanoseconds due = queue.next_due();
+    const std::string said = std::to_string((due - state.now).count / 1'000'000'000) + " s: ";
+    state.now = due - Nanoseconds{1};
+    (void)queue.advance();
+    const std::string early = taken();
+    state.now = due;
+    (void)queue.advance();
+    const std::string asked = taken();
+    return said + (early.empty() ? "" : "too early: " + early) + asked + (queue.next_due() == kNever ? "" : "again\n");
+  }
+
   std::vector<Action> actions;
   SubsystemState state{spec};
   Goals goals{state};
