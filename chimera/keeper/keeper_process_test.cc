@@ -7,12 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <sstream>
 
+#include "chimera/keeper/testing/child_folder.h"
 #include "chimera/platform/frozen_bytes.h"
 
 namespace chimera {
@@ -23,21 +21,13 @@ constexpr Nanoseconds kPatience = seconds(20);
 std::span<const std::byte> text(const char* words) { return std::as_bytes(std::span(words, std::strlen(words))); }
 
 /// A keeper in a process of its own, with `n` rtpus, the manager and a face, all of them testing/child.cc.
-class KeeperProcess : public ::testing::Test {
+class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
  protected:
-  void SetUp() override {
-    char name[] = "/tmp/keeper_test_XXXXXX";
-    folder_ = ::mkdtemp(name);
-    ::setenv("CHIMERA_TEST_LOG", (folder_ + "/log").c_str(), 1);
-    ::setenv("CHIMERA_TEST_ORDERS", folder_.c_str(), 1);
-    ::unsetenv("CHIMERA_TEST_DEAF");
-  }
   void TearDown() override {
     if (keeper_ > 0) {
       ::kill(keeper_, SIGKILL);  // still ours
       ::waitpid(keeper_, nullptr, 0);
     }
-    std::filesystem::remove_all(folder_);
   }
 
   /// `limit`: of the face and of the rtpus when they end.
@@ -60,14 +50,6 @@ class KeeperProcess : public ::testing::Test {
     Keeper keeper(plan);
     if (const auto started = keeper.start(); !started) ::_exit(99);
     ::_exit(keeper.run());
-  }
-  void order(const std::string& who, const std::string& what) {
-    std::ofstream(folder_ + "/" + who, std::ios::app) << what << "\n";
-  }
-  std::string log() const {
-    std::stringstream all;
-    all << std::ifstream(folder_ + "/log").rdbuf();
-    return all.str();
   }
   bool has(const std::string& line) const { return ("\n" + log()).find("\n" + line) != std::string::npos; }
   bool wait_for(const std::string& line) {
@@ -118,7 +100,6 @@ class KeeperProcess : public ::testing::Test {
     return false;
   }
 
-  std::string folder_;
   pid_t keeper_ = 0;
 };
 
@@ -202,7 +183,7 @@ TEST_F(KeeperProcess, TheManagerMayEndEverythingWithItsCode) {
 
 TEST_F(KeeperProcess, SignalsEndEverythingWithTheCodeOfTheFace) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    std::filesystem::remove(folder_ + "/log");
+    clear_log();
     start(1);
     ASSERT_TRUE(wait_for("face begin"));
     ASSERT_TRUE(wait_for("1.1 peer 0 1"));

@@ -6,14 +6,10 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <sstream>
 
 #include "chimera/keeper/keeper_pages.h"
+#include "chimera/keeper/testing/child_folder.h"
 #include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/linux_clock.h"
 
@@ -22,28 +18,15 @@ namespace {
 
 const std::string kPrefix = "test-";
 
-class KeptPeerTest : public ::testing::Test {
+class KeptPeerTest : public ::testing::Test, public testing::ChildFolder {
  protected:
-  void SetUp() override {
-    char name[] = "/tmp/kept_peer_test_XXXXXX";
-    folder_ = ::mkdtemp(name);
-    ::setenv("CHIMERA_TEST_LOG", (folder_ + "/log").c_str(), 1);
-    ::setenv("CHIMERA_TEST_ORDERS", folder_.c_str(), 1);
-    pages_ = *KeeperPages::create(2, {});
-  }
   void TearDown() override {
     peer_.signal(SIGKILL);
     peer_.wait(seconds(20));
-    std::filesystem::remove_all(folder_);
   }
   Result<void> start(const std::string& program, Nanoseconds now) {
     const int passed[] = {image_.descriptor(), pages_.decision_descriptor(), pages_.keeper_descriptor()};
     return peer_.start({program, passed, kPrefix}, now);
-  }
-  std::string log() const {
-    std::stringstream all;
-    all << std::ifstream(folder_ + "/log").rdbuf();
-    return all.str();
   }
   static bool until(const std::function<bool()>& is_so) {
     LinuxClock clock;
@@ -52,9 +35,8 @@ class KeptPeerTest : public ::testing::Test {
     return false;
   }
 
-  std::string folder_;
   FrozenBytes image_ = *FrozenBytes::create("image", std::as_bytes(std::span("image", 5)));
-  KeeperPages pages_;
+  KeeperPages pages_ = *KeeperPages::create(2, {});
   KeptPeer peer_{1};
 };
 
@@ -84,7 +66,7 @@ TEST_F(KeptPeerTest, PassesOnTheMemoryThatItMade) {
 TEST_F(KeptPeerTest, ItsEndIsToldOnceAndWhatItSentIsStillThere) {
   ASSERT_TRUE(start(KEEPER_TEST_CHILD, seconds(3)));
   EXPECT_TRUE(until([&] { return log().find("begin") != std::string::npos; }));
-  std::ofstream(folder_ + "/1") << "kill 5\nexit 3\n";
+  order("1", "kill 5\nexit 3");
   ProcessEnd how;
   ASSERT_TRUE(until([&] { return peer_.has_ended(how); }));
   EXPECT_FALSE(peer_.has_ended(how));
