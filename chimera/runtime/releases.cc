@@ -18,8 +18,11 @@ bool is_built(OnMiss reaction, bool can_demote) noexcept {
 }
 
 QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
-  return {memory.take<QueueMember>(n), memory.take<QueueClass>(n),    memory.take<QueueTask>(n),
-          memory.take<LooseJob>(n),    memory.take<std::uint32_t>(n), memory.take<std::uint32_t>(n)};
+  return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n), memory.take<std::uint32_t>(n)},
+          memory.take<QueueTask>(n),
+          memory.take<LooseJob>(n),
+          memory.take<std::uint32_t>(n),
+          memory.take<std::uint32_t>(n)};
 }
 
 }  // namespace

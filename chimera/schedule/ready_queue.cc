@@ -1,344 +1,177 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps classes of tasks in two heaps, by next release and by urgency, over memory that it is given.
+// Keeps classes of tasks in two heaps, by next release and by urgency, and beside them the jobs outside their runs.
 #include "chimera/schedule/ready_queue.h"
-
-#include <algorithm>
 
 #include "chimera/base/assert.h"
 
 namespace chimera {
-namespace {
-
-// A binary heap over `heap[0..n)`; before(a, b) orders two elements.
-template <class T, class Before>
-void sift_down(std::span<T> heap, std::uint32_t n, std::uint32_t at, Before&& before) noexcept {
-  for (;;) {
-    std::uint32_t best = 2 * at + 1;
-    if (best >= n) return;
-    if (best + 1 < n && before(heap[best + 1], heap[best])) ++best;
-    if (!before(heap[best], heap[at])) return;
-    std::swap(heap[at], heap[best]);
-    at = best;
-  }
-}
-
-template <class T, class Before>
-void sift_up(std::span<T> heap, std::uint32_t at, Before&& before) noexcept {
-  while (at > 0 && before(heap[at], heap[(at - 1) / 2])) {
-    std::swap(heap[at], heap[(at - 1) / 2]);
-    at = (at - 1) / 2;
-  }
-}
-
-// Takes heap[at] out of n elements.
-template <class T, class Before>
-void erase(std::span<T> heap, std::uint32_t& n, std::uint32_t at, Before&& before) noexcept {
-  --n;
-  if (at == n) return;
-  heap[at] = heap[n];
-  sift_up(heap, at, before);
-  sift_down(heap, n, at, before);
-}
-
-}  // namespace
 
 ReadyQueue::ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const QueueStorage& storage) noexcept
-    : policy_(policy), storage_(storage) {
+    : classes_(policy, tasks, storage.classes),
+      tasks_(storage.tasks),
+      pauses_(storage.pauses),
+      runs_(storage.runs),
+      loose_(storage.loose) {
   const std::size_t n = tasks.size();
-  CHIMERA_ASSERT(storage.members.size() >= n && storage.classes.size() >= n && storage.tasks.size() >= n);
-  CHIMERA_ASSERT(storage.loose.size() >= n && storage.pauses.size() >= n && storage.runs.size() >= n);
-  make_classes(tasks);
+  CHIMERA_ASSERT(storage.tasks.size() >= n && storage.loose.size() >= n);
+  CHIMERA_ASSERT(storage.pauses.size() >= n && storage.runs.size() >= n);
+  for (std::size_t i = 0; i < n; ++i) tasks_[i] = QueueTask{};
 }
 
 void ReadyQueue::set_origin(Nanoseconds origin) noexcept {
-  CHIMERA_ASSERT(n_pauses_ == 0);
-  origin_ = origin;
-}
-
-void ReadyQueue::make_classes(std::span<const TaskSpec> tasks) noexcept {
-  std::uint32_t filled = 0;
-  for (std::uint32_t first = 0; first < tasks.size(); ++first) storage_.tasks[first].of_class = UINT32_MAX;
-  for (std::uint32_t first = 0; first < tasks.size(); ++first) {
-    if (storage_.tasks[first].of_class != UINT32_MAX) continue;
-    CHIMERA_ASSERT(tasks[first].period > Nanoseconds{});
-    QueueClass& c = storage_.classes[n_classes_];
-    c = QueueClass{};
-    c.period = tasks[first].period;
-    c.offset = tasks[first].offset;
-    c.begin = filled;
-    for (std::uint32_t i = first; i < tasks.size(); ++i) {
-      const TaskSpec& t = tasks[i];
-      if (t.period != c.period || t.offset != c.offset) continue;
-      storage_.tasks[i] = QueueTask{};
-      storage_.tasks[i].of_class = n_classes_;
-      storage_.members[filled++] = QueueMember{t.deadline, t.budget, kNever, i, t.criticality, t.user_priority};
-    }
-    c.size = filled - c.begin;
-    ++n_classes_;
-  }
-}
-
-std::uint32_t ReadyQueue::find(std::uint32_t task) const noexcept {
-  const QueueClass& c = storage_.classes[storage_.tasks[task].of_class];
-  std::uint32_t at = c.begin;
-  while (storage_.members[at].task != task) ++at;
-  return at;
-}
-
-Urgency ReadyQueue::urgency_of(const QueueClass& c, const QueueMember& m) noexcept {
-  return {m.criticality, m.user_priority, c.period, c.release + m.deadline, m.budget};
-}
-
-bool ReadyQueue::goes_before(const Urgency& a, std::uint32_t a_task, const Urgency& b,
-                             std::uint32_t b_task) const noexcept {
-  if (is_more_urgent(policy_, a, b)) return true;
-  if (is_more_urgent(policy_, b, a)) return false;
-  return a_task < b_task;
-}
-
-Nanoseconds ReadyQueue::grid_at_or_after(const QueueClass& c, Nanoseconds now) const noexcept {
-  const Nanoseconds first = origin_ + c.offset;
-  if (now <= first) return first;
-  return first + c.period * ((now - first + c.period - Nanoseconds{1}) / c.period);
-}
-
-bool ReadyQueue::is_member(TaskId task) const noexcept {
-  const QueueClass& c = storage_.classes[storage_.tasks[task.index].of_class];
-  return find(task.index) < c.begin + c.active;
+  CHIMERA_ASSERT(pauses_.is_empty());
+  classes_.set_origin(origin);
 }
 
 void ReadyQueue::join(TaskId task, Nanoseconds now) noexcept {
   if (is_member(task)) return;
-  const std::uint32_t index = storage_.tasks[task.index].of_class;
-  QueueClass& c = storage_.classes[index];
+  const std::uint32_t index = classes_.class_of(task.index);
+  const TaskClass& c = classes_[index];
   const bool had_run = c.cursor < c.active;
-  const auto class_members = storage_.members.subspan(c.begin, c.size);
-  const std::uint32_t from = find(task.index) - c.begin;
-  QueueMember m = class_members[from];
-  m.first = grid_at_or_after(c, now);
-  if (c.active > 0) m.first = std::max(m.first, c.next);  // the instant's release may be under way already
-  class_members[from] = class_members[c.active];
-  std::uint32_t to = c.active;
-  for (; to > 0; --to) {
-    const QueueMember& other = class_members[to - 1];
-    if (goes_before(urgency_of(c, other), other.task, urgency_of(c, m), m.task)) break;
-    class_members[to] = other;
-  }
-  class_members[to] = m;
-  ++c.active;
-  if (to < c.cursor || !had_run) ++c.cursor;
-  if (c.active == 1) {
-    c.cursor = 1;
-    c.next = m.first;
-    push_pause(index);
-  }
+  classes_.activate(task.index, now);
+  if (c.active == 1) pauses_.push(index, ByRelease{classes_});
   refresh_run(index, had_run);
 }
 
 void ReadyQueue::leave(TaskId task) noexcept {
   if (!is_member(task)) return;
-  const std::uint32_t index = storage_.tasks[task.index].of_class;
-  QueueClass& c = storage_.classes[index];
+  const std::uint32_t index = classes_.class_of(task.index);
+  const TaskClass& c = classes_[index];
   const bool had_run = c.cursor < c.active;
   Job forgotten;
   (void)take_deferred(task, forgotten);
-  const auto class_members = storage_.members.subspan(c.begin, c.size);
-  const std::uint32_t at = find(task.index) - c.begin;
-  const QueueMember m = class_members[at];
-  --c.active;
-  for (std::uint32_t i = at; i < c.active; ++i) class_members[i] = class_members[i + 1];
-  class_members[c.active] = m;
-  if (at < c.cursor) --c.cursor;
-  if (c.active == 0) remove_pause(index);
+  classes_.deactivate(task.index);
+  if (c.active == 0) {
+    std::uint32_t at = 0;
+    while (pauses_.items()[at] != index) ++at;
+    pauses_.erase(at, ByRelease{classes_});
+  }
   refresh_run(index, had_run);
 }
 
 Urgency ReadyQueue::top_urgency() const noexcept {
   CHIMERA_ASSERT(!is_empty());
-  return loose_is_top() ? storage_.loose[0].urgency : run_urgency(storage_.runs[0]);
+  return loose_is_top() ? loose_.top().urgency : classes_.urgency(runs_.top());
 }
 
 // More than one run, or jobs beside them.
 Job ReadyQueue::pop_among() noexcept {
   CHIMERA_ASSERT(!is_empty());
-  if (n_loose_ > 0 && loose_is_top()) return pop_loose();
-  const std::uint32_t index = storage_.runs[0];
-  QueueClass& c = storage_.classes[index];
-  const QueueMember& m = storage_.members[c.begin + c.cursor++];
-  const Job job{TaskId(m.task), c.release, c.release + m.deadline};
-  if (settle(c)) {
-    if (n_runs_ > 1) sift_run_down(0);
-  } else {
-    erase(storage_.runs, n_runs_, 0, [this](auto a, auto b) { return run_before(a, b); });
-  }
+  if (!loose_.is_empty() && loose_is_top()) return pop_loose();
+  TaskClass& c = classes_[runs_.top()];
+  const Job job = TaskClasses::job(c, classes_.member(c, c.cursor++));
+  if (!settle(c)) runs_.erase(0, ByUrgency{classes_});
+  else if (runs_.size() > 1) runs_.sift_top(ByUrgency{classes_});
   return job;
 }
 
 Job ReadyQueue::pop_loose() noexcept {
-  const Job job = storage_.loose[0].job;
-  QueueTask& t = storage_.tasks[job.task.index];
+  const Job job = loose_.top().job;
+  QueueTask& t = tasks_[job.task.index];
   if (t.is_loose) --n_deferred_;
   t.is_loose = false;
-  remove_loose(0);
+  loose_.erase(0, ByUrgency{classes_});
+  --n_beside_;
   return job;
 }
 
+bool ReadyQueue::loose_is_top() const noexcept {
+  if (loose_.is_empty() || runs_.is_empty()) return !loose_.is_empty();
+  const LooseJob& first = loose_.top();
+  const std::uint32_t run = runs_.top();
+  return classes_.goes_before(first.urgency, first.job.task.index, classes_.urgency(run),
+                              classes_.task_at_cursor(run));
+}
+
 void ReadyQueue::occupy(TaskId task) noexcept {
-  QueueTask& t = storage_.tasks[task.index];
-  if (!t.busy) ++n_busy_;
+  QueueTask& t = tasks_[task.index];
+  if (!t.busy) ++n_beside_;
   t.busy = true;
 }
 
 void ReadyQueue::finish(TaskId task) noexcept {
-  QueueTask& t = storage_.tasks[task.index];
-  if (t.busy) --n_busy_;
+  QueueTask& t = tasks_[task.index];
+  if (t.busy) --n_beside_;
   t.busy = false;
   if (!t.has_pending) return;
   t.has_pending = false;
   t.is_loose = true;
-  push_loose(make_loose(t.pending, nullptr));
+  push_loose(t.pending, nullptr);
 }
 
-void ReadyQueue::put_back(const Job& job, Nanoseconds remaining) noexcept { push_loose(make_loose(job, &remaining)); }
+void ReadyQueue::put_back(const Job& job, Nanoseconds remaining) noexcept { push_loose(job, &remaining); }
+
+// Without `remaining` it needs its whole budget.
+void ReadyQueue::push_loose(const Job& job, const Nanoseconds* remaining) noexcept {
+  const ClassMember& m = classes_.member_of(job.task.index);
+  const Nanoseconds period = classes_[classes_.class_of(job.task.index)].period;
+  const Urgency urgency{m.criticality, m.user_priority, period, job.deadline, remaining ? *remaining : m.budget};
+  loose_.push({job, urgency}, ByUrgency{classes_});
+  ++n_beside_;
+}
 
 bool ReadyQueue::remove(TaskId task, Job& job) noexcept {
-  if (take_deferred(task, job)) return true;
-  for (std::uint32_t i = 0; i < n_loose_; ++i) {
-    if (storage_.loose[i].job.task != task) continue;
-    job = storage_.loose[i].job;
-    remove_loose(i);
+  return take_deferred(task, job) || take_loose(task, job) || take_from_run(task, job);
+}
+
+bool ReadyQueue::take_loose(TaskId task, Job& job) noexcept {
+  for (std::uint32_t at = 0; at < loose_.size(); ++at) {
+    if (loose_.items()[at].job.task != task) continue;
+    job = loose_.items()[at].job;
+    loose_.erase(at, ByUrgency{classes_});
+    --n_beside_;
     return true;
   }
-  return take_from_run(task, job);
+  return false;
 }
 
 // The member stays in its class; setting its first release beyond this run is what takes it out of the run.
 bool ReadyQueue::take_from_run(TaskId task, Job& job) noexcept {
-  const std::uint32_t index = storage_.tasks[task.index].of_class;
-  QueueClass& c = storage_.classes[index];
-  const std::uint32_t at = find(task.index) - c.begin;
-  QueueMember& m = storage_.members[c.begin + at];
+  const std::uint32_t index = classes_.class_of(task.index), at = classes_.place(task.index);
+  TaskClass& c = classes_[index];
+  ClassMember& m = classes_.member(c, at);
   if (at < c.cursor || at >= c.active || m.first > c.release) return false;
-  job = Job{task, c.release, c.release + m.deadline};
+  job = TaskClasses::job(c, m);
   m.first = c.next;
   refresh_run(index, true);
   return true;
 }
 
 bool ReadyQueue::take_deferred(TaskId task, Job& job) noexcept {
-  QueueTask& t = storage_.tasks[task.index];
+  QueueTask& t = tasks_[task.index];
   if (!t.has_pending && !t.is_loose) return false;
   --n_deferred_;
-  if (t.has_pending) {
-    job = t.pending;
-  } else {
-    std::uint32_t at = 0;
-    while (storage_.loose[at].job.task != task) ++at;
-    job = storage_.loose[at].job;
-    remove_loose(at);
-  }
+  if (t.has_pending) job = t.pending;
+  else (void)take_loose(task, job);
   t.has_pending = t.is_loose = false;
   return true;
 }
 
-// The members of a class or their standing changed: puts its run where it belongs now.
-void ReadyQueue::refresh_run(std::uint32_t index, bool had_run) noexcept {
-  if (!had_run) return;
-  remove_run(index);
-  if (settle(storage_.classes[index])) push_run(index);
-}
-
 // Moves the cursor to the next member that may run; false when the run is over.
-bool ReadyQueue::settle(QueueClass& c) noexcept {
+bool ReadyQueue::settle(TaskClass& c) noexcept {
   for (; c.cursor < c.active; ++c.cursor) {
-    const QueueMember& m = storage_.members[c.begin + c.cursor];
+    const ClassMember& m = classes_.member(c, c.cursor);
     if (m.first > c.release) continue;
-    if (n_busy_ == 0) return true;
-    QueueTask& t = storage_.tasks[m.task];
+    if (n_beside_ == 0) return true;
+    QueueTask& t = tasks_[m.task];
     if (!t.busy) return true;
-    t.pending = Job{TaskId(m.task), c.release, c.release + m.deadline};
+    t.pending = TaskClasses::job(c, m);
     t.has_pending = true;
     ++n_deferred_;
   }
   return false;
 }
 
-const QueueMember& ReadyQueue::head(std::uint32_t index) const noexcept {
-  const QueueClass& c = storage_.classes[index];
-  return storage_.members[c.begin + c.cursor];
-}
-
-Urgency ReadyQueue::run_urgency(std::uint32_t index) const noexcept {
-  return urgency_of(storage_.classes[index], head(index));
-}
-
-bool ReadyQueue::run_before(std::uint32_t a, std::uint32_t b) const noexcept {
-  return goes_before(run_urgency(a), head(a).task, run_urgency(b), head(b).task);
-}
-
-LooseJob ReadyQueue::make_loose(const Job& job, const Nanoseconds* remaining) const noexcept {
-  const QueueMember& m = storage_.members[find(job.task.index)];
-  const QueueClass& c = storage_.classes[storage_.tasks[job.task.index].of_class];
-  return {job, {m.criticality, m.user_priority, c.period, job.deadline, remaining ? *remaining : m.budget}};
-}
-
-bool ReadyQueue::loose_before(const LooseJob& a, const LooseJob& b) const noexcept {
-  return goes_before(a.urgency, a.job.task.index, b.urgency, b.job.task.index);
-}
-
-bool ReadyQueue::loose_is_top() const noexcept {
-  if (n_loose_ == 0 || n_runs_ == 0) return n_loose_ > 0;
-  const LooseJob& loose = storage_.loose[0];
-  const std::uint32_t run = storage_.runs[0];
-  return goes_before(loose.urgency, loose.job.task.index, run_urgency(run), head(run).task);
-}
-
-void ReadyQueue::push_run(std::uint32_t index) noexcept {
-  storage_.runs[n_runs_] = index;
-  sift_up(storage_.runs, n_runs_++, [this](auto a, auto b) { return run_before(a, b); });
-}
-
-void ReadyQueue::sift_run_down(std::uint32_t at) noexcept {
-  sift_down(storage_.runs, n_runs_, at, [this](auto a, auto b) { return run_before(a, b); });
-}
-
 void ReadyQueue::remove_run(std::uint32_t index) noexcept {
-  std::uint32_t at = 0;
-  while (at < n_runs_ && storage_.runs[at] != index) ++at;
-  if (at == n_runs_) return;
-  // Its key may be stale already, so order is restored around the hole from above and from below.
-  --n_runs_;
-  if (at == n_runs_) return;
-  storage_.runs[at] = storage_.runs[n_runs_];
-  sift_up(storage_.runs, at, [this](auto a, auto b) { return run_before(a, b); });
-  sift_run_down(at);
+  for (std::uint32_t at = 0; at < runs_.size(); ++at)
+    if (runs_.items()[at] == index) return runs_.erase(at, ByUrgency{classes_});
 }
 
-void ReadyQueue::push_pause(std::uint32_t index) noexcept {
-  storage_.pauses[n_pauses_] = index;
-  sift_up(storage_.pauses, n_pauses_++,
-          [this](auto a, auto b) { return storage_.classes[a].next < storage_.classes[b].next; });
-}
-
-void ReadyQueue::sift_pause_down(std::uint32_t at) noexcept {
-  sift_down(storage_.pauses, n_pauses_, at,
-            [this](auto a, auto b) { return storage_.classes[a].next < storage_.classes[b].next; });
-}
-
-void ReadyQueue::remove_pause(std::uint32_t index) noexcept {
-  std::uint32_t at = 0;
-  while (storage_.pauses[at] != index) ++at;
-  erase(storage_.pauses, n_pauses_, at,
-        [this](auto a, auto b) { return storage_.classes[a].next < storage_.classes[b].next; });
-}
-
-void ReadyQueue::push_loose(const LooseJob& loose) noexcept {
-  storage_.loose[n_loose_] = loose;
-  sift_up(storage_.loose, n_loose_++, [this](const auto& a, const auto& b) { return loose_before(a, b); });
-}
-
-void ReadyQueue::remove_loose(std::uint32_t at) noexcept {
-  erase(storage_.loose, n_loose_, at, [this](const auto& a, const auto& b) { return loose_before(a, b); });
+// The members of a class or their standing changed: puts its run where it belongs now.
+void ReadyQueue::refresh_run(std::uint32_t index, bool had_run) noexcept {
+  if (!had_run) return;
+  remove_run(index);
+  if (settle(classes_[index])) runs_.push(index, ByUrgency{classes_});
 }
 
 }  // namespace chimera

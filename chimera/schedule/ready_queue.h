@@ -3,13 +3,9 @@
 //
 //   pause heap of classes (by next release)  --release_due-->  heap of runs (by urgency of the head)  --pop-->
 //
-// A *class* is all tasks with one (period, offset): they are released together by one entry of the pause heap.
-// A release starts a *run*: the members of the class in urgency order, which is static within a class, for all
-// were released at the same instant. A pop takes the head of the most urgent run, so it is O(1) while one class
-// is ready and O(log classes) otherwise; a thousand tasks of one rate cost a job no more than ten.
-//
-// Releases lie on a grid: origin + offset + k * period, also for a task that goes ON later: its first release is
-// the first one of the grid at or after that instant, so phases between tasks are kept over any off and on.
+// The classes of task_classes.h are released together, each by one entry of the pause heap. A pop takes the head of the
+// most urgent run, so it is O(1) while one class is ready and O(log classes) otherwise; a thousand tasks of one rate
+// cost a job no more than ten.
 //
 // Late rule: a release that comes while the previous one has not started replaces it (1 dropped); when k > 1
 // releases went by at once the newest counts and k-1 are dropped. There is never a burst.
@@ -18,46 +14,16 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/base/ids.h"
-#include "chimera/base/time.h"
-#include "chimera/schedule/policy.h"
-#include "chimera/task/task_spec.h"
+#include "chimera/schedule/binary_heap.h"
+#include "chimera/schedule/task_classes.h"
 
 namespace chimera {
-
-/// One released cycle of one task.
-struct Job {
-  TaskId task;
-  Nanoseconds release;
-  Nanoseconds deadline;  ///< absolute
-};
 
 /// Releases that will never run: `count` of them up to and including `last`.
 struct DroppedRelease {
   TaskId task;
   Nanoseconds last;
   std::uint32_t count = 0;
-};
-
-/// One member of a class; part of QueueStorage.
-struct QueueMember {
-  Nanoseconds deadline;   ///< relative
-  Nanoseconds budget;
-  Nanoseconds first;      ///< no release before this instant: the task was not ON yet
-  std::uint32_t task = 0;
-  std::uint32_t criticality = 0;
-  std::uint32_t user_priority = 0;
-};
-
-/// All tasks of one (period, offset); part of QueueStorage.
-struct QueueClass {
-  Nanoseconds period, offset;
-  Nanoseconds next;            ///< the coming release
-  Nanoseconds release;         ///< of the present run
-  std::uint32_t begin = 0;     ///< first member; active ones come first, in urgency order
-  std::uint32_t active = 0;
-  std::uint32_t size = 0;
-  std::uint32_t cursor = 0;    ///< members of the present run already taken; == active: no run
 };
 
 /// A job outside its run: preempted, or deferred until the task's previous job ended; part of QueueStorage.
@@ -68,7 +34,6 @@ struct LooseJob {
 
 /// What a queue knows of a task beside its class; part of QueueStorage.
 struct QueueTask {
-  std::uint32_t of_class = 0;
   bool busy = false;         ///< a job of the task was taken and has not finished (preemptive use)
   bool has_pending = false;  ///< `pending` was released while busy
   bool is_loose = false;     ///< a job that never started waits among the loose ones
@@ -77,8 +42,7 @@ struct QueueTask {
 
 /// Memory for a queue of n tasks: every span has n elements.
 struct QueueStorage {
-  std::span<QueueMember> members;
-  std::span<QueueClass> classes;
+  TaskClasses::Storage classes;
   std::span<QueueTask> tasks;
   std::span<LooseJob> loose;
   std::span<std::uint32_t> pauses;
@@ -101,37 +65,38 @@ class ReadyQueue {
   /// Context: cycle boundary; O(class + classes).
   void leave(TaskId task) noexcept;
   /// The first release that the member takes part in. Context: cycle boundary.
-  Nanoseconds first_release(TaskId task) const noexcept { return storage_.members[find(task.index)].first; }
+  Nanoseconds first_release(TaskId task) const noexcept { return classes_.member_of(task.index).first; }
   /// True between join and leave. Context: cycle boundary.
-  bool is_member(TaskId task) const noexcept;
+  bool is_member(TaskId task) const noexcept { return classes_.is_active(task.index); }
 
   /// The next instant at which release_due has something to do; kNever without members. Context: cycle; O(1).
   Nanoseconds next_release() const noexcept {
-    return n_pauses_ == 0 ? kNever : storage_.classes[storage_.pauses[0]].next;
+    return pauses_.is_empty() ? kNever : classes_[pauses_.top()].next;
   }
   /// Releases every class whose time has come and calls `dropped(const DroppedRelease&)` for what is lost by it.
   /// Context: cycle; O(log classes) for each class released, O(1) for each release dropped.
   template <class Dropped>
   void release_due(Nanoseconds now, Dropped&& dropped) noexcept {
-    while (next_release() <= now) release_class(storage_.pauses[0], now, dropped);
+    while (next_release() <= now) release_class(pauses_.top(), now, dropped);
   }
 
-  bool is_empty() const noexcept { return n_runs_ == 0 && n_loose_ == 0; }
+  bool is_empty() const noexcept { return runs_.is_empty() && loose_.is_empty(); }
   /// The urgency of what pop would give. Requires: not empty. Context: cycle; O(1).
   Urgency top_urgency() const noexcept;
   /// Takes the most urgent job; ties: user priority, then order of the tasks. Requires: not empty.
   /// Context: cycle; O(1) while one class is ready, else O(log classes).
   Job pop() noexcept {
-    if (n_runs_ != 1 || n_loose_ != 0 || n_busy_ != 0) [[unlikely]] return pop_among();
-    QueueClass& c = storage_.classes[storage_.runs[0]];
-    const QueueMember& m = storage_.members[c.begin + c.cursor];
+    const std::uint32_t others = (runs_.size() - 1) | n_beside_;  // one branch for both
+    if (others != 0) [[unlikely]] return pop_among();
+    TaskClass& c = classes_[runs_.top()];
+    const ClassMember& m = classes_.member(c, c.cursor);
     do {
       if (++c.cursor == c.active) {
-        n_runs_ = 0;
+        runs_.clear();
         break;
       }
-    } while (storage_.members[c.begin + c.cursor].first > c.release);
-    return {TaskId(m.task), c.release, c.release + m.deadline};
+    } while (classes_.member(c, c.cursor).first > c.release);
+    return TaskClasses::job(c, m);
   }
 
   /// Preemptive use: the job of the task runs; releases until finish() wait for its end.
@@ -144,79 +109,73 @@ class ReadyQueue {
   /// Context: cycle; O(class + waiting jobs).
   bool remove(TaskId task, Job& job) noexcept;
 
-  Policy policy() const noexcept { return policy_; }
+  Policy policy() const noexcept { return classes_.policy(); }
 
  private:
+  // The orders of the three heaps.
+  struct ByRelease {
+    const TaskClasses& classes;
+    bool operator()(std::uint32_t a, std::uint32_t b) const noexcept { return classes[a].next < classes[b].next; }
+  };
+  struct ByUrgency {
+    const TaskClasses& classes;
+    bool operator()(std::uint32_t a, std::uint32_t b) const noexcept { return classes.run_goes_before(a, b); }
+    bool operator()(const LooseJob& a, const LooseJob& b) const noexcept {
+      return classes.goes_before(a.urgency, a.job.task.index, b.urgency, b.job.task.index);
+    }
+  };
+
   template <class Dropped>
   void release_class(std::uint32_t index, Nanoseconds now, Dropped&& dropped) noexcept {
-    QueueClass& c = storage_.classes[index];
+    TaskClass& c = classes_[index];
     const bool had_run = c.cursor < c.active;
     for (std::uint32_t i = c.cursor; i < c.active; ++i) {
-      const QueueMember& m = storage_.members[c.begin + i];
+      const ClassMember& m = classes_.member(c, i);
       if (m.first <= c.release) dropped(DroppedRelease{TaskId(m.task), c.release, 1});
     }
-    if (n_deferred_ > 0) drop_deferred(index, dropped);
+    if (n_deferred_ > 0) drop_deferred(c, dropped);
     const std::int64_t passed = now < c.next + c.period ? 1 : (now - c.next) / c.period + 1;
     c.release = c.next + c.period * (passed - 1);
     c.next = c.release + c.period;
     for (std::uint32_t i = 0; passed > 1 && i < c.active; ++i) {
-      const QueueMember& m = storage_.members[c.begin + i];
+      const ClassMember& m = classes_.member(c, i);
       const Nanoseconds last = c.release - c.period;
       if (m.first <= last) dropped(DroppedRelease{TaskId(m.task), last, static_cast<std::uint32_t>(passed - 1)});
     }
     c.cursor = 0;
-    if (n_pauses_ > 1) sift_pause_down(0);
+    if (pauses_.size() > 1) pauses_.sift_top(ByRelease{classes_});
     if (had_run) remove_run(index);
     if (!settle(c)) return;
-    if (n_runs_ > 0) return push_run(index);
-    storage_.runs[0] = index;
-    n_runs_ = 1;
+    if (runs_.is_empty()) return runs_.set_only(index);
+    runs_.push(index, ByUrgency{classes_});
   }
   template <class Dropped>
-  void drop_deferred(std::uint32_t index, Dropped&& dropped) noexcept {
-    const QueueClass& c = storage_.classes[index];
+  void drop_deferred(const TaskClass& c, Dropped&& dropped) noexcept {
     Job job;
     for (std::uint32_t i = 0; i < c.active; ++i) {
-      const TaskId task(storage_.members[c.begin + i].task);
+      const TaskId task(classes_.member(c, i).task);
       if (take_deferred(task, job)) dropped(DroppedRelease{task, job.release, 1});
     }
   }
 
-  void make_classes(std::span<const TaskSpec> tasks) noexcept;
-  std::uint32_t find(std::uint32_t task) const noexcept;
-  bool goes_before(const Urgency& a, std::uint32_t a_task, const Urgency& b, std::uint32_t b_task) const noexcept;
-  static Urgency urgency_of(const QueueClass& c, const QueueMember& m) noexcept;
-  Nanoseconds grid_at_or_after(const QueueClass& c, Nanoseconds now) const noexcept;
-  bool take_deferred(TaskId task, Job& job) noexcept;
-  bool take_from_run(TaskId task, Job& job) noexcept;
-  void refresh_run(std::uint32_t index, bool had_run) noexcept;
   Job pop_among() noexcept;
   Job pop_loose() noexcept;
-  bool settle(QueueClass& c) noexcept;
-  const QueueMember& head(std::uint32_t index) const noexcept;
-  Urgency run_urgency(std::uint32_t index) const noexcept;
-  bool run_before(std::uint32_t a, std::uint32_t b) const noexcept;
-  bool loose_before(const LooseJob& a, const LooseJob& b) const noexcept;
   bool loose_is_top() const noexcept;
-  LooseJob make_loose(const Job& job, const Nanoseconds* remaining) const noexcept;
-  void push_run(std::uint32_t index) noexcept;
-  void sift_run_down(std::uint32_t at) noexcept;
+  void push_loose(const Job& job, const Nanoseconds* remaining) noexcept;
+  bool take_deferred(TaskId task, Job& job) noexcept;
+  bool take_loose(TaskId task, Job& job) noexcept;
+  bool take_from_run(TaskId task, Job& job) noexcept;
+  bool settle(TaskClass& c) noexcept;
   void remove_run(std::uint32_t index) noexcept;
-  void push_pause(std::uint32_t index) noexcept;
-  void sift_pause_down(std::uint32_t at) noexcept;
-  void remove_pause(std::uint32_t index) noexcept;
-  void push_loose(const LooseJob& loose) noexcept;
-  void remove_loose(std::uint32_t at) noexcept;
+  void refresh_run(std::uint32_t index, bool had_run) noexcept;
 
-  Policy policy_;
-  QueueStorage storage_;
-  Nanoseconds origin_;
-  std::uint32_t n_classes_ = 0;
-  std::uint32_t n_pauses_ = 0;
-  std::uint32_t n_runs_ = 0;
-  std::uint32_t n_loose_ = 0;
-  std::uint32_t n_busy_ = 0;
-  std::uint32_t n_deferred_ = 0;  ///< tasks with has_pending or is_loose
+  TaskClasses classes_;
+  std::span<QueueTask> tasks_;
+  BinaryHeap<std::uint32_t> pauses_;  // of active classes
+  BinaryHeap<std::uint32_t> runs_;    // of classes with members that are yet to be popped
+  BinaryHeap<LooseJob> loose_;
+  std::uint32_t n_beside_ = 0;    // tasks that are busy, and loose jobs
+  std::uint32_t n_deferred_ = 0;  // tasks with has_pending or is_loose
 };
 
 }  // namespace chimera

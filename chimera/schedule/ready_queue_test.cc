@@ -24,8 +24,9 @@ TaskSpec spec(std::int64_t period, std::int64_t budget = 1, std::uint32_t critic
 class Bench {
  public:
   Bench(Policy policy, std::vector<TaskSpec> tasks)
-      : tasks_(std::move(tasks)), members_(n()), classes_(n()), of_task_(n()), loose_(n()), pauses_(n()), runs_(n()),
-        queue(policy, tasks_, {members_, classes_, of_task_, loose_, pauses_, runs_}) {}
+      : tasks_(std::move(tasks)), members_(n()), classes_(n()), of_task_(n()), loose_(n()), class_of_(n()),
+        pauses_(n()), runs_(n()),
+        queue(policy, tasks_, {{members_, classes_, class_of_}, of_task_, loose_, pauses_, runs_}) {}
 
   void join_all() {
     for (std::size_t i = 0; i < n(); ++i) queue.join(TaskId(i), Nanoseconds{});
@@ -43,11 +44,11 @@ class Bench {
  private:
   std::size_t n() const { return tasks_.size(); }
   std::vector<TaskSpec> tasks_;
-  std::vector<QueueMember> members_;
-  std::vector<QueueClass> classes_;
+  std::vector<ClassMember> members_;
+  std::vector<TaskClass> classes_;
   std::vector<QueueTask> of_task_;
   std::vector<LooseJob> loose_;
-  std::vector<std::uint32_t> pauses_, runs_;
+  std::vector<std::uint32_t> class_of_, pauses_, runs_;
 
  public:
   ReadyQueue queue;
