@@ -180,7 +180,7 @@ Result<void> Rtpu::make_tasks() {
   tasks_ = *std::move(tasks);
   edge_ = std::make_unique<RtpuControl>(spec, *tasks_, *others_, *service_, *decision_, start_.peer,
                                  image_->settings().method_limit);
-  edge_->set_supervisor(over_.descriptor());
+  edge_->hanging().set_supervisor(over_.descriptor());
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
   cycling_ = std::make_unique<CyclingThread>(CyclingPlace{spec, start_.peer, image_->settings().priority, *tasks_,
                                                           *edge_, *others_, writer_, keeper_->origin, bell(),
@@ -203,11 +203,11 @@ int Rtpu::run() {
     listen(kSuperviseEveryMs);
     attend();
     if (hangs()) return kMethodHangs;
-    if (!is_ending_ && edge_->has_hanging()) {
-      is_giving_up_ = give_up(edge_->hanging(), edge_->hanging_age());
+    if (!is_ending_ && edge_->hanging().any()) {
+      is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age());
       end(true);
     }
-    if (is_giving_up_ && edge_->is_over()) return kMethodHangs;  // but for the job that does not end
+    if (is_giving_up_ && edge_->unit_end().is_over()) return kMethodHangs;  // but for the job that does not end
   }
   cycling_->join();
   service_->stop();
@@ -219,12 +219,12 @@ bool Rtpu::hangs() {
   const Nanoseconds now = wall_.now(), limit = hang_watch_->limit();
   const BlockHead& head = block_.head();
   const std::uint32_t running = head.running, serving = is_ending_ ? head.serving.load() : 0;
-  const std::uint32_t acting = edge_->acting() != 0 ? edge_->acting() : serving;
+  const std::uint32_t acting = edge_->supervised().acting() != 0 ? edge_->supervised().acting() : serving;
   const bool is_same_task = TaskWord::found(running).task() == TaskWord::found(acting).task();
-  if (hang_watch_->method_hangs(acting, edge_->progress(), now))
+  if (hang_watch_->method_hangs(acting, edge_->supervised().progress(), now))
     return give_up(is_same_task ? running : acting, limit);  // `running` is error, after the method that was called
   if (loop_hangs()) return give_up(running, limit);
-  const bool end_hangs = is_ending_ && hang_watch_->end_hangs(edge_->progress(), now);
+  const bool end_hangs = is_ending_ && hang_watch_->end_hangs(edge_->supervised().progress(), now);
   return end_hangs && give_up(running != 0 ? running : serving, limit);
 }
 
@@ -287,11 +287,12 @@ void Rtpu::end(bool is_alone) {
   if (!is_ending_) hang_watch_->begin_end(wall_.now());
   is_ending_ = true;
   ends_alone_ = is_alone;
-  edge_->end(is_alone);
+  edge_->unit_end().tell(is_alone);
   Doorbell(bell()).ring();
 }
 
-// Jobs of that task that have ended, as far as the loop's own thread has counted.
+// Jobs of that task that have ended, as far as the loop's own thread has counted. Relaxed, pairs with nothing: a figure
+// of which only the growth is looked at.
 std::uint64_t Rtpu::jobs_of(TaskId task) const {
   if (task.index >= tasks_->tasks().size()) return 0;
   return __atomic_load_n(&tasks_->tasks()[task.index].profile.execution[CHIMERA_CYCLE].count, __ATOMIC_RELAXED);

@@ -4,35 +4,13 @@
 
 #include <algorithm>
 
-#include "chimera/platform/wake_event.h"
 #include "chimera/runtime/boundary_signals.h"
-#include "chimera/runtime/task_word.h"
 
 namespace chimera {
 namespace {
 
 constexpr std::size_t kShownAtOnce = 4;
 constexpr Nanoseconds kLookWhileEnding = milliseconds(1);
-
-// The first that a signal calls.
-Method method_of(Signal signal) noexcept {
-  switch (signal) {
-    case Signal::kSpawn:
-      return Method::kInit;
-    case Signal::kOn:
-      return Method::kOn;
-    case Signal::kOff:
-      return Method::kOff;
-    case Signal::kKill:
-      return Method::kKill;
-    case Signal::kClear:
-      return Method::kClear;
-    case Signal::kReinit:
-      return Method::kReinit;
-    default:
-      return Method::kCycle;
-  }
-}
 
 }  // namespace
 
@@ -43,11 +21,12 @@ RtpuControl::RtpuControl(const ApplicationSpec& spec, TaskSet& tasks, PeerLinks&
       tasks_(tasks),
       others_(others),
       service_(service),
-      method_limit_(method_limit),
+      supervised_(tasks, others),
+      hanging_(spec.tasks.size()),
+      end_(tasks, others, supervised_, hanging_, method_limit),
       seen_changes_(others.changes() - 1),
-      blocked_(spec.tasks.size()),
-      commands_(spec.tasks.size()),
-      hangs_(spec.tasks.size()) {
+      waiting_(spec.tasks.size()),
+      commands_(spec.tasks.size()) {
   set_due({});  // the first edge looks around
 }
 
@@ -62,9 +41,16 @@ void RtpuControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
   others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
   check_peers();
   take_slow(signals, now);
-  if (ending_) return go_on_ending(signals, now);  // nothing is begun any more
+  if (end_.is_told()) return go_on_ending(signals, now);  // nothing is begun any more
   read_posts();
-  act_on_waiting(signals, now);
+  const auto may_touch = [&](TaskId task) { return !tasks_.tasks()[task.index].in_service && signals.may_touch(task); };
+  waiting_.act(may_touch, [&](std::span<const Post> step) { act(step, signals, now); });
+}
+
+void RtpuControl::go_on_ending(BoundarySignals& signals, Nanoseconds now) noexcept {
+  if (!end_.go_on(signals, now)) return set_due(now + kLookWhileEnding);
+  hanging_.wake_supervisor();
+  set_due(now);  // no wait comes between this and the look at it
 }
 
 void RtpuControl::check_peers() noexcept {
@@ -88,7 +74,7 @@ void RtpuControl::read_posts() noexcept {
     if (post.signal == Signal::kWakeup)
       (void)tasks_.sent().ring(post.task);
     else
-      (void)waiting_.try_push(post);
+      waiting_.add(post);
   }
 }
 
@@ -100,41 +86,6 @@ void RtpuControl::take_slow(BoundarySignals& signals, Nanoseconds now) noexcept 
     report(commands_[task.index], done, now);
     commands_[task.index] = {};
   }
-}
-
-// A step is a signal with those that belong to one transaction with it; 0: the rest of it is still to come.
-std::size_t RtpuControl::step_length(std::size_t first) const noexcept {
-  for (std::size_t i = first; i < waiting_.size(); ++i)
-    if (!waiting_[i].more) return i - first + 1;
-  return waiting_.is_full() ? waiting_.size() - first : 0;
-}
-
-// A task keeps the order of its signals: one that is being served, or that has an earlier signal waiting, waits.
-bool RtpuControl::may_act(std::span<const Post> step, BoundarySignals& signals) noexcept {
-  bool may = true;
-  for (const Post& post : step) {
-    const Task& task = tasks_.tasks()[post.task.index];
-    may = may && !task.in_service && !blocked_[post.task.index] && signals.may_touch(post.task);
-  }
-  if (!may)
-    for (const Post& post : step) blocked_[post.task.index] = true;
-  return may;
-}
-
-void RtpuControl::act_on_waiting(BoundarySignals& signals, Nanoseconds now) noexcept {
-  std::fill(blocked_.begin(), blocked_.end(), false);
-  std::size_t kept = 0, at = 0;
-  while (at < waiting_.size()) {
-    const std::size_t n = step_length(at);
-    const std::span<const Post> step(waiting_.begin() + at, n == 0 ? waiting_.size() - at : n);
-    at += step.size();
-    if (n != 0 && may_act(step, signals)) {
-      act(step, signals, now);
-      continue;
-    }
-    for (const Post& post : step) waiting_[kept++] = post;
-  }
-  while (waiting_.size() > kept) waiting_.pop_back();
 }
 
 bool RtpuControl::refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept {
@@ -158,7 +109,7 @@ void RtpuControl::act(std::span<const Post> step, BoundarySignals& signals, Nano
     const bool is_echo = post.signal == Signal::kReinit && post.detail != 0;
     if (is_echo) tasks_.constants().read_foreign();
     if (is_echo && !tasks_.constants().uses_changed(post.task)) continue;
-    const SignalReport done = carry_out(signals, {&post.task, 1}, post.signal, now);
+    const SignalReport done = supervised_.carry_out(signals, {&post.task, 1}, post.signal, now);
     if (done.is_deferred)
       commands_[post.task.index] = post;
     else
@@ -167,9 +118,9 @@ void RtpuControl::act(std::span<const Post> step, BoundarySignals& signals, Nano
 }
 
 void RtpuControl::turn_on(std::span<const Post> step, BoundarySignals& signals, Nanoseconds now) noexcept {
-  FixedVector<TaskId, kWaiting> tasks;
+  FixedVector<TaskId, WaitingSignals::kMost> tasks;
   for (const Post& post : step) (void)tasks.try_push(post.task);
-  const SignalReport done = carry_out(signals, {tasks.begin(), tasks.size()}, Signal::kOn, now);
+  const SignalReport done = supervised_.carry_out(signals, {tasks.begin(), tasks.size()}, Signal::kOn, now);
   for (const Post& post : step) {
     const State after = tasks_.tasks()[post.task.index].state;
     const Refusal why = post.task == done.task ? done.why : Refusal::kNone;
@@ -245,28 +196,8 @@ void RtpuControl::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexc
 
 void RtpuControl::hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept {
   post_event(EventKind::kHang, job.task(), static_cast<std::uint64_t>(age.count), now);
-  hangs_[job.task().index] = true;
   others_.keep_last_words(true, tasks_);
-  hanging_age_ = age.count;
-  hanging_job_ = job.word();
-  hanging_ = true;
-  wake_supervisor();
-}
-
-// Carries out a signal and publishes its method for the supervisor, because the method may not return.
-SignalReport RtpuControl::carry_out(BoundarySignals& signals, std::span<const TaskId> tasks, Signal signal,
-                                    Nanoseconds now) noexcept {
-  acting_ = TaskWord(tasks[0], method_of(signal)).word();
-  ++progress_;
-  const SignalReport done = signals.signal(tasks, signal, now);
-  publish();
-  acting_ = 0;
-  ++progress_;
-  return done;
-}
-
-void RtpuControl::wake_supervisor() noexcept {
-  if (supervisor_ >= 0) ring_event(supervisor_);
+  hanging_.note(job, age);
 }
 
 void RtpuControl::stop_all(BoundarySignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {
@@ -275,7 +206,7 @@ void RtpuControl::stop_all(BoundarySignals& signals, TaskId stopped_by, Nanoseco
     Task& task = tasks_.tasks()[id.index];
     if (!tasks_.is_mine(id) || task.state != State::kOn) continue;
     if (signals.may_touch(id))
-      (void)carry_out(signals, {&id, 1}, Signal::kOff, now);
+      (void)supervised_.carry_out(signals, {&id, 1}, Signal::kOff, now);
     else
       tasks_.sent().defer(task, Signal::kOff);  // its job is late, and is not waited for
   }
@@ -290,56 +221,6 @@ void RtpuControl::show_profiles() noexcept {
     others_.block().profile(id) = tasks_.tasks()[id.index].profile;
     ++shown;
   }
-}
-
-void RtpuControl::go_on_ending(BoundarySignals& signals, Nanoseconds now) noexcept {
-  others_.keep_last_words(ends_alone_, tasks_);
-  if (!has_begun_ending_) {
-    has_begun_ending_ = true;
-    patience_ = now + method_limit_;
-    others_.block().head().phase.store(PeerPhase::kEnding, std::memory_order_release);
-  }
-  if (!turn_off_next(signals, now) || !kill_next(signals, now)) return set_due(now + kLookWhileEnding);
-  others_.block().head().phase.store(PeerPhase::kEnded, std::memory_order_release);
-  over_ = true;
-  wake_supervisor();
-  set_due(now);  // no wait comes between this and the look at it
-}
-
-// True when none of ours is ON any more. Tasks of others that come first are waited for, not for ever.
-bool RtpuControl::turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept {
-  for (; next_off_ < spec_.end_order.size(); ++next_off_) {
-    const TaskId id = spec_.end_order[next_off_];
-    if (!tasks_.is_mine(id)) {
-      if (others_.state(id) == State::kOn && now < patience_ && !hanging_) return false;
-      continue;
-    }
-    if (tasks_.tasks()[id.index].state != State::kOn) continue;
-    if (!signals.may_touch(id)) {  // its job ends, or hangs
-      if (now < patience_ && !hangs_[id.index]) return false;
-      continue;
-    }
-    (void)carry_out(signals, {&id, 1}, Signal::kOff, now);
-    patience_ = now + method_limit_;
-  }
-  return true;
-}
-
-// True when all of ours are killed.
-bool RtpuControl::kill_next(BoundarySignals& signals, Nanoseconds now) noexcept {
-  bool is_done = true;
-  for (const TaskId id : spec_.end_order) {
-    if (!tasks_.is_mine(id)) continue;
-    const Task& task = tasks_.tasks()[id.index];
-    if (task.in_service) return false;
-    if (task.state == State::kNotCreated) continue;
-    if (!signals.may_touch(id)) {
-      is_done = is_done && hangs_[id.index];
-      continue;
-    }
-    if (carry_out(signals, {&id, 1}, Signal::kKill, now).is_deferred) return false;
-  }
-  return is_done;
 }
 
 }  // namespace chimera

@@ -282,18 +282,18 @@ TEST_F(EdgeTest, AManagerThatIsReplacedIsServedAndItsPredecessorsSignalsAreNot) 
 
 TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllUnits) {
   all_on();
-  first().edge->end(false);
+  first().edge->unit_end().tell(false);
   units->change();
   units->run(milliseconds(3));
   EXPECT_EQ(first().state(kKiller), State::kOff) << "nobody comes before it";
   EXPECT_EQ(first().state(kSource), State::kOn) << "the follower in the other unit is still ON";
-  second().edge->end(false);
+  second().edge->unit_end().tell(false);
   units->change();
   units->run(milliseconds(10));
   EXPECT_EQ(second().state(kFollower), State::kNotCreated);
   EXPECT_EQ(first().state(kSource), State::kNotCreated);
-  EXPECT_TRUE(first().edge->is_over());
-  EXPECT_TRUE(second().edge->is_over());
+  EXPECT_TRUE(first().edge->unit_end().is_over());
+  EXPECT_TRUE(second().edge->unit_end().is_over());
 }
 
 TEST_F(EdgeTest, AnInitThatEndsWhileItsUnitEndsAloneIsNotReportedForItsSuccessorDoesItAgain) {
@@ -305,12 +305,12 @@ TEST_F(EdgeTest, AnInitThatEndsWhileItsUnitEndsAloneIsNotReportedForItsSuccessor
     units->run(microseconds(100));
     const auto in_init = std::exchange(first().service.asked, {});
     ASSERT_EQ(in_init.size(), 1u);
-    first().edge->end(is_alone);
+    first().edge->unit_end().tell(is_alone);
     units->change();
     units->run(milliseconds(1));
     first().service.asked = in_init;
     units->run(milliseconds(3));
-    EXPECT_TRUE(first().edge->is_over());
+    EXPECT_TRUE(first().edge->unit_end().is_over());
     EXPECT_EQ(first().state(kSource), State::kNotCreated);
     EXPECT_EQ(units->take(PostKind::kReport).size(), is_alone ? 0u : 1u);
   }
@@ -318,10 +318,10 @@ TEST_F(EdgeTest, AnInitThatEndsWhileItsUnitEndsAloneIsNotReportedForItsSuccessor
 
 TEST_F(EdgeTest, TheEndDoesNotWaitForEverForAnotherUnit) {
   all_on();
-  first().edge->end(false);
+  first().edge->unit_end().tell(false);
   units->change();
   units->run(milliseconds(1100));
-  EXPECT_TRUE(first().edge->is_over());
+  EXPECT_TRUE(first().edge->unit_end().is_over());
 }
 
 }  // namespace

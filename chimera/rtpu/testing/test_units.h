@@ -59,7 +59,7 @@ struct Unit {
     RunOptions options;
     options.policy = spec.rtpus[me].policy;
     options.guest = edge.get();
-    options.stop = &edge->is_over();
+    options.stop = &edge->unit_end().is_over();
     executive = std::make_unique<Executive>(*tasks, clock, job_clock, options);
     executive->start(keeper.origin);
     edge->begin();

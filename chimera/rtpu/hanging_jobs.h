@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Jobs that do not end: noted at a boundary, read by the thread that supervises the unit and ends it for one.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "chimera/base/time.h"
+#include "chimera/platform/wake_event.h"
+#include "chimera/runtime/task_word.h"
+
+namespace chimera {
+
+class HangingJobs {
+ public:
+  explicit HangingJobs(std::size_t n_tasks) : is_hanging_(n_tasks) {}
+  /// An event descriptor that is written to by wake_supervisor(). Context: setup.
+  void set_supervisor(int descriptor) noexcept { supervisor_ = descriptor; }
+
+  /// `age`: since its release; zero: its thread is gone. Context: cycle boundary.
+  void note(TaskWord job, Nanoseconds age) noexcept {
+    is_hanging_[job.task().index] = true;
+    age_ = age.count;
+    job_ = job.word();
+    any_ = true;
+    wake_supervisor();
+  }
+  /// Nobody waits for the job of that task. Context: cycle boundary.
+  bool has(TaskId task) const noexcept { return is_hanging_[task.index]; }
+  void wake_supervisor() const noexcept {
+    if (supervisor_ >= 0) ring_event(supervisor_);
+  }
+
+  // Context of the rest: any thread; wait-free.
+  bool any() const noexcept { return any_; }
+  /// The last that was noted, as BlockHead::running, and its age then. Requires: any().
+  std::uint32_t job() const noexcept { return job_; }
+  Nanoseconds age() const noexcept { return {age_}; }
+
+ private:
+  std::vector<bool> is_hanging_;  // by task
+  int supervisor_ = -1;
+  // note() at a boundary, read by the main thread: any_ is stored last and loaded first, so that the others are seen.
+  std::atomic<bool> any_{false};
+  std::atomic<std::uint32_t> job_{0};
+  std::atomic<std::int64_t> age_{0};
+};
+
+}  // namespace chimera

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Signals that are carried out at a boundary, in sight of the thread that supervises the unit: their method may not
+// come to its end.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "chimera/rtpu/peer_links.h"
+#include "chimera/runtime/boundary_signals.h"
+
+namespace chimera {
+
+/// Both given outlive this.
+class SupervisedSignals {
+ public:
+  SupervisedSignals(TaskSet& tasks, PeerLinks& others) noexcept : tasks_(tasks), others_(others) {}
+
+  /// Carries out `signal`, and shows the others what has changed by it. Context: cycle boundary; as long as the methods
+  /// take.
+  SignalReport carry_out(BoundarySignals& signals, std::span<const TaskId> tasks, Signal signal,
+                         Nanoseconds now) noexcept;
+
+  // Context of both: any thread; wait-free.
+  /// Grows with each signal that is begun or done with.
+  std::uint32_t progress() const noexcept { return progress_; }
+  /// The method that is under way, as BlockHead::running; 0: none.
+  std::uint32_t acting() const noexcept { return acting_; }
+
+ private:
+  TaskSet& tasks_;
+  PeerLinks& others_;
+  // Stored at a boundary, watched by the main thread (HangWatch); pair with nothing.
+  std::atomic<std::uint32_t> progress_{0}, acting_{0};
+};
+
+}  // namespace chimera

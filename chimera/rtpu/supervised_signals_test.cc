@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/supervised_signals.h"
+
+#include <gtest/gtest.h>
+
+#include "chimera/rtpu/testing/test_units.h"
+
+namespace chimera {
+namespace {
+
+using testing::component;
+
+const SupervisedSignals* watched = nullptr;
+
+/// Sees what a supervisor would see while its methods are under way.
+struct Seer {
+  Out<double> x{"x", "1", initial = 0.0};
+  void on(Cycle) { seen_on = watched->acting(), progress = watched->progress(); }
+  void off(Cycle) { seen_off = watched->acting(); }
+  void cycle(Cycle) { seen_cycle = watched->acting(); }
+  static inline std::uint32_t seen_on = 0, seen_off = 0, seen_cycle = 1, progress = 0;
+};
+
+TEST(SupervisedSignals, TellTheMethodForAsLongAsItIsUnderWay) {
+  const TaskId seer(0u);
+  testing::TestApplication app;
+  app.rtpus = {{"only", 0, Policy::kEdf}};
+  app.add("seer", component<Seer>("seer")).rtpu = RtpuId(0u);
+  app.make({seer}, false);
+  testing::Units units(app);
+  watched = &units.units[0]->edge->supervised();
+  units.run(milliseconds(1));
+  const std::uint32_t before = watched->progress();
+  units.bring_up({seer});
+  units.run(milliseconds(20));
+  EXPECT_EQ(Seer::seen_on, TaskWord(seer, Method::kOn).word());
+  EXPECT_EQ(Seer::progress % 2, 1u) << "begun, not done with";
+  EXPECT_EQ(Seer::seen_cycle, 0u) << "a job is no signal";
+  EXPECT_EQ(watched->acting(), 0u);
+  units.send(Signal::kOff, {seer});
+  units.run(milliseconds(1));
+  EXPECT_EQ(Seer::seen_off, TaskWord(seer, Method::kOff).word());
+  EXPECT_EQ(watched->progress(), before + 6) << "spawn, on and off";
+  EXPECT_EQ(units.units[0]->state(seer), State::kOff) << "shown to the others";
+}
+
+}  // namespace
+}  // namespace chimera

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ends the tasks of a unit step by step, with patience for the tasks of other units that come first.
+#include "chimera/rtpu/unit_end.h"
+
+namespace chimera {
+
+bool UnitEnd::go_on(BoundarySignals& signals, Nanoseconds now) noexcept {
+  others_.keep_last_words(is_alone_, tasks_);
+  if (!has_begun_) {
+    has_begun_ = true;
+    patience_ = now + method_limit_;
+    others_.block().head().phase.store(PeerPhase::kEnding, std::memory_order_release);
+  }
+  if (!turn_off_next(signals, now) || !kill_next(signals, now)) return false;
+  others_.block().head().phase.store(PeerPhase::kEnded, std::memory_order_release);
+  over_ = true;
+  return true;
+}
+
+// True when none of ours is ON any more. Tasks of others that come first are waited for, not for ever.
+bool UnitEnd::turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept {
+  for (; next_off_ < tasks_.spec().end_order.size(); ++next_off_) {
+    const TaskId id = tasks_.spec().end_order[next_off_];
+    if (!tasks_.is_mine(id)) {
+      if (others_.state(id) == State::kOn && now < patience_ && !hanging_.any()) return false;
+      continue;
+    }
+    if (tasks_.tasks()[id.index].state != State::kOn) continue;
+    if (!signals.may_touch(id)) {  // its job ends, or hangs
+      if (now < patience_ && !hanging_.has(id)) return false;
+      continue;
+    }
+    (void)supervised_.carry_out(signals, {&id, 1}, Signal::kOff, now);
+    patience_ = now + method_limit_;
+  }
+  return true;
+}
+
+// True when all of ours are killed.
+bool UnitEnd::kill_next(BoundarySignals& signals, Nanoseconds now) noexcept {
+  bool is_done = true;
+  for (const TaskId id : tasks_.spec().end_order) {
+    if (!tasks_.is_mine(id)) continue;
+    const Task& task = tasks_.tasks()[id.index];
+    if (task.in_service) return false;
+    if (task.state == State::kNotCreated) continue;
+    if (!signals.may_touch(id)) {
+      is_done = is_done && hanging_.has(id);
+      continue;
+    }
+    if (supervised_.carry_out(signals, {&id, 1}, Signal::kKill, now).is_deferred) return false;
+  }
+  return is_done;
+}
+
+}  // namespace chimera

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/unit_end.h"
+
+#include <gtest/gtest.h>
+
+#include "chimera/rtpu/testing/test_units.h"
+
+namespace chimera {
+namespace {
+
+using testing::component;
+
+struct Giver {
+  Out<double> x{"x", "1", initial = 0.0};
+  void cycle(Cycle) { *x = 1; }
+};
+struct Taker {
+  In<double> x{"x", "1"};
+  void cycle(Cycle) {}
+};
+
+constexpr TaskId kGiver{0u}, kTaker{1u};
+
+// The taker, in a unit of its own, is to be turned off before the giver.
+struct UnitEndTest : ::testing::Test {
+  UnitEndTest() {
+    app.rtpus = {{"gives", 0, Policy::kEdf}, {"takes", 1, Policy::kEdf}};
+    app.add("giver", component<Giver>("giver")).rtpu = RtpuId(0u);
+    app.add("taker", component<Taker>("taker")).rtpu = RtpuId(1u);
+    app.make({kGiver, kTaker}, false);
+    units = std::make_unique<testing::Units>(app);
+    units->run(milliseconds(1));
+    units->bring_up({kGiver, kTaker});
+  }
+  testing::Unit& unit(std::size_t u) { return *units->units[u]; }
+  UnitEnd& end_of(std::size_t u) { return unit(u).edge->unit_end(); }
+  PeerPhase phase(std::size_t u) { return unit(u).segment.block.head().phase; }
+
+  testing::TestApplication app;
+  std::unique_ptr<testing::Units> units;
+};
+
+TEST_F(UnitEndTest, KillsItsTasksAndSaysSo) {
+  EXPECT_FALSE(end_of(1).is_told());
+  end_of(1).tell(false);
+  units->change();
+  units->run(milliseconds(1100));  // its patience with the giver is a second
+  EXPECT_TRUE(end_of(1).is_over());
+  EXPECT_EQ(unit(1).state(kTaker), State::kNotCreated);
+  EXPECT_EQ(phase(1), PeerPhase::kEnded);
+  EXPECT_FALSE(end_of(0).is_over());
+  EXPECT_EQ(unit(0).state(kGiver), State::kOn) << "the other unit goes on";
+}
+
+TEST_F(UnitEndTest, WaitsForTheConsumersOfOtherUnits) {
+  end_of(0).tell(false);
+  units->change();
+  units->run(milliseconds(500));
+  EXPECT_FALSE(end_of(0).is_over());
+  EXPECT_EQ(phase(0), PeerPhase::kEnding);
+  EXPECT_EQ(unit(0).state(kGiver), State::kOn);
+  end_of(1).tell(false);
+  units->change();
+  units->run(milliseconds(5));
+  EXPECT_TRUE(end_of(0).is_over());
+}
+
+TEST_F(UnitEndTest, WaitsForNobodyWhenAJobOfItsOwnHangs) {
+  unit(0).edge->hanging().note(TaskWord(kGiver, Method::kCycle), seconds(1));
+  end_of(0).tell(false);
+  units->change();
+  units->run(milliseconds(5));
+  EXPECT_TRUE(end_of(0).is_over());
+}
+
+TEST_F(UnitEndTest, LeavesItsSuccessorWhatWasOnWhenItEndsAlone) {
+  end_of(1).tell(true);
+  units->change();
+  units->run(milliseconds(1100));
+  EXPECT_TRUE(end_of(1).is_over());
+  EXPECT_EQ(unit(1).state(kTaker), State::kOn) << "as the others are shown";
+  EXPECT_EQ(unit(1).tasks->tasks()[kTaker.index].state, State::kNotCreated);
+}
+
+}  // namespace
+}  // namespace chimera
