@@ -190,15 +190,16 @@ function(chimera_script_test name)
   endif()
 endfunction()
 
-# chimera_fuzz(NAME CORPUS folder LIBS lib...): NAME.cc (ending in _fuzz) twice, with and without CHIMERA_PLANTED_DEFECT
-#   defined: 10 s from the committed corpus must find nothing, and the planted defect must be found.
-function(chimera_fuzz name)
+# chimera_fuzz(SOURCE CORPUS folder LIBS lib...): SOURCE.cc (a path ending in _fuzz) twice, with and without
+#   CHIMERA_PLANTED_DEFECT defined: 10 s from the committed corpus must find nothing, the planted defect must be found.
+function(chimera_fuzz source)
   cmake_parse_arguments(arg "" "CORPUS" "LIBS" ${ARGN})
   if(NOT CHIMERA_FUZZ)
     return()
   endif()
+  cmake_path(GET source STEM name)
   foreach(target ${name} ${name}_planted)
-    add_executable(${target} ${name}.cc)
+    add_executable(${target} ${source}.cc)
     target_link_libraries(${target} PRIVATE ${arg_LIBS} chimera_flags)
     target_link_options(${target} PRIVATE -fsanitize=fuzzer)
     add_dependencies(tests_needed ${target})

@@ -59,7 +59,7 @@ def parse_arguments():
 def trees_of(shares):
     """The trees the shares need; the fuzz tree only when something is to be fuzzed."""
     wanted = [tree for tree in TREES if any(tree == run[0] for share in shares for run in share.runs)]
-    if not any((common.ROOT / "chimera").glob("*/*_fuzz.cc")):
+    if not any((common.ROOT / "chimera").rglob("*_fuzz.cc")):
         wanted = [tree for tree in wanted if tree != "fuzz"]
     return wanted
 
