@@ -66,7 +66,8 @@ struct Round {
 
 /// Fixed part; rows and outputs follow in their own memory.
 struct Record {
-  // Written by the child, read by the watcher while it runs.
+  // Written by the child, read by the watcher: `watched` with sequential consistency, so that a system call between the
+  // two stores of a method is counted for that method; `progress` relaxed, a figure that pairs with nothing.
   std::atomic<std::uint32_t> watched{0};  ///< 1 + method while the component's own code runs that is counted
   std::atomic<std::uint64_t> progress{0};
   Stage stage = Stage::kLoad;

@@ -32,6 +32,7 @@ class BellWatch {
 
   Doorbell bell_;
   WakeEvent event_;
+  // Sequentially consistent: stored by the destructor before it rings the bell, loaded by watch() after each ring.
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -46,6 +46,8 @@ class Halt {
   static void handle(int) noexcept;
   void sleep() noexcept;
 
+  // ask() and lift() by others, open() and close() by the thread, all with release; the acquire of sleep(), in the
+  // thread's signal handler, pairs with lift().
   std::atomic<std::uint32_t> word_{0};
   pid_t thread_ = 0;
 };

@@ -29,8 +29,9 @@ class Section {
   void enter_taken() noexcept;
   void wake_one() noexcept;
 
+  // The release of leave() pairs with the acquire of enter() and enter_taken(): what one user wrote the next one sees.
   std::atomic<std::uint32_t> word_{kFree};
-  std::atomic<std::uint64_t> times_taken_{0};
+  std::atomic<std::uint64_t> times_taken_{0};  // relaxed: a figure that pairs with nothing
 };
 
 }  // namespace chimera

@@ -82,7 +82,7 @@ class PeerLinks final : public PeerView {
   std::vector<Outbox> outboxes_;               // by peer
   std::vector<Inbox> inboxes_;                 // by peer
   std::vector<bool> is_read_;                  // by peer: a task may still read the segment before the present one
-  std::vector<const std::atomic<std::uint32_t>*> flags_;
+  std::vector<const std::atomic<std::uint32_t>*> flags_;  // BlockHead::flag of those who live
 };
 
 }  // namespace chimera

@@ -13,7 +13,8 @@ namespace chimera {
 
 enum class Making : std::uint32_t { kNothing, kLoads, kConstructs };
 
-/// From here on `what` is done for the task of that index. Context: setup; wait-free.
+/// From here on `what` is done for the task of that index. Relaxed, pairs with nothing: the cell is read by who finds
+/// the process dead or hanging. Context: setup; wait-free.
 inline void show_making(std::atomic<std::uint32_t>& cell, std::size_t task, Making what) noexcept {
   cell.store(TaskWord(TaskId(task), static_cast<std::uint32_t>(what)).word(), std::memory_order_relaxed);
 }

@@ -21,7 +21,8 @@
 
 namespace chimera::shared_copy {
 
-/// The counter word at `place`. Readers use it on read-only mappings: it is never stored through.
+/// The counter word at `place`. Readers use it on read-only mappings: it is never stored through. What pairs with
+/// what is said where a group is published and read (group.h).
 inline std::atomic_ref<std::uint64_t> word(const std::byte* place) noexcept {
   return std::atomic_ref<std::uint64_t>(*reinterpret_cast<std::uint64_t*>(const_cast<std::byte*>(place)));
 }

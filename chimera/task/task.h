@@ -44,7 +44,7 @@ struct SentSignal {
 
 inline constexpr std::size_t kOutboxSize = 16;
 
-/// Where a task tells that nobody wants to know.
+/// Where a task tells which method runs while nobody wants to know. Never read: pairs with nothing.
 inline std::atomic<std::uint32_t> running_untold{0};
 
 /// What every job touches comes first, on as few cache lines as it takes: with a thousand tasks a job costs what it
@@ -53,8 +53,8 @@ struct alignas(64) Task {
   // Fixed at set-up, or from the construction of the component on.
   chimera_method cycle = nullptr;  ///< the component's
   void* instance = nullptr;        ///< the component's state
-  std::atomic<std::uint32_t>* running =
-      &running_untold;  ///< told which method runs, for whoever finds the process dead
+  /// Told which method runs, for who finds the process dead: relaxed, pairs with nothing.
+  std::atomic<std::uint32_t>* running = &running_untold;
   std::span<Output> outputs;
   std::uint64_t all_outputs = 0;  ///< the valid bits when every out-var has a value
   TaskId id;

@@ -202,10 +202,10 @@ struct CsvLog {
   Nanoseconds origin_;
   std::uint64_t n_lost_ = 0;
   bool has_told_refusal_ = false, has_told_loss_ = false;
-  alignas(64) std::atomic<std::uint64_t> put_{0};  // rows, ever
+  alignas(64) std::atomic<std::uint64_t> put_{0};  // rows, ever; release by the cycle, acquire by background
   // Of background.
-  alignas(64) std::atomic<std::uint64_t> taken_{0};
-  std::atomic<int> error_{0};
+  alignas(64) std::atomic<std::uint64_t> taken_{0};  // release by background, acquire by the cycle: the places are free
+  std::atomic<int> error_{0};                        // relaxed, pairs with nothing: told by the cycle in a fault
   std::string text_;  // on its way to the disk
   int file_ = -1;
 };

@@ -29,7 +29,7 @@ class Latest {
  private:
   static constexpr std::uint32_t kPlace = 3, kFresh = 4;
   std::array<T, 3> places_{};
-  std::atomic<std::uint32_t> between_{2};
+  std::atomic<std::uint32_t> between_{2};  // the exchanges of put() and get() pair with each other
   std::uint32_t filled_ = 0, seen_ = 1;
 };
 

@@ -142,6 +142,7 @@ struct ModbusIo {
 
   Latest<ModbusCommand> told_;
   Latest<ModbusReading> brought_;
+  // Relaxed, pair with nothing: by background, told by the cycle in a fault.
   std::atomic<bool> is_good_{false};
   std::atomic<int> error_{0};
   // Of background, after init.

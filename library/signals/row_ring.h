@@ -50,8 +50,8 @@ class RowRing {
  private:
   std::size_t columns_ = 0, capacity_ = 0;
   std::vector<double> rows_;
-  alignas(64) std::atomic<std::uint64_t> put_{0};    // of the cycle
-  alignas(64) std::atomic<std::uint64_t> taken_{0};  // of the background
+  alignas(64) std::atomic<std::uint64_t> put_{0};    // of the cycle: release by commit, acquire by front
+  alignas(64) std::atomic<std::uint64_t> taken_{0};  // of the background: release by release(), acquire by begin()
 };
 
 }  // namespace chimera::library

@@ -55,7 +55,7 @@ class FeatureRing {
  private:
   static constexpr std::uint64_t kPlaces = 64;
   std::array<Feature, kPlaces> places_{};
-  std::atomic<std::uint64_t> put_{0}, taken_{0};
+  std::atomic<std::uint64_t> put_{0}, taken_{0};  // the release of put() and of take() pairs with the other's acquire
 };
 
 /// The end that writes: send() in cycle, flush() in background.
@@ -111,7 +111,7 @@ class FeatureReader {
   std::vector<Feature> recording_;
   std::size_t next_ = 0;
   FeatureRing ring_;
-  std::atomic<std::uint64_t> refused_{0};
+  std::atomic<std::uint64_t> refused_{0};  // relaxed: a figure that pairs with nothing
 };
 
 }  // namespace chimera::library

@@ -25,6 +25,7 @@
 namespace chimera::cli {
 namespace {
 
+// Stored by a signal handler, loaded by the loops of the run (RunOptions::stop): pairs with nothing.
 std::atomic<bool> stop_requested{false};
 
 constexpr Nanoseconds kDrainEvery = milliseconds(10);

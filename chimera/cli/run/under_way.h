@@ -17,6 +17,8 @@ namespace chimera::cli {
 struct UnderWay {
   static constexpr std::size_t kMostTasks = 256;
 
+  // Written where the run is, read by the parent when the process is dead, and by a watch to see whether a method takes
+  // too long: figures that pair with nothing.
   std::atomic<std::uint32_t> making{0};   ///< as show_making() writes it
   std::atomic<std::uint32_t> running{0};  ///< as BlockHead::running
   std::atomic<std::uint32_t> serving{0};

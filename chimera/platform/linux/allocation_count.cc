@@ -17,6 +17,7 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(con
 namespace chimera {
 namespace {
 
+// Relaxed, pair with nothing: figures, which a test reads when the threads that allocate are joined or its own.
 std::atomic<bool> is_watched{false};
 std::atomic<std::int64_t> live{0};
 thread_local std::uint64_t here = 0;
