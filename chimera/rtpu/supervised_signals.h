@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signals that are carried out at a boundary, in sight of the thread that supervises the unit: their method may not
-// come to its end.
+// Carries out signals at a cycle boundary and publishes the method of each for the thread that supervises the unit,
+// because the method may not return.
 #pragma once
 
 #include <atomic>
@@ -23,7 +23,7 @@ class SupervisedSignals {
                          Nanoseconds now) noexcept;
 
   // Context of both: any thread; wait-free.
-  /// Grows with each signal that is begun or done with.
+  /// Grows at the begin and the end of each signal that a cycle boundary carries out.
   std::uint32_t progress() const noexcept { return progress_; }
   /// The method that is under way, as BlockHead::running; 0: none.
   std::uint32_t acting() const noexcept { return acting_; }
