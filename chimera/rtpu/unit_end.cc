@@ -22,7 +22,8 @@ bool UnitEnd::turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept 
   for (; next_off_ < tasks_.spec().end_order.size(); ++next_off_) {
     const TaskId id = tasks_.spec().end_order[next_off_];
     if (!tasks_.is_mine(id)) {
-      if (others_.state(id) == State::kOn && now < patience_ && !hanging_.any()) return false;
+      const bool is_awaited = !is_alone_ && !hanging_.any();  // while this unit ends alone the others stay ON
+      if (is_awaited && others_.state(id) == State::kOn && now < patience_) return false;
       continue;
     }
     if (tasks_.tasks()[id.index].state != State::kOn) continue;

@@ -73,10 +73,10 @@ TEST_F(UnitEndTest, WaitsForNobodyWhenAJobOfItsOwnHangs) {
   EXPECT_TRUE(end_of(0).is_over());
 }
 
-TEST_F(UnitEndTest, LeavesItsSuccessorWhatWasOnWhenItEndsAlone) {
+TEST_F(UnitEndTest, LeavesItsSuccessorWhatWasOnWhenItEndsAloneAndWaitsForNobody) {
   end_of(1).tell(true);
   units->change();
-  units->run(milliseconds(1100));
+  units->run(milliseconds(5));
   EXPECT_TRUE(end_of(1).is_over());
   EXPECT_EQ(unit(1).state(kTaker), State::kOn) << "as the others are shown";
   EXPECT_EQ(unit(1).tasks->tasks()[kTaker.index].state, State::kNotCreated);
