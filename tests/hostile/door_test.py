@@ -28,8 +28,11 @@ held = []
 for _ in range(int(sys.argv[2])):
     s = socket.socket(socket.AF_UNIX)
     s.connect(sys.argv[1])
-    s.sendall(sys.argv[3].encode())
     held.append(s)
+    try:
+        s.sendall(sys.argv[3].encode())
+    except BrokenPipeError:
+        pass  # it was idle and gave its place to one of the others
 print("held", flush=True)
 sys.stdin.read()
 '''
