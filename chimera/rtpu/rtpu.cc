@@ -93,7 +93,7 @@ class Rtpu {
 
 Result<void> Rtpu::prepare() {
   if (start_.parent != 0) {
-    for (const int fd : {start_.channel, start_.image, start_.decision_page, start_.keeper_page})
+    for (const int fd : {start_.channel, start_.image, start_.decision_page, start_.keeper_page, start_.objects})
       close_at_exec(fd);  // what a component starts by exec has none of them
     constexpr int kTaken[] = {SIGTERM};  // a SIGINT or SIGHUP of the terminal is the keeper's to answer
     auto signals = SignalQueue::open(kTaken);
