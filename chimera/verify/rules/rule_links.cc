@@ -113,11 +113,19 @@ void report_unmet(Model& model, const LinkedPort& port, const VariableModel& var
               unmet_remedy(model, port, variable, set, near));
 }
 
-/// A task and its standby: rule_standby.cc speaks of them.
-bool is_standby_pair(const Model& model, const std::vector<PortRef>& producers) {
-  for (const PortRef ref : producers)
-    if (model.tasks[ref.task].draft->standby_for) return true;
-  return false;
+/// Without the standbys of tasks that are producers too: rule_standby.cc speaks of a task and its own standby.
+std::vector<PortRef> without_standbys(const Model& model, const std::vector<PortRef>& producers) {
+  const auto stands_in_for = [&](const TaskModel& standby, const TaskModel& primary) {
+    return standby.draft->standby_for && standby.draft->standby_for->text == primary.name();
+  };
+  std::vector<PortRef> left;
+  for (const PortRef ref : producers) {
+    const bool is_excused = std::any_of(producers.begin(), producers.end(), [&](const PortRef other) {
+      return stands_in_for(model.tasks[ref.task], model.tasks[other.task]);
+    });
+    if (!is_excused) left.push_back(ref);
+  }
+  return left;
 }
 
 using Members = std::vector<bool>;  // by task
@@ -146,14 +154,14 @@ Members readers(const Model& model, const Members& on) {
 }
 
 void report_two(Model& model, const VariableModel& variable, const SetModel& set) {
-  const std::vector<PortRef> producers = producers_in(variable, set);
+  const std::vector<PortRef> all = producers_in(variable, set), producers = without_standbys(model, all);
   if (variable.given != nullptr)
     model.error("operator-produced", variable.given->name.at,
                 "operator variable '" + variable.name + "' is produced by task '" +
-                    model.tasks[producers[0].task].name() + "' in configuration '" + set.name + "'",
+                    model.tasks[all[0].task].name() + "' in configuration '" + set.name + "'",
                 variable.name, "a variable without a producing task", {},
                 "take it out of 'operator', or link the output elsewhere by alias");
-  if (producers.size() < 2 || is_standby_pair(model, producers)) return;
+  if (producers.size() < 2) return;
   const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
   model.error("two-producers", second.at,
               "'" + variable.name + "' has two producers in configuration '" + set.name + "': " + model.say(first) +

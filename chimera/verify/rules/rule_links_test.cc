@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two producers of a variable in one configuration, where tasks with a standby are among them.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "chimera/catalogue/library.h"
+#include "chimera/units/testing/unit_samples.h"
+#include "chimera/verify/verify.h"
+
+namespace chimera {
+namespace {
+
+Library valves() {
+  Descriptor d;
+  d.name = "valve";
+  d.default_rate_hz = 100;
+  d.methods[CHIMERA_CYCLE] = true;
+  d.ports = {{.name = "u", .kind = CHIMERA_OUT_VAR}};
+  EXPECT_TRUE(complete(d));
+  return Library::of({d}, our_units());
+}
+
+/// Codes of the faults of one configuration among a valve, its two standbys and one more valve.
+std::string faults_of(const std::string& members) {
+  const std::string text =
+      "subsystem: demo\n"
+      "rtpus: {a: , b: {cpu: 1}}\n"
+      "tasks:\n"
+      "  valve:\n"
+      "  spare: {component: valve, rtpu: b, standby_for: valve}\n"
+      "  third: {component: valve, rtpu: b, standby_for: valve}\n"
+      "  other: {component: valve}\n"
+      "configurations: {run: [" + members + "]}\n";
+  const Verdict verdict = verify(read_description(text, "app.yaml"), valves());
+  std::string codes;
+  for (const Fault& fault : verdict.report.faults())
+    if (fault.severity == Severity::kError) codes += (codes.empty() ? "" : " ") + std::string(fault.rule);
+  return codes;
+}
+
+TEST(RuleLinks, AConfigurationMayNameAStandbyInPlaceOfItsPrimary) {
+  EXPECT_EQ(faults_of("valve"), "");
+  EXPECT_EQ(faults_of("spare"), "");
+}
+
+TEST(RuleLinks, AStandbyDoesNotExcuseAnotherProducer) {
+  EXPECT_EQ(faults_of("valve, other"), "two-producers");
+  EXPECT_EQ(faults_of("spare, other"), "two-producers");
+  EXPECT_EQ(faults_of("spare, third"), "two-producers");
+}
+
+TEST(RuleLinks, ATaskAndItsOwnStandbyAreOneFault) {
+  EXPECT_EQ(faults_of("valve, spare"), "standby-in-configuration");
+  EXPECT_EQ(faults_of("valve, spare, third"), "standby-in-configuration standby-in-configuration");
+  EXPECT_EQ(faults_of("valve, spare, other"), "two-producers standby-in-configuration");
+}
+
+}  // namespace
+}  // namespace chimera
