@@ -20,9 +20,13 @@ struct Source {
   OutConst<std::int32_t> scale{"scale", "1"};
   void init(Cycle) { *scale = wanted; }
   void reinit(Cycle) { *scale = wanted; }
-  void on(Cycle) { n_ = *x; }
+  void on(Cycle) {
+    n_ = *x;
+    inherited = x.inherited();
+  }
   void cycle(Cycle) { *x = ++n_; }
   double n_ = 0;
+  static inline Nanoseconds inherited;
   static inline std::int32_t wanted = 1;
 };
 
@@ -193,6 +197,7 @@ TEST_F(EdgeTest, OnFromATaskIsAskedOfTheManager) {
 
 TEST_F(EdgeTest, AConsumerFollowsAProducerThatTakesOverInAnotherUnit) {
   all_on();
+  EXPECT_EQ(Source::inherited, kNever);
   units->send(Signal::kSpawn, {kSpare});
   units->run(milliseconds(10));
   const double before = first().output(kSource);
@@ -203,6 +208,8 @@ TEST_F(EdgeTest, AConsumerFollowsAProducerThatTakesOverInAnotherUnit) {
   EXPECT_FALSE(units->flag_is_up());
   EXPECT_GT(second().output(kSpare), before) << "it began where its predecessor in the other unit stood";
   EXPECT_LT(second().output(kSpare), before + 7);
+  EXPECT_GE(Source::inherited, microseconds(500)) << "off in the other unit, 1 ms before";
+  EXPECT_LE(Source::inherited, milliseconds(2));
   EXPECT_NEAR(second().output(kFollower), second().output(kSpare), 1.1);
 }
 

@@ -241,6 +241,10 @@ const chimera_slot* Sources::latest(VariableId variable) noexcept {
   return reader.try_read(slot) ? slot : nullptr;
 }
 
+bool Sources::is_initial(VariableId variable, std::uint64_t sequence) const noexcept {
+  return reader_of(sources_[variable.index]).is_initial(sequence);
+}
+
 VariableView Sources::view(VariableId variable) const noexcept {
   const Source& source = sources_[variable.index];
   const bool is_operators = !source.task.is_valid();

@@ -55,6 +55,8 @@ class Sources {
   /// The latest slot of the group that the variable comes from: in place, or copied into memory of this object that is
   /// good until the next call. Null when there is none yet.
   const chimera_slot* latest(VariableId variable) noexcept;
+  /// True when publication `sequence` of that group holds initial values: no method of its task has made it.
+  bool is_initial(VariableId variable, std::uint64_t sequence) const noexcept;
   /// The present value. Requires: the variable is produced, or held, in this context.
   VariableView view(VariableId variable) const noexcept;
 

@@ -2,12 +2,20 @@
 // Carries out signals by the rules of the state machine.
 #include "chimera/runtime/task_life.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "chimera/runtime/set_equations.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
+namespace {
+
+bool has_changed_outputs(const Task& task) noexcept {
+  return std::memcmp(task.group.staging(), task.group.published() + 1, task.group.payload_bytes()) != 0;
+}
+
+}  // namespace
 
 void TaskLife::prepare(std::size_t n_tasks, SetupMemory& memory) {
   progress_ = memory.take<Progress>(n_tasks);
@@ -164,7 +172,7 @@ Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanosec
 bool TaskLife::before_step(Task& task, const StepRule& step, Nanoseconds now) {
   if (step.before & kReadIn) read_inputs(task);
   stage_outputs(task);
-  if (step.before & kReadOut) take_over(task);
+  if (step.before & kReadOut) take_over(task, now);
   if (step.before & kReadConst) {
     FixedString<160> why;
     if (!set_.constants().give(task.id, why)) {
@@ -184,6 +192,8 @@ Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
     }
     progress_[task.id.index].has_new_constants = set_.constants().has_new();
   }
+  // What clear leaves as it was, was published when it was made: it stays as old as it is.
+  if (step.step == Step::kClear && !has_changed_outputs(task)) return Answer::kOk;
   if (step.after_ok & kWriteOut) {
     const bool turns_on = step.step == Step::kOn;
     const Answer answer = publish(task, step.method, turns_on ? valid_after_on(task) : task.valid, now);
@@ -213,18 +223,32 @@ void TaskLife::reinit_users(TaskId of, Nanoseconds now) {
   }
 }
 
-// >out-var: what a predecessor left is where this task starts from (2000 paper 5.1).
-void TaskLife::take_over(Task& task) noexcept {
+// >out-var: what a predecessor left is where this task starts from (2000 paper 5.1). Its age goes with the value.
+void TaskLife::take_over(Task& task, Nanoseconds now) noexcept {
   taken_over_valid_ = 0;
   for (std::uint32_t i = 0; i < task.outputs.size(); ++i) {
-    const VariableId variable = task.outputs[i].spec->variable;
+    Output& output = task.outputs[i];
+    output.port->slot = nullptr;
+    const VariableId variable = output.spec->variable;
     const Source& source = set_.sources().source(variable);
     const chimera_slot* slot = set_.sources().latest(variable);
     if (slot == nullptr || !((slot->valid >> source.bit) & 1u)) continue;
-    std::memcpy(task.group.staging() + task.outputs[i].offset,
-                reinterpret_cast<const std::byte*>(slot + 1) + source.offset, task.outputs[i].bytes);
+    std::memcpy(task.group.staging() + output.offset, reinterpret_cast<const std::byte*>(slot + 1) + source.offset,
+                output.bytes);
     taken_over_valid_ |= std::uint64_t{1} << i;
+    if (!set_.sources().is_initial(variable, slot->sequence)) tell_inherited(task, i, *slot, now);
   }
+}
+
+void TaskLife::tell_inherited(Task& task, std::uint32_t output, const chimera_slot& slot, Nanoseconds now) noexcept {
+  const Source& source = set_.sources().source(task.outputs[output].spec->variable);
+  chimera_inherited& told = task.inherited[output];
+  told.slot = slot;
+  told.age_ns = std::max<std::int64_t>(now.count - slot.published_ns, 0);
+  told.period_ns = 0;
+  if (source.task.is_valid() && !set_.spec().tasks[source.task.index].aperiodic)
+    told.period_ns = set_.spec().tasks[source.task.index].period.count;
+  task.outputs[output].port->slot = &told.slot;
 }
 
 std::uint64_t TaskLife::valid_after_on(const Task& task) const noexcept {

@@ -68,7 +68,8 @@ class TaskLife {
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
   Answer after_ok(Task& task, const StepRule& step, Nanoseconds now);
   void reinit_users(TaskId of, Nanoseconds now);
-  void take_over(Task& task) noexcept;
+  void take_over(Task& task, Nanoseconds now) noexcept;
+  void tell_inherited(Task& task, std::uint32_t output, const chimera_slot& slot, Nanoseconds now) noexcept;
   std::uint64_t valid_after_on(const Task& task) const noexcept;
   bool would_be_legal(std::span<const TaskId> tasks) noexcept;
   Nanoseconds read_clock(Nanoseconds otherwise) const noexcept;

@@ -69,7 +69,7 @@ void TaskMemory::place(std::span<std::byte> first, std::span<std::byte> second, 
   for (std::span<std::byte> group : groups_) {
     GroupWriter writer(group, payload_bytes_);
     std::copy(fill_.begin(), fill_.end(), writer.staging());
-    writer.publish(Nanoseconds{}, initial_valid_);
+    writer.publish_initial(Nanoseconds{}, initial_valid_);
   }
 }
 
@@ -106,6 +106,7 @@ void TaskMemory::take_lists(SetupMemory& memory) {
   inputs_ = memory.take<Input>(inputs);
   input_specs_ = memory.take<const PortSpec*>(inputs);
   outputs_ = memory.take<Output>(outputs);
+  inherited_ = memory.take<chimera_inherited>(outputs);
   constants_ = memory.take<ConstantPort>(constants);
   resources_ = memory.take<ResourcePort>(resources);
   inputs = outputs = constants = resources = 0;
@@ -165,7 +166,7 @@ Result<void> TaskMemory::construct(Task& task, Nanoseconds now) {
   task.instance = state_.data();
   task.group = GroupWriter(groups_[incarnation_ % 2], payload_bytes_);
   std::copy(fill_.begin(), fill_.end(), task.group.staging());
-  task.group.publish(now, initial_valid_);
+  task.group.publish_initial(now, initial_valid_);
   task.valid = initial_valid_;
   wire(task);
   return {};
@@ -208,6 +209,7 @@ void TaskMemory::wire(Task& task) noexcept {
   for (const ResourcePort& resource : resources_) live(*resource.spec)->value = const_cast<char*>(resource.text);
   task.inputs = inputs_;
   task.outputs = outputs_;
+  task.inherited = inherited_;
   task.all_outputs = outputs_.size() >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << outputs_.size()) - 1;
   task.cycle = component_->methods[CHIMERA_CYCLE];
   task.asks_sync = spec_->aperiodic;

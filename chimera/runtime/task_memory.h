@@ -97,6 +97,7 @@ class TaskMemory {
   std::span<Input> inputs_;
   std::span<const PortSpec*> input_specs_;  ///< of inputs_, in the same order
   std::span<Output> outputs_;
+  std::span<chimera_inherited> inherited_;  ///< by output
   std::span<std::byte> fill_;  ///< payload of a group at spawn: initial values, else the never-written fill
   std::span<ConstantPort> constants_;
   std::span<ResourcePort> resources_;

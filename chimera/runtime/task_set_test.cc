@@ -19,7 +19,12 @@ using testing::TestApplication;
 struct Counter {  // counts up from 1; throws, returns a fault or publishes NaN when told
   Out<double> n{"n", "1", initial = 0.0, safety, range(-100, 100)};
   InConst<double> step{"step", "1", initial = 1.0};
-  void on(Cycle) { sum_ = *n; }
+  void on(Cycle) {
+    sum_ = *n;
+    inherited_ = n.inherited();
+    is_handed_over_ = n.is_handed_over();
+    is_outdated_ = n.is_outdated();
+  }
   Outcome cycle(Cycle) {
     sum_ += *step;
     if (sum_ == 13) throw std::runtime_error("thirteen");
@@ -30,6 +35,8 @@ struct Counter {  // counts up from 1; throws, returns a fault or publishes NaN 
   bool error(Cycle) { return recovers_; }
   double sum_ = 0;
   bool recovers_ = true;
+  Nanoseconds inherited_;
+  bool is_handed_over_ = false, is_outdated_ = false;
 };
 
 struct Reader {
@@ -171,6 +178,64 @@ TEST_F(CounterAndReader, ARespawnedProducerTakesOverWhatItsPredecessorLeft) {
   EXPECT_EQ(number(*set, "n"), 5) << "bumpless";
   run_cycle(*set, 0, milliseconds(6));
   EXPECT_EQ(number(*set, "n"), 6);
+}
+
+TEST_F(CounterAndReader, WhatNobodyHasPublishedIsInheritedFromNobody) {
+  ASSERT_TRUE(set->life().start({}));
+  const auto counter = [&] { return static_cast<Counter*>(set->tasks()[0].instance); };
+  EXPECT_EQ(counter()->inherited_, kNever) << "an initial value is no publication";
+  EXPECT_FALSE(counter()->is_handed_over_);
+  EXPECT_FALSE(counter()->is_outdated_);
+  run_cycle(*set, 0, milliseconds(1));
+  set->life().signal(TaskId{std::size_t{0}}, Signal::kKill, milliseconds(2));
+  ASSERT_TRUE(set->life().signal(TaskId{std::size_t{0}}, Signal::kSpawn, milliseconds(3)).is_accepted);
+  EXPECT_EQ(counter()->n.inherited(), kNever) << "before on";
+  ASSERT_TRUE(set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, milliseconds(7)).is_accepted);
+  EXPECT_EQ(counter()->inherited_, milliseconds(5)) << "since off, which kill began with";
+  set->life().signal(TaskId{std::size_t{0}}, Signal::kOff, milliseconds(8));
+  ASSERT_TRUE(set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, milliseconds(4)).is_accepted);
+  EXPECT_EQ(counter()->inherited_, Nanoseconds{}) << "a clock that was read before";
+}
+
+TEST_F(CounterAndReader, ClearDoesNotMakeWhatStoodYounger) {
+  ASSERT_TRUE(set->life().start({}));
+  run_cycle(*set, 0, milliseconds(1));
+  static_cast<Counter*>(set->tasks()[0].instance)->recovers_ = false;
+  static_cast<Counter*>(set->tasks()[0].instance)->sum_ = 12;
+  EXPECT_EQ(run_cycle(*set, 0, milliseconds(2)), State::kError);
+  const TaskId counter{std::size_t{0}};
+  ASSERT_TRUE(set->life().signal(counter, Signal::kClear, milliseconds(500)).is_accepted);
+  EXPECT_EQ(number(*set, "n"), 1);
+  ASSERT_TRUE(set->life().signal(counter, Signal::kOn, milliseconds(501)).is_accepted);
+  EXPECT_EQ(static_cast<Counter*>(set->tasks()[0].instance)->inherited_, milliseconds(500) - microseconds(10));
+}
+
+TEST(TaskSet, ASuccessorIsToldTheAgeAndWhetherItIsFreshByThePeriodOfItsPredecessor) {
+  struct Case {
+    Nanoseconds period, age;
+    bool is_aperiodic, is_fresh;
+  };
+  for (const Case& one : {Case{milliseconds(1), milliseconds(10), false, true},
+                          Case{milliseconds(1), milliseconds(10) + Nanoseconds{1}, false, false},
+                          Case{milliseconds(20), milliseconds(40), false, true},
+                          Case{milliseconds(20), milliseconds(40) + Nanoseconds{1}, false, false},
+                          Case{milliseconds(20), milliseconds(11), true, false}}) {
+    TestApplication app;
+    app.add("a", component<Counter>("counter"), one.period).aperiodic = one.is_aperiodic;
+    app.add("b", component<Counter>("counter"));
+    app.make({TaskId{std::size_t{0}}}, false);
+    auto set = make(app);
+    ASSERT_TRUE(set->life().start({}));
+    const TaskId a{std::size_t{0}}, b{std::size_t{1}};
+    run_cycle(*set, 0, milliseconds(1));
+    set->life().signal(a, Signal::kOff, milliseconds(2));
+    ASSERT_TRUE(set->life().signal(b, Signal::kOn, milliseconds(2) + one.age).is_accepted);
+    const auto& successor = *static_cast<Counter*>(set->tasks()[1].instance);
+    EXPECT_EQ(successor.sum_, 1);
+    EXPECT_EQ(successor.inherited_, one.age);
+    EXPECT_EQ(successor.is_handed_over_, one.is_fresh) << one.age.count;
+    EXPECT_EQ(successor.is_outdated_, !one.is_fresh);
+  }
 }
 
 /// The arm says by a constant how many joints both have, up to ten.

@@ -32,6 +32,17 @@ GroupReader::GroupReader(const std::byte* memory, std::uint32_t payload_bytes) n
   CHIMERA_ASSERT(is_aligned(base_, kCacheLine));
 }
 
+void GroupWriter::publish_initial(Nanoseconds now, std::uint64_t valid) noexcept {
+  // Before the counter: who sees the publication sees this. pairs with the load of is_initial(), by the counter
+  shared_copy::word(base_ + kInitialAt).store(latest_ + 1, std::memory_order_release);
+  publish(now, valid);
+}
+
+bool GroupReader::is_initial(std::uint64_t sequence) const noexcept {
+  // pairs with the store of publish_initial(); a publication is read before it is asked about
+  return sequence <= shared_copy::word(base_ + kInitialAt).load(std::memory_order_acquire);
+}
+
 bool GroupReader::try_read_part(chimera_slot& header, std::uint32_t offset,
                                 std::span<std::byte> values) const noexcept {
   CHIMERA_ASSERT(offset % sizeof(std::uint64_t) == 0 && offset + values.size() <= payload_bytes_);

@@ -40,6 +40,8 @@ class GroupWriter {
   std::byte* staging() const noexcept { return slot_of(latest_ + 1) + sizeof(chimera_slot); }
   /// Makes the staged values the latest. Context: cycle; wait-free.
   void publish(Nanoseconds now, std::uint64_t valid) noexcept;
+  /// The same for values that no method of a task has made: the initial values of a new incarnation. Context: setup.
+  void publish_initial(Nanoseconds now, std::uint64_t valid) noexcept;
   /// Stages payload_bytes from `values` and publishes them: what a task with a local table does after a method.
   /// Context: cycle; wait-free; O(payload).
   void write(const std::byte* values, Nanoseconds now, std::uint64_t valid) noexcept;
@@ -94,6 +96,9 @@ class GroupReader {
   /// in one context, so that nothing is published while the pointer is in use.
   /// Context: cycle; wait-free.
   const chimera_slot* published() const noexcept;
+  /// True when publication `sequence` holds initial values and was made by no method of a task.
+  /// Context: cycle boundary; wait-free.
+  bool is_initial(std::uint64_t sequence) const noexcept;
   std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
   /// False for one that was made without memory: it must not be read.
   bool is_bound() const noexcept { return base_ != nullptr; }

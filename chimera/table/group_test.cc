@@ -154,6 +154,22 @@ TEST(Group, SuccessorGoesOnWhereTheCounterStands) {
   EXPECT_EQ(values, filled_with(3));
 }
 
+TEST(Group, TellsInitialValuesFromWhatATaskHasPublished) {
+  AlignedMemory memory(kPayload);
+  GroupWriter writer(memory.bytes(), kPayload);
+  const GroupReader reader(memory.bytes().data(), kPayload);
+  EXPECT_TRUE(reader.is_initial(0)) << "never written";
+  for (std::uint64_t incarnation = 0; incarnation < 3; ++incarnation) {
+    writer.publish_initial(Nanoseconds{1}, 1);
+    EXPECT_TRUE(reader.is_initial(reader.published()->sequence));
+    for (std::uint64_t n = 1; n <= 9; ++n) {
+      writer.write(bytes_of(filled_with(1)), Nanoseconds{2}, 1);
+      EXPECT_FALSE(reader.is_initial(reader.published()->sequence)) << n;
+    }
+  }
+  EXPECT_EQ(writer.sequence(), 30u);
+}
+
 TEST(Group, PayloadOfAnySizeIsCopiedToTheByte) {
   for (std::uint32_t payload = 0; payload <= 130; ++payload) {
     AlignedMemory memory(payload);

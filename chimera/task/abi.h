@@ -130,10 +130,19 @@ typedef struct chimera_port_decl {
   double min, max;        /* in the port's unit */
 } chimera_port_decl;
 
+/* What an out-var held when the present `on` began. Stands until the next one. */
+typedef struct chimera_inherited {
+  chimera_slot slot;  /* header of the publication that the value was taken from */
+  int64_t age_ns;     /* of that publication when `on` began, 0 or more */
+  int64_t period_ns;  /* of the task that published it; 0 for an aperiodic one */
+} chimera_inherited;
+
 /* The live half of a port. Written by the framework between methods, read by the component in them. */
 typedef struct chimera_port {
   void* value;               /* the elements; resource: a zero-terminated text */
-  const chimera_slot* slot;  /* of the group the value came from; NULL for constants and resources */
+  const chimera_slot* slot;  /* in-var: of the group the value came from. Out-var: the first member of the
+                                chimera_inherited of the present `on`; NULL before `on`, and when no task had published
+                                the variable. NULL for constants and resources */
   const int64_t* now_ns;     /* release of the present job, for age */
   uint64_t seen;             /* sequence at this task's previous cycle: fresh = slot->sequence != seen */
   uint32_t bit;              /* of the value in slot->valid */

@@ -44,6 +44,7 @@
 #include <string.h>
 
 #include "chimera/task/abi.h"
+#include "chimera/task/handover.h"
 #include "chimera/task/pbo_each.h"
 #include "chimera/task/registry.h"
 
@@ -149,6 +150,9 @@ typedef struct pboPort_t {
 #define SVAR_VALID(name) pboValid(PBO_PORT(name)) /* in-var: has been written or has an initial value */
 #define SVAR_FRESH(name) pboFresh(PBO_PORT(name)) /* in-var: published since the previous cycle */
 #define SVAR_AGE(name) pboAge(PBO_PORT(name))     /* in-var: ns since it was published; -1 while not valid */
+/* out-var: how old the value was, in ns, that it held when the present `on` began; -1: nobody had published it */
+#define SVAR_INHERITED(name) pboInherited(PBO_PORT(name))
+#define SVAR_HANDED_OVER(name) chimera_is_handed_over(PBO_PORT(name)) /* out-var: to go on from: handover.h */
 
 /* Inside a method: the present call. */
 #define PBO_CALL (*(const chimera_call* const*)(const void*)((const char*)local - pbo_back_to_call))
@@ -172,6 +176,10 @@ static inline int pboFresh(const chimera_port* port) {
 }
 static inline int64_t pboAge(const chimera_port* port) {
   return pboValid(port) ? *port->now_ns - port->slot->published_ns : -1;
+}
+static inline int64_t pboInherited(const chimera_port* port) {
+  const chimera_inherited* const from = chimera_inherited_of(port);
+  return from == NULL ? -1 : from->age_ns;
 }
 
 static inline int pboFault(const chimera_call* call, const char* text) {

@@ -16,6 +16,7 @@
 
 #include "chimera/base/time.h"
 #include "chimera/task/declare_port.h"
+#include "chimera/task/handover.h"
 #include "chimera/task/port_view.h"
 
 namespace chimera {
@@ -78,11 +79,26 @@ class In : public component_api::TypedPort<T, CHIMERA_IN_VAR> {
 };
 
 /// An out-var: holds the last published value until the method writes it. Published together with all
-/// other out-vars of the task, when the method returned ok.
+/// other out-vars of the task, when the method returned ok. At `on` that is the value of whoever produced the variable
+/// last, a predecessor or the task itself; chimera/task/handover.h says when to go on from it.
 template <class T>
 class Out : public component_api::TypedPort<T, CHIMERA_OUT_VAR> {
  public:
   using component_api::TypedPort<T, CHIMERA_OUT_VAR>::TypedPort;
+
+  /// How long before the present `on` the value was published that the out-var held when `on` began; the same number
+  /// until the next `on`. kNever when no task had published it: it held its initial value, or was not valid.
+  /// Context: any; wait-free.
+  Nanoseconds inherited() const noexcept {
+    const chimera_inherited* const from = chimera_inherited_of(&this->live_);
+    return from == nullptr ? kNever : Nanoseconds{from->age_ns};
+  }
+  /// True when that value was published at most 2 periods of its producer before `on`, or at most 10 ms: it is the
+  /// present command, to go on from. Context: any; wait-free.
+  bool is_handed_over() const noexcept { return chimera_is_handed_over(&this->live_) != 0; }
+  /// True when it was published earlier than that: nobody has followed it since, so begin from what is measured.
+  /// Context: any; wait-free.
+  bool is_outdated() const noexcept { return this->live_.slot != nullptr && !is_handed_over(); }
 
  private:
   template <class P, std::uint32_t N>

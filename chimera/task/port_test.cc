@@ -176,6 +176,42 @@ TEST(Port, TellsAgeFreshnessAndValidity) {
   EXPECT_EQ(rig.get<std::int64_t>("age"), 4'000'000);
 }
 
+struct Heir {
+  Out<double> x{"x", "m", initial = 1.0};
+  Many<Out<double>, 2> list{"list*", "m"};
+  Out<std::int64_t> age{"age", "ns"};
+  Out<bool> is_handed_over{"is_handed_over"};
+  Out<bool> is_outdated{"is_outdated"};
+  void on() { tell(); }
+  void cycle() { tell(); }
+  void tell() {
+    *age = x.inherited().count;
+    *is_handed_over = x.is_handed_over();
+    *is_outdated = list[1].is_outdated();
+  }
+};
+CHIMERA_COMPONENT(Heir, "heir", "Tells what it inherited.");
+
+TEST(Port, AnOutVarTellsHowOldTheValueWasThatItHeldAtOn) {
+  Rig rig("heir");
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<std::int64_t>("age"), kNever.count);
+  EXPECT_FALSE(rig.get<bool>("is_handed_over"));
+  EXPECT_FALSE(rig.get<bool>("is_outdated"));
+  rig.inherit("x", milliseconds(30), milliseconds(15));
+  rig.inherit("list", milliseconds(30));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<std::int64_t>("age"), milliseconds(30).count);
+  EXPECT_TRUE(rig.get<bool>("is_handed_over")) << "2 periods";
+  EXPECT_TRUE(rig.get<bool>("is_outdated")) << "above 10 ms and 2 periods";
+  ASSERT_TRUE(rig.cycle(milliseconds(500)));
+  EXPECT_EQ(rig.get<std::int64_t>("age"), milliseconds(30).count) << "the age at on";
+  rig.inherit("x", kNever);
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<std::int64_t>("age"), kNever.count);
+  EXPECT_THROW(rig.inherit("y", {}), std::invalid_argument);
+}
+
 struct Twice {
   In<double> a{"same", "m"};
   In<double> b{"same", "m"};

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/time.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/fields.h"
 #include "chimera/task/registry.h"
@@ -81,6 +82,16 @@ class RigPorts {
     cell.slot.published_ns = *now_ns_;
     fix_extents();
   }
+  /// What an out-var is given at the next on(): a value that was published `age` before by a task of that period. Its
+  /// elements are set before, by set(). kNever: nobody has published it, which is so until said.
+  void inherit(const char* port, Nanoseconds age, Nanoseconds period = milliseconds(1)) {
+    for (auto& cell : cells_) {
+      if (cell->decl != &declaration(port)) continue;
+      if (cell->decl->kind != CHIMERA_OUT_VAR) throw std::invalid_argument(std::string(port) + " is no out-var");
+      cell->inherited = {{*now_ns_ - age.count, 1, ~std::uint64_t{0}, 0}, age.count, period.count};
+      cell->live->slot = age == kNever ? nullptr : &cell->inherited.slot;
+    }
+  }
   /// Element `i` of instance `instance` as it stands.
   template <class T>
   T get(const char* port, std::size_t i = 0, std::size_t instance = 0) {
@@ -128,6 +139,7 @@ class RigPorts {
     chimera_port* live;
     std::size_t instance;
     chimera_slot slot{};
+    chimera_inherited inherited{};
     std::unique_ptr<std::byte[]> memory;
     Joined joined{};
   };

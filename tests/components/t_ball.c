@@ -33,7 +33,9 @@ int t_ballInit(t_ballLocal_t *local) {
 
 int t_ballOn(t_ballLocal_t *local) {
   SVAR_OUT(xd);
+  SVAR_OUT(state);
   memcpy(local->position, xd, sizeof local->position); /* go on from where the cursor is */
+  if (SVAR_INHERITED(xd) >= 0) strcpy(*state, SVAR_HANDED_OVER(xd) ? "handed over" : "outdated");
   return PBO_OK;
 }
 

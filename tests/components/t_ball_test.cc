@@ -65,6 +65,19 @@ TEST(CFace, FindsTheMethodsThatAreWrittenAndTakesTermForKill) {
     EXPECT_EQ(ball().methods[m], nullptr) << m;
 }
 
+TEST(CFace, AnOutVarTellsWhatItHeldAtOn) {
+  Ball rig;
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<Text<64>>("state").view(), "idle");
+  rig.inherit("xd", milliseconds(10));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<Text<64>>("state").view(), "handed over");
+  rig.inherit("xd", milliseconds(11));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<Text<64>>("state").view(), "outdated");
+}
+
 TEST(CFace, MethodsReachTheirPortsByName) {
   Ball rig;
   rig.set("scale", 2.0);

@@ -67,6 +67,20 @@ TEST_P(Executors, TakeSignalsAtEdgesAndKeepThePhase) {
   EXPECT_EQ(app.task("a").state, chimera::State::kOff);
 }
 
+TEST_P(Executors, TellHowOldIsWhatAnOutVarHeldAtOn) {
+  app.add("a", milliseconds(10), microseconds(100));
+  acts = {signal_at(12, Signal::kOff, app.id("a")), signal_at(33, Signal::kOn, app.id("a")),
+          signal_at(45, Signal::kOff, app.id("a")), signal_at(45, Signal::kOn, app.id("a"))};
+  go(60);
+  const std::vector<Call> on = app.calls_of("a", Method::kOn), cycles = app.calls_of("a", Method::kCycle);
+  ASSERT_EQ(on.size(), 3u);
+  EXPECT_EQ(on[0].inherited, -1) << "nobody had published it";
+  EXPECT_EQ(on[1].inherited, milliseconds(21).count) << "off published it last";
+  EXPECT_EQ(on[2].inherited, 0);
+  ASSERT_EQ(cycles.size(), 4u);
+  EXPECT_EQ(cycles[2].inherited, milliseconds(21).count) << "the age at on, in every cycle";
+}
+
 TEST_P(Executors, RefuseAnIllegalSignalAndChangeNothing) {
   app.add("a", milliseconds(10), microseconds(100));
   acts = {signal_at(12, Signal::kOn, app.id("a")), signal_at(13, Signal::kClear, app.id("a"))};

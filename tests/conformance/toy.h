@@ -16,6 +16,7 @@
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/hosted/variables.h"
 #include "chimera/runtime/testing/named_links.h"
+#include "chimera/task/handover.h"
 
 namespace chimera::toy {
 
@@ -27,6 +28,7 @@ struct Call {
   std::uint32_t dropped = 0;
   bool illegal = false;
   double in = 0;
+  std::int64_t inherited = -1;  // ns: the age of what its output held at the last on; -1: nobody had published it
 };
 
 /// What a task does and what happened to it. Outputs its number of cycles.
@@ -59,7 +61,9 @@ std::int32_t method(void* memory, const chimera_call* call) {
   Toy& toy = toy_of(memory);
   State& state = *static_cast<State*>(memory);
   Call seen{toy.name,      static_cast<Method>(kMethod), {call->now_ns}, {call->dt_ns},
-            call->dropped, call->illegal != 0,           0};
+            call->dropped, call->illegal != 0,           0,
+            -1};
+  if (const chimera_inherited* from = chimera_inherited_of(&state.out)) seen.inherited = from->age_ns;
   if (state.in.value != nullptr) std::memcpy(&seen.in, state.in.value, sizeof seen.in);
   if (toy.calls != nullptr) toy.calls->push_back(seen);
   if (kMethod == CHIMERA_CYCLE) {

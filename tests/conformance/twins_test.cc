@@ -86,7 +86,8 @@ Outcome run(std::uint32_t seed, Kind kind, const VirtualOptions& how = {}) {
   for (const TapRecord& r : runner.records()) outcome.records.push_back(text(r));
   for (const Call& c : app.calls) {
     outcome.calls.push_back(c.task + " " + method_name(c.method) + " " + std::to_string(c.now.count) + " " +
-                            std::to_string(c.in) + " " + std::to_string(c.dropped) + (c.illegal ? " illegal" : ""));
+                            std::to_string(c.in) + " " + std::to_string(c.dropped) + " " + std::to_string(c.inherited) +
+                            (c.illegal ? " illegal" : ""));
   }
   return outcome;
 }
