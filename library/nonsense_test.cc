@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every component takes nonsense: in constants (also such as the checker refuses, because another component may tell
-// them), in inputs, in resources. It refuses with a text or goes on, and the sanitizers have nothing to say; and what
-// was given nothing but numbers that can be squared publishes numbers. The seed is in the message:
-// CHIMERA_NONSENSE=COUNT tries more.
+// them), in inputs, in resources, in what a predecessor left in its outputs. It refuses with a text or goes on, and the
+// sanitizers have nothing to say; and what was given nothing but numbers that can be squared publishes numbers. The
+// seed is in the message: CHIMERA_NONSENSE=COUNT tries more.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -53,6 +53,7 @@ class Nonsense {
       give(rig, component_.ports[i], is_hostile && draw(4) == 0);
     if (!answered(rig.init(), "init")) return wrong_;
     if (is_faulty_) return end(rig);
+    if (draw(3) == 0) inherit(rig);
     answered(rig.on(), "on");
     for (int cycle = 0; cycle < 20 && wrong_.empty(); ++cycle) {
       for (std::uint32_t i = 0; i < component_.n_ports; ++i)
@@ -118,6 +119,17 @@ class Nonsense {
       for (std::uint32_t e = 0; e < rig.size(port.name); ++e)
         put(rig, port, e, instance, is_hostile && (e == 0 || draw(2) == 0));
     if (is_hostile) told_ += std::string(port.name) + " ";
+  }
+  void inherit(Rig& rig) {
+    for (std::uint32_t i = 0; i < component_.n_ports; ++i) {
+      const chimera_port_decl& port = component_.ports[i];
+      if (port.kind != CHIMERA_OUT_VAR) continue;
+      const bool is_hostile = draw(3) == 0;
+      for (std::uint32_t instance = 0; instance < instances_[port.name]; ++instance)
+        for (std::uint32_t e = 0; e < rig.size(port.name); ++e) put(rig, port, e, instance, is_hostile && draw(2) == 0);
+      rig.inherit(port.name, draw(2) == 0 ? milliseconds(2) : milliseconds(2000));
+      if (is_hostile) told_ += std::string(port.name) + " ";
+    }
   }
   void put(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
     const double value = is_hostile ? kHostile[draw(std::size(kHostile))] : sound(port);

@@ -57,6 +57,20 @@ TEST_P(AnyCar, ReinitTakesAnotherLoadWhereItIsAndAtItsSpeed) {
   EXPECT_NEAR(rig.get<double>("xw"), angle + before * 0.01 / 0.5, 1e-3);
 }
 
+TEST_P(AnyCar, GoesOnWhereThatOneIsWhosePlaceItTakes) {
+  rig.set("start_speed", 5.0);
+  rig.resource("road", "0:0 200:0.1");
+  ASSERT_TRUE(rig.init());
+  rig.set("xw", 100 / 0.3), rig.set("speed", 72.0);
+  for (const char* port : {"xw", "speed"}) rig.inherit(port, milliseconds(10));
+  ASSERT_TRUE(rig.on());
+  EXPECT_DOUBLE_EQ(rig.get<double>("xw"), 100 / 0.3);
+  EXPECT_DOUBLE_EQ(rig.get<double>("speed"), 72);
+  EXPECT_DOUBLE_EQ(rig.get<double>("grade"), 0.05);
+  ASSERT_TRUE(rig.drive(0.01));
+  EXPECT_NEAR(rig.get<double>("xw"), (100 + 0.2) / 0.3, 1e-2);
+}
+
 TEST_P(AnyCar, OffAndOnGoOnFromThePresentState) {
   rig.set("start_speed", 20.0);
   ASSERT_TRUE(rig.init());

@@ -41,6 +41,12 @@ class CarModel {
     distance_ = 0;
     wheel_angle_ = 0;
   }
+  /// Goes on where another car is: a wheel of this one that has turned by `wheel_angle` (rad) has come so far.
+  void resume(double speed, double wheel_angle) noexcept {
+    speed_ = speed;
+    wheel_angle_ = wheel_angle;
+    distance_ = wheel_angle * body_.wheel_radius;
+  }
   /// Another load or other wheels, at the same place and speed.
   void refit(const CarBody& body) noexcept { body_ = body; }
 

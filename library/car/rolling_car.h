@@ -34,7 +34,13 @@ struct RollingCar {
     car_.refit({.mass = *mass, .wheel_radius = *wheel_radius});
     return ok();
   }
-  void on() { publish(); }
+  // A simulated car that takes the place of another goes on where that one stopped being simulated, at its speed.
+  void on() {
+    const bool has_predecessor = xw.inherited() != kNever && speed.inherited() != kNever;
+    const bool is_elsewhere = *xw != car_.wheel_angle() || *speed != car_.speed() * 3.6;
+    if (has_predecessor && is_elsewhere && std::isfinite(*xw) && std::isfinite(*speed)) car_.resume(*speed / 3.6, *xw);
+    publish();
+  }
 
  protected:
   /// For cycle: `dt` passes in steps of at most 5 ms. `drive` is asked for the force of each, given its length; `brake`

@@ -15,7 +15,9 @@ struct Cinterp {
   InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Of the orientation of xr."};
   InConst<double> leash{"leash", "m", initial = 0.1, range(1e-3, 10), doc = "xr is no farther than this from xm."};
 
+  // Bumpless: a reference that is handed over goes on. Else it begins where the tool is.
   Outcome on() {
+    if (xr.is_handed_over() && library::DhPorts::is_pose(*xr)) return ok();
     if (!library::DhPorts::is_pose(*xm)) return fault("xm is not finite or no orientation: xr cannot begin there");
     *xr = *xm;
     return ok();

@@ -29,6 +29,22 @@ TEST_F(CinterpTest, BeginsWhereTheToolIs) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(xr().position[i], kHere.position[i]);
 }
 
+TEST_F(CinterpTest, GoesOnFromTheReferenceThatIsHandedOver) {
+  Pose ahead = kHere;
+  ahead.position[1] += 0.03;
+  rig.set("xr", ahead);
+  rig.inherit("xr", milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(xr().position[1], ahead.position[1]);
+  rig.inherit("xr", milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(xr().position[1], kHere.position[1]) << "an old reference";
+  rig.set("xr", Pose{{0, kNotANumber, 0}, {1, 0, 0, 0}});
+  rig.inherit("xr", milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(xr().position[1], kHere.position[1]) << "no pose";
+}
+
 TEST_F(CinterpTest, MakesASmoothWayOfATargetThatJumps) {
   Pose goal{{0.9, -0.2, 0.3}, {std::cos(0.6), 0, std::sin(0.6), 0}};
   rig.set("xd", goal);

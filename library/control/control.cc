@@ -26,10 +26,11 @@ struct Control {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // Bumpless: goes on from the force that stands, of an earlier run or of a predecessor. Not before the first cycle,
-  // because a speed made by differences is known only then. A force of 0 is nobody to go on from.
+  // Bumpless: goes on from the force that is handed over. Not before the first cycle, because a speed made by
+  // differences is known only then. A force of 0 is nobody to go on from, and an older one belongs to another speed.
   void on() {
     pi_.start(0);
+    if (fd.is_outdated()) *fd = 0;
     takes_over_ = std::isfinite(*fd) && *fd != 0;
   }
   Outcome cycle(Cycle c) {

@@ -44,6 +44,20 @@ TEST_F(ControlTest, OnGoesOnFromTheForceThatStands) {
   EXPECT_NEAR(cycle(20, 20), 1000 - 0.5 * 2500, 1e-9);
 }
 
+TEST_F(ControlTest, OnDoesNotGoOnFromAnOldForce) {
+  rig.set("ki", 0.0);
+  rig.set("fd", 1000.0);
+  rig.inherit("fd", milliseconds(41), kPeriod);
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("fd"), 0);
+  EXPECT_NEAR(cycle(20, 19.5), 0.5 * 2500, 1e-9);
+  rig.set("fd", 1000.0);
+  rig.inherit("fd", milliseconds(40), kPeriod);
+  ASSERT_TRUE(rig.on());
+  EXPECT_NEAR(cycle(20, 19.5), 1000, 1e-9);
+}
+
 TEST_F(ControlTest, OnTakesOverNoMoreThanItsLimits) {
   rig.set("ki", 0.0);
   rig.set("fd", 1.0);

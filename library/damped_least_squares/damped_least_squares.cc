@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joint speeds that bring the tool to its target, and stay bounded where the arm is singular (1994 paper, figure 9).
 #include "library/kinematics/dh_ports.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -29,7 +30,10 @@ struct DampedLeastSquares {
     inverse_.damping = *damping;
     inverse_.threshold = *threshold;
   }
-  void on() { stop(); }
+  // Bumpless: joint speeds that are handed over stand until the first cycle; others are those of no motion.
+  void on() {
+    if (!qd_ref.is_handed_over() || !library::all_finite(qd_ref)) stop();
+  }
   Outcome cycle(Cycle c) {
     stop();
     if (c.illegal()) return ok();

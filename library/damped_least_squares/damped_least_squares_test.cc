@@ -42,6 +42,19 @@ TEST_F(DampedLeastSquaresTest, TheToolMovesTowardsTheTargetAtGainTimesTheError) 
   }
 }
 
+TEST_F(DampedLeastSquaresTest, SpeedsThatAreHandedOverStandUntilTheFirstCycle) {
+  rig.set("qd_ref", 0.7, 2);
+  rig.inherit("qd_ref", milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.six("qd_ref")[2], 0.7);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.six("qd_ref")[2], 0, 1e-9) << "the law has no memory";
+  rig.set("qd_ref", 0.7, 2);
+  rig.inherit("qd_ref", milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.six("qd_ref")[2], 0) << "old speeds";
+}
+
 TEST_F(DampedLeastSquaresTest, BringsTheArmToItsTargetThroughASingularPose) {
   Puma560::Vector q{0.3, 0.8, -2.5, 0.4, -0.3, -0.2}, goal = q;
   goal[4] = 0.3;  // the wrist stretches on the way

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generalized inverse kinematics: joint positions for a tool pose, for any robot that tells how it is built.
 #include "library/kinematics/dh_ports.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -9,7 +10,7 @@ namespace {
 struct Ginvkin : library::DhPorts {
   In<Pose> xr{"xr", frame = "base", doc = "Reference tool pose."};
   In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint",
-                 doc = "Measured joint positions: where the search begins at on."};
+                 doc = "Measured joint positions: where the search begins at on, unless q_ref is handed over."};
   Out<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                       doc = "Joint positions for xr, near the last ones."};
   Out<double> residual{"residual", "1", initial = 0.0,
@@ -36,8 +37,10 @@ struct Ginvkin : library::DhPorts {
     cut();
     return outcome;
   }
+  // Bumpless: a command that is handed over goes on; the drives are still behind it. Else the arm is where it is.
   Outcome on() {
-    for (std::size_t i = 0; i < q.size(); ++i) {
+    const bool goes_on = q_ref.is_handed_over() && library::all_finite(q_ref);
+    for (std::size_t i = 0; !goes_on && i < q.size(); ++i) {
       if (!std::isfinite(q[i])) return fault("q is not finite: the search cannot begin there");
       q_ref[i] = q[i];
     }

@@ -133,6 +133,27 @@ TEST_F(GinvkinTest, JointsToSpareDoWhatALimitKeepsAnotherFrom) {
   EXPECT_EQ(four.get<double>("q_ref", 1), 0.4);
 }
 
+// The drives are behind the command: to go on from the measurement would be a step back by their lag.
+TEST_F(GinvkinTest, GoesOnFromTheCommandThatIsHandedOverAndElseFromTheMeasurement) {
+  Puma560::Vector ahead = kBent;
+  for (double& angle : ahead) angle += 0.05;
+  want(Puma560::forward(ahead));
+  for (std::size_t i = 0; i < 6; ++i) rig.set("q_ref", ahead[i], i);
+  rig.inherit("q_ref", milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rig.six("q_ref")[i], ahead[i]);
+  ASSERT_TRUE(rig.cycle());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], ahead[i], 1e-6);
+  for (std::size_t i = 0; i < 6; ++i) rig.set("q_ref", ahead[i], i);
+  rig.inherit("q_ref", milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rig.six("q_ref")[i], kBent[i]) << "an old command";
+  rig.set("q_ref", kNotANumber, 2);
+  rig.inherit("q_ref", milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.six("q_ref")[2], kBent[2]);
+}
+
 TEST_F(GinvkinTest, RefusesLimitsThatAreNone) {
   rig.set("q_min", 1.0, 3);
   rig.set("q_max", 0.5, 3);

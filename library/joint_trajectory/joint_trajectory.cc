@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The joint position trajectory generator of figure 4 (1994 paper): from rest to rest, then hold. README.md is the data
-// sheet.
+// The joint position trajectory generator of figure 4 (1994 paper): from rest, or from the motion of a predecessor, to
+// rest, then hold. README.md is the data sheet.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "chimera/task/component.h"
+#include "library/joint_trajectory/braking.h"
 #include "library/joint_trajectory/quintic.h"
 #include "library/joint_trajectory/seven_segments.h"
 
@@ -55,17 +56,20 @@ struct JointTrajectory {
   }
   Outcome reinit() { return init(); }
 
-  // A reference that stands already, of an earlier run or of a predecessor, is where the motion begins: no jump.
+  // A reference that stands already, of an earlier run or of a predecessor, is where the motion begins: no jump. It
+  // begins at rest unless a predecessor hands it over in motion.
   void on() {
     elapsed_ = 0;
     for (std::size_t i = 0; i < q_ref.size(); ++i) {
-      const double from = std::isnan(q_ref[i]) ? start_pose[i] : q_ref[i];
+      const Motion from = beginning(i);
       if (is_quintic_) {
-        path_[i] = {from, goal[i], *duration};
-      } else {
-        const double jerk = has_jerk_ ? jerk_max[i] : std::numeric_limits<double>::infinity();
-        limited_[i] = library::SevenSegments(from, goal[i], {velocity_max[i], acceleration_max[i], jerk});
+        path_[i] = {from.position, goal[i], *duration, from.velocity, from.acceleration};
+        continue;
       }
+      const double jerk = has_jerk_ ? jerk_max[i] : std::numeric_limits<double>::infinity();
+      const library::MotionLimits limits{velocity_max[i], acceleration_max[i], jerk};
+      braking_[i] = library::Braking(from, limits);
+      limited_[i] = library::SevenSegments(braking_[i].rest(), goal[i], limits);
     }
     if (!is_quintic_) stretch();
     publish();
@@ -80,15 +84,34 @@ struct JointTrajectory {
   }
 
  private:
+  using Motion = library::Motion;
+
+  Motion beginning(std::size_t i) const {
+    if (std::isnan(q_ref[i])) return {start_pose[i], 0, 0};
+    Motion from{q_ref[i], 0, 0};
+    if (qd_ref.is_handed_over() && std::isfinite(qd_ref[i])) {
+      from.velocity = qd_ref[i];
+      if (qdd_ref.is_handed_over() && std::isfinite(qdd_ref[i])) from.acceleration = qdd_ref[i];
+    }
+    return from;
+  }
   void stretch() {
-    double longest = *duration;
-    for (std::size_t i = 0; *is_synchronised && i < q_ref.size(); ++i)
+    double longest = *duration, last_stop = 0;
+    for (std::size_t i = 0; *is_synchronised && i < q_ref.size(); ++i) {
       longest = std::max(longest, limited_[i].least_duration());
-    for (std::size_t i = 0; i < q_ref.size(); ++i) limited_[i].stretch(longest);
+      last_stop = std::max(last_stop, braking_[i].duration());
+    }
+    for (std::size_t i = 0; i < q_ref.size(); ++i) {
+      limited_[i].stretch(longest);
+      starts_at_[i] = *is_synchronised ? last_stop : braking_[i].duration();
+    }
+  }
+  Motion limited(std::size_t i) const {
+    return elapsed_ < starts_at_[i] ? braking_[i].at(elapsed_) : limited_[i].at(elapsed_ - starts_at_[i]);
   }
   void publish() {
     for (std::size_t i = 0; i < q_ref.size(); ++i) {
-      const library::Motion motion = is_quintic_ ? path_[i].at(elapsed_) : limited_[i].at(elapsed_);
+      const Motion motion = is_quintic_ ? path_[i].at(elapsed_) : limited(i);
       q_ref[i] = motion.position;
       qd_ref[i] = motion.velocity;
       qdd_ref[i] = motion.acceleration;
@@ -96,7 +119,9 @@ struct JointTrajectory {
   }
 
   library::Quintic path_[kMostJoints];
+  library::Braking braking_[kMostJoints];  // to rest, where a motion with limits begins
   library::SevenSegments limited_[kMostJoints];
+  double starts_at_[kMostJoints] = {};  // s, where those begin
   bool is_quintic_ = true, has_jerk_ = false;
   double elapsed_ = 0;
 };

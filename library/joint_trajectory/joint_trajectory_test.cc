@@ -62,6 +62,46 @@ TEST_F(JointTrajectoryTest, StartsAgainFromTheReferenceThatStands) {
   EXPECT_EQ(rig.get<double>("q_ref", 0), stands);
 }
 
+// A predecessor in the middle of a motion: the reference goes on with its velocity and acceleration, in each profile.
+TEST_F(JointTrajectoryTest, GoesOnFromTheMotionThatIsHandedOver) {
+  for (const char* profile : {"quintic", "jerk", "trapezoid"}) {
+    SCOPED_TRACE(profile);
+    give(2.0);
+    rig.set("profile", Text<16>(profile));
+    rig.set("goal", -2.0, 0);
+    ASSERT_TRUE(rig.init());
+    rig.set("q_ref", 0.6, 0), rig.set("qd_ref", 0.9, 0), rig.set("qdd_ref", 1.5, 0);
+    rig.set("q_ref", -1.0, 1), rig.set("qd_ref", -0.2, 1), rig.set("qdd_ref", 0.0, 1);
+    for (const char* port : {"q_ref", "qd_ref", "qdd_ref"}) rig.inherit(port, milliseconds(2));
+    ASSERT_TRUE(rig.on());
+    EXPECT_EQ(rig.get<double>("q_ref", 0), 0.6);
+    EXPECT_NEAR(rig.get<double>("qd_ref", 0), 0.9, 1e-12);
+    double last[2][2] = {{0.6, 0.9}, {-1.0, -0.2}};
+    for (int k = 0; k < 12000; ++k) {
+      ASSERT_TRUE(rig.cycle());
+      for (std::size_t i = 0; i < 2; ++i) {
+        const double q = rig.get<double>("q_ref", i), qd = rig.get<double>("qd_ref", i);
+        ASSERT_NEAR(q, last[i][0] + (qd + last[i][1]) / 2 * 1e-3, 5e-6) << k;
+        ASSERT_LE(std::abs(qd - last[i][1]), 12e-3) << k;
+        last[i][0] = q, last[i][1] = qd;
+      }
+    }
+    EXPECT_EQ(last[0][0], -2.0);
+    EXPECT_EQ(last[0][1], 0);
+    EXPECT_EQ(last[1][0], -1.0);
+  }
+}
+
+TEST_F(JointTrajectoryTest, AVelocityThatIsOutdatedIsNotFollowed) {
+  give(2.0);
+  ASSERT_TRUE(rig.init());
+  rig.set("q_ref", 0.6, 0), rig.set("qd_ref", 0.9, 0);
+  for (const char* port : {"q_ref", "qd_ref", "qdd_ref"}) rig.inherit(port, milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("q_ref", 0), 0.6);
+  EXPECT_EQ(rig.get<double>("qd_ref", 0), 0);
+}
+
 TEST_F(JointTrajectoryTest, RefusesADurationOfNothingAndAGoalThatIsNotFinite) {
   give(0);
   EXPECT_EQ(rig.init().text, "duration must be above 0 s");

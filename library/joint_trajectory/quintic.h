@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quintic from rest to rest: the lowest polynomial whose velocity and acceleration vanish at both ends
+// The quintic to rest: the lowest polynomial with a given velocity and acceleration at its beginning, both 0 at its end
 // (Craig, Introduction to Robotics, 3rd ed., section 7.3).
 #pragma once
 
@@ -13,20 +13,34 @@ struct Motion {
 };
 
 /// s(u) = 10 u^3 - 15 u^4 + 6 u^5 between two positions in `duration` seconds.
-/// Peaks: velocity 1.875 d/T halfway, acceleration 10/sqrt(3) d/T2. Requires: duration > 0. Context: cycle; wait-free.
+/// Peaks: velocity 1.875 d/T halfway, acceleration 10/sqrt(3) d/T2. Where it begins in motion, v T (u - 6 u^3 + 8 u^4 -
+/// 3 u^5) + a T^2 / 2 u^2 (1 - u)^3 is added. Requires: duration > 0. Context: cycle; wait-free.
 struct Quintic {
   double from = 0;
   double to = 0;
   double duration = 1;
+  double velocity = 0;      ///< at the beginning
+  double acceleration = 0;  ///< likewise
 
-  /// The motion at time t (s): at rest in `from` before 0, at rest in `to` after the duration.
+  /// The motion at time t (s): that of the beginning before 0, at rest in `to` after the duration.
   Motion at(double t) const noexcept {
-    if (!(t > 0)) return {from, 0, 0};
+    if (!(t > 0)) return {from, velocity, acceleration};
     if (t >= duration) return {to, 0, 0};
     const double u = t / duration, d = to - from, v = 1 - u;
-    return {from + d * u * u * u * (10 + u * (6 * u - 15)),
-            d / duration * 30 * u * u * v * v,
-            d / (duration * duration) * 60 * u * v * (1 - 2 * u)};
+    const Motion motion{from + d * u * u * u * (10 + u * (6 * u - 15)),
+                        d / duration * 30 * u * u * v * v,
+                        d / (duration * duration) * 60 * u * v * (1 - 2 * u)};
+    return velocity == 0 && acceleration == 0 ? motion : with_beginning(motion, u);
+  }
+
+  // Not private: it stays an aggregate.
+  Motion with_beginning(const Motion& motion, double u) const noexcept {
+    const double v = velocity, a = acceleration, d = duration;
+    return {motion.position + u * v * d * (1 + u * u * (u * (8 - 3 * u) - 6)) +
+                a * d * d / 2 * u * u * (1 - u) * (1 - u) * (1 - u),
+            motion.velocity + v * (1 + u * u * (u * (32 - 15 * u) - 18)) +
+                a * d * u * (1 + u * (u * (6 - 2.5 * u) - 4.5)),
+            motion.acceleration + v / d * u * (u * (96 - 60 * u) - 36) + a * (1 + u * (u * (18 - 10 * u) - 9))};
   }
 };
 

@@ -42,6 +42,22 @@ TEST(Quintic, PeaksInAccelerationAtThePrintedFigure) {
   EXPECT_NEAR(most, 10 / std::sqrt(3.0) * 1.25 / 4.0, 1e-6);
 }
 
+TEST(Quintic, BeginsWithTheMotionItIsGivenAndEndsAtRest) {
+  constexpr Quintic path{-0.25, 1.0, 2.0, 0.8, -3.0};
+  EXPECT_NEAR(path.at(1e-9).position, -0.25, 1e-8);
+  EXPECT_NEAR(path.at(1e-9).velocity, 0.8, 1e-7);
+  EXPECT_NEAR(path.at(1e-9).acceleration, -3.0, 1e-7);
+  EXPECT_EQ(path.at(0).velocity, 0.8);
+  EXPECT_NEAR(path.at(2 - 1e-9).position, 1.0, 1e-9);
+  EXPECT_NEAR(path.at(2 - 1e-9).velocity, 0, 1e-7);
+  EXPECT_NEAR(path.at(2 - 1e-9).acceleration, 0, 1e-7);
+  constexpr double h = 1e-5;
+  for (double t = 0.05; t < 2; t += 0.1) {
+    EXPECT_NEAR((path.at(t + h).position - path.at(t - h).position) / (2 * h), path.at(t).velocity, 1e-8);
+    EXPECT_NEAR((path.at(t + h).velocity - path.at(t - h).velocity) / (2 * h), path.at(t).acceleration, 1e-8);
+  }
+}
+
 TEST(Quintic, VelocityAndAccelerationAreTheDerivatives) {
   constexpr double h = 1e-5;
   for (double t = 0.05; t < 2; t += 0.1) {

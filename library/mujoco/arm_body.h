@@ -11,15 +11,25 @@
 
 namespace chimera::library {
 
-/// The ports and methods of an arm that a component derives from. `Arm` has position(), velocity(), brake() and
-/// fault(). What derives from it adds the in-var of the command and cycle(), and init() and reinit() with where the arm
-/// comes from.
+/// The ports and methods of an arm that a component derives from. `Arm` has position(), velocity(), resume(), brake()
+/// and fault(). What derives from it adds the in-var of the command and cycle(), and init() and reinit() with where
+/// the arm comes from.
 template <class Arm>
 struct ArmBody {
   Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
   Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
 
-  void on() { publish(); }
+  // A simulated arm that takes the place of another goes on where that one is, whatever its own start_pose says: at the
+  // speed that is handed over, else at rest, for an arm that goes off brakes.
+  Outcome on() {
+    if (q.inherited() != kNever && has_moved()) {
+      for (double& speed : qd)
+        if (!qd.is_handed_over()) speed = 0;
+      if (!arm_.resume({q.begin(), q.size()}, {qd.begin(), qd.size()})) return fault(arm_.fault());
+    }
+    publish();
+    return ok();
+  }
   void off() {
     arm_.brake();
     publish();
@@ -46,6 +56,9 @@ struct ArmBody {
   Arm arm_;
 
  private:
+  bool has_moved() const {
+    return !std::ranges::equal(q, arm_.position()) || (qd.is_handed_over() && !std::ranges::equal(qd, arm_.velocity()));
+  }
   void publish() {
     std::ranges::copy(arm_.position(), q.begin());
     std::ranges::copy(arm_.velocity(), qd.begin());

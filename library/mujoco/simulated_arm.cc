@@ -89,6 +89,31 @@ Result<void> SimulatedArm::place(std::span<const double> q) {
   return {};
 }
 
+bool SimulatedArm::resume(std::span<const double> q, std::span<const double> qd) {
+  char text[120];
+  if (q.size() != arm_.ndof || qd.size() != arm_.ndof) {
+    std::snprintf(text, sizeof text, "a motion of %zu joints to go on from, but the arm has %zu", q.size(), arm_.ndof);
+    return refuse(text);
+  }
+  for (std::size_t i = 0; i < arm_.ndof; ++i) {
+    if (within(q[i], arm_.low[i] - kOvershoot, arm_.high[i] + kOvershoot) && std::isfinite(qd[i])) continue;
+    std::snprintf(text, sizeof text, "joint %zu cannot go on at %.4g rad, %.4g rad/s: it moves from %.4g to %.4g rad",
+                  i + 1, q[i], qd[i], arm_.low[i], arm_.high[i]);
+    return refuse(text);
+  }
+  save();
+  for (std::size_t i = 0; i < arm_.ndof; ++i) {
+    state_->qpos[arm_.position[i]] = q[i];
+    state_->qvel[arm_.dof[i]] = qd[i];
+  }
+  if (!guarded(mj_forward, model_.get(), state_.get())) {
+    restore();
+    return refuse(mujoco_error()[0] != '\0' ? mujoco_error() : "the simulated arm cannot go on from there");
+  }
+  look();
+  return true;
+}
+
 bool SimulatedArm::refuse(const char* why) noexcept {
   fault_.assign(why);
   return false;
@@ -99,6 +124,11 @@ void SimulatedArm::look() {
     q_[i] = state_->qpos[arm_.position[i]];
     qd_[i] = state_->qvel[arm_.dof[i]];
   }
+}
+
+void SimulatedArm::save() {
+  mju_copy(saved_.get(), state_->qpos, model_->nq);
+  mju_copy(saved_.get() + model_->nq, state_->qvel, model_->nv);
 }
 
 void SimulatedArm::restore() {
@@ -150,8 +180,7 @@ bool SimulatedArm::sub_step(const Command& command) {
 
 bool SimulatedArm::advance(double dt, const Command& command) {
   if (!(dt > 0) || !std::isfinite(dt)) return refuse("the time step is not positive");
-  mju_copy(saved_.get(), state_->qpos, model_->nq);
-  mju_copy(saved_.get() + model_->nq, state_->qvel, model_->nv);
+  save();
   const double n = std::ceil(dt / longest_sub_step_ - 1e-9);
   model_->opt.timestep = dt / n;
   for (double i = 0; i < n; ++i) {

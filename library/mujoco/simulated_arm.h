@@ -43,6 +43,11 @@ class SimulatedArm {
   /// not finite. Context: setup.
   Result<void> place(std::span<const double> q);
 
+  /// Goes on from `q` (rad) at `qd` (rad/s), one of each a joint. False, with fault() saying why and the state as
+  /// before: another number of joints, what is not finite, or a position farther than kOvershoot outside the joint
+  /// limits, which a moving arm may pass a little. Context: cycle boundary; wait-free.
+  bool resume(std::span<const double> q, std::span<const double> qd);
+
   /// The drives from now on. Context: setup.
   void set_drives(const ArmDrives& drives) noexcept { drives_ = drives; }
   /// Cuts the torque at `limit` (N.m) where that is above 0. Context: setup.
@@ -80,6 +85,8 @@ class SimulatedArm {
   mjData_* state() const noexcept { return state_.get(); }
 
  private:
+  static constexpr double kOvershoot = 0.05;  // rad
+
   struct ModelRelease { void operator()(mjModel_* model) const; };
   struct DataRelease { void operator()(mjData_* data) const; };
   struct Command {
@@ -93,6 +100,7 @@ class SimulatedArm {
   void drive(const Command& command);
   double acceleration(const Command& command, std::size_t joint) const;
   void look();
+  void save();
   void restore();
   bool refuse(const char* why) noexcept;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "chimera/task/rig.h"
 #include "library/kinematics/dh_dynamics.h"
@@ -109,6 +110,24 @@ TEST_F(RobotTest, ReinitTakesOtherLimitsWhereItStands) {
   ASSERT_TRUE(rig.on());
   EXPECT_NEAR(rig.get<double>("q", 0), 0.3, 1e-3);
   EXPECT_EQ(rig.get<double>("tau_max", 0), 5);
+}
+
+TEST_F(RobotTest, GoesOnWhereThatOneIsWhosePlaceItTakes) {
+  constexpr std::pair<const char*, const char*> kRobots[] = {
+      {"mujoco_robot", "q_ref"}, {"mujoco_robot_velocity", "qd_ref"}, {"mujoco_robot_torque", "tau"}};
+  for (const auto& [component, command] : kRobots) {
+    SCOPED_TRACE(component);
+    Rig rig(component);
+    start(rig, command);
+    rig.set("q", 0.4, 0), rig.set("q", -0.3, 1), rig.set("qd", 0.5, 0), rig.set("qd", 0.0, 1);
+    for (const char* port : {"q", "qd"}) rig.inherit(port, milliseconds(2));
+    ASSERT_TRUE(rig.on());
+    EXPECT_EQ(rig.get<double>("q", 0), 0.4);
+    EXPECT_EQ(rig.get<double>("qd", 0), 0.5);
+    ASSERT_TRUE(rig.cycle());
+    EXPECT_NEAR(rig.get<double>("q", 0), 0.4, 1e-3);
+    EXPECT_NEAR(rig.get<double>("q", 1), -0.3, 1e-3);
+  }
 }
 
 TEST_F(RobotTest, RefusesAPoseOutsideTheLimitsAndAFileThatIsNotThere) {

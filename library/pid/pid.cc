@@ -50,8 +50,12 @@ struct Pid {
   }
   Outcome reinit() { return init(); }
 
-  // The start itself waits for the first cycle: an input may come from a task that goes on after this one.
-  void on() { is_started_ = false; }
+  // The start itself waits for the first cycle: an input may come from a task that goes on after this one. An output
+  // that is outdated belongs to another state of the plant.
+  void on() {
+    is_started_ = false;
+    if (output.is_outdated()) rest();
+  }
 
   Outcome cycle(Cycle c) {
     if (c.illegal()) {  // the actuator holds itself, and the error means nothing: do not integrate it
@@ -73,8 +77,7 @@ struct Pid {
   }
   bool error() { return true; }
   void off() {
-    if (*holds_off) return;
-    for (std::size_t i = 0; i < output.size(); ++i) output[i] = std::clamp(0.0, low[i], high[i]);
+    if (!*holds_off) rest();
   }
 
  private:
@@ -88,6 +91,9 @@ struct Pid {
     double error, weighted, besides;  // besides: proportional weight and feed-forward of the reference
   };
 
+  void rest() {
+    for (std::size_t i = 0; i < output.size(); ++i) output[i] = std::clamp(0.0, low[i], high[i]);
+  }
   static bool is_share(double value) { return value >= 0 && value <= 1; }
   Outcome judge_all() {
     Outcome found = library::judge(measured, "measured");
@@ -105,8 +111,8 @@ struct Pid {
             *derivative_weight * r - y,
             (*reference_weight - 1) * p * r + ff.begin()[i] * r};
   }
-  // Bumpless: the integral takes what the other terms lack to the output that stands, of an earlier run or of a
-  // predecessor.
+  // Bumpless: the integral takes what the other terms lack to the output that stands: that of a predecessor, what was
+  // held while the configuration was illegal, or the initial one.
   void start() {
     for (std::size_t i = 0; i < output.size(); ++i) {
       const Terms now = terms(i);

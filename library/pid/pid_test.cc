@@ -155,6 +155,23 @@ TEST_F(PidTest, GoesOnFromTheOutputThatStands) {
   EXPECT_NEAR(step(10, 8), 7 + 1 * 2 * 1e-3, 1e-12);
 }
 
+TEST_F(PidTest, GoesOnFromTheOutputThatIsHandedOverAndNotFromAnOldOne) {
+  give(4, 1, 0.1);
+  rig.set("output", 7.0);
+  rig.inherit("output", milliseconds(200), milliseconds(100));
+  start();
+  EXPECT_NEAR(step(10, 8), 7 + 1 * 2 * 1e-3, 1e-12);
+  rig.set("output", 7.0);
+  rig.inherit("output", milliseconds(201), milliseconds(100));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("output"), 0);
+  EXPECT_NEAR(step(10, 8), 1 * 2 * 1e-3, 1e-12);
+  rig.set("low", 1.0);
+  rig.set("output", 7.0);
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("output"), 1) << "within its limits";
+}
+
 TEST_F(PidTest, ADifferentKiMakesNoStep) {
   give(1, 50, 0);
   start();

@@ -35,15 +35,21 @@ struct PidJoint {
   }
   Outcome reinit() { return init(); }
 
-  // Bumpless: goes on from the torque that stands, of an earlier run or of a predecessor.
+  // Bumpless: goes on from the torque that is handed over. An older one belongs to another state of the arm.
   void on() {
+    for (double& torque : tau)
+      if (tau.is_outdated()) torque = 0;
+    begin();
+  }
+  // Goes on from the torque that stands.
+  void begin() {
     for (std::size_t i = 0; i < tau.size(); ++i)
       axis_[i].start(gains(i), q_ref[i] - q[i], qd_ref[i] - qd[i], std::isnan(tau[i]) ? 0 : tau[i]);
   }
   Outcome cycle(Cycle c) {
     // While the configuration is illegal the robot holds itself and the errors mean nothing: do not integrate them.
     if (c.illegal()) {
-      on();
+      begin();
       return ok();
     }
     for (std::size_t i = 0; i < tau.size(); ++i) {

@@ -57,6 +57,27 @@ TEST_F(PidJointTest, GoesOnFromTheTorqueThatStands) {
   EXPECT_NEAR(rig.get<double>("tau", 0), stands, 1e-3);
 }
 
+TEST_F(PidJointTest, GoesOnFromTheTorqueThatIsHandedOverAndNotFromAnOldOne) {
+  start();
+  rig.set("q_ref", 0.1, 0);
+  rig.set("tau", 20.0, 0);
+  rig.inherit("tau", milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("tau", 0), 20);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("tau", 0), 20 + 10 * 0.1 * 1e-3, 1e-12);
+  rig.set("tau", 20.0, 0);
+  rig.inherit("tau", milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("tau", 0), 0);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("tau", 0), 10 * 0.1 * 1e-3, 1e-12);
+  rig.illegal(true);
+  rig.set("tau", 5.0, 0);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(rig.get<double>("tau", 0), 5) << "that of on was old, that of this run is not";
+}
+
 TEST_F(PidJointTest, DoesNotIntegrateWhileTheConfigurationIsIllegal) {
   start();
   rig.illegal(true);

@@ -2,6 +2,7 @@
 // Inverse kinematics of the Puma 560 in closed form: of eight solutions the nearest.
 #include "library/kinematics/dh_ports.h"
 #include "library/kinematics/puma560.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -9,12 +10,15 @@ namespace {
 
 struct Pinvkin {
   In<Pose> xr{"xr", frame = "base", doc = "Reference tool pose: the flange."};
-  In<double[6]> q{"q", "rad", frame = "joint", doc = "Measured joint positions: which solution is near at on."};
+  In<double[6]> q{"q", "rad", frame = "joint",
+                 doc = "Measured joint positions: which solution is near at on, unless q_ref is handed over."};
   Out<double[6]> q_ref{"q_ref", "rad", initial = 0.0, frame = "joint", doc = "Joint positions for xr."};
   Out<bool> is_reachable{"is_reachable", "1", initial = true, doc = "False: xr is out of reach, q_ref stands."};
 
+  // Bumpless: a command that is handed over goes on; the drives are still behind it. Else the arm is where it is.
   Outcome on() {
-    for (std::size_t i = 0; i < 6; ++i) {
+    const bool goes_on = q_ref.is_handed_over() && library::all_finite(q_ref);
+    for (std::size_t i = 0; !goes_on && i < 6; ++i) {
       if (!std::isfinite(q[i])) return fault("q is not finite: no solution is near");
       q_ref[i] = q[i];
     }

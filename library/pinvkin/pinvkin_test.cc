@@ -22,6 +22,16 @@ TEST_F(PinvkinTest, StaysWithTheSolutionThatIsNearest) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], kBent[i], 1e-9);
 }
 
+TEST_F(PinvkinTest, GoesOnFromTheCommandThatIsHandedOverAndElseFromTheMeasurement) {
+  for (std::size_t i = 0; i < 6; ++i) rig.set("q_ref", kBent[i] + 0.05, i);
+  rig.inherit("q_ref", milliseconds(10));
+  ASSERT_TRUE(rig.on());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rig.six("q_ref")[i], kBent[i] + 0.05);
+  rig.inherit("q_ref", milliseconds(11));
+  ASSERT_TRUE(rig.on());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rig.six("q_ref")[i], kBent[i]) << "an old command";
+}
+
 TEST_F(PinvkinTest, FollowsAPathWithoutChangingTheArm) {
   Puma560::Vector before = kBent;
   for (int step = 0; step < 1000; ++step) {

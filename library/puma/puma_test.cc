@@ -32,6 +32,35 @@ TEST_F(PumaTest, TellsItsRows) {
   EXPECT_EQ(rig.get<library::DhLink>("dh", 5).d, .05625);
 }
 
+// A simulated arm in the place of another: where that one is and as fast, not in its own start pose.
+TEST_F(PumaTest, GoesOnWhereThatOneIsWhosePlaceItTakes) {
+  start();
+  const auto inherit = [&](Nanoseconds age, double elbow) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      rig.set("q", kStart[i] + 0.1, i), rig.set("qd", 0.2, i), rig.set("q_ref", kStart[i] + 0.1, i);
+    }
+    rig.set("q", elbow, 2);
+    for (const char* port : {"q", "qd"}) rig.inherit(port, age);
+  };
+  inherit(milliseconds(2), kStart[2] + 0.1);
+  ASSERT_TRUE(rig.on());
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(rig.get<double>("q", i), kStart[i] + 0.1);
+    EXPECT_EQ(rig.get<double>("qd", i), 0.2);
+  }
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("q", 0), kStart[0] + 0.1, 1e-3);
+  EXPECT_NEAR(rig.get<double>("qd", 0), 0.2, 0.05);
+  inherit(milliseconds(200), kStart[2] + 0.1);
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("q", 0), kStart[0] + 0.1) << "it stands there";
+  EXPECT_EQ(rig.get<double>("qd", 0), 0);
+  inherit(milliseconds(2), 4.0);
+  EXPECT_EQ(rig.on().text, "joint 3 cannot go on at 4 rad, 0.2 rad/s: it moves from -3.927 to 0.7854 rad");
+  inherit(milliseconds(2), std::nan(""));
+  EXPECT_FALSE(rig.on());
+}
+
 TEST_F(PumaTest, GoesToAPositionNoFasterThanAllowed) {
   start();
   rig.set("q_ref", 0.8, 0);

@@ -48,6 +48,9 @@ class PumaArm {
   /// rest near where it is. For the time of an illegal configuration. Context: cycle; wait-free; O(dt).
   bool step_locally_stable(double dt);
 
+  /// Goes on from a position (rad) and velocity (rad/s): see SimulatedArm. Context: cycle boundary; wait-free.
+  bool resume(std::span<const double> q, std::span<const double> qd) { return arm_.resume(q, qd); }
+
   /// Brakes on: the joints stand still at once. Context: cycle; wait-free.
   void brake();
 

@@ -17,7 +17,7 @@ constexpr double kLongestStep = 0.1;  // s: after a pause the reference goes on,
 
 struct TrackBall {
   Many<In<Pose>, 1> xm{"xm*", "1", frame = "base",
-                    doc = "Measured tool pose, from which xd starts at on; may be left out."};
+                    doc = "Measured tool pose, where xd starts at on unless it is handed over; may be left out."};
   Out<Pose> xd{"xd", frame = "base", initial = Pose{{0, 0, 0}, {1, 0, 0, 0}},
                doc = "Cartesian reference, moved by the ball."};
   Out<double[6]> motion{"motion", "U", initial = 0.0,
@@ -47,6 +47,7 @@ struct TrackBall {
     reinit();
     source_.start(c.now());
     rest();
+    if (xd.is_handed_over() && is_sound(*xd)) return ok();  // bumpless: the reference goes on
     if (xm.size() == 0 || !xm[0].valid()) return ok();
     if (!is_sound(*xm[0])) return fault("xm is not finite or no orientation: xd cannot start there");
     *xd = *xm[0];

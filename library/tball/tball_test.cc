@@ -104,6 +104,18 @@ TEST_F(TballTest, TwoRunsOfARecordingAgreeToTheBit) {
   }
 }
 
+TEST_F(TballTest, GoesOnFromTheReferenceThatIsHandedOver) {
+  rig.instances("xm", 1);
+  rig.set("xm", Pose{{1, 2, 3}, {1, 0, 0, 0}});
+  rig.set("xd", Pose{{1, 2, 4}, {1, 0, 0, 0}});
+  rig.inherit("xd", milliseconds(20), milliseconds(10));
+  start(shipped());
+  EXPECT_EQ(rig.get<Pose>("xd").position[2], 4);
+  rig.inherit("xd", milliseconds(21), milliseconds(10));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<Pose>("xd").position[2], 3) << "where the tool is";
+}
+
 TEST_F(TballTest, StartsWhereTheToolIsAndTurnsAboutTheAxesOfTheFrame) {
   recording("E: 0.000000 0003 0005 350\nE: 0.000000 0000 0000 0\n");
   rig.instances("xm", 1);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chimera/task/component.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -11,11 +12,13 @@ namespace {
 
 struct TimeIntegrator {
   In<double[]> rate_of_change{"rate_of_change", "U/s", "[n...<=64]", doc = "What is integrated."};
-  In<double[]> start{"start", "U", "[n...<=64]", doc = "Where the integral begins when the task goes on."};
+  In<double[]> start{"start", "U", "[n...<=64]", doc = "Where the integral begins at on, unless it is handed over."};
   Out<double[]> integral{"integral", "U", "[n...<=64]", initial = 0.0,
-                         doc = "start at on, plus what was integrated since."};
+                         doc = "start at on, or what is handed over, plus what was integrated since."};
 
+  // Bumpless: an integral that is handed over goes on.
   Outcome on() {
+    if (integral.is_handed_over() && library::all_finite(integral)) return ok();
     for (std::size_t i = 0; i < integral.size(); ++i) {
       if (!std::isfinite(start[i])) return fault("start is not finite");
     }

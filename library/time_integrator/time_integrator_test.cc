@@ -55,6 +55,18 @@ TEST_F(TimeIntegratorTest, AStartThatIsRefusedLeavesWhatStood) {
   EXPECT_EQ(rig.get<double>("integral", 0), 1);
 }
 
+TEST_F(TimeIntegratorTest, GoesOnFromTheIntegralThatIsHandedOverAndElseFromItsStart) {
+  start();
+  rig.set("integral", 5.0, 0);
+  rig.inherit("integral", milliseconds(4), milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle(milliseconds(10)));
+  EXPECT_DOUBLE_EQ(rig.get<double>("integral", 0), 5.02);
+  rig.inherit("integral", milliseconds(40), milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("integral", 0), 1) << "an old integral";
+}
+
 TEST_F(TimeIntegratorTest, StandsWhileTheConfigurationIsIllegal) {
   start();
   rig.illegal(true);

@@ -14,7 +14,7 @@ using namespace chimera;
 namespace {
 
 struct VisualServoInterface : library::CameraPorts {
-  In<Pose> xm{"xm", frame = "base", doc = "Measured tool pose: where xd begins when the task goes on."};
+  In<Pose> xm{"xm", frame = "base", doc = "Measured tool pose: where xd begins at on, unless it is handed over."};
   Out<Pose> xd{"xd", frame = "base", doc = "Desired tool pose."};
   Out<Pose> target{"target", frame = "base", doc = "Where the tool should be for the ball that is seen."};
   Out<bool> in_sight{"in_sight", "1", initial = false, doc = "The last feature is younger than timeout."};
@@ -36,10 +36,9 @@ struct VisualServoInterface : library::CameraPorts {
   void reinit() { pinhole_ = pinhole(); }
   Outcome on(Cycle c) {
     if (!xm.valid()) return fault("xm was never written: where the tool is is not known");
-    if (!std::isfinite(library::length(library::frame_of(*xm).origin + library::frame_of(*xm).x))) {
-      return fault("xm is not a number");
-    }
-    *xd = *target = *xm;
+    if (!is_finite(*xm)) return fault("xm is not a number");
+    *target = *xm;
+    if (!xd.is_handed_over() || !is_finite(*xd)) *xd = *xm;  // else bumpless: a reference that is handed over goes on
     reader_.rewind();
     begin_ = c.now();
     was_seen_ = *in_sight = false;
@@ -60,6 +59,11 @@ struct VisualServoInterface : library::CameraPorts {
 
  private:
   using Vec3 = library::Vec3;
+
+  static bool is_finite(const Pose& pose) {
+    const library::Frame frame = library::frame_of(pose);
+    return std::isfinite(library::length(frame.origin + frame.x));
+  }
 
   // Between two pictures the ball goes on as it went from the last to this one.
   void look(const library::Feature& feature, double now) {

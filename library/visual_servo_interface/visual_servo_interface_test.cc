@@ -62,6 +62,17 @@ TEST_F(VisionTest, FollowsABallThatMoves) {
   EXPECT_EQ(camera.get<std::int64_t>("sent"), 101);
 }
 
+TEST_F(VisionTest, GoesOnFromTheReferenceThatIsHandedOver) {
+  start(0);
+  servo.set("xd", Pose{{0.6, 0.2, 0.4}, {1, 0, 0, 0}});
+  servo.inherit("xd", milliseconds(20), milliseconds(10));
+  ASSERT_TRUE(servo.on());
+  EXPECT_EQ(servo.get<Pose>("xd").position[0], 0.6);
+  servo.inherit("xd", milliseconds(21), milliseconds(10));
+  ASSERT_TRUE(servo.on());
+  EXPECT_EQ(servo.get<Pose>("xd").position[0], 0.5) << "where the tool is";
+}
+
 TEST_F(VisionTest, WithoutGainItStaysWhereTheToolWas) {
   start(0);
   EXPECT_GT(follow(300), 0.1);
