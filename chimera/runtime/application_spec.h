@@ -58,6 +58,12 @@ struct RtpuSpec {
   bool preemptive = false;  ///< a thread for each task; else one loop, the executive
 };
 
+/// A configuration of the description: tasks that may be ON together.
+struct NamedSet {
+  std::string_view name;
+  std::span<const TaskId> order;  ///< each task once, in data-flow order, hardware inputs first
+};
+
 /// Context: setup. Every span must outlive the runtime that is made from it.
 struct ApplicationSpec {
   std::string_view name;
@@ -70,6 +76,7 @@ struct ApplicationSpec {
   std::span<const TaskId> start;       ///< the tasks that go ON, in data-flow order, hardware inputs first
   std::span<const TaskId> on_order;    ///< every task in the order of going ON; OFF goes backwards: task_orders.h
   std::span<const TaskId> end_order;   ///< every task in the order in which the end turns OFF and kills: task_orders.h
+  std::span<const NamedSet> sets;      ///< the configurations, no two of one name; `start` is one where there are any
 
   /// Name of what the port is linked to; "" when it is not linked. Context: any; wait-free.
   std::string_view link_name(const PortSpec& port) const noexcept {

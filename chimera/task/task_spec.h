@@ -42,6 +42,8 @@ struct PortSpec {
   /// Entries of the list that `value` was written as, by dimension; 0: one value for all elements. An extent that a
   /// constant fixes must agree with them.
   std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};
+  /// out-var: how far a switch of configurations may move each of the max elements, above 0; empty: as far as it likes.
+  std::span<const std::byte> max_step;
 
   std::uint32_t max_count() const noexcept { return extent[0].max * extent[1].max; }
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }

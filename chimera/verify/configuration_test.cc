@@ -267,6 +267,23 @@ TEST(Configuration, HasOneRtpuAndOneConfigurationByDefault) {
   EXPECT_EQ(made.sets()[0].name, "all");
 }
 
+TEST(Configuration, HandsTheSetsAndTheLargestStepsDown) {
+  const Configuration made = legal(std::string(kLine).replace(std::string(kLine).find("on_miss: hold"), 13,
+                                                              "max_step: {y: [180 deg, 1 rad, 2 rad]}") +
+                                   "configurations: {all: [sink, gain, source], bare: [source]}\nstart: all\n");
+  const std::vector<double> steps = numbers(made.spec().tasks[1].ports[2].max_step);
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_NEAR(steps[0], 3.14159265358979, 1e-12);
+  EXPECT_EQ(steps[2], 2.0);
+  EXPECT_TRUE(made.spec().tasks[0].ports[0].max_step.empty());
+  const auto sets = made.spec().sets;
+  ASSERT_EQ(sets.size(), 2u);
+  EXPECT_EQ(sets[0].name, "all");
+  EXPECT_EQ(names(made, sets[0].order), (Names{"source", "gain", "sink"}));
+  EXPECT_EQ(names(made, sets[1].order), Names{"source"});
+  EXPECT_TRUE(std::ranges::equal(made.spec().start, sets[0].order));
+}
+
 TEST(Configuration, OutlivesWhatItWasMadeOfAndItsCopies) {
   std::optional<Configuration> first = legal(kRobot);
   const Configuration second = *first;

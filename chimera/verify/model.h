@@ -52,6 +52,7 @@ struct LinkedPort {
   bool has_extents = false;
   /// Written, default or initial value, elements at their maxima; empty: none, or only init will know it.
   std::vector<std::byte> value;
+  std::vector<std::byte> max_step;  ///< out-var: as `value`; empty: none
 
   bool is(std::uint32_t kind) const noexcept { return declared->kind == kind; }
   bool is_linked() const noexcept { return !variable.empty(); }

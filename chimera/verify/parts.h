@@ -31,6 +31,7 @@ struct Configuration::Parts {
   std::vector<GivenSpec> operators;
   Links links;
   std::vector<TaskId> init_order, on_order, end_order;
+  std::vector<NamedSet> named_sets;
   ApplicationSpec spec;
 };
 

@@ -130,6 +130,7 @@ class SpecMaker {
       fill_extents(port, spec.extent);
       // A linked in-const has the value of its constant.
       if (port.source != ConstSource::kVariable && !port.value.empty()) spec.value = keep(parts_, port.value);
+      if (!port.max_step.empty()) spec.max_step = keep(parts_, port.max_step);
     } else {
       spec.type = CHIMERA_STRING;
       spec.element_bytes = 0;
@@ -190,6 +191,8 @@ void fill_spec(const Model& model, Parts& parts) {
   parts.spec.operators = parts.operators;
   parts.spec.init_order = parts.init_order;
   parts.spec.start = parts.sets[parts.start].order;
+  for (const ConfiguredSet& set : parts.sets) parts.named_sets.push_back({set.name, set.order});
+  parts.spec.sets = parts.named_sets;
   parts.on_order = make_on_order(parts.spec);
   parts.spec.on_order = parts.on_order;
   parts.end_order = make_end_order(parts.spec);

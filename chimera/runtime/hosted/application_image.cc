@@ -6,7 +6,9 @@
 #include <bit>
 #include <cstring>
 #include <deque>
+#include <set>
 #include <type_traits>
+#include <utility>
 
 #include "chimera/base/assert.h"
 #include "chimera/runtime/hosted/image_archive.h"
@@ -26,6 +28,8 @@ struct ApplicationImage::Parts {
   std::vector<ConstantSpec> constants;
   std::vector<GivenSpec> operators;
   std::vector<TaskId> init_order, start, on_order, end_order;
+  std::vector<NamedSet> sets;
+  std::deque<std::vector<TaskId>> set_orders;  // of one set each
   Links links;
   std::vector<ComponentPlace> places;
 };
@@ -35,7 +39,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -111,6 +115,10 @@ void port_fields(Archive& archive, Port& port, const Counts& counts) {
   archive.number(port.min);
   archive.number(port.max);
   value_fields(archive, port, counts);
+  archive.values(port.max_step);
+  archive.require(port.max_step.empty() ||
+                      (port.kind == CHIMERA_OUT_VAR && port.max_step.size() == port.max_bytes()),
+                  "a largest step that does not fill an output");
 }
 
 // Its producers are the out-consts that carry its id.
@@ -169,8 +177,8 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   archive.require(task.rtpu.index < n_rtpus, "an rtpu that does not exist");
 }
 
-template <class Archive>
-void task_ids(Archive& archive, std::span<const TaskId>& ids, std::vector<TaskId>& storage, std::size_t n_tasks) {
+template <class Archive, class Ids>
+void task_ids(Archive& archive, Ids& ids, std::vector<TaskId>& storage, std::size_t n_tasks) {
   archive.list(ids, storage, n_tasks, "more tasks in an order than there are", [&](auto& id) {
     archive.number(id);
     archive.require(id.index < n_tasks, "a task that does not exist");
@@ -178,7 +186,7 @@ void task_ids(Archive& archive, std::span<const TaskId>& ids, std::vector<TaskId
 }
 
 // Far beyond what a description of 256 KiB can hold.
-constexpr std::size_t kMostTasks = 4096, kMostLinks = 65536;
+constexpr std::size_t kMostTasks = 4096, kMostLinks = 65536, kMostSets = 4096;
 
 // The lists that ids point into come before the ids.
 template <class Archive>
@@ -196,6 +204,14 @@ void operator_fields(Archive& archive, ApplicationImage::Parts& parts, Applicati
     archive.number(given.variable);
     value_fields(archive, given, counts);
     archive.require(given.variable.index < counts.variables, "a variable that does not exist");
+  });
+}
+
+template <class Archive>
+void set_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationSpec& spec) {
+  archive.list(spec.sets, parts.sets, kMostSets, "too many sets", [&](auto& set) {
+    archive.text(set.name);
+    task_ids(archive, set.order, parts.set_orders.emplace_back(), spec.tasks.size());
   });
 }
 
@@ -228,12 +244,27 @@ void image_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationS
   task_ids(archive, spec.start, parts.start, spec.tasks.size());
   task_ids(archive, spec.on_order, parts.on_order, spec.tasks.size());
   task_ids(archive, spec.end_order, parts.end_order, spec.tasks.size());
+  set_fields(archive, parts, spec);
+}
+
+bool holds_none_twice(std::span<const TaskId> order, std::size_t n_tasks) {
+  std::vector<char> seen(n_tasks, 0);
+  return std::all_of(order.begin(), order.end(), [&](TaskId id) { return std::exchange(seen[id.index], 1) == 0; });
 }
 
 bool holds_every_task_once(std::span<const TaskId> order, std::size_t n_tasks) {
-  std::vector<bool> seen(n_tasks, false);
-  for (const TaskId id : order) seen[id.index] = true;
-  return order.size() == n_tasks && std::find(seen.begin(), seen.end(), false) == seen.end();
+  return order.size() == n_tasks && holds_none_twice(order, n_tasks);
+}
+
+void judge_sets(const ApplicationImage::Parts& parts, ImageReader& reader) {
+  const auto is_start = [&](const NamedSet& set) { return std::ranges::equal(set.order, parts.start); };
+  reader.require(parts.sets.empty() || std::ranges::any_of(parts.sets, is_start), "a start that is none of the sets");
+  reader.require(holds_none_twice(parts.start, parts.tasks.size()), "a set that holds a task twice");
+  std::set<std::string_view> names;
+  for (const NamedSet& set : parts.sets) {
+    reader.require(holds_none_twice(set.order, parts.tasks.size()), "a set that holds a task twice");
+    reader.require(names.insert(set.name).second, "two sets of one name");
+  }
 }
 
 // Collects who is linked to what, and refuses links that verification never makes.
@@ -250,6 +281,7 @@ void link(ApplicationImage::Parts& parts, ImageReader& reader) {
                    "a constant that is not either given or produced");
   for (const auto* order : {&parts.init_order, &parts.on_order, &parts.end_order})
     reader.require(holds_every_task_once(*order, parts.tasks.size()), "an order that does not hold every task once");
+  judge_sets(parts, reader);
 }
 
 Error refusal(std::string text) { return {ErrorCode::kBadInput, {std::move(text)}, {}}; }

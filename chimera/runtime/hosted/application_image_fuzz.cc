@@ -15,7 +15,7 @@ using namespace chimera;
 /// The bytes behind a header that is right: otherwise the hash would refuse nearly everything.
 std::vector<std::byte> with_header(const std::uint8_t* bytes, std::size_t size) {
   const std::uint64_t magic = 0x31474d49'4d494843, total = size + 32;
-  const std::uint32_t version = 3, header_bytes = 32;
+  const std::uint32_t version = 4, header_bytes = 32;
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
   std::vector<std::byte> image(total);
@@ -75,7 +75,8 @@ unsigned check_spec(const ApplicationSpec& spec) {
     for (const PortSpec& port : task.ports) {
       require(port.element_bytes == 0 || port.value.empty() || port.value.size() == port.max_bytes(),
               "values fill their ports");
-      all += sum(spec.link_name(port)) + sum(port.value);
+      require(port.max_step.empty() || port.max_step.size() == port.max_bytes(), "largest steps fill their ports");
+      all += sum(spec.link_name(port)) + sum(port.value) + sum(port.max_step);
       for (const ExtentSpec& extent : port.extent)
         if (extent.constant.is_valid()) all += sum(spec.constants[extent.constant.index].name);
     }
@@ -90,6 +91,10 @@ unsigned check_spec(const ApplicationSpec& spec) {
   }
   for (const auto ids : {spec.init_order, spec.start, spec.on_order, spec.end_order})
     for (const TaskId id : ids) require(id.index < spec.tasks.size(), "every task in an order is there");
+  for (const NamedSet& set : spec.sets) {
+    for (const TaskId id : set.order) require(id.index < spec.tasks.size(), "every task in a set is there");
+    all += sum(set.name);
+  }
   return all + check_links(spec);
 }
 

@@ -23,8 +23,10 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 struct Sample {
   Sample() {
     ports[0] = {3, CHIMERA_OUT_VAR, 2, kX, {}, "rad", 8, {{1, kN}, {2, kM}}, true, -1.5, 2.5, true, CHIMERA_INT64,
-                bytes_of("0123456789abcdef"), {1, 2}};
-    ports[1] = {4, CHIMERA_RESOURCE, 0, {}, {}, "", 0, {}, false, 0, 0, false, CHIMERA_STRING, bytes_of("arm.xml"), {}};
+                bytes_of("0123456789abcdef"), {1, 2},
+                bytes_of("ABCDEFGHIJKLMNOP")};
+    ports[1] = {4, CHIMERA_RESOURCE, 0, {}, {}, "", 0, {}, false, 0, 0, false, CHIMERA_STRING, bytes_of("arm.xml"), {},
+                {}};
     more_ports[0].kind = CHIMERA_IN_VAR;
     more_ports[0].variable = kKp;
     more_ports[1].kind = CHIMERA_OUT_CONST;
@@ -52,7 +54,7 @@ struct Sample {
     operators[0] = {"kp", kKp, CHIMERA_FLOAT32, 4, {}, bytes_of("abcd"), {}};
     operators[1] = {"ki", kKi, CHIMERA_FLOAT64, 8, {}, bytes_of("abcdefgh"), {}};
     spec = {"arm",     rtpus,      tasks, variables, constants,
-            operators, init_order, start, on_order,  end_order};
+            operators, init_order, start, on_order,  end_order, sets};
     links.fill(tasks, operators, variables, constants);
   }
 
@@ -68,6 +70,8 @@ struct Sample {
   Links links;
   TaskId init_order[2] = {TaskId{1u}, TaskId{0u}}, start[1] = {TaskId{1u}};
   TaskId on_order[2] = {TaskId{1u}, TaskId{0u}}, end_order[2] = {TaskId{0u}, TaskId{1u}};
+  TaskId other[2] = {TaskId{0u}, TaskId{1u}};
+  NamedSet sets[2] = {{"both", other}, {"alone", start}};
   ComponentPlace places[2] = {{"/usr/lib/pid.so", 0x123456789abcdef0}, {"gain.so", 2}};
   RunSettings settings{40, milliseconds(5)};
   ApplicationSpec spec;
@@ -114,6 +118,11 @@ TEST(ApplicationImage, ADifferenceInAnySpecIsSeen) {  // so that the test above 
   EXPECT_EQ(first_difference(c.spec, Sample().spec), "tasks[1].ports[4].variable");
   d.end_order[0] = TaskId{1u};
   EXPECT_EQ(first_difference(d.spec, Sample().spec), "end_order");
+  Sample e, f;
+  e.other[0] = TaskId{1u};
+  EXPECT_EQ(first_difference(e.spec, Sample().spec), "sets[0].order");
+  f.ports[0].max_step = {};
+  EXPECT_EQ(first_difference(f.spec, Sample().spec), "tasks[0].ports[0].max_step");
 }
 
 TEST(ApplicationImage, StrangersAreRefusedByName) {
@@ -125,7 +134,7 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
   bytes[kVersionAt] = std::byte{7};
-  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 3");
+  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 4");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +
@@ -190,6 +199,17 @@ TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.end_order[0] = TaskId{1u}; }), unordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.spec.init_order = s.spec.init_order.first(1); }), unordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.on_order[0] = TaskId{2u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.other[0] = TaskId{2u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.other[0] = TaskId{1u}; }), "a set that holds a task twice"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.sets[0].name = "alone"; }), "two sets of one name"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.sets[1].order = s.sets[0].order; }),
+                   "a start that is none of the sets"));
+  const char* misfit = "a largest step that does not fill an output";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].max_step = bytes_of("ABCDEFGH"); }), misfit));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) {
+    s.more_ports[0].element_bytes = 8;
+    s.more_ports[0].max_step = bytes_of("ABCDEFGH");
+  }), misfit));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.rtpus[0].policy = static_cast<Policy>(9); }),
                    "a choice that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.settings.priority = 100; }), "settings out of range"));

@@ -62,6 +62,7 @@ inline void compare_ports(SpecDifference& d, const PortSpec& a, const PortSpec& 
   d.compare(a.min, b.min, "min");
   d.compare(a.max, b.max, "max");
   d.compare(a.has_range, b.has_range, "has_range");
+  d.values(a.max_step, b.max_step, "max_step");
   compare_values(d, a, b);
 }
 
@@ -133,6 +134,10 @@ inline std::string first_difference(const ApplicationSpec& a, const ApplicationS
   d.values(a.start, b.start, "start");
   d.values(a.on_order, b.on_order, "on_order");
   d.values(a.end_order, b.end_order, "end_order");
+  d.list(a.sets, b.sets, "sets", [&](const NamedSet& p, const NamedSet& q) {
+    d.compare(p.name, q.name, "name");
+    d.values(p.order, q.order, "order");
+  });
   return d.said();
 }
 

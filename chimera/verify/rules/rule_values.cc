@@ -29,13 +29,13 @@ void check_given(Model& model, VariableModel& variable) {
   }
 }
 
-void check_steps(Model& model, const TaskModel& task) {
+void check_steps(Model& model, TaskModel& task) {
   for (const NamedNode& step : task.draft->max_step)
-    for (const LinkedPort& port : task.ports)
+    for (LinkedPort& port : task.ports)
       if (port.declared->name == step.name.text && port.is(CHIMERA_OUT_VAR) && is_solved(port)) {
         ValueTarget target{port, "largest step of '" + step.name.text + "' of task '" + task.name() + "'"};
         target.is_step = true;
-        value_bytes(model, step.value, target);
+        if (auto bytes = value_bytes(model, step.value, target)) port.max_step = *std::move(bytes);
       }
 }
 
@@ -60,7 +60,7 @@ void check_values(Model& model) {
   });
   for (VariableModel& variable : model.variables)
     if (variable.given != nullptr) check_given(model, variable);
-  for (const TaskModel& task : model.tasks) {
+  for (TaskModel& task : model.tasks) {
     check_steps(model, task);
     check_resources(model, task);
   }

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes the plan of a switch from the tasks that are ON and the configuration that is wanted.
+#include "chimera/runtime/switch_plan.h"
+
+#include <algorithm>
+
+namespace chimera {
+namespace {
+
+bool is_on(const TaskStanding& standing) noexcept { return standing.state == State::kOn; }
+
+}  // namespace
+
+void SwitchPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
+  spec_ = &spec;
+  in_target_ = memory.take<bool>(spec.tasks.size());
+  arriving_ = memory.take<TaskId>(spec.tasks.size());
+  leaving_ = memory.take<TaskId>(spec.tasks.size());
+  staying_ = memory.take<TaskId>(spec.tasks.size());
+  handovers_ = memory.take<Handover>(spec.variables.size());
+}
+
+std::uint32_t SwitchPlanner::set_in_force(std::span<const TaskStanding> standing) const noexcept {
+  const auto n_on = std::count_if(standing.begin(), standing.end(), is_on);
+  for (std::uint32_t s = 0; s < spec_->sets.size(); ++s) {
+    const std::span<const TaskId> order = spec_->sets[s].order;
+    if (static_cast<std::size_t>(n_on) != order.size()) continue;
+    if (std::all_of(order.begin(), order.end(), [&](TaskId id) { return is_on(standing[id.index]); })) return s;
+  }
+  return kNoSet;
+}
+
+PlanAnswer SwitchPlanner::plan(std::uint32_t target, std::span<const TaskStanding> standing,
+                               SwitchPlan& plan) noexcept {
+  if (target >= spec_->sets.size()) return {NoSwitch::kUnknownSet, {}};
+  const std::span<const TaskId> order = spec_->sets[target].order;
+  std::size_t arriving = 0, leaving = 0, staying = 0;
+  std::fill(in_target_.begin(), in_target_.end(), false);
+  for (const TaskId id : order) {
+    const TaskStanding& now = standing[id.index];
+    if (now.state == State::kError) return {NoSwitch::kInError, id};
+    if (now.state == State::kNotCreated || now.in_service) return {NoSwitch::kNotCreated, id};
+    in_target_[id.index] = true;
+    if (is_on(now)) staying_[staying++] = id;
+    else arriving_[arriving++] = id;
+  }
+  for (std::size_t i = spec_->on_order.size(); i-- > 0;) {
+    const TaskId id = spec_->on_order[i];
+    if (is_on(standing[id.index]) && !is_in_target(id)) leaving_[leaving++] = id;
+  }
+  if (arriving == 0 && leaving == 0) return {NoSwitch::kNothingToDo, {}};
+  plan.before = set_in_force(standing);
+  plan.after = target;
+  plan.arriving = arriving_.first(arriving);
+  plan.leaving = leaving_.first(leaving);
+  plan.staying = staying_.first(staying);
+  plan.handovers = list_handovers(standing);
+  return {};
+}
+
+std::span<const Handover> SwitchPlanner::list_handovers(std::span<const TaskStanding> standing) noexcept {
+  std::size_t n = 0;
+  for (std::size_t v = 0; v < spec_->variables.size(); ++v) {
+    PortOf from, to;
+    for (const PortOf& producer : spec_->variables[v].producers) {
+      if (is_on(standing[producer.task.index])) from = producer;
+      if (is_in_target(producer.task)) to = producer;
+    }
+    if (to.task.is_valid() && !(from == to)) handovers_[n++] = {VariableId(v), from, to};
+  }
+  return handovers_.first(n);
+}
+
+}  // namespace chimera

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// A switch of configurations as data: which tasks arrive, leave and stay, and which variables get another producer.
+// docs/formats/switch_plan.md says what each field means. Made by a pure function; who carries a plan out is
+// runtime/switching.h.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/base/setup_memory.h"
+#include "chimera/runtime/application_spec.h"
+#include "chimera/task/state_machine.h"
+
+namespace chimera {
+
+/// Stands for "none of ApplicationSpec::sets".
+inline constexpr std::uint32_t kNoSet = UINT32_MAX;
+
+/// From the instant of the change on, every task of the set after reads `variable` from `to` instead of `from`.
+struct Handover {
+  VariableId variable;
+  PortOf from;  ///< out-var of a leaving task; an invalid task: nobody who is ON produced it before
+  PortOf to;    ///< out-var of an arriving task
+};
+
+/// Lists point into the SwitchPlanner that made the plan.
+struct SwitchPlan {
+  std::uint32_t number = 0;
+  std::uint32_t before = kNoSet;       ///< in ApplicationSpec::sets; kNoSet: what is ON is none of them
+  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets
+  std::span<const TaskId> arriving;    ///< in data-flow order, producers first
+  std::span<const TaskId> leaving;     ///< against the data flow
+  std::span<const TaskId> staying;     ///< in data-flow order
+  std::span<const Handover> handovers; ///< in the order of ApplicationSpec::variables
+};
+
+/// Why a switch is not made. The first group is found before anything is done, the others abort what was begun.
+enum class NoSwitch : std::uint8_t {
+  kNone,
+  kUnknownSet,   ///< the target is none of the sets
+  kNothingToDo,  ///< exactly the tasks of the target are ON
+  kInError,      ///< `task`, of the target, is in ERROR: to be cleared first
+  kNotCreated,   ///< `task`, of the target, is NOT-CREATED, or `init` or `kill` of it is under way
+  kUnderWay,     ///< another switch is
+
+  kOnFailed,      ///< `on` of `task` did
+  kStepTooLarge,  ///< of `variable`, which `task` would produce
+  kNoGap,         ///< the processor was never idle for as long as `on` of `task` takes
+  kNoValue,       ///< `variable`, which `task` reads, never had one
+  kDisturbed,     ///< a signal, an error or its own end moved `task`, which takes part, to another state
+  kFlagRaised,    ///< somebody raised the illegal-configuration flag
+  kRunEnded,      ///< before the instant of the change
+};
+
+/// What became of a request for a plan.
+struct PlanAnswer {
+  NoSwitch why = NoSwitch::kNone;
+  TaskId task;  ///< of kInError and kNotCreated: the first in data-flow order
+
+  explicit operator bool() const noexcept { return why == NoSwitch::kNone; }
+};
+
+/// What a plan is made from.
+struct TaskStanding {
+  State state = State::kNotCreated;
+  bool in_service = false;  ///< `init` or `kill` of it is under way
+};
+
+/// Holds the lists of one plan at a time.
+class SwitchPlanner {
+ public:
+  /// Takes memory for any plan of this spec, which outlives the planner. Context: setup.
+  void prepare(const ApplicationSpec& spec, SetupMemory& memory);
+
+  /// The plan that turns the ON set into sets[target]: one and the same for equal arguments. `standing[t]` is that of
+  /// task t. Writes `plan` only when there is one; its number is left as it was. Replaces the lists of the plan before.
+  /// Context: cycle boundary; O(tasks + links); no allocation.
+  PlanAnswer plan(std::uint32_t target, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
+
+  /// Which of the sets is exactly the tasks that are ON; kNoSet: none. Context: cycle boundary; O(sets * tasks).
+  std::uint32_t set_in_force(std::span<const TaskStanding> standing) const noexcept;
+
+ private:
+  bool is_in_target(TaskId task) const noexcept { return in_target_[task.index]; }
+  std::span<const Handover> list_handovers(std::span<const TaskStanding> standing) noexcept;
+
+  const ApplicationSpec* spec_ = nullptr;
+  std::span<bool> in_target_;  // by task
+  std::span<TaskId> arriving_, leaving_, staying_;
+  std::span<Handover> handovers_;  // one for each variable
+};
+
+}  // namespace chimera
