@@ -42,10 +42,12 @@ const std::vector<Option>& printing_options() {
                  "under way. 10 s with `--for`, else no limit."},
       {.name = "--at",
        .value = "ACT",
-       .help = "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad'; may be repeated",
+       .help = "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad', '5 s: switch torque'; may be "
+               "repeated",
        .manual = "A timed act, such as '2 s: off pid', '3 s: flag up' or '4 s: set kp 100 N.m/rad'. The signals are "
-                 "spawn, on, off, kill, clear, reinit, and ring for an event; what is set is an operator variable. May "
-                 "be repeated.",
+                 "spawn, on, off, kill, clear, reinit, and ring for an event; what is set is an operator variable; a "
+                 "switch makes exactly the tasks of a configuration ON without losing a cycle (`--virtual`, "
+                 "`--isolation none`). May be repeated.",
        .repeats = Repeats::kManyEach},
       {.name = "--watch",
        .value = "VARIABLE",

@@ -2,24 +2,30 @@
 // Carries out signals at an edge and records them.
 #include "chimera/runtime/boundary_signals.h"
 
+#include <algorithm>
+
 namespace chimera {
 
 void BoundarySignals::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
-  look_at_script();
+  look_ahead();
 }
 
-void BoundarySignals::look_at_script() noexcept {
+void BoundarySignals::look_ahead() noexcept {
   const Nanoseconds at = script_.next_at();
-  next_act_ = at == kNever ? kNever : origin_ + at;
+  const Nanoseconds act = at == kNever ? kNever : origin_ + at;
+  next_act_ = std::min(act, switching_.due());
+  next_wake_ = std::min(act, switching_.wake());
 }
 
 void BoundarySignals::act(Nanoseconds now) noexcept {
   while (const ScriptAct* next = script_.take(now - origin_)) act(*next, now);
-  look_at_script();
+  switching_.step(now);
+  look_ahead();
 }
 
 void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
+  if (act.kind == ScriptAct::Kind::kSwitch) return switching_.ask(act.set, now);
   if (act.kind == ScriptAct::Kind::kSet) return set_.table().set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;

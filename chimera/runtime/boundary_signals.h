@@ -11,6 +11,7 @@
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
 #include "chimera/runtime/settlement.h"
+#include "chimera/runtime/switching.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
@@ -31,14 +32,18 @@ class BoundarySignals {
  public:
   /// Everything given outlives this; `guest` null: nobody is told. Context: setup.
   BoundarySignals(TaskSet& set, const Script& script, ContextTap& tap, Settlement& settlement, JobThreads& threads,
-                  BoundaryListener* guest) noexcept
-      : set_(set), script_(script), tap_(tap), settlement_(settlement), threads_(threads), guest_(guest) {}
+                  Switching& switching, BoundaryListener* guest) noexcept
+      : set_(set), script_(script), tap_(tap), settlement_(settlement), threads_(threads), switching_(switching),
+        guest_(guest) {}
 
   /// The script counts from `origin`.
   void begin(Nanoseconds origin) noexcept;
-  /// When the next act of the script is due; kNever after the last. Context: cycle; wait-free.
+  /// From when on act() has something to do: an act of the script, or a step of a switch; kNever: nothing is left.
+  /// Context: cycle; wait-free.
   Nanoseconds next_act() const noexcept { return next_act_; }
-  /// Carries out the acts of the script that are due.
+  /// The next instant at which that is so although no job ends before. Context: cycle; wait-free.
+  Nanoseconds next_wake() const noexcept { return next_wake_; }
+  /// Carries out the acts of the script that are due, and goes on with a switch that is under way.
   void act(Nanoseconds now) noexcept;
   /// Carries out the signals that tasks sent to tasks of this context; those for a task with an unfinished job wait.
   void carry_out_pending(Nanoseconds now) noexcept;
@@ -55,7 +60,7 @@ class BoundarySignals {
 
  private:
   void act(const ScriptAct& act, Nanoseconds now) noexcept;
-  void look_at_script() noexcept;
+  void look_ahead() noexcept;
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
   void ring(Task& task, Nanoseconds now) noexcept;
   void record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;
@@ -66,9 +71,10 @@ class BoundarySignals {
   ContextTap& tap_;
   Settlement& settlement_;
   JobThreads& threads_;
+  Switching& switching_;
   BoundaryListener* guest_;
   Nanoseconds origin_;
-  Nanoseconds next_act_ = kNever;
+  Nanoseconds next_act_ = kNever, next_wake_ = kNever;
   FixedVector<RefusedSignal, kRefusedKept> refused_;
 };
 

@@ -65,7 +65,7 @@ class Releases {
   Nanoseconds next_event() const noexcept { return std::min(queue_.next_release(), next_edge()); }
   /// The same for edges alone, where releases have threads of their own.
   Nanoseconds next_edge() const noexcept {
-    return guest_ == nullptr ? signals_.next_act() : std::min(signals_.next_act(), guest_->next_due());
+    return guest_ == nullptr ? signals_.next_wake() : std::min(signals_.next_wake(), guest_->next_due());
   }
   /// True while a task is ON or may yet be turned ON.
   bool anything_left() const noexcept {
@@ -106,6 +106,8 @@ class Releases {
   Members& members() noexcept { return members_; }
   BoundarySignals& signals() noexcept { return signals_; }
   Settlement& settlement() noexcept { return settlement_; }
+  /// Switches that the script asks for. Requires: jobs run in the thread that takes the edges.
+  Switching& switching() noexcept { return switching_; }
   /// What happens is recorded here.
   ContextTap& tap() noexcept { return tap_; }
 
@@ -130,6 +132,7 @@ class Releases {
   JobCycle jobs_;
   Members members_;
   Settlement settlement_;
+  Switching switching_;
   BoundarySignals signals_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an operator would do, written down with times: signals, the illegal-configuration flag, values of operator
-// variables. Tests and `run` hand one to an executor, which acts at the first cycle edge at or after each time.
+// variables, switches of configurations. Tests and `run` hand one to an executor, which acts at the first cycle edge at
+// or after each time.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +17,7 @@ namespace chimera {
 
 /// One act. `at` counts from the start of the run.
 struct ScriptAct {
-  enum class Kind : std::uint8_t { kSignal, kRaiseFlag, kLowerFlag, kSet };
+  enum class Kind : std::uint8_t { kSignal, kRaiseFlag, kLowerFlag, kSet, kSwitch };
 
   Nanoseconds at;
   Kind kind = Kind::kSignal;
@@ -24,6 +25,7 @@ struct ScriptAct {
   TaskId task;                  ///< kSignal only
   std::size_t operator_index = 0;         ///< kSet only: in ApplicationSpec::operators
   std::span<const std::byte> value = {};  ///< kSet only: as long as the value that the description gives
+  std::uint32_t set = UINT32_MAX;         ///< kSwitch only: in ApplicationSpec::sets
 };
 
 /// Acts in order of time, those of one instant in the given order. The memory outlives the script.
@@ -35,6 +37,12 @@ class Script {
     for (std::size_t i = 1; i < acts.size(); ++i) CHIMERA_ASSERT(acts[i - 1].at <= acts[i].at);
   }
 
+  /// How many acts there are of that kind. Context: setup.
+  std::size_t count(ScriptAct::Kind kind) const noexcept {
+    std::size_t n = 0;
+    for (const ScriptAct& act : acts_) n += act.kind == kind ? 1 : 0;
+    return n;
+  }
   /// When the next act is due; kNever after the last. Context: cycle; wait-free.
   Nanoseconds next_at() const noexcept { return done_ < acts_.size() ? acts_[done_].at : kNever; }
   /// The next act that is due at `since_start`, once; null when none is. Context: cycle boundary; wait-free.

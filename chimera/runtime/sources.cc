@@ -158,6 +158,19 @@ void Sources::take_outputs_of(const Task& task) noexcept {
   }
 }
 
+void Sources::read_ahead(TaskId consumer, std::span<const Handover> handovers) noexcept {
+  Task& task = tasks_[consumer.index];
+  for (std::uint32_t i = 0; i < task.inputs.size(); ++i) {
+    const VariableId variable = memories_[consumer.index].input_spec(i).variable;
+    Source source = sources_[variable.index];
+    for (const Handover& handover : handovers)
+      if (handover.variable == variable) source = source_from(handover.to);
+    bind_input(task.inputs[i], consumer, source);
+    if (Copy* copy = copy_for(consumer, source)) refresh_reader(*copy, true);
+  }
+  collect_copies(consumer);
+}
+
 void Sources::follow_others() noexcept {
   if (others_ == nullptr) return;
   for (std::size_t v = 0; v < sources_.size(); ++v) {

@@ -14,6 +14,7 @@
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/context_table.h"
 #include "chimera/runtime/peer_view.h"
+#include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/variable_view.h"
 #include "chimera/table/local_group.h"
@@ -39,6 +40,9 @@ class Sources {
 
   /// The task, of this context, went ON: whoever reads its variables reads them from its group now.
   void take_outputs_of(const Task& task) noexcept;
+  /// The inputs of the task, which is OFF, look at who will produce them once the handovers have come to pass; without
+  /// any, at who produces them now.
+  void read_ahead(TaskId consumer, std::span<const Handover> handovers) noexcept;
   /// Something changed elsewhere: follows producers that went ON or were replaced.
   void follow_others() noexcept;
   /// From now on nothing is read from the groups of that task (invalid: the operator): their memory may go. What was

@@ -53,7 +53,8 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
     const Task& task = set_.tasks()[id.index];
     report.task = id;
     report.before = report.after = task.state;
-    if (next(task.state, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
+    const bool is_due = signal == Signal::kOff && task.owes_off;
+    if (is_due || next(task.state, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
     report.why = Refusal::kState;
     return report;
   }
@@ -85,6 +86,10 @@ bool TaskLife::would_be_legal(std::span<const TaskId> tasks) noexcept {
 
 SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
   Task& task = set_.tasks()[id.index];
+  if (task.owes_off) {
+    const SignalReport settled = settle_off(id, now);
+    if (signal == Signal::kOff || task.state != State::kOff) return settled;
+  }
   Progress& progress = progress_[id.index];
   progress = Progress{};
   progress.report = {true, false, Refusal::kNone, signal, id, task.state, task.state};
@@ -102,6 +107,29 @@ SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
     task.call.dt_ns = task.spec->period.count;
   }
   return advance(task, next(task.state, signal, false), now);
+}
+
+SignalReport TaskLife::arm(TaskId id, Nanoseconds now) {
+  Task& task = set_.tasks()[id.index];
+  is_arming_ = true;
+  SignalReport report = carry_out(id, Signal::kOn, now);
+  is_arming_ = false;
+  task.owes_off = task.state == State::kOn;
+  if (task.owes_off) {
+    report.after = task.state = State::kOff;
+  } else {
+    report.is_accepted = false;
+    report.why = Refusal::kFault;
+    task.outbox.clear();
+  }
+  return report;
+}
+
+SignalReport TaskLife::settle_off(TaskId id, Nanoseconds now) {
+  Task& task = set_.tasks()[id.index];
+  task.owes_off = false;
+  task.state = State::kOn;  // as `off` finds it
+  return carry_out(id, Signal::kOff, now);
 }
 
 SignalReport TaskLife::finish_slow(TaskId id, Nanoseconds now) {
@@ -132,7 +160,7 @@ SignalReport TaskLife::advance(Task& task, Next at, Nanoseconds now) {
   report.is_deferred = !follow(task, at, now);
   report.after = task.state;
   if (!report.is_deferred && !set_.slow().is_there() && task.state == State::kNotCreated) set_.methods().destroy(task);
-  set_.sent().deliver(task);
+  if (!is_arming_) set_.sent().deliver(task);
   return report;
 }
 
@@ -197,7 +225,7 @@ Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
   if (step.after_ok & kWriteOut) {
     const bool turns_on = step.step == Step::kOn;
     const Answer answer = publish(task, step.method, turns_on ? valid_after_on(task) : task.valid, now);
-    if (answer == Answer::kOk && turns_on) set_.sources().take_outputs_of(task);
+    if (answer == Answer::kOk && turns_on && !is_arming_) set_.sources().take_outputs_of(task);
     return answer;
   }
   return Answer::kOk;

@@ -47,6 +47,12 @@ class TaskLife {
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now);
   /// Goes on with the signal of which the service thread has run a method; deferred again while there is more.
   SignalReport finish_slow(TaskId task, Nanoseconds now);
+  /// Runs `on` of a task that is OFF, beside whoever produces its variables: it takes over what stands, publishes into
+  /// its own group, and stays OFF. When that went well it owes `off`; what it sent is not delivered. Nobody reads from
+  /// the task yet, but for readers of a variable that nobody else ever produced.
+  SignalReport arm(TaskId task, Nanoseconds now);
+  /// Runs the `off` that a task owes. Requires: it does. Any other signal to the task has that done first.
+  SignalReport settle_off(TaskId task, Nanoseconds now);
 
   /// The set that the last call of signal() with `on` would have turned ON: wanted()[t] says whether task t is in it.
   std::span<const bool> wanted() const noexcept { return wanted_; }
@@ -78,6 +84,7 @@ class TaskLife {
   std::span<Progress> progress_;  // by task
   std::span<bool> wanted_;        // the ON set that was asked for last
   std::uint64_t taken_over_valid_ = 0;
+  bool is_arming_ = false;
 };
 
 }  // namespace chimera

@@ -91,6 +91,7 @@ struct alignas(64) Task {
 
   // Written by the executor and the task set at edges.
   bool in_service = false;  ///< init or kill is run by the service thread: nobody else touches the task
+  bool owes_off = false;    ///< OFF, with `on` behind it and `off` before it: armed for a switch, or left by one
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
 };
 

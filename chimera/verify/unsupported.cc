@@ -103,7 +103,10 @@ class Refusals {
     server(task, preempts, here != tasks.end() && here->has_event_source);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
-    for (const NamedNode& step : task.max_step) refuse_key(step.name.at, "max_step", task);
+    for (const NamedNode& step : task.max_step)
+      if (executor_ == Executor::kProcesses)
+        refuse(step.name.at, "'max_step' of task '" + task.name.text + "' where tasks are in several processes",
+               "run with --virtual or --isolation none, or take it out");
     if (task.stack_bytes && !preempts && executor_ == Executor::kProcesses)
       refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
              "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");

@@ -31,6 +31,9 @@ std::atomic<std::size_t> n_allocations = 0;  // of this program; tests run one a
   if (void* memory = std::aligned_alloc(a, (size + a - 1) / a * a)) return memory;
   std::abort();
 }
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return operator new(size, alignment);
+}
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
@@ -72,6 +75,8 @@ struct Counted {
   std::uint64_t faults = 0, dropped = 0;
 };
 
+constexpr std::uint32_t kTasks = 5;
+
 // Runs five tasks that read one another in a ring, with signals, faults and late jobs.
 template <class Run>
 Counted count(const ContextPlace& place, Run run) {
@@ -84,7 +89,6 @@ Counted count(const ContextPlace& place, Run run) {
   std::fill(std::begin(component.methods), std::end(component.methods), nullptr);
   component.methods[CHIMERA_CYCLE] = quiet_cycle;
   component.methods[CHIMERA_ERROR] = recovers;
-  constexpr std::uint32_t kTasks = 5;
   const char* names[kTasks] = {"a", "b", "c", "d", "e"};
   const double zero = 0;
   chimera::NamedLinks links;
@@ -113,6 +117,8 @@ Counted count(const ContextPlace& place, Run run) {
   spec.rtpus = {&rtpu, 1};
   spec.tasks = tasks;
   spec.init_order = spec.start = ids;
+  const NamedSet sets[] = {{"all", ids}, {"none", {}}};
+  spec.sets = sets;
   links.finish(spec);
   auto set = HeapTaskSet::create(spec, components, place);
   EXPECT_TRUE(set);
@@ -135,11 +141,18 @@ Counted count(const ContextPlace& place, Run run) {
 
 Counted count(Kind kind) {
   return count({}, [kind](TaskSet& set, std::span<const ScriptAct> acts) {
-    Runner runner(set, kind, Policy::kEdf, acts);
+    std::vector<ScriptAct> with_switches(acts.begin(), acts.end());
+    for (const std::uint32_t to : {1u, 0u}) {
+      with_switches.push_back({milliseconds(200 - 50 * to), ScriptAct::Kind::kSwitch, Signal::kOn, TaskId()});
+      with_switches.back().set = to;
+    }
+    Runner runner(set, kind, Policy::kEdf, with_switches);
     EXPECT_TRUE(runner.start());
     const std::size_t before = n_allocations;
-    runner.run(milliseconds(2200));
-    return n_allocations - before;
+    runner.run(milliseconds(2250));
+    const std::size_t allocations = n_allocations - before;
+    for (const SwitchReceipt& receipt : runner.receipts()) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+    return allocations;
   });
 }
 

@@ -31,7 +31,7 @@ inline const char* kind_name(Kind kind) {
 }
 
 /// For suites over policies.
-inline std::string name_of(const testing::TestParamInfo<Policy>& one) {
+inline std::string name_of(const ::testing::TestParamInfo<Policy>& one) {
   const char* const names[] = {"Rm", "Edf", "Llf", "Muf", "MufLaxity"};
   return names[static_cast<int>(one.param)];
 }
@@ -74,6 +74,7 @@ class Runner {
   RunEnd run(Nanoseconds duration) { return executive_ ? executive_->run(duration) : virtual_->run(duration); }
   void shut_down() { executive_ ? executive_->shut_down() : virtual_->shut_down(); }
 
+  std::span<const SwitchReceipt> receipts() { return executive_ ? executive_->receipts() : virtual_->receipts(); }
   /// The records since the last call.
   std::vector<TapRecord> records() { return listened_.records(); }
 

@@ -3,6 +3,7 @@
 #include "chimera/cli/run/application.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 
 #include "chimera/cli/run/under_way.h"
@@ -68,10 +69,15 @@ Result<Probe> Application::probe(const std::string& variable) const {
   Probe probe;
   probe.name = variable;
   const std::uint32_t by_operator = all[index].operator_index;
-  if (by_operator != UINT32_MAX) probe.readers.push_back({tasks_->table().operators()[by_operator], 0, 0});
+  if (by_operator != UINT32_MAX) {
+    probe.readers.push_back({tasks_->table().operators()[by_operator], 0, 0});
+    probe.producers.push_back(nullptr);
+  }
   for (const PortOf& producer : all[index].producers)
-    for (std::uint32_t half = 0; half < 2; ++half)
+    for (std::uint32_t half = 0; half < 2; ++half) {
       probe.readers.push_back(tasks_->table().reader_of(producer, half));
+      probe.producers.push_back(&tasks_->tasks()[producer.task.index]);
+    }
   probe.form.unit = (*found)->unit;
   probe.form.is_scalar = (*found)->shape.empty();
   const VariableView view = tasks_->sources().view(VariableId(index));
@@ -90,11 +96,27 @@ Result<Probe> Application::probe(const std::string& variable) const {
   return probe;
 }
 
+namespace {
+
+// What a task writes that is armed for a switch, or has left by one, is not in force. Relaxed, pairs with nothing: it
+// chooses between values that both were written.
+bool is_in_force(const Task* producer) {
+  if (producer == nullptr) return true;
+  return std::atomic_ref(const_cast<State&>(producer->state)).load(std::memory_order_relaxed) == State::kOn;
+}
+
+}  // namespace
+
 bool Probe::read(std::vector<std::byte>& value) const {
+  std::vector<bool> in_force;  // looked at once: it may change meanwhile
+  for (const Task* producer : producers) in_force.push_back(is_in_force(producer));
+  const bool has_one = std::find(in_force.begin(), in_force.end(), true) != in_force.end();
   std::int64_t latest = INT64_MIN;
   bool is_valid = false;
   std::vector<std::byte> payload;
-  for (const auto& [reader, offset, bit] : readers) {
+  for (std::size_t i = 0; i < readers.size(); ++i) {
+    if (has_one && !in_force[i]) continue;
+    const auto& [reader, offset, bit] = readers[i];
     chimera_slot slot;
     payload.resize(reader.payload_bytes());
     if (!reader.try_read(slot, payload.data()) || slot.published_ns < latest) continue;

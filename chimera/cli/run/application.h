@@ -19,7 +19,8 @@ namespace chimera::cli {
 /// One state variable to look at, from any thread.
 class Probe {
  public:
-  /// The latest publication among `readers`; false when nobody has written it yet. Context: any thread; bounded.
+  /// The latest publication of a producer that is ON, or of the operator; of nobody in force, the latest of all. False
+  /// when nobody has written it yet. Context: any thread; bounded.
   bool read(std::vector<std::byte>& value) const;
   /// The latest publication as text and numbers.
   Seen sample() const;
@@ -27,6 +28,7 @@ class Probe {
   std::string name;
   ValueForm form;
   std::vector<VariableReader> readers;
+  std::vector<const Task*> producers;  ///< one for each reader; null: the operator
 };
 
 /// Context: setup. Movable.

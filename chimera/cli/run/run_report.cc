@@ -51,11 +51,12 @@ void print_json(const RunReport& report, std::FILE* out) {
                     ", \"holds\": " + (e.holds ? "true" : "false") + ", \"said\": " + json_string(e.said) + "}";
   std::fprintf(out,
                "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"flag\": %s, "
-               "\"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s], \"verdict\": %s}\n",
+               "\"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s], \"receipts\": [%s], "
+               "\"verdict\": %s}\n",
                json_string(report.subsystem).c_str(), json_string(report.executor).c_str(),
                static_cast<long long>(report.ran.count), word(report.end), report.is_flag_up ? "true" : "false",
                profile_json(report.profiles, report.origin).c_str(), variables.c_str(), expectations.c_str(),
-               report.verdict.json().c_str());
+               report.receipts.c_str(), report.verdict.json().c_str());
 }
 
 }  // namespace
@@ -90,7 +91,8 @@ void print(const RunReport& report, bool json, std::FILE* out) {
     lines += (e.holds ? "holds: " : "FAILS: ") + e.text + " (" + e.said + ")\n";
   std::string text = "ran " + seconds_text(report.ran) + " s" + sentence(report) + "\n";
   if (report.is_flag_up) text += "the illegal-configuration flag is up\n";
-  text += report.refused + profile_table(report.profiles, report.ran, report.origin) + lines + report.verdict.text();
+  text += report.refused + report.switches;
+  text += profile_table(report.profiles, report.ran, report.origin) + lines + report.verdict.text();
   std::fputs(for_terminal(text).c_str(), out);
 }
 

@@ -31,6 +31,8 @@ struct RunReport {
   std::string subsystem;
   std::string executor;                ///< how it was run, for people
   std::string refused;                 ///< a line for each refused signal
+  std::string switches;                ///< lines for each switch that was asked for
+  std::string receipts;                ///< of these as JSON, with commas between them
   std::vector<TaskProfile> profiles;
   Nanoseconds origin;                  ///< of `ran`; faults are timed from it
   std::vector<Watched> variables;

@@ -32,8 +32,8 @@ Result<ScriptAct> parse_signal(const std::string& text, const std::string& word,
   std::vector<std::string> words;
   for (int signal = 0; signal < CHIMERA_SIGNALS; ++signal) words.emplace_back(signal_name(static_cast<Signal>(signal)));
   words[static_cast<std::size_t>(Signal::kWakeup)] = "ring";  // sent as wakeup
-  words.insert(words.end(), {"flag", "set"});
-  const auto signals = words.end() - 2;
+  words.insert(words.end(), {"flag", "set", "switch"});
+  const auto signals = words.end() - 3;
   const auto found = std::find(words.begin(), signals, word);
   if (found == signals) return wrong_act(text, unknown("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
@@ -51,6 +51,16 @@ Result<TimedAct> parse_set(const std::string& text, const std::string& object, S
   return TimedAct{act, text, object.substr(0, blank), trimmed(object.substr(blank))};
 }
 
+Result<ScriptAct> parse_switch(const std::string& text, const std::string& name, ScriptAct act,
+                               const ApplicationSpec& spec) {
+  act.kind = ScriptAct::Kind::kSwitch;
+  std::vector<std::string> names;
+  for (const NamedSet& set : spec.sets) names.emplace_back(set.name);
+  act.set = static_cast<std::uint32_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  if (act.set < names.size()) return act;
+  return wrong_act(text, unknown("configuration", name, names));
+}
+
 Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return wrong_act(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
@@ -59,13 +69,16 @@ Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   const std::string act_text = trimmed(text.substr(colon + 1));
   const std::size_t blank = act_text.find(' ');
   if (blank == std::string::npos)
-    return wrong_act(text, "after the time stand a signal and a task, 'flag up', or 'set VARIABLE VALUE'");
+    return wrong_act(text, "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', or "
+                           "'switch CONFIGURATION'");
   const std::string word = act_text.substr(0, blank);
   const std::string object = trimmed(act_text.substr(blank));
   ScriptAct act;
   act.at = *at;
   if (word == "set") return parse_set(text, object, act);
-  const auto made = word == "flag" ? parse_flag(text, object, act) : parse_signal(text, word, object, act, spec);
+  const auto made = word == "flag"     ? parse_flag(text, object, act)
+                    : word == "switch" ? parse_switch(text, object, act, spec)
+                                       : parse_signal(text, word, object, act, spec);
   return made ? Result<TimedAct>(TimedAct{*made, text, {}, {}}) : Result<TimedAct>(made.error());
 }
 

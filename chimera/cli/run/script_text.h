@@ -20,7 +20,8 @@ struct TimedAct {
 };
 
 /// The acts in order of time. Each text is `DURATION: SIGNAL TASK` with spawn, on, off, kill, clear, reinit or ring,
-/// `DURATION: flag up|down`, or `DURATION: set VARIABLE VALUE`. Refuses with the text and what would be right.
+/// `DURATION: flag up|down`, `DURATION: set VARIABLE VALUE` or `DURATION: switch CONFIGURATION`. Refuses with the text
+/// and what would be right.
 /// Context: setup.
 Result<std::vector<TimedAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec);
 

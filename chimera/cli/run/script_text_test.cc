@@ -54,9 +54,19 @@ TEST_F(ScriptText, AValueIsEverythingBehindTheVariable) {
   EXPECT_EQ(refusal("1 s: sett kp 2"), "--at '1 s: sett kp 2': no signal 'sett'; did you mean 'set'?");
 }
 
+TEST_F(ScriptText, ASwitchNamesAConfiguration) {
+  const auto acts = parse({"3 s: switch all"});
+  ASSERT_TRUE(acts);
+  EXPECT_EQ((*acts)[0].act.kind, ScriptAct::Kind::kSwitch);
+  EXPECT_EQ((*acts)[0].act.set, 0u);
+  EXPECT_EQ(refusal("3 s: switch al"), "--at '3 s: switch al': no configuration 'al'; did you mean 'all'?");
+  EXPECT_EQ(refusal("3 s: swich all"), "--at '3 s: swich all': no signal 'swich'; did you mean 'switch'?");
+}
+
 TEST_F(ScriptText, RefusesWhatIsNoAct) {
   const char* form = "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'";
-  const char* object = "after the time stand a signal and a task, 'flag up', or 'set VARIABLE VALUE'";
+  const char* object = "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', or "
+                       "'switch CONFIGURATION'";
   EXPECT_EQ(refusal(""), std::string("--at '': ") + form);
   EXPECT_EQ(refusal("2 s off counter"), std::string("--at '2 s off counter': ") + form);
   EXPECT_EQ(refusal("2 s:"), std::string("--at '2 s:': ") + object);

@@ -40,12 +40,17 @@ class Executive {
   /// Context: cycle; returns when RunEnd says so.
   RunEnd run(Nanoseconds duration) noexcept;
   /// off and kill for every task. Context: setup.
-  void shut_down() { set_.life().shut_down(clock_.now()); }
+  void shut_down() {
+    releases_.switching().end(clock_.now());
+    set_.life().shut_down(clock_.now());
+  }
 
   /// When the grid of releases began. Context: any.
   Nanoseconds origin() const noexcept { return releases_.origin(); }
   /// Context: setup, between runs.
   std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
+  /// Of every switch that the script asked for. Context: setup, between runs.
+  std::span<const SwitchReceipt> receipts() noexcept { return releases_.switching().receipts(); }
 
  private:
   TaskSet& set_;

@@ -30,13 +30,19 @@ class VirtualExecutor {
   /// Context: cycle.
   RunEnd run(Nanoseconds duration) noexcept;
   /// off and kill for every task. Context: setup.
-  void shut_down() { set_.life().shut_down(now_); }
+  void shut_down() {
+    clock_.set(now_);
+    releases_.switching().end(now_);
+    set_.life().shut_down(now_);
+  }
 
   /// Context: any.
   Nanoseconds now() const noexcept { return now_; }
   Nanoseconds origin() const noexcept { return releases_.origin(); }
   /// Context: setup, between runs.
   std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
+  /// Of every switch that the script asked for. Context: setup, between runs.
+  std::span<const SwitchReceipt> receipts() noexcept { return releases_.switching().receipts(); }
 
  private:
   TaskSet& set_;

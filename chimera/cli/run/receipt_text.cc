@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the receipt of a switch into words and into JSON.
+#include "chimera/cli/run/receipt_text.h"
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "chimera/text/json_text.h"
+
+namespace chimera::cli {
+namespace {
+
+std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string at(Nanoseconds instant, Nanoseconds origin) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3f s", to_seconds(instant - origin));
+  return text;
+}
+
+const char* word(SwitchEnd end) {
+  switch (end) {
+    case SwitchEnd::kDone: return "done";
+    case SwitchEnd::kAborted: return "aborted";
+    case SwitchEnd::kRefused: return "refused";
+    case SwitchEnd::kNothingToDo: return "nothing-to-do";
+  }
+  return "?";
+}
+
+const char* word(TaskMove move) {
+  switch (move) {
+    case TaskMove::kArrives: return "arrives";
+    case TaskMove::kLeaves: return "leaves";
+    case TaskMove::kStays: return "stays";
+  }
+  return "?";
+}
+
+const char* word(NoSwitch why) {
+  switch (why) {
+    case NoSwitch::kNone: return "none";
+    case NoSwitch::kUnknownSet: return "unknown-configuration";
+    case NoSwitch::kNothingToDo: return "nothing-to-do";
+    case NoSwitch::kInError: return "in-error";
+    case NoSwitch::kNotCreated: return "not-created";
+    case NoSwitch::kUnderWay: return "under-way";
+    case NoSwitch::kOnFailed: return "on-failed";
+    case NoSwitch::kStepTooLarge: return "step-too-large";
+    case NoSwitch::kNoGap: return "no-gap";
+    case NoSwitch::kNoValue: return "no-value";
+    case NoSwitch::kDisturbed: return "disturbed";
+    case NoSwitch::kFlagRaised: return "flag-raised";
+    case NoSwitch::kRunEnded: return "run-ended";
+  }
+  return "?";
+}
+
+/// The variables of a receipt with the unit of their values.
+std::string unit_of(const VariablePart& part, const ApplicationSpec& spec) {
+  std::uint32_t outs = 0;
+  for (const PortSpec& port : spec.tasks[part.handover.to.task.index].ports)
+    if (port.kind == CHIMERA_OUT_VAR && outs++ == part.handover.to.index)
+      return port.unit == "1" ? "" : " " + std::string(port.unit);
+  return {};
+}
+
+std::string step_text(const ValueStep& step, const std::string& unit) {
+  return number(step.size) + unit + (step.limit > 0 ? ", limit " + number(step.limit) + unit : "");
+}
+
+std::string reason(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const std::string task = receipt.task.is_valid() ? quoted(spec.tasks[receipt.task.index].name) : "";
+  const std::string variable = receipt.variable.is_valid() ? quoted(spec.variables[receipt.variable.index].name) : "";
+  switch (receipt.why) {
+    case NoSwitch::kInError: return "task " + task + " is in ERROR: clear it first";
+    case NoSwitch::kNotCreated: return "task " + task + " is not there: spawn it first";
+    case NoSwitch::kUnderWay: return "another switch is under way";
+    case NoSwitch::kOnFailed: return "on of task " + task + ": " + std::string(receipt.said.view());
+    case NoSwitch::kStepTooLarge: {
+      std::string text = "on of task " + task + " would move " + variable + " too far";
+      for (const VariablePart& part : receipt.variables)
+        if (part.handover.variable == receipt.variable)
+          text += ": by " + step_text(part.step_of_on, unit_of(part, spec));
+      return text;
+    }
+    case NoSwitch::kNoGap:
+      return task.empty() ? "the processor was never idle for 10 s"
+                          : "the processor was never idle for as long as on of task " + task + " takes, for 10 s";
+    case NoSwitch::kNoValue: return "task " + task + " waited 10 s for a value of " + variable;
+    case NoSwitch::kDisturbed: return "task " + task + " went to another state meanwhile";
+    case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised meanwhile";
+    case NoSwitch::kRunEnded: return "the run ended";
+    default: return word(receipt.why);
+  }
+}
+
+std::size_t count(const SwitchReceipt& receipt, TaskMove move) {
+  std::size_t n = 0;
+  for (const TaskPart& part : receipt.tasks) n += part.move == move ? 1 : 0;
+  return n;
+}
+
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+/// What readers saw first: the first cycle of the producer after, else what its `on` wrote.
+const ValueStep& seen(const VariablePart& part) {
+  return part.step_of_cycle.is_known ? part.step_of_cycle : part.step_of_on;
+}
+
+std::string done_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  char took[40];
+  std::snprintf(took, sizeof took, " after %.3f ms: ", to_seconds(receipt.at - receipt.asked) * 1e3);
+  std::uint64_t lost = 0;
+  for (const TaskPart& part : receipt.tasks) lost += part.lost;
+  std::string text = took + counted(count(receipt, TaskMove::kArrives), "task arrives", "tasks arrive") + ", " +
+                     counted(count(receipt, TaskMove::kLeaves), "leaves", "leave") + ", " +
+                     counted(lost, "cycle lost", "cycles lost");
+  for (const VariablePart& part : receipt.variables)
+    if (seen(part).is_known)
+      text += "; " + std::string(spec.variables[part.handover.variable.index].name) + " moves by " +
+              step_text(seen(part), unit_of(part, spec));
+  return text + "\n";
+}
+
+std::string bumps(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  std::string text;
+  for (const VariablePart& part : receipt.variables)
+    if (part.step_of_cycle.is_beyond)
+      text += "bump: after switch " + std::to_string(receipt.number) + " the first cycle of task " +
+              quoted(spec.tasks[part.handover.to.task.index].name) + " moved " +
+              quoted(spec.variables[part.handover.variable.index].name) + " by " +
+              step_text(part.step_of_cycle, unit_of(part, spec)) + "\n";
+  return text;
+}
+
+std::string json_ns(std::optional<Nanoseconds> time) { return time ? std::to_string(time->count) : "null"; }
+
+std::string json_instant(Nanoseconds instant, Nanoseconds origin) {
+  return instant == kNever ? "null" : std::to_string((instant - origin).count);
+}
+
+std::string json_number(bool is_known, double value) {
+  if (!is_known || !std::isfinite(value)) return "null";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string json_name(bool is_there, std::string_view name) {
+  return is_there ? json_string(std::string(name)) : "null";
+}
+
+std::string json_of(const TaskPart& part, const ApplicationSpec& spec) {
+  const auto time = [](Nanoseconds ns) { return ns < Nanoseconds{} ? std::nullopt : std::optional(ns); };
+  return "{\"task\": " + json_string(std::string(spec.tasks[part.task.index].name)) + ", \"move\": \"" +
+         word(part.move) + "\", \"on_ns\": " + json_ns(time(part.on)) + ", \"off_ns\": " + json_ns(time(part.off)) +
+         ", \"lost\": " + std::to_string(part.lost) + "}";
+}
+
+std::string json_of(const VariablePart& part, const ApplicationSpec& spec) {
+  const Handover& h = part.handover;
+  const ValueStep& step = seen(part);
+  const bool has_from = h.from.task.is_valid();
+  return "{\"variable\": " + json_string(std::string(spec.variables[h.variable.index].name)) + ", \"from\": " +
+         json_name(has_from, has_from ? spec.tasks[h.from.task.index].name : "") + ", \"to\": " +
+         json_string(std::string(spec.tasks[h.to.task.index].name)) + ", \"step_of_on\": " +
+         json_number(part.step_of_on.is_known, part.step_of_on.size) + ", \"step\": " +
+         json_number(step.is_known, step.size) + ", \"limit\": " + json_number(step.limit > 0, step.limit) +
+         ", \"beyond\": " + (step.is_beyond ? "true" : "false") + "}";
+}
+
+template <class Parts>
+std::string json_list(const Parts& parts, const ApplicationSpec& spec) {
+  std::string json;
+  for (const auto& part : parts) json += (json.empty() ? "" : ", ") + json_of(part, spec);
+  return "[" + json + "]";
+}
+
+}  // namespace
+
+std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin) {
+  const std::string to = quoted(spec.sets[receipt.after].name);
+  const std::string when = " at " + at(receipt.asked, origin);
+  if (receipt.end == SwitchEnd::kNothingToDo) return "switch" + when + ": " + to + " is in force, nothing to do\n";
+  const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
+  std::string text = "switch " + std::to_string(receipt.number) + when + " " + from + "to " + to;
+  if (receipt.end == SwitchEnd::kDone) return text + done_text(receipt, spec) + bumps(receipt, spec);
+  return text + " " + word(receipt.end) + ": " + reason(receipt, spec) + "\n";
+}
+
+std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin) {
+  if (receipt.end == SwitchEnd::kNothingToDo) return {};
+  const bool is_done = receipt.end == SwitchEnd::kDone;
+  const bool has_before = receipt.before != kNoSet;
+  return "{\"number\": " + std::to_string(receipt.number) + ", \"from\": " +
+         json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
+         json_string(std::string(spec.sets[receipt.after].name)) +
+         ", \"way\": \"fast\", \"asked_by\": \"--at\", \"end\": \"" + word(receipt.end) + "\", \"reason\": " +
+         (is_done ? "null" : std::string("\"") + word(receipt.why) + "\"") + ", \"why\": " +
+         (is_done ? "null" : json_string(reason(receipt, spec))) +
+         ", \"asked_ns\": " + json_instant(receipt.asked, origin) +
+         ", \"armed_ns\": " + json_instant(receipt.armed, origin) + ", \"at_ns\": " + json_instant(receipt.at, origin) +
+         ", \"ended_ns\": " + json_instant(receipt.ended, origin) + ", \"tasks\": " + json_list(receipt.tasks, spec) +
+         ", \"variables\": " + json_list(receipt.variables, spec) + "}";
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The receipt of a switch as text and as JSON: docs/formats/receipt.md.
+#pragma once
+
+#include <string>
+
+#include "chimera/runtime/switch_receipt.h"
+
+namespace chimera::cli {
+
+/// A line, and one more for each variable that moved beyond its limit in a first cycle. Times count from `origin`.
+/// Context: setup.
+std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin);
+
+/// One JSON object; "" for a request for what was in force. Context: setup.
+std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin);
+
+}  // namespace chimera::cli

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/cli/run/receipt_text.h"
+
+#include <gtest/gtest.h>
+
+namespace chimera::cli {
+namespace {
+
+constexpr TaskId kPid{0u}, kTorque{1u};
+constexpr VariableId kTau{0u};
+
+/// A switch from 'pid' to 'torque', asked for 2 s after the origin of 1 s, as far as anybody came.
+struct Told {
+  Told() {
+    port.kind = CHIMERA_OUT_VAR;
+    port.unit = "N.m";
+    for (TaskSpec& each : tasks) each.ports = {&port, 1};
+    tasks[0].name = "pid";
+    tasks[1].name = "torque";
+    variable.name = "tau";
+    spec.tasks = tasks;
+    spec.variables = {&variable, 1};
+    spec.sets = sets;
+    receipt.number = 3;
+    receipt.before = 0;
+    receipt.after = 1;
+    receipt.asked = seconds(3);
+    parts[0] = {kTorque, TaskMove::kArrives, microseconds(30), Nanoseconds{-1}, 0};
+    parts[1] = {kPid, TaskMove::kLeaves, Nanoseconds{-1}, microseconds(20), 1};
+    receipt.tasks = parts;
+    moved.handover = {kTau, {kPid, 0}, {kTorque, 0}};
+    receipt.variables = {&moved, 1};
+  }
+  void be_done() {
+    receipt.end = SwitchEnd::kDone;
+    receipt.armed = receipt.at = seconds(3) + microseconds(1500);
+    receipt.ended = seconds(3) + milliseconds(2);
+  }
+  std::string text() const { return receipt_text(receipt, spec, seconds(1)); }
+  std::string json() const { return receipt_json(receipt, spec, seconds(1)); }
+
+  PortSpec port;
+  TaskSpec tasks[2];
+  Variable variable;
+  NamedSet sets[2] = {{"pid", {}}, {"torque", {}}};
+  ApplicationSpec spec;
+  TaskPart parts[2];
+  VariablePart moved;
+  SwitchReceipt receipt;
+};
+
+TEST(ReceiptText, OfADoneSwitchSaysWhoMovedAndHowFar) {
+  Told told;
+  told.be_done();
+  told.moved.step_of_on = {0.25, 5, true, false};
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s from 'pid' to 'torque' after 1.500 ms: 1 task arrives, 1 leaves, "
+                         "1 cycle lost; tau moves by 0.25 N.m, limit 5 N.m\n");
+  told.moved.step_of_cycle = {6, 5, true, true};
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s from 'pid' to 'torque' after 1.500 ms: 1 task arrives, 1 leaves, "
+                         "1 cycle lost; tau moves by 6 N.m, limit 5 N.m\n"
+                         "bump: after switch 3 the first cycle of task 'torque' moved 'tau' by 6 N.m, limit 5 N.m\n");
+}
+
+TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
+  Told told;
+  told.receipt.end = SwitchEnd::kAborted;
+  told.receipt.why = NoSwitch::kOnFailed;
+  told.receipt.task = kTorque;
+  told.receipt.said.assign("no current");
+  const std::string begin = "switch 3 at 2.000 s from 'pid' to 'torque' ";
+  EXPECT_EQ(told.text(), begin + "aborted: on of task 'torque': no current\n");
+  told.receipt.why = NoSwitch::kStepTooLarge;
+  told.receipt.variable = kTau;
+  told.moved.step_of_on = {9, 5, true, true};
+  EXPECT_EQ(told.text(), begin + "aborted: on of task 'torque' would move 'tau' too far: by 9 N.m, limit 5 N.m\n");
+  told.receipt.why = NoSwitch::kNoValue;
+  EXPECT_EQ(told.text(), begin + "aborted: task 'torque' waited 10 s for a value of 'tau'\n");
+  told.receipt.end = SwitchEnd::kRefused;
+  told.receipt.why = NoSwitch::kInError;
+  EXPECT_EQ(told.text(), begin + "refused: task 'torque' is in ERROR: clear it first\n");
+  told.receipt.before = kNoSet;
+  told.receipt.why = NoSwitch::kUnderWay;
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s to 'torque' refused: another switch is under way\n");
+}
+
+TEST(ReceiptText, OfWhatIsInForceThereIsNoReceipt) {
+  Told told;
+  told.receipt.end = SwitchEnd::kNothingToDo;
+  EXPECT_EQ(told.text(), "switch at 2.000 s: 'torque' is in force, nothing to do\n");
+  EXPECT_EQ(told.json(), "");
+}
+
+TEST(ReceiptText, AsJsonHasEveryKey) {
+  Told told;
+  told.be_done();
+  told.moved.step_of_on = {0.25, 5, true, false};
+  EXPECT_EQ(told.json(),
+            "{\"number\": 3, \"from\": \"pid\", \"to\": \"torque\", \"way\": \"fast\", \"asked_by\": \"--at\", "
+            "\"end\": \"done\", \"reason\": null, \"why\": null, \"asked_ns\": 2000000000, \"armed_ns\": 2001500000, "
+            "\"at_ns\": 2001500000, \"ended_ns\": 2002000000, \"tasks\": [{\"task\": \"torque\", "
+            "\"move\": \"arrives\", \"on_ns\": 30000, \"off_ns\": null, \"lost\": 0}, {\"task\": \"pid\", "
+            "\"move\": \"leaves\", \"on_ns\": null, \"off_ns\": 20000, \"lost\": 1}], \"variables\": "
+            "[{\"variable\": \"tau\", \"from\": \"pid\", \"to\": \"torque\", \"step_of_on\": 0.25, \"step\": 0.25, "
+            "\"limit\": 5, \"beyond\": false}]}");
+  told.receipt.before = kNoSet;
+  told.receipt.end = SwitchEnd::kAborted;
+  told.receipt.why = NoSwitch::kRunEnded;
+  told.receipt.at = kNever;
+  EXPECT_NE(told.json().find("\"from\": null"), std::string::npos);
+  EXPECT_NE(told.json().find("\"reason\": \"run-ended\", \"why\": \"the run ended\""), std::string::npos);
+  EXPECT_NE(told.json().find("\"at_ns\": null"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chimera::cli

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// What became of one switch of configurations: who, when, how long, what was lost, how far each variable moved.
+// docs/formats/receipt.md says what is printed of it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/base/assert.h"
+#include "chimera/base/fixed.h"
+#include "chimera/base/setup_memory.h"
+#include "chimera/base/time.h"
+#include "chimera/runtime/switch_plan.h"
+#include "chimera/runtime/value_step.h"
+
+namespace chimera {
+
+/// What a switch does to a task.
+enum class TaskMove : std::uint8_t { kArrives, kLeaves, kStays };
+
+/// One task of a switch. A method that was not called took -1 ns.
+struct TaskPart {
+  TaskId task;
+  TaskMove move = TaskMove::kStays;
+  Nanoseconds on{-1};
+  Nanoseconds off{-1};
+  std::uint64_t lost = 0;  ///< releases of its grid within the switch, while it was ON, without a completed cycle
+};
+
+/// One variable that got another producer.
+struct VariablePart {
+  Handover handover;
+  ValueStep step_of_on;    ///< from the last value of the producer before to what `on` of the one after wrote
+  ValueStep step_of_cycle; ///< to what the first cycle of the one after wrote
+};
+
+/// The end of a switch.
+enum class SwitchEnd : std::uint8_t {
+  kDone,
+  kAborted,      ///< begun, and undone: whoever was ON was not touched
+  kRefused,      ///< nothing was begun
+  kNothingToDo,  ///< what was asked for was in force
+};
+
+/// Instants are on the clock of the executor; kNever: not reached.
+struct SwitchReceipt {
+  std::uint32_t number = 0;
+  std::uint32_t before = kNoSet, after = kNoSet;  ///< in ApplicationSpec::sets
+  SwitchEnd end = SwitchEnd::kRefused;
+  NoSwitch why = NoSwitch::kNone;  ///< of an end that is not kDone
+  TaskId task;                     ///< of `why`
+  VariableId variable;             ///< of `why`
+  FixedString<160> said;           ///< by `on` of `task`, of its fault
+  Nanoseconds asked = kNever;
+  Nanoseconds armed = kNever;   ///< `on` of the last arriving task had returned
+  Nanoseconds at = kNever;      ///< the instant of the change
+  Nanoseconds ended = kNever;   ///< `off` of the last leaving task had returned and the first cycles were seen
+  std::span<TaskPart> tasks;
+  std::span<VariablePart> variables;
+};
+
+/// The receipts of a run, as many as were planned for.
+class SwitchReceipts {
+ public:
+  /// Takes memory for `n` receipts of this spec. Context: setup.
+  void prepare(const ApplicationSpec& spec, std::size_t n, SetupMemory& memory) {
+    all_ = memory.take<SwitchReceipt>(n);
+    n_tasks_ = spec.tasks.size();
+    n_variables_ = spec.variables.size();
+    tasks_ = memory.take<TaskPart>(n * n_tasks_);
+    variables_ = memory.take<VariablePart>(n * n_variables_);
+  }
+  /// The next receipt, empty but for its lists, which are as long as they may become. Requires: one is left.
+  /// Context: cycle boundary; wait-free.
+  SwitchReceipt& add() noexcept {
+    CHIMERA_ASSERT(n_ < all_.size());
+    SwitchReceipt& receipt = all_[n_];
+    receipt.tasks = tasks_.subspan(n_ * n_tasks_, n_tasks_);
+    receipt.variables = variables_.subspan(n_ * n_variables_, n_variables_);
+    ++n_;
+    return receipt;
+  }
+  bool has_room() const noexcept { return n_ < all_.size(); }
+  /// In the order in which they were asked for; the last may not have ended. Context: setup, between runs.
+  std::span<const SwitchReceipt> all() const noexcept { return all_.first(n_); }
+
+ private:
+  std::span<SwitchReceipt> all_;
+  std::span<TaskPart> tasks_;
+  std::span<VariablePart> variables_;
+  std::size_t n_ = 0, n_tasks_ = 0, n_variables_ = 0;
+};
+
+}  // namespace chimera

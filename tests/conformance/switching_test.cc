@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+// A switch of configurations on every executor of one context: no cycle is lost, who stays is not touched, what fails
+// leaves nothing behind.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <random>
+#include <tuple>
+#include <vector>
+
+#include "chimera/runtime/testing/test_application.h"
+#include "tests/conformance/runner.h"
+
+namespace chimera::toy {
+namespace {
+
+/// What a task published, and when that job was released.
+using Log = std::vector<std::tuple<std::int64_t, double>>;
+
+/// What the components of a run do, and what they saw. One run at a time.
+struct Scene {
+  Log plant, beacon, u;
+  std::vector<std::string> story;  // "on two", "off one" in the order of the calls
+  double on_of_two = 0;            // added to what `on` takes over
+  double first_cycle_of_two = 0;   // added to the first cycle's law
+  bool on_of_two_fails = false, two_sends = false;
+  Nanoseconds on_takes = microseconds(30);
+};
+Scene scene;
+
+void put(Log& log, const Cycle& c, double value) { log.emplace_back(c.now().count, value); }
+
+struct Plant {
+  In<double> u{"u", "1"};
+  Out<double> y{"y", "1", initial = 0.0};
+  void cycle(Cycle c) {
+    *y = *y + 0.1 * (*u - *y);
+    put(scene.plant, c, *y);
+    put(scene.u, c, *u);
+  }
+};
+
+struct Beacon {  // knows nobody
+  Out<double> b{"b", "1", initial = 0.0};
+  void cycle(Cycle c) {
+    *b = *b * 0.9 + static_cast<double>(c.now().count % 997);
+    put(scene.beacon, c, *b);
+  }
+  void reinit() { scene.story.emplace_back("reinit beacon"); }
+};
+
+double law(double y) { return 0.7 * (1 - y); }
+
+struct One {
+  In<double> y{"y", "1"};
+  Out<double> u{"u", "1", initial = 0.0};
+  void on(Cycle) { scene.story.emplace_back("on one"); }
+  void cycle(Cycle) { *u = law(*y); }
+  void off(Cycle c) {
+    scene.story.emplace_back("off one");
+    c.spend(microseconds(20));
+    *u = 1e6;  // nobody may see this
+  }
+};
+
+struct Observer {
+  In<double> y{"y", "1"};
+  Out<double> z{"z", "1", initial = 0.0};
+  void on(Cycle) {
+    scene.story.emplace_back("on observer");
+    *z = *y;
+  }
+  void cycle(Cycle) { *z = *y; }
+  void off(Cycle) { scene.story.emplace_back("off observer"); }
+};
+
+struct Two {
+  In<double> z{"z", "1"};
+  Out<double> u{"u", "1", initial = 0.0};
+  Outcome on(Cycle c) {
+    scene.story.emplace_back("on two");
+    c.spend(scene.on_takes);
+    first = true;
+    if (scene.two_sends) c.signal(Signal::kReinit, "beacon");
+    if (scene.on_of_two_fails) return fault("no current");
+    *u = *u + scene.on_of_two;
+    return ok();
+  }
+  void cycle(Cycle) {
+    *u = law(*z) + (first ? scene.first_cycle_of_two : 0);
+    first = false;
+  }
+  void off(Cycle) { scene.story.emplace_back("off two"); }
+  bool first = false;
+};
+
+constexpr TaskId kPlant{0u}, kBeacon{1u}, kOne{2u}, kObserver{3u}, kTwo{4u};
+constexpr std::uint32_t kDirect = 0, kObserved = 1;
+
+class Switches : public ::testing::TestWithParam<Kind> {
+ protected:
+  void SetUp() override { scene = {}; }
+  void build() {
+    set_.reset();
+    app_ = std::make_unique<testing::TestApplication>();
+    app_->add("plant", testing::component<Plant>("plant")).budget = microseconds(100);
+    app_->add("beacon", testing::component<Beacon>("beacon")).budget = microseconds(50);
+    app_->add("one", testing::component<One>("one")).budget = microseconds(100);
+    app_->add("observer", testing::component<Observer>("observer")).budget = microseconds(50);
+    app_->add("two", testing::component<Two>("two")).budget = microseconds(50);
+    if (limit_ > 0) app_->port(kTwo.index, 1).max_step = std::as_bytes(std::span(&limit_, 1));
+    app_->make({kPlant, kBeacon, kOne}, false);
+    app_->spec.sets = sets_;
+    set_ = *HeapTaskSet::create(app_->spec, app_->components);
+  }
+  /// Runs it all with `acts` and answers the receipts.
+  std::span<const SwitchReceipt> go(Nanoseconds duration, const std::vector<ScriptAct>& acts) {
+    acts_ = acts;
+    runner_.reset();
+    build();
+    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+    EXPECT_TRUE(runner_->start());
+    EXPECT_EQ(runner_->run(duration), RunEnd::kTime);
+    return runner_->receipts();
+  }
+  static ScriptAct to(std::uint32_t set, Nanoseconds at) {
+    ScriptAct act;
+    act.at = at;
+    act.kind = ScriptAct::Kind::kSwitch;
+    act.set = set;
+    return act;
+  }
+  chimera::State state(TaskId task) const { return set_->tasks()[task.index].state; }
+  const TaskPart& part(const SwitchReceipt& receipt, TaskId task) const {
+    return *std::ranges::find(receipt.tasks, task, &TaskPart::task);
+  }
+  std::uint64_t losses() const {
+    std::uint64_t n = 0;
+    for (const Task& task : set_->tasks()) n += task.profile.dropped + task.profile.missed + task.profile.aborted;
+    return n;
+  }
+
+  std::vector<TaskId> direct_{kPlant, kBeacon, kOne}, observed_{kPlant, kBeacon, kObserver, kTwo};
+  NamedSet sets_[2] = {{"direct", direct_}, {"observed", observed_}};
+  double limit_ = 0;
+  std::vector<ScriptAct> acts_;
+  std::unique_ptr<testing::TestApplication> app_;
+  std::unique_ptr<HeapTaskSet> set_;
+  std::unique_ptr<Runner> runner_;
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
+                         [](const auto& one) { return kind_name(one.param); });
+
+TEST_P(Switches, ArmBesideThePredecessorCommitAtOneInstantAndTurnOffBehindIt) {
+  const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
+  ASSERT_EQ(receipts.size(), 1u);
+  const SwitchReceipt& receipt = receipts[0];
+  EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_EQ(receipt.number, 1u);
+  EXPECT_EQ(receipt.before, kDirect);
+  EXPECT_EQ(receipt.after, kObserved);
+  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off one"}));
+  EXPECT_EQ(part(receipt, kTwo).on, microseconds(30));
+  EXPECT_EQ(part(receipt, kOne).off, microseconds(20));
+  EXPECT_EQ(receipt.at, receipt.armed);
+  EXPECT_EQ(receipt.at - receipt.asked, microseconds(30));
+  EXPECT_EQ(state(kOne), chimera::State::kOff);
+  EXPECT_EQ(state(kTwo), chimera::State::kOn);
+  EXPECT_FALSE(set_->flag().is_up());
+  ASSERT_EQ(receipt.variables.size(), 2u);
+  EXPECT_EQ(losses(), 0u);
+  EXPECT_EQ(set_->tasks()[kTwo.index].profile.cycles, 14u);  // released at 6 to 19 ms
+  EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, 6u);   // at 0 to 5 ms
+}
+
+// The laws of both sets come to the same value, so that whoever stays must publish the same bits with and without.
+TEST_P(Switches, TenThousandAtRandomInstantsLoseNothingAndDoNotTouchWhoStays) {
+  std::vector<ScriptAct> acts;
+  std::mt19937 random(7);
+  Nanoseconds at = milliseconds(10);
+  for (std::uint32_t i = 0; i < 10'000; ++i) {
+    acts.push_back(to(i % 2 == 0 ? kObserved : kDirect, at));
+    at += microseconds(3000) + Nanoseconds{static_cast<std::int64_t>(random() % 2000000)};
+  }
+  const Nanoseconds end = at + milliseconds(10);
+  go(end, {});
+  const Log plant = scene.plant, beacon = scene.beacon, u = scene.u;
+  scene = {};
+  const auto receipts = go(end, acts);
+  ASSERT_EQ(receipts.size(), acts.size());
+  std::uint32_t n = 0;
+  for (const SwitchReceipt& receipt : receipts) {
+    ASSERT_EQ(receipt.number, ++n);
+    ASSERT_EQ(receipt.end, SwitchEnd::kDone) << n << " for " << static_cast<int>(receipt.why);
+    for (const TaskPart& each : receipt.tasks) ASSERT_EQ(each.lost, 0u) << n;
+    ASSERT_LE(receipt.at - receipt.asked, milliseconds(1)) << n;
+  }
+  EXPECT_EQ(losses(), 0u);
+  EXPECT_TRUE(plant == scene.plant);
+  EXPECT_TRUE(beacon == scene.beacon);
+  EXPECT_TRUE(u == scene.u);  // what `on` and `off` write is never read
+  const auto& tasks = set_->tasks();
+  const std::uint64_t releases = tasks[kPlant.index].profile.cycles;
+  EXPECT_EQ(tasks[kOne.index].profile.cycles + tasks[kTwo.index].profile.cycles, releases);
+  EXPECT_EQ(tasks[kObserver.index].profile.cycles, tasks[kTwo.index].profile.cycles);
+}
+
+TEST_P(Switches, AnOnThatFailsUndoesEverything) {
+  go(milliseconds(20), {});
+  const Log plant = scene.plant, beacon = scene.beacon, u = scene.u;
+  scene = {};
+  scene.on_of_two_fails = true;
+  const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kOnFailed);
+  EXPECT_EQ(receipts[0].task, kTwo);
+  EXPECT_EQ(receipts[0].said.view(), "no current");
+  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off observer"}));
+  EXPECT_TRUE(plant == scene.plant && beacon == scene.beacon && u == scene.u);
+  EXPECT_EQ(state(kOne), chimera::State::kOn);
+  EXPECT_EQ(state(kObserver), chimera::State::kOff);
+  EXPECT_FALSE(set_->tasks()[kObserver.index].owes_off);
+  EXPECT_EQ(losses(), 0u);
+}
+
+TEST_P(Switches, WhatOnSendsGoesOutAtTheChangeAndIsForgottenWithoutOne) {
+  scene.two_sends = true;
+  scene.on_takes = microseconds(600);
+  go(milliseconds(20), {to(kObserved, microseconds(5600))});
+  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off one", "reinit beacon"}));
+  scene.story.clear();
+  scene.on_of_two_fails = true;
+  go(milliseconds(20), {to(kObserved, microseconds(5600))});
+  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off observer"}));
+}
+
+TEST_P(Switches, AStepOfOnBeyondTheLimitUndoesEverything) {
+  limit_ = 0.5;
+  scene.on_of_two = 0.6;
+  const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
+  EXPECT_EQ(receipts[0].why, NoSwitch::kStepTooLarge);
+  EXPECT_EQ(receipts[0].task, kTwo);
+  EXPECT_EQ(scene.story,
+            (std::vector<std::string>{"on one", "on observer", "on two", "off two", "off observer"}));
+  EXPECT_EQ(state(kOne), chimera::State::kOn);
+  EXPECT_EQ(state(kTwo), chimera::State::kOff);
+}
+
+TEST_P(Switches, AStepOfTheFirstCycleBeyondTheLimitIsTold) {
+  limit_ = 0.5;
+  scene.first_cycle_of_two = 0.6;
+  const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
+  ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
+  const auto u = std::ranges::find_if(receipts[0].variables, [](const VariablePart& part) {
+    return part.handover.from.task == kOne;
+  });
+  ASSERT_NE(u, receipts[0].variables.end());
+  EXPECT_EQ(u->step_of_on.size, 0);
+  EXPECT_FALSE(u->step_of_on.is_beyond);
+  EXPECT_TRUE(u->step_of_cycle.is_beyond);
+  EXPECT_NEAR(u->step_of_cycle.size, 0.6, 0.1);
+  EXPECT_EQ(u->step_of_cycle.limit, 0.5);
+}
+
+TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
+  scene.on_takes = microseconds(600);
+  const auto receipts = go(milliseconds(20), {to(kDirect, milliseconds(2)), to(kObserved, microseconds(5600)),
+                                              to(kDirect, microseconds(5610)), to(kDirect, milliseconds(9))});
+  ASSERT_EQ(receipts.size(), 4u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kNothingToDo);
+  EXPECT_EQ(receipts[1].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[2].end, SwitchEnd::kRefused);
+  EXPECT_EQ(receipts[2].why, NoSwitch::kUnderWay);
+  EXPECT_EQ(receipts[3].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[3].number, 3u);
+  EXPECT_EQ(state(kOne), chimera::State::kOn);
+}
+
+// `on` of two takes longer than was to be expected: the releases that came meanwhile go before the change.
+TEST_P(Switches, AnOnThatOverrunsItsGapPutsTheChangeOff) {
+  scene.on_takes = microseconds(600);
+  const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
+  ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[0].armed, milliseconds(6) + microseconds(200));
+  // Plant, beacon and one were released at 6 ms; on the stepped clock their cycles take no time.
+  const Nanoseconds jobs = GetParam() == Kind::kExecutiveOnTwin ? Nanoseconds{} : microseconds(250);
+  EXPECT_EQ(receipts[0].at, receipts[0].armed + jobs);
+  EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, 7u);
+  EXPECT_EQ(set_->tasks()[kTwo.index].profile.cycles, 13u);
+  EXPECT_EQ(losses(), 0u);
+}
+
+TEST_P(Switches, WhatMovesAMemberMeanwhileUndoesIt) {
+  scene.on_takes = microseconds(600);
+  const ScriptAct kill{milliseconds(6), ScriptAct::Kind::kSignal, Signal::kKill, kObserver};
+  const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600)), kill});
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kDisturbed);
+  EXPECT_EQ(receipts[0].task, kObserver);
+  EXPECT_EQ(state(kObserver), chimera::State::kNotCreated);
+  EXPECT_EQ(state(kTwo), chimera::State::kOff);
+  EXPECT_EQ(state(kOne), chimera::State::kOn);
+  EXPECT_EQ(std::ranges::count(scene.story, "off observer"), 1);
+  EXPECT_EQ(std::ranges::count(scene.story, "off two"), 1);
+}
+
+TEST_P(Switches, OffOfAnArmedTaskTakesItsArmingBack) {
+  scene.on_takes = microseconds(600);
+  const ScriptAct off{milliseconds(6), ScriptAct::Kind::kSignal, Signal::kOff, kTwo};
+  const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600)), off});
+  EXPECT_EQ(receipts[0].why, NoSwitch::kDisturbed);
+  EXPECT_EQ(std::ranges::count(scene.story, "off two"), 1);
+  EXPECT_EQ(state(kOne), chimera::State::kOn);
+}
+
+TEST_P(Switches, ATaskInErrorIsNamed) {
+  scene.on_of_two_fails = true;
+  const auto receipts = go(milliseconds(20), {to(kObserved, milliseconds(4)), to(kObserved, milliseconds(9))});
+  EXPECT_EQ(receipts[0].why, NoSwitch::kOnFailed);
+  EXPECT_EQ(state(kTwo), chimera::State::kError);
+  EXPECT_EQ(receipts[1].end, SwitchEnd::kRefused);
+  EXPECT_EQ(receipts[1].why, NoSwitch::kInError);
+  EXPECT_EQ(receipts[1].task, kTwo);
+}
+
+TEST_P(Switches, TheEndOfTheRunTakesAnUnfinishedOneBack) {
+  go(microseconds(5650), {to(kObserved, microseconds(5640))});
+  runner_->shut_down();
+  EXPECT_EQ(runner_->receipts()[0].end == SwitchEnd::kDone, std::ranges::count(scene.story, "off one") == 1 &&
+                                                                state(kOne) == chimera::State::kNotCreated &&
+                                                                runner_->receipts()[0].at != kNever);
+  EXPECT_EQ(std::ranges::count(scene.story, "on observer"), std::ranges::count(scene.story, "off observer"));
+  EXPECT_EQ(std::ranges::count(scene.story, "on two"), std::ranges::count(scene.story, "off two"));
+}
+
+TEST_P(Switches, ARaisedFlagUndoesWhatIsNotCommitted) {
+  scene.on_takes = microseconds(600);
+  const ScriptAct up{milliseconds(6), ScriptAct::Kind::kRaiseFlag, Signal::kOn, TaskId()};
+  const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600)), up});
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kFlagRaised);
+}
+
+// Without a gap before each release that `on` would fit in, the switch is given up and nothing was touched.
+TEST_P(Switches, WithoutAGapItIsGivenUpAfterTenSeconds) {
+  build();
+  acts_ = {to(kObserved, milliseconds(5))};
+  app_->tasks[kObserver.index].budget = milliseconds(2);
+  runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+  EXPECT_TRUE(runner_->start());
+  EXPECT_EQ(runner_->run(seconds(11)), RunEnd::kTime);
+  const SwitchReceipt& receipt = runner_->receipts()[0];
+  EXPECT_EQ(receipt.why, NoSwitch::kNoGap);
+  EXPECT_EQ(receipt.task, kObserver);
+  EXPECT_GE(receipt.ended - receipt.asked, seconds(10));
+  EXPECT_EQ(std::ranges::count(scene.story, "on observer"), 0);
+  EXPECT_EQ(losses(), 0u);
+}
+
+}  // namespace
+}  // namespace chimera::toy
