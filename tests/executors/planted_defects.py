@@ -48,6 +48,22 @@ DEFECTS = (
     ("a release that was passed over is not counted", "preemptive/supervisor.cc", "passed + 1)});", "passed)});"),
     ("preemptions are not counted", "preemptive/processor.cc",
      "  if (job.sporadic && job.sporadic->is_halted()) return;\n  ++job.task.profile.preempted;", ""),
+    ("a leaving task is turned off before the change", "switching.cc", "  if (judge_steps()) commit(now);",
+     "  for (const TaskId id : plan_.leaving) {\n    (void)parts_.set.life().settle_off(id, now);\n"
+     "    task(id).state = State::kOn;\n  }\n  if (judge_steps()) commit(now);"),
+    ("readers are bound to a task that is armed", "task_life.cc", "turns_on && !is_arming_) set_", "turns_on) set_"),
+    ("an aborted switch leaves tasks armed", "switching.cc", "  const std::size_t n = undoes ? n_armed_ :",
+     "  const std::size_t n = undoes ? 0 :"),
+    ("a switch does not wait for the jobs that were released", "switching.cc",
+     "  if (!is_idle() || parts_.queue.next_release() < now) return wait(now);\n", ""),
+    ("signals of a task that is armed go out at once", "task_life.cc", "if (!is_arming_) set_.sent()", "set_.sent()"),
+    ("the step of a switch is not judged", "switching.cc", "if (!part.step_of_on.is_beyond) continue;", "continue;"),
+    ("a task that left by a switch is never turned off", "switching.cc", "    leaving.owes_off = true;", "    //"),
+    ("a switch goes on although a member was moved", "switching.cc",
+     "return !is_well;", "return false;"),
+    ("an arriving task takes part in releases that came before the change", "switching.cc",
+     "    parts_.members.follow(task(id), at);\n    set.sent()",
+     "    parts_.members.follow(task(id), at - milliseconds(1));\n    set.sent()"),
 )
 
 
