@@ -47,7 +47,7 @@ def outputs(source):
     for path in faulty[::12] + good[:1]:
         yield "check", None, ["check", path]
     yield "check", 1, ["run", faulty[0], "--virtual", "--for", "1 s"]
-    yield "run", 0, ["run", source / "tests/commands/switches/switches.yaml", "--virtual", "--for", "40 ms",
+    yield "run", 0, ["run", source / "docs/howto/reconfigure/switches.yaml", "--virtual", "--for", "40 ms",
                      "--at", "10 ms: switch quick", "--at", "20 ms: switch wild"]
     yield "run", 1, ["run", faults, "--virtual", "--for", "0.2 s", "--watch", "e_command", "--watch", "a_count",
                      "--expect", "a_count >= 1"]
