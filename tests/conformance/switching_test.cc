@@ -135,6 +135,16 @@ class Switches : public ::testing::TestWithParam<Kind> {
   const TaskPart& part(const SwitchReceipt& receipt, TaskId task) const {
     return *std::ranges::find(receipt.tasks, task, &TaskPart::task);
   }
+  /// What stands in the groups of those who were ON: header and values of the latest publication.
+  std::vector<std::byte> groups() const {
+    std::vector<std::byte> bytes;
+    for (const TaskId id : direct_) {
+      const GroupWriter& group = set_->tasks()[id.index].group;
+      const auto* const begin = reinterpret_cast<const std::byte*>(group.published());
+      bytes.insert(bytes.end(), begin, begin + sizeof(chimera_slot) + group.payload_bytes());
+    }
+    return bytes;
+  }
   std::uint64_t losses() const {
     std::uint64_t n = 0;
     for (const Task& task : set_->tasks()) n += task.profile.dropped + task.profile.missed + task.profile.aborted;
@@ -210,6 +220,7 @@ TEST_P(Switches, TenThousandAtRandomInstantsLoseNothingAndDoNotTouchWhoStays) {
 TEST_P(Switches, AnOnThatFailsUndoesEverything) {
   go(milliseconds(20), {});
   const Log plant = scene.plant, beacon = scene.beacon, u = scene.u;
+  const std::vector<std::byte> before = groups();
   scene = {};
   scene.on_of_two_fails = true;
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
@@ -220,6 +231,7 @@ TEST_P(Switches, AnOnThatFailsUndoesEverything) {
   EXPECT_EQ(receipts[0].said.view(), "no current");
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off observer"}));
   EXPECT_TRUE(plant == scene.plant && beacon == scene.beacon && u == scene.u);
+  EXPECT_TRUE(before == groups());
   EXPECT_EQ(state(kOne), chimera::State::kOn);
   EXPECT_EQ(state(kObserver), chimera::State::kOff);
   EXPECT_FALSE(set_->tasks()[kObserver.index].owes_off);
@@ -281,9 +293,15 @@ TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
 
 // `on` of two takes longer than was to be expected: the releases that came meanwhile go before the change.
 TEST_P(Switches, AnOnThatOverrunsItsGapPutsTheChangeOff) {
+  go(milliseconds(20), {});
+  const Log u = scene.u;
+  scene = {};
   scene.on_takes = microseconds(600);
+  scene.on_of_two = 0.5;
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
   ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_TRUE(std::equal(u.begin(), u.begin() + 7, scene.u.begin()));  // released at 0 to 6 ms: the predecessor's
+  EXPECT_NE(u[7], scene.u[7]);                                         // what `on` wrote
   EXPECT_EQ(receipts[0].armed, milliseconds(6) + microseconds(200));
   // Plant, beacon and one were released at 6 ms; on the stepped clock their cycles take no time.
   const Nanoseconds jobs = GetParam() == Kind::kExecutiveOnTwin ? Nanoseconds{} : microseconds(250);
