@@ -22,6 +22,15 @@ CASES = [
     ("outbox", "ONE_TOO_MANY"),
     ("outbox", "FROM_THE_START"),
     ("outbox", "ANY_INCARNATION"),
+    ("switch", ""),
+    ("switch", "NO_AGREEMENT"),
+    ("switch", "LATE_GOES_ON"),
+    ("switch", "OFF_EARLY"),
+    ("switch", "FREED_EARLY"),
+    ("switch", "NO_PROOF"),
+    ("switch", "JOURNAL_LATE"),
+    ("switch", "ARMED_STAYS"),
+    ("switch", "TWO_PLANS"),
 ]
 
 
@@ -30,7 +39,7 @@ def explore(model, mutant, folder):
     define = [f"-D{mutant}"] if mutant else []
     run = {"cwd": folder, "check": True, "capture_output": True, "text": True}
     subprocess.run(["spin", *define, "-a", HERE / f"{model}.pml"], **run)
-    subprocess.run(["cc", "-O1", "-w", "-DSAFETY", "-DMEMLIM=2048", "-o", "pan", "pan.c"], **run)
+    subprocess.run(["cc", "-O1", "-w", "-DSAFETY", "-DCOLLAPSE", "-DMEMLIM=2048", "-o", "pan", "pan.c"], **run)
     output = subprocess.run(["./pan", "-m100000"], **(run | {"check": False})).stdout
     errors = re.search(r"errors: (\d+)", output)
     states = re.search(r"(\d+) states, stored", output)
