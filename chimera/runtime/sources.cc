@@ -183,15 +183,13 @@ void Sources::follow_others() noexcept {
   everybody_follows();
 }
 
-bool Sources::is_on(TaskId task) const noexcept {
-  return (is_mine(task) ? tasks_[task.index].state : others_->state(task)) == State::kOn;
-}
-
 // Copies of producers that are ON, and of the operator, are read from their present groups. Those of others keep what
 // they have: a restarted process shows a group without values before its tasks are ON again.
 void Sources::refresh_reader(Copy& copy, bool is_new) noexcept {
-  if (copy.of.task.is_valid() && copy.was_bound && !is_new && !is_on(copy.of.task)) return;
-  const bool is_here = copy.of.task.is_valid() && is_mine(copy.of.task);
+  const TaskId of = copy.of.task;
+  const bool is_here = of.is_valid() && is_mine(of);
+  const bool was_read = of.is_valid() && copy.was_bound && !is_new;
+  if (was_read && (is_here ? tasks_[of.index].state : others_->state(of)) != State::kOn) return;
   const GroupReader reader = is_here ? memories_[copy.of.task.index].reader() : reader_of(copy.of);
   if (!reader.is_bound()) return;
   copy.group.rebind(reader);

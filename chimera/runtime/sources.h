@@ -89,7 +89,6 @@ class Sources {
   void collect_copies(TaskId consumer) noexcept;
   void follow(TaskId consumer) noexcept;
   void everybody_follows() noexcept;
-  bool is_on(TaskId task) const noexcept;
 
   const ApplicationSpec* spec_ = nullptr;
   const ContextTable* table_ = nullptr;

@@ -193,7 +193,9 @@ void Judge::told(const LogEvent& tell) {
 void Judge::end_transaction(bool is_failed) {
   for (std::size_t t = 0; t < ended_.size(); ++t) {
     const TaskId task(t);
-    if (ended_[t] && is_failed && is_on(task) && !is_excused(task) && !world_.process_of(task).is_hung())
+    const Process& process = world_.process_of(task);
+    const bool goes_off = process.is_hung() || process.is_sent(Signal::kOff, task);  // when it answers again
+    if (ended_[t] && is_failed && is_on(task) && !is_excused(task) && !goes_off)
       world_.fail("a transaction failed and " + name(task) + " stays ON");
     ended_[t] = false;
   }

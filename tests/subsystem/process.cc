@@ -71,6 +71,14 @@ void Process::try_attach() {
   poke();
 }
 
+bool Process::is_sent(Signal signal, TaskId task) const noexcept {
+  const auto is_it = [&](const Letter& letter) {
+    return letter.signal == signal && letter.manager == manager_ &&
+           std::find(letter.tasks.begin(), letter.tasks.end(), task) != letter.tasks.end();
+  };
+  return (is_busy_ && is_it(work_.letter)) || std::any_of(letters_.begin(), letters_.end(), is_it);
+}
+
 void Process::die(const std::string& point) {
   if (!is_alive_) return;
   world_.note("process dies", id_.index, incarnation_);
