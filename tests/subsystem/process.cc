@@ -147,17 +147,16 @@ void Process::poke() {
   if (!is_alive_ || is_hung_ || is_busy_ || !is_serving_) return;
   for (std::size_t l = 0; l < letters_.size(); ++l) {
     if (is_blocked(letters_[l], l)) continue;
-    Letter letter = std::move(letters_[l]);
+    work_ = {};
+    work_.letter = std::move(letters_[l]);
     letters_.erase(letters_.begin() + static_cast<std::ptrdiff_t>(l));
     is_busy_ = true;
-    later(microseconds(20), milliseconds(1), [this, letter = std::move(letter)] { begin(letter); });
+    later(microseconds(20), milliseconds(1), [this] { begin(); });
     return;
   }
 }
 
-void Process::begin(Letter letter) {
-  work_ = {};
-  work_.letter = std::move(letter);
+void Process::begin() {
   const Letter& mine = work_.letter;
   const auto n = mine.tasks.size();
   work_.in_service.assign(n, false);

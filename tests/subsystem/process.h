@@ -83,7 +83,7 @@ class Process {
   void try_attach();
   void poke();
   bool is_blocked(const Letter& letter, std::size_t before) const;
-  void begin(Letter letter);
+  void begin();
   void next_task();
   void walk(TaskId task, Step step);
   void walked(TaskId task, State state);
