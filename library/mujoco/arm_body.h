@@ -20,9 +20,10 @@ struct ArmBody {
   Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
 
   // A simulated arm that takes the place of another goes on where that one is, whatever its own start_pose says: at the
-  // speed that is handed over, else at rest, for an arm that goes off brakes.
+  // speed that is handed over, else at rest, for an arm that goes off brakes. One that stands where its out-vars say is
+  // in its own place: it goes on from its present state.
   Outcome on() {
-    if (q.inherited() != kNever && has_moved()) {
+    if (q.inherited() != kNever && !std::ranges::equal(q, arm_.position())) {
       for (double& speed : qd)
         if (!qd.is_handed_over()) speed = 0;
       if (!arm_.resume({q.begin(), q.size()}, {qd.begin(), qd.size()})) return fault(arm_.fault());
@@ -56,9 +57,6 @@ struct ArmBody {
   Arm arm_;
 
  private:
-  bool has_moved() const {
-    return !std::ranges::equal(q, arm_.position()) || (qd.is_handed_over() && !std::ranges::equal(qd, arm_.velocity()));
-  }
   void publish() {
     std::ranges::copy(arm_.position(), q.begin());
     std::ranges::copy(arm_.velocity(), qd.begin());
