@@ -209,7 +209,7 @@ void TaskMemory::wire(Task& task) noexcept {
   for (const ResourcePort& resource : resources_) live(*resource.spec)->value = const_cast<char*>(resource.text);
   task.inputs = inputs_;
   task.outputs = outputs_;
-  task.inherited = inherited_;
+  task.inherited = inherited_.data();
   task.all_outputs = outputs_.size() >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << outputs_.size()) - 1;
   task.cycle = component_->methods[CHIMERA_CYCLE];
   task.asks_sync = spec_->aperiodic;

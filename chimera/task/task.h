@@ -80,7 +80,7 @@ struct alignas(64) Task {
 
   // Touched now and then.
   const chimera_component* component = nullptr;
-  std::span<chimera_inherited> inherited;  ///< by output: what its port was told at the last on
+  chimera_inherited* inherited = nullptr;  ///< by output: what its port was told at the last on
   FaultRecord faults;
   FixedVector<SentSignal, kOutboxSize> outbox;
   /// The present job was told to: it used up its budget. Relaxed, pairs with nothing: a job that sees it late gives up
