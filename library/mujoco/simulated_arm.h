@@ -85,7 +85,7 @@ class SimulatedArm {
   mjData_* state() const noexcept { return state_.get(); }
 
  private:
-  static constexpr double kOvershoot = 0.5;  // rad
+  static constexpr double kOvershoot = 0.5;  // rad; puma_torque at full torque passes its limits by 0.29
 
   struct ModelRelease { void operator()(mjModel_* model) const; };
   struct DataRelease { void operator()(mjData_* data) const; };

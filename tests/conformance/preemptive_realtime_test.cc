@@ -3,6 +3,8 @@
 // Counts and order are judged, durations are not, and nothing while the host did not let even the witness run in time.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "tests/conformance/by_threads.h"
 #include "tests/conformance/classic_set.h"
 #include "tests/conformance/judged.h"
@@ -34,6 +36,7 @@ TEST_P(PreemptiveSchedule, IsThatOfVirtualTimeUnitByUnit) {
     const auto got = judged(kGap, [] { return by_threads(GetParam()); });
     if (!got) GTEST_SKIP() << "not judged: host stalled";
     seen = got->timeline;
+    if (seen != wanted.timeline) std::printf("differs: %s instead of %s\n", seen.c_str(), wanted.timeline.c_str());
     for (std::size_t i = 0; i < 3; ++i) {  // the critical ones
       if (wanted.missed[i] > 0) continue;
       EXPECT_EQ(got->missed[i], 0u) << "task " << static_cast<char>('A' + i);
