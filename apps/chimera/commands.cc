@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "chimera/cli/live/carry_out.h"
 #include "chimera/cli/live/commands.h"
+#include "chimera/cli/live/session.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
 

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/control/rights.h"
-
 namespace chimera::control {
 namespace {
 
@@ -33,16 +31,6 @@ TEST(Allowance, TakesSeveralOrNone) {
   EXPECT_FALSE(allowance.try_take(seconds(1), 3));
   EXPECT_EQ(allowance.wait(seconds(1), 3), milliseconds(10));
   EXPECT_TRUE(allowance.try_take(seconds(1), 2));
-}
-
-TEST(Rights, AreTheHighestThatUserOrGroupsGive) {
-  const gid_t groups[] = {100, 200};
-  EXPECT_EQ(role_of(5, groups, 5, {}), Role::kConfigure);
-  EXPECT_EQ(role_of(0, groups, 5, {}), Role::kConfigure);
-  EXPECT_EQ(role_of(6, groups, 5, {}), Role::kNone);
-  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, {}, {}}), Role::kObserve);
-  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, gid_t{100}, {}}), Role::kOperate);
-  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, gid_t{100}, gid_t{300}}), Role::kOperate);
 }
 
 }  // namespace

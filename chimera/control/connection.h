@@ -1,21 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// One connection of the control server: lines in, lines out, within the limits. Knows no method.
+// One connection of the control server: who is at its other end and what that user may do (docs/formats/control.md,
+// "Rights"); lines in, lines out, within the limits. Knows no method.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "chimera/control/allowance.h"
 #include "chimera/control/limits.h"
 #include "chimera/control/pieces.h"
 #include "chimera/control/request.h"
-#include "chimera/control/rights.h"
+#include "chimera/control/rpc_response.h"
 #include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/process_id.h"
 
 namespace chimera::control {
+
+/// Groups whose members get a role; none by default.
+struct RoleGroups {
+  std::optional<gid_t> observe, operate, configure;
+};
+
+struct PeerIdentity {
+  uid_t user = static_cast<uid_t>(-1);
+  Role role = Role::kNone;
+  pid_t process = 0;  ///< that connected; 0: not known
+};
+
+/// The highest role of a peer with that user and those groups; `owner` is the user of the keeper. Context: any.
+Role role_of(uid_t user, std::span<const gid_t> groups, uid_t owner, const RoleGroups& rules) noexcept;
+/// Asks the kernel who connected (SO_PEERCRED, SO_PEERGROUPS). Context: setup.
+PeerIdentity identify(int descriptor, uid_t owner, const RoleGroups& rules);
 
 /// Context: setup; never blocks.
 class Connection {

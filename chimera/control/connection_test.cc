@@ -99,5 +99,15 @@ TEST_F(ConnectionTest, ItsPatienceIsWithBytesThatWaitAndNotWithPiecesThatAreNotM
   EXPECT_FALSE(connection_->flush(now_ + kPatience));
 }
 
+TEST(Rights, AreTheHighestThatUserOrGroupsGive) {
+  const gid_t groups[] = {100, 200};
+  EXPECT_EQ(role_of(5, groups, 5, {}), Role::kConfigure);
+  EXPECT_EQ(role_of(0, groups, 5, {}), Role::kConfigure);
+  EXPECT_EQ(role_of(6, groups, 5, {}), Role::kNone);
+  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, {}, {}}), Role::kObserve);
+  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, gid_t{100}, {}}), Role::kOperate);
+  EXPECT_EQ(role_of(6, groups, 5, {gid_t{200}, gid_t{100}, gid_t{300}}), Role::kOperate);
+}
+
 }  // namespace
 }  // namespace chimera::control

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of methods, and the judgement of the parameters of a call by its row.
+// The table of methods; judges the parameters of a call by its row, and reads them.
 #include "chimera/control/methods.h"
 
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <vector>
 
 #include "chimera/task/signal.h"
 #include "chimera/text/nearest.h"
@@ -154,6 +153,16 @@ RpcResponse check_parameters(const MethodRule& rule, const Json& parameters) {
     }
   }
   return {};
+}
+
+std::vector<std::string> texts(const Json& parameters, const char* key) {
+  const auto found = parameters.find(key);
+  return found == parameters.end() ? std::vector<std::string>() : found->get<std::vector<std::string>>();
+}
+
+std::uint64_t number(const Json& parameters, const char* key, std::uint64_t otherwise) {
+  const auto found = parameters.find(key);
+  return found == parameters.end() ? otherwise : found->get<std::uint64_t>();
 }
 
 }  // namespace chimera::control

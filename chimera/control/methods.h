@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods of the control protocol, in one table: who may call them and what they take.
+// The methods of the control protocol, in one table: who may call them and what they take. The parameters of a call are
+// judged by the row of its method, and read after that.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "chimera/control/rpc_response.h"
 
@@ -42,5 +44,9 @@ std::span<const MethodRule> methods() noexcept;
 const MethodRule* find_method(std::string_view name) noexcept;
 /// Judges the parameters of a call: an error, or an answer without result when they are as the rule says.
 RpcResponse check_parameters(const MethodRule& rule, const Json& parameters);
+/// The texts under `key` of parameters that are as their rule says; none when `key` is not there. Context: setup.
+std::vector<std::string> texts(const Json& parameters, const char* key);
+/// The count under `key` of such parameters, else `otherwise`. Context: setup.
+std::uint64_t number(const Json& parameters, const char* key, std::uint64_t otherwise);
 
 }  // namespace chimera::control

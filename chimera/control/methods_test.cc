@@ -48,6 +48,14 @@ TEST(Methods, NameWhatIsWrongWithAParameter) {
             "signal: 'signal' must be spawn, on, off, kill, clear or reinit (spawn)");
 }
 
+TEST(Methods, ReadParametersThatMayBeLeftOut) {
+  const Json parameters{{"variables", {"q", "qd"}}, {"since", 7}};
+  EXPECT_EQ(texts(parameters, "variables"), (std::vector<std::string>{"q", "qd"}));
+  EXPECT_TRUE(texts(parameters, "tasks").empty());
+  EXPECT_EQ(number(parameters, "since", 1), 7u);
+  EXPECT_EQ(number(parameters, "limit", 1000), 1000u);
+}
+
 TEST(Methods, QuoteNoMoreThanAMessageNeeds) {
   EXPECT_LT(judged("hello", {{std::string(100'000, 'x'), 1}}).size(), 200u);
 }

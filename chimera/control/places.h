@@ -7,7 +7,7 @@
 #include <string>
 
 #include "chimera/base/time.h"
-#include "chimera/control/rights.h"
+#include "chimera/control/connection.h"
 
 namespace chimera::control {
 

@@ -1,17 +1,243 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the top level of a description into a draft.
+// Reads a description into a draft: the keys of each task, each by a function of its own, and the top level.
 #include "chimera/description/draft.h"
 
 #include <array>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/description/draft_task.h"
+#include "chimera/description/criticality.h"
 #include "chimera/description/draft_values.h"
 #include "chimera/description/keys.h"
 #include "chimera/description/yaml_reader.h"
 
 namespace chimera {
 namespace {
+
+// In the order of OnMiss. `switch` is written as a map.
+constexpr std::array<std::string_view, 9> kReactions = {"continue", "hold",   "skip", "abort", "demote",
+                                                        "error",    "switch", "flag", "stop"};
+constexpr std::array<std::string_view, 4> kFaultReactions = {"error", "flag", "stop", "switch"};  // as OnFault
+constexpr std::array<std::string_view, 2> kServerKinds = {"deferrable", "sporadic"};              // as ServerKind
+constexpr std::array<std::string_view, 2> kIsolations = {"shared", "process"};
+constexpr std::array<std::string_view, 1> kSwitchKeys = {"switch"};
+
+/// A map name -> anything, as pairs; keys have to be names.
+std::vector<NamedNode> read_named(const Node& node, const std::string& what, Report& report) {
+  std::vector<NamedNode> out;
+  if (!expect(node, Node::Kind::kMap, what, report, true)) return out;
+  for (std::size_t i = 0; i < node.keys.size(); ++i)
+    if (check_name(node.keys[i], "a key of " + what, report)) out.push_back({node.keys[i], node.items[i]});
+  return out;
+}
+
+using Read = void (*)(const Node&, const std::string& what, DraftTask&, Report&);
+
+/// `{switch: CONFIGURATION}`; nullopt when the node is something else.
+std::optional<Word> read_switch(const Node& node, const std::string& what, Report& report) {
+  refuse_unknown_keys(node, kSwitchKeys, what, report);
+  const Node* to = node.find("switch");
+  return to != nullptr ? read_name(*to, "'switch' in " + what, report) : std::nullopt;
+}
+
+/// A word of `words`, or {switch: NAME}; the index and the name.
+template <std::size_t N>
+std::optional<std::size_t> read_reaction(const Node& node, const std::array<std::string_view, N>& words,
+                                         const std::string& what, Word& configuration, Report& report) {
+  constexpr auto is_switch = [](std::string_view word) { return word == "switch"; };
+  if (node.is_map()) {
+    const auto to = read_switch(node, what, report);
+    if (!to) return std::nullopt;
+    configuration = *to;
+    for (std::size_t i = 0; i < N; ++i)
+      if (is_switch(words[i])) return i;
+  }
+  if (node.is_scalar() && is_switch(node.text)) {
+    report.add({.rule = "value-kind",
+                .at = node.at,
+                .message = what + ": 'switch' needs a configuration",
+                .found = "switch",
+                .expected = "{switch: CONFIGURATION}",
+                .nearest = {},
+                .remedy = "write {switch: NAME} with the name of a configuration"});
+    return std::nullopt;
+  }
+  const auto index = read_choice(node, words, what, report);
+  return index ? std::optional(index->value) : std::nullopt;
+}
+
+std::optional<DraftReaction> reaction(const Node& node, const std::string& what, Report& report) {
+  DraftReaction out{.kind = OnMiss::kContinue, .configuration = {}, .at = node.at};
+  const auto index = read_reaction(node, kReactions, what, out.configuration, report);
+  if (!index) return std::nullopt;
+  out.kind = static_cast<OnMiss>(*index);
+  return out;
+}
+
+void read_on_fault(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  DraftOnFault out{.kind = OnFault::kError, .configuration = {}, .at = node.at};
+  const auto index = read_reaction(node, kFaultReactions, what, out.configuration, report);
+  if (!index) return;
+  out.kind = static_cast<OnFault>(*index);
+  task.on_fault = out;
+}
+
+void read_alias(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  if (!expect(node, Node::Kind::kMap, what, report, true)) return;
+  for (std::size_t i = 0; i < node.keys.size(); ++i) {
+    const Node& item = node.items[i];
+    DraftAlias alias{.port = node.keys[i], .variables = {}, .is_list = item.is_list()};
+    const std::string inner = "'" + alias.port.text + "' in " + what;
+    if (!item.is_list()) {
+      if (auto variable = read_name(item, inner, report)) alias.variables.push_back(std::move(*variable));
+    } else {
+      for (const Node& one : item.items)
+        if (auto variable = read_name(one, inner, report)) alias.variables.push_back(std::move(*variable));
+    }
+    const std::size_t wanted = item.is_list() ? item.items.size() : 1;
+    if (alias.variables.size() == wanted) task.alias.push_back(std::move(alias));
+  }
+}
+
+void read_tolerate(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  if (!expect(node, Node::Kind::kMap, what, report)) return;
+  refuse_unknown_keys(node, kTolerateKeys, what, report);
+  const auto part = [&](std::string_view key, std::uint32_t min) -> std::optional<Located<std::uint32_t>> {
+    const std::string inner = "'" + std::string(key) + "' in " + what;
+    const Node* value = node.find(key);
+    if (value != nullptr) return read_whole(*value, min, 64, inner, report);
+    report.add({.rule = "key-missing",
+                .at = node.at,
+                .message = inner + " is missing",
+                .found = {},
+                .expected = std::string(key),
+                .nearest = {},
+                .remedy = "write {misses: 1, of: 10}"});
+    return std::nullopt;
+  };
+  const auto misses = part("misses", 1), of = part("of", 2);
+  if (!misses || !of) return;
+  if (misses->value >= of->value) {
+    report.add({.rule = "number-bad",
+                .at = misses->at,
+                .message = what + ": " + std::to_string(misses->value) + " misses in " + std::to_string(of->value) +
+                           " cycles; expected fewer misses than cycles",
+                .found = std::to_string(misses->value),
+                .expected = "below " + std::to_string(of->value),
+                .nearest = {},
+                .remedy = {}});
+    return;
+  }
+  task.tolerate = DraftTolerate{node.at, misses->value, of->value};
+}
+
+void read_server(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  if (!expect(node, Node::Kind::kMap, what, report)) return;
+  refuse_unknown_keys(node, kServerKeys, what, report);
+  for (const std::string_view key : kServerKeys)
+    if (node.find(key) == nullptr)
+      report.add({.rule = "key-missing",
+                  .at = node.at,
+                  .message = "'" + std::string(key) + "' in " + what + " is missing",
+                  .found = {},
+                  .expected = std::string(key),
+                  .nearest = {},
+                  .remedy = "write {kind: deferrable, capacity: 1 ms, period: 10 ms}"});
+  const Node *kind = node.find("kind"), *capacity = node.find("capacity"), *period = node.find("period");
+  DraftServer server;
+  server.at = node.at;
+  bool fine = kind != nullptr && capacity != nullptr && period != nullptr;
+  if (kind != nullptr) {
+    const auto index = read_choice(*kind, kServerKinds, "'kind' in " + what, report);
+    if (index) server.kind = static_cast<ServerKind>(index->value);
+    fine = fine && index;
+  }
+  const auto take = [&](const Node* value, const char* key, Located<Nanoseconds>& to) {
+    if (value == nullptr) return;
+    const auto duration = read_duration(*value, "'" + std::string(key) + "' in " + what, report);
+    if (duration) to = *duration;
+    fine = fine && duration;
+  };
+  take(capacity, "capacity", server.capacity);
+  take(period, "period", server.period);
+  if (fine) task.server = server;
+}
+
+template <auto Member>
+void read_time(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  task.*Member = read_duration(node, what, report);
+}
+
+template <auto Member>
+void read_map(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  task.*Member = read_named(node, what, report);
+}
+
+template <auto Member, std::uint32_t kMax>
+void read_number(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  task.*Member = read_whole(node, 0, kMax, what, report);
+}
+
+void read_criticality(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  if (const auto index = read_choice(node, kCriticalities, what, report))
+    task.criticality = Located<std::uint32_t>{static_cast<std::uint32_t>(index->value), index->at};
+}
+
+void read_component(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  task.component = read_name(node, what, report).value_or(Word{});
+}
+
+void read_isolation(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  if (const auto index = read_choice(node, kIsolations, what, report))
+    task.own_process = Located<bool>{index->value == 1, index->at};
+}
+
+// One per key of kTaskKeys, in its order.
+constexpr std::array<Read, kTaskKeys.size()> kReaders = {
+    read_component,
+    [](const Node& n, const std::string& w, DraftTask& t, Report& r) { t.rtpu = read_name(n, w, r); },
+    [](const Node& n, const std::string& w, DraftTask& t, Report& r) { t.rate = read_rate(n, w, r); },
+    read_time<&DraftTask::deadline>,
+    read_time<&DraftTask::offset>,
+    read_time<&DraftTask::budget>,
+    read_time<&DraftTask::min_time>,
+    read_criticality,
+    read_number<&DraftTask::user_priority, 255>,
+    read_alias,
+    read_map<&DraftTask::constants>,
+    read_map<&DraftTask::resources>,
+    read_map<&DraftTask::initial>,
+    [](const Node& n, const std::string& w, DraftTask& t, Report& r) { t.on_miss = reaction(n, w, r); },
+    [](const Node& n, const std::string& w, DraftTask& t, Report& r) { t.on_overrun = reaction(n, w, r); },
+    read_number<&DraftTask::max_consecutive, 1'000'000>,
+    read_tolerate,
+    read_server,
+    read_time<&DraftTask::stale_after>,
+    [](const Node& n, const std::string& w, DraftTask& t, Report& r) { t.standby_for = read_name(n, w, r); },
+    read_on_fault,
+    read_map<&DraftTask::max_step>,
+    [](const Node& n, const std::string& w, DraftTask& t, Report& r) {
+      t.stack_bytes = read_bytes(n, 16 << 10, 64 << 20, w, r);
+    },
+    read_isolation,
+};
+
+/// Reads `name: node` of `tasks`; what cannot be read is left out and stands in `report`.
+DraftTask read_task(const Word& name, const Node& node, Report& report) {
+  DraftTask task;
+  task.name = task.component = name;
+  const std::string what = "task '" + name.text + "'";
+  const std::size_t before = report.errors();
+  if (!expect(node, Node::Kind::kMap, what, report, true)) {
+    task.is_partial = true;
+    return task;
+  }
+  refuse_unknown_keys(node, kTaskKeys, what, report);
+  for (std::size_t i = 0; i < kTaskKeys.size(); ++i)
+    if (const Node* value = node.find(kTaskKeys[i]); value != nullptr)
+      kReaders[i](*value, "'" + std::string(kTaskKeys[i]) + "' of " + what, task, report);
+  task.is_partial = report.errors() != before;
+  return task;
+}
 
 constexpr std::array<std::string_view, 2> kExecutors = {"executive", "preemptive"};
 constexpr std::array<std::string_view, 5> kPolicies = {"rm", "edf", "llf", "muf", "muf-laxity"};  // as Policy

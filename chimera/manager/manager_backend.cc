@@ -6,10 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/text/nearest.h"
+#include "chimera/manager/cause.h"
 #include "chimera/manager/command_text.h"
 #include "chimera/manager/operator_acts.h"
-#include "chimera/manager/parameters.h"
-#include "chimera/manager/signal_answer.h"
 
 namespace chimera::manager {
 namespace {
@@ -17,12 +16,52 @@ namespace {
 using control::Json;
 using control::MethodId;
 using control::RpcResponse;
+using subsystem::RefusalKind;
 
 constexpr const char* kSignals[] = {signal_name(Signal::kSpawn), signal_name(Signal::kOn),
                                     signal_name(Signal::kOff),   signal_name(Signal::kKill),
                                     signal_name(Signal::kClear), signal_name(Signal::kReinit)};
 
+/// The slow method that the unit is known to hang in, and what a person can do; "": nothing is known. Of a cycle the
+/// data of the error tell.
+std::string under_way(const ManagerState& world, RtpuId rtpu) {
+  const RtpuRecord& record = world.rtpus[rtpu.index];
+  const PeerSegment& segment = world.peers[rtpu];
+  const bool serves = segment.is_there() && segment.block().head().serving.load(std::memory_order_relaxed) != 0;
+  if (!serves || !record.is_alive || record.hang.empty()) return "";
+  return ": " + record.hang + "; it goes on: `chimera status` shows when it has ended, `kill -KILL " +
+         std::to_string(record.pid) + "` ends the process of " + world.name(rtpu) +
+         ", and the tasks that were ON come back";
+}
+
+/// Error -32006 with what the real-time unit runs.
+RpcResponse no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text) {
+  const PeerSegment& segment = world.peers[rtpu];
+  const std::string running = segment.is_there() ? running_text(world.spec(), segment.block().head().running) : "";
+  const std::string why = under_way(world, rtpu);
+  return RpcResponse::error(control::kNoAnswer, text + why,
+                       {{"rtpu", world.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
+}
+
 }  // namespace
+
+RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer) {
+  if (answer.is_accepted()) {
+    Json tasks = Json::array();
+    for (const subsystem::TaskOutcome& outcome : answer.outcomes) {
+      tasks.push_back({{"task", world.name(outcome.task)},
+                       {"before", state_name(outcome.before)},
+                       {"after", state_name(outcome.after)}});
+      if (outcome.is_already) tasks.back()["already"] = true;
+    }
+    return RpcResponse::good({{"tasks", std::move(tasks)}});
+  }
+  const auto& [kind, reason, remedy] = answer.refusal;
+  if (kind == RefusalKind::kNoAnswer && answer.at.is_valid())
+    return no_answer(world, world.spec().tasks[answer.at.index].rtpu, answer.refusal.text());
+  return RpcResponse::refused(subsystem::refusal_kind_name(kind), answer.refusal.text(),
+                              answer.at.is_valid() ? world.name(answer.at) : "", remedy);
+}
 
 /// `subscribe` and `unsubscribe` are carried out by the door.
 ManagerBackend::Handler ManagerBackend::handler(MethodId method) noexcept {
@@ -64,7 +103,7 @@ void ManagerBackend::signal(const Request& request) {
     return request.reply(RpcResponse::unknown(
         "no signal '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
   }
-  auto tasks = tasks_named(world(), texts(request.parameters, "tasks"));
+  auto tasks = tasks_named(world(), control::texts(request.parameters, "tasks"));
   if (const auto* refused = std::get_if<RpcResponse>(&tasks)) return request.reply(*refused);
   if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   driver_.command(static_cast<Signal>(at - std::begin(kSignals)), std::get<0>(std::move(tasks)),
@@ -74,7 +113,7 @@ void ManagerBackend::signal(const Request& request) {
 }
 
 void ManagerBackend::ring(const Request& request) {
-  const auto named = tasks_named(world(), texts(request.parameters, "tasks"));
+  const auto named = tasks_named(world(), control::texts(request.parameters, "tasks"));
   if (const auto* refused = std::get_if<RpcResponse>(&named)) return request.reply(*refused);
   const auto& tasks = std::get<0>(named);
   if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
@@ -102,7 +141,7 @@ void ManagerBackend::flag(const Request& request) { request.reply(set_flag(world
 void ManagerBackend::save(const Request& request) { request.reply(saved_values(world())); }
 
 void ManagerBackend::end(const Request& request) {
-  driver_.end(static_cast<std::int32_t>(std::min<std::uint64_t>(number(request.parameters, "code", 0), 255)));
+  driver_.end(static_cast<std::int32_t>(std::min<std::uint64_t>(control::number(request.parameters, "code", 0), 255)));
   request.reply(RpcResponse::good(Json::object()));
 }
 

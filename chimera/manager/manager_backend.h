@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the door opens to: the methods of the control protocol. Those that change nothing are ReadMethods; each of the
-// others is a function of its own.
+// others is a function of its own, and the answer to a signal is what the step function answered, in the words of the
+// protocol.
 #pragma once
 
 #include <memory>
@@ -9,11 +10,15 @@
 
 #include "chimera/control/control_backend.h"
 #include "chimera/manager/manager_loop.h"
+#include "chimera/manager/manager_state.h"
 #include "chimera/manager/questions.h"
 #include "chimera/manager/read_methods.h"
 #include "chimera/manager/subscription_feeds.h"
 
 namespace chimera::manager {
+
+/// The states of the tasks before and after, or the refusal with its kind, place and remedy. Context: setup.
+control::RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer);
 
 /// Context: setup.
 class ManagerBackend final : public control::ControlBackend {

@@ -19,6 +19,7 @@ namespace {
 
 using control::Json;
 using control::Role;
+using subsystem::RefusalKind;
 
 class ManagerBackendTest : public testing::Test {
  protected:
@@ -49,7 +50,13 @@ class ManagerBackendTest : public testing::Test {
   }
   /// "CODE MESSAGE DATA" of a refusal.
   std::string refusal(const char* method, const Json& parameters) {
-    const control::RpcResponse answer = ask(method, parameters);
+    return text_of(ask(method, parameters));
+  }
+  /// "CODE MESSAGE DATA" of the answer to a signal that was refused because of the task `law`.
+  std::string answer_to(RefusalKind kind, const char* reason, const char* remedy) {
+    return text_of(signal_answer(world(), {1, {kind, reason, remedy}, fake_.task("law"), {}}));
+  }
+  static std::string text_of(const control::RpcResponse& answer) {
     if (answer.is_good()) return "accepted " + answer.result->dump();
     return std::to_string(answer.code) + " " + answer.message + (answer.data ? " " + answer.data->dump() : "");
   }
@@ -347,6 +354,29 @@ TEST_F(ManagerBackendTest, AnalysesATextWithTheLibraryOfTheStart) {
   EXPECT_EQ(analysis["fits"], true);
   EXPECT_FALSE(analysis["sets"][0]["cpus"].empty());
   EXPECT_EQ(good("schedule", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}})["legal"], false);
+}
+
+TEST_F(ManagerBackendTest, AnswersARefusedSignalWithItsKindItsPlaceAndItsRemedyWhateverItsWordsAre) {
+  EXPECT_EQ(answer_to(RefusalKind::kState, "no answer from a parser", "type `chimera clear law`"),
+            "-32000 no answer from a parser; type `chimera clear law` "
+            R"({"kind":"state","remedy":"type `chimera clear law`","where":"law"})");
+  EXPECT_EQ(answer_to(RefusalKind::kFault, "the smallest legal set is: empty", ""),
+            R"(-32000 the smallest legal set is: empty {"kind":"fault","where":"law"})");
+}
+
+TEST_F(ManagerBackendTest, AnswersForAUnitThatIsSilentWithItsName) {
+  EXPECT_EQ(answer_to(RefusalKind::kNoAnswer, "silence", ""),
+            R"(-32006 silence {"rtpu":"spare","running":null})");
+}
+
+TEST_F(ManagerBackendTest, AnswersASignalWithTheStatesOfEachTask) {
+  const subsystem::CommandAnswer done{1, {}, TaskId{}, {{fake_.task("law"), State::kOn, State::kOff, false},
+                                             {fake_.task("filter"), State::kOff, State::kOff, true}}};
+  const control::RpcResponse answer = signal_answer(world(), done);
+  ASSERT_TRUE(answer.is_good());
+  EXPECT_EQ((*answer.result)["tasks"],
+            Json::array({Json{{"task", "law"}, {"before", "ON"}, {"after", "OFF"}},
+                         Json{{"task", "filter"}, {"before", "OFF"}, {"after", "OFF"}, {"already", true}}}));
 }
 
 class ServedTest : public ManagerBackendTest {

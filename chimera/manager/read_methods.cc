@@ -9,7 +9,6 @@
 #include "chimera/manager/subscription_feeds.h"
 #include "chimera/manager/large_readings.h"
 #include "chimera/manager/operator_acts.h"
-#include "chimera/manager/parameters.h"
 #include "chimera/manager/status_json.h"
 #include "chimera/manager/value_json.h"
 #include "chimera/platform/process_id.h"
@@ -72,7 +71,7 @@ RpcResponse ReadMethods::hello(control::Role role) const {
 }
 
 RpcResponse ReadMethods::get(const Json& parameters) const {
-  const auto variables = variables_named(world_, texts(parameters, "variables"));
+  const auto variables = variables_named(world_, control::texts(parameters, "variables"));
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
   const auto& named = std::get<0>(variables);
   if (bytes_of(world_, named) <= kLargeReadings)
@@ -81,9 +80,9 @@ RpcResponse ReadMethods::get(const Json& parameters) const {
 }
 
 RpcResponse ReadMethods::events(const Json& parameters) const {
-  const std::uint64_t asked = number(parameters, "limit", kEventsAtOnce);
+  const std::uint64_t asked = control::number(parameters, "limit", kEventsAtOnce);
   const std::uint64_t limit = std::min<std::uint64_t>(asked, kEventsAtOnce);
-  return RpcResponse::good(events_json(world_, number(parameters, "since", 0), limit));
+  return RpcResponse::good(events_json(world_, control::number(parameters, "since", 0), limit));
 }
 
 RpcResponse ReadMethods::why(const Json& parameters) const {

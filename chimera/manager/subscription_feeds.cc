@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "chimera/control/methods.h"
 #include "chimera/manager/large_readings.h"
 #include "chimera/manager/operator_acts.h"
-#include "chimera/manager/parameters.h"
 #include "chimera/manager/status_json.h"
 #include "chimera/manager/value_json.h"
 
@@ -25,17 +25,17 @@ std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Js
 RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameters) {
   using To = Feed::To;
   const std::string to = parameters.at("to");
-  const auto names = texts(parameters, "variables");
+  const auto names = control::texts(parameters, "variables");
   auto variables = variables_named(world_, names);
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
   Feed made;
   made.to = to == "status" ? To::kStatus : to == "events" ? To::kEvents : to == "values" ? To::kValues : To::kTap;
-  if (made.to == To::kEvents) made.next = number(parameters, "since", world_.log.last() + 1);
+  if (made.to == To::kEvents) made.next = control::number(parameters, "since", world_.log.last() + 1);
   if (made.to == To::kValues) made.variables = std::get<0>(std::move(variables));
   else if (made.to == To::kTap)
     made.tap = std::make_unique<TapFeed>(
         world_, names.empty() ? std::vector<VariableId>() : std::get<0>(std::move(variables)),
-        number(parameters, "since", 1) == 0);
+        control::number(parameters, "since", 1) == 0);
   feeds_[subscription] = std::move(made);
   return RpcResponse{};
 }

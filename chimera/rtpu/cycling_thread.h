@@ -10,7 +10,6 @@
 
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/linux_clock.h"
-#include "chimera/rtpu/bell_clock.h"
 #include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/hosted/background_writer.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The control of a real-time unit: what comes from other processes is taken in at its edges, and what its edges changed
-// is shown to them. docs/formats/processes.md.
+// is shown to them; and its clock, whose wait ends when there is something to take in. docs/formats/processes.md.
 //
 //   inputs, in this order           each is looked at by one function of take()
 //     other processes               new segments, who lives, states and flags elsewhere; wishes of the manager
@@ -20,12 +20,14 @@
 #include <vector>
 
 #include "chimera/base/fixed.h"
+#include "chimera/platform/doorbell.h"
 #include "chimera/rtpu/hanging_jobs.h"
 #include "chimera/rtpu/peer_links.h"
 #include "chimera/rtpu/supervised_signals.h"
 #include "chimera/rtpu/unit_end.h"
 #include "chimera/rtpu/waiting_signals.h"
 #include "chimera/runtime/boundary_listener.h"
+#include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/service.h"
 
 namespace chimera {
@@ -79,6 +81,30 @@ class RtpuControl final : public BoundaryListener {
   WaitingSignals waiting_;
   std::vector<Post> commands_;  // by task: the signal that is being served
   std::size_t shown_ = 0;       // the task whose profile is shown next
+};
+
+/// The clock of a real-time unit: reads the cycle counter, and waits on the bell of the unit; a ring of the bell ends
+/// the wait. Used by the thread that cycles only.
+class BellClock final : public Clock {
+ public:
+  /// Context: setup; blocks about 10 ms.
+  BellClock(Doorbell bell, std::atomic<std::uint32_t>& running, RtpuControl& edge) noexcept
+      : bell_(bell), running_(running), edge_(edge) {}
+
+  Nanoseconds now() noexcept override { return counter_.now(); }
+  WaitEnd wait_until(Nanoseconds instant) noexcept override {
+    running_.store(0, std::memory_order_relaxed);
+    edge_.show_profiles();
+    const WaitEnd end = bell_.wait_until(edge_.heard(), instant);
+    counter_.compare();
+    return end;
+  }
+
+ private:
+  Doorbell bell_;
+  std::atomic<std::uint32_t>& running_;  // BlockHead::running; relaxed, pairs with nothing
+  RtpuControl& edge_;
+  CounterClock counter_;
 };
 
 }  // namespace chimera

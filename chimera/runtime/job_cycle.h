@@ -7,8 +7,8 @@
 #include <span>
 
 #include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/cycle_step.h"
 #include "chimera/runtime/job_record.h"
+#include "chimera/runtime/job_step.h"
 #include "chimera/runtime/miss_policy.h"
 
 namespace chimera {

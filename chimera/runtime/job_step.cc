@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstring>
 
-#include "chimera/runtime/cycle_step.h"
 #include "chimera/runtime/safety.h"
 
 namespace chimera {

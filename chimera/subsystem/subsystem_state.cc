@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions about the tasks that several parts ask, and the refusals that several parts give.
+// Keeps the signals whose reports have not come and the times at which they are given up; answers the questions about
+// tasks that several parts ask, and gives the refusals that several parts give.
 #include "chimera/subsystem/subsystem_state.h"
 
 #include <algorithm>
@@ -7,6 +8,47 @@
 #include "chimera/subsystem/remedy.h"
 
 namespace chimera::subsystem {
+
+std::uint64_t PendingSignals::post(Signal signal, std::span<const TaskId> tasks, Nanoseconds now) {
+  ++last_;
+  for (TaskId task : tasks) of(task).push_back({last_, signal, now, now + kAnswerLimit});
+  return last_;
+}
+
+bool PendingSignals::settle(TaskId task, std::uint64_t command) {
+  auto& list = of(task);
+  const auto mine = [command](const PendingSignal& entry) { return entry.command == command; };
+  const auto found = std::find_if(list.begin(), list.end(), mine);
+  if (found == list.end()) return false;
+  const bool was_awaited = found->due != kNever;
+  const auto is_given_up = [](const PendingSignal& entry) { return entry.due == kNever; };
+  list.erase(std::remove_if(list.begin(), found, is_given_up), found);
+  std::erase_if(list, mine);
+  return was_awaited;
+}
+
+bool PendingSignals::is_awaited(TaskId task) const noexcept {
+  const auto& list = tasks_[task.index];
+  return std::any_of(list.begin(), list.end(), [](const PendingSignal& entry) { return entry.due != kNever; });
+}
+
+bool PendingSignals::is_awaited(TaskId task, Signal signal) const noexcept {
+  const auto& list = tasks_[task.index];
+  return std::any_of(list.begin(), list.end(),
+                     [signal](const PendingSignal& entry) { return entry.signal == signal && entry.due != kNever; });
+}
+
+bool PendingSignals::is_possible(TaskId task, Signal signal) const noexcept {
+  const auto& list = tasks_[task.index];
+  return std::any_of(list.begin(), list.end(), [signal](const PendingSignal& entry) { return entry.signal == signal; });
+}
+
+Nanoseconds PendingSignals::next_due() const noexcept {
+  Nanoseconds next = kNever;
+  for (const auto& list : tasks_)
+    for (const PendingSignal& entry : list) next = std::min(next, entry.due);
+  return next;
+}
 
 SubsystemState::SubsystemState(const ApplicationSpec& application)
     : spec(application), variables(application), observed(application), pending(application.tasks.size()) {}

@@ -30,8 +30,8 @@
 #include <new>
 #include <type_traits>
 
-#include "chimera/task/collector.h"
 #include "chimera/task/cycle.h"
+#include "chimera/task/declare_port.h"
 #include "chimera/task/method_check.h"
 #include "chimera/task/options.h"
 #include "chimera/task/port.h"

@@ -67,10 +67,12 @@ struct ConfiguredSet {
   std::vector<TaskId> order;  ///< hardware inputs first; loops cut at initial values
 };
 
+struct Model;
+
 /// Cheap to copy: all copies share one immutable whole. Context: setup.
 class Configuration {
  public:
-  struct Parts;  // verify/parts.h; only verify() fills it
+  struct Parts;
 
   const std::string& file() const noexcept;
   const std::string& subsystem() const noexcept;
@@ -89,7 +91,8 @@ class Configuration {
   /// The utilisation of each CPU in the start configuration by declared budgets; 0 where none is declared.
   std::span<const double> utilisation() const noexcept;  // one per rtpu
 
-  explicit Configuration(std::shared_ptr<const Parts> parts) noexcept : parts_(std::move(parts)) {}
+  /// Of a model without faults: for verify() alone.
+  explicit Configuration(const Model& model);
 
  private:
   std::shared_ptr<const Parts> parts_;

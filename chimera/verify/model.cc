@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds tasks and variables of the model and adds faults to its report.
+// Finds tasks and variables of the model, names them in texts, and adds faults to the report.
 #include "chimera/verify/model.h"
 
 #include <algorithm>
@@ -62,6 +62,20 @@ std::string Model::say(const LinkedPort& port) const {
   std::string out = std::string(kWords[port.declared->kind]) + " '" + port.name + "'";
   if (port.is_linked() && port.variable != port.name) out += " (variable '" + port.variable + "')";
   return out + " of task '" + tasks[port.task].name() + "'";
+}
+
+std::string type_text(const LinkedPort& port) {
+  if (port.declared->type == CHIMERA_STRUCT) return port.declared->type_name;
+  const std::string name(type_name(*port.type));
+  return *port.type == CHIMERA_STRING ? name + '[' + std::to_string(port.element_bytes) + ']' : name;
+}
+
+std::string settled_by(const Model& model, const VariableModel& variable, const std::optional<PortRef>& from) {
+  if (from) {
+    const LinkedPort& port = model.port(*from);
+    return model.say(port) + " at " + Model::say(port.at);
+  }
+  return "the value at " + Model::say(variable.given->value.at);
 }
 
 }  // namespace chimera

@@ -3,7 +3,7 @@
 #include "chimera/verify/verify.h"
 
 #include "chimera/catalogue/library.h"
-#include "chimera/verify/parts.h"
+#include "chimera/verify/model.h"
 #include "chimera/verify/rules/rules.h"
 
 namespace chimera {
@@ -60,7 +60,7 @@ Verdict judge(const Draft& draft, const Library& library, Report report, Overloa
   judge_links(model);
   judge_values(model);
   judge_order(model);
-  if (verdict.report.is_legal()) verdict.configuration.emplace(make_parts(model));
+  if (verdict.report.is_legal()) verdict.configuration.emplace(model);
   verdict.report.sort();
   return verdict;
 }

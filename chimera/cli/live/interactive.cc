@@ -15,7 +15,7 @@
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/cli/live/carry_out.h"
+#include "chimera/cli/live/commands.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/state_folder.h"
 #include "chimera/cli/live/terminal.h"

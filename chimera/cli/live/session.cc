@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the subsystem that is meant, and gives each method the time that it may take.
+// Finds the subsystem that is meant, gives each method the time that it may take, and carries out a call by its row.
 #include "chimera/cli/live/session.h"
 
 #include <cstdlib>
@@ -7,7 +7,9 @@
 
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/cli/live/answer_text.h"
+#include "chimera/cli/live/commands.h"
 #include "chimera/cli/live/fields.h"
+#include "chimera/cli/live/terminal.h"
 
 namespace chimera::cli {
 namespace {
@@ -19,6 +21,34 @@ constexpr Nanoseconds kWorkLimit = seconds(65);
 Nanoseconds limit_of(std::string_view method, const nlohmann::json& parameters) {
   const bool runs_methods = method == "signal" && parameters.value("signal", "") != "off";
   return runs_methods || method == "check" || method == "schedule" ? kWorkLimit : control::kCallLimit;
+}
+
+/// Every line behind the name of the subsystem that it comes from: "[puma_pid] pid: ON -> OFF".
+std::string behind_name(const std::string& text, const std::string& subsystem) {
+  std::string named;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size() - 1);
+    named += "[" + subsystem + "] " + text.substr(from, end + 1 - from);
+    from = end + 1;
+  }
+  return named;
+}
+
+/// With "subsystem" as its first key, where the text is one object.
+std::string with_subsystem(const std::string& text, const std::string& subsystem) {
+  nlohmann::json answer = nlohmann::json::parse(text, nullptr, false);
+  if (!answer.is_object()) return text;
+  answer["subsystem"] = subsystem;
+  return json_line(answer);
+}
+
+/// An act and its refusal tell whom they reached.
+CommandResult named(CommandResult said, Session& session, const Call& call) {
+  if (call.json) return said.out = with_subsystem(said.out, session.subsystem()), said;
+  if (!call.is_act() || row_of(call).names_its_subsystem) return said;
+  said.out = behind_name(said.out, session.subsystem());
+  said.err = behind_name(said.err, session.subsystem());
+  return said;
 }
 
 }  // namespace
@@ -82,6 +112,32 @@ control::RpcResponse Session::ask(std::string_view method) { return ask(method, 
 
 control::RpcResponse Session::ask(std::string_view method, const nlohmann::json& parameters) {
   return client_.call(method, parameters, limit_of(method, parameters), control::kCallLimit);
+}
+
+int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
+  if (call.is_act())
+    if (const auto may = session.may_act(); !may) return print(refused(may.error(), call.json), out, err);
+  (void)session.subsystem();  // known before the act: after an `end` nobody can be asked
+  const RunningCommand& row = row_of(call);
+  if (row.is_live(call)) return row.live(session, call, out, err);
+  const ScreenSize size = screen_size(kStandardOutput);
+  const Screen screen{is_terminal(kStandardOutput) ? size.width : 0, size.height, err};
+  CommandResult said = one_shot(session, call, screen);
+  return print(named(std::move(said), session, call), out, err);
+}
+
+int carry_out(const Surroundings& surroundings, const Call& call, std::FILE* out, std::FILE* err) {
+  Surroundings known = surroundings;
+  known.command = command_line(call);
+  auto session = Session::open(known);
+  if (!session) return print(refused(session.error(), call.json), out, err);
+  // Whoever does not answer now will not answer the command either: one limit, not one for each question of it.
+  if (const control::RpcResponse hello = session->hello(); !hello.is_good())
+    return print(refused(hello, call.json), out, err);
+  // Who did not say which one learns which one it is; status and top head with it, an act says it in every line.
+  const bool says_itself = call.json || call.is_act() || row_of(call).names_its_subsystem;
+  if (!session->is_named() && !says_itself) std::fprintf(err, "[%s]\n", session->subsystem().c_str());
+  return carry_out(*session, call, out, err);
 }
 
 }  // namespace chimera::cli

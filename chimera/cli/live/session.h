@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// One subsystem, asked the way commands ask: which one it is, whether an act may go to it, how long an answer may take.
+// One subsystem, asked the way commands ask: which one it is, whether an act may go to it, how long an answer may take;
+// and any command on it carried out, wherever it was typed.
 #pragma once
 
+#include <cstdio>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "chimera/cli/command/command.h"
 #include "chimera/cli/command/command_result.h"
 #include "chimera/control/client.h"
 #include "chimera/control/home.h"
@@ -59,5 +62,12 @@ class Session {
   bool is_named_ = false;
   control::Home home_;
 };
+
+/// Carries out `call` (not the shell's own `help` and `quit`) and prints what it says. Returns its exit code.
+/// Context: setup; blocks until it is over.
+int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err);
+
+/// carry_out() over a new connection to the subsystem that `surroundings` names.
+int carry_out(const Surroundings& surroundings, const Call& call, std::FILE* out, std::FILE* err);
 
 }  // namespace chimera::cli

@@ -24,7 +24,7 @@
 #include <utility>
 
 #include "chimera/base/testing/tree_path.h"
-#include "chimera/cli/live/carry_out.h"
+#include "chimera/cli/live/commands.h"
 #include "chimera/cli/live/interactive.h"
 #include "chimera/cli/live/testing/test_answers.h"
 #include "chimera/control/control_server.h"

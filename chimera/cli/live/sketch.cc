@@ -14,7 +14,7 @@
 namespace chimera::cli {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoPoint = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kRangeWidth = 30;
 constexpr std::size_t kLeastCourse = 8;
 
@@ -38,7 +38,7 @@ std::string range_text(const draw::Curve& curve) {
 
 /// The value at each of `count` instants of `time`, the last that was there.
 std::vector<double> course_of(const draw::Curve& curve, const Span& time, std::size_t count) {
-  std::vector<double> values(count, kNothing);
+  std::vector<double> values(count, kNoPoint);
   const double all = time.high - time.low;
   for (const draw::PlotPoint& point : curve.points) {
     const double part = all > 0 ? std::clamp((point.at - time.low) / all, 0.0, 1.0) : 0;

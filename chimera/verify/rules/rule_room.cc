@@ -5,7 +5,6 @@
 #include <string>
 
 #include "chimera/verify/rules/rules.h"
-#include "chimera/verify/solve.h"
 #include "chimera/verify/values.h"
 
 namespace chimera {

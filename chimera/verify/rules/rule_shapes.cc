@@ -8,7 +8,6 @@
 #include "chimera/task/number_at.h"
 #include "chimera/units/quantity.h"
 #include "chimera/verify/rules/rules.h"
-#include "chimera/verify/solve.h"
 #include "chimera/verify/values.h"
 
 namespace chimera {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rules on types: linked ports agree, and type variables of generic ports are solved.
 #include "chimera/verify/rules/rules.h"
-#include "chimera/verify/solve.h"
 
 namespace chimera {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "chimera/units/quantity.h"
 #include "chimera/verify/rules/rules.h"
-#include "chimera/verify/solve.h"
 
 namespace chimera {
 namespace {

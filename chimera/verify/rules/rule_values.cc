@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every written value is parsed here, once: its bytes stay in the model for the specs of the runtime.
 #include "chimera/verify/rules/rules.h"
-#include "chimera/verify/solve.h"
 #include "chimera/verify/values.h"
 
 namespace chimera {

@@ -11,8 +11,6 @@ namespace chimera {
 // rule_components.cc
 /// Every task's component is in the library; no streams; ports within the limits of a group.
 void find_components(Model& model);
-
-// rule_ports.cc
 /// Names under alias, constants, resources, initial and max_step are ports of the right kind; repeated ports have
 /// instances. Makes TaskModel::ports.
 void link_ports(Model& model);
