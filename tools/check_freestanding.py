@@ -27,7 +27,7 @@ MACHINES = {"x86-64": ("g++", "-O1", *FREESTANDING),
 OURS = re.compile(r"_ZN[KVR]*7chimera|_ZT[VSI]N7chimera|chimera_|_GLOBAL_OFFSET_TABLE_$|__cxa_pure_virtual$")
 C_MEMORY = {"memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strcmp", "strncmp", "strcpy", "strncpy"}
 # What a processor does not do itself: arithmetic of double and of 64 bits, and 64-bit atomics of a single context.
-ARITHMETIC = re.compile(r"__aeabi_(?!read_tp)\w+$|__atomic_(load|store|exchange)_8$|__popcountdi2$")
+ARITHMETIC = re.compile(r"__aeabi_(?!read_tp)\w+$|__atomic_(load|store|exchange|compare_exchange)_8$|__popcountdi2$")
 # std::string_view and std::span out of range: ends the program, never in a cycle.
 ENDING = re.compile(r"_ZSt\d+__throw_\w+|abort$|_ZSt21__glibcxx_assert_failPKciS0_S0_$")
 # A number of type double in the text of a refused output (%g): every C library for microcontrollers can write it.

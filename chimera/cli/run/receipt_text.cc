@@ -59,6 +59,10 @@ const char* word(NoSwitch why) {
     case NoSwitch::kDisturbed: return "disturbed";
     case NoSwitch::kFlagRaised: return "flag-raised";
     case NoSwitch::kRunEnded: return "run-ended";
+    case NoSwitch::kLate: return "late";
+    case NoSwitch::kMemberDied: return "member-died";
+    case NoSwitch::kDamaged: return "damaged";
+    case NoSwitch::kCancelled: return "cancelled";
   }
   return "?";
 }
@@ -98,6 +102,10 @@ std::string reason(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
     case NoSwitch::kDisturbed: return "task " + task + " went to another state meanwhile";
     case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised meanwhile";
     case NoSwitch::kRunEnded: return "the run ended";
+    case NoSwitch::kLate: return "a real-time unit was too late to agree to the instant of the change";
+    case NoSwitch::kMemberDied: return "a real-time unit died";
+    case NoSwitch::kDamaged: return "the order on the decision page is not what the manager wrote";
+    case NoSwitch::kCancelled: return "cancelled";
     default: return word(receipt.why);
   }
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "chimera/base/time.h"
+#include "chimera/runtime/switch_page.h"
 
 namespace chimera {
 
@@ -28,7 +29,10 @@ struct DecisionPage {
   /// By peer: what it makes before it shows a block of its own, as show_making() writes it. Relaxed, pairs with
   /// nothing: read when the peer is dead or hangs.
   alignas(64) std::atomic<std::uint32_t> making[kMaxPeers];
+  /// How far a switch of configurations has come. Outlives the manager, which plans.
+  SwitchPage switching;
 };
+static_assert(kMaxRtpus <= kMaxContexts);
 
 /// Writable by the keeper alone. `alive` and `ending` are stored with release and loaded with acquire: what the keeper
 /// did before is seen with them. The others are figures that pair with nothing.

@@ -34,7 +34,8 @@ constexpr std::uint64_t kMemoryAt = sizeof(BlockHead);
 constexpr std::uint64_t kProgressAt = after(kMemoryAt, sizeof(ManagerMemory));
 constexpr std::uint64_t kOutboxAt = after(kProgressAt, sizeof(PostProgress) * kMaxPeers);
 constexpr std::uint64_t kTapAt = after(kOutboxAt, sizeof(PostRing) * kMaxPeers);
-constexpr std::uint64_t kStatusAt = after(kTapAt, sizeof(TapRing));
+constexpr std::uint64_t kSwitchPartAt = after(kTapAt, sizeof(TapRing));
+constexpr std::uint64_t kStatusAt = after(kSwitchPartAt, sizeof(SwitchPart));
 constexpr std::uint64_t wish_at(std::uint32_t n_tasks) noexcept {
   return after(kStatusAt, sizeof(std::uint64_t) * std::uint64_t{n_tasks});
 }
@@ -109,6 +110,7 @@ const PostRing& BlockView::outbox(std::uint32_t peer) const noexcept {
 
 const TapRing& BlockView::tap() const noexcept { return part<TapRing>(bytes_, kTapAt); }
 const ManagerMemory& BlockView::memory() const noexcept { return part<ManagerMemory>(bytes_, kMemoryAt); }
+const SwitchPart& BlockView::switch_part() const noexcept { return part<SwitchPart>(bytes_, kSwitchPartAt); }
 
 BlockOwner::BlockOwner(std::byte* bytes, std::uint32_t peer, std::uint32_t incarnation, std::uint32_t n_tasks,
                        std::uint32_t n_peers) noexcept
@@ -158,5 +160,6 @@ PostRing& BlockOwner::outbox(std::uint32_t peer) const noexcept {
 
 TapRing& BlockOwner::tap() const noexcept { return part<TapRing>(bytes_, kTapAt); }
 ManagerMemory& BlockOwner::memory() const noexcept { return part<ManagerMemory>(bytes_, kMemoryAt); }
+SwitchPart& BlockOwner::switch_part() const noexcept { return part<SwitchPart>(bytes_, kSwitchPartAt); }
 
 }  // namespace chimera

@@ -14,6 +14,7 @@
 #include "chimera/base/ids.h"
 #include "chimera/runtime/outbox.h"
 #include "chimera/runtime/hosted/pages.h"
+#include "chimera/runtime/switch_part.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/runtime/task_status.h"
 #include "chimera/table/segment.h"
@@ -48,6 +49,7 @@ struct alignas(64) BlockHead {
   std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method that is called at an edge; 0: none
   std::atomic<std::uint32_t> background{0};  ///< as `running`: the background that is under way longest; 0: none
   std::atomic<std::uint32_t> jobs{0};        ///< cycles of the task in `running` that ended, as the main thread saw
+  SwitchProgress switching;                  ///< how far this unit has come with a switch
 };
 inline constexpr std::uint64_t kBlockMagic = 0x314b4c42'4d494843;  // "CHIMBLK1" in memory
 
@@ -79,6 +81,7 @@ class BlockView {
   const PostRing& outbox(std::uint32_t peer) const noexcept;
   const TapRing& tap() const noexcept;
   const ManagerMemory& memory() const noexcept;
+  const SwitchPart& switch_part() const noexcept;
   bool is_there() const noexcept { return bytes_ != nullptr; }
 
  private:
@@ -103,6 +106,7 @@ class BlockOwner {
   PostRing& outbox(std::uint32_t peer) const noexcept;
   TapRing& tap() const noexcept;
   ManagerMemory& memory() const noexcept;
+  SwitchPart& switch_part() const noexcept;
   BlockView view() const noexcept { return BlockView(bytes_, n_tasks_); }
 
  private:
