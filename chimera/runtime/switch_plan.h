@@ -34,6 +34,14 @@ struct SwitchPlan {
   std::span<const Handover> handovers; ///< in the order of ApplicationSpec::variables
 };
 
+/// Places [begin, end) in SwitchPlan::arriving: a longest row of tasks that belong to one rtpu.
+struct SwitchRun {
+  std::size_t begin = 0, end = 0;
+};
+
+/// The run of that number; begin == end behind the last one. Context: cycle boundary; O(tasks).
+SwitchRun find_run(const SwitchPlan& plan, std::span<const TaskSpec> tasks, std::uint16_t number) noexcept;
+
 /// Why a switch is not made. The first group is found before anything is done, the others abort what was begun.
 enum class NoSwitch : std::uint8_t {
   kNone,
@@ -50,6 +58,10 @@ enum class NoSwitch : std::uint8_t {
   kDisturbed,     ///< a signal, an error or its own end moved `task`, which takes part, to another state
   kFlagRaised,    ///< somebody raised the illegal-configuration flag
   kRunEnded,      ///< before the instant of the change
+  kLate,          ///< a real-time unit came to the instant of the change before all had agreed to it
+  kMemberDied,    ///< a real-time unit that takes part
+  kDamaged,       ///< the order on the shared page is not what was written, or does not fit the application
+  kCancelled,     ///< who asked for it took it back
 };
 
 /// What became of a request for a plan.
