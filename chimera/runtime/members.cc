@@ -42,7 +42,7 @@ void Members::join(Task& task, Nanoseconds now) noexcept {
   if (task.spec->server) return;  // released by events
   queue_.join(task.id, now);
   // dt of the first cycle is the period, whatever part of one passed since on.
-  task.last_release = queue_.first_release(task.id) - task.spec->period;
+  task.last_release = queue_.classes().first_release(task.id.index) - task.spec->period;
 }
 
 }  // namespace chimera

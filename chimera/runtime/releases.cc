@@ -38,11 +38,13 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
       jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock, tap_.is_on() || guest_ != nullptr),
       members_(set.tasks(), records_, queue_, tap_, guest_),
       settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
-      switching_({set, queue_, members_, settlement_, tap_, clock}),
+      switching_({set, queue_, members_, settlement_, tap_, misses_, clock}),
       signals_(set, options.script, tap_, settlement_, threads_, switching_, guest_) {
   const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
-  CHIMERA_ASSERT(n_switches == 0 || (options.threads == nullptr && set.others() == nullptr));
-  switching_.prepare(n_switches);
+  const bool is_alone = set.others() == nullptr;
+  CHIMERA_ASSERT((n_switches == 0 && options.switch_peers == nullptr) || options.threads == nullptr);
+  CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
+  switching_.prepare(n_switches, options.switch_peers);
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
     const bool can = options.can_demote || !set.is_mine(task.id);
@@ -59,6 +61,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
 void Releases::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
   queue_.set_origin(origin);
+  switching_.begin(origin);
   signals_.begin(origin);
   members_.follow_all(origin);
 }

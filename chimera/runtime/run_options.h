@@ -9,6 +9,7 @@
 #include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
+#include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/schedule/policy.h"
 
@@ -22,6 +23,7 @@ struct RunOptions {
   std::uint8_t rtpu = 0;                     ///< for the records
   BoundaryListener* guest = nullptr;         ///< null: nobody else takes part in the edges
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
+  SwitchPeers* switch_peers = nullptr;       ///< null: switches are asked for by the script, or there are none
   JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
   BackgroundThreads* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer
   bool can_demote = false;                   ///< jobs may go on below all others

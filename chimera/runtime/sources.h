@@ -14,21 +14,12 @@
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/context_table.h"
 #include "chimera/runtime/peer_view.h"
+#include "chimera/runtime/source_copies.h"
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/variable_view.h"
-#include "chimera/table/local_group.h"
 
 namespace chimera {
-
-/// Who produces a variable and where its value stands in the group.
-struct Source {
-  TaskId task;                ///< invalid: the operator
-  std::size_t operator_index = 0;
-  std::uint32_t offset = 0;   ///< of the value in the payload
-  std::uint32_t bit = 0;      ///< of the value in the valid bits
-  GroupReader here{};         ///< the group, where it lies in this context; else not bound
-};
 
 /// Context of everything not marked: edge; no allocation. Everything given to prepare() outlives it.
 class Sources {
@@ -43,6 +34,13 @@ class Sources {
   /// The inputs of the task, which is OFF, look at who will produce them once the handovers have come to pass; without
   /// any, at who produces them now.
   void read_ahead(TaskId consumer, std::span<const Handover> handovers) noexcept;
+  /// From now on the variables of `handovers`, which outlive this, come from where they come from now, whatever the
+  /// states of tasks elsewhere say; from hand_over() on from where the handovers say. That ends with end_handover().
+  void begin_handover(std::span<const Handover> handovers) noexcept { handed_over_ = handovers; }
+  /// The instant of the change. A task t with has_old_job[t] keeps what it reads from until old_job_ended().
+  void hand_over(std::span<const bool> has_old_job) noexcept;
+  void old_job_ended(TaskId consumer) noexcept;
+  void end_handover() noexcept;
   /// Something changed elsewhere: follows producers that went ON or were replaced.
   void follow_others() noexcept;
   /// From now on nothing is read from the groups of that task (invalid: the operator): their memory may go. What was
@@ -65,28 +63,11 @@ class Sources {
   VariableView view(VariableId variable) const noexcept;
 
  private:
-  /// A task's copy of a group produced elsewhere.
-  struct Copy {
-    LocalGroup group;
-    TaskId consumer;
-    Source of;
-    bool is_bound = false;   ///< to a group that may be read
-    bool was_bound = false;  ///< its values are worth keeping
-  };
-
   bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
-  std::uint32_t payload_of(const Source& source) const noexcept;
-  GroupReader reader_of(const Source& source) const noexcept;
-  Source source_from(const PortOf& producer) const noexcept;
-  void plan_copies(SetupMemory& memory);
-  void plan_copies(const Variable& variable, SetupMemory& memory);
-  void plan_copy(TaskId consumer, const Source& source, SetupMemory& memory);
-  void fill(const Source& source, std::span<std::byte> values) const noexcept;
-  Copy* copy_for(TaskId consumer, const Source& source) noexcept;
   void bind(VariableId variable, const Source& source) noexcept;
   void bind_input(Input& input, TaskId consumer, const Source& source) noexcept;
-  void refresh_reader(Copy& copy, bool is_new) noexcept;
-  void collect_copies(TaskId consumer) noexcept;
+  bool keeps(TaskId consumer) const noexcept;
+  bool is_handed_over(VariableId variable) const noexcept;
   void follow(TaskId consumer) noexcept;
   void everybody_follows() noexcept;
 
@@ -96,9 +77,10 @@ class Sources {
   std::span<TaskMemory> memories_;
   const PeerView* others_ = nullptr;
   std::span<Source> sources_;  // by variable
-  std::span<Copy> copies_;
-  std::span<std::span<LocalGroup*>> used_;  // by task: room for the bound copies that an input follows
+  SourceCopies copies_;
   std::span<bool> is_behind_;               // by task
+  std::span<bool> has_old_job_;             // by task: released before the last hand_over()
+  std::span<const Handover> handed_over_;   // between begin_handover() and end_handover()
   bool preemptive_ = false;
   std::span<std::byte> scratch_;            // a slot of the largest group
 };

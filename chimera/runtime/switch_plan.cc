@@ -11,6 +11,17 @@ bool is_on(const TaskStanding& standing) noexcept { return standing.state == Sta
 
 }  // namespace
 
+SwitchRun find_run(const SwitchPlan& plan, std::span<const TaskSpec> tasks, std::uint16_t number) noexcept {
+  const auto rtpu = [&](std::size_t i) { return tasks[plan.arriving[i].index].rtpu; };
+  SwitchRun run;
+  for (std::uint32_t n = 0; run.end < plan.arriving.size(); ++n) {
+    run.begin = run.end++;
+    while (run.end < plan.arriving.size() && rtpu(run.end) == rtpu(run.begin)) ++run.end;
+    if (n == number) return run;
+  }
+  return {plan.arriving.size(), plan.arriving.size()};
+}
+
 void SwitchPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   spec_ = &spec;
   in_target_ = memory.take<bool>(spec.tasks.size());

@@ -74,13 +74,15 @@ class SwitchReceipts {
   /// Context: cycle boundary; wait-free.
   SwitchReceipt& add() noexcept {
     CHIMERA_ASSERT(n_ < all_.size());
-    SwitchReceipt& receipt = all_[n_];
+    SwitchReceipt& receipt = all_[n_] = SwitchReceipt{};
     receipt.tasks = tasks_.subspan(n_ * n_tasks_, n_tasks_);
     receipt.variables = variables_.subspan(n_ * n_variables_, n_variables_);
     ++n_;
     return receipt;
   }
   bool has_room() const noexcept { return n_ < all_.size(); }
+  /// Forgets all. Context: cycle boundary.
+  void clear() noexcept { n_ = 0; }
   /// In the order in which they were asked for; the last may not have ended. Context: setup, between runs.
   std::span<const SwitchReceipt> all() const noexcept { return all_.first(n_); }
 

@@ -76,9 +76,19 @@ void TaskSet::prepare_parts() {
   sources_.prepare(spec_, table_, tasks_, memories_, place_.others, place_.preemptive, memory_);
 }
 
+void TaskSet::judge_as(const TaskBits* target) noexcept {
+  target_ = target;
+  on_set_changed();
+}
+
+bool TaskSet::counts_as_on(TaskId task) const noexcept {
+  const State state = is_mine(task) ? tasks_[task.index].state : place_.others->state(task);
+  if (target_ == nullptr) return state == State::kOn;
+  return target_->has(task) && (state == State::kOn || state == State::kOff);
+}
+
 void TaskSet::on_set_changed() noexcept {
-  for (const Task& task : tasks_)
-    on_[task.id.index] = (is_mine(task.id) ? task.state : place_.others->state(task.id)) == State::kOn;
+  for (const Task& task : tasks_) on_[task.id.index] = counts_as_on(task.id);
   flag_.follow(on_);
   for (const Task& task : tasks_) {
     if (!is_mine(task.id)) continue;

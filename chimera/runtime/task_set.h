@@ -15,6 +15,7 @@
 #include "chimera/runtime/sent_signals.h"
 #include "chimera/runtime/slow_methods.h"
 #include "chimera/runtime/sources.h"
+#include "chimera/runtime/switch_page.h"
 #include "chimera/runtime/task_host.h"
 #include "chimera/runtime/task_life.h"
 #include "chimera/runtime/task_memory.h"
@@ -57,6 +58,9 @@ class TaskSet {
   /// From those who make them to those who are initialised with them.
   ContextConstants& constants() noexcept { return constants_; }
 
+  /// From now on the flag is judged as if the tasks in `target` were ON and no others, but for those in ERROR or not
+  /// there: while a switch changes the states of tasks over all contexts they are a mixture. Null: by the states again.
+  void judge_as(const TaskBits* target) noexcept;
   /// States of tasks changed: the flag is judged anew, and what is new to other processes is listed. Context: cycle
   /// boundary.
   void on_set_changed() noexcept;
@@ -71,6 +75,8 @@ class TaskSet {
   std::span<const Task> tasks() const noexcept { return tasks_; }
   TaskMemory& memory(TaskId task) noexcept { return memories_[task.index]; }
   bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
+  /// The number of this context among those of the application: that of its rtpu; 0 when it is alone.
+  std::uint32_t context() const noexcept { return place_.rtpu.is_valid() ? place_.rtpu.index : 0; }
   /// What is known of other contexts; null: there is none.
   PeerView* others() const noexcept { return place_.others; }
   const ApplicationSpec& spec() const noexcept { return spec_; }
@@ -78,6 +84,7 @@ class TaskSet {
   SetupMemory& setup_memory() noexcept { return memory_; }
 
  private:
+  bool counts_as_on(TaskId task) const noexcept;
   Result<void> plan_memories(std::span<const chimera_component* const> components);
   Result<void> check_producers() const;
   void prepare_parts();
@@ -99,6 +106,7 @@ class TaskSet {
   Changes changes_;
   TaskLife life_{*this};
   std::span<bool> on_;            // by task, over all contexts: ON at the last on_set_changed()
+  const TaskBits* target_ = nullptr;  // in place of the states, while they change
   std::span<TaskStatus> listed_;  // by task: the status that was listed in changes_ last
 };
 

@@ -2,6 +2,8 @@
 // Keeps classes of tasks in two heaps, by next release and by urgency, and beside them the jobs outside their runs.
 #include "chimera/schedule/ready_queue.h"
 
+#include <algorithm>
+
 #include "chimera/base/assert.h"
 
 namespace chimera {
@@ -24,7 +26,7 @@ void ReadyQueue::set_origin(Nanoseconds origin) noexcept {
 }
 
 void ReadyQueue::join(TaskId task, Nanoseconds now) noexcept {
-  if (is_member(task)) return;
+  if (classes_.is_active(task.index)) return;
   const std::uint32_t index = classes_.class_of(task.index);
   const TaskClass& c = classes_[index];
   const bool had_run = c.cursor < c.active;
@@ -34,7 +36,7 @@ void ReadyQueue::join(TaskId task, Nanoseconds now) noexcept {
 }
 
 void ReadyQueue::leave(TaskId task) noexcept {
-  if (!is_member(task)) return;
+  if (!classes_.is_active(task.index)) return;
   const std::uint32_t index = classes_.class_of(task.index);
   const TaskClass& c = classes_[index];
   const bool had_run = c.cursor < c.active;
@@ -47,6 +49,23 @@ void ReadyQueue::leave(TaskId task) noexcept {
     pauses_.erase(at, ByRelease{classes_});
   }
   refresh_run(index, had_run);
+}
+
+bool ReadyQueue::has_waiting(TaskId task, Nanoseconds before) const noexcept {
+  const QueueTask& t = tasks_[task.index];
+  if (t.has_pending && t.pending.release < before) return true;
+  for (const LooseJob& one : loose_.items())
+    if (one.job.task == task && one.job.release < before) return true;
+  const TaskClass& c = classes_[classes_.class_of(task.index)];
+  const std::uint32_t at = classes_.place(task.index);
+  return at >= c.cursor && at < c.active && classes_.member(c, at).first <= c.release && c.release < before;
+}
+
+Nanoseconds ReadyQueue::latest_release() const noexcept {
+  Nanoseconds latest{INT64_MIN};
+  for (const std::uint32_t index : pauses_.items())
+    latest = std::max(latest, classes_[index].next - classes_[index].period);
+  return latest;
 }
 
 Urgency ReadyQueue::top_urgency() const noexcept {

@@ -64,10 +64,11 @@ class ReadyQueue {
   /// The task takes part no more; a job of it that waits is forgotten without a count. No effect when outside.
   /// Context: cycle boundary; O(class + classes).
   void leave(TaskId task) noexcept;
-  /// The first release that the member takes part in. Context: cycle boundary.
-  Nanoseconds first_release(TaskId task) const noexcept { return classes_.member_of(task.index).first; }
-  /// True between join and leave. Context: cycle boundary.
-  bool is_member(TaskId task) const noexcept { return classes_.is_active(task.index); }
+  /// A job of the task waits that was released before that instant. Context: cycle boundary; O(class + waiting jobs).
+  bool has_waiting(TaskId task, Nanoseconds before) const noexcept;
+  /// The newest release of the members' grids that has come; before the origin when none has. Context: cycle boundary;
+  /// O(classes).
+  Nanoseconds latest_release() const noexcept;
 
   /// The next instant at which release_due has something to do; kNever without members. Context: cycle; O(1).
   Nanoseconds next_release() const noexcept {
@@ -109,7 +110,8 @@ class ReadyQueue {
   /// Context: cycle; O(class + waiting jobs).
   bool remove(TaskId task, Job& job) noexcept;
 
-  Policy policy() const noexcept { return classes_.policy(); }
+  /// Who is a member (is_active), from which release on (first_release), by which policy. Context: cycle boundary.
+  const TaskClasses& classes() const noexcept { return classes_; }
 
  private:
   // The orders of the three heaps.

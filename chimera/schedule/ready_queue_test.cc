@@ -137,7 +137,7 @@ TEST(ReadyQueue, CountsTheGridFromTheOrigin) {
   b.queue.set_origin(microseconds(700));
   b.queue.join(TaskId(0u), milliseconds(1));
   EXPECT_EQ(b.queue.next_release(), microseconds(10'700));
-  EXPECT_EQ(b.queue.first_release(TaskId(0u)), microseconds(10'700));
+  EXPECT_EQ(b.queue.classes().first_release(0), microseconds(10'700));
 }
 
 TEST(ReadyQueue, ReleasesANewMemberWithTheFollowingReleaseOfItsClass) {

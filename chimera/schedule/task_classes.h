@@ -72,6 +72,8 @@ class TaskClasses {
   /// The place of the task in its class. O(class).
   std::uint32_t place(std::uint32_t task) const noexcept;
   bool is_active(std::uint32_t task) const noexcept;
+  /// The first release that the task, which is active, takes part in. O(class).
+  Nanoseconds first_release(std::uint32_t task) const noexcept { return member_of(task).first; }
 
   /// The task takes part from the first release of the grid at or after `now`: in its place by urgency, behind the
   /// cursor of a run under way. Requires: it does not. O(class).

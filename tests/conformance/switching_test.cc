@@ -242,7 +242,7 @@ TEST_P(Switches, WhatOnSendsGoesOutAtTheChangeAndIsForgottenWithoutOne) {
   scene.two_sends = true;
   scene.on_takes = microseconds(600);
   go(milliseconds(20), {to(kObserved, microseconds(5600))});
-  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off one", "reinit beacon"}));
+  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "reinit beacon", "off one"}));
   scene.story.clear();
   scene.on_of_two_fails = true;
   go(milliseconds(20), {to(kObserved, microseconds(5600))});
@@ -291,8 +291,8 @@ TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
   EXPECT_EQ(state(kOne), chimera::State::kOn);
 }
 
-// `on` of two takes longer than was to be expected: the releases that came meanwhile go before the change.
-TEST_P(Switches, AnOnThatOverrunsItsGapPutsTheChangeOff) {
+// `on` of two takes longer than was to be expected: jobs that were released meanwhile end as they would have without.
+TEST_P(Switches, AnOnThatOverrunsItsGapLeavesTheJobsReleasedMeanwhileAsTheyWere) {
   go(milliseconds(20), {});
   const Log u = scene.u;
   scene = {};
@@ -303,9 +303,9 @@ TEST_P(Switches, AnOnThatOverrunsItsGapPutsTheChangeOff) {
   EXPECT_TRUE(std::equal(u.begin(), u.begin() + 7, scene.u.begin()));  // released at 0 to 6 ms: the predecessor's
   EXPECT_NE(u[7], scene.u[7]);                                         // what `on` wrote
   EXPECT_EQ(receipts[0].armed, milliseconds(6) + microseconds(200));
-  // Plant, beacon and one were released at 6 ms; on the stepped clock their cycles take no time.
-  const Nanoseconds jobs = GetParam() == Kind::kExecutiveOnTwin ? Nanoseconds{} : microseconds(250);
-  EXPECT_EQ(receipts[0].at, receipts[0].armed + jobs);
+  // Plant, beacon and one were released at 6 ms: the change comes after the first of them, and waits for none.
+  EXPECT_GE(receipts[0].at, receipts[0].armed);
+  EXPECT_LE(receipts[0].at, receipts[0].armed + microseconds(100));
   EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, 7u);
   EXPECT_EQ(set_->tasks()[kTwo.index].profile.cycles, 13u);
   EXPECT_EQ(losses(), 0u);

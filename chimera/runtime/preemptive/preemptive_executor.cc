@@ -142,10 +142,11 @@ void PreemptiveExecutor::report_hanging(Nanoseconds now) noexcept {
 
 // Threads follow the states of their tasks. Those for which nothing is new sleep on.
 void PreemptiveExecutor::notify_threads(bool all) noexcept {
+  const TaskClasses& releases = releases_.queue().classes();
   for (JobThread& job : ready_.threads()) {
     const bool is_on = releases_.members().is_on(job.id), has_event = job.sporadic && job.task.events > 0;
     const bool is_new = all || is_on != job.is_on || job.is_held || has_event;
-    if (is_on && !job.is_on && !job.sporadic) job.next_release = releases_.queue().first_release(job.id);
+    if (is_on && !job.is_on && !job.sporadic) job.next_release = releases.first_release(job.id.index);
     if (!is_on) job.next_release = kNever;
     if (!is_on && job.sporadic && job.sporadic->job().forget()) ++job.task.profile.events_lost;
     job.is_on = is_on;

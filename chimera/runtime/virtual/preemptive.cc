@@ -10,7 +10,7 @@ Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, Mode
                        const PreemptiveOptions& options)
     : releases_(releases), tasks_(tasks), clock_(clock), options_(options),
       processor_(releases.tap(), tasks.size()), sporadic_(releases, tasks, processor_), demoted_(tasks.size()) {
-  const Policy policy = releases.queue().policy();
+  const Policy policy = releases.queue().classes().policy();
   by_laxity_ = policy == Policy::kLlf || policy == Policy::kMufLaxity;
   for (std::uint32_t i = 0; i < tasks.size(); ++i) {
     if (!tasks[i].server && tasks[i].on_miss == OnMiss::kAbort) abandoners_.push_back({TaskId(i)});
@@ -67,7 +67,7 @@ Nanoseconds Preemptive::next_deadline() noexcept {
   for (Abandoner& a : abandoners_) {
     if (!releases_.members().is_on(a.task)) a.next_deadline = kNever;
     else if (a.next_deadline == kNever)
-      a.next_deadline = releases_.queue().first_release(a.task) + tasks_[a.task.index].deadline;
+      a.next_deadline = releases_.queue().classes().first_release(a.task.index) + tasks_[a.task.index].deadline;
     next = std::min(next, a.next_deadline);
   }
   return next;
@@ -217,7 +217,7 @@ bool Preemptive::must_yield() noexcept {
   if (a.is_demoted) return true;
   const TaskSpec& spec = tasks_[a.job.task.index];
   const Urgency mine{spec.criticality, spec.user_priority, spec.period, a.job.deadline, a.remaining};
-  return is_more_urgent(releases_.queue().policy(), releases_.queue().top_urgency(), mine);
+  return is_more_urgent(releases_.queue().classes().policy(), releases_.queue().top_urgency(), mine);
 }
 
 bool Preemptive::run_job(const Job& job, Nanoseconds now) noexcept {

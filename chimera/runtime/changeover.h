@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The change of one context at the instant T of a switch: states of tasks, what they read, and who is released, as one
+// step for whoever looks from outside. A job that was released before T ends with what it read and wrote before.
+#pragma once
+
+#include "chimera/runtime/context_tap.h"
+#include "chimera/runtime/members.h"
+#include "chimera/runtime/switch_plan.h"
+#include "chimera/runtime/task_set.h"
+#include "chimera/schedule/ready_queue.h"
+
+namespace chimera {
+
+/// Context of everything not marked: cycle boundary; O(tasks + links); no allocation.
+class Changeover {
+ public:
+  /// All given outlive this.
+  Changeover(TaskSet& set, ReadyQueue& queue, Members& members, ContextTap& tap) noexcept
+      : set_(set), queue_(queue), members_(members), tap_(tap) {}
+  /// Context: setup.
+  void prepare() { has_old_job_ = set_.setup_memory().take<bool>(set_.tasks().size()); }
+
+  /// From now on what other contexts change of the tasks of the plan changes nothing here: `before` are ON.
+  void hold(const SwitchPlan& plan, const TaskBits& before) noexcept;
+  /// The change, at `at`. Requires: hold(); what is released before `at` is in the ready queue, nothing later is.
+  void make(const SwitchPlan& plan, const TaskBits& after, Nanoseconds at) noexcept;
+  /// Lets tasks change whose jobs released before `at` have ended since. True: all have changed.
+  bool follow(const SwitchPlan& plan, Nanoseconds at) noexcept;
+  /// Other contexts count again as they are: all have changed, or the plan was aborted.
+  void release() noexcept;
+
+ private:
+  bool has_old_job(TaskId task, Nanoseconds at) const noexcept;
+  void leave(Task& task, Nanoseconds at) noexcept;
+
+  TaskSet& set_;
+  ReadyQueue& queue_;
+  Members& members_;
+  ContextTap& tap_;
+  TaskBits bits_;                // what the set is judged as
+  std::span<bool> has_old_job_;  // by task
+};
+
+}  // namespace chimera

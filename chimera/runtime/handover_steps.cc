@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keeps the last values of variables that get another producer, and measures the step to the next.
+#include "chimera/runtime/handover_steps.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace chimera {
+namespace {
+
+std::uint32_t bytes_of(const ApplicationSpec& spec, const PortOf& output) noexcept {
+  std::uint32_t at = 0;
+  for (const PortSpec& port : spec.tasks[output.task.index].ports)
+    if (port.kind == CHIMERA_OUT_VAR && at++ == output.index) return port.max_bytes();
+  return 0;
+}
+
+}  // namespace
+
+void HandoverSteps::prepare() {
+  const ApplicationSpec& spec = set_.spec();
+  SetupMemory& memory = set_.setup_memory();
+  has_last_ = memory.take<bool>(spec.variables.size());
+  last_ = memory.take<std::span<std::byte>>(spec.variables.size());
+  for (std::size_t v = 0; v < spec.variables.size(); ++v) {
+    std::uint32_t most = 0;
+    for (const PortOf& producer : spec.variables[v].producers) most = std::max(most, bytes_of(spec, producer));
+    last_[v] = memory.take_bytes(most, alignof(double));
+  }
+}
+
+void HandoverSteps::keep_last(std::span<const VariablePart> variables) noexcept {
+  for (const VariablePart& part : variables) {
+    const Source& source = set_.sources().source(part.handover.variable);
+    has_last_[part.handover.variable.index] = false;
+    if (!part.handover.from.task.is_valid()) continue;
+    keep(part.handover, set_.sources().latest(part.handover.variable), source.offset, source.bit);
+  }
+}
+
+void HandoverSteps::keep_last_of(const Handover& handover) noexcept {
+  const Task& producer = set_.tasks()[handover.from.task.index];
+  const std::uint32_t offset = set_.memory(producer.id).output_offset(handover.from.index);
+  keep(handover, producer.group.published(), offset, handover.from.index);
+}
+
+void HandoverSteps::keep(const Handover& handover, const chimera_slot* slot, std::uint32_t offset,
+                         std::uint32_t bit) noexcept {
+  const std::span<std::byte> last = last_[handover.variable.index];
+  has_last_[handover.variable.index] = slot != nullptr && ((slot->valid >> bit) & 1u) != 0;
+  if (!has_last_[handover.variable.index]) return;
+  std::memcpy(last.data(), reinterpret_cast<const std::byte*>(slot + 1) + offset, bytes_of(set_.spec(), handover.from));
+}
+
+ValueStep HandoverSteps::step_to(const Handover& handover) noexcept {
+  const Task& producer = set_.tasks()[handover.to.task.index];
+  const chimera_slot* slot = producer.group.published();
+  if (!has_last_[handover.variable.index] || ((slot->valid >> handover.to.index) & 1u) == 0) return {};
+  const TaskMemory& memory = set_.memory(producer.id);
+  const PortSpec& spec = *memory.output_spec(handover.to.index);
+  const auto* values = reinterpret_cast<const std::byte*>(slot + 1) + memory.output_offset(handover.to.index);
+  return step_between(spec, producer.component->ports[spec.declared], memory.output_port(handover.to.index)->count,
+                      last_[handover.variable.index].data(), values);
+}
+
+}  // namespace chimera

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far each variable moves that is handed over in a switch: from the last value of the producer before to what the
+// producer after wrote.
+#pragma once
+
+#include <span>
+
+#include "chimera/runtime/switch_receipt.h"
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+/// Of the tasks of one context. Context of everything not marked: cycle boundary; O(bytes of the variables); no
+/// allocation.
+class HandoverSteps {
+ public:
+  explicit HandoverSteps(TaskSet& set) noexcept : set_(set) {}
+  /// Takes memory for every variable. Context: setup.
+  void prepare();
+
+  /// Keeps what the present producers of the variables have published last. Requires: they are the ones before.
+  void keep_last(std::span<const VariablePart> variables) noexcept;
+  /// The same of the one variable, of a producer of this context that has gone.
+  void keep_last_of(const Handover& handover) noexcept;
+  /// From the value that was kept to the latest one of the producer after, a task of this context. Not known when one
+  /// of the two is not there.
+  ValueStep step_to(const Handover& handover) noexcept;
+
+ private:
+  void keep(const Handover& handover, const chimera_slot* slot, std::uint32_t offset, std::uint32_t bit) noexcept;
+
+  TaskSet& set_;
+  std::span<std::span<std::byte>> last_;  // by variable
+  std::span<bool> has_last_;              // by variable
+};
+
+}  // namespace chimera

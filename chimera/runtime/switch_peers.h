@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tasks of one context know of the other contexts that take part in a switch, and what they tell them.
+#pragma once
+
+#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch_receipt.h"
+
+namespace chimera {
+
+/// Asked by the thread that takes the edges. Context of everything: cycle boundary; wait-free.
+class SwitchPeers {
+ public:
+  virtual SwitchPage& page() noexcept = 0;
+  /// The contexts that live, bit c: context c; the own one among them.
+  virtual std::uint16_t living() const noexcept = 0;
+  /// Of another context that lives; null: it is not known yet.
+  virtual const SwitchProgress* progress(std::uint32_t context) const noexcept = 0;
+  /// A word of the page changed: the others are to look at it.
+  virtual void ring() noexcept = 0;
+  /// All jobs of this context use the bindings of that plan: what changed is shown to the others, then the number.
+  virtual void tell_adopted(std::uint16_t number) noexcept = 0;
+  /// Nothing is left to do for the plan: the part of this context in its receipt is shown, then the number.
+  virtual void tell_over(const SwitchReceipt& receipt) noexcept = 0;
+
+ protected:
+  ~SwitchPeers() = default;
+};
+
+/// A context that is alone.
+class NoSwitchPeers final : public SwitchPeers {
+ public:
+  SwitchPage& page() noexcept override { return page_; }
+  std::uint16_t living() const noexcept override { return 1; }
+  const SwitchProgress* progress(std::uint32_t) const noexcept override { return nullptr; }
+  void ring() noexcept override {}
+  void tell_adopted(std::uint16_t) noexcept override {}
+  void tell_over(const SwitchReceipt&) noexcept override {}
+
+ private:
+  SwitchPage page_;
+};
+
+}  // namespace chimera

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures the switch that is under way.
+#include "chimera/runtime/switch_record.h"
+
+#include <algorithm>
+
+namespace chimera {
+
+void SwitchRecord::prepare(std::size_t n_receipts) {
+  const ApplicationSpec& spec = set_.spec();
+  receipts_.prepare(spec, n_receipts, set_.setup_memory());
+  before_ = set_.setup_memory().take<std::uint64_t>(spec.tasks.size());
+  cycles_ = set_.setup_memory().take<std::uint64_t>(spec.tasks.size());
+  steps_.prepare();
+}
+
+SwitchReceipt& SwitchRecord::restart() noexcept {
+  receipts_.clear();
+  return add();
+}
+
+void SwitchRecord::take_up(const SwitchPlan& plan) noexcept {
+  std::size_t n = 0;
+  const auto list = [&](std::span<const TaskId> ids, TaskMove move) {
+    for (const TaskId id : ids) {
+      receipt_->tasks[n++] = {id, move, Nanoseconds{-1}, Nanoseconds{-1}, 0};
+      before_[id.index] = losses(id);
+    }
+  };
+  list(plan.arriving, TaskMove::kArrives);
+  list(plan.leaving, TaskMove::kLeaves);
+  list(plan.staying, TaskMove::kStays);
+  receipt_->tasks = receipt_->tasks.first(n);
+  receipt_->variables = receipt_->variables.first(plan.handovers.size());
+  for (std::size_t h = 0; h < plan.handovers.size(); ++h) receipt_->variables[h] = {plan.handovers[h], {}, {}};
+}
+
+void SwitchRecord::took(TaskId task, Method method, Nanoseconds time) noexcept {
+  TaskPart& part = part_of(task);
+  (method == Method::kOn ? part.on : part.off) = time;
+}
+
+const VariablePart* SwitchRecord::find_too_large_step() noexcept {
+  steps_.keep_last(receipt_->variables);
+  for (VariablePart& part : receipt_->variables) {
+    if (!set_.is_mine(part.handover.to.task)) continue;
+    part.step_of_on = steps_.step_to(part.handover);
+    if (part.step_of_on.is_beyond) return &part;
+  }
+  return nullptr;
+}
+
+void SwitchRecord::changed(const SwitchPlan& plan, Nanoseconds at) noexcept {
+  receipt_->at = first_cycles_by_ = at;
+  steps_.keep_last(receipt_->variables);
+  for (const TaskId id : plan.leaving) part_of(id).lost = losses(id) - before_[id.index];
+  for (const TaskId id : plan.arriving) {
+    if (!set_.is_mine(id)) continue;
+    const Task& arriving = set_.tasks()[id.index];
+    before_[id.index] = losses(id);
+    cycles_[id.index] = arriving.profile.cycles;
+    if (arriving.spec->aperiodic) continue;
+    first_cycles_by_ = std::max(first_cycles_by_, at + arriving.spec->period + arriving.spec->deadline);
+  }
+}
+
+void SwitchRecord::keep_last_of_leaving() noexcept {
+  for (const VariablePart& part : receipt_->variables)
+    if (part.handover.from.task.is_valid() && set_.is_mine(part.handover.from.task)) steps_.keep_last_of(part.handover);
+}
+
+bool SwitchRecord::is_awaited(TaskId id) const noexcept {
+  const Task& arriving = set_.tasks()[id.index];
+  return set_.is_mine(id) && !arriving.spec->aperiodic && arriving.state == State::kOn &&
+         arriving.profile.cycles == cycles_[id.index];
+}
+
+bool SwitchRecord::has_seen_first_cycles(Nanoseconds now) noexcept {
+  for (VariablePart& part : receipt_->variables) {
+    const TaskId to = part.handover.to.task;
+    if (!set_.is_mine(to) || part.step_of_cycle.is_known) continue;
+    if (set_.tasks()[to.index].profile.cycles == cycles_[to.index]) continue;
+    part.step_of_cycle = steps_.step_to(part.handover);
+  }
+  const auto waits = [this](const TaskPart& part) { return part.move == TaskMove::kArrives && is_awaited(part.task); };
+  return now >= first_cycles_by_ || std::none_of(receipt_->tasks.begin(), receipt_->tasks.end(), waits);
+}
+
+void SwitchRecord::end(SwitchEnd end, Nanoseconds now) noexcept {
+  receipt_->end = end;
+  receipt_->ended = now;
+  const bool was_committed = end == SwitchEnd::kDone;
+  for (TaskPart& part : receipt_->tasks) {
+    const bool was_on = part.move == TaskMove::kStays || (part.move == TaskMove::kArrives) == was_committed;
+    if (was_on) part.lost = losses(part.task) - before_[part.task.index];
+  }
+}
+
+TaskPart& SwitchRecord::part_of(TaskId id) noexcept {
+  const auto is_its = [id](const TaskPart& part) { return part.task == id; };
+  return *std::find_if(receipt_->tasks.begin(), receipt_->tasks.end(), is_its);
+}
+
+std::uint64_t SwitchRecord::losses(TaskId id) const noexcept {
+  const Profile& profile = set_.tasks()[id.index].profile;
+  return profile.dropped + profile.aborted;
+}
+
+}  // namespace chimera

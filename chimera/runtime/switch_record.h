@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keeps the record of the switch that is under way in one context: what its methods took, what was lost, how far each
+// variable moved. What comes out is a receipt.
+#pragma once
+
+#include <span>
+
+#include "chimera/runtime/handover_steps.h"
+#include "chimera/runtime/switch_receipt.h"
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+/// Of tasks of its own context. Context of everything not marked: cycle boundary; no allocation.
+class SwitchRecord {
+ public:
+  explicit SwitchRecord(TaskSet& set) noexcept : set_(set), steps_(set) {}
+  /// Takes memory for so many receipts. Context: setup.
+  void prepare(std::size_t n_receipts);
+
+  /// A new receipt, which is the present one from here on. Requires: fewer were added than prepare() took memory for.
+  SwitchReceipt& add() noexcept { return *(receipt_ = &receipts_.add()); }
+  /// One more, which is not the present one. Requires: as add().
+  SwitchReceipt& add_beside() noexcept { return receipts_.add(); }
+  /// The only receipt anew.
+  SwitchReceipt& restart() noexcept;
+  SwitchReceipt& receipt() noexcept { return *receipt_; }
+  const SwitchReceipt& receipt() const noexcept { return *receipt_; }
+  std::span<const SwitchReceipt> all() const noexcept { return receipts_.all(); }
+
+  /// Lists the tasks and variables of the plan: losses count from here.
+  void take_up(const SwitchPlan& plan) noexcept;
+  void took(TaskId task, Method method, Nanoseconds time) noexcept;
+  /// Holds what `on` of the arriving tasks wrote against the last values. Null: all within their limits.
+  const VariablePart* find_too_large_step() noexcept;
+  /// The change, at `at`: first cycles are looked for from here on.
+  void changed(const SwitchPlan& plan, Nanoseconds at) noexcept;
+  /// Leaving tasks of this context may have published once more, in jobs released before the change.
+  void keep_last_of_leaving() noexcept;
+  /// Notes the steps of first cycles. True: there is none left to wait for.
+  bool has_seen_first_cycles(Nanoseconds now) noexcept;
+  /// No first cycle is waited for beyond this instant.
+  Nanoseconds first_cycles_by() const noexcept { return first_cycles_by_; }
+  void end(SwitchEnd end, Nanoseconds now) noexcept;
+
+ private:
+  TaskPart& part_of(TaskId id) noexcept;
+  std::uint64_t losses(TaskId id) const noexcept;
+  bool is_awaited(TaskId id) const noexcept;
+
+  TaskSet& set_;
+  HandoverSteps steps_;
+  SwitchReceipts receipts_;
+  SwitchReceipt* receipt_ = nullptr;
+  std::span<std::uint64_t> before_;  // by task: losses() when its part of the switch began
+  std::span<std::uint64_t> cycles_;  // by task: completed cycles at the instant of the change
+  Nanoseconds first_cycles_by_ = kNever;
+};
+
+}  // namespace chimera
