@@ -28,6 +28,7 @@ struct CyclingPlace {
   TaskSet& tasks;
   RtpuControl& edge;
   PeerLinks& others;
+  SwitchPeers& switching;
   BackgroundWriter& writer;  ///< runs what components do beside their cycles
   Nanoseconds origin;  ///< of the grid of releases that all units share
   std::atomic<std::uint32_t>& bell;

@@ -32,9 +32,10 @@ PeerLinks::PeerLinks(const ApplicationSpec& spec, std::uint32_t me, std::span<st
   flags_.reserve(peers.count());
 }
 
-bool PeerLinks::lives(std::uint32_t peer) const noexcept {
+const PeerSegment* PeerLinks::at(std::uint32_t peer) const noexcept {
   const PeerSegment* mapped = peers_->at(peer);
-  return mapped != nullptr && keeper_->alive[peer].load(std::memory_order_acquire) == mapped->incarnation();
+  if (mapped == nullptr || keeper_->alive[peer].load(std::memory_order_acquire) != mapped->incarnation()) return nullptr;
+  return mapped;
 }
 
 State PeerLinks::state(TaskId task) const noexcept {
@@ -42,7 +43,7 @@ State PeerLinks::state(TaskId task) const noexcept {
   const PeerSegment* mapped = peers_->at(peer);
   if (mapped == nullptr) return State::kNotCreated;
   const TaskStatus status = mapped->block().status(task);
-  if (!lives(peer)) return status.state == State::kNotCreated ? State::kNotCreated : State::kError;
+  if (at(peer) == nullptr) return status.state == State::kNotCreated ? State::kNotCreated : State::kError;
   return status.in_service && status.state == State::kOn ? State::kOff : status.state;
 }
 
@@ -164,7 +165,7 @@ void PeerLinks::watch_flags(IllegalFlag& flag) noexcept {
   flags_.clear();
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {
     const PeerSegment* mapped = peer == me_ ? nullptr : peers_->at(peer);
-    if (mapped != nullptr && (peer == manager() || lives(peer))) flags_.push_back(&mapped->block().head().flag);
+    if (mapped != nullptr && (peer == manager() || at(peer) != nullptr)) flags_.push_back(&mapped->block().head().flag);
   }
   flag.watch(flags_);
 }

@@ -56,18 +56,20 @@ class PeerLinks final : public PeerView {
     const PeerSegment* there = peers_->at(manager());
     return there != nullptr && there->block().is_tapped(task);
   }
+  /// The segment of a peer that lives; null: it does not, or was not adopted yet. Context: cycle boundary; wait-free.
+  const PeerSegment* at(std::uint32_t peer) const noexcept;
+  /// All are to look: at status words, and at the words of a switch. Context: cycle boundary; wait-free.
+  void ring_all() noexcept;
   std::uint32_t manager() const noexcept { return static_cast<std::uint32_t>(spec_->rtpus.size()); }
   const BlockOwner& block() const noexcept { return block_; }
 
  private:
-  bool lives(std::uint32_t peer) const noexcept;
   bool is_told_to_end() const noexcept { return keeper_->ending.load(std::memory_order_acquire) != 0; }
   GroupReader group(std::uint32_t peer, GroupId id) const noexcept;
   void let_go_unread(const Sources& sources) noexcept;
   bool publish_status(const Task& task, TaskStatus before, TaskStatus now) noexcept;
   bool publish_flag(const IllegalFlag& flag) noexcept;
   void publish_fault(const Task& task) noexcept;
-  void ring_all() noexcept;
   void ring(std::uint32_t peer) noexcept { Doorbell(decision_->bells[peer].word).ring(); }
 
   const ApplicationSpec* spec_;

@@ -25,6 +25,7 @@
 #include "chimera/rtpu/hang_watch.h"
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/service_thread.h"
+#include "chimera/rtpu/switch_links.h"
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/making.h"
 #include "chimera/runtime/task_word.h"
@@ -83,6 +84,7 @@ class Rtpu {
   BackgroundWriter writer_;
   std::unique_ptr<HeapTaskSet> tasks_;
   std::unique_ptr<RtpuControl> edge_;
+  std::unique_ptr<SwitchLinks> switching_;
   std::unique_ptr<HangWatch> hang_watch_;
   std::unique_ptr<CyclingThread> cycling_;
   bool is_ending_ = false;
@@ -182,9 +184,10 @@ Result<void> Rtpu::make_tasks() {
                                  image_->settings().method_limit);
   edge_->hanging().set_supervisor(over_.descriptor());
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
-  cycling_ = std::make_unique<CyclingThread>(CyclingPlace{spec, start_.peer, image_->settings().priority, *tasks_,
-                                                          *edge_, *others_, writer_, keeper_->origin, bell(),
-                                                          over_.descriptor()});
+  switching_ = std::make_unique<SwitchLinks>(*tasks_, *others_, *decision_, start_.peer);
+  const CyclingPlace place{spec,        start_.peer, image_->settings().priority, *tasks_, *edge_, *others_,
+                           *switching_, writer_,     keeper_->origin,             bell(),  over_.descriptor()};
+  cycling_ = std::make_unique<CyclingThread>(place);
   return {};
 }
 

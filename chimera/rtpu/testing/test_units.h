@@ -11,6 +11,7 @@
 
 #include "chimera/platform/virtual/virtual_clock.h"
 #include "chimera/rtpu/rtpu_control.h"
+#include "chimera/rtpu/switch_links.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
@@ -55,10 +56,12 @@ struct Unit {
     auto made = HeapTaskSet::create(spec, components, place);
     EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message.c_str());
     tasks = *std::move(made);
+    switching = std::make_unique<SwitchLinks>(*tasks, others, decision, me);
     edge = std::make_unique<RtpuControl>(spec, *tasks, others, service, decision, me, seconds(1));
     RunOptions options;
     options.policy = spec.rtpus[me].policy;
     options.guest = edge.get();
+    options.switch_peers = switching.get();
     options.stop = &edge->unit_end().is_over();
     executive = std::make_unique<Executive>(*tasks, clock, job_clock, options);
     executive->start(keeper.origin);
@@ -91,6 +94,7 @@ struct Unit {
   HandService service;
   PeerLinks others;
   std::unique_ptr<HeapTaskSet> tasks;
+  std::unique_ptr<SwitchLinks> switching;
   std::unique_ptr<RtpuControl> edge;
   std::unique_ptr<Executive> executive;
 };
@@ -156,6 +160,30 @@ class Units {
     }
     Doorbell(decision.bells[u].word).ring();
   }
+  /// As the manager would: the number of the plan.
+  std::uint16_t switch_to(std::uint32_t set, Nanoseconds lead = microseconds(300), Nanoseconds wait = seconds(1)) {
+    SwitchAgreement agreement(decision.switching, keeper.origin);
+    SwitchOrder order;
+    order.number = next_plan(agreement.plan().number);
+    for (std::uint32_t u = 0; u < n; ++u)
+      if (keeper.alive[u] != 0) order.members = static_cast<std::uint16_t>(order.members | 1u << u);
+    order.after = set;
+    order.until = now + wait;
+    order.lead = lead;
+    for (const TaskSpec& task : app.tasks) {
+      const TaskId id(static_cast<std::size_t>(&task - app.tasks.data()));
+      if (keeper.alive[task.rtpu.index] != 0 && units[task.rtpu.index]->state(id) == State::kOn) order.on.add(id);
+    }
+    agreement.announce(order);
+    change();
+    return order.number;
+  }
+  bool is_over(std::uint16_t number) const {
+    for (std::uint32_t u = 0; u < n; ++u)
+      if (keeper.alive[u] != 0 && units[u]->segment.block.head().switching.over != number) return false;
+    return true;
+  }
+  const SwitchPart& part(std::uint32_t u) const { return units[u]->segment.block.switch_part(); }
   void bring_up(std::vector<TaskId> tasks) {
     for (const TaskId task : tasks) {
       send(Signal::kSpawn, {task});

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads how far other units have come with a switch, and shows how far this one has.
+#include "chimera/rtpu/switch_links.h"
+
+namespace chimera {
+
+std::uint16_t SwitchLinks::living() const noexcept {
+  std::uint32_t living = 1u << me_;
+  for (std::uint32_t unit = 0; unit < others_.manager(); ++unit)
+    if (unit != me_ && others_.at(unit) != nullptr) living |= 1u << unit;
+  return static_cast<std::uint16_t>(living);
+}
+
+const SwitchProgress* SwitchLinks::progress(std::uint32_t context) const noexcept {
+  const PeerSegment* there = others_.at(context);
+  return there == nullptr ? nullptr : &there->block().head().switching;
+}
+
+void SwitchLinks::tell_adopted(std::uint16_t number) noexcept {
+  others_.publish(tasks_);
+  others_.block().head().switching.adopted.store(number, std::memory_order_release);  // SwitchProgress
+  others_.ring_all();
+}
+
+void SwitchLinks::tell_over(const SwitchReceipt& receipt) noexcept {
+  const auto is_mine = [this](TaskId task) { return tasks_.is_mine(task); };
+  write_part(receipt, is_mine, others_.block().switch_part());
+  others_.publish(tasks_);
+  SwitchProgress& progress = others_.block().head().switching;
+  progress.adopted.store(receipt.number, std::memory_order_release);  // SwitchProgress
+  progress.over.store(receipt.number, std::memory_order_release);
+  others_.ring_all();
+}
+
+}  // namespace chimera

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a real-time unit knows of the other units in a switch, and what it tells them: words of the decision page and of
+// the blocks. docs/formats/processes.md.
+#pragma once
+
+#include "chimera/rtpu/peer_links.h"
+#include "chimera/runtime/switch_peers.h"
+
+namespace chimera {
+
+/// Used by the thread that cycles only. Everything given outlives this.
+class SwitchLinks final : public SwitchPeers {
+ public:
+  SwitchLinks(TaskSet& tasks, PeerLinks& others, DecisionPage& decision, std::uint32_t me) noexcept
+      : tasks_(tasks), others_(others), decision_(decision), me_(me) {}
+
+  SwitchPage& page() noexcept override { return decision_.switching; }
+  std::uint16_t living() const noexcept override;
+  const SwitchProgress* progress(std::uint32_t context) const noexcept override;
+  void ring() noexcept override { others_.ring_all(); }
+  void tell_adopted(std::uint16_t number) noexcept override;
+  void tell_over(const SwitchReceipt& receipt) noexcept override;
+
+ private:
+  TaskSet& tasks_;
+  PeerLinks& others_;
+  DecisionPage& decision_;
+  std::uint32_t me_;
+};
+
+}  // namespace chimera
