@@ -34,8 +34,8 @@ PeerLinks::PeerLinks(const ApplicationSpec& spec, std::uint32_t me, std::span<st
 
 const PeerSegment* PeerLinks::at(std::uint32_t peer) const noexcept {
   const PeerSegment* mapped = peers_->at(peer);
-  if (mapped == nullptr || keeper_->alive[peer].load(std::memory_order_acquire) != mapped->incarnation()) return nullptr;
-  return mapped;
+  const std::uint32_t alive = keeper_->alive[peer].load(std::memory_order_acquire);
+  return mapped != nullptr && alive == mapped->incarnation() ? mapped : nullptr;
 }
 
 State PeerLinks::state(TaskId task) const noexcept {
