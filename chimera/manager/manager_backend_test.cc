@@ -371,7 +371,7 @@ TEST_F(ManagerBackendTest, AnswersForAUnitThatIsSilentWithItsName) {
 
 TEST_F(ManagerBackendTest, AnswersASignalWithTheStatesOfEachTask) {
   const subsystem::CommandAnswer done{1, {}, TaskId{}, {{fake_.task("law"), State::kOn, State::kOff, false},
-                                             {fake_.task("filter"), State::kOff, State::kOff, true}}};
+                                                        {fake_.task("filter"), State::kOff, State::kOff, true}}};
   const control::RpcResponse answer = signal_answer(world(), done);
   ASSERT_TRUE(answer.is_good());
   EXPECT_EQ((*answer.result)["tasks"],
