@@ -101,8 +101,8 @@ class ControlServer(unittest.TestCase):
                 self.assertEqual(crowd.stdout.readline(), b"held\n")
             self.assertEqual(self.says("off", "beside"), (0, "[subject] beside: ON -> OFF\n"))
             self.assertEqual(self.says("on", "beside"), (0, "[subject] beside: OFF -> ON\n"))
-            gave_way = [text for text in self.closings() if re.search(r"of user 6100[1-4] .*its place was needed", text)]
-            self.assertTrue(gave_way, self.closings())
+            gave_way = re.compile("of user 6100[1-4] .*its place was needed")
+            self.assertTrue(any(gave_way.search(text) for text in self.closings()), self.closings())
         finally:
             for crowd in crowds:
                 crowd.communicate()
