@@ -26,7 +26,7 @@ struct Parameter {
 /// Which function carries a method out: the key of a ControlBackend's table.
 enum class MethodId : unsigned char {
   kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kWhy, kSubscribe, kUnsubscribe, kCheck, kSchedule, kLibrary,
-  kSignal, kRing, kSet, kFlag, kSave, kEnd
+  kSignal, kRing, kSet, kFlag, kSwitch, kSave, kEnd
 };
 
 struct MethodRule {

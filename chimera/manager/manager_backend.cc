@@ -8,6 +8,7 @@
 #include "chimera/text/nearest.h"
 #include "chimera/manager/cause.h"
 #include "chimera/manager/command_text.h"
+#include "chimera/control/receipt_text.h"
 #include "chimera/manager/operator_acts.h"
 
 namespace chimera::manager {
@@ -63,6 +64,23 @@ RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAns
                               answer.at.is_valid() ? world.name(answer.at) : "", remedy);
 }
 
+RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome) {
+  const SwitchReceipt& receipt = outcome.receipt;
+  const std::string to(world.spec().sets[receipt.after].name);
+  if (receipt.end == SwitchEnd::kNothingToDo) return RpcResponse::good({{"to", to}, {"end", "nothing-to-do"}});
+  if (receipt.end != SwitchEnd::kRefused)
+    return RpcResponse::ready(std::make_shared<const std::string>(
+        control::receipt_json(receipt, world.spec(), world.keeper.origin, outcome.asked_by)));
+  const std::string task = receipt.task.is_valid() ? world.name(receipt.task) : "";
+  const std::string why = outcome.under_way.empty() ? control::reason_text(receipt, world.spec())
+                                                    : outcome.under_way + ", is under way";
+  const char* remedy = receipt.why == NoSwitch::kInError      ? "`chimera clear"
+                       : receipt.why == NoSwitch::kNotCreated ? "`chimera spawn"
+                                                              : nullptr;
+  return RpcResponse::refused(control::reason_word(receipt.why), "switch to '" + to + "' is refused: " + why, task,
+                              remedy == nullptr ? "" : std::string(remedy) + " " + task + "`");
+}
+
 /// `subscribe` and `unsubscribe` are carried out by the door.
 ManagerBackend::Handler ManagerBackend::handler(MethodId method) noexcept {
   using Me = ManagerBackend;
@@ -72,7 +90,7 @@ ManagerBackend::Handler ManagerBackend::handler(MethodId method) noexcept {
   } kHandlers[] = {
       {MethodId::kCheck, &Me::check}, {MethodId::kSchedule, &Me::schedule}, {MethodId::kSignal, &Me::signal},
       {MethodId::kRing, &Me::ring},   {MethodId::kSet, &Me::set},           {MethodId::kFlag, &Me::flag},
-      {MethodId::kSave, &Me::save},   {MethodId::kEnd, &Me::end},
+      {MethodId::kSwitch, &Me::switch_to}, {MethodId::kSave, &Me::save}, {MethodId::kEnd, &Me::end},
   };
   const auto row = std::ranges::find_if(kHandlers, [method](const auto& one) { return one.method == method; });
   return row == std::end(kHandlers) ? &Me::unknown : row->handler;
@@ -106,7 +124,11 @@ void ManagerBackend::signal(const Request& request) {
   auto tasks = tasks_named(world(), control::texts(request.parameters, "tasks"));
   if (const auto* refused = std::get_if<RpcResponse>(&tasks)) return request.reply(*refused);
   if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
-  driver_.command(static_cast<Signal>(at - std::begin(kSignals)), std::get<0>(std::move(tasks)),
+  const auto wanted = static_cast<Signal>(at - std::begin(kSignals));
+  if (wanted == Signal::kOn && driver_.switches().is_under_way())
+    return request.reply(RpcResponse::refused("under-way", driver_.switches().under_way() + ", is under way", "",
+                                              "ask again when it is over"));
+  driver_.command(wanted, std::get<0>(std::move(tasks)),
                   [this, reply = request.reply](const subsystem::CommandAnswer& answer) {
                     reply(signal_answer(world(), answer));
                   });
@@ -137,6 +159,33 @@ void ManagerBackend::set(const Request& request) {
 }
 
 void ManagerBackend::flag(const Request& request) { request.reply(set_flag(world(), request.parameters.at("up"))); }
+
+void ManagerBackend::switch_to(const Request& request) {
+  const ApplicationSpec& spec = world().spec();
+  const std::string name = request.parameters.at("configuration");
+  const auto set = std::ranges::find(spec.sets, std::string_view(name), &NamedSet::name);
+  if (set == spec.sets.end()) {
+    std::vector<std::string> names;
+    for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
+    const std::string near = nearest(name, names);
+    return request.reply(RpcResponse::unknown(
+        "no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
+  }
+  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
+  for (const RtpuSpec& rtpu : spec.rtpus)
+    if (rtpu.preemptive)
+      return request.reply(RpcResponse::refused("other", "rtpu " + std::string(rtpu.name) +
+                                                " is preemptive: a switch while it runs needs `executor: executive`",
+                                                std::string(rtpu.name)));
+  if (!world().logic.is_settled())
+    return request.reply(RpcResponse::refused("under-way", "tasks are being brought up", "",
+                                              "`chimera status` shows which; ask again when they are ON"));
+  const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(control::number(request.parameters, "wait_ms", 10'000)));
+  driver_.switches().ask(static_cast<std::uint32_t>(set - spec.sets.begin()), control::role_name(request.caller.role),
+                         wait, now(), [this, reply = request.reply](const SwitchOutcome& outcome) {
+                           reply(switch_answer(world(), outcome));
+                         });
+}
 
 void ManagerBackend::save(const Request& request) { request.reply(saved_values(world())); }
 

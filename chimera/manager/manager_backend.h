@@ -20,6 +20,9 @@ namespace chimera::manager {
 /// The states of the tasks before and after, or the refusal with its kind, place and remedy. Context: setup.
 control::RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer);
 
+/// The receipt of a switch that was begun, or why it was not. Context: setup.
+control::RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome);
+
 /// Context: setup.
 class ManagerBackend final : public control::ControlBackend {
  public:
@@ -57,6 +60,7 @@ class ManagerBackend final : public control::ControlBackend {
   void ring(const Request& request);
   void set(const Request& request);
   void flag(const Request& request);
+  void switch_to(const Request& request);
   void save(const Request& request);
   void end(const Request& request);
   void unknown(const Request& request);

@@ -113,6 +113,7 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   if (!bell) return bell.error();
   bell_ = *std::move(bell);
   steps_ = std::make_unique<StepRunner>(*world_, *fleet_, mapped_->channel);
+  switches_ = std::make_unique<SwitchCoordinator>(*world_);
   begun_ = counters_due_ = now();
   say_hello();
   steps_->begin();
@@ -214,7 +215,7 @@ void ManagerLoop::watch() {
 }
 
 Nanoseconds ManagerLoop::next_due() const noexcept {
-  Nanoseconds due = std::min({steps_->next_due(), counters_due_, watch_->due()});
+  Nanoseconds due = std::min({steps_->next_due(), switches_->next_due(), counters_due_, watch_->due()});
   if (!is_ready_ || !fleet_->all_up()) due = std::min(due, now() + kLookEvery);
   return due;
 }
@@ -238,6 +239,7 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
     counters_due_ = now() + kCountersEvery;
   }
   steps_->look(now());
+  switches_->look(now());
   return true;
 }
 

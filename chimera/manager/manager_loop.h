@@ -10,6 +10,7 @@
 #include "chimera/manager/manager_state.h"
 #include "chimera/manager/rtpu_links.h"
 #include "chimera/manager/step_runner.h"
+#include "chimera/manager/switch_coordinator.h"
 #include "chimera/manager/unit_health.h"
 #include "chimera/manager/unit_watch.h"
 #include "chimera/platform/channel.h"
@@ -57,6 +58,7 @@ class ManagerLoop {
   int bundle() const noexcept;
 
   ManagerState& world() noexcept { return *world_; }
+  SwitchCoordinator& switches() noexcept { return *switches_; }
   /// Has the step function been given the whole inventory? Faces are served from then on.
   bool is_ready() const noexcept { return is_ready_; }
 
@@ -79,6 +81,7 @@ class ManagerLoop {
   std::unique_ptr<ManagerState> world_;
   std::unique_ptr<RtpuLinks> fleet_;
   std::unique_ptr<StepRunner> steps_;
+  std::unique_ptr<SwitchCoordinator> switches_;
   std::unique_ptr<UnitWatch> watch_;
   std::uint64_t keeper_beats_ = 0;  // that were answered
   std::unique_ptr<UnitHealth> health_;

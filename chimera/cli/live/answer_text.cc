@@ -33,6 +33,12 @@ std::string producer_of(const Json& link) {
   return component.empty() || component == producer ? producer : producer + " (" + component + ")";
 }
 
+std::string figure(const Json& number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", number.get<double>());
+  return text;
+}
+
 bool is_well(const Json& link) { return text_of(link, "verdict") == "ok"; }
 
 std::string age_of(const Json& link) {
@@ -89,6 +95,32 @@ std::string save_text(const Json& answer) {
 std::string ring_text(const Json& answer) {
   std::string text;
   for (const std::string& task : texts_of(answer, "tasks")) text += task + ": rung\n";
+  return text;
+}
+
+std::string switch_text(const Json& answer) {
+  const std::string to = "'" + text_of(answer, "to") + "'";
+  const std::string end = text_of(answer, "end"), from = text_of(answer, "from");
+  if (end == "nothing-to-do") return to + " is in force, nothing to do\n";
+  std::string text = "switch " + std::to_string(whole_of(answer, "number")) +
+                     (from.empty() ? "" : " from '" + from + "'") + " to " + to + " " + end;
+  if (end != "done") return text + ": " + text_of(answer, "why") + "\n";
+  std::int64_t arrive = 0, leave = 0, lost = 0;
+  for (const Json& task : field(answer, "tasks")) {
+    arrive += text_of(task, "move") == "arrives" ? 1 : 0;
+    leave += text_of(task, "move") == "leaves" ? 1 : 0;
+    lost += whole_of(task, "lost");
+  }
+  text += ": " + std::to_string(arrive) + (arrive == 1 ? " task arrives, " : " tasks arrive, ") + std::to_string(leave) +
+          (leave == 1 ? " leaves, " : " leave, ") + std::to_string(lost) + (lost == 1 ? " cycle lost\n" : " cycles lost\n");
+  for (const Json& variable : field(answer, "variables")) {
+    const Json& step = field(variable, "step");
+    if (!step.is_number()) continue;
+    const Json& limit = field(variable, "limit");
+    text += "  " + text_of(variable, "variable") + " moves by " + figure(step) +
+            (limit.is_number() ? ", limit " + figure(limit) : "") +
+            (truth_of(variable, "beyond") ? ": beyond it\n" : "\n");
+  }
   return text;
 }
 

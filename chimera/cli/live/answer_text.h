@@ -19,6 +19,7 @@ std::string signal_text(const nlohmann::json& answer);
 std::string save_text(const nlohmann::json& answer);
 /// `ring`: "lamp: rung" for each.
 std::string ring_text(const nlohmann::json& answer);
+std::string switch_text(const nlohmann::json& answer);
 /// `flag`: "flag up" or "flag down".
 std::string flag_text(const nlohmann::json& answer);
 /// `why` on one screen of `height` lines: who produces the variable, when, from what; then its ancestors, those in

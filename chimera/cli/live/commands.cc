@@ -264,6 +264,27 @@ RunningCommand status_row() {
           .names_its_subsystem = true};
 }
 
+RunningCommand switch_row() {
+  return {.words = {.name = "switch",
+                    .help = "Change to a configuration while everything cycles: exactly its tasks are ON then",
+                    .operands = "CONFIGURATION",
+                    .least = 1,
+                    .most = 1,
+                    .operand_kind = WordKind::kTaskOrConfiguration,
+                    .options = {{.name = "--wait",
+                                 .value = "TIME",
+                                 .help = "how long to wait for slack and for inputs with a value ('10 s')"}},
+                    .example = "chimera switch hand",
+                    .manual = "Changes to a configuration while everything cycles: exactly its tasks are ON "
+                              "afterwards. `on` of those that arrive runs beside their predecessors, all real-time "
+                              "units change at one instant, then those that leave are turned OFF: all or nothing, "
+                              "and no cycle is lost. Prints the receipt. What fails before that instant changes "
+                              "nothing; the exit code is 1 then. (`on CONFIGURATION` turns tasks ON and none OFF.)",
+                    .is_act = true},
+          .method = "switch",
+          .once = switch_to};
+}
+
 constexpr Option kEvery{.name = "--every", .value = "TIME", .help = "how often, such as '100 ms'"};
 
 RunningCommand top_row() {
@@ -317,7 +338,7 @@ std::vector<RunningCommand> table() {
   std::vector<RunningCommand> rows = {clear_row(),  end_row(),  events_row(), flag_row(),    get_row(),
                                       kill_row(),   off_row(),  on_row(),     profile_row(), reinit_row(),
                                       ring_row(),   save_row(), scope_row(),  set_row(),     spawn_row(),
-                                      status_row(), top_row(),  watch_row(),  why_row()};
+                                      status_row(), switch_row(), top_row(),  watch_row(),  why_row()};
   for (RunningCommand& row : rows) row.words.which = kWhichOne;
   return rows;
 }

@@ -15,6 +15,7 @@
 #include "chimera/cli/live/status_text.h"
 #include "chimera/cli/live/words.h"
 #include "chimera/text/nearest.h"
+#include "chimera/units/quantity.h"
 
 namespace chimera::cli {
 namespace {
@@ -123,6 +124,19 @@ CommandResult status(Session& session, const Call& call, const Screen&) {
 
 CommandResult save(Session& session, const Call& call, const Screen&) {
   return call.has("--write") ? save_to_file(session, call) : answered(session.ask("save"), call.json, save_text);
+}
+
+CommandResult switch_to(Session& session, const Call& call, const Screen&) {
+  Json parameters{{"configuration", call.operands[0]}};
+  if (call.has("--wait")) {
+    const auto wait = parse_duration(call.value("--wait"));
+    if (!wait) return wrong("--wait: " + std::string(wait.error().message.view()), call.json);
+    parameters["wait_ms"] = wait->count / 1'000'000;
+  }
+  const control::RpcResponse answer = session.ask("switch", parameters);
+  CommandResult result = answered(answer, call.json, switch_text);
+  if (answer.is_good() && text_of(*answer.result, "end") == "aborted") result.code = kRefused;
+  return result;
 }
 
 CommandResult why(Session& session, const Call& call, const Screen& screen) {

@@ -19,6 +19,7 @@ namespace {
 constexpr Nanoseconds kWorkLimit = seconds(65);
 
 Nanoseconds limit_of(std::string_view method, const nlohmann::json& parameters) {
+  if (method == "switch") return kWorkLimit + milliseconds(parameters.value("wait_ms", std::int64_t{10'000}));
   const bool runs_methods = method == "signal" && parameters.value("signal", "") != "off";
   return runs_methods || method == "check" || method == "schedule" ? kWorkLimit : control::kCallLimit;
 }

@@ -13,7 +13,7 @@
 
 #include "chimera/cli/run/profile_report.h"
 #include "chimera/cli/run/progress.h"
-#include "chimera/cli/run/receipt_text.h"
+#include "chimera/control/receipt_text.h"
 #include "chimera/cli/run/run_loop.h"
 #include "chimera/cli/run/run_plan.h"
 #include "chimera/cli/run/run_report.h"
@@ -199,8 +199,8 @@ void LocalTarget::finish(RunReport& report) {
   under_way().running = under_way().serving = 0;
   for (const SwitchReceipt& receipt : loop_->receipts()) {  // a switch that the end aborted is among them
     const ApplicationSpec& spec = application_.tasks().spec();
-    report.switches += receipt_text(receipt, spec, loop_->origin());
-    const std::string json = receipt_json(receipt, spec, loop_->origin());
+    report.switches += control::receipt_text(receipt, spec, loop_->origin());
+    const std::string json = control::receipt_json(receipt, spec, loop_->origin());
     report.receipts += (report.receipts.empty() || json.empty() ? "" : ", ") + json;
   }
   // What `off` and `kill` cost, and their faults, too.

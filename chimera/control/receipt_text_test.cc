@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/cli/run/receipt_text.h"
+#include "chimera/control/receipt_text.h"
 
 #include <gtest/gtest.h>
 
-namespace chimera::cli {
+namespace chimera::control {
 namespace {
 
 constexpr TaskId kPid{0u}, kTorque{1u};
@@ -112,4 +112,4 @@ TEST(ReceiptText, AsJsonHasEveryKey) {
 }
 
 }  // namespace
-}  // namespace chimera::cli
+}  // namespace chimera::control

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Puts the receipt of a switch into words and into JSON.
-#include "chimera/cli/run/receipt_text.h"
+#include "chimera/control/receipt_text.h"
 
 #include <cmath>
 #include <cstdio>
@@ -8,7 +8,7 @@
 
 #include "chimera/text/json_text.h"
 
-namespace chimera::cli {
+namespace chimera::control {
 namespace {
 
 std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
@@ -44,29 +44,6 @@ const char* word(TaskMove move) {
   return "?";
 }
 
-const char* word(NoSwitch why) {
-  switch (why) {
-    case NoSwitch::kNone: return "none";
-    case NoSwitch::kUnknownSet: return "unknown-configuration";
-    case NoSwitch::kNothingToDo: return "nothing-to-do";
-    case NoSwitch::kInError: return "in-error";
-    case NoSwitch::kNotCreated: return "not-created";
-    case NoSwitch::kUnderWay: return "under-way";
-    case NoSwitch::kOnFailed: return "on-failed";
-    case NoSwitch::kStepTooLarge: return "step-too-large";
-    case NoSwitch::kNoGap: return "no-gap";
-    case NoSwitch::kNoValue: return "no-value";
-    case NoSwitch::kDisturbed: return "disturbed";
-    case NoSwitch::kFlagRaised: return "flag-raised";
-    case NoSwitch::kRunEnded: return "run-ended";
-    case NoSwitch::kLate: return "late";
-    case NoSwitch::kMemberDied: return "member-died";
-    case NoSwitch::kDamaged: return "damaged";
-    case NoSwitch::kCancelled: return "cancelled";
-  }
-  return "?";
-}
-
 /// The variables of a receipt with the unit of their values.
 std::string unit_of(const VariablePart& part, const ApplicationSpec& spec) {
   std::uint32_t outs = 0;
@@ -78,36 +55,6 @@ std::string unit_of(const VariablePart& part, const ApplicationSpec& spec) {
 
 std::string step_text(const ValueStep& step, const std::string& unit) {
   return number(step.size) + unit + (step.limit > 0 ? ", limit " + number(step.limit) + unit : "");
-}
-
-std::string reason(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
-  const std::string task = receipt.task.is_valid() ? quoted(spec.tasks[receipt.task.index].name) : "";
-  const std::string variable = receipt.variable.is_valid() ? quoted(spec.variables[receipt.variable.index].name) : "";
-  switch (receipt.why) {
-    case NoSwitch::kInError: return "task " + task + " is in ERROR: clear it first";
-    case NoSwitch::kNotCreated: return "task " + task + " is not there: spawn it first";
-    case NoSwitch::kUnderWay: return "another switch is under way";
-    case NoSwitch::kOnFailed: return "on of task " + task + ": " + std::string(receipt.said.view());
-    case NoSwitch::kStepTooLarge: {
-      std::string text = "on of task " + task + " would move " + variable + " too far";
-      for (const VariablePart& part : receipt.variables)
-        if (part.handover.variable == receipt.variable)
-          text += ": by " + step_text(part.step_of_on, unit_of(part, spec));
-      return text;
-    }
-    case NoSwitch::kNoGap:
-      return task.empty() ? "the processor was never idle for 10 s"
-                          : "the processor was never idle for as long as on of task " + task + " takes, for 10 s";
-    case NoSwitch::kNoValue: return "task " + task + " waited 10 s for a value of " + variable;
-    case NoSwitch::kDisturbed: return "task " + task + " went to another state meanwhile";
-    case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised meanwhile";
-    case NoSwitch::kRunEnded: return "the run ended";
-    case NoSwitch::kLate: return "a real-time unit was too late to agree to the instant of the change";
-    case NoSwitch::kMemberDied: return "a real-time unit died";
-    case NoSwitch::kDamaged: return "the order on the decision page is not what the manager wrote";
-    case NoSwitch::kCancelled: return "cancelled";
-    default: return word(receipt.why);
-  }
 }
 
 std::size_t count(const SwitchReceipt& receipt, TaskMove move) {
@@ -196,6 +143,59 @@ std::string json_list(const Parts& parts, const ApplicationSpec& spec) {
 
 }  // namespace
 
+const char* reason_word(NoSwitch why) noexcept {
+  switch (why) {
+    case NoSwitch::kNone: return "none";
+    case NoSwitch::kUnknownSet: return "unknown-configuration";
+    case NoSwitch::kNothingToDo: return "nothing-to-do";
+    case NoSwitch::kInError: return "in-error";
+    case NoSwitch::kNotCreated: return "not-created";
+    case NoSwitch::kUnderWay: return "under-way";
+    case NoSwitch::kOnFailed: return "on-failed";
+    case NoSwitch::kStepTooLarge: return "step-too-large";
+    case NoSwitch::kNoGap: return "no-gap";
+    case NoSwitch::kNoValue: return "no-value";
+    case NoSwitch::kDisturbed: return "disturbed";
+    case NoSwitch::kFlagRaised: return "flag-raised";
+    case NoSwitch::kRunEnded: return "run-ended";
+    case NoSwitch::kLate: return "late";
+    case NoSwitch::kMemberDied: return "member-died";
+    case NoSwitch::kDamaged: return "damaged";
+    case NoSwitch::kCancelled: return "cancelled";
+  }
+  return "?";
+}
+
+std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const std::string task = receipt.task.is_valid() ? quoted(spec.tasks[receipt.task.index].name) : "";
+  const std::string variable = receipt.variable.is_valid() ? quoted(spec.variables[receipt.variable.index].name) : "";
+  switch (receipt.why) {
+    case NoSwitch::kInError: return "task " + task + " is in ERROR: clear it first";
+    case NoSwitch::kNotCreated: return "task " + task + " is not there: spawn it first";
+    case NoSwitch::kUnderWay: return "another switch is under way";
+    case NoSwitch::kOnFailed: return "on of task " + task + ": " + std::string(receipt.said.view());
+    case NoSwitch::kStepTooLarge: {
+      std::string text = "on of task " + task + " would move " + variable + " too far";
+      for (const VariablePart& part : receipt.variables)
+        if (part.handover.variable == receipt.variable)
+          text += ": by " + step_text(part.step_of_on, unit_of(part, spec));
+      return text;
+    }
+    case NoSwitch::kNoGap:
+      return task.empty() ? "the processor was never idle for 10 s"
+                          : "the processor was never idle for as long as on of task " + task + " takes, for 10 s";
+    case NoSwitch::kNoValue: return "task " + task + " waited 10 s for a value of " + variable;
+    case NoSwitch::kDisturbed: return "task " + task + " went to another state meanwhile";
+    case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised meanwhile";
+    case NoSwitch::kRunEnded: return "the run ended";
+    case NoSwitch::kLate: return "a real-time unit was too late to agree to the instant of the change";
+    case NoSwitch::kMemberDied: return "a real-time unit died";
+    case NoSwitch::kDamaged: return "the order on the decision page is not what the manager wrote";
+    case NoSwitch::kCancelled: return "cancelled";
+    default: return reason_word(receipt.why);
+  }
+}
+
 std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin) {
   const std::string to = quoted(spec.sets[receipt.after].name);
   const std::string when = " at " + at(receipt.asked, origin);
@@ -203,23 +203,25 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
   std::string text = "switch " + std::to_string(receipt.number) + when + " " + from + "to " + to;
   if (receipt.end == SwitchEnd::kDone) return text + done_text(receipt, spec) + bumps(receipt, spec);
-  return text + " " + word(receipt.end) + ": " + reason(receipt, spec) + "\n";
+  return text + " " + word(receipt.end) + ": " + reason_text(receipt, spec) + "\n";
 }
 
-std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin) {
+std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
+                         std::string_view asked_by) {
   if (receipt.end == SwitchEnd::kNothingToDo) return {};
   const bool is_done = receipt.end == SwitchEnd::kDone;
   const bool has_before = receipt.before != kNoSet;
   return "{\"number\": " + std::to_string(receipt.number) + ", \"from\": " +
          json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
          json_string(std::string(spec.sets[receipt.after].name)) +
-         ", \"way\": \"fast\", \"asked_by\": \"--at\", \"end\": \"" + word(receipt.end) + "\", \"reason\": " +
-         (is_done ? "null" : std::string("\"") + word(receipt.why) + "\"") + ", \"why\": " +
-         (is_done ? "null" : json_string(reason(receipt, spec))) +
+         ", \"way\": \"fast\", \"asked_by\": " + json_string(std::string(asked_by)) + ", \"end\": \"" +
+         word(receipt.end) + "\", \"reason\": " +
+         (is_done ? "null" : std::string("\"") + reason_word(receipt.why) + "\"") + ", \"why\": " +
+         (is_done ? "null" : json_string(reason_text(receipt, spec))) +
          ", \"asked_ns\": " + json_instant(receipt.asked, origin) +
          ", \"armed_ns\": " + json_instant(receipt.armed, origin) + ", \"at_ns\": " + json_instant(receipt.at, origin) +
          ", \"ended_ns\": " + json_instant(receipt.ended, origin) + ", \"tasks\": " + json_list(receipt.tasks, spec) +
          ", \"variables\": " + json_list(receipt.variables, spec) + "}";
 }
 
-}  // namespace chimera::cli
+}  // namespace chimera::control
