@@ -104,9 +104,9 @@ class Refusals {
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
     for (const NamedNode& step : task.max_step)
-      if (executor_ == Executor::kProcesses)
-        refuse(step.name.at, "'max_step' of task '" + task.name.text + "' where tasks are in several processes",
-               "run with --virtual or --isolation none, or take it out");
+      if (executor_ == Executor::kProcesses && preempts)
+        refuse(step.name.at, "'max_step' of task '" + task.name.text + "' on a preemptive rtpu",
+               "run with --virtual or --isolation none, or give its rtpu 'executor: executive'");
     if (task.stack_bytes && !preempts && executor_ == Executor::kProcesses)
       refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
              "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");

@@ -202,7 +202,7 @@ class Run(unittest.TestCase):
         self.assertIn("'k' is a constant, which nothing changes while tasks run; for the whole run: --set k VALUE\n",
                       said)
 
-    def test_a_switch_in_one_process_is_done_and_in_several_refused(self):
+    def test_a_switch_is_done_in_one_process_and_in_several(self):
         text = ("subsystem: subject\ntasks:\n"
                 "  slow: {component: gain, rate: 100 Hz, constants: {k: 2}}\n"
                 "  fast: {component: gain, rate: 100 Hz, constants: {k: 3}, max_step: {y: 2 m}}\n"
@@ -213,12 +213,13 @@ class Run(unittest.TestCase):
         self.assertRegex(said, r"\nswitch 1 at 0\.\d+ s from 'gentle' to 'quick' after \d+\.\d+ ms: 1 task arrives, "
                                r"1 leaves, \d+ cycles? lost; y moves by 1 m, limit 2 m\n")
         self.assertRegex(said, r"\nslow  OFF .*\nfast  ON ")
-        code, said = run(text.replace(", max_step: {y: 2 m}", ""), *words)
-        self.assertEqual(code, 2, said)
-        self.assertIn("'0.1 s: switch quick': a switch of tasks in several processes cannot be done yet", said)
-        code, said = run(text, "--for", "0.1 s")
+        code, said = run(text, "--for", "2 s", "--at", "1 s: switch quick", "--priority", "0", "--expect", "y >= 3 m")
+        self.assertEqual(code, 0, said)
+        self.assertRegex(said, r"\nswitch 1 at \d+\.\d+ s from 'gentle' to 'quick' after \d+\.\d+ ms: 1 task arrives, "
+                               r"1 leaves, \d+ cycles? lost; y moves by 1 m, limit 2 m\n")
+        code, said = run("rtpus: {main: {cpu: 0, executor: preemptive}}\n" + text, "--for", "0.1 s")
         self.assertEqual(code, 1, said)
-        self.assertIn("'max_step' of task 'fast' where tasks are in several processes: run cannot do this yet", said)
+        self.assertIn("'max_step' of task 'fast' on a preemptive rtpu: run cannot do this yet", said)
 
     def test_records_what_every_rtpu_does(self):
         words = ("--priority", "0", "--for", "0.2 s", "--trace", "trace.json", "--timeline", "10 ms")

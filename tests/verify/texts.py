@@ -21,7 +21,7 @@ CALLED = (
     ("\"on_fault\", task", "`on_fault` other than `error`"),
     ("\"stale_after\", task", "`stale_after`"),
     ("\"standby_for\", task", "`standby_for`"),
-    ("where tasks are in several processes", "`max_step` in several processes"),
+    ("on a preemptive rtpu", "`max_step` on a preemptive rtpu"),
     ("'stack' of task", "`stack`"),
     ("\"isolation: process\", task", "`isolation: process` of a task"),
 )
@@ -67,9 +67,9 @@ def check(root):
     yield from table_complaints(root)
 
 
-_README = "# A\n\n## Limits\n\n- Refused: `max_step` in several processes, `standby_for`.\n\n## More\n"
+_README = "# A\n\n## Limits\n\n- Refused: `max_step` on a preemptive rtpu, `standby_for`.\n\n## More\n"
 _CODE = ('  void refuse_key(Place at, const char* key) {\n    refuse(at, "\'" + std::string(key) + "\' of");\n  }\n'
-         '  refuse(a, "\'max_step\' where tasks are in several processes", "x");\n')
+         '  refuse(a, "\'max_step\' on a preemptive rtpu", "x");\n')
 _ROOM = "  constexpr std::uint64_t kMaxTableBytes = 4 << 20;\n"
 _TABLE = "outputs take more than\n4 MiB.\n"
 
@@ -81,11 +81,11 @@ def _tree(**other):
     return files | {names[key]: text for key, text in other.items()}
 
 
-_MISSING = "README.md: the limits do not say \"`max_step` in several processes\", which run refuses"
+_MISSING = "README.md: the limits do not say \"`max_step` on a preemptive rtpu\", which run refuses"
 PLANTED = (
     (_tree(), None),
-    (_tree(readme=_README.replace("`max_step` in several processes, ", "")), _MISSING),
-    (_tree(readme="# A\n\n`max_step` in several processes\n"), _MISSING),
+    (_tree(readme=_README.replace("`max_step` on a preemptive rtpu, ", "")), _MISSING),
+    (_tree(readme="# A\n\n`max_step` on a preemptive rtpu\n"), _MISSING),
     (_tree(code=_CODE + '  refuse_key(a, "magic", task);\n'),
      f'{REFUSALS}: no phrase is known here for the refusal refuse_key(a, "magic", task'),
     (_tree(table=_TABLE.replace("4", "8")),

@@ -32,6 +32,7 @@ using Json = nlohmann::json;
 
 constexpr Nanoseconds kLookEvery = milliseconds(100);  // for what has happened, and whether to stop
 constexpr Nanoseconds kStartLook = milliseconds(5);
+constexpr Nanoseconds kSwitchLimit = seconds(15);  // what is not committed within 10 s is aborted
 constexpr std::size_t kEventsAtOnce = 1000;
 constexpr Nanoseconds kLastOutput = seconds(1);  // half of what the keeper waits for a face to finish
 constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends whoever takes too long: that is not judged here
@@ -96,6 +97,7 @@ class RemoteTarget final : public RunTarget {
   void check_output();
   void act_next();
   void act(const TimedAct& timed);
+  void switch_to(const TimedAct& timed);
   std::vector<UnitFate> units_of(const Json& status) const;
   std::vector<TaskProfile> profiles(const Json& origin);
   std::optional<Json> await_end();
@@ -112,7 +114,7 @@ class RemoteTarget final : public RunTarget {
   TaskNames names_;
   std::vector<TimedAct> acts_;
   std::optional<RecordLine> records_;
-  std::string grants_, refused_;
+  std::string grants_, refused_, switches_, receipts_;
   FacePage own_page_;  // of one that has no predecessors
   FacePage& page_;
   const bool is_resumed_;         // a face that died had begun
@@ -157,6 +159,11 @@ Result<void> RemoteTarget::start() {
 
 Result<void> RemoteTarget::know_tasks(const Json& status) {
   names_ = TaskNames::of(status);
+  if (!run_.at.empty()) {
+    const auto described = line_.ask("describe", Json::object());
+    if (!described) return described.error();
+    names_.add_configurations(*described);
+  }
   auto acts = parse_script(run_.at, names_.spec());
   if (!acts) return acts.error();
   acts_ = *std::move(acts);
@@ -229,6 +236,7 @@ void RemoteTarget::on_event(const Json& event) {
   const bool is_news = next_event_ > page_.events_seen;
   if (kind == "note" && !run_.json && is_news) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
   if (kind == "not-off") not_off_.push_back({task, text});
+  if ((kind == "switch" && !text.ends_with(": begun")) || kind == "bump") switches_ += text + "\n";
   if (kind != "stop" || task_stopped_) return;
   task_stopped_ = true;
   stopped_by_ = task;
@@ -247,8 +255,21 @@ void RemoteTarget::act_next() {
   ++page_.acts_done;
 }
 
+void RemoteTarget::switch_to(const TimedAct& timed) {
+  const std::string name = timed.text.substr(timed.text.rfind(' ') + 1);
+  const auto answer = line_.ask("switch", {{"configuration", name}}, kSwitchLimit);
+  if (!answer) {
+    refused_ += "refused at " + since_start(clock_.now()) + ": " + answer.error().message.c_str() + "\n";
+  } else if (answer->value("end", "") == "nothing-to-do") {
+    switches_ += "switch at " + since_start(clock_.now()) + ": '" + name + "' is in force, nothing to do\n";
+  } else {
+    receipts_ += (receipts_.empty() ? "" : ", ") + answer->dump();
+  }
+}
+
 void RemoteTarget::act(const TimedAct& timed) {
   const ScriptAct& act = timed.act;
+  if (act.kind == ScriptAct::Kind::kSwitch) return switch_to(timed);
   const bool is_set = act.kind == ScriptAct::Kind::kSet;
   const bool is_signal = act.kind == ScriptAct::Kind::kSignal;
   const std::string task = is_signal ? names_.tasks[act.task.index] : "";
@@ -392,6 +413,8 @@ void RemoteTarget::finish(RunReport& report) {
   report.origin = started_;
   report.stopped_by = stopped_by_;
   report.refused = refused_;
+  report.switches = switches_;
+  report.receipts = receipts_;
   if (records_) records_->finish(*sink_);
   judge_end(report, status ? *status : Json::object());
 }

@@ -30,11 +30,17 @@ TaskNames TaskNames::of(const Json& status) {
   return made;
 }
 
+void TaskNames::add_configurations(const Json& described) {
+  for (const Json& set : described.value("configurations", Json::array()))
+    sets_.push_back({configurations.emplace_back(set.value("name", "")), {}});
+}
+
 ApplicationSpec TaskNames::spec() const noexcept {
   ApplicationSpec spec;
   spec.name = subsystem;
   spec.tasks = task_specs_;
   spec.rtpus = rtpu_specs_;
+  spec.sets = sets_;
   return spec;
 }
 

@@ -17,15 +17,18 @@ class TaskNames {
  public:
   /// From the answer of `status`.
   static TaskNames of(const nlohmann::json& status);
+  /// The configurations, too, from the answer of `describe`: their names, without tasks.
+  void add_configurations(const nlohmann::json& described);
   /// Points into this.
   ApplicationSpec spec() const noexcept;
 
   std::string subsystem;
-  std::deque<std::string> tasks, rtpus;
+  std::deque<std::string> tasks, rtpus, configurations;
 
  private:
   std::vector<TaskSpec> task_specs_;
   std::vector<RtpuSpec> rtpu_specs_;
+  std::vector<NamedSet> sets_;
 };
 
 /// Context: setup; blocks.

@@ -93,11 +93,6 @@ Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
   if (!acts) return acts.error();
   for (const TimedAct& timed : *acts) {
     const bool is_set = timed.act.kind == ScriptAct::Kind::kSet;
-    if (timed.act.kind == ScriptAct::Kind::kSwitch && executor_of(request) == Executor::kProcesses)
-      return Error{ErrorCode::kRefused,
-                   {"--at '" + timed.text + "': a switch of tasks in several processes cannot be done yet; run with "
-                    "--virtual or --isolation none"},
-                   {plan.configuration.file()}};
     const auto act = is_set ? settled(timed, plan) : Result<ScriptAct>(timed.act);
     if (!act) return act.error();
     plan.acts.push_back(*act);
