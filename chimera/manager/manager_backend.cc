@@ -180,7 +180,8 @@ void ManagerBackend::switch_to(const Request& request) {
   if (!world().logic.is_settled())
     return request.reply(RpcResponse::refused("under-way", "tasks are being brought up", "",
                                               "`chimera status` shows which; ask again when they are ON"));
-  const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(control::number(request.parameters, "wait_ms", 10'000)));
+  const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
+  const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
   driver_.switches().ask(static_cast<std::uint32_t>(set - spec.sets.begin()), control::role_name(request.caller.role),
                          wait, now(), [this, reply = request.reply](const SwitchOutcome& outcome) {
                            reply(switch_answer(world(), outcome));

@@ -8,6 +8,7 @@
 #include "chimera/manager/credible.h"
 #include "chimera/manager/post_text.h"
 #include "chimera/manager/status_json.h"
+#include "chimera/manager/switch_coordinator.h"
 #include "chimera/manager/unfinished.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/runtime/hosted/making_text.h"
@@ -71,7 +72,10 @@ void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
   const bool left_words = is_current(rtpu);
   if (left_words) {
     take_posts(rtpu, events);
-    for (const TaskId task : links_[rtpu.index].tasks) see(task, events, true);
+    for (const TaskId task : links_[rtpu.index].tasks) {
+      seen_[task.index] = world_.peers.status(task);
+      events.push_back(subsystem::TaskSeen{task, last_status(world_, task)});
+    }
   }
   record.is_alive = record.is_up = record.is_away = false;
   record.hang.clear();

@@ -29,6 +29,23 @@ Nanoseconds later(Nanoseconds a, Nanoseconds b) { return a == kNever ? b : b == 
 
 }  // namespace
 
+TaskStatus last_status(const ManagerState& world, TaskId task) {
+  TaskStatus status = world.peers.status(task);
+  SwitchAgreement agreement(world.page.switching, world.keeper.origin);
+  const PlanWord plan = agreement.plan();
+  const RtpuId rtpu = world.spec().tasks[task.index].rtpu;
+  const auto order = agreement.order(plan, world.spec().sets.size(), world.spec().tasks.size());
+  const bool was_member = order && ((order->members >> rtpu.index) & 1u) != 0;
+  if (plan.phase != SwitchPhase::kCommitted || !was_member || !world.peers[rtpu].is_there()) return status;
+  const SwitchProgress& progress = world.peers[rtpu].block().head().switching;
+  if (progress.adopted.load(std::memory_order_acquire) == plan.number) return status;  // SwitchProgress
+  const auto after = world.spec().sets[order->after].order;
+  const bool is_after = std::ranges::find(after, task) != after.end();
+  if (is_after && status.state == State::kOff) status.state = State::kOn;
+  if (!is_after && status.state == State::kOn) status.state = State::kOff;
+  return status;
+}
+
 SwitchCoordinator::SwitchCoordinator(ManagerState& world) : world_(world), standing_(world.spec().tasks.size()) {
   planner_.prepare(world.spec(), memory_);
 }

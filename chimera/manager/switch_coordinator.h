@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the manager does for a switch of configurations: it judges the request, orders it from the real-time units, which
-// carry it out and decide by themselves, and puts their parts together into one receipt.
+// What the manager does for a switch of configurations: it judges the request, orders the switch from the real-time
+// units, which carry it out and decide by themselves, and puts their parts together into one receipt.
 // docs/formats/processes.md, docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
 #pragma once
 
@@ -25,6 +25,10 @@ struct SwitchOutcome {
   std::string under_way;  ///< of NoSwitch::kUnderWay: which, asked for by whom
 };
 using Switched = std::function<void(const SwitchOutcome&)>;
+
+/// The status word of a task of a unit that is dead, as it would be had the unit lived to make a change that was
+/// committed without it: what comes back is the set after the switch. Context: setup.
+TaskStatus last_status(const ManagerState& world, TaskId task);
 
 /// Context: setup; never blocks. One request at a time.
 class SwitchCoordinator {

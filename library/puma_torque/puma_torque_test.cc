@@ -38,8 +38,8 @@ TEST_F(PumaTorqueTest, TellsItsJointsAndLimitsAtInit) {
   EXPECT_EQ(rig.get<double>("tau_max", 5), 21.3);
 }
 
-// Pushed against its limits at full torque, the arm passes them by up to 0.29 rad. When a cycle fails there, its out-vars
-// stand as that of the cycle before, with a speed, while the arm has braked: they are no other arm that moves on.
+// Pushed against its limits at full torque, the arm passes them by up to 0.29 rad. When a cycle fails there, its
+// out-vars stand as of the cycle before, with a speed, while the arm has braked: they are no other arm that moves on.
 TEST_F(PumaTorqueTest, ComesBackFromAnErrorWhereItStands) {
   start();
   std::array<double, 6> q{}, qd{};

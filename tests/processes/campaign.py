@@ -20,6 +20,7 @@ CAMPAIGNS = {
     "exhaustion": ((("exhaustion_test.py", 0),), "failed calls"),
     "logging": ((("logging_test.py", 5),), None),
     "preemptive": ((("preemptive_test.py", 5),), "bad jobs"),
+    "switch": ((("switch_test.py", 10),), None),
     "numbers": ((("numbers_test.py", 50),), "restarts"),
 }
 

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A switch of configurations over real processes: all or nothing, one receipt each, whoever dies meanwhile. A bounded
+count here; more of them are the campaign `process_switch`. CHIMERA_ROUNDS: switches beside kills."""
+import os
+import random
+import sys
+import threading
+import time
+import unittest
+
+from system import Client, Refused, System, UNITS, await_that
+
+ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "2"))
+SEED = int(os.environ.get("CHIMERA_SEED", str(random.SystemRandom().randrange(1 << 32))))
+
+# One variable, `wanted`, by a task of the first unit or by one of the second; read in both.
+TEXT = UNITS + """
+tasks:
+  reference:
+    {component: signal_generator, rtpu: first, rate: 100 Hz, alias: {y: vref},
+     constants: {amplitude: 0 m/s, offset: 1 m/s}}
+  slow: {component: gain, rtpu: first, rate: 100 Hz, alias: {x: vref, y: wanted}, constants: {k: 2}}
+  fast:
+    {component: gain, rtpu: second, rate: 100 Hz, alias: {x: vref, y: wanted}, constants: {k: 4},
+     max_step: {y: 3 m/s}}
+  steep:
+    {component: gain, rtpu: second, rate: 100 Hz, alias: {x: vref, y: wanted}, constants: {k: 40},
+     max_step: {y: 3 m/s}}
+  here: {component: gain, rtpu: first, rate: 50 Hz, alias: {x: wanted, y: seen_here}, constants: {k: 1}}
+  there: {component: gain, rtpu: second, rate: 50 Hz, alias: {x: wanted, y: seen_there}, constants: {k: 1}}
+configurations:
+  gentle: [reference, slow, here, there]
+  quick: [reference, fast, here, there]
+  wild: [reference, steep, here, there]
+start: gentle
+"""
+SETS = {"gentle": {"reference", "slow", "here", "there"}, "quick": {"reference", "fast", "here", "there"}}
+VALUE = {"gentle": 2, "quick": 4}
+
+
+class Switch(unittest.TestCase):
+    def on(self, system):
+        return {task["task"] for task in system.call("status")["tasks"] if task["state"] == "ON"}
+
+    def await_values(self, system, value):
+        def both():
+            values = system.call("get", variables=["seen_here", "seen_there"])["values"]
+            return [values[name]["value"] for name in ("seen_here", "seen_there")] == [value, value]
+        await_that(both, 5, f"both readers to see {value}")
+
+    def test_there_and_back(self):
+        with System(TEXT) as system:
+            numbers = []
+            for target in ("quick", "gentle") * 5:
+                receipt = system.call("switch", configuration=target)
+                self.assertEqual((receipt["to"], receipt["end"], receipt["reason"]), (target, "done", None))
+                self.assertEqual(receipt["asked_by"], "configure")
+                moves = {task["task"]: task["move"] for task in receipt["tasks"]}
+                self.assertEqual(sorted(moves.values()), ["arrives", "leaves", "stays", "stays", "stays"])
+                self.assertEqual([v["step_of_on"] for v in receipt["variables"]], [2])
+                self.assertEqual(self.on(system), SETS[target])
+                self.await_values(system, VALUE[target])
+                numbers.append(receipt["number"])
+            self.assertEqual(numbers, list(range(1, 11)))
+            again = system.call("switch", configuration="gentle")
+            self.assertEqual(again, {"to": "gentle", "end": "nothing-to-do"})
+            flags = [event for event in system.events() if event["kind"] == "flag" and "up" in event["text"]]
+            started = system.call("status")["started_ns"]
+            self.assertEqual([event for event in flags if event["at_ns"] > started], [])
+
+    def test_what_would_step_too_far_changes_nothing(self):
+        with System(TEXT) as system:
+            system.call("switch", configuration="quick")
+            receipt = system.call("switch", configuration="wild")
+            self.assertEqual((receipt["end"], receipt["reason"]), ("aborted", "step-too-large"))
+            self.assertIn("'wanted' too far: by 36 m/s, limit 3 m/s", receipt["why"])
+            self.assertEqual(self.on(system), SETS["quick"])
+            self.await_values(system, 4)
+
+    def test_what_is_refused_is_told_by_name(self):
+        with System(TEXT) as system:
+            with self.assertRaises(Refused) as unknown:
+                system.call("switch", configuration="quic")
+            self.assertEqual(unknown.exception.data["nearest"], "quick")
+            system.signal("kill", "fast")
+            with self.assertRaises(Refused) as missing:
+                system.call("switch", configuration="quick")
+            self.assertEqual(missing.exception.data["kind"], "not-created")
+            self.assertEqual(missing.exception.data["where"], "fast")
+            self.assertEqual(missing.exception.data["remedy"], "`chimera spawn fast`")
+            system.signal("spawn", "fast")
+            self.assertEqual(system.call("switch", configuration="quick")["end"], "done")
+
+    def test_whoever_dies_the_next_switch_works(self):
+        """A real-time unit or the manager is killed at any moment of a switch."""
+        random.seed(SEED)
+        print(f"seed {SEED}", file=sys.stderr)
+        with System(TEXT) as system:
+            for _ in range(ROUNDS):
+                before = next(name for name, tasks in SETS.items() if tasks == self.on(system))
+                target = "quick" if before == "gentle" else "gentle"
+                who = random.choice(["first", "second", "manager"])
+                pid = system.pids()[who]
+                told = []
+
+                def ask(target=target, told=told):
+                    try:
+                        client = Client(system.socket, 30)
+                        told.append(client.call("switch", configuration=target))
+                        client.close()
+                    except (Refused, OSError, ConnectionError) as error:
+                        told.append(error)
+
+                asking = threading.Thread(target=ask)
+                asking.start()
+                time.sleep(random.random() * 0.02)
+                self.assertTrue(system.kill(pid))
+                asking.join(30)
+                self.assertFalse(asking.is_alive())
+                await_that(lambda: self.on(system) in SETS.values(), 20,
+                           f"a configuration (killed {who} in a switch to {target}, {told}); {self.on(system)}")
+                now = next(name for name, tasks in SETS.items() if tasks == self.on(system))
+                if isinstance(told[0], dict) and who == "manager":
+                    self.assertEqual(now, target if told[0]["end"] != "aborted" else before)
+                time.sleep(4)  # three deaths in 10 s and a unit is given up
+                other = "quick" if now == "gentle" else "gentle"
+
+                def works(other=other):
+                    try:
+                        return system.call("switch", configuration=other)["end"] in ("done", "nothing-to-do")
+                    except Refused:
+                        return False
+                await_that(works, 10, "the next switch")
+                self.assertEqual(self.on(system), SETS[other])
+                self.await_values(system, VALUE[other])
+
+
+if __name__ == "__main__":
+    unittest.main()
