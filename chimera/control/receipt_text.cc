@@ -57,6 +57,15 @@ std::string step_text(const ValueStep& step, const std::string& unit) {
   return number(step.size) + unit + (step.limit > 0 ? ", limit " + number(step.limit) + unit : "");
 }
 
+std::string asked_by(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const std::string name = receipt.by.is_valid() ? std::string(spec.tasks[receipt.by.index].name) : "";
+  switch (receipt.cause) {
+    case SwitchCause::kScript: return "--at";
+    case SwitchCause::kRequest: return "task " + name;
+  }
+  return "?";
+}
+
 std::size_t count(const SwitchReceipt& receipt, TaskMove move) {
   std::size_t n = 0;
   for (const TaskPart& part : receipt.tasks) n += part.move == move ? 1 : 0;
@@ -201,20 +210,21 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   const std::string when = " at " + at(receipt.asked, origin);
   if (receipt.end == SwitchEnd::kNothingToDo) return "switch" + when + ": " + to + " is in force, nothing to do\n";
   const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
-  std::string text = "switch " + std::to_string(receipt.number) + when + " " + from + "to " + to;
+  const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(receipt, spec) + " ";
+  std::string text = "switch " + std::to_string(receipt.number) + when + " " + by + from + "to " + to;
   if (receipt.end == SwitchEnd::kDone) return text + done_text(receipt, spec) + bumps(receipt, spec);
   return text + " " + word(receipt.end) + ": " + reason_text(receipt, spec) + "\n";
 }
 
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
-                         std::string_view asked_by) {
+                         std::string_view asked) {
   if (receipt.end == SwitchEnd::kNothingToDo) return {};
   const bool is_done = receipt.end == SwitchEnd::kDone;
   const bool has_before = receipt.before != kNoSet;
   return "{\"number\": " + std::to_string(receipt.number) + ", \"from\": " +
          json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
          json_string(std::string(spec.sets[receipt.after].name)) +
-         ", \"way\": \"fast\", \"asked_by\": " + json_string(std::string(asked_by)) + ", \"end\": \"" +
+         ", \"way\": \"fast\", \"asked_by\": " + json_string(asked.empty() ? asked_by(receipt, spec) : std::string(asked)) + ", \"end\": \"" +
          word(receipt.end) + "\", \"reason\": " +
          (is_done ? "null" : std::string("\"") + reason_word(receipt.why) + "\"") + ", \"why\": " +
          (is_done ? "null" : json_string(reason_text(receipt, spec))) +

@@ -12,9 +12,9 @@ namespace chimera::control {
 /// Context: setup.
 std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin);
 
-/// One JSON object; "" for a request for what was in force. `asked_by`: "--at", or the role and user. Context: setup.
+/// One JSON object; "" for a request for what was in force. `asked_by`: a role; "": as the receipt says. Context: setup.
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
-                         std::string_view asked_by = "--at");
+                         std::string_view asked_by = {});
 
 /// Why a switch was refused or aborted: the word of the format, and a sentence. Context: setup.
 const char* reason_word(NoSwitch why) noexcept;

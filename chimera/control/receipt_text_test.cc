@@ -83,6 +83,16 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
   EXPECT_EQ(told.text(), "switch 3 at 2.000 s to 'torque' refused: another switch is under way\n");
 }
 
+TEST(ReceiptText, NamesTheTaskThatAsked) {
+  Told told;
+  told.receipt.cause = SwitchCause::kRequest;
+  told.receipt.by = kPid;
+  told.receipt.why = NoSwitch::kUnderWay;
+  EXPECT_EQ(told.text(),
+            "switch 3 at 2.000 s by task pid from 'pid' to 'torque' refused: another switch is under way\n");
+  EXPECT_NE(told.json().find("\"asked_by\": \"task pid\""), std::string::npos);
+}
+
 TEST(ReceiptText, OfWhatIsInForceThereIsNoReceipt) {
   Told told;
   told.receipt.end = SwitchEnd::kNothingToDo;

@@ -3,6 +3,7 @@
 #include "chimera/runtime/boundary_signals.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace chimera {
 
@@ -20,12 +21,24 @@ void BoundarySignals::look_ahead() noexcept {
 
 void BoundarySignals::act(Nanoseconds now) noexcept {
   while (const ScriptAct* next = script_.take(now - origin_)) act(*next, now);
+  (void)take_request(now);
   switching_.step(now);
+  if (take_request(now)) switching_.step(now);
   look_ahead();
 }
 
+// The last request stands, and is taken when no switch is under way; one that changes nothing is dropped.
+bool BoundarySignals::take_request(Nanoseconds now) noexcept {
+  if (const SwitchRequest last = set_.sent().take_request()) request_ = last;
+  if (!request_) return false;
+  if (switching_.leads_to(request_.set)) request_ = {};
+  if (!request_ || switching_.is_under_way()) return false;
+  switching_.ask(std::exchange(request_, {}), now);
+  return true;
+}
+
 void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
-  if (act.kind == ScriptAct::Kind::kSwitch) return switching_.ask(act.set, now);
+  if (act.kind == ScriptAct::Kind::kSwitch) return switching_.ask({act.set, SwitchCause::kScript, {}}, now);
   if (act.kind == ScriptAct::Kind::kSet) return set_.table().set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;

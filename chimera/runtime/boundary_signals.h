@@ -43,7 +43,8 @@ class BoundarySignals {
   Nanoseconds next_act() const noexcept { return next_act_; }
   /// The next instant at which that is so although no job ends before. Context: cycle; wait-free.
   Nanoseconds next_wake() const noexcept { return next_wake_; }
-  /// Carries out the acts of the script that are due, and goes on with a switch that is under way.
+  /// Carries out the acts of the script that are due, goes on with a switch that is under way, and begins the one that
+  /// a task asked for last.
   void act(Nanoseconds now) noexcept;
   /// Carries out the signals that tasks sent to tasks of this context; those for a task with an unfinished job wait.
   void carry_out_pending(Nanoseconds now) noexcept;
@@ -60,6 +61,7 @@ class BoundarySignals {
 
  private:
   void act(const ScriptAct& act, Nanoseconds now) noexcept;
+  bool take_request(Nanoseconds now) noexcept;
   void look_ahead() noexcept;
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
   void ring(Task& task, Nanoseconds now) noexcept;
@@ -73,6 +75,7 @@ class BoundarySignals {
   JobThreads& threads_;
   Switching& switching_;
   BoundaryListener* guest_;
+  SwitchRequest request_;  // of a task: waits for the switch that is under way to end
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever, next_wake_ = kNever;
   FixedVector<RefusedSignal, kRefusedKept> refused_;

@@ -37,7 +37,7 @@ void JobCycle::look_after(Task& task) noexcept {
     record.faults_seen = task.faults.count;
   }
   const bool has_fault = task.faults.told != record.told_seen;
-  if (task.state != State::kOn || !task.outbox.empty() || has_fault)
+  if (task.state != State::kOn || task.has_sent() || has_fault)
     record.left.fetch_or(JobRecord::kSettle, std::memory_order_relaxed);
   else if (task.is_tapped)
     tap_.job_published(task);

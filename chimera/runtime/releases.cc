@@ -17,6 +17,9 @@ bool is_built(OnMiss reaction, bool can_demote) noexcept {
   return reaction != OnMiss::kSwitch && (can_demote || reaction != OnMiss::kDemote);
 }
 
+// Receipts of switches that tasks ask for; no more of them are kept.
+constexpr std::size_t kKeptOfRequests = 16;
+
 QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
   return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n), memory.take<std::uint32_t>(n)},
           memory.take<QueueTask>(n),
@@ -44,7 +47,9 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT((n_switches == 0 && options.switch_peers == nullptr) || options.threads == nullptr);
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
-  switching_.prepare(n_switches, options.switch_peers);
+  const bool takes_requests = is_alone && options.threads == nullptr && set.spec().sets.size() > 1;
+  switching_.prepare(n_switches + (takes_requests ? kKeptOfRequests : 0), options.switch_peers);
+  if (takes_requests) set.sent().allow_requests();
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
     const bool can = options.can_demote || !set.is_mine(task.id);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands signals of tasks to their targets.
+// Hands signals of tasks to their targets, and keeps the last request for a configuration.
 #include "chimera/runtime/sent_signals.h"
+
+#include <utility>
 
 namespace chimera {
 
@@ -27,7 +29,18 @@ void SentSignals::deliver(Task& task) noexcept {
     }
     defer(target, sent.signal);
   }
-  task.outbox.clear();
+  if (task.requested_set != kNoRequest) request({task.requested_set, SwitchCause::kRequest, task.id});
+  task.forget_sent();
+}
+
+void SentSignals::request(const SwitchRequest& request) noexcept {
+  if (!request_) ++n_pending_;
+  request_ = request;
+}
+
+SwitchRequest SentSignals::take_request() noexcept {
+  if (request_) --n_pending_;
+  return std::exchange(request_, {});
 }
 
 void SentSignals::defer(Task& task, Signal signal) noexcept {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signals between tasks: from the method that sent one to the edge that carries it out, or to another process.
+// Signals between tasks, and requests of tasks for a configuration: from the method that sent one to the edge that
+// carries it out, or to another process.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
 #include "chimera/runtime/peer_view.h"
+#include "chimera/runtime/switch_request.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/task/task.h"
 
@@ -21,14 +23,21 @@ class SentSignals {
     others_ = others;
   }
 
-  /// Hands the signals that `task` sent during its last method to their targets.
+  /// Hands the signals that `task` sent during its last method to their targets, and keeps its request.
   void deliver(Task& task) noexcept;
   /// The signal waits for the present method of the task to end.
   void defer(Task& task, Signal signal) noexcept;
-  /// True when some task has signals waiting. Context: cycle; wait-free.
+  /// True when some task has signals waiting, or a request does. Context: cycle; wait-free.
   bool has_pending() const noexcept { return n_pending_ != 0; }
   /// Takes the oldest waiting signal of `task`; false when there is none.
   bool take_pending(Task& task, Signal& signal) noexcept;
+  /// A switch among the configurations can be asked for: somebody takes the requests. Context: setup.
+  void allow_requests() noexcept { takes_requests_ = true; }
+  bool takes_requests() const noexcept { return takes_requests_; }
+  /// The request waits for the next edge; the one that waited before is forgotten.
+  void request(const SwitchRequest& request) noexcept;
+  /// The request that waits, once; false as a bool when there is none.
+  SwitchRequest take_request() noexcept;
   /// Rings the doorbell of a task behind a server: one job for each ring, none is lost. False, with nothing done, when
   /// the task is not ON or has no server.
   bool ring(TaskId task) noexcept;
@@ -39,7 +48,9 @@ class SentSignals {
   std::span<Task> tasks_;
   std::span<const TaskMemory> memories_;
   PeerView* others_ = nullptr;
-  std::uint32_t n_pending_ = 0;
+  SwitchRequest request_;
+  std::uint32_t n_pending_ = 0;  // signals, and the request
+  bool takes_requests_ = false;
 };
 
 }  // namespace chimera

@@ -76,6 +76,22 @@ TEST_F(SentSignalsTest, ASignalWaitsAtItsTargetInTheOrderOfSending) {
   EXPECT_FALSE(sent.take_pending(tasks[1], signal));
 }
 
+TEST_F(SentSignalsTest, OfTheRequestsForAConfigurationTheLastWaits) {
+  EXPECT_FALSE(sent.take_request());
+  tasks[0].requested_set = 2;
+  sent.deliver(tasks[0]);
+  tasks[1].requested_set = 1;
+  sent.deliver(tasks[1]);
+  EXPECT_FALSE(tasks[1].has_sent());
+  EXPECT_TRUE(sent.has_pending());
+  const SwitchRequest request = sent.take_request();
+  EXPECT_EQ(request.set, 1u);
+  EXPECT_EQ(request.cause, SwitchCause::kRequest);
+  EXPECT_EQ(request.by, TaskId(1u));
+  EXPECT_FALSE(sent.take_request());
+  EXPECT_FALSE(sent.has_pending());
+}
+
 TEST_F(SentSignalsTest, KillTakesTheLastPlaceOfAFullQueue) {
   for (std::size_t i = 0; i < kOutboxSize + 2; ++i) sent.defer(tasks[1], Signal::kReinit);
   sent.defer(tasks[1], Signal::kKill);

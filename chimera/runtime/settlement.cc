@@ -29,7 +29,7 @@ void Settlement::publish() noexcept {
 void Settlement::settle(Task& task, Nanoseconds now) noexcept {
   record_faults(task);
   if (task.is_tapped) parts_.tap.append_row(task);
-  if (!task.outbox.empty()) parts_.set.sent().deliver(task);
+  if (task.has_sent()) parts_.set.sent().deliver(task);
   if (task.state != State::kOn) {
     parts_.set.on_set_changed();
     parts_.members.follow(task, now);

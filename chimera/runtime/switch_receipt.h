@@ -11,6 +11,7 @@
 #include "chimera/base/setup_memory.h"
 #include "chimera/base/time.h"
 #include "chimera/runtime/switch_plan.h"
+#include "chimera/runtime/switch_request.h"
 #include "chimera/runtime/value_step.h"
 
 namespace chimera {
@@ -46,6 +47,8 @@ enum class SwitchEnd : std::uint8_t {
 struct SwitchReceipt {
   std::uint32_t number = 0;
   std::uint32_t before = kNoSet, after = kNoSet;  ///< in ApplicationSpec::sets
+  SwitchCause cause = SwitchCause::kScript;
+  TaskId by;  ///< as SwitchRequest::by
   SwitchEnd end = SwitchEnd::kRefused;
   NoSwitch why = NoSwitch::kNone;  ///< of an end that is not kDone
   TaskId task;                     ///< of `why`
@@ -59,10 +62,10 @@ struct SwitchReceipt {
   std::span<VariablePart> variables;
 };
 
-/// The receipts of a run, as many as were planned for.
+/// The receipts of a run. Where more are made than were planned for, the first and the last are kept.
 class SwitchReceipts {
  public:
-  /// Takes memory for `n` receipts of this spec. Context: setup.
+  /// Takes memory for `n` receipts of this spec, above 0. Context: setup.
   void prepare(const ApplicationSpec& spec, std::size_t n, SetupMemory& memory) {
     all_ = memory.take<SwitchReceipt>(n);
     n_tasks_ = spec.tasks.size();
@@ -70,19 +73,25 @@ class SwitchReceipts {
     tasks_ = memory.take<TaskPart>(n * n_tasks_);
     variables_ = memory.take<VariablePart>(n * n_variables_);
   }
-  /// The next receipt, empty but for its lists, which are as long as they may become. Requires: one is left.
-  /// Context: cycle boundary; wait-free.
+  /// The next receipt, empty but for its lists, which are as long as they may become; without room in the place of the
+  /// last one. Context: cycle boundary; wait-free.
   SwitchReceipt& add() noexcept {
-    CHIMERA_ASSERT(n_ < all_.size());
-    SwitchReceipt& receipt = all_[n_] = SwitchReceipt{};
-    receipt.tasks = tasks_.subspan(n_ * n_tasks_, n_tasks_);
-    receipt.variables = variables_.subspan(n_ * n_variables_, n_variables_);
-    ++n_;
-    return receipt;
+    CHIMERA_ASSERT(!all_.empty());
+    if (has_room()) ++n_;
+    else ++n_left_out_;
+    const std::size_t at = n_ - 1;
+    all_[at] = {};
+    all_[at].tasks = tasks_.subspan(at * n_tasks_, n_tasks_);
+    all_[at].variables = variables_.subspan(at * n_variables_, n_variables_);
+    return all_[at];
   }
   bool has_room() const noexcept { return n_ < all_.size(); }
-  /// Forgets all. Context: cycle boundary.
+  /// Forgets all that are kept. Context: cycle boundary.
   void clear() noexcept { n_ = 0; }
+  /// One more that is not kept.
+  void leave_out() noexcept { ++n_left_out_; }
+  /// How many were made and are not kept. Context: setup, between runs.
+  std::uint64_t left_out() const noexcept { return n_left_out_; }
   /// In the order in which they were asked for; the last may not have ended. Context: setup, between runs.
   std::span<const SwitchReceipt> all() const noexcept { return all_.first(n_); }
 
@@ -91,6 +100,7 @@ class SwitchReceipts {
   std::span<TaskPart> tasks_;
   std::span<VariablePart> variables_;
   std::size_t n_ = 0, n_tasks_ = 0, n_variables_ = 0;
+  std::uint64_t n_left_out_ = 0;
 };
 
 }  // namespace chimera

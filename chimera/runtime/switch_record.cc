@@ -14,6 +14,12 @@ void SwitchRecord::prepare(std::size_t n_receipts) {
   steps_.prepare();
 }
 
+SwitchReceipt* SwitchRecord::add_beside() noexcept {
+  if (receipts_.has_room()) return &receipts_.add();
+  receipts_.leave_out();
+  return nullptr;
+}
+
 SwitchReceipt& SwitchRecord::restart() noexcept {
   receipts_.clear();
   return add();

@@ -18,15 +18,15 @@ class SwitchRecord {
   /// Takes memory for so many receipts. Context: setup.
   void prepare(std::size_t n_receipts);
 
-  /// A new receipt, which is the present one from here on. Requires: fewer were added than prepare() took memory for.
+  /// A new receipt, which is the present one from here on; without room in the place of the last one.
   SwitchReceipt& add() noexcept { return *(receipt_ = &receipts_.add()); }
-  /// One more, which is not the present one. Requires: as add().
-  SwitchReceipt& add_beside() noexcept { return receipts_.add(); }
+  /// One more, which is not the present one; null: there is no room, and it is counted.
+  SwitchReceipt* add_beside() noexcept;
   /// The only receipt anew.
   SwitchReceipt& restart() noexcept;
   SwitchReceipt& receipt() noexcept { return *receipt_; }
   const SwitchReceipt& receipt() const noexcept { return *receipt_; }
-  std::span<const SwitchReceipt> all() const noexcept { return receipts_.all(); }
+  const SwitchReceipts& receipts() const noexcept { return receipts_; }
 
   /// Lists the tasks and variables of the plan: losses count from here.
   void take_up(const SwitchPlan& plan) noexcept;

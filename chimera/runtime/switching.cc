@@ -32,6 +32,27 @@ VariableId lacks_value(TaskSet& set, Task& task, std::span<const Handover> hando
   return {};
 }
 
+void note_standing(std::span<const Task> tasks, std::span<TaskStanding> standing) noexcept {
+  for (const Task& each : tasks) standing[each.id.index] = {each.state, each.in_service};
+}
+
+// Whose tasks are armed next; behind the last run, which nobody has when nothing arrives, the first member's turn.
+bool is_turn_of(const TaskSet& set, const SwitchPlan& plan, const SwitchRun& run, std::uint16_t members) noexcept {
+  if (set.others() == nullptr) return true;
+  if (run.begin < run.end) return set.is_mine(plan.arriving[run.begin]);
+  return plan.arriving.empty() && (members & ((1u << set.context()) - 1u)) == 0;
+}
+
+// Of the members that live, the own context left out.
+bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t number) noexcept {
+  for (std::uint32_t context = 0; context < kMaxContexts; ++context) {
+    if (((members & peers.living()) >> context & 1u) == 0) continue;
+    const SwitchProgress* progress = peers.progress(context);
+    if (progress == nullptr || progress->adopted.load(std::memory_order_acquire) != number) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Switching::Switching(const Parts& parts) noexcept
@@ -68,20 +89,26 @@ void Switching::begin(Nanoseconds origin) noexcept {
   peers_->tell_over(record_.receipt());
 }
 
-void Switching::ask(std::uint32_t set, Nanoseconds now) noexcept {
+bool Switching::leads_to(std::uint32_t set) noexcept {
+  if (is_under_way()) return phase_ != Phase::kUndoing && plan_.after == set;
+  note_standing(parts_.set.tasks(), standing_);
+  return planner_.set_in_force(standing_) == set;
+}
+
+void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   const bool only_watches = phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
   if (only_watches) finish(SwitchEnd::kDone, now);
-  SwitchOrder order;
-  for (const Task& each : parts_.set.tasks()) {
-    standing_[each.id.index] = {each.state, each.in_service};
-    if (each.state == State::kOn) order.on.add(each.id);
-  }
+  note_standing(parts_.set.tasks(), standing_);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  if (phase_ == Phase::kNone) answer = planner_.plan(set, standing_, plan_);
+  if (phase_ == Phase::kNone) answer = planner_.plan(request.set, standing_, plan_);
   if (answer.why != NoSwitch::kNothingToDo) ++n_asked_;
-  SwitchReceipt& receipt = phase_ == Phase::kNone ? record_.add() : record_.add_beside();
+  SwitchReceipt* const added = phase_ == Phase::kNone ? &record_.add() : record_.add_beside();
+  if (added == nullptr) return;
+  SwitchReceipt& receipt = *added;
   receipt.asked = now;
-  receipt.after = set;
+  receipt.after = request.set;
+  receipt.cause = request.cause;
+  receipt.by = request.by;
   receipt.before = planner_.set_in_force(standing_);
   if (answer.why != NoSwitch::kNothingToDo) receipt.number = n_asked_;
   if (!answer) {
@@ -92,9 +119,12 @@ void Switching::ask(std::uint32_t set, Nanoseconds now) noexcept {
     receipt.variables = {};
     return;
   }
+  SwitchOrder order;
+  for (const Task& each : parts_.set.tasks())
+    if (each.state == State::kOn) order.on.add(each.id);
   order.number = next_plan(agreement().plan().number);
   order.members = 1;
-  order.after = set;
+  order.after = request.set;
   order.until = now + kPatience;
   agreement().announce(order);
   due_ = now;
@@ -160,7 +190,7 @@ void Switching::arm(Nanoseconds now) noexcept {
   if (!may_go_on(now)) return;
   const auto number = agreement().run(order_.number);
   const SwitchRun run = find_run(plan_, parts_.set.spec().tasks, number.value_or(UINT16_MAX));
-  if (!is_my_turn(run)) {
+  if (!is_turn_of(parts_.set, plan_, run, order_.members)) {
     due_ = wake_ = order_.until + kGrace;
     return;
   }
@@ -184,13 +214,6 @@ void Switching::arm(Nanoseconds now) noexcept {
   (void)agreement().hand_on(order_.number, *number);
   peers_->ring();
   due_ = wake_ = order_.until + kGrace;
-}
-
-// Whose tasks are armed next; behind the last run, which nobody has when nothing arrives, the first member's turn.
-bool Switching::is_my_turn(const SwitchRun& run) const noexcept {
-  if (peers_ == &nobody_) return true;
-  if (run.begin < run.end) return parts_.set.is_mine(plan_.arriving[run.begin]);
-  return plan_.arriving.empty() && (order_.members & ((1u << me_) - 1u)) == 0;
 }
 
 // Whoever takes part is as the plan found it, and there is still time; else the switch is aborted.
@@ -219,8 +242,8 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   }
   const auto number = agreement().run(order_.number);
   const SwitchRun run = find_run(plan_, set.spec().tasks, number.value_or(UINT16_MAX));
-  if (now < order_.until + (is_my_turn(run) ? Nanoseconds{} : kGrace)) return true;
-  const bool has_next = is_my_turn(run) && std::max(next_armed_, run.begin) < run.end;
+  if (now < order_.until + (is_turn_of(parts_.set, plan_, run, order_.members) ? Nanoseconds{} : kGrace)) return true;
+  const bool has_next = is_turn_of(parts_.set, plan_, run, order_.members) && std::max(next_armed_, run.begin) < run.end;
   if (!has_next) {
     abort(NoSwitch::kNoGap, {}, {});
     return false;
@@ -296,17 +319,6 @@ void Switching::change(Nanoseconds now) noexcept {
   peers_->tell_adopted(order_.number);
 }
 
-bool Switching::have_all_adopted() noexcept {
-  if (!is_held_) return true;
-  const std::uint32_t others = order_.members & peers_->living() & ~(1u << me_);
-  for (std::uint32_t context = 0; context < kMaxContexts; ++context) {
-    if (((others >> context) & 1u) == 0) continue;
-    const SwitchProgress* progress = peers_->progress(context);
-    if (progress == nullptr || progress->adopted.load(std::memory_order_acquire) != order_.number) return false;
-  }
-  return true;
-}
-
 // The plan is aborted on the page, unless it is, or is committed: then it goes on.
 void Switching::abort(NoSwitch why, TaskId of, VariableId variable) noexcept {
   if (agreement().abort(order_.number)) {
@@ -319,13 +331,13 @@ void Switching::abort(NoSwitch why, TaskId of, VariableId variable) noexcept {
     return;
   }
   for (const TaskId id : plan_.arriving)
-    if (parts_.set.is_mine(id) && task(id).owes_off) task(id).outbox.clear();
+    if (parts_.set.is_mine(id) && task(id).owes_off) task(id).forget_sent();
   phase_ = Phase::kUndoing;
 }
 
 void Switching::settle(Nanoseconds now) noexcept {
   const bool undoes = phase_ == Phase::kUndoing;
-  if (!undoes && !have_all_adopted()) {
+  if (!undoes && is_held_ && !have_adopted(*peers_, order_.members & ~(1u << me_), order_.number)) {
     due_ = wake_ = kNever;  // they ring
     return;
   }

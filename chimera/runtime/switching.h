@@ -47,15 +47,18 @@ class Switching {
     JobClock& clock;
   };
   explicit Switching(const Parts& parts) noexcept;
-  /// Takes memory for so many switches that are asked for here; 0 and no peers: there will be none. With peers, which
-  /// outlive this, others ask. Context: setup.
+  /// Takes memory for so many receipts of switches that are asked for here; 0 and no peers: there will be none. With
+  /// peers, which outlive this, others ask. Context: setup.
   void prepare(std::size_t n_switches, SwitchPeers* peers);
   /// Instants on the page count from `origin`, that of the grid of releases.
   void begin(Nanoseconds origin) noexcept;
 
-  /// Makes a plan and begins to carry it out; what became of it is in receipts(). Requires: no peers; fewer were asked
-  /// for than prepare() took memory for.
-  void ask(std::uint32_t set, Nanoseconds now) noexcept;
+  /// Makes a plan and begins to carry it out; what became of it is in receipts(). Requires: no peers, and prepare() took
+  /// memory.
+  void ask(const SwitchRequest& request, Nanoseconds now) noexcept;
+  bool is_under_way() const noexcept { return phase_ != Phase::kNone; }
+  /// The set is in force, or is the one that is being switched to.
+  bool leads_to(std::uint32_t set) noexcept;
   /// Goes on with the switch that is under way, or takes up one that others have planned. No effect without one.
   void step(Nanoseconds now) noexcept;
   /// The run is over: what is not committed is aborted, what is committed is finished.
@@ -66,7 +69,7 @@ class Switching {
   /// The next instant at which a step is worth while although no job ends before. Wait-free.
   Nanoseconds wake() const noexcept { return wake_; }
   /// Of those asked for here. Context: setup, between runs.
-  std::span<const SwitchReceipt> receipts() const noexcept { return record_.all(); }
+  const SwitchReceipts& receipts() const noexcept { return record_.receipts(); }
 
   /// How long a switch that is asked for here may take until the change.
   static constexpr Nanoseconds kPatience = seconds(10);
@@ -80,13 +83,11 @@ class Switching {
   void arm(Nanoseconds now) noexcept;
   bool arm(Task& next, Nanoseconds now) noexcept;
   bool may_go_on(Nanoseconds now) noexcept;
-  bool is_my_turn(const SwitchRun& run) const noexcept;
   void release_before(Nanoseconds instant) noexcept;
   void propose(Nanoseconds now) noexcept;
   void agree(Nanoseconds now) noexcept;
   void await_commit(Nanoseconds now) noexcept;
   void change(Nanoseconds now) noexcept;
-  bool have_all_adopted() noexcept;
   void abort(NoSwitch why, TaskId of, VariableId variable) noexcept;
   void settle(Nanoseconds now) noexcept;
   bool turn_off_all(Nanoseconds now, bool at_once) noexcept;

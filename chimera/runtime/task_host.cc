@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "chimera/base/message.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
@@ -49,6 +50,29 @@ void host_note(void* context, const char* text) {
   ++record.told;
 }
 
+// Says once for each task why its requests are refused.
+std::int32_t refuse_request(void* context, const char* name, std::string_view why) {
+  Task& task = *host_of(context).task;
+  if (task.requests_refused++ > 0) return CHIMERA_FAULT;
+  const FixedString<CHIMERA_FAULT_TEXT - 1> text((Message("asks for the configuration '") << name << "': " << why).view());
+  host_note(context, text.c_str());
+  return CHIMERA_FAULT;
+}
+
+std::int32_t host_request(void* context, const char* name) {
+  const TaskHost& host = host_of(context);
+  const auto sets = host.set->spec().sets;
+  std::uint32_t set = 0;
+  while (set < sets.size() && sets[set].name != name) ++set;
+  if (set == sets.size()) return refuse_request(context, name, "there is none of this name");
+  if (sets.size() == 1) return refuse_request(context, name, "it is the only one");
+  if (!host.set->sent().takes_requests())
+    return refuse_request(context, name, "a switch of tasks in several processes cannot be done yet");
+  host.task->requested_set = set;
+  host.task->has_news = true;
+  return CHIMERA_OK;
+}
+
 const PortSpec* spec_of(void* context, const chimera_port* port) noexcept {
   const TaskHost& host = host_of(context);
   return host.set->memory(host.task->id).spec_of(port);
@@ -70,6 +94,6 @@ chimera_text host_unit(void* context, const chimera_port* port) {
 }  // namespace
 
 const chimera_host TaskHost::kCalls = {&host_expired, &host_signal,   &host_spend,
-                                       &host_note,    &host_variable, &host_unit};
+                                       &host_note,    &host_variable, &host_unit, &host_request};
 
 }  // namespace chimera

@@ -117,6 +117,25 @@ TEST_F(TaskHostTest, ANoteIsCutAndCounted) {
   EXPECT_TRUE(task().has_news);
 }
 
+TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
+  const NamedSet sets[] = {{"near", {}}, {"far", {}}};
+  const_cast<ApplicationSpec&>(set->spec()).sets = sets;
+  EXPECT_EQ(host().request(context(), "far"), CHIMERA_FAULT);
+  EXPECT_STREQ(task().faults.note,
+               "asks for the configuration 'far': a switch of tasks in several processes cannot be done yet");
+  EXPECT_EQ(task().requested_set, kNoRequest);
+  set->sent().allow_requests();
+  task().has_news = false;
+  EXPECT_EQ(host().request(context(), "far"), CHIMERA_OK);
+  EXPECT_EQ(task().requested_set, 1u);
+  EXPECT_TRUE(task().has_news);
+  EXPECT_EQ(host().request(context(), "near"), CHIMERA_OK);
+  EXPECT_EQ(task().requested_set, 0u);
+  EXPECT_EQ(host().request(context(), "fa"), CHIMERA_FAULT);
+  EXPECT_EQ(task().faults.notes, 1u) << "told once";
+  EXPECT_EQ(task().requests_refused, 2u);
+}
+
 TEST_F(TaskHostTest, APortKnowsWhatItIsLinkedToAndInWhichUnit) {
   EXPECT_EQ(view(host().variable(context(), port(0))), "q");
   EXPECT_EQ(view(host().unit(context(), port(0))), "rad");

@@ -120,7 +120,7 @@ SignalReport TaskLife::arm(TaskId id, Nanoseconds now) {
   } else {
     report.is_accepted = false;
     report.why = Refusal::kFault;
-    task.outbox.clear();
+    task.forget_sent();
   }
   return report;
 }

@@ -180,6 +180,10 @@ typedef struct chimera_host {
    * there is none. Good as long as the task. `port` lies in the component's state. */
   chimera_text (*variable)(void* context, const chimera_port* port);
   chimera_text (*unit)(void* context, const chimera_port* port);
+  /* Asks for a switch to the configuration of that name, as an operator would; the last request of a method counts.
+   * CHIMERA_OK, or CHIMERA_FAULT when there is no such configuration or it cannot be switched to in this run: told as a
+   * note, once for each task. Acted upon after the present method. */
+  int32_t (*request)(void* context, const char* configuration);
 } chimera_host;
 
 /* Given to every method. */

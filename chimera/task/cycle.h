@@ -47,6 +47,12 @@ class Cycle {
   /// One line for whoever runs the application, at most 159 bytes of `text`: an event, and a line of the run. Of
   /// several in one method the last counts. Context: any; wait-free.
   void note(const char* text) const noexcept { call_->host->note(call_->context, text); }
+  /// Asks for a switch to the configuration of that name: exactly its tasks ON, as docs/howto/reconfigure.md says. Of
+  /// all requests of tasks that wait the last counts; one for what is in force, or is being switched to, has no effect.
+  /// False when there is no such configuration, or no switch in this run: one note says so. Context: cycle; wait-free.
+  bool request(const char* configuration) const noexcept {
+    return call_->host->request(call_->context, configuration) == CHIMERA_OK;
+  }
   /// The variable or constant that `port` is joined to; empty: none. Good as long as the task. Context: any; wait-free.
   template <class Port>
   std::string_view variable(const Port& port) const noexcept {

@@ -164,6 +164,7 @@ typedef struct pboPort_t {
 #define PBO_EXPIRED (PBO_CALL->host->expired(PBO_CALL->context))
 #define PBO_SIGNAL(which, task) (PBO_CALL->host->signal(PBO_CALL->context, which, task))
 #define PBO_RING(task) PBO_SIGNAL(CHIMERA_SIGNAL_WAKEUP, task) /* one event for a task behind a server */
+#define PBO_REQUEST(name) (PBO_CALL->host->request(PBO_CALL->context, name)) /* a configuration; CHIMERA_OK or not */
 #define PBO_SPEND(ns) (PBO_CALL->host->spend(PBO_CALL->context, ns))
 /* Notes the text of a fault and is PBO_ERROR: return PBO_FAULT("the device does not answer"); */
 #define PBO_FAULT(message) pboFault(PBO_CALL, message)

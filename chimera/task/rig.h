@@ -97,7 +97,7 @@ class Rig : public RigPorts {
   void dropped(std::uint32_t count) { call_.dropped = count; }
   /// Execution time used through Cycle::spend() so far.
   Nanoseconds spent() const { return spent_; }
-  /// The signals sent so far, as "off pid"; to itself "off".
+  /// The signals sent so far, as "off pid"; to itself "off". Requests for a configuration, as "request figure_9".
   const std::vector<std::string>& signals() const { return signals_; }
   /// The notes left so far, the first 16 of them.
   std::vector<std::string> notes() const {
@@ -133,11 +133,15 @@ class Rig : public RigPorts {
   static chimera_text host_unit(void* rig, const chimera_port* port) {
     return text_of(static_cast<Rig*>(rig)->joined(port).unit);
   }
+  static std::int32_t host_request(void* rig, const char* configuration) {
+    static_cast<Rig*>(rig)->signals_.push_back(std::string("request ") + configuration);
+    return CHIMERA_OK;
+  }
   static chimera_text text_of(const std::string& text) {
     return {text.data(), static_cast<std::uint32_t>(text.size())};
   }
   static constexpr chimera_host kHost{&host_expired, &host_signal,   &host_spend,
-                                      &host_note,    &host_variable, &host_unit};
+                                      &host_note,    &host_variable, &host_unit, &host_request};
 
   chimera_call call_{};
   std::vector<std::string> signals_;

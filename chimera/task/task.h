@@ -44,6 +44,9 @@ struct SentSignal {
 
 inline constexpr std::size_t kOutboxSize = 16;
 
+/// Stands for "none" where a method asks for a configuration.
+inline constexpr std::uint32_t kNoRequest = UINT32_MAX;
+
 /// Where a task tells which method runs while nobody wants to know. Never read: pairs with nothing.
 inline std::atomic<std::uint32_t> running_untold{0};
 
@@ -83,6 +86,8 @@ struct alignas(64) Task {
   chimera_inherited* inherited = nullptr;  ///< by output: what its port was told at the last on
   FaultRecord faults;
   FixedVector<SentSignal, kOutboxSize> outbox;
+  std::uint32_t requested_set = kNoRequest;  ///< by the present method, in ApplicationSpec::sets
+  std::uint32_t requests_refused = 0;        ///< of requests for configurations, since the start of the run
   /// The present job was told to: it used up its budget. Relaxed, pairs with nothing: a job that sees it late gives up
   /// late.
   std::atomic<bool> give_up{false};
@@ -93,6 +98,13 @@ struct alignas(64) Task {
   bool in_service = false;  ///< init or kill is run by the service thread: nobody else touches the task
   bool owes_off = false;    ///< OFF, with `on` behind it and `off` before it: armed for a switch, or left by one
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
+
+  /// The last method sent signals, or asked for a configuration, and nobody has looked at that.
+  bool has_sent() const noexcept { return !outbox.empty() || requested_set != kNoRequest; }
+  void forget_sent() noexcept {
+    outbox.clear();
+    requested_set = kNoRequest;
+  }
 };
 
 }  // namespace chimera

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Events in C: those of the named pipe that its resource port names ("none": rings of its doorbell), each passed on to
- * the doorbell of another task. */
+ * the doorbell of another task, or as a request for a configuration. */
 #define _POSIX_C_SOURCE 200809L
 #include <fcntl.h>
 #include <unistd.h>
@@ -14,6 +14,7 @@ typedef struct {
 PBO_PORTS(t_relay,
   (resource, pipe,   text,  "", "1", PBO_DOC("a named pipe, or none")),
   (in_const, target, text,  "", "1", PBO_INITIAL(text, ""), PBO_DOC("the task whose doorbell is rung; empty: nobody")),
+  (in_const, set,    text,  "", "1", PBO_INITIAL(text, ""), PBO_DOC("the configuration asked for; empty: none")),
   (out_var,  passed, int64, "", "1", PBO_INITIAL(int64, 0), PBO_DOC("events so far")))
 PBO_MODULE(t_relay, .doc = "Passes events on.", .default_rate_hz = 100);
 
@@ -35,10 +36,12 @@ int t_relaySync(t_relayLocal_t *local) {
 
 int t_relayCycle(t_relayLocal_t *local) {
   SVAR_IN(target);
+  SVAR_IN(set);
   SVAR_OUT(passed);
   ++*passed;
   if (PBO_EXPIRED) return PBO_PARTIAL; /* counted, and not passed on */
   if ((*target)[0] != '\0' && PBO_RING(*target) != PBO_OK) return PBO_FAULT("the target is no task behind a server");
+  if ((*set)[0] != '\0' && PBO_REQUEST(*set) != CHIMERA_OK) return PBO_FAULT("the configuration cannot be had");
   return PBO_OK;
 }
 

@@ -46,6 +46,14 @@ TEST(CFace, ADoorbellIsRungByName) {
   EXPECT_EQ(rig.signals(), std::vector<std::string>{"wakeup lamp"});
 }
 
+TEST(CFace, AConfigurationIsAskedForByName) {
+  Relay rig("none");
+  rig.set("set", Text<64>("figure_9"));
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(rig.signals(), std::vector<std::string>{"request figure_9"});
+}
+
 TEST(CFace, CycleMayPublishAPartialResult) {
   Relay rig("none");
   rig.set("target", Text<64>("lamp"));

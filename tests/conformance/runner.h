@@ -74,7 +74,8 @@ class Runner {
   RunEnd run(Nanoseconds duration) { return executive_ ? executive_->run(duration) : virtual_->run(duration); }
   void shut_down() { executive_ ? executive_->shut_down() : virtual_->shut_down(); }
 
-  std::span<const SwitchReceipt> receipts() { return executive_ ? executive_->receipts() : virtual_->receipts(); }
+  std::span<const SwitchReceipt> receipts() { return kept().all(); }
+  const SwitchReceipts& kept() { return executive_ ? executive_->receipts() : virtual_->receipts(); }
   /// The records since the last call.
   std::vector<TapRecord> records() { return listened_.records(); }
 

@@ -197,12 +197,13 @@ void LocalTarget::finish(RunReport& report) {
   loop_->shut_down();
   under_way().is_ending = false;
   under_way().running = under_way().serving = 0;
-  for (const SwitchReceipt& receipt : loop_->receipts()) {  // a switch that the end aborted is among them
+  for (const SwitchReceipt& receipt : loop_->receipts().all()) {  // a switch that the end aborted is among them
     const ApplicationSpec& spec = application_.tasks().spec();
     report.switches += control::receipt_text(receipt, spec, loop_->origin());
     const std::string json = control::receipt_json(receipt, spec, loop_->origin());
     report.receipts += (report.receipts.empty() || json.empty() ? "" : ", ") + json;
   }
+  report.receipts_left_out = loop_->receipts().left_out();
   // What `off` and `kill` cost, and their faults, too.
   report.profiles = profiles_of(application_.tasks(), states, application_.configuration(), now);
   report.verdict = judge_run({report.profiles, faults_before, {}, report.is_flag_up, request_.strict});

@@ -62,7 +62,7 @@ class VirtualLoop final : public RunLoop {
   Nanoseconds origin() const override { return executor_.origin(); }
   void shut_down() override { executor_.shut_down(); }
   std::span<const RefusedSignal> refused() override { return executor_.refused(); }
-  std::span<const SwitchReceipt> receipts() override { return executor_.receipts(); }
+  const SwitchReceipts& receipts() override { return executor_.receipts(); }
   std::string description() const override {
     std::string text = is_preemptive_ ? "virtual time, preemptive" : "virtual time, non-preemptive";
     return request_.seed ? text + ", seed " + std::to_string(*request_.seed) : text;
@@ -118,7 +118,7 @@ class RealTimeLoop final : public RunLoop {
   Nanoseconds origin() const override { return executive_.origin(); }
   void shut_down() override { executive_.shut_down(); }
   std::span<const RefusedSignal> refused() override { return executive_.refused(); }
-  std::span<const SwitchReceipt> receipts() override { return executive_.receipts(); }
+  const SwitchReceipts& receipts() override { return executive_.receipts(); }
   std::string description() const override { return grant_; }
 
  private:

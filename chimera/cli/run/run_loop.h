@@ -23,8 +23,8 @@ class RunLoop {
   virtual void shut_down() = 0;
   /// What was refused while it ran; after the end only.
   virtual std::span<const RefusedSignal> refused() = 0;
-  /// Of every switch that was asked for; after the end only.
-  virtual std::span<const SwitchReceipt> receipts() = 0;
+  /// Of the switches that were asked for; after the end only.
+  virtual const SwitchReceipts& receipts() = 0;
   /// One line about how it is run, for people.
   virtual std::string description() const = 0;
 };

@@ -52,11 +52,12 @@ void print_json(const RunReport& report, std::FILE* out) {
   std::fprintf(out,
                "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"flag\": %s, "
                "\"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s], \"receipts\": [%s], "
-               "\"verdict\": %s}\n",
+               "\"receipts_left_out\": %llu, \"verdict\": %s}\n",
                json_string(report.subsystem).c_str(), json_string(report.executor).c_str(),
                static_cast<long long>(report.ran.count), word(report.end), report.is_flag_up ? "true" : "false",
                profile_json(report.profiles, report.origin).c_str(), variables.c_str(), expectations.c_str(),
-               report.receipts.c_str(), report.verdict.json().c_str());
+               report.receipts.c_str(), static_cast<unsigned long long>(report.receipts_left_out),
+               report.verdict.json().c_str());
 }
 
 }  // namespace
@@ -92,6 +93,9 @@ void print(const RunReport& report, bool json, std::FILE* out) {
   std::string text = "ran " + seconds_text(report.ran) + " s" + sentence(report) + "\n";
   if (report.is_flag_up) text += "the illegal-configuration flag is up\n";
   text += report.refused + report.switches;
+  if (report.receipts_left_out > 0)
+    text += "and " + std::to_string(report.receipts_left_out) +
+            " switches before the last, of which no receipt is kept\n";
   text += profile_table(report.profiles, report.ran, report.origin) + lines + report.verdict.text();
   std::fputs(for_terminal(text).c_str(), out);
 }

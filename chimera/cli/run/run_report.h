@@ -33,6 +33,7 @@ struct RunReport {
   std::string refused;                 ///< a line for each refused signal
   std::string switches;                ///< lines for each switch that was asked for
   std::string receipts;                ///< of these as JSON, with commas between them
+  std::uint64_t receipts_left_out = 0; ///< of more switches than receipts are kept
   std::vector<TaskProfile> profiles;
   Nanoseconds origin;                  ///< of `ran`; faults are timed from it
   std::vector<Watched> variables;

@@ -41,8 +41,8 @@ class VirtualExecutor {
   Nanoseconds origin() const noexcept { return releases_.origin(); }
   /// Context: setup, between runs.
   std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
-  /// Of every switch that the script asked for. Context: setup, between runs.
-  std::span<const SwitchReceipt> receipts() noexcept { return releases_.switching().receipts(); }
+  /// Of the switches that were asked for. Context: setup, between runs.
+  const SwitchReceipts& receipts() noexcept { return releases_.switching().receipts(); }
 
  private:
   TaskSet& set_;

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tasks that ask for a configuration, on every executor of one context: the last request stands, none is lost while a
+// switch is under way, and one that changes nothing has no effect.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "chimera/runtime/testing/test_application.h"
+#include "tests/conformance/runner.h"
+
+namespace chimera::toy {
+namespace {
+
+/// What the components of a run do. One run at a time.
+struct Scene {
+  std::function<void(Cycle)> first, second;  // in the cycles of the two that ask
+  std::function<Outcome(Cycle)> on_of_high;
+  std::vector<bool> answers;
+};
+Scene scene;
+
+struct First {
+  Out<double> x{"x", "1", initial = 0.0};
+  void cycle(Cycle c) {
+    if (scene.first) scene.first(c);
+  }
+};
+
+struct Second {
+  In<double> x{"x", "1"};
+  void cycle(Cycle c) {
+    if (scene.second) scene.second(c);
+  }
+};
+
+struct Low {
+  Out<double> level{"level", "1", initial = 0.0};
+  void cycle(Cycle) { *level = 1; }
+};
+
+struct High {
+  Out<double> level{"level", "1", initial = 0.0};
+  Outcome on(Cycle c) { return scene.on_of_high ? scene.on_of_high(c) : ok(); }
+  void cycle(Cycle) { *level = 1; }
+};
+
+constexpr TaskId kFirst{0u}, kSecond{1u}, kLow{2u}, kHigh{3u}, kOther{4u};
+constexpr std::uint32_t kLowSet = 0, kHighSet = 1, kOtherSet = 2;
+
+class Requests : public ::testing::TestWithParam<Kind> {
+ protected:
+  Requests() { scene = {}; }
+  std::span<const SwitchReceipt> go(Nanoseconds duration, const std::vector<ScriptAct>& acts = {}) {
+    acts_ = acts;
+    runner_.reset();
+    set_.reset();
+    app_ = std::make_unique<testing::TestApplication>();
+    app_->add("first", testing::component<First>("first")).budget = microseconds(20);
+    app_->add("second", testing::component<Second>("second")).budget = microseconds(20);
+    app_->add("low", testing::component<Low>("low")).budget = microseconds(20);
+    app_->add("high", testing::component<High>("high")).budget = microseconds(20);
+    app_->add("other", testing::component<Low>("low")).budget = microseconds(20);
+    app_->make({kFirst, kSecond, kLow}, false);
+    app_->spec.sets = std::span(sets_).first(n_sets_);
+    set_ = *HeapTaskSet::create(app_->spec, app_->components);
+    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+    EXPECT_TRUE(runner_->start());
+    EXPECT_EQ(runner_->run(duration), RunEnd::kTime);
+    for (const Task& task : set_->tasks()) EXPECT_EQ(task.profile.dropped + task.profile.missed, 0u);
+    return runner_->receipts();
+  }
+  static void ask(const Cycle& c, const char* name) { scene.answers.push_back(c.request(name)); }
+  bool is_on(TaskId task) const { return set_->tasks()[task.index].state == chimera::State::kOn; }
+  static ScriptAct to(std::uint32_t set, Nanoseconds at) {
+    ScriptAct act;
+    act.at = at;
+    act.kind = ScriptAct::Kind::kSwitch;
+    act.set = set;
+    return act;
+  }
+
+  std::vector<TaskId> low_{kFirst, kSecond, kLow}, high_{kFirst, kSecond, kHigh}, other_{kFirst, kSecond, kOther};
+  NamedSet sets_[3] = {{"low", low_}, {"high", high_}, {"other", other_}};
+  std::size_t n_sets_ = 3;
+  std::vector<ScriptAct> acts_;
+  std::unique_ptr<testing::TestApplication> app_;
+  std::unique_ptr<HeapTaskSet> set_;
+  std::unique_ptr<Runner> runner_;
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Requests, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
+                         [](const auto& one) { return kind_name(one.param); });
+
+TEST_P(Requests, AreCarriedOutBehindTheCycleThatAsked) {
+  scene.first = [](Cycle c) {
+    if (c.count() == 5) ask(c, "high");
+  };
+  const auto receipts = go(milliseconds(10));
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[0].cause, SwitchCause::kRequest);
+  EXPECT_EQ(receipts[0].by, kFirst);
+  EXPECT_EQ(receipts[0].after, kHighSet);
+  EXPECT_GE(receipts[0].asked, milliseconds(5));
+  EXPECT_LT(receipts[0].at, milliseconds(6));
+  EXPECT_TRUE(is_on(kHigh));
+  EXPECT_FALSE(is_on(kLow));
+  EXPECT_EQ(set_->tasks()[kLow.index].profile.cycles, 6u);
+  EXPECT_EQ(set_->tasks()[kHigh.index].profile.cycles, 4u);
+  EXPECT_EQ(scene.answers, std::vector<bool>{true});
+}
+
+TEST_P(Requests, TheLastOfAMethodCounts) {
+  scene.first = [](Cycle c) {
+    if (c.count() != 5) return;
+    ask(c, "high");
+    ask(c, "other");
+  };
+  const auto receipts = go(milliseconds(10));
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].after, kOtherSet);
+}
+
+TEST_P(Requests, ForWhatIsInForceOrUnderWayHaveNoEffect) {
+  scene.on_of_high = [](Cycle c) {
+    c.spend(microseconds(1500));  // the releases that come meanwhile go before the change
+    return ok();
+  };
+  scene.first = [](Cycle c) {
+    if (c.count() == 2) ask(c, "low");
+    if (c.count() == 5 || c.count() == 6) ask(c, "high");
+  };
+  const auto receipts = go(milliseconds(12));
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(scene.answers, (std::vector<bool>{true, true, true}));
+}
+
+TEST_P(Requests, ThatComeMeanwhileAreTakenNextAndTheLastOfThemStands) {
+  scene.on_of_high = [](Cycle c) {
+    c.spend(microseconds(1500));
+    return ok();
+  };
+  scene.first = [](Cycle c) {
+    if (c.count() == 5) ask(c, "high");
+    if (c.count() == 6) ask(c, "low");
+  };
+  scene.second = [](Cycle c) {
+    if (c.count() == 6) ask(c, "other");
+  };
+  const auto receipts = go(milliseconds(15));
+  ASSERT_EQ(receipts.size(), 2u);
+  EXPECT_EQ(receipts[0].after, kHighSet);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[1].after, kOtherSet);
+  EXPECT_EQ(receipts[1].by, kSecond);
+  EXPECT_EQ(receipts[1].end, SwitchEnd::kDone);
+  EXPECT_GE(receipts[1].asked, receipts[0].ended);
+  EXPECT_TRUE(is_on(kOther));
+}
+
+TEST_P(Requests, OfAnOperatorAreRefusedWhileOneOfATaskIsUnderWay) {
+  scene.on_of_high = [](Cycle c) {
+    c.spend(microseconds(1500));
+    return ok();
+  };
+  scene.first = [](Cycle c) {
+    if (c.count() == 5) ask(c, "high");
+  };
+  const auto receipts = go(milliseconds(15), {to(kOtherSet, milliseconds(6))});
+  ASSERT_EQ(receipts.size(), 2u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[1].end, SwitchEnd::kRefused);
+  EXPECT_EQ(receipts[1].why, NoSwitch::kUnderWay);
+  EXPECT_EQ(receipts[1].cause, SwitchCause::kScript);
+}
+
+TEST_P(Requests, OfAnArmedTaskGoOutAtTheChangeAndAreForgottenWithoutOne) {
+  scene.on_of_high = [](Cycle c) {
+    ask(c, "other");
+    return ok();
+  };
+  const auto receipts = go(milliseconds(15), {to(kHighSet, microseconds(5500))});
+  ASSERT_EQ(receipts.size(), 2u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[1].by, kHigh);
+  EXPECT_TRUE(is_on(kOther));
+  scene.on_of_high = [](Cycle c) -> Outcome {
+    ask(c, "other");
+    return fault("no current");
+  };
+  const auto again = go(milliseconds(15), {to(kHighSet, microseconds(5500))});
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0].end, SwitchEnd::kAborted);
+  EXPECT_TRUE(is_on(kLow));
+}
+
+TEST_P(Requests, ForAnUnknownConfigurationAreRefusedCountedAndNotedOnce) {
+  scene.first = [](Cycle c) {
+    if (c.count() % 2 == 0) ask(c, "hihg");
+  };
+  EXPECT_TRUE(go(milliseconds(6)).empty());
+  EXPECT_EQ(scene.answers, (std::vector<bool>{false, false, false}));
+  const Task& task = set_->tasks()[kFirst.index];
+  EXPECT_EQ(task.requests_refused, 3u);
+  EXPECT_EQ(task.faults.notes, 1u);
+  EXPECT_STREQ(task.faults.note, "asks for the configuration 'hihg': there is none of this name");
+}
+
+TEST_P(Requests, WhereThereIsOneConfigurationAreRefused) {
+  n_sets_ = 1;
+  scene.first = [](Cycle c) { ask(c, "low"); };
+  EXPECT_TRUE(go(milliseconds(2)).empty());
+  EXPECT_EQ(scene.answers, (std::vector<bool>{false, false}));
+  EXPECT_STREQ(set_->tasks()[kFirst.index].faults.note, "asks for the configuration 'low': it is the only one");
+}
+
+TEST_P(Requests, BeyondTheReceiptsThatAreKeptAreCarriedOutAndCounted) {
+  scene.first = [](Cycle c) {
+    if (c.count() % 4 == 0) ask(c, c.count() % 8 == 0 ? "high" : "low");
+  };
+  const auto receipts = go(milliseconds(160));
+  ASSERT_EQ(receipts.size(), 16u);
+  EXPECT_EQ(runner_->kept().left_out(), 24u);
+  EXPECT_EQ(receipts[14].number, 15u);
+  EXPECT_EQ(receipts[15].number, 40u);
+  for (const SwitchReceipt& receipt : receipts) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_TRUE(is_on(kLow));
+}
+
+}  // namespace
+}  // namespace chimera::toy
