@@ -62,6 +62,9 @@ std::string asked_by(const SwitchReceipt& receipt, const ApplicationSpec& spec) 
   switch (receipt.cause) {
     case SwitchCause::kScript: return "--at";
     case SwitchCause::kRequest: return "task " + name;
+    case SwitchCause::kMiss: return "on_miss of " + name;
+    case SwitchCause::kOverrun: return "on_overrun of " + name;
+    case SwitchCause::kFault: return "on_fault of " + name;
   }
   return "?";
 }

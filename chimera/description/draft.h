@@ -48,8 +48,6 @@ struct DraftReaction {
   Place at;
 };
 
-enum class OnFault : std::uint8_t { kError, kFlag, kStop, kSwitch };
-
 struct DraftServer {
   Place at;
   ServerKind kind = ServerKind::kDeferrable;

@@ -132,6 +132,12 @@ Verdict words_rule(const PortDescriptor& port) {
   return {};
 }
 
+Verdict configuration_rule(const PortDescriptor& port) {
+  const bool fits = port.type == CHIMERA_STRING && port.kind == CHIMERA_IN_CONST && port.one_of.empty();
+  if (port.names_configuration && !fits) return "the name of a configuration: expected an in-const of free text";
+  return {};
+}
+
 Verdict safety_rule(const PortDescriptor& port) {
   if (!port.safety) return {};
   if (port.kind != CHIMERA_OUT_VAR) return "safety is for out-vars, this is an " + std::string(kind_name(port.kind));
@@ -226,7 +232,8 @@ Verdict port_rules(const PortDescriptor& port) {
   if (!is_identifier(port.name)) return name_fault("port", port.name);
   if (port.unit.empty()) return "the unit is empty; write \"1\" for none";
   for (const auto rule :
-       {text_rule, kind_rule, type_name_rule, fields_rule, instances_rule, range_rule, words_rule, safety_rule}) {
+       {text_rule, kind_rule, type_name_rule, fields_rule, instances_rule, range_rule, words_rule,
+        configuration_rule, safety_rule}) {
     if (Verdict v = rule(port); !v.empty()) return v;
   }
   return {};

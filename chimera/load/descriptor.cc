@@ -38,6 +38,7 @@ std::string range_text(const PortDescriptor& port) {
   std::string range = port.has_range ? "[" + number(port.min) + ", " + number(port.max) + "]" : "none";
   if (!port.at_least.empty()) range += ", at least " + port.at_least;
   for (const std::string& word : port.one_of) range += (&word == &port.one_of.front() ? ", one of " : " ") + word;
+  if (port.names_configuration) range += ", a configuration";
   return range;
 }
 

@@ -47,6 +47,7 @@ struct PortDescriptor {
   double min = 0, max = 0;            ///< in `unit`; count when has_range
   std::string at_least{};             ///< in-const: the in-const that no element is below; "" for none
   std::vector<std::string> one_of{};  ///< in-const of text: the words it may be; empty: any
+  bool names_configuration = false;   ///< in-const of text: a configuration of the description, or empty
   std::vector<Extent> extents{};      ///< `shape`, parsed
   std::vector<FieldDescriptor> fields{};
   std::vector<std::byte> initial{};    ///< whole elements, padding zero: none, 1 (for all) or max_count()

@@ -95,7 +95,9 @@ void BoundarySignals::record(const SignalReport& report, bool was_illegal, Nanos
 }
 
 void BoundarySignals::record_outcome(TaskId task, bool was_illegal, Nanoseconds now) noexcept {
-  settlement_.record_faults(set_.tasks()[task.index]);
+  Task& touched = set_.tasks()[task.index];
+  settlement_.record_faults(touched);
+  settlement_.follow_error(touched, now);
   if (set_.flag().is_up() != was_illegal) tap_.record(TapKind::kFlag, now, TaskId(), was_illegal ? 0 : 1);
 }
 

@@ -9,7 +9,7 @@ namespace chimera {
 void IllegalFlag::prepare(std::span<const Variable> variables, std::span<const Task> tasks, SetupMemory& memory) {
   variables_ = variables;
   tasks_ = tasks;
-  raises_ = memory.take<bool>(tasks.size());
+  raises_in_ = memory.take<State>(tasks.size());
 }
 
 void IllegalFlag::raise(bool up) noexcept {
@@ -18,9 +18,9 @@ void IllegalFlag::raise(bool up) noexcept {
   judge();
 }
 
-void IllegalFlag::raise_for(TaskId task) noexcept {
+void IllegalFlag::raise_for(TaskId task, State in) noexcept {
   raised_by_ = task;
-  raises_[task.index] = true;
+  raises_in_[task.index] = in;
   judge();
 }
 
@@ -30,12 +30,13 @@ void IllegalFlag::follow(std::span<const bool> on) noexcept {
   judge();
 }
 
-// What tasks raised that are no longer ON, or all did.
+// What tasks raised that are in another state now, or all did.
 void IllegalFlag::lower(bool for_all) noexcept {
   raised_by_ = TaskId();
   for (const Task& task : tasks_) {
-    raises_[task.id.index] = raises_[task.id.index] && task.state == State::kOn && !for_all;
-    if (raises_[task.id.index]) raised_by_ = task.id;
+    State& in = raises_in_[task.id.index];
+    if (for_all || task.state != in) in = State::kNotCreated;
+    if (in != State::kNotCreated) raised_by_ = task.id;
   }
 }
 

@@ -34,9 +34,9 @@ class IllegalFlag {
   /// Raises or lowers the part of the flag that does not follow from the ON set. Lowered, it is also for the tasks
   /// that hold it up.
   void raise(bool up) noexcept;
-  /// The reaction of the task, of this context, holds it up until that task is no longer ON.
-  void raise_for(TaskId task) noexcept;
-  bool raises(TaskId task) const noexcept { return raises_[task.index]; }
+  /// A reaction of the task, of this context, holds it up until that task is no longer in state `in`, ON or ERROR.
+  void raise_for(TaskId task, State in) noexcept;
+  bool raises(TaskId task) const noexcept { return raises_in_[task.index] != State::kNotCreated; }
   /// The task whose reaction raised it last; invalid: no task does.
   TaskId raised_by() const noexcept { return raised_by_; }
   /// The flag words of the other processes, read from here on by is_up(). The words and the span outlive this.
@@ -52,7 +52,7 @@ class IllegalFlag {
   std::span<const Task> tasks_;
   // Relaxed, pair with nothing: a job that reads one a cycle late is a job that ran a cycle earlier.
   std::span<const std::atomic<std::uint32_t>* const> foreign_;
-  std::span<bool> raises_;  // by task: its reaction holds the flag up
+  std::span<State> raises_in_;  // by task: its reaction holds the flag up in this state; NOT-CREATED: it does not
   TaskId raised_by_;          // one of them
   bool is_raised_ = false;
   bool is_on_set_legal_ = true;

@@ -55,7 +55,7 @@ TEST_F(IllegalFlagTest, FollowsFromTheTasksThatAreOn) {
 
 TEST_F(IllegalFlagTest, StaysUpForATaskUntilThatTaskIsOnNoMore) {
   turn(kProducer, true);
-  flag.raise_for(kProducer);
+  flag.raise_for(kProducer, State::kOn);
   EXPECT_TRUE(flag.is_up());
   EXPECT_TRUE(flag.raises(kProducer));
   EXPECT_EQ(flag.raised_by(), kProducer);
@@ -67,9 +67,18 @@ TEST_F(IllegalFlagTest, StaysUpForATaskUntilThatTaskIsOnNoMore) {
   EXPECT_FALSE(flag.raised_by().is_valid());
 }
 
+TEST_F(IllegalFlagTest, StaysUpForAFaultUntilTheTaskIsInErrorNoMore) {
+  tasks[kProducer.index].state = State::kError;
+  flag.raise_for(kProducer, State::kError);
+  turn(kConsumer, false);
+  EXPECT_TRUE(flag.is_up());
+  turn(kProducer, false);
+  EXPECT_FALSE(flag.is_up());
+}
+
 TEST_F(IllegalFlagTest, LoweredByHandItIsAlsoForTasksThatHoldItUp) {
   turn(kProducer, true);
-  flag.raise_for(kProducer);
+  flag.raise_for(kProducer, State::kOn);
   flag.raise(true);
   flag.raise(false);
   EXPECT_FALSE(flag.is_up());

@@ -20,6 +20,8 @@ struct alignas(64) JobRecord {
     kRaiseFlag = 2,  ///< the reaction `flag`
     kStop = 4,       ///< the reaction `stop`
     kFindCause = 8,  ///< a deadline was missed, and the cause is to be reported
+    kSwitchForMiss = 16,     ///< the reaction `switch` of on_miss
+    kSwitchForOverrun = 32,  ///< the reaction `switch` of on_overrun
   };
   /// What was reported of the present job before its end: bits of `reported`.
   enum Report : std::uint8_t {

@@ -7,7 +7,8 @@ namespace {
 
 // What remains to be done at the end of a job whose failure was reported while the job was under way.
 OnMiss left_of(OnMiss reaction, bool was_reported) noexcept {
-  const bool is_done = was_reported && (reaction == OnMiss::kFlag || reaction == OnMiss::kStop);
+  const bool acts_at_once = reaction == OnMiss::kFlag || reaction == OnMiss::kStop || reaction == OnMiss::kSwitch;
+  const bool is_done = was_reported && acts_at_once;
   return is_done ? OnMiss::kContinue : reaction;
 }
 
@@ -24,8 +25,9 @@ bool MissPolicy::decide_start(const Job& job, Nanoseconds now) noexcept {
   }
   const OnMiss reaction = task.spec->on_miss;
   if (task.spec->min_time > Nanoseconds{}) ++task.profile.min_refused;
-  if (reaction == OnMiss::kFlag) leave(job.task, JobRecord::kRaiseFlag);
-  if (reaction == OnMiss::kContinue || reaction == OnMiss::kFlag) return true;
+  if (reaction == OnMiss::kFlag || reaction == OnMiss::kSwitch)
+    leave_reaction(job.task, reaction, JobRecord::kSwitchForMiss);
+  if (reaction == OnMiss::kContinue || reaction == OnMiss::kFlag || reaction == OnMiss::kSwitch) return true;
   tap_.record(TapKind::kMiss, now, job.task, task.call.cycle);
   drop(dropped);
   if (reaction == OnMiss::kStop) leave(job.task, JobRecord::kStop);
@@ -52,7 +54,7 @@ bool MissPolicy::judge(const Job& job, BodyEnd& body, Nanoseconds end, Nanosecon
     ++task.profile.overrun;
     if (!is_reported) tap_.record(TapKind::kOverrun, end, task.id, task.call.cycle, used.count);
     const OnMiss reaction = left_of(task.spec->on_overrun, is_reported);
-    may_publish = react(reaction, task, body, "used more execution time than its budget", end);
+    may_publish = react(reaction, JobRecord::kSwitchForOverrun, task, body, end);
   }
   const bool is_late = end > job.deadline;
   const bool tolerated = task.spec->tolerated_of > 0 && record.history.add(is_late, *task.spec) && is_late;
@@ -67,7 +69,7 @@ bool MissPolicy::judge(const Job& job, BodyEnd& body, Nanoseconds end, Nanosecon
     return may_publish;
   }
   const OnMiss reaction = left_of(task.spec->on_miss, (reported & JobRecord::kLate) != 0);
-  return react(reaction, task, body, "missed its deadline", end) && may_publish;
+  return react(reaction, JobRecord::kSwitchForMiss, task, body, end) && may_publish;
 }
 
 void MissPolicy::count_good(Task& task) noexcept {
@@ -115,17 +117,18 @@ void MissPolicy::report_late(const Job& job, bool has_begun) noexcept {
   const bool tolerated = records_[job.task.index].history.would_tolerate(*task.spec);
   if (!report_once(job.task, has_begun ? JobRecord::kLate : JobRecord::kLateUnstarted)) return;
   leave_cause(job.task, job.release);
-  if (has_begun && !tolerated) leave_reaction(job.task, task.spec->on_miss);
+  if (has_begun && !tolerated) leave_reaction(job.task, task.spec->on_miss, JobRecord::kSwitchForMiss);
 }
 
 bool MissPolicy::report_overrun(TaskId id, std::uint64_t cycle, Nanoseconds used, Nanoseconds now) noexcept {
   if (!report_once(id, JobRecord::kOverrun)) return false;
   tap_.record_now(TapKind::kOverrun, now, id, cycle, used.count);
-  leave_reaction(id, tasks_[id.index].spec->on_overrun);
+  leave_reaction(id, tasks_[id.index].spec->on_overrun, JobRecord::kSwitchForOverrun);
   return true;
 }
 
-void MissPolicy::leave_reaction(TaskId task, OnMiss reaction) noexcept {
+void MissPolicy::leave_reaction(TaskId task, OnMiss reaction, JobRecord::Left on_switch) noexcept {
+  if (reaction == OnMiss::kSwitch) leave(task, on_switch);
   if (reaction == OnMiss::kFlag) leave(task, JobRecord::kRaiseFlag);
   if (reaction == OnMiss::kStop) leave(task, JobRecord::kStop);
 }
@@ -142,11 +145,13 @@ void MissPolicy::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) no
   tap_.record(TapKind::kMiss, at, task.id, task.call.cycle, lateness.count);
 }
 
-bool MissPolicy::react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept {
+bool MissPolicy::react(OnMiss reaction, JobRecord::Left on_switch, Task& task, BodyEnd& body,
+                       Nanoseconds at) noexcept {
+  const bool is_miss = on_switch == JobRecord::kSwitchForMiss;
+  const char* const why = is_miss ? "missed its deadline" : "used more execution time than its budget";
   switch (reaction) {
     case OnMiss::kContinue:
     case OnMiss::kDemote:
-    case OnMiss::kSwitch:
       return true;
     case OnMiss::kHold:
       return false;
@@ -163,7 +168,8 @@ bool MissPolicy::react(OnMiss reaction, Task& task, BodyEnd& body, const char* w
       return false;
     case OnMiss::kFlag:
     case OnMiss::kStop:
-      leave_reaction(task.id, reaction);
+    case OnMiss::kSwitch:
+      leave_reaction(task.id, reaction, on_switch);
       return true;
   }
   return true;

@@ -6,11 +6,11 @@
 //   budget exceeded    it used more execution time than its budget                           on_overrun
 //   minimum refused    at its start less than `min` was left before the deadline             on_miss
 // Reactions: continue (a late result is published), hold (not published), skip (published; the next release is
-// dropped), abort (the job is over at its deadline: not started after it, nothing published; in preemptive virtual
-// time abandoned at that instant), error (the method error is called, nothing published), flag (published; the
-// illegal-configuration flag goes up and stays up until it is lowered), stop (published; the executor stops), demote
-// (from then on the job runs below all others; published).
-// A refused minimum: continue and flag run the job all the same, the others do not start it.
+// dropped), switch (published; a configuration is asked for), abort (the job is over at its deadline: not started after
+// it, nothing published; in preemptive virtual time abandoned at that instant), error (the method error is called,
+// nothing published), flag (published; the illegal-configuration flag goes up and stays up until it is lowered), stop
+// (published; the executor stops), demote (from then on the job runs below all others; published).
+// A refused minimum: continue, flag and switch run the job all the same, the others do not start it.
 //
 // A job with a thread of its own is looked at when its deadline comes, and when its budget is used up: the cause is
 // reported then, and flag and stop act then. Else the job's end does that, as it does the rest in any case
@@ -89,11 +89,11 @@ class MissPolicy {
   void leave(TaskId task, JobRecord::Left what) noexcept {
     records_[task.index].left.fetch_or(what, std::memory_order_relaxed);
   }
-  void leave_reaction(TaskId task, OnMiss reaction) noexcept;
+  void leave_reaction(TaskId task, OnMiss reaction, JobRecord::Left on_switch) noexcept;
   void leave_cause(TaskId task, Nanoseconds release) noexcept;
   void count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) noexcept;
   void drop_on_purpose(const DroppedRelease& dropped) noexcept;
-  bool react(OnMiss reaction, Task& task, BodyEnd& body, const char* why, Nanoseconds at) noexcept;
+  bool react(OnMiss reaction, JobRecord::Left on_switch, Task& task, BodyEnd& body, Nanoseconds at) noexcept;
 
   std::span<Task> tasks_;
   std::span<JobRecord> records_;

@@ -13,12 +13,19 @@ Nanoseconds start_margin(const TaskSpec& spec) noexcept {
   return spec.on_miss == OnMiss::kAbort ? Nanoseconds{1} : Nanoseconds{INT64_MIN / 2};
 }
 
-bool is_built(OnMiss reaction, bool can_demote) noexcept {
-  return reaction != OnMiss::kSwitch && (can_demote || reaction != OnMiss::kDemote);
+bool is_built(OnMiss reaction, bool can_demote, bool can_switch) noexcept {
+  return (can_switch || reaction != OnMiss::kSwitch) && (can_demote || reaction != OnMiss::kDemote);
 }
 
 // Receipts of switches that tasks ask for; no more of them are kept.
 constexpr std::size_t kKeptOfRequests = 16;
+
+bool may_request(const ApplicationSpec& spec) noexcept {
+  const auto reacts = [](const TaskSpec& task) {
+    return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch || task.on_fault == OnFault::kSwitch;
+  };
+  return spec.sets.size() > 1 || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
+}
 
 QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
   return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n), memory.take<std::uint32_t>(n)},
@@ -47,13 +54,15 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT((n_switches == 0 && options.switch_peers == nullptr) || options.threads == nullptr);
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
-  const bool takes_requests = is_alone && options.threads == nullptr && set.spec().sets.size() > 1;
+  const bool takes_requests = is_alone && options.threads == nullptr && may_request(set.spec());
   switching_.prepare(n_switches + (takes_requests ? kKeptOfRequests : 0), options.switch_peers);
   if (takes_requests) set.sent().allow_requests();
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
     const bool can = options.can_demote || !set.is_mine(task.id);
-    CHIMERA_ASSERT(is_built(spec.on_miss, can) && is_built(spec.on_overrun, can));
+    const bool switches = takes_requests || !set.is_mine(task.id);
+    CHIMERA_ASSERT(is_built(spec.on_miss, can, switches) && is_built(spec.on_overrun, can, switches));
+    CHIMERA_ASSERT(switches || spec.on_fault != OnFault::kSwitch);
     JobRecord& record = records_[task.id.index];
     record.task = &task;
     record.start_margin = start_margin(spec);

@@ -34,7 +34,8 @@ namespace chimera {
 class Releases {
  public:
   /// `clock` is what methods see, and is made the clock of the set. Requires: no task of this context with the reaction
-  /// switch, nor demote unless that can be done. Everything given outlives this. Context: setup.
+  /// switch where there are other contexts or threads for jobs, nor demote unless that can be done. Everything given
+  /// outlives this. Context: setup.
   Releases(TaskSet& set, JobClock& clock, const RunOptions& options);
   Releases(const Releases&) = delete;
   Releases& operator=(const Releases&) = delete;

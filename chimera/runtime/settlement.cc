@@ -2,6 +2,8 @@
 // Deals with what jobs left for others to see.
 #include "chimera/runtime/settlement.h"
 
+#include <utility>
+
 namespace chimera {
 
 void Settlement::settle_job(TaskId id, Nanoseconds now) noexcept {
@@ -12,11 +14,11 @@ void Settlement::settle_job(TaskId id, Nanoseconds now) noexcept {
 
 void Settlement::settle_at_once(TaskId id, Nanoseconds now) noexcept {
   const std::uint8_t left = parts_.records[id.index].left.fetch_and(JobRecord::kSettle, std::memory_order_relaxed);
-  if (left & JobRecord::kRaiseFlag) raise_flag(id, now);
-  if ((left & JobRecord::kStop) && !task_stopped_) {
-    task_stopped_ = true;
-    stopped_by_ = id;
-  }
+  const TaskSpec& spec = *parts_.set.tasks()[id.index].spec;
+  if (left & JobRecord::kRaiseFlag) raise_flag(id, State::kOn, now);
+  if (left & JobRecord::kStop) stop(id);
+  if (left & JobRecord::kSwitchForMiss) parts_.set.sent().request({spec.on_miss_set, SwitchCause::kMiss, id});
+  if (left & JobRecord::kSwitchForOverrun) parts_.set.sent().request({spec.on_overrun_set, SwitchCause::kOverrun, id});
   publish();
   if (!(left & JobRecord::kFindCause)) return;
   if (const auto verdict = parts_.cause->judge(id, now)) parts_.guest->missed(id, *verdict, now);
@@ -32,6 +34,7 @@ void Settlement::settle(Task& task, Nanoseconds now) noexcept {
   if (task.has_sent()) parts_.set.sent().deliver(task);
   if (task.state != State::kOn) {
     parts_.set.on_set_changed();
+    follow_error(task, now);
     parts_.members.follow(task, now);
   }
   publish();
@@ -47,10 +50,24 @@ void Settlement::record_faults(Task& task) noexcept {
   parts_.tap.record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
 }
 
-void Settlement::raise_flag(TaskId by, Nanoseconds at) noexcept {
+void Settlement::follow_error(Task& task, Nanoseconds now) noexcept {
+  const bool was_told = std::exchange(task.is_error_told, task.state == State::kError);
+  if (was_told || task.state != State::kError) return;
+  if (task.spec->on_fault == OnFault::kFlag) raise_flag(task.id, State::kError, now);
+  if (task.spec->on_fault == OnFault::kStop) stop(task.id);
+  if (task.spec->on_fault == OnFault::kSwitch)
+    parts_.set.sent().request({task.spec->on_fault_set, SwitchCause::kFault, task.id});
+}
+
+void Settlement::stop(TaskId by) noexcept {
+  if (!task_stopped_) stopped_by_ = by;
+  task_stopped_ = true;
+}
+
+void Settlement::raise_flag(TaskId by, State in, Nanoseconds at) noexcept {
   if (parts_.set.flag().raises(by)) return;
   if (!parts_.set.flag().is_up()) parts_.tap.record(TapKind::kFlag, at, TaskId(), 1);
-  parts_.set.flag().raise_for(by);
+  parts_.set.flag().raise_for(by, in);
   parts_.set.on_set_changed();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What jobs left for others to see, dealt with between jobs: faults and notes, signals sent, the flag, the reaction
-// stop, a state that is ON no more, causes of missed deadlines.
+// What jobs left for others to see, dealt with between jobs: faults and notes, signals sent, the flag, the reactions
+// stop and switch, a state that is ON no more, causes of missed deadlines.
 #pragma once
 
 #include <span>
@@ -45,6 +45,8 @@ class Settlement {
   void give_up_starved(Nanoseconds now) noexcept;
   /// Reports a new fault or note of the task.
   void record_faults(Task& task) noexcept;
+  /// The reaction on_fault, once when the task has gone to ERROR.
+  void follow_error(Task& task, Nanoseconds now) noexcept;
 
   /// Has what changed published, if anything did.
   void publish() noexcept;
@@ -57,7 +59,8 @@ class Settlement {
 
  private:
   void settle(Task& task, Nanoseconds now) noexcept;
-  void raise_flag(TaskId by, Nanoseconds at) noexcept;
+  void raise_flag(TaskId by, State in, Nanoseconds at) noexcept;
+  void stop(TaskId by) noexcept;
 
   Parts parts_;
   bool task_stopped_ = false;

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "chimera/base/ids.h"
-#include "chimera/task/task.h"
 
 namespace chimera {
 
@@ -13,15 +12,18 @@ namespace chimera {
 enum class SwitchCause : std::uint8_t {
   kScript,   ///< an act of the script
   kRequest,  ///< a method of the task `by` asked: Cycle::request()
+  kMiss,     ///< the reaction `on_miss` of the task `by`
+  kOverrun,  ///< its reaction `on_overrun`
+  kFault,    ///< its reaction `on_fault`
 };
 
 /// `set` is in ApplicationSpec::sets.
 struct SwitchRequest {
-  std::uint32_t set = kNoRequest;
+  std::uint32_t set = UINT32_MAX;
   SwitchCause cause = SwitchCause::kScript;
   TaskId by;  ///< invalid where `cause` is kScript
 
-  explicit operator bool() const noexcept { return set != kNoRequest; }
+  explicit operator bool() const noexcept { return set != UINT32_MAX; }
 };
 
 }  // namespace chimera

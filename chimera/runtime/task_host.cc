@@ -45,7 +45,10 @@ void host_note(void* context, const char* text) {
   Task& task = *host_of(context).task;
   FaultRecord& record = task.faults;
   task.has_news = true;
-  std::strncpy(record.note, text, sizeof record.note - 1);
+  std::size_t size = 0;
+  while (size + 1 < sizeof record.note && text[size] != '\0') ++size;
+  std::memcpy(record.note, text, size);
+  record.note[size] = '\0';
   ++record.notes;
   ++record.told;
 }
@@ -53,9 +56,10 @@ void host_note(void* context, const char* text) {
 // Says once for each task why its requests are refused.
 std::int32_t refuse_request(void* context, const char* name, std::string_view why) {
   Task& task = *host_of(context).task;
-  if (task.requests_refused++ > 0) return CHIMERA_FAULT;
-  const FixedString<CHIMERA_FAULT_TEXT - 1> text((Message("asks for the configuration '") << name << "': " << why).view());
-  host_note(context, text.c_str());
+  if (task.requests_refused < UINT8_MAX) ++task.requests_refused;
+  if (task.requests_refused > 1) return CHIMERA_FAULT;
+  const Message message = Message("asks for the configuration '") << name << "': " << why;
+  host_note(context, FixedString<CHIMERA_FAULT_TEXT - 1>(message.view()).c_str());
   return CHIMERA_FAULT;
 }
 
@@ -68,7 +72,7 @@ std::int32_t host_request(void* context, const char* name) {
   if (sets.size() == 1) return refuse_request(context, name, "it is the only one");
   if (!host.set->sent().takes_requests())
     return refuse_request(context, name, "a switch of tasks in several processes cannot be done yet");
-  host.task->requested_set = set;
+  host.task->requested_set = static_cast<std::uint16_t>(set);
   host.task->has_news = true;
   return CHIMERA_OK;
 }

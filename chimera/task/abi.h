@@ -84,6 +84,7 @@ enum {
   CHIMERA_PORT_SAFETY = 1u << 0,      /* never publishes NaN, infinity, or a value outside [min, max] */
   CHIMERA_PORT_REPEATED = 1u << 1,    /* instances come from the description */
   CHIMERA_PORT_HAS_RANGE = 1u << 2,   /* min and max count */
+  CHIMERA_PORT_CONFIGURATION = 1u << 4, /* in-const of text: names a configuration of the description, or is empty */
   CHIMERA_PORT_HAS_INITIAL = 1u << 3  /* out-var: value at spawn; in-const: default when nobody produces it */
 };
 

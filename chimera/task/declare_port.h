@@ -128,6 +128,8 @@ constexpr bool check_option() {
                 "at_least goes with an in-const, and names another: it is checked before anything runs");
   static_assert(!std::is_same_v<Option, OneOfIs> || Kind == CHIMERA_IN_CONST,
                 "one_of goes with an in-const of text: it is checked before anything runs");
+  static_assert(!std::is_same_v<Option, ConfigurationIs> || Kind == CHIMERA_IN_CONST,
+                "configuration goes with an in-const of text: it is checked before anything runs");
   static_assert(!std::is_same_v<Option, RangeIs> || Kind != CHIMERA_RESOURCE, "a resource has no range");
   return true;
 }
@@ -182,6 +184,11 @@ template <class E>
 void apply_option(chimera_port_decl& port, Collector& to, const OneOfIs& option) {
   static_assert(element_type<E>() == CHIMERA_STRING, "one_of goes with text: numbers have a range");
   to.add_choice(port.name, option.words);
+}
+template <class E>
+void apply_option(chimera_port_decl& port, Collector&, const ConfigurationIs&) {
+  static_assert(element_type<E>() == CHIMERA_STRING, "configuration goes with text: a configuration has a name");
+  port.flags |= CHIMERA_PORT_CONFIGURATION;
 }
 template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const SafetyIs&) {

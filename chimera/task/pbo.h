@@ -74,6 +74,7 @@ typedef struct pboPort_t {
   double min, max;
   int has_range;
   int safety;
+  int configuration;
 } pboPort_t;
 
 /* Options of a port. */
@@ -83,6 +84,7 @@ typedef struct pboPort_t {
 #define PBO_SAFETY .safety = 1
 #define PBO_AT_LEAST(lower) .at_least = lower /* in_const of numbers: no element is below that of in_const `lower` */
 #define PBO_ONE_OF(words) .one_of = words /* in_const of text: "the words it may be", with spaces between them */
+#define PBO_CONFIGURATION .configuration = 1 /* in_const of text: names a configuration, or is empty */
 #define PBO_INITIAL(type, ...) \
   .initial = (const PBO_TYPE_##type[]){__VA_ARGS__}, .initial_bytes = sizeof((const PBO_TYPE_##type[]){__VA_ARGS__})
 
@@ -217,6 +219,7 @@ static inline void pboDeclarePort(chimera_port_decl* to, const pboPort_t* from) 
   to->min = from->min;
   to->max = from->max;
   to->flags = (from->safety ? (uint32_t)CHIMERA_PORT_SAFETY : 0u) |
+              (from->configuration ? (uint32_t)CHIMERA_PORT_CONFIGURATION : 0u) |
               (from->has_range ? (uint32_t)CHIMERA_PORT_HAS_RANGE : 0u) |
               (from->initial != NULL ? (uint32_t)CHIMERA_PORT_HAS_INITIAL : 0u);
 }

@@ -45,7 +45,7 @@ struct SentSignal {
 inline constexpr std::size_t kOutboxSize = 16;
 
 /// Stands for "none" where a method asks for a configuration.
-inline constexpr std::uint32_t kNoRequest = UINT32_MAX;
+inline constexpr std::uint16_t kNoRequest = UINT16_MAX;
 
 /// Where a task tells which method runs while nobody wants to know. Never read: pairs with nothing.
 inline std::atomic<std::uint32_t> running_untold{0};
@@ -86,16 +86,17 @@ struct alignas(64) Task {
   chimera_inherited* inherited = nullptr;  ///< by output: what its port was told at the last on
   FaultRecord faults;
   FixedVector<SentSignal, kOutboxSize> outbox;
-  std::uint32_t requested_set = kNoRequest;  ///< by the present method, in ApplicationSpec::sets
-  std::uint32_t requests_refused = 0;        ///< of requests for configurations, since the start of the run
   /// The present job was told to: it used up its budget. Relaxed, pairs with nothing: a job that sees it late gives up
   /// late.
   std::atomic<bool> give_up{false};
+  std::uint16_t requested_set = kNoRequest;  ///< by the present method, in ApplicationSpec::sets
   std::uint32_t events = 0;  ///< behind a server: rings of its doorbell that no job has answered; by the executor
   int descriptor = -1;   ///< readable while there is an event, from the end of init to kill; below 0: none
 
   // Written by the executor and the task set at edges.
   bool in_service = false;  ///< init or kill is run by the service thread: nobody else touches the task
+  std::uint8_t requests_refused = 0;  ///< for configurations, since the start of the run; 255: or more
+  bool is_error_told = false;  ///< its reaction on_fault has acted since it went to ERROR
   bool owes_off = false;    ///< OFF, with `on` behind it and `off` before it: armed for a switch, or left by one
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
 

@@ -52,6 +52,14 @@ struct PortSpec {
 /// The reactions to a failure of time; chimera/runtime/miss_policy.h says what each does.
 enum class OnMiss : std::uint8_t { kContinue, kHold, kSkip, kAbort, kDemote, kError, kSwitch, kFlag, kStop };
 
+/// The reactions to a fault from which the method error does not recover, so that the task is in ERROR.
+enum class OnFault : std::uint8_t {
+  kError,   ///< nothing beyond that
+  kFlag,    ///< the illegal-configuration flag goes up, until the task is no longer in ERROR
+  kStop,    ///< the executor stops
+  kSwitch,  ///< a configuration is asked for
+};
+
 /// One task. Times are zero or positive; period > 0.
 struct TaskSpec {
   std::string_view name;
@@ -65,6 +73,9 @@ struct TaskSpec {
   std::uint32_t user_priority = 0;  ///< higher first
   OnMiss on_miss = OnMiss::kContinue;
   OnMiss on_overrun = OnMiss::kContinue;
+  OnFault on_fault = OnFault::kError;
+  /// Of the reactions `switch`: the configuration, by its number in the list of them; UINT32_MAX for other reactions.
+  std::uint32_t on_miss_set = UINT32_MAX, on_overrun_set = UINT32_MAX, on_fault_set = UINT32_MAX;
   std::uint32_t max_consecutive = 0;  ///< misses in a row after which the task goes to ERROR; 0 = no limit
   std::uint32_t tolerated_misses = 0;  ///< of the last `tolerated_of` cycles so many may miss without a reaction
   std::uint32_t tolerated_of = 0;      ///< 0: none; at most 64

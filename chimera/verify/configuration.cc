@@ -115,7 +115,26 @@ void count_list(const Node& node, std::uint32_t (&listed)[CHIMERA_MAX_EXTENTS]) 
   }
 }
 
-TaskSpec task_spec(const TaskModel& task, const ConfiguredTask& configured, std::span<const PortSpec> ports) {
+/// The number of the configuration that a reaction names; a reaction without one has none.
+std::uint32_t set_number(const Model& model, const Word& name) {
+  for (std::size_t i = 0; i < model.sets.size(); ++i)
+    if (model.sets[i].name == name.text) return static_cast<std::uint32_t>(i);
+  return UINT32_MAX;
+}
+
+void take_reactions(const Model& model, const DraftTask& draft, TaskSpec& spec) {
+  const auto take = [&](const auto& reaction, auto& kind, std::uint32_t& set) {
+    if (!reaction) return;
+    kind = reaction->kind;
+    set = set_number(model, reaction->configuration);
+  };
+  take(draft.on_miss, spec.on_miss, spec.on_miss_set);
+  take(draft.on_overrun, spec.on_overrun, spec.on_overrun_set);
+  take(draft.on_fault, spec.on_fault, spec.on_fault_set);
+}
+
+TaskSpec task_spec(const Model& model, const TaskModel& task, const ConfiguredTask& configured,
+                   std::span<const PortSpec> ports) {
   TaskSpec spec;
   spec.name = configured.name;
   spec.component = configured.component;
@@ -128,8 +147,7 @@ TaskSpec task_spec(const TaskModel& task, const ConfiguredTask& configured, std:
   const DraftTask& draft = *task.draft;
   spec.user_priority = draft.user_priority ? draft.user_priority->value : 0;
   spec.max_consecutive = draft.max_consecutive ? draft.max_consecutive->value : 0;
-  if (draft.on_miss) spec.on_miss = draft.on_miss->kind;
-  if (draft.on_overrun) spec.on_overrun = draft.on_overrun->kind;
+  take_reactions(model, draft, spec);
   if (draft.tolerate) spec.tolerated_misses = draft.tolerate->misses;
   if (draft.tolerate) spec.tolerated_of = draft.tolerate->of;
   if (draft.stack_bytes) spec.stack_bytes = static_cast<std::uint32_t>(draft.stack_bytes->value);
@@ -157,7 +175,7 @@ class SpecMaker {
       parts_.rtpus.push_back({keep(parts_, rtpu.name.text), rtpu.cpu.value, rtpu.policy.value, rtpu.preemptive.value});
     make_ports();
     for (std::size_t t = 0; t < model_.tasks.size(); ++t)
-      parts_.task_specs.push_back(task_spec(model_.tasks[t], parts_.tasks[t], parts_.ports[t]));
+      parts_.task_specs.push_back(task_spec(model_, model_.tasks[t], parts_.tasks[t], parts_.ports[t]));
     for (std::size_t v = 0; v < model_.variables.size(); ++v) add_given(v);
     parts_.links.fill(parts_.task_specs, parts_.operators, parts_.state_variables, parts_.constants);
   }

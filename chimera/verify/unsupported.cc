@@ -8,6 +8,10 @@
 namespace chimera {
 namespace {
 
+const char* fault_reaction(OnFault kind) {
+  return kind == OnFault::kFlag ? "flag" : kind == OnFault::kStop ? "stop" : "switch";
+}
+
 class Refusals {
  public:
   Refusals(const Configuration& configuration, Executor executor)
@@ -69,16 +73,21 @@ class Refusals {
   void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task,
                 bool is_preemptive) {
     if (!reaction || (reaction->kind != OnMiss::kDemote && reaction->kind != OnMiss::kSwitch)) return;
-    const bool is_switch = reaction->kind == OnMiss::kSwitch;
-    if (!is_switch && is_preemptive) return;
-    const std::string what =
-        "'" + std::string(key) + (is_switch ? ": switch' of task '" : ": demote' of task '") + task.name.text + "'";
-    if (is_switch)
-      return refuse(reaction->at, what, "use continue, hold, skip, abort, demote, error, flag or stop to run");
+    const std::string begin = "'" + std::string(key);
+    if (reaction->kind == OnMiss::kSwitch) return switches(reaction->at, begin + ": switch'", task);
+    if (is_preemptive) return;
+    const std::string what = begin + ": demote' of task '" + task.name.text + "'";
     const char* const remedy = executor_ == Executor::kOneProcess ? "run without --isolation none"
                                : executor_ == Executor::kVirtual  ? "run with --preemptive"
                                                                   : "give its rtpu 'executor: preemptive'";
     refuse(reaction->at, what, std::string(remedy) + ", or use another reaction");
+  }
+
+  // What acts on tasks of other processes.
+  void switches(Place at, const std::string& reaction, const DraftTask& task) {
+    if (executor_ != Executor::kProcesses) return;
+    refuse(at, reaction + " of task '" + task.name.text + "' where tasks are in several processes",
+           "run with --virtual or --isolation none, or use another reaction");
   }
 
   // A job behind a server is taken off the processor when the capacity is used up: one loop cannot do that.
@@ -99,7 +108,8 @@ class Refusals {
     const bool preempts = here != tasks.end() && is_preemptive(here->rtpu);
     reaction(task.on_miss, "on_miss", task, preempts);
     reaction(task.on_overrun, "on_overrun", task, preempts);
-    if (task.on_fault && task.on_fault->kind != OnFault::kError) refuse_key(task.on_fault->at, "on_fault", task);
+    if (task.on_fault && task.on_fault->kind != OnFault::kError)
+      switches(task.on_fault->at, "'on_fault: " + std::string(fault_reaction(task.on_fault->kind)) + "'", task);
     server(task, preempts, here != tasks.end() && here->has_event_source);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);

@@ -25,6 +25,7 @@ struct Cell {
   bool has_range = false;
   double min = 0, max = 0;
   std::span<const std::string> words{};  ///< what a text may be; empty: anything
+  bool names_configuration = false;      ///< a text is one of the configurations, or empty
 };
 
 template <class T>
@@ -121,7 +122,7 @@ class ValueWriter {
     const PortDescriptor& declared = *port_.declared;
     cell(node,
          {*port_.type, port_.element_bytes, *port_.unit, port_.unit_text, declared.has_range, declared.min,
-          declared.max, declared.one_of},
+          declared.max, declared.one_of, declared.names_configuration},
          to);
   }
 
@@ -192,9 +193,18 @@ class ValueWriter {
       const std::string words = listed(std::vector<std::string>(cell.words.begin(), cell.words.end()));
       refuse("word-unknown", node.at, "found " + written(node) + "; expected one of " + words, node.text, words,
              nearest(node.text, cell.words));
-    } else {
+    } else if (!cell.names_configuration || node.text.empty() || is_configuration(node)) {
       std::memcpy(to, node.text.data(), node.text.size());
     }
+  }
+
+  bool is_configuration(const Node& node) {
+    std::vector<std::string> names;
+    for (const SetModel& set : model_.sets) names.push_back(set.name);
+    if (std::ranges::find(names, node.text) != names.end()) return true;
+    refuse("configuration-unknown", node.at, "found " + written(node) + "; expected a configuration: " + listed(names),
+           node.text, listed(names), nearest(node.text, names));
+    return false;
   }
 
   void truth(const Node& node, std::byte* to) {

@@ -21,14 +21,21 @@ struct SingularityMonitor {
                            doc = "Singular value above which it is near no more; at least near."};
   InConst<double> length{"length", "m", initial = 1.0, range(1e-3, 100),
                          doc = "Motion of the tool that counts as much as one radian."};
+  InConst<Text<64>> when_near{"when_near", "1", initial = "", configuration,
+                              doc = "The configuration asked for when it comes near."};
+  InConst<Text<64>> when_clear{"when_clear", "1", initial = "", configuration,
+                               doc = "The configuration asked for when it has been clear for dwell."};
+  InConst<double> dwell{"dwell", "s", initial = 0.5, range(0, 3600),
+                        doc = "So long clear before when_clear is asked for."};
 
   Outcome init() { return *clear_of >= *near ? ok() : fault("clear_of is below near: is_near would chatter"); }
   Outcome reinit() { return init(); }
-  Outcome on() {
+  Outcome on(Cycle c) {
     *is_near = true;
-    return cycle();
+    has_asked_ = false;
+    return cycle(c);
   }
-  Outcome cycle() {
+  Outcome cycle(Cycle c) {
     library::Jacobian jacobian;
     for (std::size_t i = 0; i < jv.columns(); ++i) {
       for (std::size_t r = 0; r < 3; ++r) {
@@ -41,8 +48,23 @@ struct SingularityMonitor {
     *singular_value = values.least();
     *isotropy = values.greatest() > 0 ? values.least() / values.greatest() : 0;
     *is_near = values.least() < (*is_near ? *clear_of : *near);
+    ask(c);
     return ok();
   }
+
+ private:
+  // Once for each approach, and once when the pose has been clear for dwell: so dwell at least lies between two.
+  void ask(Cycle c) {
+    if (*is_near) last_near_ = c.now();
+    const bool is_to_ask = *is_near ? !has_asked_ : has_asked_ && to_seconds(c.now() - last_near_) >= *dwell;
+    if (!is_to_ask) return;
+    has_asked_ = *is_near;
+    const Text<64>& name = *is_near ? *when_near : *when_clear;
+    if (!name.empty()) c.request(name.c_str());  // a refusal is told by the framework
+  }
+
+  Nanoseconds last_near_;
+  bool has_asked_ = false;  // for when_near, and not yet for when_clear
 };
 
 CHIMERA_COMPONENT(SingularityMonitor, "singularity_monitor", "Says when an arm comes near a singular pose.",

@@ -92,6 +92,38 @@ TEST_F(SingularityMonitorTest, CountsAsNearAtOnUntilItIsSeenToBeClear) {
   EXPECT_NEAR(rig.get<double>("isotropy"), 0, 1e-12);
 }
 
+TEST_F(SingularityMonitorTest, AsksOnceForEachApproachAndWhenItHasBeenClearForDwell) {
+  rig.set("when_near", Text<64>("figure_9"));
+  rig.set("when_clear", Text<64>("figure_8"));
+  rig.set("dwell", 0.01);
+  ASSERT_TRUE(rig.init());
+  stand({0, math::kPi / 4, -math::kPi, 0, 0.8, 0});
+  ASSERT_TRUE(rig.on());
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(is_near_at(0.8));
+  EXPECT_TRUE(rig.signals().empty()) << "clear from the beginning: nothing to change";
+  std::vector<std::string> asked{"request figure_9"};
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(is_near_at(0.02));
+  EXPECT_EQ(rig.signals(), asked);
+  for (int i = 0; i < 9; ++i) is_near_at(0.8);
+  is_near_at(0.02);  // within dwell: still figure 9
+  for (int i = 0; i < 9; ++i) is_near_at(0.8);
+  EXPECT_EQ(rig.signals(), asked);
+  is_near_at(0.8);
+  asked.emplace_back("request figure_8");
+  EXPECT_EQ(rig.signals(), asked);
+  is_near_at(0.02);
+  asked.emplace_back("request figure_9");
+  EXPECT_EQ(rig.signals(), asked);
+}
+
+TEST_F(SingularityMonitorTest, AsksForNothingWithoutNames) {
+  ASSERT_TRUE(rig.init());
+  stand({0, math::kPi / 4, -math::kPi, 0, 0, 0});
+  ASSERT_TRUE(rig.on());
+  is_near_at(0.02);
+  EXPECT_TRUE(rig.signals().empty());
+}
+
 TEST_F(SingularityMonitorTest, RefusesAJacobianThatIsNotFiniteOrTooLarge) {
   ASSERT_TRUE(rig.init());
   for (const double bad : {std::nan(""), HUGE_VAL, 1e200}) {

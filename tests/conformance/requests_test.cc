@@ -16,7 +16,7 @@ namespace {
 /// What the components of a run do. One run at a time.
 struct Scene {
   std::function<void(Cycle)> first, second;  // in the cycles of the two that ask
-  std::function<Outcome(Cycle)> on_of_high;
+  std::function<Outcome(Cycle)> on_of_high, cycle_of_low;
   std::vector<bool> answers;
 };
 Scene scene;
@@ -37,7 +37,10 @@ struct Second {
 
 struct Low {
   Out<double> level{"level", "1", initial = 0.0};
-  void cycle(Cycle) { *level = 1; }
+  Outcome cycle(Cycle c) {
+    *level = 1;
+    return scene.cycle_of_low ? scene.cycle_of_low(c) : ok();
+  }
 };
 
 struct High {
@@ -62,13 +65,15 @@ class Requests : public ::testing::TestWithParam<Kind> {
     app_->add("low", testing::component<Low>("low")).budget = microseconds(20);
     app_->add("high", testing::component<High>("high")).budget = microseconds(20);
     app_->add("other", testing::component<Low>("low")).budget = microseconds(20);
+    if (change_) change_(*app_);
     app_->make({kFirst, kSecond, kLow}, false);
     app_->spec.sets = std::span(sets_).first(n_sets_);
     set_ = *HeapTaskSet::create(app_->spec, app_->components);
     runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
     EXPECT_TRUE(runner_->start());
-    EXPECT_EQ(runner_->run(duration), RunEnd::kTime);
-    for (const Task& task : set_->tasks()) EXPECT_EQ(task.profile.dropped + task.profile.missed, 0u);
+    EXPECT_EQ(runner_->run(duration), end_);
+    for (const Task& task : set_->tasks())
+      EXPECT_TRUE(is_late_ || task.profile.dropped + task.profile.missed == 0) << task.spec->name;
     return runner_->receipts();
   }
   static void ask(const Cycle& c, const char* name) { scene.answers.push_back(c.request(name)); }
@@ -84,6 +89,9 @@ class Requests : public ::testing::TestWithParam<Kind> {
   std::vector<TaskId> low_{kFirst, kSecond, kLow}, high_{kFirst, kSecond, kHigh}, other_{kFirst, kSecond, kOther};
   NamedSet sets_[3] = {{"low", low_}, {"high", high_}, {"other", other_}};
   std::size_t n_sets_ = 3;
+  std::function<void(testing::TestApplication&)> change_;
+  bool is_late_ = false;
+  RunEnd end_ = RunEnd::kTime;
   std::vector<ScriptAct> acts_;
   std::unique_ptr<testing::TestApplication> app_;
   std::unique_ptr<HeapTaskSet> set_;
@@ -215,6 +223,86 @@ TEST_P(Requests, WhereThereIsOneConfigurationAreRefused) {
   EXPECT_TRUE(go(milliseconds(2)).empty());
   EXPECT_EQ(scene.answers, (std::vector<bool>{false, false}));
   EXPECT_STREQ(set_->tasks()[kFirst.index].faults.note, "asks for the configuration 'low': it is the only one");
+}
+
+TEST_P(Requests, OfTheReactionOnMissFollowTheLateCycle) {
+  change_ = [](testing::TestApplication& app) {
+    app.tasks[kLow.index].on_miss = OnMiss::kSwitch;
+    app.tasks[kLow.index].on_miss_set = kHighSet;
+    app.tasks[kLow.index].deadline = microseconds(500);
+  };
+  is_late_ = true;
+  scene.cycle_of_low = [](Cycle c) {
+    if (c.count() == 3) c.spend(microseconds(600));
+    return ok();
+  };
+  const auto receipts = go(milliseconds(10));
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[0].cause, SwitchCause::kMiss);
+  EXPECT_EQ(receipts[0].by, kLow);
+  EXPECT_LT(receipts[0].at, milliseconds(4));
+  EXPECT_EQ(set_->tasks()[kLow.index].profile.cycles, 4u) << "the late one is published";
+  EXPECT_TRUE(is_on(kHigh));
+}
+
+TEST_P(Requests, OfTheReactionOnOverrunFollowTheCycleThatUsedTooMuch) {
+  change_ = [](testing::TestApplication& app) {
+    app.tasks[kLow.index].on_overrun = OnMiss::kSwitch;
+    app.tasks[kLow.index].on_overrun_set = kOtherSet;
+  };
+  scene.cycle_of_low = [](Cycle c) {
+    if (c.count() == 3) c.spend(microseconds(30));
+    return ok();
+  };
+  const auto receipts = go(milliseconds(10));
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[0].cause, SwitchCause::kOverrun);
+  EXPECT_EQ(receipts[0].after, kOtherSet);
+  EXPECT_TRUE(is_on(kOther));
+}
+
+TEST_P(Requests, OfTheReactionOnFaultLeaveTheTaskInErrorBehind) {
+  change_ = [](testing::TestApplication& app) {
+    app.tasks[kLow.index].on_fault = OnFault::kSwitch;
+    app.tasks[kLow.index].on_fault_set = kHighSet;
+  };
+  scene.cycle_of_low = [](Cycle c) -> Outcome { return c.count() == 3 ? fault("no current") : ok(); };
+  const auto receipts = go(milliseconds(10));
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[0].cause, SwitchCause::kFault);
+  EXPECT_EQ(receipts[0].by, kLow);
+  EXPECT_EQ(receipts[0].before, kNoSet) << "a member was in ERROR by then";
+  EXPECT_LT(receipts[0].at, milliseconds(4));
+  EXPECT_EQ(set_->tasks()[kLow.index].state, chimera::State::kError);
+  EXPECT_TRUE(is_on(kHigh));
+  EXPECT_FALSE(set_->flag().is_up());
+}
+
+TEST_P(Requests, AreNotMadeByAFaultThatLeavesFlag) {
+  change_ = [](testing::TestApplication& app) { app.tasks[kSecond.index].on_fault = OnFault::kFlag; };
+  scene.second = [](Cycle c) {
+    if (c.count() == 3) throw "blind";
+  };
+  const ScriptAct clear{milliseconds(6), ScriptAct::Kind::kSignal, Signal::kClear, kSecond};
+  EXPECT_TRUE(go(milliseconds(5), {clear}).empty());
+  EXPECT_EQ(set_->tasks()[kSecond.index].state, chimera::State::kError);
+  EXPECT_TRUE(set_->flag().is_on_set_legal()) << "nobody reads what it writes";
+  EXPECT_TRUE(set_->flag().is_up());
+  EXPECT_EQ(runner_->run(milliseconds(7)), RunEnd::kTime);
+  EXPECT_FALSE(set_->flag().is_up()) << "no longer in ERROR";
+}
+
+TEST_P(Requests, AreNotMadeByAFaultThatStopsTheRun) {
+  change_ = [](testing::TestApplication& app) { app.tasks[kSecond.index].on_fault = OnFault::kStop; };
+  scene.second = [](Cycle c) {
+    if (c.count() == 3) throw "blind";
+  };
+  end_ = RunEnd::kTaskStopped;
+  EXPECT_TRUE(go(milliseconds(10)).empty());
+  EXPECT_EQ(set_->tasks()[kFirst.index].profile.cycles, 4u);
 }
 
 TEST_P(Requests, BeyondTheReceiptsThatAreKeptAreCarriedOutAndCounted) {

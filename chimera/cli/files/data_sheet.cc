@@ -46,6 +46,7 @@ std::string remarks(const PortDescriptor& port) {
   std::string words;
   for (const std::string& word : port.one_of) words += (words.empty() ? "one of " : " ") + word;
   if (!words.empty()) add(words);
+  if (port.names_configuration) add("names a configuration");
   if (port.safety) add("safety");
   if (port.repeated) add("repeated, at most " + std::to_string(port.max_instances));
   if (!port.initial.empty()) add(initial_text(port));

@@ -37,7 +37,8 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
 std::string who_stopped(const TaskSet& tasks) {
   for (const Task& task : tasks.tasks())
     if ((task.spec->on_miss == OnMiss::kStop && task.profile.missed > task.profile.tolerated) ||
-        (task.spec->on_overrun == OnMiss::kStop && task.profile.overrun > 0))
+        (task.spec->on_overrun == OnMiss::kStop && task.profile.overrun > 0) ||
+        (task.spec->on_fault == OnFault::kStop && task.state == State::kError))
       return std::string(task.spec->name);
   return {};
 }

@@ -39,7 +39,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -160,6 +160,8 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   archive.number(task.user_priority);
   archive.choice(task.on_miss, OnMiss::kStop);
   archive.choice(task.on_overrun, OnMiss::kStop);
+  archive.choice(task.on_fault, OnFault::kSwitch);
+  for (auto* set : {&task.on_miss_set, &task.on_overrun_set, &task.on_fault_set}) archive.number(*set);
   archive.number(task.max_consecutive);
   archive.number(task.tolerated_misses);
   archive.number(task.tolerated_of);
@@ -267,6 +269,17 @@ void judge_sets(const ApplicationImage::Parts& parts, ImageReader& reader) {
   }
 }
 
+void judge_reactions(const ApplicationImage::Parts& parts, ImageReader& reader) {
+  const auto judge = [&](bool is_switch, std::uint32_t set) {
+    reader.require(is_switch ? set < parts.sets.size() : set == UINT32_MAX, "a reaction with a wrong set");
+  };
+  for (const TaskSpec& task : parts.tasks) {
+    judge(task.on_miss == OnMiss::kSwitch, task.on_miss_set);
+    judge(task.on_overrun == OnMiss::kSwitch, task.on_overrun_set);
+    judge(task.on_fault == OnFault::kSwitch, task.on_fault_set);
+  }
+}
+
 // Collects who is linked to what, and refuses links that verification never makes.
 void link(ApplicationImage::Parts& parts, ImageReader& reader) {
   for (GivenSpec& given : parts.operators) given.name = parts.variables[given.variable.index].name;
@@ -282,6 +295,7 @@ void link(ApplicationImage::Parts& parts, ImageReader& reader) {
   for (const auto* order : {&parts.init_order, &parts.on_order, &parts.end_order})
     reader.require(holds_every_task_once(*order, parts.tasks.size()), "an order that does not hold every task once");
   judge_sets(parts, reader);
+  judge_reactions(parts, reader);
 }
 
 Error refusal(std::string text) { return {ErrorCode::kBadInput, {std::move(text)}, {}}; }

@@ -40,7 +40,8 @@ struct Sample {
     more_ports[5].variable = kKi;
     tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
                 .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
-                .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kStop, .max_consecutive = 5,
+                .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kSwitch,
+                .on_fault = OnFault::kSwitch, .on_overrun_set = 1, .on_fault_set = 0, .max_consecutive = 5,
                 .aperiodic = true, .is_hardware = true, .rtpu = RtpuId{1u}, .ports = ports,
                 .server = ServerSpec{ServerKind::kSporadic, Nanoseconds{3}, Nanoseconds{10}}};
     tasks[1] = {.name = "plain", .component = "gain", .period = Nanoseconds{20}, .offset = {},
@@ -134,7 +135,7 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
   bytes[kVersionAt] = std::byte{7};
-  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 4");
+  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 5");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +
@@ -213,6 +214,11 @@ TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.rtpus[0].policy = static_cast<Policy>(9); }),
                    "a choice that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.settings.priority = 100; }), "settings out of range"));
+}
+
+TEST(ApplicationImage, AReactionWithoutItsSetIsRefused) {
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].on_fault_set = 2; }), "a reaction with a wrong set"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].on_miss_set = 0; }), "a reaction with a wrong set"));
 }
 
 TEST(ApplicationImage, NoTruncationAndNoChangedByteIsEverMoreThanARefusal) {

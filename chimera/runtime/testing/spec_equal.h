@@ -78,6 +78,10 @@ inline void compare_tasks(SpecDifference& d, const TaskSpec& a, const TaskSpec& 
   d.compare(a.user_priority, b.user_priority, "user_priority");
   d.compare(a.on_miss, b.on_miss, "on_miss");
   d.compare(a.on_overrun, b.on_overrun, "on_overrun");
+  d.compare(a.on_fault, b.on_fault, "on_fault");
+  d.compare(a.on_miss_set, b.on_miss_set, "on_miss_set");
+  d.compare(a.on_overrun_set, b.on_overrun_set, "on_overrun_set");
+  d.compare(a.on_fault_set, b.on_fault_set, "on_fault_set");
   d.compare(a.max_consecutive, b.max_consecutive, "max_consecutive");
   d.compare(a.tolerated_misses, b.tolerated_misses, "tolerated_misses");
   d.compare(a.tolerated_of, b.tolerated_of, "tolerated_of");
