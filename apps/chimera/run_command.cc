@@ -42,12 +42,13 @@ const std::vector<Option>& printing_options() {
                  "under way. 10 s with `--for`, else no limit."},
       {.name = "--at",
        .value = "ACT",
-       .help = "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad', '5 s: switch torque'; may be "
-               "repeated",
+       .help = "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad', '5 s: switch torque', "
+               "'6 s: die servo'; may be repeated",
        .manual = "A timed act, such as '2 s: off pid', '3 s: flag up' or '4 s: set kp 100 N.m/rad'. The signals are "
                  "spawn, on, off, kill, clear, reinit, and ring for an event; what is set is an operator variable; a "
-                 "switch makes exactly the tasks of a configuration ON without losing a cycle (`--virtual`, "
-                 "`--isolation none`). May be repeated.",
+                 "switch makes exactly the tasks of a configuration ON without losing a cycle (`--virtual` with all "
+                 "tasks on one rtpu, `--isolation none`); `die` ends a real-time unit like the death of its process, "
+                 "and nobody restarts it (`--virtual` with tasks on several). May be repeated.",
        .repeats = Repeats::kManyEach},
       {.name = "--watch",
        .value = "VARIABLE",
@@ -90,14 +91,15 @@ const std::vector<Option>& own_options() {
       {.name = "--virtual",
        .help = "in virtual time: as fast as it goes, the same result every time",
        .manual =
-           "In virtual time: as fast as it goes, the same result every time. Needs `--for`. When standard error is "
+           "In virtual time: as fast as it goes, the same result every time; every real-time unit has a processor of "
+           "its own, all on one clock. Needs `--for`. When standard error is "
            "a terminal, a long run tells there how far it is."},
       {.name = "--svg",
        .value = "FILE",
        .help = "virtual time: draw what --watch names to this file instead of printing it",
        .manual = "Virtual time: draws what `--watch` names to this file instead of printing it, a point `--every`.",
        .kind = WordKind::kFile},
-      {.name = "--preemptive", .help = "virtual time: schedule preemptively"},
+      {.name = "--preemptive", .help = "virtual time: schedule preemptively, whatever the file says of an rtpu"},
       {.name = "--seed",
        .value = "N",
        .help = "virtual time: draw execution times from [min, budget]",

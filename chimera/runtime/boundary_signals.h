@@ -46,6 +46,8 @@ class BoundarySignals {
   /// Carries out the acts of the script that are due, goes on with a switch that is under way, and begins the one that
   /// a task asked for last.
   void act(Nanoseconds now) noexcept;
+  /// Carries out an act of a script that is kept elsewhere; not kDie.
+  void act(const ScriptAct& act, Nanoseconds now) noexcept;
   /// Carries out the signals that tasks sent to tasks of this context; those for a task with an unfinished job wait.
   void carry_out_pending(Nanoseconds now) noexcept;
 
@@ -60,7 +62,6 @@ class BoundarySignals {
   std::span<const RefusedSignal> refused() const noexcept { return {refused_.begin(), refused_.end()}; }
 
  private:
-  void act(const ScriptAct& act, Nanoseconds now) noexcept;
   bool take_request(Nanoseconds now) noexcept;
   void look_ahead() noexcept;
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;

@@ -37,6 +37,8 @@ class ContextTable {
   std::span<const VariablePlace> constant_places(TaskId task) const noexcept {
     return own_.variables(own_.constants(task));
   }
+  /// The group of the constants of a task of this context.
+  GroupReader constants_of(TaskId task) const noexcept { return reader(own_.constants(task)); }
   /// Writes the constants of a task of this context, from where the last writer stopped. Requires: it has some.
   GroupWriter constant_writer(TaskId task) const noexcept { return writer(own_.constants(task)); }
 

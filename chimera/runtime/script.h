@@ -17,7 +17,7 @@ namespace chimera {
 
 /// One act. `at` counts from the start of the run.
 struct ScriptAct {
-  enum class Kind : std::uint8_t { kSignal, kRaiseFlag, kLowerFlag, kSet, kSwitch };
+  enum class Kind : std::uint8_t { kSignal, kRaiseFlag, kLowerFlag, kSet, kSwitch, kDie };
 
   Nanoseconds at;
   Kind kind = Kind::kSignal;
@@ -26,6 +26,7 @@ struct ScriptAct {
   std::size_t operator_index = 0;         ///< kSet only: in ApplicationSpec::operators
   std::span<const std::byte> value = {};  ///< kSet only: as long as the value that the description gives
   std::uint32_t set = UINT32_MAX;         ///< kSwitch only: in ApplicationSpec::sets
+  RtpuId rtpu = {};                       ///< kDie only, which no single context can carry out: virtual/virtual_rtpus.h
 };
 
 /// Acts in order of time, those of one instant in the given order. The memory outlives the script.
@@ -37,6 +38,8 @@ class Script {
     for (std::size_t i = 1; i < acts.size(); ++i) CHIMERA_ASSERT(acts[i - 1].at <= acts[i].at);
   }
 
+  /// How many acts there are. Context: setup.
+  std::size_t size() const noexcept { return acts_.size(); }
   /// How many acts there are of that kind. Context: setup.
   std::size_t count(ScriptAct::Kind kind) const noexcept {
     std::size_t n = 0;

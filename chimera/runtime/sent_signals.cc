@@ -21,8 +21,8 @@ void SentSignals::deliver(Task& task) noexcept {
       (void)ring(sent.target);
       continue;
     }
-    const bool is_asked_of_manager = sent.signal == Signal::kOn;
-    if (others_ != nullptr && (!is_mine(sent.target) || is_asked_of_manager)) {
+    const bool goes_to_manager = sent.signal == Signal::kOn && others_ != nullptr && others_->has_manager();
+    if (others_ != nullptr && (!is_mine(sent.target) || goes_to_manager)) {
       const bool is_sent = others_->post(sent.signal, sent.target, task.id, false);
       if (!is_sent && sent.signal == Signal::kWakeup) ++task.profile.events_lost;
       continue;

@@ -58,8 +58,9 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
     report.why = Refusal::kState;
     return report;
   }
-  // With other contexts only the manager turns tasks ON: it has judged the whole set.
-  if (signal == Signal::kOn && set_.others() == nullptr && !would_be_legal(tasks)) {
+  // Where there is a manager, it alone turns tasks ON, and has judged the whole set.
+  const bool is_judged = set_.others() != nullptr && set_.others()->has_manager();
+  if (signal == Signal::kOn && !is_judged && !would_be_legal(tasks)) {
     report.why = Refusal::kIllegalSet;
     return report;
   }
@@ -79,7 +80,8 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
 }
 
 bool TaskLife::would_be_legal(std::span<const TaskId> tasks) noexcept {
-  for (const Task& task : set_.tasks()) wanted_[task.id.index] = task.state == State::kOn;
+  for (const Task& task : set_.tasks())
+    wanted_[task.id.index] = (set_.is_mine(task.id) ? task.state : set_.others()->state(task.id)) == State::kOn;
   for (TaskId id : tasks) wanted_[id.index] = true;
   return is_legal_set(set_.spec().variables, wanted_);
 }

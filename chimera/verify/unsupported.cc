@@ -51,14 +51,7 @@ class Refusals {
              "use muf-laxity, or run --virtual");
     if (!is_virtual() && is_beyond(configuration_.utilisation()[index]))
       refuse(configuration_.tasks()[0].at, "budgets above 0.93 of a CPU in real time", "run --virtual");
-    if (executor_ == Executor::kProcesses) return;
-    if (executor_ == Executor::kOneProcess) return one_loop(index);
-    const auto tasks = configuration_.tasks();
-    const auto first =
-        std::find_if(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu == index; });
-    if (first == tasks.end() || index == tasks[0].rtpu) return;
-    refuse(first->at, "task '" + first->name + "' on a second rtpu, '" + std::string(spec.name) + "', in virtual time",
-           "run without --virtual, each rtpu a process, or place every task on one rtpu");
+    if (executor_ == Executor::kOneProcess) one_loop(index);
   }
 
   // All tasks in one loop on the CPU of the first rtpu.
@@ -85,6 +78,9 @@ class Refusals {
 
   // What acts on tasks of other processes.
   void switches(Place at, const std::string& reaction, const DraftTask& task) {
+    if (is_virtual() && are_on_several_rtpus())
+      refuse(at, reaction + " of task '" + task.name.text + "' on several rtpus in virtual time",
+             "run with --isolation none, or use another reaction");
     if (executor_ != Executor::kProcesses) return;
     refuse(at, reaction + " of task '" + task.name.text + "' where tasks are in several processes",
            "run with --virtual or --isolation none, or use another reaction");
@@ -101,6 +97,21 @@ class Refusals {
     refuse(task.server->at, "'server' of task '" + task.name.text + "'", remedy + " its rtpu 'executor: preemptive'");
   }
 
+  // Read by switches alone.
+  bool are_on_several_rtpus() const {
+    const auto tasks = configuration_.tasks();
+    return std::any_of(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu != tasks[0].rtpu; });
+  }
+
+  void max_step(const NamedNode& step, const DraftTask& task, bool is_preemptive) {
+    if (executor_ == Executor::kProcesses && is_preemptive)
+      refuse(step.name.at, "'max_step' of task '" + task.name.text + "' on a preemptive rtpu",
+             "run with --virtual or --isolation none, or give its rtpu 'executor: executive'");
+    if (is_virtual() && are_on_several_rtpus())
+      refuse(step.name.at, "'max_step' of task '" + task.name.text + "' on several rtpus in virtual time",
+             "run without --virtual, or take it out");
+  }
+
   void judge(const DraftTask& task) {
     const auto tasks = configuration_.tasks();
     const auto here =
@@ -113,10 +124,7 @@ class Refusals {
     server(task, preempts, here != tasks.end() && here->has_event_source);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
-    for (const NamedNode& step : task.max_step)
-      if (executor_ == Executor::kProcesses && preempts)
-        refuse(step.name.at, "'max_step' of task '" + task.name.text + "' on a preemptive rtpu",
-               "run with --virtual or --isolation none, or give its rtpu 'executor: executive'");
+    for (const NamedNode& step : task.max_step) max_step(step, task, preempts);
     if (task.stack_bytes && !preempts && executor_ == Executor::kProcesses)
       refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
              "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");

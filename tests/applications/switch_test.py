@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lesson 17, judged by its own receipts over 8 periods of the target: figure 9 for each approach to the singular pose and
-figure 8 for each way back, every switch done with one receipt, no cycle lost, no step above its limit. With a limit
+"""Lesson 17, judged by its own receipts over 8 periods of the target: figure 9 for each approach to the singular pose
+and figure 8 for each way back, every switch done with one receipt, no cycle lost, no step above its limit. With a limit
 below what the change really moves the receipts say so. usage: switch_test.py PROGRAM EXAMPLES"""
 import json
 import os

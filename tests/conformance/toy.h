@@ -16,6 +16,7 @@
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/hosted/variables.h"
 #include "chimera/runtime/testing/named_links.h"
+#include "chimera/runtime/virtual/virtual_peers.h"
 #include "chimera/task/handover.h"
 
 namespace chimera::toy {
@@ -36,6 +37,7 @@ struct Toy {
   std::string name;
   std::vector<Call>* calls = nullptr;
   Nanoseconds spend;                              // by cycle
+  Nanoseconds spend_at_edges;                     // by each of on, off, reinit and clear
   std::array<std::deque<int>, CHIMERA_METHODS> answers;  // of the next calls; CHIMERA_OK when none is left
   std::deque<std::pair<Signal, std::string>> sends;      // one a cycle; an empty name: none
   std::function<int(const chimera_call&)> during;        // by cycle; its answer when it is not CHIMERA_OK
@@ -66,6 +68,9 @@ std::int32_t method(void* memory, const chimera_call* call) {
   if (const chimera_inherited* from = chimera_inherited_of(&state.out)) seen.inherited = from->age_ns;
   if (state.in.value != nullptr) std::memcpy(&seen.in, state.in.value, sizeof seen.in);
   if (toy.calls != nullptr) toy.calls->push_back(seen);
+  constexpr bool kAtEdge =
+      kMethod == CHIMERA_ON || kMethod == CHIMERA_OFF || kMethod == CHIMERA_REINIT || kMethod == CHIMERA_CLEAR;
+  if (kAtEdge && toy.spend_at_edges > Nanoseconds{}) call->host->spend(call->context, toy.spend_at_edges.count);
   if (kMethod == CHIMERA_CYCLE) {
     if (toy.spend > Nanoseconds{}) call->host->spend(call->context, toy.spend.count);
     if (toy.during) {
@@ -166,6 +171,9 @@ class Application {
     one->spec.ports = one->ports;
     return one->spec;
   }
+  bool has(const std::string& name) const {
+    return std::any_of(ones_.begin(), ones_.end(), [&name](const auto& one) { return one->toy.name == name; });
+  }
   Toy& toy(const std::string& name) { return ones_[id(name).index]->toy; }
   /// Before build().
   TaskSpec& spec(const std::string& name) { return ones_[id(name).index]->spec; }
@@ -176,31 +184,36 @@ class Application {
     ADD_FAILURE() << "no task " << name;
     return TaskId(0u);
   }
+  /// Instead of one: TaskSpec::rtpu says whose a task is. For build_rtpus().
+  void place_on(std::vector<RtpuSpec> rtpus) { rtpus_ = std::move(rtpus); }
   /// The tasks of `off` are spawned but not turned ON.
   TaskSet& build(const std::vector<std::string>& off = {}, const ContextPlace& place = {}) {
-    for (std::size_t i = 0; i < ones_.size(); ++i) {
-      specs_.push_back(ones_[i]->spec);
-      components_.push_back(&component(ones_[i]->spec.aperiodic));
-      order_.push_back(TaskId(i));
-      if (std::find(off.begin(), off.end(), ones_[i]->toy.name) == off.end()) start_.push_back(TaskId(i));
-    }
-    spec_.name = "toys";
-    spec_.rtpus = rtpus_;
-    spec_.tasks = specs_;
-    spec_.init_order = order_;
-    spec_.start = start_;
-    links_.finish(spec_);
-    auto made = HeapTaskSet::create(spec_, components_, place);
-    if (!made) {
-      ADD_FAILURE() << made.error().message.c_str();
-      std::abort();
-    }
-    set_ = *std::move(made);
-    return *set_;
+    make_spec(off);
+    sets_.resize(1);
+    sets_[0] = make_set(place);
+    return *sets_[0];
   }
-  const Task& task(const std::string& name) const { return set_->tasks()[id(name).index]; }
+  /// A context for each rtpu that has tasks, made in the stated order of the rtpus; none stated: in theirs.
+  VirtualPeers& build_rtpus(const std::vector<std::string>& off = {}, std::vector<std::uint32_t> order = {}) {
+    make_spec(off);
+    peers_ = *VirtualPeers::create(spec_);
+    sets_.resize(rtpus_.size());
+    for (std::uint32_t r = 0; r < rtpus_.size() && order.size() < rtpus_.size(); ++r) order.push_back(r);
+    for (const std::uint32_t r : order) {
+      const auto is_there = [r](const TaskSpec& task) { return task.rtpu.index == r; };
+      if (std::none_of(specs_.begin(), specs_.end(), is_there)) continue;
+      ContextPlace place;
+      place.rtpu = RtpuId(r);
+      place.others = peers_.get();
+      sets_[r] = make_set(place);
+      peers_->join(RtpuId(r), *sets_[r]);
+    }
+    return *peers_;
+  }
+  const Task& task(const std::string& name) const { return set_of(name).tasks()[id(name).index]; }
   double published(const std::string& name) const {
-    const VariableView view = set_->sources().view(VariableId(Variables(set_->spec()).find("x_" + name)));
+    TaskSet& set = set_of(name);
+    const VariableView view = set.sources().view(VariableId(Variables(set.spec()).find("x_" + name)));
     double value = 0;
     std::memcpy(&value, view.value, sizeof value);
     return value;
@@ -228,6 +241,32 @@ class Application {
   std::vector<Call> calls;
 
  private:
+  void make_spec(const std::vector<std::string>& off) {
+    for (std::size_t i = 0; i < ones_.size(); ++i) {
+      specs_.push_back(ones_[i]->spec);
+      components_.push_back(&component(ones_[i]->spec.aperiodic));
+      order_.push_back(TaskId(i));
+      if (std::find(off.begin(), off.end(), ones_[i]->toy.name) == off.end()) start_.push_back(TaskId(i));
+    }
+    spec_.name = "toys";
+    spec_.rtpus = rtpus_;
+    spec_.tasks = specs_;
+    spec_.init_order = spec_.end_order = order_;
+    spec_.start = start_;
+    links_.finish(spec_);
+  }
+  std::unique_ptr<HeapTaskSet> make_set(const ContextPlace& place) {
+    auto made = HeapTaskSet::create(spec_, components_, place);
+    if (!made) {
+      ADD_FAILURE() << made.error().message.c_str();
+      std::abort();
+    }
+    return *std::move(made);
+  }
+  TaskSet& set_of(const std::string& name) const {
+    return *sets_[sets_.size() == 1 ? 0 : specs_[id(name).index].rtpu.index];
+  }
+
   struct One {
     Toy toy;
     std::vector<Call> calls;
@@ -243,7 +282,8 @@ class Application {
   std::vector<RtpuSpec> rtpus_{RtpuSpec{"only", 0, Policy::kEdf}};
   chimera::NamedLinks links_;
   ApplicationSpec spec_;
-  std::unique_ptr<HeapTaskSet> set_;
+  std::unique_ptr<VirtualPeers> peers_;
+  std::vector<std::unique_ptr<HeapTaskSet>> sets_;  // one, or by rtpu
 };
 
 }  // namespace chimera::toy

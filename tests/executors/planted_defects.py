@@ -50,8 +50,8 @@ DEFECTS = (
      "  if (job.sporadic && job.sporadic->is_halted()) return;\n  ++job.task.profile.preempted;", ""),
     ("a leaving task is turned off before the change", "switching.cc",
      "  if (agreement().propose(order_.number, at)) peers_->ring();",
-     "  for (const TaskId id : plan_.leaving) {\n    (void)parts_.set.life().settle_off(id, now);\n"
-     "    task(id).state = State::kOn;\n  }\n  if (agreement().propose(order_.number, at)) peers_->ring();"),
+     "  for (const TaskId id : plan_.leaving) {\n    (void)parts_.set.life().settle_off(id, now);\n    task(id).state = "
+     "State::kOn;\n  }\n  if (agreement().propose(order_.number, at)) peers_->ring();"),
     ("readers are bound to a task that is armed", "task_life.cc", "turns_on && !is_arming_) set_", "turns_on) set_"),
     ("an aborted switch leaves tasks armed", "switching.cc", "  const std::size_t n = undoes ? next_armed_ :",
      "  const std::size_t n = undoes ? 0 :"),

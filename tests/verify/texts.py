@@ -13,7 +13,6 @@ CALLED = (
     ("llf in real time", "`llf` in real time"),
     ("budgets above 0.93 of a CPU in real time", "budgets above 0.93 of a CPU"),
     ("budgets of all rtpus together above 0.93", "budgets above 0.93 of a CPU"),
-    ("on a second rtpu", "Virtual time runs one rtpu"),
     (": switch' of task", "reaction `switch`"),
     (": demote' of task", "`demote`"),
     ("from a descriptor, in virtual time", "in virtual time events from a descriptor"),
@@ -22,6 +21,8 @@ CALLED = (
     ("\"stale_after\", task", "`stale_after`"),
     ("\"standby_for\", task", "`standby_for`"),
     ("on a preemptive rtpu", "`max_step` on a preemptive rtpu"),
+    ("where tasks are in several processes", "in several processes, or on several rtpus in virtual time"),
+    ("on several rtpus in virtual time", "or on several rtpus in virtual time"),
     ("'stack' of task", "`stack`"),
     ("\"isolation: process\", task", "`isolation: process` of a task"),
 )

@@ -91,11 +91,12 @@ Nanoseconds sample_distance(const MeasuredRequest& request, const ApplicationSpe
   return std::max(wanted, Nanoseconds{request.run.duration.count / kMostSamples + 1});
 }
 
-void add_remarks(const TaskSet& tasks, bool is_flag_up, std::vector<std::string>& remarks) {
+void add_remarks(std::span<const Task* const> tasks, bool is_flag_up, std::vector<std::string>& remarks) {
   const auto add = [&remarks](const Task& task, std::uint64_t count, const char* what) {
     if (count > 0) remarks.push_back(std::string(task.spec->name) + ": " + std::to_string(count) + " " + what);
   };
-  for (const Task& task : tasks.tasks()) {
+  for (const Task* each : tasks) {
+    const Task& task = *each;
     add(task, task.profile.missed, "missed");
     add(task, task.profile.dropped, "dropped");
     add(task, task.profile.overrun, "over budget");
@@ -123,7 +124,7 @@ class Measuring {
         if (auto bound = measure.bind(application_); !bound) return failed(bound.error());
     const RunEnd end = go(made.ran);
     if (end == RunEnd::kTaskStopped)
-      made.failure = "ended by the reaction `stop` of task '" + who_stopped(application_.tasks()) + "'";
+      made.failure = "ended by the reaction `stop` of task '" + who_stopped(application_.all_tasks()) + "'";
     report(made);
     return made;
   }
@@ -156,15 +157,17 @@ class Measuring {
       judged.holds = expectation.holds(judged.said);
       made.expectations.push_back(std::move(judged));
     }
-    add_remarks(application_.tasks(), application_.tasks().flag().is_up(), made.remarks);
+    const auto tasks = application_.all_tasks();
+    add_remarks(tasks, application_.is_flag_up(), made.remarks);
     for (const RefusedSignal& refused : loop_->refused())
-      made.remarks.push_back(refused_line(refused, application_.tasks().tasks()[refused.task.index], loop_->origin()));
+      made.remarks.push_back(refused_line(refused, *tasks[refused.task.index], loop_->origin()));
     for (std::string& remark : made.remarks)
       if (remark.ends_with('\n')) remark.pop_back();
     loop_->shut_down();
-    for (const Task& task : application_.tasks().tasks())
-      if (task.faults.off_count > 0 && made.failure.empty())
-        made.failure = std::string(task.spec->name) + ": " + not_off_text(task.faults.off_method, task.faults.off_text);
+    for (const Task* task : tasks)
+      if (task->faults.off_count > 0 && made.failure.empty())
+        made.failure =
+            std::string(task->spec->name) + ": " + not_off_text(task->faults.off_method, task->faults.off_text);
   }
 
   const MeasuredRequest& request_;
@@ -195,7 +198,7 @@ MeasuredRun measured_run(const MeasuredRequest& request, const Library& library)
     refused.failure = request.folder + ": " + error.message();
     return refused;
   }
-  auto application = Application::load(planned->configuration, planned->library);
+  auto application = Application::load(planned->configuration, planned->library, Application::Contexts::kByRtpu);
   if (measures && application) return Measuring(request, *planned, *std::move(application), *std::move(measures)).run();
   const Error& why = measures ? application.error() : measures.error();
   refused.failure = why.message.c_str();

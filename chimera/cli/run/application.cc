@@ -36,7 +36,13 @@ std::vector<FieldDescriptor> fields_of(const chimera_port_decl& decl) {
 
 }  // namespace
 
-Result<Application> Application::load(Configuration configuration, const Library& library) {
+bool are_on_several_rtpus(const Configuration& configuration) noexcept {
+  const auto tasks = configuration.tasks();
+  const auto is_elsewhere = [&](const ConfiguredTask& task) { return task.rtpu != tasks[0].rtpu; };
+  return std::any_of(tasks.begin(), tasks.end(), is_elsewhere);
+}
+
+Result<Application> Application::load(Configuration configuration, const Library& library, Contexts contexts) {
   Application made(std::move(configuration));
   std::map<std::string, SharedObject> opened;
   UnderWay& told = under_way();
@@ -54,42 +60,103 @@ Result<Application> Application::load(Configuration configuration, const Library
   place.serving = &told.serving;
   place.making = &told.making;
   show_made(told.making);
-  auto tasks = HeapTaskSet::create(made.configuration_.spec(), made.components_, place);
-  if (!tasks) return tasks.error();
-  made.tasks_ = *std::move(tasks);
+  if (auto made_all = made.make_contexts(place, contexts); !made_all) return made_all.error();
   return made;
+}
+
+Result<void> Application::make_contexts(ContextPlace place, Contexts contexts) {
+  const bool is_by_rtpu = contexts == Contexts::kByRtpu && are_on_several_rtpus(configuration_);
+  contexts_.resize(is_by_rtpu ? spec().rtpus.size() : 1);
+  if (is_by_rtpu) {
+    auto peers = VirtualPeers::create(spec());
+    if (!peers) return peers.error();
+    peers_ = *std::move(peers);
+    place.others = peers_.get();
+  }
+  for (std::size_t r = 0; r < contexts_.size(); ++r) {
+    const auto is_there = [r](const TaskSpec& task) { return task.rtpu.index == r; };
+    if (is_by_rtpu && std::none_of(spec().tasks.begin(), spec().tasks.end(), is_there)) continue;
+    if (is_by_rtpu) place.rtpu = RtpuId(r);
+    auto tasks = HeapTaskSet::create(spec(), components_, place);
+    if (!tasks) return tasks.error();
+    contexts_[r] = *std::move(tasks);
+    if (is_by_rtpu) peers_->join(RtpuId(r), *contexts_[r]);
+  }
+  return {};
+}
+
+TaskSet& Application::context_of(TaskId task) const noexcept {
+  return *contexts_[peers_ == nullptr ? 0 : spec().tasks[task.index].rtpu.index];
+}
+
+std::vector<const Task*> Application::all_tasks() const {
+  std::vector<const Task*> all;
+  for (std::size_t t = 0; t < spec().tasks.size(); ++t) all.push_back(&context_of(TaskId(t)).tasks()[t]);
+  return all;
+}
+
+std::vector<State> Application::states() const {
+  std::vector<State> states;
+  for (const Task* task : all_tasks()) states.push_back(peers_ == nullptr ? task->state : peers_->state(task->id));
+  return states;
+}
+
+bool Application::is_flag_up() const noexcept {
+  return peers_ == nullptr ? contexts_[0]->flag().is_up() : peers_->is_flag_up();
+}
+
+// With several contexts what does not depend on the present value, from the first producer that is ON, else from the
+// first one.
+VariableView Application::view(VariableId variable) const noexcept {
+  const Variable& of = spec().variables[variable.index];
+  if (peers_ == nullptr) return contexts_[0]->sources().view(variable);
+  VariableView view;
+  if (of.operator_index != UINT32_MAX) {
+    const GivenSpec& given = spec().operators[of.operator_index];
+    view.count = given.extent[0].max * given.extent[1].max;
+    return view;
+  }
+  const auto is_on = [this](const PortOf& port) { return peers_->state(port.task) == State::kOn; };
+  auto producer = std::find_if(of.producers.begin(), of.producers.end(), is_on);
+  if (producer == of.producers.end()) producer = of.producers.begin();
+  const TaskMemory& memory = context_of(producer->task).memory(producer->task);
+  const chimera_port* port = memory.output_port(producer->index);
+  view.spec = memory.output_spec(producer->index);
+  view.count = port == nullptr ? view.spec->max_count() : port->count;
+  return view;
 }
 
 Result<Probe> Application::probe(const std::string& variable) const {
   const auto found = find_variable(configuration_, variable);
   if (!found) return found.error();
-  const auto all = tasks_->spec().variables;
-  const std::size_t index = Variables(tasks_->spec()).find(variable);
+  const auto all = spec().variables;
+  const std::size_t index = Variables(spec()).find(variable);
   CHIMERA_ASSERT(index < all.size());  // whatever is configured is laid out
   Probe probe;
   probe.name = variable;
   const std::uint32_t by_operator = all[index].operator_index;
   if (by_operator != UINT32_MAX) {
-    probe.readers.push_back({tasks_->table().operators()[by_operator], 0, 0});
+    const GroupReader reader = peers_ == nullptr ? contexts_[0]->table().operators()[by_operator]
+                                                 : peers_->operator_variable(by_operator);
+    probe.readers.push_back({reader, 0, 0});
     probe.producers.push_back(nullptr);
   }
   for (const PortOf& producer : all[index].producers)
     for (std::uint32_t half = 0; half < 2; ++half) {
-      probe.readers.push_back(tasks_->table().reader_of(producer, half));
-      probe.producers.push_back(&tasks_->tasks()[producer.task.index]);
+      probe.readers.push_back(context_of(producer.task).table().reader_of(producer, half));
+      probe.producers.push_back(&context_of(producer.task).tasks()[producer.task.index]);
     }
   probe.form.unit = (*found)->unit;
   probe.form.is_scalar = (*found)->shape.empty();
-  const VariableView view = tasks_->sources().view(VariableId(index));
+  const VariableView view = this->view(VariableId(index));
   probe.form.count = view.count;
   if (view.spec != nullptr) {
     const PortOf& producer = all[index].producers[0];
-    const PortSpec& spec = *view.spec;
-    probe.form.type = spec.type;
-    probe.form.element_bytes = spec.element_bytes;
-    probe.form.fields = fields_of(components_[producer.task.index]->ports[spec.declared]);
+    probe.form.type = view.spec->type;
+    probe.form.element_bytes = view.spec->element_bytes;
+    probe.form.fields = fields_of(components_[producer.task.index]->ports[view.spec->declared]);
   } else {
-    const GivenSpec& given = configuration_.spec().operators[all[index].operator_index];
+    const GivenSpec& given = spec().operators[all[index].operator_index];
     probe.form.type = given.type;
     probe.form.element_bytes = given.element_bytes;
   }

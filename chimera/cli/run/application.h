@@ -10,6 +10,7 @@
 #include "chimera/cli/run/expectation.h"
 #include "chimera/runtime/hosted/background_writer.h"
 #include "chimera/runtime/hosted/heap_task_set.h"
+#include "chimera/runtime/virtual/virtual_peers.h"
 #include "chimera/text/value_text.h"
 #include "chimera/verify/configuration.h"
 #include "chimera/verify/verify.h"
@@ -31,14 +32,32 @@ class Probe {
   std::vector<const Task*> producers;  ///< one for each reader; null: the operator
 };
 
+/// Its tasks are on more than one rtpu. Context: setup.
+bool are_on_several_rtpus(const Configuration& configuration) noexcept;
+
 /// Context: setup. Movable.
 class Application {
  public:
+  enum class Contexts : std::uint8_t {
+    kOne,    ///< all tasks in one
+    kByRtpu  ///< one for each rtpu, where tasks are on several: virtual time
+  };
   /// Opens the shared object of every component used and makes the tasks, in NOT-CREATED.
-  static Result<Application> load(Configuration configuration, const Library& library);
+  static Result<Application> load(Configuration configuration, const Library& library,
+                                  Contexts contexts = Contexts::kOne);
 
   const Configuration& configuration() const noexcept { return configuration_; }
-  TaskSet& tasks() noexcept { return *tasks_; }
+  const ApplicationSpec& spec() const noexcept { return configuration_.spec(); }
+  /// What the contexts see of each other; null: there is one context.
+  VirtualPeers* peers() noexcept { return peers_.get(); }
+  /// Requires: one context.
+  TaskSet& tasks() noexcept { return *contexts_[0]; }
+  /// Every task, in order.
+  std::vector<const Task*> all_tasks() const;
+  /// The state of every task, in order; ERROR on a dead rtpu.
+  std::vector<State> states() const;
+  /// The illegal-configuration flag is up.
+  bool is_flag_up() const noexcept;
   /// For real time: threads for what components do beside their cycles (RunOptions::writer).
   BackgroundWriter& background_writer() noexcept { return *writer_; }
   /// A probe for the state variable of that name; refuses an unknown name with the nearest one.
@@ -47,11 +66,15 @@ class Application {
 
  private:
   explicit Application(Configuration configuration) : configuration_(std::move(configuration)) {}
+  Result<void> make_contexts(ContextPlace place, Contexts contexts);
+  TaskSet& context_of(TaskId task) const noexcept;
+  VariableView view(VariableId variable) const noexcept;
 
   Configuration configuration_;
   std::vector<const chimera_component*> components_;
   std::unique_ptr<BackgroundWriter> writer_ = std::make_unique<BackgroundWriter>();
-  std::unique_ptr<HeapTaskSet> tasks_;
+  std::unique_ptr<VirtualPeers> peers_;
+  std::vector<std::unique_ptr<HeapTaskSet>> contexts_;  // one; with peers_ by rtpu, null: no task is on it
 };
 
 }  // namespace chimera::cli

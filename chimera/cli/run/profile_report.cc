@@ -63,20 +63,15 @@ std::string row(const TaskProfile& task, Nanoseconds ran, int width) {
 
 }  // namespace
 
-std::vector<State> states_of(const TaskSet& tasks) {
-  std::vector<State> states;
-  for (const Task& task : tasks.tasks()) states.push_back(task.state);
-  return states;
-}
-
-std::vector<TaskProfile> profiles_of(const TaskSet& tasks, std::span<const State> states,
+std::vector<TaskProfile> profiles_of(std::span<const Task* const> tasks, std::span<const State> states,
                                      const Configuration& configuration, Nanoseconds now) {
   const auto rtpus = configuration.rtpus();
   std::vector<TaskProfile> profiles;
-  for (const Task& task : tasks.tasks())
-    profiles.push_back({std::string(task.spec->name), std::string(task.spec->component), states[task.id.index],
-                        task.spec->period, task.profile, task.faults, std::string(rtpus[task.spec->rtpu.index].name),
-                        transfer_of(configuration, task.id.index), task.profile.on_by(now), task.spec->server});
+  for (const Task* task : tasks)
+    profiles.push_back({std::string(task->spec->name), std::string(task->spec->component), states[task->id.index],
+                        task->spec->period, task->profile, task->faults,
+                        std::string(rtpus[task->spec->rtpu.index].name), transfer_of(configuration, task->id.index),
+                        task->profile.on_by(now), task->spec->server});
   return profiles;
 }
 

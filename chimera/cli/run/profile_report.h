@@ -11,11 +11,9 @@
 
 namespace chimera::cli {
 
-/// The state of every task, in order: taken at the end of a run, before everything is shut down.
-std::vector<State> states_of(const TaskSet& tasks);
-
-/// What is to be told about every task of an application in one process, in order, at `now`.
-std::vector<TaskProfile> profiles_of(const TaskSet& tasks, std::span<const State> states,
+/// What is to be told about every task of an application in one process, in order, at `now`; `states`: as they were
+/// before everything was shut down.
+std::vector<TaskProfile> profiles_of(std::span<const Task* const> tasks, std::span<const State> states,
                                      const Configuration& configuration, Nanoseconds now);
 
 /// One line a task: state, cycles, execution time of cycle (mean, max), load, response, start jitter, failures; then a

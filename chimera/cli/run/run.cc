@@ -90,6 +90,7 @@ class LocalTarget final : public RunTarget {
  private:
   void drain();
   void print_notes();
+  std::vector<UnitFate> fates();
 
   const RunRequest& request_;
   const RunPlan& plan_;
@@ -127,17 +128,30 @@ Result<void> LocalTarget::start() {
     for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
   if (request_.virtual_time) print_notes();  // else the loop runs by now: they are told at the end
-  if (sink_ != nullptr) sink_->begin(application_.tasks().spec(), loop_->origin(), loop_->origin());
+  if (sink_ != nullptr) sink_->begin(application_.spec(), loop_->origin(), loop_->origin());
   return {};
+}
+
+// Of the rtpus that the script had die.
+std::vector<UnitFate> LocalTarget::fates() {
+  std::vector<UnitFate> fates;
+  std::vector<bool> is_told(application_.spec().rtpus.size());
+  for (const ScriptAct& act : plan_.acts) {
+    if (act.kind != ScriptAct::Kind::kDie || is_told[act.rtpu.index]) continue;
+    if (!application_.peers()->is_dead(act.rtpu)) continue;  // the run ended before
+    is_told[act.rtpu.index] = true;
+    fates.push_back({.name = std::string(application_.spec().rtpus[act.rtpu.index].name), .died = act.at});
+  }
+  return fates;
 }
 
 // What components have to say beside their values, once each.
 void LocalTarget::print_notes() {
-  const auto tasks = application_.tasks().tasks();
+  const auto tasks = application_.all_tasks();
   notes_told_.resize(tasks.size());
-  for (const Task& task : tasks) {
-    if (std::exchange(notes_told_[task.id.index], task.faults.notes) == task.faults.notes || request_.json) continue;
-    std::fprintf(out_, "%s\n", note_line(task.spec->name, task.faults.note).c_str());
+  for (const Task* task : tasks) {
+    if (std::exchange(notes_told_[task->id.index], task->faults.notes) == task->faults.notes || request_.json) continue;
+    std::fprintf(out_, "%s\n", note_line(task->spec->name, task->faults.note).c_str());
   }
 }
 
@@ -181,32 +195,34 @@ std::vector<Reading> LocalTarget::read(const std::vector<std::string>& names) {
 }
 
 void LocalTarget::finish(RunReport& report) {
-  report.is_flag_up = application_.tasks().flag().is_up();
+  report.is_flag_up = application_.is_flag_up();
   report.subsystem = plan_.configuration.subsystem();
   report.executor = loop_->description();
   report.origin = loop_->origin();
-  const std::vector<State> states = states_of(application_.tasks());
-  if (report.end == RunEnd::kTaskStopped) report.stopped_by = who_stopped(application_.tasks());
+  const auto tasks = application_.all_tasks();
+  const std::vector<State> states = application_.states();
+  if (report.end == RunEnd::kTaskStopped) report.stopped_by = who_stopped(tasks);
   for (const RefusedSignal& r : loop_->refused())
-    report.refused += refused_line(r, application_.tasks().tasks()[r.task.index], loop_->origin());
+    report.refused += refused_line(r, *tasks[r.task.index], loop_->origin());
   const Nanoseconds now = loop_->now();
   std::vector<std::uint64_t> faults_before;
-  for (const Task& task : application_.tasks().tasks()) faults_before.push_back(task.faults.count);
+  for (const Task* task : tasks) faults_before.push_back(task->faults.count);
   under_way().running = 0;  // of the run, which is over
   under_way().is_ending = true;
   loop_->shut_down();
   under_way().is_ending = false;
   under_way().running = under_way().serving = 0;
   for (const SwitchReceipt& receipt : loop_->receipts().all()) {  // a switch that the end aborted is among them
-    const ApplicationSpec& spec = application_.tasks().spec();
+    const ApplicationSpec& spec = application_.spec();
     report.switches += control::receipt_text(receipt, spec, loop_->origin());
     const std::string json = control::receipt_json(receipt, spec, loop_->origin());
     report.receipts += (report.receipts.empty() || json.empty() ? "" : ", ") + json;
   }
   report.receipts_left_out = loop_->receipts().left_out();
   // What `off` and `kill` cost, and their faults, too.
-  report.profiles = profiles_of(application_.tasks(), states, application_.configuration(), now);
-  report.verdict = judge_run({report.profiles, faults_before, {}, report.is_flag_up, request_.strict});
+  report.profiles = profiles_of(tasks, states, application_.configuration(), now);
+  const std::vector<UnitFate> units = fates();
+  report.verdict = judge_run({report.profiles, faults_before, units, report.is_flag_up, request_.strict});
   if (sink_ != nullptr) {
     drain();
     sink_->end(reader_.lost(), 0);
@@ -233,7 +249,8 @@ int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink,
   int code = kRefused;
   const auto plan = plan_run(request, workplace, out, err, &code);
   if (!plan) return code;
-  auto application = Application::load(plan->configuration, plan->library);
+  const auto contexts = request.virtual_time ? Application::Contexts::kByRtpu : Application::Contexts::kOne;
+  auto application = Application::load(plan->configuration, plan->library, contexts);
   if (!application) return refuse_run(request, application.error(), out, err);
   LocalTarget target(request, *plan, *std::move(application), sink, out, err);
   return RunSession(request, plan->expectations, target, out, err).run();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs an application in slices, by the virtual executor or by the real-time executive in this process.
+// Runs an application in slices: in virtual time on one rtpu or on several, or by the real-time executive in this
+// process.
 #include "chimera/cli/run/run_loop.h"
 
 #include <chrono>
@@ -13,6 +14,7 @@
 #include "chimera/runtime/hosted/background_writer.h"
 #include "chimera/runtime/hosted/refusal_text.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
+#include "chimera/runtime/virtual/virtual_rtpus.h"
 
 namespace chimera::cli {
 
@@ -34,16 +36,20 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
   return std::string("refused at ") + at + ": " + signal + " " + name + ": " + why + "\n";
 }
 
-std::string who_stopped(const TaskSet& tasks) {
-  for (const Task& task : tasks.tasks())
-    if ((task.spec->on_miss == OnMiss::kStop && task.profile.missed > task.profile.tolerated) ||
-        (task.spec->on_overrun == OnMiss::kStop && task.profile.overrun > 0) ||
-        (task.spec->on_fault == OnFault::kStop && task.state == State::kError))
-      return std::string(task.spec->name);
+std::string who_stopped(std::span<const Task* const> tasks) {
+  for (const Task* task : tasks)
+    if ((task->spec->on_miss == OnMiss::kStop && task->profile.missed > task->profile.tolerated) ||
+        (task->spec->on_overrun == OnMiss::kStop && task->profile.overrun > 0) ||
+        (task->spec->on_fault == OnFault::kStop && task->state == State::kError))
+      return std::string(task->spec->name);
   return {};
 }
 
 namespace {
+
+std::string with_seed(std::string description, const RunRequest& request) {
+  return request.seed ? description + ", seed " + std::to_string(*request.seed) : description;
+}
 
 class VirtualLoop final : public RunLoop {
  public:
@@ -65,14 +71,52 @@ class VirtualLoop final : public RunLoop {
   std::span<const RefusedSignal> refused() override { return executor_.refused(); }
   const SwitchReceipts& receipts() override { return executor_.receipts(); }
   std::string description() const override {
-    std::string text = is_preemptive_ ? "virtual time, preemptive" : "virtual time, non-preemptive";
-    return request_.seed ? text + ", seed " + std::to_string(*request_.seed) : text;
+    return with_seed(is_preemptive_ ? "virtual time, preemptive" : "virtual time, non-preemptive", request_);
   }
 
  private:
   const RunRequest& request_;
   const bool is_preemptive_;
   VirtualExecutor executor_;
+};
+
+// A context for each rtpu.
+class RtpusLoop final : public RunLoop {
+ public:
+  RtpusLoop(Application& application, const RunRequest& request, const RunOptions& options)
+      : request_(request),
+        peers_(*application.peers()),
+        rtpus_(peers_, options, {request.preemptive, request.seed, request.quantum}) {}
+
+  Result<void> start() override { return rtpus_.start(); }
+  std::optional<RunEnd> advance(Nanoseconds until) override {
+    const bool last = until >= request_.duration;
+    const RunEnd end = last ? rtpus_.run(request_.duration) : rtpus_.run_to(until);
+    if (end == RunEnd::kTime && !last) return std::nullopt;
+    return end;
+  }
+  Nanoseconds now() const override { return rtpus_.now() - rtpus_.origin(); }
+  Nanoseconds origin() const override { return rtpus_.origin(); }
+  void shut_down() override { rtpus_.shut_down(); }
+  std::span<const RefusedSignal> refused() override { return refused_ = rtpus_.refused(); }
+  const SwitchReceipts& receipts() override { return none_; }
+  std::string description() const override {
+    std::string text = "virtual time";
+    for (std::size_t r = 0; r < peers_.spec().rtpus.size(); ++r) {
+      const RtpuSpec& rtpu = peers_.spec().rtpus[r];
+      if (peers_.tasks(RtpuId(r)) == nullptr) continue;
+      const bool is_preemptive = request_.preemptive || rtpu.preemptive;
+      text += ", " + std::string(rtpu.name) + (is_preemptive ? ": preemptive" : ": non-preemptive");
+    }
+    return with_seed(text, request_);
+  }
+
+ private:
+  const RunRequest& request_;
+  VirtualPeers& peers_;
+  VirtualRtpus rtpus_;
+  std::vector<RefusedSignal> refused_;
+  SwitchReceipts none_;
 };
 
 RunOptions with_threads(RunOptions options, BackgroundWriter& writer) {
@@ -141,6 +185,7 @@ class RealTimeLoop final : public RunLoop {
 
 std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
                                            const RunOptions& options) {
+  if (application.peers() != nullptr) return std::make_unique<RtpusLoop>(application, request, options);
   return std::make_unique<VirtualLoop>(application, request, options);
 }
 

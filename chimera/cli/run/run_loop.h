@@ -29,14 +29,15 @@ class RunLoop {
   virtual std::string description() const = 0;
 };
 
-/// Whose policy a run of one context follows: in virtual time that of the only rtpu with tasks, else the first.
+/// Whose policy a run of one context follows: in virtual time that of the first task's rtpu, else the first.
 const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time);
 
 /// "refused at 0.200 s: off pid: ..." and a line end. Context: setup.
 std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin);
 /// The task whose reaction `stop` ended it: the first failure of time with that; "" when there is none.
-std::string who_stopped(const TaskSet& tasks);
+std::string who_stopped(std::span<const Task* const> tasks);
 
+/// With a context for each rtpu: each by its own policy, and preemptive when it says so or the request does.
 std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
                                            const RunOptions& options);
 std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,

@@ -88,11 +88,27 @@ Result<ScriptAct> settled(const TimedAct& timed, RunPlan& plan) {
   return act;
 }
 
+/// Why the act cannot be done in this run; "": it can.
+std::string why_not(const ScriptAct& act, const RunRequest& request, const Configuration& configuration) {
+  const bool has_rtpus = request.virtual_time && are_on_several_rtpus(configuration);
+  if (act.kind == ScriptAct::Kind::kSwitch && has_rtpus)
+    return "a switch of tasks on several rtpus cannot be done yet in virtual time; run without --virtual";
+  if (act.kind != ScriptAct::Kind::kDie) return {};
+  if (!has_rtpus) return "an rtpu dies in virtual time only (--virtual), where tasks are on several rtpus";
+  const auto tasks = configuration.tasks();
+  const bool is_there = std::any_of(tasks.begin(), tasks.end(),
+                                    [&](const ConfiguredTask& task) { return task.rtpu == act.rtpu.index; });
+  return is_there ? "" : "no task is on that rtpu";
+}
+
 Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
   const auto acts = parse_script(request.at, plan.configuration.spec());
   if (!acts) return acts.error();
   for (const TimedAct& timed : *acts) {
     const bool is_set = timed.act.kind == ScriptAct::Kind::kSet;
+    const std::string why = why_not(timed.act, request, plan.configuration);
+    if (!why.empty())
+      return Error{ErrorCode::kRefused, {"--at '" + timed.text + "': " + why}, {plan.configuration.file()}};
     const auto act = is_set ? settled(timed, plan) : Result<ScriptAct>(timed.act);
     if (!act) return act.error();
     plan.acts.push_back(*act);

@@ -220,8 +220,7 @@ TEST(Run, AnIllegalDescriptionIsReportedAndNotRun) {
 
 TEST(ProfileReport, ATaskThatNeverRanHasNoFiguresButALine) {
   Application application = test_application(kCounterText, test_library());
-  const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()),
-                                    application.configuration(), Nanoseconds{});
+  const auto profiles = profiles_of(application.all_tasks(), application.states(), application.configuration(), {});
   EXPECT_EQ(profile_table(profiles, Nanoseconds{}, Nanoseconds{}),
             "task     state          cycles        mean        max      load    response      jitter  missed dropped "
             "faults\n"
@@ -244,8 +243,7 @@ TEST(ProfileReport, FaultsAreTimedFromTheOrigin) {
   task.faults.at = seconds(5000);
   task.faults.method = Method::kCycle;
   std::snprintf(task.faults.last.text, sizeof task.faults.last.text, "worn");
-  const auto profiles = profiles_of(application.tasks(), states_of(application.tasks()),
-                                    application.configuration(), Nanoseconds{});
+  const auto profiles = profiles_of(application.all_tasks(), application.states(), application.configuration(), {});
   EXPECT_NE(profile_table(profiles, seconds(2), seconds(4999))
                 .find("counter: last fault in cycle at 1.00 s: worn\n"), std::string::npos);
   EXPECT_NE(profile_json(profiles, seconds(4999)).find("\"at_ns\": 1000000000, "),

@@ -45,18 +45,23 @@ void add_unit(RunVerdict& verdict, const UnitFate& unit, bool is_told) {
     if (unit.restarted != kNever) std::snprintf(at, sizeof at, " at %.3f s", to_seconds(unit.restarted));
     verdict.since.push_back(unit.name + ": the counts of its tasks begin at its restart" + at);
   }
+  if (unit.died != kNever) {
+    char at[40];
+    std::snprintf(at, sizeof at, "%.3f s", to_seconds(unit.died));
+    verdict.remarks.push_back(unit.name + " died at " + at + " and is not restarted");
+  }
   if (unit.is_given_up)
     verdict.failures.push_back(unit.name + " was given up: its process ended too often, its tasks did not run");
   if (!unit.bad_end.empty() && !is_told)
     verdict.failures.push_back(unit.name + " did not end in order: it " + unit.bad_end);
 }
 
-void add_end(RunVerdict& verdict, const TaskProfile& task, std::uint64_t faults_before) {
+void add_end(RunVerdict& verdict, const TaskProfile& task, bool died_on_purpose, std::uint64_t faults_before) {
   const Method method = task.faults.method;
   const std::string fault = std::string(method_name(method)) + ": " + task.faults.last.text;
   const bool is_new = task.faults.count > faults_before;
   const bool is_told = std::find(verdict.not_off.begin(), verdict.not_off.end(), task.task) != verdict.not_off.end();
-  if (task.state == State::kError)
+  if (task.state == State::kError && !died_on_purpose)
     verdict.failures.push_back(task.task + " was in ERROR at the end" + (task.faults.count > 0 ? ": " + fault : ""));
   else if (is_new && method == Method::kError)
     verdict.failures.push_back(task.task + " failed at the end: " + fault);
@@ -95,8 +100,12 @@ RunVerdict judge_run(const RunFacts& facts) {
     add_unit(verdict, unit, is_told);
   }
   if (facts.is_flag_up) verdict.remarks.emplace_back("the illegal-configuration flag is up");
-  for (std::size_t t = 0; t < facts.tasks.size(); ++t)
-    add_end(verdict, facts.tasks[t], t < facts.faults_before.size() ? facts.faults_before[t] : 0);
+  for (std::size_t t = 0; t < facts.tasks.size(); ++t) {
+    const bool died_on_purpose = std::any_of(facts.units.begin(), facts.units.end(), [&](const UnitFate& unit) {
+      return unit.died != kNever && unit.name == facts.tasks[t].rtpu;
+    });
+    add_end(verdict, facts.tasks[t], died_on_purpose, t < facts.faults_before.size() ? facts.faults_before[t] : 0);
+  }
   return verdict;
 }
 

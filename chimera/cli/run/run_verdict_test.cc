@@ -35,6 +35,17 @@ TEST(RunVerdict, AGoodRunIsOneLineAndASuccessStrictToo) {
   }
 }
 
+TEST(RunVerdict, ADeathThatWasAskedForIsNotCleanAndFailsOnlyAStrictRun) {
+  TaskProfile lost = task("pi", State::kError);
+  lost.rtpu = "servo";
+  const std::vector<UnitFate> units = {{.name = "servo", .died = milliseconds(1500)}};
+  EXPECT_EQ(judged({lost}, units).text(), "not clean: servo died at 1.500 s and is not restarted\n");
+  EXPECT_FALSE(judged({lost}, units).is_failure());
+  EXPECT_TRUE(judged({lost}, units, false, true).is_failure());
+  lost.rtpu = "plan";
+  EXPECT_TRUE(judged({lost}, units).is_failure()) << "another rtpu";
+}
+
 TEST(RunVerdict, CountsAreToldByTaskAndFailOnlyAStrictRun) {
   TaskProfile pi = task("pi"), arm = task("arm");
   pi.profile.missed = 12;

@@ -32,8 +32,8 @@ Result<ScriptAct> parse_signal(const std::string& text, const std::string& word,
   std::vector<std::string> words;
   for (int signal = 0; signal < CHIMERA_SIGNALS; ++signal) words.emplace_back(signal_name(static_cast<Signal>(signal)));
   words[static_cast<std::size_t>(Signal::kWakeup)] = "ring";  // sent as wakeup
-  words.insert(words.end(), {"flag", "set", "switch"});
-  const auto signals = words.end() - 3;
+  words.insert(words.end(), {"flag", "set", "switch", "die"});
+  const auto signals = words.end() - 4;
   const auto found = std::find(words.begin(), signals, word);
   if (found == signals) return wrong_act(text, unknown("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
@@ -61,6 +61,22 @@ Result<ScriptAct> parse_switch(const std::string& text, const std::string& name,
   return wrong_act(text, unknown("configuration", name, names));
 }
 
+Result<ScriptAct> parse_death(const std::string& text, const std::string& name, ScriptAct act,
+                              const ApplicationSpec& spec) {
+  act.kind = ScriptAct::Kind::kDie;
+  std::vector<std::string> names;
+  for (const RtpuSpec& rtpu : spec.rtpus) names.emplace_back(rtpu.name);
+  act.rtpu = RtpuId(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
+  if (act.rtpu.index < names.size()) return act;
+  return wrong_act(text, unknown("rtpu", name, names));
+}
+
+// At one instant deaths come first.
+bool comes_before(const TimedAct& a, const TimedAct& b) noexcept {
+  const auto is_death = [](const TimedAct& timed) { return timed.act.kind == ScriptAct::Kind::kDie; };
+  return a.act.at != b.act.at ? a.act.at < b.act.at : is_death(a) && !is_death(b);
+}
+
 Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return wrong_act(text, "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'");
@@ -69,8 +85,8 @@ Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   const std::string act_text = trimmed(text.substr(colon + 1));
   const std::size_t blank = act_text.find(' ');
   if (blank == std::string::npos)
-    return wrong_act(text, "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', or "
-                           "'switch CONFIGURATION'");
+    return wrong_act(text, "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', "
+                           "'switch CONFIGURATION', or 'die RTPU'");
   const std::string word = act_text.substr(0, blank);
   const std::string object = trimmed(act_text.substr(blank));
   ScriptAct act;
@@ -78,6 +94,7 @@ Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   if (word == "set") return parse_set(text, object, act);
   const auto made = word == "flag"     ? parse_flag(text, object, act)
                     : word == "switch" ? parse_switch(text, object, act, spec)
+                    : word == "die"    ? parse_death(text, object, act, spec)
                                        : parse_signal(text, word, object, act, spec);
   return made ? Result<TimedAct>(TimedAct{*made, text, {}, {}}) : Result<TimedAct>(made.error());
 }
@@ -91,7 +108,7 @@ Result<std::vector<TimedAct>> parse_script(std::span<const std::string> texts, c
     if (!act) return act.error();
     acts.push_back(*std::move(act));
   }
-  std::stable_sort(acts.begin(), acts.end(), [](const TimedAct& a, const TimedAct& b) { return a.act.at < b.act.at; });
+  std::stable_sort(acts.begin(), acts.end(), comes_before);
   return acts;
 }
 

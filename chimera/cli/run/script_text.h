@@ -20,9 +20,8 @@ struct TimedAct {
 };
 
 /// The acts in order of time. Each text is `DURATION: SIGNAL TASK` with spawn, on, off, kill, clear, reinit or ring,
-/// `DURATION: flag up|down`, `DURATION: set VARIABLE VALUE` or `DURATION: switch CONFIGURATION`. Refuses with the text
-/// and what would be right.
-/// Context: setup.
+/// `DURATION: flag up|down`, `DURATION: set VARIABLE VALUE`, `DURATION: switch CONFIGURATION` or `DURATION: die RTPU`;
+/// at one instant deaths come first. Refuses with the text and what would be right. Context: setup.
 Result<std::vector<TimedAct>> parse_script(std::span<const std::string> texts, const ApplicationSpec& spec);
 
 }  // namespace chimera::cli

@@ -54,6 +54,16 @@ TEST_F(ScriptText, AValueIsEverythingBehindTheVariable) {
   EXPECT_EQ(refusal("1 s: sett kp 2"), "--at '1 s: sett kp 2': no signal 'sett'; did you mean 'set'?");
 }
 
+TEST_F(ScriptText, ADeathNamesAnRtpuAndComesFirstAtItsInstant) {
+  const auto acts = parse({"2 s: off counter", "1 s: off counter", "2 s: die main"});
+  ASSERT_TRUE(acts);
+  EXPECT_EQ((*acts)[0].act.at, seconds(1));
+  EXPECT_EQ((*acts)[1].act.kind, ScriptAct::Kind::kDie);
+  EXPECT_EQ((*acts)[1].act.rtpu, RtpuId(0u));
+  EXPECT_EQ((*acts)[2].act.kind, ScriptAct::Kind::kSignal);
+  EXPECT_EQ(refusal("1 s: die mian"), "--at '1 s: die mian': no rtpu 'mian'; did you mean 'main'?");
+}
+
 TEST_F(ScriptText, ASwitchNamesAConfiguration) {
   const auto acts = parse({"3 s: switch all"});
   ASSERT_TRUE(acts);
@@ -65,8 +75,8 @@ TEST_F(ScriptText, ASwitchNamesAConfiguration) {
 
 TEST_F(ScriptText, RefusesWhatIsNoAct) {
   const char* form = "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'";
-  const char* object = "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', or "
-                       "'switch CONFIGURATION'";
+  const char* object = "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', "
+                       "'switch CONFIGURATION', or 'die RTPU'";
   EXPECT_EQ(refusal(""), std::string("--at '': ") + form);
   EXPECT_EQ(refusal("2 s off counter"), std::string("--at '2 s off counter': ") + form);
   EXPECT_EQ(refusal("2 s:"), std::string("--at '2 s:': ") + object);

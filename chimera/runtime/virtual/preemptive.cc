@@ -19,14 +19,46 @@ Preemptive::Preemptive(Releases& releases, std::span<const TaskSpec> tasks, Mode
   }
 }
 
+// Gives the processor to the most urgent job. True when that job has ended at `now`: it needed no time, or nothing
+// happened until its end. The instant is not over, for it may have sent signals.
+template <Preemptive::Ends kEnds>
+bool Preemptive::dispatch(Nanoseconds& now) noexcept {
+  ReadyQueue& queue = releases_.queue();
+  while (!queue.is_empty()) {
+    if (!processor_.is_idle()) {
+      if (!must_yield()) return false;
+      preempt(now);
+    }
+    if (!run_job(queue.pop(), now)) continue;
+    const Nanoseconds end = now + processor_.job().remaining;
+    if (kEnds == Ends::kElsewhere) {
+      if (end == now) return true;
+    } else {
+      if (runs_through(end)) {
+        now = end;
+        use_processor(end);
+      }
+      complete();
+      if (processor_.is_idle()) return true;
+    }
+    if (!by_laxity_) return false;  // it was the most urgent one
+  }
+  if (processor_.is_idle() && n_demoted_ > 0) processor_.give(demoted_[0], now);
+  return false;
+}
+
+[[gnu::always_inline]] inline void Preemptive::end_all_due(Nanoseconds now) noexcept {
+  use_processor(now);
+  complete();
+  if (!abandoners_.empty()) expire(now);
+  if (has_demotion_) demote_due(now);
+}
+
 RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
   sporadic_.open();
   releases_.look_again();
   for (;;) {
-    use_processor(now);
-    complete();
-    if (!abandoners_.empty()) expire(now);
-    if (has_demotion_) demote_due(now);
+    end_all_due(now);
     if (releases_.must_look(now)) {
       if (releases_.stop_requested()) return RunEnd::kStopped;
       if (releases_.settlement().task_stopped()) return RunEnd::kTaskStopped;
@@ -38,12 +70,21 @@ RunEnd Preemptive::run(Nanoseconds& now, Nanoseconds until) noexcept {
       releases_.release_due(now);
       releases_.rest(until);
     }
-    if (!sporadic_.are_none()) sporadic_.follow(now);
-    if (dispatch(now)) continue;
-    const bool idle = processor_.is_idle() && releases_.queue().is_empty();
-    if (idle && !releases_.anything_left()) return RunEnd::kNothingLeft;
+    follow_servers(now);
+    if (dispatch<Ends::kHere>(now)) continue;
+    if (is_idle() && !releases_.anything_left()) return RunEnd::kNothingLeft;
     now = std::clamp(next_event(now), now, until);
   }
+}
+
+void Preemptive::end_due(Nanoseconds now) noexcept {
+  sporadic_.open();
+  end_all_due(now);
+}
+
+void Preemptive::record_slice(Nanoseconds now) noexcept {
+  use_processor(now);
+  processor_.record_slice();
 }
 
 Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
@@ -179,27 +220,7 @@ bool Preemptive::runs_through(Nanoseconds end) const noexcept {
   return !by_laxity_ && !has_exceptions() && !releases_.must_look(end - Nanoseconds{1});
 }
 
-// Gives the processor to the most urgent job. True when that job has ended at `now`: it needed no time, or nothing
-// happened until its end. The instant is not over, for it may have sent signals.
-bool Preemptive::dispatch(Nanoseconds& now) noexcept {
-  ReadyQueue& queue = releases_.queue();
-  while (!queue.is_empty()) {
-    if (!processor_.is_idle()) {
-      if (!must_yield()) return false;
-      preempt(now);
-    }
-    if (!run_job(queue.pop(), now)) continue;
-    if (const Nanoseconds end = now + processor_.job().remaining; runs_through(end)) {
-      now = end;
-      use_processor(end);
-    }
-    complete();
-    if (processor_.is_idle()) return true;
-    if (!by_laxity_) return false;  // it was the most urgent one
-  }
-  if (processor_.is_idle() && n_demoted_ > 0) processor_.give(demoted_[0], now);
-  return false;
-}
+bool Preemptive::dispatch_by_step(Nanoseconds now) noexcept { return dispatch<Ends::kElsewhere>(now); }
 
 void Preemptive::preempt(Nanoseconds now) noexcept {
   const TaskId task = processor_.running();

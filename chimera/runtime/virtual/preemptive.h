@@ -37,27 +37,48 @@ class Preemptive {
   /// to go on. `now` receives the time reached.
   RunEnd run(Nanoseconds& now, Nanoseconds until) noexcept;
 
+  // The parts of run(), for whoever advances several processors together: stepped_preemptive.h.
+
+  /// What is over at `now`: the job that has the processor, those at their deadlines and at their budgets. The grid of
+  /// releases has begun.
+  void end_due(Nanoseconds now) noexcept;
+  /// Takes the edge of `now`, which receives the time reached.
+  void run_edge(Nanoseconds& now) noexcept;
+  /// Gives the processor to the most urgent job. True when the instant is not over: a job needs no time, and is over
+  /// with the next end_due().
+  bool dispatch_by_step(Nanoseconds now) noexcept;
+  Nanoseconds next_event(Nanoseconds now) noexcept;
+  bool is_idle() const noexcept { return processor_.is_idle() && releases_.queue().is_empty(); }
+  /// The slice of the job that has the processor is recorded up to `now`.
+  void record_slice(Nanoseconds now) noexcept;
+  /// Events and servers are looked at.
+  void follow_servers(Nanoseconds now) noexcept {
+    if (!sporadic_.are_none()) sporadic_.follow(now);
+  }
+
  private:
+  /// Who says at which instant a job is over.
+  enum class Ends : std::uint8_t { kHere, kElsewhere };
   /// A task whose jobs are ended at their deadline.
   struct Abandoner {
     TaskId task;
     Nanoseconds next_deadline = kNever;  // of the task while it is ON
   };
 
-  Nanoseconds next_event(Nanoseconds now) noexcept;
   Nanoseconds next_exception(Nanoseconds now) noexcept;
   bool has_exceptions() const noexcept { return !abandoners_.empty() || has_demotion_ || !sporadic_.are_none(); }
   Nanoseconds next_deadline() noexcept;
   Nanoseconds next_demotion(Nanoseconds now) noexcept;
   Nanoseconds budget_left(TaskId task) const noexcept;
+  void end_all_due(Nanoseconds now) noexcept;
+  template <Ends kEnds>
+  bool dispatch(Nanoseconds& now) noexcept;
   void use_processor(Nanoseconds until) noexcept;
   void complete() noexcept;
   void expire(Nanoseconds now) noexcept;
   void expire(TaskId task, Nanoseconds deadline) noexcept;
   void demote_due(Nanoseconds now) noexcept;
   void demote(TaskId task) noexcept;
-  void run_edge(Nanoseconds& now) noexcept;
-  bool dispatch(Nanoseconds& now) noexcept;
   bool runs_through(Nanoseconds end) const noexcept;
   bool must_yield() noexcept;
   void preempt(Nanoseconds now) noexcept;

@@ -2,6 +2,8 @@
 // Runs the cycle loop on a modelled clock.
 #include "chimera/runtime/virtual/virtual_executor.h"
 
+#include <algorithm>
+
 #include "chimera/base/assert.h"
 #include "chimera/runtime/cycle_loop.h"
 #include "chimera/runtime/hosted/refusal_text.h"
@@ -21,7 +23,7 @@ struct ModelledTime {
     set(now_ + clock.spent());  // by methods at the edge
     return now_;
   }
-  void wait_until(Nanoseconds instant) noexcept { set(instant); }
+  void wait_until(Nanoseconds instant) noexcept { set(std::max(instant, now_)); }  // an edge may have lasted longer
   Nanoseconds end_of(const Job& job, BodyEnd body, Nanoseconds start) noexcept {
     const bool had_event = body.answer != Answer::kNoEvent;
     Task& task = releases.task(job.task);

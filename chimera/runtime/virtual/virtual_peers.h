@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// The real-time units of an application that runs in virtual time in one process: one context for each, and what each
+// sees of the others. What is read of another context is its present state: nothing is on the way. There is no manager:
+// operator variables and the operator's part of the flag are kept here.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "chimera/base/result.h"
+#include "chimera/runtime/hosted/heap_memory.h"
+#include "chimera/runtime/illegal_flag.h"
+#include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/peer_view.h"
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+/// A signal of a task on its way to a task of another context.
+struct VirtualPost {
+  Signal signal = Signal::kOn;
+  TaskId target;
+  bool is_echo = false;  ///< `reinit` because a constant changed elsewhere
+};
+
+/// Used by one thread. Context of everything not marked: edge; no allocation.
+class VirtualPeers final : public PeerView {
+ public:
+  /// Operator variables have their initial values. Refuses what PeerLayout refuses. The spec outlives it. Context:
+  /// setup.
+  static Result<std::unique_ptr<VirtualPeers>> create(const ApplicationSpec& spec);
+  /// The context of the rtpu, which was built with this as its view of others, can be seen. It outlives all use of
+  /// this. Context: setup.
+  void join(RtpuId rtpu, TaskSet& tasks);
+
+  State state(TaskId task) const noexcept override;
+  GroupReader outputs(TaskId task) const noexcept override;
+  GroupReader constants(TaskId task) const noexcept override;
+  GroupReader operator_variable(std::size_t index) const noexcept override;
+  /// False when the rtpu of the target is dead, or has kMostPosts to take.
+  bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept override;
+  bool has_manager() const noexcept override { return is_start_; }
+  /// Between begin and end of the start, which was judged as a whole, no `on` is judged by itself.
+  void show_start(bool is_under_way) noexcept { is_start_ = is_under_way; }
+
+  /// Rung when the context of the rtpu has something to take in.
+  const std::atomic<std::uint32_t>& bell(RtpuId rtpu) const noexcept { return peers_[rtpu.index].bell; }
+  void ring(RtpuId rtpu) noexcept { peers_[rtpu.index].bell.fetch_add(1, std::memory_order_relaxed); }
+  /// States of tasks of that rtpu, or its part of the flag, changed: all others are rung.
+  void show_change(RtpuId by) noexcept;
+  /// Changes since the start.
+  std::uint64_t changes() const noexcept { return changes_; }
+  /// The next signal for the rtpu; false: there is none.
+  bool take(RtpuId rtpu, VirtualPost& post) noexcept;
+
+  /// Somebody of that rtpu holds the flag up. True when that is new.
+  bool show_raised(RtpuId rtpu, bool is_raised) noexcept;
+  /// The operator raises or lowers the flag.
+  void raise(bool up) noexcept;
+  /// From now on `flag`, that of the rtpu, reads the parts of those who live, and the operator's.
+  void watch_flags(RtpuId rtpu, IllegalFlag& flag) noexcept;
+  /// The flag as rtpus that live see it.
+  bool is_flag_up() const noexcept;
+  /// Publishes a value of operator variable `index`: as many bytes as the description gives.
+  void set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept;
+
+  /// The rtpu is dead: its tasks that were created are in ERROR, what it published stands.
+  void die(RtpuId rtpu) noexcept;
+  bool is_dead(RtpuId rtpu) const noexcept { return peers_[rtpu.index].is_dead; }
+  /// Null: no task is on that rtpu.
+  TaskSet* tasks(RtpuId rtpu) const noexcept { return peers_[rtpu.index].tasks; }
+  const ApplicationSpec& spec() const noexcept { return spec_; }
+
+  static constexpr std::size_t kMostPosts = 256;
+
+ private:
+  struct Peer {
+    TaskSet* tasks = nullptr;
+    bool is_dead = false;
+    std::atomic<std::uint32_t> bell{0};    // relaxed, pairs with nothing: one thread rings and listens
+    std::atomic<std::uint32_t> raised{0};  // relaxed, pairs with nothing: one thread writes and reads
+    std::vector<VirtualPost> posts;        // room for kMostPosts
+    std::size_t n_taken = 0;               // of posts
+    std::vector<const std::atomic<std::uint32_t>*> flags;  // `raised` of the others
+  };
+
+  explicit VirtualPeers(const ApplicationSpec& spec) : spec_(spec), peers_(spec.rtpus.size()) {}
+  Result<void> lay_out_operators();
+  const Peer& peer_of(TaskId task) const noexcept { return peers_[spec_.tasks[task.index].rtpu.index]; }
+  GroupWriter operator_writer(std::size_t index) noexcept;
+
+  const ApplicationSpec& spec_;
+  HeapMemory heap_;
+  PeerLayout operators_;
+  std::span<std::byte> operator_table_;
+  std::vector<Peer> peers_;              // by rtpu
+  std::atomic<std::uint32_t> raised_{0};  // by the operator; relaxed, as Peer::raised
+  std::uint64_t changes_ = 0;
+  bool is_start_ = false;
+};
+
+}  // namespace chimera

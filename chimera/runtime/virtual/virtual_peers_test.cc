@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/virtual/virtual_peers.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "chimera/runtime/hosted/heap_task_set.h"
+#include "chimera/runtime/testing/two_units.h"
+#include "chimera/runtime/virtual/virtual_rtpus.h"
+
+namespace chimera {
+namespace {
+
+using testing::kMaker;
+using testing::kTaker;
+
+constexpr RtpuId kOfTaker{0u}, kOfMaker{1u};
+
+struct VirtualPeersTest : ::testing::Test, testing::TwoUnits {
+  void build() {
+    peers = *VirtualPeers::create(app.spec);
+    for (std::uint32_t r = 0; r < 2; ++r) {
+      ContextPlace place;
+      place.rtpu = RtpuId(r);
+      place.others = peers.get();
+      sets[r] = *HeapTaskSet::create(app.spec, app.components, place);
+      peers->join(RtpuId(r), *sets[r]);
+    }
+  }
+  void start(std::vector<ScriptAct> acts = {}) {
+    script = std::move(acts);
+    RunOptions options;
+    options.script = Script(script);
+    rtpus = std::make_unique<VirtualRtpus>(*peers, options, VirtualOptions{});
+    const auto started = rtpus->start();
+    ASSERT_TRUE(started) << started.error().message.c_str();
+  }
+  std::unique_ptr<VirtualPeers> peers;
+  std::unique_ptr<HeapTaskSet> sets[2];
+  std::vector<ScriptAct> script;
+  std::unique_ptr<VirtualRtpus> rtpus;
+};
+
+TEST_F(VirtualPeersTest, NothingIsSeenOfAContextBeforeItJoins) {
+  peers = *VirtualPeers::create(app.spec);
+  EXPECT_EQ(peers->state(kMaker), State::kNotCreated);
+  EXPECT_FALSE(peers->outputs(kMaker).is_bound());
+  EXPECT_FALSE(peers->constants(kMaker).is_bound());
+  EXPECT_TRUE(peers->operator_variable(0).is_bound()) << "operator variables are kept here";
+}
+
+TEST_F(VirtualPeersTest, StatesAndGroupsAreThoseOfTheContextAsItIs) {
+  build();
+  start();
+  EXPECT_EQ(peers->state(kMaker), State::kOn);
+  std::int32_t n = 0;
+  std::memcpy(&n, peers->constants(kMaker).published() + 1, sizeof n);
+  EXPECT_EQ(n, 3);
+  EXPECT_EQ(peers->outputs(kMaker).published(), sets[1]->memory(kMaker).reader().published());
+  peers->die(kOfMaker);
+  EXPECT_EQ(peers->state(kMaker), State::kError);
+  EXPECT_EQ(peers->state(kTaker), State::kOn);
+}
+
+TEST_F(VirtualPeersTest, PassesSignalsOnInOrderAsFarAsThereIsRoom) {
+  build();
+  const std::uint32_t before = peers->bell(kOfTaker);
+  EXPECT_TRUE(peers->post(Signal::kOff, kTaker, kMaker, false));
+  EXPECT_TRUE(peers->post(Signal::kReinit, kTaker, kMaker, true));
+  EXPECT_EQ(peers->bell(kOfTaker), before + 2);
+  VirtualPost post;
+  ASSERT_TRUE(peers->take(kOfTaker, post));
+  EXPECT_EQ(post.signal, Signal::kOff);
+  EXPECT_EQ(post.target, kTaker);
+  ASSERT_TRUE(peers->take(kOfTaker, post));
+  EXPECT_TRUE(post.is_echo);
+  EXPECT_FALSE(peers->take(kOfTaker, post));
+  for (std::size_t i = 0; i < VirtualPeers::kMostPosts; ++i)
+    EXPECT_TRUE(peers->post(Signal::kOff, kTaker, kMaker, false));
+  EXPECT_FALSE(peers->post(Signal::kOff, kTaker, kMaker, false));
+  peers->die(kOfMaker);
+  EXPECT_FALSE(peers->post(Signal::kOff, kMaker, kTaker, false)) << "nobody is there";
+}
+
+TEST_F(VirtualPeersTest, AnOperatorVariableReachesItsReaders) {
+  build();
+  const std::vector<std::byte> value = testing::bytes_of(2.5);
+  ScriptAct set;
+  set.at = milliseconds(2);
+  set.kind = ScriptAct::Kind::kSet;
+  set.value = value;
+  start({set});
+  double gain = 0;
+  const auto read = [&] { std::memcpy(&gain, sets[0]->tasks()[kTaker.index].inputs[1].port->value, sizeof gain); };
+  (void)rtpus->run_to(milliseconds(2));
+  read();
+  EXPECT_EQ(gain, 0.5);
+  (void)rtpus->run_to(milliseconds(3));
+  read();
+  EXPECT_EQ(gain, 2.5);
+}
+
+struct Numberer {
+  OutConst<std::int32_t> n{"n", "1"};
+  std::int32_t next = 3;
+  void init() { *n = next++; }
+  void reinit() { init(); }
+  void cycle(Cycle) {}
+};
+struct User {
+  InConst<std::int32_t> n{"n", "1"};
+  Out<double> seen{"seen", "1", initial = 0.0};
+  std::int32_t times = 0;
+  void init() { ++times; }
+  void reinit() { ++times; }
+  void cycle(Cycle) { *seen = 100.0 * *n + times; }
+};
+
+TEST(VirtualConstants, AUserOnAnotherRtpuIsReinitialisedWhenAConstantChanges) {
+  testing::TestApplication app;
+  app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
+  app.add("numberer", testing::component<Numberer>("numberer")).rtpu = RtpuId(1u);
+  app.add("user", testing::component<User>("user")).rtpu = RtpuId(0u);
+  app.make();
+  auto peers = *VirtualPeers::create(app.spec);
+  std::unique_ptr<HeapTaskSet> sets[2];
+  for (std::uint32_t r = 0; r < 2; ++r) {
+    ContextPlace place;
+    place.rtpu = RtpuId(r);
+    place.others = peers.get();
+    sets[r] = *HeapTaskSet::create(app.spec, app.components, place);
+    peers->join(RtpuId(r), *sets[r]);
+  }
+  ScriptAct act;
+  act.at = microseconds(2500);
+  act.signal = Signal::kReinit;
+  act.task = TaskId(0u);
+  RunOptions options;
+  options.script = Script({&act, 1});
+  VirtualRtpus rtpus(*peers, options, {});
+  ASSERT_TRUE(rtpus.start());
+  double seen = 0;
+  const auto read = [&] { std::memcpy(&seen, sets[0]->memory(TaskId(1u)).reader().published() + 1, sizeof seen); };
+  (void)rtpus.run_to(milliseconds(2));
+  read();
+  EXPECT_EQ(seen, 301);
+  (void)rtpus.run_to(milliseconds(4));
+  read();
+  EXPECT_EQ(seen, 402);
+}
+
+}  // namespace
+}  // namespace chimera

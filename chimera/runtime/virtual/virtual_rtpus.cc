@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// Advances the processors of several real-time units on one clock, instant by instant.
+#include "chimera/runtime/virtual/virtual_rtpus.h"
+
+#include <algorithm>
+
+#include "chimera/base/assert.h"
+#include "chimera/runtime/hosted/refusal_text.h"
+#include "chimera/runtime/hosted/variables.h"
+#include "chimera/runtime/set_equations.h"
+#include "chimera/runtime/virtual/stepped_executive.h"
+#include "chimera/runtime/virtual/stepped_preemptive.h"
+
+namespace chimera {
+namespace {
+
+constexpr std::atomic<bool> kNoStop{false};
+constexpr std::size_t kMostRefused = 1024;
+// Tasks of several units may send each other signals for ever: after so many passes releases have their turn.
+constexpr int kMostEdges = 16;
+
+}  // namespace
+
+/// One rtpu.
+struct VirtualRtpus::Unit {
+  Unit(VirtualPeers& peers, RtpuId rtpu, const RunOptions& run, const VirtualOptions& how)
+      : id(rtpu),
+        tasks(*peers.tasks(rtpu)),
+        control(peers, rtpu, run.script.size()),
+        releases(tasks, clock, options(run, how)) {
+    const std::span<const TaskSpec> specs = tasks.spec().tasks;
+    if (is_preemptive(how))
+      processor = std::make_unique<SteppedPreemptive>(releases, specs, clock, PreemptiveOptions{how.seed, how.quantum});
+    else
+      processor = std::make_unique<SteppedExecutive>(releases, clock, how.seed);
+    for (const Task& task : tasks.tasks())
+      CHIMERA_ASSERT(!tasks.is_mine(task.id) || is_preemptive(how) || !task.spec->server);
+  }
+  bool is_preemptive(const VirtualOptions& how) const noexcept {
+    return how.preemptive || tasks.spec().rtpus[id.index].preemptive;
+  }
+  RunOptions options(RunOptions run, const VirtualOptions& how) noexcept {
+    run.policy = tasks.spec().rtpus[id.index].policy;
+    run.rtpu = static_cast<std::uint8_t>(id.index);
+    run.script = Script();
+    run.guest = &control;
+    run.can_demote = is_preemptive(how);
+    return run;
+  }
+
+  RtpuId id;
+  TaskSet& tasks;
+  ModelledClock clock;
+  VirtualControl control;
+  Releases releases;
+  std::unique_ptr<SteppedProcessor> processor;
+  Nanoseconds next = Nanoseconds{};  // when it has something to do, if nothing comes from elsewhere
+  bool acts_now = false;             // it takes part in the present instant
+  bool is_dead = false;
+};
+
+VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const VirtualOptions& how)
+    : peers_(peers), stop_(options.stop != nullptr ? options.stop : &kNoStop), script_(options.script) {
+  CHIMERA_ASSERT(how.quantum > Nanoseconds{} && options.guest == nullptr);
+  CHIMERA_ASSERT(script_.count(ScriptAct::Kind::kSwitch) == 0);
+  for (std::size_t r = 0; r < peers.spec().rtpus.size(); ++r)
+    if (peers.tasks(RtpuId(r)) != nullptr) units_.push_back(std::make_unique<Unit>(peers, RtpuId(r), options, how));
+  of_dead_.reserve(kMostRefused);
+}
+
+VirtualRtpus::~VirtualRtpus() = default;
+
+VirtualRtpus::Unit& VirtualRtpus::unit_of(TaskId task) noexcept {
+  const RtpuId rtpu = peers_.spec().tasks[task.index].rtpu;
+  return **std::find_if(units_.begin(), units_.end(), [rtpu](const auto& unit) { return unit->id == rtpu; });
+}
+
+Result<void> VirtualRtpus::start() {
+  peers_.show_start(true);
+  Result<void> started = spawn_all();
+  if (started) started = turn_on_all();
+  peers_.show_start(false);
+  if (!started) return started;
+  origin_ = now_;
+  for (const auto& unit : units_) {
+    unit->control.follow(now_);
+    unit->control.publish();
+    unit->control.record_on(unit->releases.tap());
+    unit->clock.set(now_);
+    unit->releases.begin(origin_);
+  }
+  return {};
+}
+
+// What methods spend counts one after the other, on whichever rtpu they run.
+SignalReport VirtualRtpus::signal(TaskId task, Signal signal) {
+  Unit& unit = unit_of(task);
+  unit.clock.set(now_);
+  unit.control.follow({});
+  const SignalReport report = unit.tasks.life().signal(task, signal, {});
+  unit.control.publish();
+  now_ = unit.clock.now();
+  return report;
+}
+
+Result<void> VirtualRtpus::spawn_all() {
+  for (const TaskId id : peers_.spec().init_order) {
+    const SignalReport report = signal(id, Signal::kSpawn);
+    if (unit_of(id).tasks.tasks()[id.index].state == State::kOff) continue;
+    SignalReport refused = report;
+    refused.is_accepted = false;
+    refused.why = Refusal::kFault;
+    return start_result(unit_of(id).tasks, refused);
+  }
+  return {};
+}
+
+Result<void> VirtualRtpus::turn_on_all() {
+  const ApplicationSpec& spec = peers_.spec();
+  std::vector<bool> wanted(spec.tasks.size());
+  for (const TaskId id : spec.start) wanted[id.index] = true;
+  if (!is_legal_set(spec.variables, wanted))
+    return Error{ErrorCode::kRefused, {Variables(spec).explain(wanted, spec.tasks)}, {spec.name}};
+  for (const TaskId id : spec.start) {
+    SignalReport report = signal(id, Signal::kOn);
+    if (report.is_accepted && report.after == State::kOn) continue;
+    for (const TaskId done : spec.start) {  // one transaction: tasks that are ON already go OFF again
+      if (done == id) break;
+      (void)signal(done, Signal::kOff);
+    }
+    report.is_accepted = false;
+    report.why = Refusal::kFault;
+    return start_result(unit_of(id).tasks, report);
+  }
+  return {};
+}
+
+RunEnd VirtualRtpus::run_to(Nanoseconds duration) noexcept {
+  const Nanoseconds until = duration == kNever ? kNever : origin_ + duration;
+  for (;;) {
+    for (const auto& unit : units_) unit->acts_now = !unit->is_dead && (unit->next <= now_ || is_due(*unit));
+    for (const auto& unit : units_)
+      if (unit->acts_now) unit->processor->end_jobs(now_);
+    if (stop_->load(std::memory_order_relaxed)) return RunEnd::kStopped;
+    if (now_ >= until) return RunEnd::kTime;
+    stop_units();
+    take_acts();
+    take_edges();
+    if (begin_jobs()) continue;
+    if (!is_anything_left()) return RunEnd::kNothingLeft;
+    const Nanoseconds next = std::min(next_event(), until);
+    if (next == kNever) return RunEnd::kNothingLeft;
+    now_ = std::max(next, now_);
+  }
+}
+
+RunEnd VirtualRtpus::run(Nanoseconds duration) noexcept {
+  const RunEnd end = run_to(duration);
+  if (end != RunEnd::kTime) return end;
+  Nanoseconds last = now_;
+  for (const auto& unit : units_)
+    if (!unit->is_dead) last = std::max(last, unit->processor->finish(now_));
+  now_ = last;
+  return end;
+}
+
+// It has something to take in, and can.
+bool VirtualRtpus::is_due(const Unit& unit) const noexcept {
+  return !unit.is_dead && unit.control.is_due(now_) && !unit.processor->is_occupied(now_);
+}
+
+// The reaction `stop` of a task: all tasks of the unit go OFF, and the others go on.
+void VirtualRtpus::stop_units() noexcept {
+  for (const auto& unit : units_) {
+    if (unit->is_dead || !unit->releases.settlement().task_stopped()) continue;
+    unit->releases.settlement().forget_stop();
+    unit->control.stop_all();
+  }
+}
+
+// In the order of the script: before an act for another unit the edge with those for the last one is taken.
+void VirtualRtpus::take_acts() noexcept {
+  Unit* last = nullptr;
+  while (const ScriptAct* next = script_.take(now_ - origin_)) act(*next, last);
+}
+
+void VirtualRtpus::act(const ScriptAct& act, Unit*& last) noexcept {
+  Unit* const unit = act.kind == ScriptAct::Kind::kSignal ? &unit_of(act.task) : nullptr;
+  if (last != nullptr && last != unit) take_edge(*last);
+  last = unit;
+  switch (act.kind) {
+    case ScriptAct::Kind::kSignal:
+      if (!unit->is_dead) return unit->control.hand_over(act);
+      if (of_dead_.size() < kMostRefused)
+        of_dead_.push_back({now_, act.task, act.signal, Refusal::kState, peers_.state(act.task)});
+      return;
+    case ScriptAct::Kind::kSet:
+      return peers_.set_operator(act.operator_index, act.value, now_);
+    case ScriptAct::Kind::kRaiseFlag:
+      return peers_.raise(true);
+    case ScriptAct::Kind::kLowerFlag:
+      return lower_flag(act);
+    case ScriptAct::Kind::kDie:
+      return die(act.rtpu);
+    case ScriptAct::Kind::kSwitch:  // not asked for: see the constructor
+      return;
+  }
+}
+
+// Lowered, it is also for the tasks that hold it up.
+void VirtualRtpus::lower_flag(const ScriptAct& act) noexcept {
+  peers_.raise(false);
+  for (const auto& unit : units_)
+    if (!unit->is_dead && unit->tasks.flag().is_raised()) unit->control.hand_over(act);
+}
+
+void VirtualRtpus::die(RtpuId rtpu) noexcept {
+  const auto found = std::find_if(units_.begin(), units_.end(), [rtpu](const auto& unit) { return unit->id == rtpu; });
+  if (found == units_.end() || (*found)->is_dead) return;
+  Unit& unit = **found;
+  unit.processor->cut(now_);
+  unit.is_dead = true;
+  unit.acts_now = false;
+  peers_.die(rtpu);
+  for (Task& task : unit.tasks.tasks()) {
+    if (!unit.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
+    unit.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
+    task.profile.on_before = task.profile.on_by(now_);
+    task.profile.on_since = kNever;
+  }
+}
+
+void VirtualRtpus::take_edges() noexcept {
+  for (int pass = 0; pass < kMostEdges; ++pass) {
+    bool any = false;
+    for (const auto& unit : units_) any |= (is_due(*unit) || (pass == 0 && unit->acts_now)) && take_edge(*unit);
+    if (!any) return;
+  }
+}
+
+// True when one was due.
+bool VirtualRtpus::take_edge(Unit& unit) noexcept {
+  if (unit.is_dead || !unit.processor->edge_is_due(now_)) return false;
+  if (!unit.acts_now) unit.processor->end_jobs(now_);
+  unit.acts_now = true;
+  unit.processor->take_edge(now_);
+  return true;
+}
+
+// Releases, then starts. True when the instant is not over.
+bool VirtualRtpus::begin_jobs() noexcept {
+  for (const auto& unit : units_)
+    if (unit->acts_now) unit->processor->release_jobs(now_);
+  bool goes_on = false;
+  for (const auto& unit : units_) {
+    if (!unit->acts_now) continue;
+    const bool again = unit->processor->dispatch(now_);
+    unit->next = again ? now_ : unit->processor->next_event(now_);
+    goes_on |= again;
+  }
+  return goes_on || std::any_of(units_.begin(), units_.end(), [this](const auto& unit) { return is_due(*unit); });
+}
+
+Nanoseconds VirtualRtpus::next_event() noexcept {
+  const Nanoseconds at = script_.next_at();
+  Nanoseconds next = at == kNever ? kNever : origin_ + at;
+  for (const auto& unit : units_)
+    if (!unit->is_dead) next = std::min(next, unit->next);
+  return next;
+}
+
+bool VirtualRtpus::is_anything_left() noexcept {
+  const auto is_left = [this](const auto& unit) {
+    if (unit->is_dead) return false;
+    const bool is_quiet = unit->processor->is_idle() && !unit->processor->is_occupied(now_);
+    return !is_quiet || unit->releases.members().is_any_on() || unit->tasks.sent().has_pending();
+  };
+  return script_.next_at() != kNever || std::any_of(units_.begin(), units_.end(), is_left);
+}
+
+void VirtualRtpus::shut_down() {
+  for (const auto& unit : units_) {
+    if (unit->is_dead) continue;
+    unit->clock.set(now_);
+    unit->releases.switching().end(now_);
+    unit->tasks.life().shut_down(now_);
+  }
+}
+
+std::vector<RefusedSignal> VirtualRtpus::refused() {
+  std::vector<RefusedSignal> all = of_dead_;
+  const auto is_before = [](const RefusedSignal& a, const RefusedSignal& b) { return a.at < b.at; };
+  for (const auto& unit : units_)
+    for (const RefusedSignal& one : unit->releases.signals().refused())
+      all.insert(std::upper_bound(all.begin(), all.end(), one, is_before), one);
+  return all;
+}
+
+}  // namespace chimera
