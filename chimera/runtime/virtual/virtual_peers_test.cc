@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "chimera/runtime/hosted/heap_task_set.h"
@@ -117,37 +118,64 @@ struct User {
   void cycle(Cycle) { *seen = 100.0 * *n + times; }
 };
 
-TEST(VirtualConstants, AUserOnAnotherRtpuIsReinitialisedWhenAConstantChanges) {
-  testing::TestApplication app;
-  app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
-  app.add("numberer", testing::component<Numberer>("numberer")).rtpu = RtpuId(1u);
-  app.add("user", testing::component<User>("user")).rtpu = RtpuId(0u);
-  app.make();
-  auto peers = *VirtualPeers::create(app.spec);
-  std::unique_ptr<HeapTaskSet> sets[2];
-  for (std::uint32_t r = 0; r < 2; ++r) {
-    ContextPlace place;
-    place.rtpu = RtpuId(r);
-    place.others = peers.get();
-    sets[r] = *HeapTaskSet::create(app.spec, app.components, place);
-    peers->join(RtpuId(r), *sets[r]);
-  }
+ScriptAct signal_at(Nanoseconds at, Signal signal, TaskId task) {
   ScriptAct act;
-  act.at = microseconds(2500);
-  act.signal = Signal::kReinit;
-  act.task = TaskId(0u);
-  RunOptions options;
-  options.script = Script({&act, 1});
-  VirtualRtpus rtpus(*peers, options, {});
-  ASSERT_TRUE(rtpus.start());
-  double seen = 0;
-  const auto read = [&] { std::memcpy(&seen, sets[0]->memory(TaskId(1u)).reader().published() + 1, sizeof seen); };
-  (void)rtpus.run_to(milliseconds(2));
-  read();
-  EXPECT_EQ(seen, 301);
-  (void)rtpus.run_to(milliseconds(4));
-  read();
-  EXPECT_EQ(seen, 402);
+  act.at = at;
+  act.signal = signal;
+  act.task = task;
+  return act;
+}
+
+/// The last task writes one number, and is alone on the first of two rtpus.
+struct VirtualReaderTest : VirtualPeersTest {
+  VirtualReaderTest() { app = testing::TestApplication(); }
+  void begin(std::vector<ScriptAct> acts, std::vector<TaskId> off = {}) {
+    app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
+    std::vector<TaskId> on;
+    for (std::size_t t = 0; t < app.tasks.size(); ++t) {
+      app.tasks[t].rtpu = t + 1 == app.tasks.size() ? kOfTaker : kOfMaker;
+      if (std::find(off.begin(), off.end(), TaskId(t)) == off.end()) on.push_back(TaskId(t));
+    }
+    app.make(on, false);
+    build();
+    start(std::move(acts));
+  }
+  double seen_at(Nanoseconds instant) {
+    (void)rtpus->run_to(instant);
+    double seen = 0;
+    std::memcpy(&seen, sets[0]->memory(TaskId(app.tasks.size() - 1)).reader().published() + 1, sizeof seen);
+    return seen;
+  }
+};
+
+TEST_F(VirtualReaderTest, AUserOfAConstantIsReinitialisedWhenItChangesElsewhere) {
+  app.add("numberer", testing::component<Numberer>("numberer"));
+  app.add("user", testing::component<User>("user"));
+  begin({signal_at(microseconds(2500), Signal::kReinit, TaskId(0u))});
+  EXPECT_EQ(seen_at(milliseconds(2)), 301);
+  EXPECT_EQ(seen_at(milliseconds(4)), 402);
+}
+
+template <int kNumber>
+struct Writer {
+  Out<double> v{"v", "1", initial = 0.0};
+  void cycle(Cycle) { *v = kNumber; }
+};
+struct Reader {
+  In<double> v{"v", "1"};
+  Out<double> seen{"seen", "1", initial = 0.0};
+  void cycle(Cycle) { *seen = *v; }
+};
+
+TEST_F(VirtualReaderTest, FollowsTheProducerThatIsOn) {
+  app.add("one", testing::component<Writer<1>>("one"));
+  app.add("two", testing::component<Writer<2>>("two"));
+  app.add("reader", testing::component<Reader>("reader"));
+  const TaskId one(0u), two(1u);
+  begin({signal_at(microseconds(2500), Signal::kOff, one), signal_at(microseconds(4500), Signal::kOn, two)}, {two});
+  EXPECT_EQ(seen_at(milliseconds(2)), 1);
+  EXPECT_EQ(seen_at(milliseconds(4)), 1) << "the last value stands";
+  EXPECT_EQ(seen_at(milliseconds(7)), 2);
 }
 
 }  // namespace
