@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // While tasks are ON the framework asks the heap for nothing: counted over ten thousand cycles of each executor in
-// virtual time, and over the preemptive one's threads; the counter is shown to see an allocation. (That it cannot is
-// another test: tools/check_cycle_path.py, which does not follow the vectors of preemptive contexts that reserve their
-// room.)
+// virtual time and of two rtpus there, and over the preemptive one's threads; the counter is shown to see an
+// allocation. (That it cannot is another test: tools/check_cycle_path.py, which does not follow the vectors of
+// preemptive contexts that reserve their room.)
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,6 +11,7 @@
 
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
+#include "tests/conformance/rtpus_run.h"
 #include "tests/conformance/runner.h"
 
 namespace {
@@ -77,9 +78,19 @@ struct Counted {
 
 constexpr std::uint32_t kTasks = 5;
 
-// Runs five tasks that read one another in a ring, with signals, faults and late jobs.
+using Components = std::span<const chimera_component* const>;
+
+void add(const TaskSet& set, Counted& counted) {
+  for (const Task& task : set.tasks()) {
+    counted.cycles += task.profile.cycles;
+    counted.faults += task.faults.count;
+    counted.dropped += task.profile.dropped;
+  }
+}
+
+// Runs five tasks that read one another in a ring, on so many rtpus, with signals, faults and late jobs.
 template <class Run>
-Counted count(const ContextPlace& place, Run run) {
+Counted count(std::uint32_t n_rtpus, Run run) {
   const std::array<chimera_port_decl, 2> decls = {port("out", CHIMERA_OUT_VAR, CHIMERA_FLOAT64, offsetof(Quiet, out)),
                                                   port("in", CHIMERA_IN_VAR, CHIMERA_FLOAT64, offsetof(Quiet, in))};
   chimera_component component = toy::component(false);
@@ -107,21 +118,19 @@ Counted count(const ContextPlace& place, Run run) {
     tasks[i].component = "quiet";
     tasks[i].period = tasks[i].deadline = milliseconds(1);
     tasks[i].ports = ports[i];
-    tasks[i].rtpu = RtpuId(0u);
+    tasks[i].rtpu = RtpuId(i % n_rtpus);
     components[i] = &component;
     ids[i] = TaskId(i);
   }
-  const RtpuSpec rtpu{"only", 0, Policy::kEdf};
+  const RtpuSpec rtpus[] = {{"loop", 0, Policy::kEdf}, {"preemptive", 1, Policy::kEdf, true}};
   ApplicationSpec spec;
   spec.name = "quiet";
-  spec.rtpus = {&rtpu, 1};
+  spec.rtpus = {rtpus, n_rtpus};
   spec.tasks = tasks;
   spec.init_order = spec.start = ids;
   const NamedSet sets[] = {{"all", ids}, {"none", {}}};
   spec.sets = sets;
   links.finish(spec);
-  auto set = HeapTaskSet::create(spec, components, place);
-  EXPECT_TRUE(set);
   const std::array<ScriptAct, 6> acts = {
       ScriptAct{milliseconds(50), ScriptAct::Kind::kRaiseFlag, Signal::kOn, TaskId()},
       ScriptAct{milliseconds(70), ScriptAct::Kind::kLowerFlag, Signal::kOn, TaskId()},
@@ -129,18 +138,45 @@ Counted count(const ContextPlace& place, Run run) {
       ScriptAct{milliseconds(100), ScriptAct::Kind::kSignal, Signal::kOff, TaskId(4u)},
       ScriptAct{milliseconds(110), ScriptAct::Kind::kSignal, Signal::kOn, TaskId(4u)},
       ScriptAct{milliseconds(120), ScriptAct::Kind::kSignal, Signal::kOn, TaskId(4u)}};  // refused
-  Counted counted;
-  counted.allocations = run(**set, acts);
-  for (const Task& task : (*set)->tasks()) {
-    counted.cycles += task.profile.cycles;
-    counted.faults += task.faults.count;
-    counted.dropped += task.profile.dropped;
-  }
-  return counted;
+  return run(spec, Components(components), std::span<const ScriptAct>(acts));
+}
+
+template <class Run>
+Counted count_in_one(const ContextPlace& place, Run run) {
+  return count(1, [&](const ApplicationSpec& spec, Components components, std::span<const ScriptAct> acts) {
+    auto set = HeapTaskSet::create(spec, components, place);
+    EXPECT_TRUE(set);
+    Counted counted;
+    counted.allocations = run(**set, acts);
+    add(**set, counted);
+    return counted;
+  });
+}
+
+Counted count_on_two_rtpus() {
+  return count(2, [](const ApplicationSpec& spec, Components components, std::span<const ScriptAct> acts) {
+    auto peers = *VirtualPeers::create(spec);
+    std::unique_ptr<HeapTaskSet> sets[2];
+    for (std::uint32_t r = 0; r < 2; ++r) {
+      ContextPlace place;
+      place.rtpu = RtpuId(r);
+      place.others = peers.get();
+      sets[r] = *HeapTaskSet::create(spec, components, place);
+      peers->join(RtpuId(r), *sets[r]);
+    }
+    RtpusRun run(*peers, acts);
+    EXPECT_TRUE(run.start());
+    Counted counted;
+    const std::size_t before = n_allocations;
+    run.run(milliseconds(2250));
+    counted.allocations = n_allocations - before;
+    for (const auto& set : sets) add(*set, counted);
+    return counted;
+  });
 }
 
 Counted count(Kind kind) {
-  return count({}, [kind](TaskSet& set, std::span<const ScriptAct> acts) {
+  return count_in_one({}, [kind](TaskSet& set, std::span<const ScriptAct> acts) {
     std::vector<ScriptAct> with_switches(acts.begin(), acts.end());
     for (const std::uint32_t to : {1u, 0u}) {
       with_switches.push_back({milliseconds(200 - 50 * to), ScriptAct::Kind::kSwitch, Signal::kOn, TaskId()});
@@ -160,7 +196,7 @@ Counted count(Kind kind) {
 Counted count_by_threads() {
   ContextPlace place;
   place.preemptive = true;
-  return count(place, [](TaskSet& set, std::span<const ScriptAct> acts) {
+  return count_in_one(place, [](TaskSet& set, std::span<const ScriptAct> acts) {
     Listened listened;
     RunOptions options;
     options.policy = Policy::kEdf;
@@ -185,6 +221,19 @@ TEST_P(NoHeap, TenThousandCyclesWithFaultsDropsAndActsAllocateNothing) {
   EXPECT_GE(counted.cycles, 10'000u);
   EXPECT_GT(counted.faults, 50u);
   EXPECT_GT(counted.dropped, 10u);
+}
+
+TEST(NoHeapOnRtpus, CyclesWithFaultsDropsAndActsAllocateNothing) {
+  allocates = false;
+  const Counted counted = count_on_two_rtpus();
+  EXPECT_EQ(counted.allocations, 0u);
+  EXPECT_GE(counted.cycles, 10'000u);
+  EXPECT_GT(counted.faults, 50u);
+  EXPECT_GT(counted.dropped, 10u);
+  allocates = true;
+  const Counted planted = count_on_two_rtpus();
+  EXPECT_GE(planted.allocations, planted.cycles);
+  allocates = false;
 }
 
 TEST(NoHeapByThreads, CyclesWithFaultsDropsAndActsAllocateNothing) {
