@@ -50,8 +50,8 @@ DEFECTS = (
      "  if (job.sporadic && job.sporadic->is_halted()) return;\n  ++job.task.profile.preempted;", ""),
     ("a leaving task is turned off before the change", "switching.cc",
      "  if (agreement().propose(order_.number, at)) peers_->ring();",
-     "  for (const TaskId id : plan_.leaving) {\n    (void)parts_.set.life().settle_off(id, now);\n    task(id).state = "
-     "State::kOn;\n  }\n  if (agreement().propose(order_.number, at)) peers_->ring();"),
+     "  for (const TaskId id : plan_.leaving) {\n    (void)parts_.set.life().settle_off(id, now);\n    task(id)"
+     ".state = State::kOn;\n  }\n  if (agreement().propose(order_.number, at)) peers_->ring();"),
     ("readers are bound to a task that is armed", "task_life.cc", "turns_on && !is_arming_) set_", "turns_on) set_"),
     ("an aborted switch leaves tasks armed", "switching.cc", "  const std::size_t n = undoes ? next_armed_ :",
      "  const std::size_t n = undoes ? 0 :"),
@@ -62,7 +62,8 @@ DEFECTS = (
     ("signals that come while a task is armed wait for the change", "switching.cc", "  if (now > edge) {",
      "  if (false && now > edge) {"),
     ("signals of a task that is armed go out at once", "task_life.cc", "if (!is_arming_) set_.sent()", "set_.sent()"),
-    ("the step of a switch is not judged", "switch_record.cc", "    if (part.step_of_on.is_beyond) return &part;\n", ""),
+    ("the step of a switch is not judged", "switch_record.cc", "    if (part.step_of_on.is_beyond) return &part;\n",
+     ""),
     ("a task that left by a switch is never turned off", "changeover.cc",
      "  leaving.owes_off = leaving.state == State::kOn;\n  if (leaving.owes_off) leaving.state = State::kOff;",
      "  leaving.state = State::kOff;"),
