@@ -7,6 +7,7 @@
 #include <memory>
 #include <random>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "chimera/runtime/testing/test_application.h"
@@ -26,6 +27,7 @@ struct Scene {
   double first_cycle_of_two = 0;   // added to the first cycle's law
   bool on_of_two_fails = false, two_sends = false;
   Nanoseconds on_takes = microseconds(30);
+  Nanoseconds long_beacon_at = kNever, long_beacon;  // one cycle of it takes so long
 };
 Scene scene;
 
@@ -44,6 +46,7 @@ struct Plant {
 struct Beacon {  // knows nobody
   Out<double> b{"b", "1", initial = 0.0};
   void cycle(Cycle c) {
+    if (c.now() >= scene.long_beacon_at) c.spend(std::exchange(scene.long_beacon, {}));
     *b = *b * 0.9 + static_cast<double>(c.now().count % 997);
     put(scene.beacon, c, *b);
   }
@@ -96,7 +99,7 @@ struct Two {
 };
 
 constexpr TaskId kPlant{0u}, kBeacon{1u}, kOne{2u}, kObserver{3u}, kTwo{4u};
-constexpr std::uint32_t kDirect = 0, kObserved = 1;
+constexpr std::uint32_t kDirect = 0, kObserved = 1, kBare = 2;
 
 class Switches : public ::testing::TestWithParam<Kind> {
  protected:
@@ -109,6 +112,7 @@ class Switches : public ::testing::TestWithParam<Kind> {
     app_->add("one", testing::component<One>("one")).budget = microseconds(100);
     app_->add("observer", testing::component<Observer>("observer")).budget = microseconds(50);
     app_->add("two", testing::component<Two>("two")).budget = microseconds(50);
+    app_->tasks[kOne.index].deadline = deadline_of_one_;
     if (limit_ > 0) app_->port(kTwo.index, 1).max_step = std::as_bytes(std::span(&limit_, 1));
     app_->make({kPlant, kBeacon, kOne}, false);
     app_->spec.sets = sets_;
@@ -152,8 +156,10 @@ class Switches : public ::testing::TestWithParam<Kind> {
   }
 
   std::vector<TaskId> direct_{kPlant, kBeacon, kOne}, observed_{kPlant, kBeacon, kObserver, kTwo};
-  NamedSet sets_[2] = {{"direct", direct_}, {"observed", observed_}};
+  std::vector<TaskId> bare_{kPlant, kBeacon};
+  NamedSet sets_[3] = {{"direct", direct_}, {"observed", observed_}, {"bare", bare_}};
   double limit_ = 0;
+  Nanoseconds deadline_of_one_ = milliseconds(1);
   std::vector<ScriptAct> acts_;
   std::unique_ptr<testing::TestApplication> app_;
   std::unique_ptr<HeapTaskSet> set_;
@@ -309,6 +315,18 @@ TEST_P(Switches, AnOnThatOverrunsItsGapLeavesTheJobsReleasedMeanwhileAsTheyWere)
   EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, 7u);
   EXPECT_EQ(set_->tasks()[kTwo.index].profile.cycles, 13u);
   EXPECT_EQ(losses(), 0u);
+}
+
+// Asked for at 6.2 ms, while a job of 2.5 ms may hold the processor: a task that leaves has its cycle of the last release
+// before the change, also when that release is only noticed then.
+TEST_P(Switches, AReleaseBeforeTheChangeIsMadeBeforeTheChange) {
+  scene.long_beacon_at = milliseconds(5);
+  scene.long_beacon = microseconds(2500);
+  deadline_of_one_ = microseconds(900);
+  const auto receipts = go(milliseconds(20), {to(kBare, microseconds(6200))});
+  ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, 7u);
+  EXPECT_EQ(state(kOne), chimera::State::kOff);
 }
 
 TEST_P(Switches, WhatMovesAMemberMeanwhileUndoesIt) {

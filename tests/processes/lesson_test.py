@@ -2,6 +2,7 @@
 """The lesson about processes, command by command as its README shows them."""
 import pathlib
 import re
+import shlex
 import subprocess
 import unittest
 
@@ -25,15 +26,16 @@ class Lesson(unittest.TestCase):
                 if command == 'kill -KILL "$(chimera status --pid plan)"':
                     self.kill_the_plan(system)
                     continue
-                words = command.split()[1:]
+                words = shlex.split(command)[1:]
                 done = subprocess.run([str(CHIMERA), *words], env=system.environment, capture_output=True, text=True,
-                                      timeout=30, stdin=subprocess.DEVNULL)
+                                      timeout=30, stdin=subprocess.DEVNULL, cwd=LESSON)
                 self.assertEqual(done.returncode, 0, command + ": " + done.stdout + done.stderr)
                 said[words[0]] = done.stdout
             self.assertIn("plan", said["status"])
             self.assertIn("plan ended by signal 9 (SIGKILL)", said["events"])
             self.assertIn("plan is restarted, 1 of at most 3 times", said["events"])
             self.assertIn("q_ref", said["why"])
+            self.assertIn("plan died at 1.000 s", said["run"])
 
     def kill_the_plan(self, system):
         before, unit = system.task("arm"), system.rtpu("plan")
