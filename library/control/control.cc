@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The speed control of the cruise control (2000 paper, figure 17): how much force the car needs.
-#include <algorithm>
+// The speed control of the cruise control (2000 paper, figure 17 bottom): how much force the car needs.
 #include <cmath>
 
 #include "chimera/task/component.h"
-#include "library/control/pi.h"
+#include "library/control/speed_control.h"
 
 using namespace chimera;
 
@@ -20,37 +19,26 @@ struct Control {
   InConst<double> brake_max{"brake_max", "N", initial = 4000.0, range(0, 20000), doc = "The most it brakes with."};
 
   Outcome init() {
-    if (!(*drive_max >= 0 && *drive_max <= 20000) || !(*brake_max >= 0 && *brake_max <= 20000))
-      return fault("drive_max and brake_max are 0 to 20000 N");
-    if (!(*kp >= 0 && *kp <= 1e6) || !(*ki >= 0 && *ki <= 1e6)) return fault("kp and ki are 0 to 1e6");
-    return ok();
+    const char* const wrong = library::SpeedControl::fault_in(gains());
+    return wrong == nullptr ? ok() : fault(wrong);
   }
   Outcome reinit() { return init(); }
-  // Bumpless: goes on from the force that is handed over. Not before the first cycle, because a speed made by
-  // differences is known only then. A force of 0 is nobody to go on from, and an older one belongs to another speed.
+  // An older force belongs to another speed.
   void on() {
-    pi_.start(0);
     if (fd.is_outdated()) *fd = 0;
-    takes_over_ = std::isfinite(*fd) && *fd != 0;
+    control_.start(*fd);
   }
   Outcome cycle(Cycle c) {
     if (c.illegal()) return ok();  // nobody follows fd: the error means nothing, do not integrate it
     if (!std::isfinite(*vr) || !std::isfinite(*vz)) return fault("vr or vz is not finite");
-    const bool takes_over = takes_over_;
-    takes_over_ = false;
-    if (*vr > 0) {
-      if (takes_over) pi_.start(std::clamp(*fd - *kp * (*vr - *vz), -*brake_max, *drive_max));
-      *fd = pi_.step(*kp, *ki, *vr - *vz, c.dt(), -*brake_max, *drive_max);
-    } else {
-      pi_.start(0);
-      *fd = 0;
-    }
+    *fd = control_.step(gains(), *vr, *vz, c.dt());
     return ok();
   }
 
  private:
-  library::Pi pi_;
-  bool takes_over_ = false;
+  library::SpeedControl::Gains gains() const { return {*kp, *ki, *drive_max, *brake_max}; }
+
+  library::SpeedControl control_;
 };
 
 CHIMERA_COMPONENT(Control, "control", "Holds the speed of a car: PI with limits and anti-windup.", rate = 50.0,
