@@ -242,8 +242,9 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   }
   const auto number = agreement().run(order_.number);
   const SwitchRun run = find_run(plan_, set.spec().tasks, number.value_or(UINT16_MAX));
-  if (now < order_.until + (is_turn_of(parts_.set, plan_, run, order_.members) ? Nanoseconds{} : kGrace)) return true;
-  const bool has_next = is_turn_of(parts_.set, plan_, run, order_.members) && std::max(next_armed_, run.begin) < run.end;
+  const bool is_mine = is_turn_of(parts_.set, plan_, run, order_.members);
+  if (now < order_.until + (is_mine ? Nanoseconds{} : kGrace)) return true;
+  const bool has_next = is_mine && std::max(next_armed_, run.begin) < run.end;
   if (!has_next) {
     abort(NoSwitch::kNoGap, {}, {});
     return false;

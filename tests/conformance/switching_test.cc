@@ -317,8 +317,8 @@ TEST_P(Switches, AnOnThatOverrunsItsGapLeavesTheJobsReleasedMeanwhileAsTheyWere)
   EXPECT_EQ(losses(), 0u);
 }
 
-// Asked for at 6.2 ms, while a job of 2.5 ms may hold the processor: a task that leaves has its cycle of the last release
-// before the change, also when that release is only noticed then.
+// Asked for at 6.2 ms, while a job of 2.5 ms may hold the processor: a task that leaves has its cycle of the last
+// release before the change, also when that release is only noticed then.
 TEST_P(Switches, AReleaseBeforeTheChangeIsMadeBeforeTheChange) {
   scene.long_beacon_at = milliseconds(5);
   scene.long_beacon = microseconds(2500);
