@@ -12,7 +12,8 @@ namespace chimera::control {
 /// Context: setup.
 std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin);
 
-/// One JSON object; "" for a request for what was in force. `asked_by`: a role; "": as the receipt says. Context: setup.
+/// One JSON object; "" for a request for what was in force. `asked_by`: a role; "": as the receipt says.
+/// Context: setup.
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
                          std::string_view asked_by = {});
 
