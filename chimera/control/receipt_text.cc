@@ -227,7 +227,8 @@ std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& sp
   return "{\"number\": " + std::to_string(receipt.number) + ", \"from\": " +
          json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
          json_string(std::string(spec.sets[receipt.after].name)) +
-         ", \"way\": \"fast\", \"asked_by\": " + json_string(asked.empty() ? asked_by(receipt, spec) : std::string(asked)) + ", \"end\": \"" +
+         ", \"way\": \"fast\", \"asked_by\": " +
+         json_string(asked.empty() ? asked_by(receipt, spec) : std::string(asked)) + ", \"end\": \"" +
          word(receipt.end) + "\", \"reason\": " +
          (is_done ? "null" : std::string("\"") + reason_word(receipt.why) + "\"") + ", \"why\": " +
          (is_done ? "null" : json_string(reason_text(receipt, spec))) +
