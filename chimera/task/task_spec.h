@@ -74,15 +74,17 @@ struct TaskSpec {
   OnMiss on_miss = OnMiss::kContinue;
   OnMiss on_overrun = OnMiss::kContinue;
   OnFault on_fault = OnFault::kError;
-  /// Of the reactions `switch`: the configuration, by its number in the list of them; UINT32_MAX for other reactions.
-  std::uint32_t on_miss_set = UINT32_MAX, on_overrun_set = UINT32_MAX, on_fault_set = UINT32_MAX;
   std::uint32_t max_consecutive = 0;  ///< misses in a row after which the task goes to ERROR; 0 = no limit
   std::uint32_t tolerated_misses = 0;  ///< of the last `tolerated_of` cycles so many may miss without a reaction
   std::uint32_t tolerated_of = 0;      ///< 0: none; at most 64
   std::uint32_t stack_bytes = 0;       ///< of the task's thread, where it has one; 0: the default
   bool aperiodic = false;             ///< the component has a sync method
   bool is_hardware = false;           ///< has a resource port: first to go ON, last to go OFF
+  // Of the reactions `switch`: the configuration, by its number in the list of them; UINT16_MAX for other reactions.
+  // They stand where they take no room: a job step multiplies by the size of this.
+  std::uint16_t on_miss_set = UINT16_MAX;
   RtpuId rtpu;
+  std::uint16_t on_overrun_set = UINT16_MAX, on_fault_set = UINT16_MAX;
   std::span<const PortSpec> ports;
   /// Then it is aperiodic, `period` and `deadline` are the server's period, and each event is one release.
   std::optional<ServerSpec> server;

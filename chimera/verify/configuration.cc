@@ -116,14 +116,14 @@ void count_list(const Node& node, std::uint32_t (&listed)[CHIMERA_MAX_EXTENTS]) 
 }
 
 /// The number of the configuration that a reaction names; a reaction without one has none.
-std::uint32_t set_number(const Model& model, const Word& name) {
+std::uint16_t set_number(const Model& model, const Word& name) {
   for (std::size_t i = 0; i < model.sets.size(); ++i)
-    if (model.sets[i].name == name.text) return static_cast<std::uint32_t>(i);
-  return UINT32_MAX;
+    if (model.sets[i].name == name.text) return static_cast<std::uint16_t>(i);
+  return UINT16_MAX;
 }
 
 void take_reactions(const Model& model, const DraftTask& draft, TaskSpec& spec) {
-  const auto take = [&](const auto& reaction, auto& kind, std::uint32_t& set) {
+  const auto take = [&](const auto& reaction, auto& kind, std::uint16_t& set) {
     if (!reaction) return;
     kind = reaction->kind;
     set = set_number(model, reaction->configuration);

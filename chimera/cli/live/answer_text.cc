@@ -111,8 +111,9 @@ std::string switch_text(const Json& answer) {
     leave += text_of(task, "move") == "leaves" ? 1 : 0;
     lost += whole_of(task, "lost");
   }
-  text += ": " + std::to_string(arrive) + (arrive == 1 ? " task arrives, " : " tasks arrive, ") + std::to_string(leave) +
-          (leave == 1 ? " leaves, " : " leave, ") + std::to_string(lost) + (lost == 1 ? " cycle lost\n" : " cycles lost\n");
+  text += ": " + std::to_string(arrive) + (arrive == 1 ? " task arrives, " : " tasks arrive, ") +
+          std::to_string(leave) + (leave == 1 ? " leaves, " : " leave, ") + std::to_string(lost) +
+          (lost == 1 ? " cycle lost\n" : " cycles lost\n");
   for (const Json& variable : field(answer, "variables")) {
     const Json& step = field(variable, "step");
     if (!step.is_number()) continue;

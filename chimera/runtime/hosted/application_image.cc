@@ -270,8 +270,8 @@ void judge_sets(const ApplicationImage::Parts& parts, ImageReader& reader) {
 }
 
 void judge_reactions(const ApplicationImage::Parts& parts, ImageReader& reader) {
-  const auto judge = [&](bool is_switch, std::uint32_t set) {
-    reader.require(is_switch ? set < parts.sets.size() : set == UINT32_MAX, "a reaction with a wrong set");
+  const auto judge = [&](bool is_switch, std::uint16_t set) {
+    reader.require(is_switch ? set < parts.sets.size() : set == UINT16_MAX, "a reaction with a wrong set");
   };
   for (const TaskSpec& task : parts.tasks) {
     judge(task.on_miss == OnMiss::kSwitch, task.on_miss_set);

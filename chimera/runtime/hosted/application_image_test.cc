@@ -41,8 +41,8 @@ struct Sample {
     tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
                 .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
                 .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kSwitch,
-                .on_fault = OnFault::kSwitch, .on_overrun_set = 1, .on_fault_set = 0, .max_consecutive = 5,
-                .aperiodic = true, .is_hardware = true, .rtpu = RtpuId{1u}, .ports = ports,
+                .on_fault = OnFault::kSwitch, .max_consecutive = 5, .aperiodic = true, .is_hardware = true,
+                .rtpu = RtpuId{1u}, .on_overrun_set = 1, .on_fault_set = 0, .ports = ports,
                 .server = ServerSpec{ServerKind::kSporadic, Nanoseconds{3}, Nanoseconds{10}}};
     tasks[1] = {.name = "plain", .component = "gain", .period = Nanoseconds{20}, .offset = {},
                 .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .rtpu = RtpuId{0u}, .ports = more_ports,
