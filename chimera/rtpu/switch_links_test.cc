@@ -8,128 +8,31 @@
 #include <algorithm>
 #include <random>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "chimera/rtpu/testing/test_units.h"
+#include "chimera/runtime/testing/switch_scene.h"
 
 namespace chimera {
 namespace {
 
-using testing::component;
+using namespace testing::switch_scene;
 using testing::TestApplication;
 using testing::Units;
-
-using Log = std::vector<std::tuple<std::int64_t, double>>;
-
-/// What the components of a run do, and what they saw. One run at a time.
-struct Scene {
-  Log plant, beacon, u, reader;
-  std::vector<std::string> story;
-  double on_of_two = 0;
-  bool on_of_two_fails = false;
-  int illegal = 0;  // cycles that saw the flag up
-};
-Scene scene;
-
-struct Plant {
-  In<double> u{"u", "1"};
-  Out<double> y{"y", "1", initial = 0.0};
-  void cycle(Cycle c) {
-    *y = *y + 0.1 * (*u - *y);
-    scene.plant.emplace_back(c.now().count, *y);
-    scene.u.emplace_back(c.now().count, *u);
-    scene.illegal += c.illegal() ? 1 : 0;
-  }
-};
-
-struct Beacon {  // knows nobody
-  Out<double> b{"b", "1", initial = 0.0};
-  void cycle(Cycle c) {
-    *b = *b * 0.9 + static_cast<double>(c.now().count % 997);
-    scene.beacon.emplace_back(c.now().count, *b);
-  }
-};
-
-/// Reads u in the other unit.
-struct Reader {
-  In<double> u{"u", "1"};
-  Out<double> seen{"seen", "1", initial = 0.0};
-  void cycle(Cycle c) {
-    *seen = *u;
-    scene.reader.emplace_back(c.now().count, *u);
-    scene.illegal += c.illegal() ? 1 : 0;
-  }
-};
-
-struct One {  // 7 while it cycles
-  Out<double> u{"u", "1", initial = 0.0};
-  void on(Cycle) { scene.story.emplace_back("on one"); }
-  void cycle(Cycle) { *u = 7; }
-  void off(Cycle) {
-    scene.story.emplace_back("off one");
-    *u = 1e6;  // nobody may see this
-  }
-};
-
-struct Observer {
-  In<double> y{"y", "1"};
-  Out<double> z{"z", "1", initial = 0.0};
-  void on(Cycle) {
-    scene.story.emplace_back("on observer");
-    *z = *y;
-  }
-  void cycle(Cycle) { *z = *y; }
-  void off(Cycle) { scene.story.emplace_back("off observer"); }
-};
-
-struct Two {  // 7 from its first cycle on, what on says before
-  In<double> z{"z", "1"};
-  Out<double> u{"u", "1", initial = 0.0};
-  Outcome on(Cycle) {
-    scene.story.emplace_back("on two");
-    if (scene.on_of_two_fails) return fault("no current");
-    *u = *u + scene.on_of_two;
-    return ok();
-  }
-  void cycle(Cycle) { *u = 7; }
-  void off(Cycle) {
-    scene.story.emplace_back("off two");
-    *u = 1e6;
-  }
-};
-
-constexpr TaskId kPlant{0u}, kBeacon{1u}, kReader{2u}, kOne{3u}, kObserver{4u}, kTwo{5u}, kThree{6u};
-constexpr std::uint32_t kDirect = 0, kObserved = 1, kBeside = 2;
 
 struct SwitchLinksTest : ::testing::Test {
   SwitchLinksTest() { make(); }
   void make() {
     scene = {};
     units.reset();
-    app = std::make_unique<TestApplication>();
-    app->rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
-    const auto add = [this](const char* name, const chimera_component* what, std::uint32_t rtpu) {
-      app->add(name, what).rtpu = RtpuId(rtpu);
-    };
-    add("plant", component<Plant>("plant"), 0);
-    add("beacon", component<Beacon>("beacon"), 0);
-    add("reader", component<Reader>("reader"), 1);
-    add("one", component<One>("one"), 1);
-    add("observer", component<Observer>("observer"), 0);
-    add("two", component<Two>("two"), 1);
-    add("three", component<Two>("two"), 0);  // in the unit of plant
-    app->link(kThree.index, 0, "y");
-    if (limit > 0) app->port(kTwo.index, 1).max_step = std::as_bytes(std::span(&limit, 1));
-    app->make({kPlant, kBeacon, kReader, kOne}, false);
-    app->spec.sets = sets;
+    app = testing::switch_scene::application(limit, false);
     units = std::make_unique<Units>(*app);
     units->run(milliseconds(1));
     for (std::uint32_t t = 0; t <= kThree.index; ++t) {
       units->send(Signal::kSpawn, {TaskId(t)});
       units->run(milliseconds(1));
     }
-    for (const TaskId task : direct) units->send(Signal::kOn, {task});
+    for (const TaskId task : kSets[kDirect]) units->send(Signal::kOn, {task});
     units->run(milliseconds(10));
     scene.illegal = 0;
     scene.story.clear();
@@ -154,9 +57,6 @@ struct SwitchLinksTest : ::testing::Test {
     return n;
   }
 
-  std::vector<TaskId> direct{kPlant, kBeacon, kReader, kOne}, observed{kPlant, kBeacon, kReader, kObserver, kTwo},
-      beside{kPlant, kBeacon, kReader, kThree};
-  NamedSet sets[3] = {{"direct", direct}, {"observed", observed}, {"beside", beside}};
   double limit = 0;
   std::unique_ptr<TestApplication> app;
   std::unique_ptr<Units> units;
@@ -170,7 +70,7 @@ TEST_F(SwitchLinksTest, TwoUnitsChangeAtOneInstant) {
   EXPECT_EQ(units->part(0).end, SwitchEnd::kDone);
   EXPECT_EQ(units->part(1).end, SwitchEnd::kDone);
   EXPECT_EQ(units->part(0).at, units->part(1).at);
-  EXPECT_TRUE(are_on(observed));
+  EXPECT_TRUE(are_on(kSets[kObserved]));
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on observer", "on two", "off one"}));
   EXPECT_FALSE(units->flag_is_up());
   EXPECT_EQ(scene.illegal, 0);
@@ -201,7 +101,7 @@ TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {
       ASSERT_EQ(told.end, SwitchEnd::kDone) << i << " " << static_cast<int>(told.why);
       for (std::uint32_t t = 0; t < told.n_tasks; ++t) ASSERT_EQ(told.tasks[t].lost, 0u) << i;
     }
-    ASSERT_TRUE(are_on(at_present == kDirect ? direct : at_present == kObserved ? observed : beside)) << i;
+    ASSERT_TRUE(are_on(kSets[at_present])) << i;
     ASSERT_FALSE(units->flag_is_up());
   }
   EXPECT_EQ(scene.illegal, 0);
@@ -227,7 +127,7 @@ TEST_F(SwitchLinksTest, AnOnThatFailsInOneUnitUndoesWhatTheOtherHasArmed) {
   EXPECT_EQ(units->part(1).task, kTwo);
   EXPECT_STREQ(units->part(1).said, "no current");
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on observer", "on two", "off observer"}));
-  EXPECT_TRUE(are_on(direct));
+  EXPECT_TRUE(are_on(kSets[kDirect]));
   EXPECT_EQ(scene.illegal, 0);
 }
 
@@ -239,7 +139,7 @@ TEST_F(SwitchLinksTest, AStepOfOnBeyondTheLimitIsSeenAcrossUnits) {
   units->run(milliseconds(10));
   ASSERT_TRUE(units->is_over(number));
   EXPECT_EQ(units->part(1).why, NoSwitch::kStepTooLarge);
-  EXPECT_TRUE(are_on(direct));
+  EXPECT_TRUE(are_on(kSets[kDirect]));
 }
 
 TEST_F(SwitchLinksTest, ASignalToAMemberAborts) {
@@ -295,7 +195,7 @@ TEST_F(SwitchLinksTest, AnOrderThatNobodyWroteIsAborted) {
   units->run(milliseconds(10));
   ASSERT_TRUE(units->is_over(number));
   EXPECT_EQ(units->part(0).why, NoSwitch::kDamaged);
-  EXPECT_TRUE(are_on(direct));
+  EXPECT_TRUE(are_on(kSets[kDirect]));
   EXPECT_EQ(scene.illegal, 0);
 }
 
@@ -304,7 +204,7 @@ TEST_F(SwitchLinksTest, WithoutTimeToAgreeItIsAborted) {
   units->run(milliseconds(10));
   ASSERT_TRUE(units->is_over(number));
   EXPECT_EQ(units->part(0).end, SwitchEnd::kAborted);
-  EXPECT_TRUE(are_on(direct));
+  EXPECT_TRUE(are_on(kSets[kDirect]));
   EXPECT_EQ(lost(), 0u);
   EXPECT_EQ(scene.illegal, 0);
 }

@@ -107,9 +107,6 @@ class Refusals {
     if (executor_ == Executor::kProcesses && is_preemptive)
       refuse(step.name.at, "'max_step' of task '" + task.name.text + "' on a preemptive rtpu",
              "run with --virtual or --isolation none, or give its rtpu 'executor: executive'");
-    if (is_virtual() && are_on_several_rtpus())
-      refuse(step.name.at, "'max_step' of task '" + task.name.text + "' on several rtpus in virtual time",
-             "run without --virtual, or take it out");
   }
 
   void judge(const DraftTask& task) {

@@ -99,7 +99,7 @@ class RtpusLoop final : public RunLoop {
   Nanoseconds origin() const override { return rtpus_.origin(); }
   void shut_down() override { rtpus_.shut_down(); }
   std::span<const RefusedSignal> refused() override { return refused_ = rtpus_.refused(); }
-  const SwitchReceipts& receipts() override { return none_; }
+  const SwitchReceipts& receipts() override { return rtpus_.receipts(); }
   std::string description() const override {
     std::string text = "virtual time";
     for (std::size_t r = 0; r < peers_.spec().rtpus.size(); ++r) {
@@ -116,7 +116,6 @@ class RtpusLoop final : public RunLoop {
   VirtualPeers& peers_;
   VirtualRtpus rtpus_;
   std::vector<RefusedSignal> refused_;
-  SwitchReceipts none_;
 };
 
 RunOptions with_threads(RunOptions options, BackgroundWriter& writer) {

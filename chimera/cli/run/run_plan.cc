@@ -91,8 +91,6 @@ Result<ScriptAct> settled(const TimedAct& timed, RunPlan& plan) {
 /// Why the act cannot be done in this run; "": it can.
 std::string why_not(const ScriptAct& act, const RunRequest& request, const Configuration& configuration) {
   const bool has_rtpus = request.virtual_time && are_on_several_rtpus(configuration);
-  if (act.kind == ScriptAct::Kind::kSwitch && has_rtpus)
-    return "a switch of tasks on several rtpus cannot be done yet in virtual time; run without --virtual";
   if (act.kind != ScriptAct::Kind::kDie) return {};
   if (!has_rtpus) return "an rtpu dies in virtual time only (--virtual), where tasks are on several rtpus";
   const auto tasks = configuration.tasks();

@@ -126,21 +126,17 @@ TEST(SeveralRtpus, AnActThatCannotBeDoneIsRefusedBeforeAnythingRuns) {
     EXPECT_TRUE(has(said.err, "--at '")) << said.err;
     return said.err.substr(said.err.find("--at '"));
   };
-  EXPECT_EQ(refusal("5 ms: switch less"),
-            "--at '5 ms: switch less': a switch of tasks on several rtpus cannot be done yet in virtual time; run with "
-            "--isolation none\n");
   EXPECT_EQ(refusal("5 ms: die secnd"), "--at '5 ms: die secnd': no rtpu 'secnd'; did you mean 'second'?\n");
   EXPECT_EQ(refusal("5 ms: die spare"), "--at '5 ms: die spare': no task is on that rtpu\n");
   EXPECT_EQ(refusal("5 ms: die main", kCounterText),
             "--at '5 ms: die main': an rtpu dies in virtual time only (--virtual), where tasks are on several rtpus\n");
 }
 
-TEST(SeveralRtpus, AStepLimitIsRefusedAsItIsOfNoUse) {
-  std::string text = kRamp;
-  text.replace(text.find("budget: 2 ms"), 12, "budget: 2 ms, max_step: {x: 1}");
-  const Said said = said_by({}, text);
-  EXPECT_EQ(said.code, kRefused);
-  EXPECT_TRUE(has(said.err, "'max_step' of task 'source' on several rtpus in virtual time")) << said.err;
+TEST(SeveralRtpus, SwitchToAnotherConfigurationTogether) {
+  const Said said = said_by(with_act("5 ms: switch less"));
+  EXPECT_EQ(said.code, kOk) << said.out << said.err;
+  EXPECT_TRUE(has(said.out, "\nswitch 1 at 0.005 s from 'all' to 'less' after ")) << said.out;
+  EXPECT_TRUE(has(said.out, ": 0 tasks arrive, 2 leave, 0 cycles lost\n")) << said.out;
 }
 
 }  // namespace

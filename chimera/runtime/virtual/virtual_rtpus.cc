@@ -23,11 +23,11 @@ constexpr int kMostEdges = 16;
 
 /// One rtpu.
 struct VirtualRtpus::Unit {
-  Unit(VirtualPeers& peers, RtpuId rtpu, const RunOptions& run, const VirtualOptions& how)
+  Unit(VirtualPeers& peers, RtpuId rtpu, SwitchPeers* switches, const RunOptions& run, const VirtualOptions& how)
       : id(rtpu),
         tasks(*peers.tasks(rtpu)),
         control(peers, rtpu, run.script.size()),
-        releases(tasks, clock, options(run, how)) {
+        releases(tasks, clock, options(run, switches, how)) {
     const std::span<const TaskSpec> specs = tasks.spec().tasks;
     if (is_preemptive(how))
       processor = std::make_unique<SteppedPreemptive>(releases, specs, clock, PreemptiveOptions{how.seed, how.quantum});
@@ -39,11 +39,12 @@ struct VirtualRtpus::Unit {
   bool is_preemptive(const VirtualOptions& how) const noexcept {
     return how.preemptive || tasks.spec().rtpus[id.index].preemptive;
   }
-  RunOptions options(RunOptions run, const VirtualOptions& how) noexcept {
+  RunOptions options(RunOptions run, SwitchPeers* switches, const VirtualOptions& how) noexcept {
     run.policy = tasks.spec().rtpus[id.index].policy;
     run.rtpu = static_cast<std::uint8_t>(id.index);
     run.script = Script();
     run.guest = &control;
+    run.switch_peers = switches;
     run.can_demote = is_preemptive(how);
     return run;
   }
@@ -60,11 +61,17 @@ struct VirtualRtpus::Unit {
 };
 
 VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const VirtualOptions& how)
-    : peers_(peers), stop_(options.stop != nullptr ? options.stop : &kNoStop), script_(options.script) {
+    : peers_(peers),
+      stop_(options.stop != nullptr ? options.stop : &kNoStop),
+      script_(options.script),
+      switches_(peers, options.script.count(ScriptAct::Kind::kSwitch)) {
   CHIMERA_ASSERT(how.quantum > Nanoseconds{} && options.guest == nullptr);
-  CHIMERA_ASSERT(script_.count(ScriptAct::Kind::kSwitch) == 0);
-  for (std::size_t r = 0; r < peers.spec().rtpus.size(); ++r)
-    if (peers.tasks(RtpuId(r)) != nullptr) units_.push_back(std::make_unique<Unit>(peers, RtpuId(r), options, how));
+  const bool has_switches = script_.count(ScriptAct::Kind::kSwitch) > 0;
+  for (std::size_t r = 0; r < peers.spec().rtpus.size(); ++r) {
+    SwitchPeers* const switches = has_switches ? &switches_.of(RtpuId(r)) : nullptr;
+    if (peers.tasks(RtpuId(r)) != nullptr)
+      units_.push_back(std::make_unique<Unit>(peers, RtpuId(r), switches, options, how));
+  }
   of_dead_.reserve(kMostRefused);
 }
 
@@ -82,6 +89,7 @@ Result<void> VirtualRtpus::start() {
   peers_.show_start(false);
   if (!started) return started;
   origin_ = now_;
+  switches_.begin(origin_);
   for (const auto& unit : units_) {
     unit->control.follow(now_);
     unit->control.publish();
@@ -146,6 +154,7 @@ RunEnd VirtualRtpus::run_to(Nanoseconds duration) noexcept {
     stop_units();
     take_acts();
     take_edges();
+    switches_.look(now_);
     if (begin_jobs()) continue;
     if (!is_anything_left()) return RunEnd::kNothingLeft;
     const Nanoseconds next = std::min(next_event(), until);
@@ -202,8 +211,8 @@ void VirtualRtpus::act(const ScriptAct& act, Unit*& last) noexcept {
       return lower_flag(act);
     case ScriptAct::Kind::kDie:
       return die(act.rtpu);
-    case ScriptAct::Kind::kSwitch:  // not asked for: see the constructor
-      return;
+    case ScriptAct::Kind::kSwitch:
+      return switches_.ask(act.set, now_);
   }
 }
 
@@ -275,7 +284,7 @@ bool VirtualRtpus::is_anything_left() noexcept {
     const bool is_quiet = unit->processor->is_idle() && !unit->processor->is_occupied(now_);
     return !is_quiet || unit->releases.members().is_any_on() || unit->tasks.sent().has_pending();
   };
-  return script_.next_at() != kNever || std::any_of(units_.begin(), units_.end(), is_left);
+  return script_.next_at() != kNever || switches_.is_under_way() || std::any_of(units_.begin(), units_.end(), is_left);
 }
 
 void VirtualRtpus::shut_down() {
@@ -283,8 +292,10 @@ void VirtualRtpus::shut_down() {
     if (unit->is_dead) continue;
     unit->clock.set(now_);
     unit->releases.switching().end(now_);
-    unit->tasks.life().shut_down(now_);
   }
+  switches_.look(now_);
+  for (const auto& unit : units_)
+    if (!unit->is_dead) unit->tasks.life().shut_down(now_);
 }
 
 std::vector<RefusedSignal> VirtualRtpus::refused() {

@@ -16,6 +16,7 @@
 #include "chimera/runtime/virtual/virtual_control.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 #include "chimera/runtime/virtual/virtual_peers.h"
+#include "chimera/runtime/virtual/virtual_switches.h"
 
 namespace chimera {
 
@@ -23,7 +24,7 @@ namespace chimera {
 class VirtualRtpus {
  public:
   /// Of the rtpus that have joined `peers`. The policy is that of each rtpu, and an rtpu is preemptive when it or `how`
-  /// says so. What is given outlives this. Requires: preemptive where a task has a server; no act kSwitch; no guest.
+  /// says so. What is given outlives this. Requires: preemptive where a task has a server; no guest.
   /// Context: setup.
   VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const VirtualOptions& how);
   VirtualRtpus(const VirtualRtpus&) = delete;
@@ -46,6 +47,8 @@ class VirtualRtpus {
   Nanoseconds origin() const noexcept { return origin_; }
   /// In order of time. Context: setup, between runs.
   std::vector<RefusedSignal> refused();
+  /// Of every switch that the script asked for. Context: setup, between runs.
+  const SwitchReceipts& receipts() const noexcept { return switches_.receipts(); }
 
  private:
   struct Unit;
@@ -69,6 +72,7 @@ class VirtualRtpus {
   VirtualPeers& peers_;
   const std::atomic<bool>* stop_;  // as RunOptions::stop
   Script script_;
+  VirtualSwitches switches_;
   std::vector<std::unique_ptr<Unit>> units_;  // with tasks, in the order of the rtpus
   std::vector<RefusedSignal> of_dead_;        // signals for tasks of dead rtpus
   Nanoseconds now_, origin_;

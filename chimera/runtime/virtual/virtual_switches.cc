@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Orders switches of several real-time units in virtual time, and puts their parts together.
+#include "chimera/runtime/virtual/virtual_switches.h"
+
+#include <algorithm>
+
+#include "chimera/base/assert.h"
+
+namespace chimera {
+namespace {
+
+// As the manager has them.
+constexpr Nanoseconds kPatience = seconds(10), kLeastLead = milliseconds(1), kBeyondLongestJob = microseconds(200);
+
+Nanoseconds later(Nanoseconds a, Nanoseconds b) noexcept { return a == kNever ? b : b == kNever ? a : std::max(a, b); }
+
+}  // namespace
+
+VirtualSwitches::VirtualSwitches(VirtualPeers& peers, std::size_t n) : peers_(peers) {
+  const ApplicationSpec& spec = peers.spec();
+  for (std::uint32_t r = 0; r < spec.rtpus.size(); ++r) members_.emplace_back(*this, r);
+  if (n == 0) return;
+  CHIMERA_ASSERT(spec.tasks.size() <= kMaxSwitchedTasks && spec.rtpus.size() <= kMaxContexts);
+  planner_.prepare(spec, memory_);
+  receipts_.prepare(spec, n, memory_);
+  standing_ = memory_.take<TaskStanding>(spec.tasks.size());
+}
+
+std::uint16_t VirtualSwitches::living() const noexcept {
+  std::uint32_t living = 0;
+  for (std::uint32_t r = 0; r < members_.size(); ++r)
+    if (peers_.tasks(RtpuId(r)) != nullptr && !peers_.is_dead(RtpuId(r))) living |= 1u << r;
+  return static_cast<std::uint16_t>(living);
+}
+
+void VirtualSwitches::ring() noexcept {
+  for (std::uint32_t r = 0; r < members_.size(); ++r) peers_.ring(RtpuId(r));
+}
+
+// From the proposal to the change: the longest job so far may be under way somewhere.
+Nanoseconds VirtualSwitches::lead() const noexcept {
+  Nanoseconds longest;
+  for (std::uint32_t r = 0; r < members_.size(); ++r) {
+    const TaskSet* const tasks = peers_.tasks(RtpuId(r));
+    if (tasks == nullptr) continue;
+    for (const Task& task : tasks->tasks())
+      if (tasks->is_mine(task.id) && task.state == State::kOn)
+        longest = std::max(longest, task.profile.execution[static_cast<int>(Method::kCycle)].max);
+  }
+  return std::max(kLeastLead, longest + kBeyondLongestJob);
+}
+
+void VirtualSwitches::ask(std::uint32_t set, Nanoseconds now) noexcept {
+  look(now);
+  SwitchOrder order;
+  for (std::size_t t = 0; t < standing_.size(); ++t) {
+    standing_[t] = {peers_.state(TaskId(t)), false};
+    if (standing_[t].state == State::kOn) order.on.add(TaskId(t));
+  }
+  PlanAnswer answer{NoSwitch::kUnderWay, {}};
+  if (!is_under_way()) answer = planner_.plan(set, standing_, plan_);
+  SwitchReceipt& receipt = receipts_.add();
+  receipt.asked = now;
+  receipt.after = set;
+  receipt.before = planner_.set_in_force(standing_);
+  if (answer.why != NoSwitch::kNothingToDo) receipt.number = ++n_asked_;
+  if (!answer) {
+    receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
+    receipt.why = answer.why;
+    receipt.task = answer.task;
+    receipt.tasks = {};
+    receipt.variables = {};
+    return;
+  }
+  present_ = &receipt;
+  n_tasks_ = n_variables_ = 0;
+  order.number = next_plan(agreement().plan().number);
+  order.members = living();
+  order.after = set;
+  order.until = now + kPatience;
+  order.lead = lead();
+  agreement().announce(order);
+  ring();
+}
+
+void VirtualSwitches::Member::tell_adopted(std::uint16_t number) noexcept {
+  progress_.adopted = number;
+  all_.peers_.show_change(RtpuId(me_));
+}
+
+void VirtualSwitches::Member::tell_over(const SwitchReceipt& receipt) noexcept {
+  all_.add_part(receipt, RtpuId(me_));
+  const PlanWord plan = all_.agreement().plan();
+  progress_.adopted = plan.number;
+  progress_.over = plan.number;
+  all_.ring();
+}
+
+void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept {
+  if (!is_under_way()) return;
+  const auto is_its = [&](TaskId task) { return peers_.spec().tasks[task.index].rtpu == rtpu; };
+  for (const TaskPart& task : part.tasks)
+    if (is_its(task.task)) present_->tasks[n_tasks_++] = task;
+  for (const VariablePart& variable : part.variables)
+    if (is_its(variable.handover.to.task)) present_->variables[n_variables_++] = variable;
+  present_->armed = later(present_->armed, part.armed);
+  if (part.end == SwitchEnd::kDone) present_->at = part.at;
+  if (part.why == NoSwitch::kNone || present_->why != NoSwitch::kNone) return;
+  present_->why = part.why;
+  present_->task = part.task;
+  present_->variable = part.variable;
+  present_->said = part.said;
+}
+
+void VirtualSwitches::look(Nanoseconds now) noexcept {
+  const PlanWord plan = agreement().plan();
+  if (!is_under_way() || plan.is_open()) return;
+  for (std::uint32_t r = 0; r < members_.size(); ++r)
+    if (((living() >> r) & 1u) != 0 && !members_[r].is_over(plan.number)) return;
+  const bool is_committed = plan.phase == SwitchPhase::kCommitted;
+  present_->end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
+  if (is_committed) present_->at = agreement().at(plan);
+  if (is_committed) present_->why = NoSwitch::kNone;
+  else if (present_->why == NoSwitch::kNone) present_->why = NoSwitch::kMemberDied;
+  present_->ended = now;
+  present_->tasks = present_->tasks.first(n_tasks_);
+  present_->variables = present_->variables.first(n_variables_);
+  std::stable_sort(present_->tasks.begin(), present_->tasks.end(),
+                   [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; });
+  present_ = nullptr;
+}
+
+}  // namespace chimera

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// A switch over several rtpus in virtual time: no cycle is lost, who stays is not touched.
+#include "chimera/runtime/virtual/virtual_switches.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "chimera/runtime/hosted/heap_task_set.h"
+#include "chimera/runtime/testing/switch_scene.h"
+#include "chimera/runtime/virtual/virtual_rtpus.h"
+
+namespace chimera {
+namespace {
+
+using namespace testing::switch_scene;
+
+ScriptAct act_at(Nanoseconds at, ScriptAct::Kind kind, std::uint32_t set = 0) {
+  ScriptAct act;
+  act.at = at;
+  act.kind = kind;
+  act.set = set;
+  return act;
+}
+
+struct VirtualSwitchesTest : ::testing::TestWithParam<bool> {
+  /// A run of so long with these acts; its receipts.
+  std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts = {}) {
+    run.reset();
+    sets.clear();
+    acts_ = std::move(acts);
+    app = application(limit, false);
+    peers = *VirtualPeers::create(app->spec);
+    for (std::uint32_t r = 0; r < 2; ++r) {
+      ContextPlace place;
+      place.rtpu = RtpuId(r);
+      place.others = peers.get();
+      sets.push_back(*HeapTaskSet::create(app->spec, app->components, place));
+      peers->join(RtpuId(r), *sets.back());
+    }
+    RunOptions options;
+    options.script = Script(acts_);
+    VirtualOptions how;
+    how.preemptive = GetParam();
+    run = std::make_unique<VirtualRtpus>(*peers, options, how);
+    EXPECT_TRUE(run->start());
+    EXPECT_EQ(run->run(duration), RunEnd::kTime);
+    return run->receipts().all();
+  }
+  bool are_on(const std::vector<TaskId>& set) const {
+    for (std::uint32_t t = 0; t <= kThree.index; ++t)
+      if ((peers->state(TaskId(t)) == State::kOn) != (std::ranges::find(set, TaskId(t)) != set.end())) return false;
+    return true;
+  }
+  std::uint64_t lost() const {
+    std::uint64_t n = 0;
+    for (const auto& set : sets)
+      for (const Task& task : set->tasks()) n += task.profile.dropped + task.profile.missed;
+    return n;
+  }
+  void SetUp() override { scene = {}; }
+  void TearDown() override { run.reset(); }
+
+  double limit = 0;
+  std::vector<ScriptAct> acts_;
+  std::unique_ptr<TestApplication> app;
+  std::unique_ptr<VirtualPeers> peers;
+  std::vector<std::unique_ptr<HeapTaskSet>> sets;
+  std::unique_ptr<VirtualRtpus> run;
+};
+
+INSTANTIATE_TEST_SUITE_P(All, VirtualSwitchesTest, ::testing::Bool(),
+                         [](const auto& one) { return one.param ? "Preemptive" : "Executive"; });
+
+TEST_P(VirtualSwitchesTest, TwoRtpusChangeAtOneInstant) {
+  const auto receipts = go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kObserved)});
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[0].before, kDirect);
+  EXPECT_EQ(receipts[0].asked, microseconds(5600));
+  EXPECT_EQ(receipts[0].at, receipts[0].armed + milliseconds(1));
+  EXPECT_EQ(receipts[0].tasks.size(), 6u);
+  EXPECT_EQ(receipts[0].variables.size(), 2u);
+  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off one"}));
+  EXPECT_TRUE(are_on(kSets[kObserved]));
+  EXPECT_EQ(scene.illegal, 0);
+  EXPECT_EQ(lost(), 0u);
+}
+
+TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfThousandsOfSwitches) {
+  std::vector<ScriptAct> acts;
+  std::mt19937 random(3);
+  Nanoseconds at = milliseconds(10);
+  std::uint32_t present = kDirect;
+  for (int i = 0; i < 5000; ++i) {
+    present = (present + 1 + random() % 2) % 3;
+    acts.push_back(act_at(at, ScriptAct::Kind::kSwitch, present));
+    at += microseconds(5000) + Nanoseconds{static_cast<std::int64_t>(random() % 2000000)};
+  }
+  const Nanoseconds end = at + milliseconds(20);
+  go(end);
+  const Log plant = scene.plant, beacon = scene.beacon, u = scene.u, reader = scene.reader;
+  scene = {};
+  const auto receipts = go(end, acts);
+  ASSERT_EQ(receipts.size(), acts.size());
+  std::uint32_t n = 0;
+  for (const SwitchReceipt& receipt : receipts) {
+    ASSERT_EQ(receipt.number, ++n);
+    ASSERT_EQ(receipt.end, SwitchEnd::kDone) << n << " for " << static_cast<int>(receipt.why);
+    for (const TaskPart& part : receipt.tasks) ASSERT_EQ(part.lost, 0u) << n;
+  }
+  EXPECT_TRUE(are_on(kSets[present]));
+  EXPECT_EQ(lost(), 0u);
+  EXPECT_EQ(scene.illegal, 0);
+  EXPECT_TRUE(plant == scene.plant);
+  EXPECT_TRUE(beacon == scene.beacon);
+  EXPECT_TRUE(u == scene.u);
+  EXPECT_TRUE(reader == scene.reader);
+}
+
+TEST_P(VirtualSwitchesTest, WhatFailsOnOneRtpuIsUndoneOnTheOther) {
+  scene.on_of_two_fails = true;
+  const auto receipts = go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kObserved)});
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kOnFailed);
+  EXPECT_EQ(receipts[0].task, kTwo);
+  EXPECT_EQ(receipts[0].said.view(), "no current");
+  EXPECT_TRUE(are_on(kSets[kDirect]));
+  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off observer"}));
+}
+
+TEST_P(VirtualSwitchesTest, ADeathBeforeTheChangeAborts) {
+  ScriptAct death = act_at(microseconds(5600), ScriptAct::Kind::kDie);
+  death.rtpu = RtpuId(1u);
+  const auto receipts =
+      go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kBeside), death});
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kMemberDied);
+  EXPECT_EQ(peers->state(kThree), State::kOff);
+}
+
+TEST_P(VirtualSwitchesTest, OneAtATime) {
+  const auto receipts = go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kObserved),
+                                              act_at(microseconds(5700), ScriptAct::Kind::kSwitch, kBeside),
+                                              act_at(milliseconds(20), ScriptAct::Kind::kSwitch, kObserved)});
+  ASSERT_EQ(receipts.size(), 3u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[1].why, NoSwitch::kUnderWay);
+  EXPECT_EQ(receipts[2].end, SwitchEnd::kNothingToDo);
+}
+
+}  // namespace
+}  // namespace chimera
