@@ -55,6 +55,14 @@ std::vector<ComponentCase> controls() {
   const auto forces = [](ArmRig& rig) { rig.set("fd", 500.0); };
   return {{"control", "PI with limits", [](ArmRig& rig) { rig.set("vr", 27.0), rig.set("vz", 26.9); },
            repeated([pi = library::Pi()](double x) mutable { return pi.step(2500, 600, x, 1e-3, -4000, 2280); }, 0.1)},
+          {"control_pm", "PI with limits, two maxima",
+           [](ArmRig& rig) { rig.set("vr", 27.0), rig.set("vz", 26.9); },
+           repeated(
+               [pi = library::Pi()](double x) mutable {
+                 const double force = pi.step(2500, 600, x, 1e-3, -4000, 2280);
+                 return std::max(0.0, force) - std::max(0.0, -force);
+               },
+               0.1)},
           {"split_pm", "two maxima", forces,
            repeated([](double x) { return std::max(0.0, x) - std::max(0.0, -x); }, 500)},
           {"split_pm_override", "two maxima",

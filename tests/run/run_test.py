@@ -213,7 +213,7 @@ class Run(unittest.TestCase):
         self.assertRegex(said, r"\nswitch 1 at 0\.\d+ s from 'gentle' to 'quick' after \d+\.\d+ ms: 1 task arrives, "
                                r"1 leaves, \d+ cycles? lost; y moves by 1 m, limit 2 m\n")
         self.assertRegex(said, r"\nslow  OFF .*\nfast  ON ")
-        code, said = run(text, "--for", "2 s", "--at", "1 s: switch quick", "--priority", "0", "--expect", "y >= 3 m")
+        code, said = run(text, "--for", "2 s", "--at", "1 s: switch quick", "--expect", "y >= 3 m")
         self.assertEqual(code, 0, said)
         self.assertRegex(said, r"\nswitch 1 at \d+\.\d+ s from 'gentle' to 'quick' after \d+\.\d+ ms: 1 task arrives, "
                                r"1 leaves, \d+ cycles? lost; y moves by 1 m, limit 2 m\n")
