@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Row 19: one cycle of each component of the cruise control, and of those that schedules and tests are made of, beside
 // the same law written out.
-// Components: accel brake busy car ccui control dashboard electric_car engine faulty motor position split_pm
-// Components: split_pm_override wheels on_event ringer
+// Components: accel brake busy car ccui control control_pm dashboard electric_car engine faulty motor position
+// Components: split_pm split_pm_override wheels on_event ringer
 #include <algorithm>
 #include <cmath>
 
