@@ -325,7 +325,8 @@ TEST_P(Switches, AReleaseBeforeTheChangeIsMadeBeforeTheChange) {
   deadline_of_one_ = microseconds(900);
   const auto receipts = go(milliseconds(20), {to(kBare, microseconds(6200))});
   ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
-  EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, 7u);
+  // Preempting, beacon is late and goes on: the release at 6 ms waits for it until that at 7 ms takes its place.
+  EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, GetParam() == Kind::kPreemptive ? 6u : 7u);
   EXPECT_EQ(state(kOne), chimera::State::kOff);
 }
 

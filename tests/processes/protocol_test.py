@@ -134,7 +134,8 @@ GOOD = {"hello": {}, "status": {}, "describe": {}, "get": {"variables": ["count"
         "unsubscribe": {"subscription": 1}, "check": {"text": "subsystem: a", "file": "a.yaml"},
         "schedule": {"text": "subsystem: a", "file": "a.yaml"}, "library": {},
         "signal": {"signal": "on", "tasks": ["steady"]}, "ring": {"tasks": ["steady"]},
-        "set": {"values": {"level": 2}}, "flag": {"up": False}, "save": {}, "end": {"code": 0}}
+        "set": {"values": {"level": 2}}, "flag": {"up": False},
+        "switch": {"configuration": "all", "wait_ms": 1000}, "save": {}, "end": {"code": 0}}
 VALUES = [None, True, "", "nothing", [], ["count", 1], {}, -1, 0, 1, 1.5, 19, 20, 255, 256, 1000, 1001, 60000, 60001,
           2 ** 63 - 1]
 

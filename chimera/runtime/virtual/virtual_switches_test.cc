@@ -65,7 +65,7 @@ struct VirtualSwitchesTest : ::testing::TestWithParam<bool> {
 
   double limit = 0;
   std::vector<ScriptAct> acts_;
-  std::unique_ptr<TestApplication> app;
+  std::unique_ptr<testing::TestApplication> app;
   std::unique_ptr<VirtualPeers> peers;
   std::vector<std::unique_ptr<HeapTaskSet>> sets;
   std::unique_ptr<VirtualRtpus> run;
@@ -89,13 +89,13 @@ TEST_P(VirtualSwitchesTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_EQ(lost(), 0u);
 }
 
-TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfThousandsOfSwitches) {
+TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfTenThousandSwitches) {
   std::vector<ScriptAct> acts;
   std::mt19937 random(3);
   Nanoseconds at = milliseconds(10);
   std::uint32_t present = kDirect;
-  for (int i = 0; i < 5000; ++i) {
-    present = (present + 1 + random() % 2) % 3;
+  for (int i = 0; i < 10'000; ++i) {
+    present = static_cast<std::uint32_t>((present + 1 + random() % 2) % 3);
     acts.push_back(act_at(at, ScriptAct::Kind::kSwitch, present));
     at += microseconds(5000) + Nanoseconds{static_cast<std::int64_t>(random() % 2000000)};
   }
