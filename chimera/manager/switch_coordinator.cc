@@ -112,13 +112,15 @@ void SwitchCoordinator::ask(std::uint32_t set, std::string asked_by, Nanoseconds
   refused.asked_by = asked_by;
   refused.receipt.asked = now;
   refused.receipt.after = set;
+  look(now);
   const PlanWord open = agreement().plan();
   const bool is_free = !present_ && !open.is_open() && (open.number == 0 || is_over(open.number, UINT16_MAX));
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (is_free) answer = judge(set);
   if (!answer) {
     const bool is_in_force = answer.why == NoSwitch::kNothingToDo;
-    refused.under_way = answer.why == NoSwitch::kUnderWay ? under_way() : "";
+    if (answer.why == NoSwitch::kUnderWay)
+      refused.under_way = present_ ? under_way() : "a switch that a manager before this one has ordered";
     refused.receipt.end = is_in_force ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
     refused.receipt.why = answer.why;
     refused.receipt.task = answer.task;
@@ -137,18 +139,27 @@ bool SwitchCoordinator::cancel() {
   return true;
 }
 
+// An order that nobody wrote is due at once.
+Nanoseconds SwitchCoordinator::orphan_due() const noexcept {
+  const PlanWord plan = agreement().plan();
+  if (present_ || !plan.is_open()) return kNever;
+  const auto order = agreement().order(plan, world_.spec().sets.size(), world_.spec().tasks.size());
+  return order ? order->until + kGrace : Nanoseconds{};
+}
+
 Nanoseconds SwitchCoordinator::next_due() const noexcept {
-  return present_ ? present_->order.until + kGrace : kNever;
+  return present_ ? present_->order.until + kGrace : orphan_due();
 }
 
 void SwitchCoordinator::look(Nanoseconds now) {
+  if (orphan_due() <= now && agreement().abort(agreement().plan().number)) world_.announce();
   if (!present_) return;
   const SwitchOrder& order = present_->order;
   if (now >= order.until + kGrace && agreement().abort(order.number)) world_.announce();
   if (agreement().plan().is_open() || !is_over(order.number, order.members)) return;
   SwitchOutcome outcome = collect(*present_, now);
   const bool was_late = outcome.receipt.why == NoSwitch::kLate && now < order.until;
-  if (was_late && present_->tries < kMostTries && judge(order.after)) {
+  if (was_late && !present_->is_cancelled && present_->tries < kMostTries && judge(order.after)) {
     ++present_->tries;
     present_->order = make_order(order.after, order.until - now, now);
     present_->order.lead = present_->order.lead * present_->tries;
@@ -180,7 +191,8 @@ SwitchOutcome SwitchCoordinator::collect(const Present& over, Nanoseconds now) {
     const SwitchPart& part = world_.peers[RtpuId(r)].block().switch_part();
     if (part.number != over.order.number) continue;
     receipt.armed = later(receipt.armed, part.armed);
-    if (part.why != NoSwitch::kNone && receipt.why == NoSwitch::kNone && !is_committed) {
+    const bool says_more = receipt.why == NoSwitch::kNone || receipt.why == NoSwitch::kLate;
+    if (part.why != NoSwitch::kNone && says_more && !is_committed) {
       receipt.why = part.why;
       if (part.task.index < spec.tasks.size()) receipt.task = part.task;
       if (part.variable.index < spec.variables.size()) receipt.variable = part.variable;
@@ -191,8 +203,8 @@ SwitchOutcome SwitchCoordinator::collect(const Present& over, Nanoseconds now) {
     for (std::uint32_t i = 0; i < std::min(part.n_variables, SwitchPart::kVariablesKept); ++i)
       if (is_in_range(part.variables[i], spec, r)) outcome.variables.push_back(part.variables[i]);
   }
-  if (!is_committed && receipt.why == NoSwitch::kNone)
-    receipt.why = over.is_cancelled ? NoSwitch::kCancelled : NoSwitch::kMemberDied;
+  if (over.is_cancelled && !is_committed) receipt.why = NoSwitch::kCancelled;
+  if (!is_committed && receipt.why == NoSwitch::kNone) receipt.why = NoSwitch::kMemberDied;
   std::ranges::stable_sort(outcome.tasks, {}, &TaskPart::move);
   receipt.tasks = outcome.tasks;
   receipt.variables = outcome.variables;

@@ -59,7 +59,9 @@ class SwitchCoordinator {
     Switched switched;
   };
 
-  SwitchAgreement agreement() noexcept { return {world_.page.switching, world_.keeper.origin}; }
+  SwitchAgreement agreement() const noexcept { return {world_.page.switching, world_.keeper.origin}; }
+  /// When the plan that is open and not of this manager is past its deadline; kNever: there is none.
+  Nanoseconds orphan_due() const noexcept;
   bool is_over(std::uint16_t number, std::uint16_t members) const noexcept;
   PlanAnswer judge(std::uint32_t set);
   SwitchOrder make_order(std::uint32_t set, Nanoseconds wait, Nanoseconds now);

@@ -152,6 +152,43 @@ TEST_F(SwitchCoordinatorTest, OneThatWasOnlyLateIsTriedThreeTimes) {
   EXPECT_EQ(agreement().plan().number, 3);
 }
 
+TEST_F(SwitchCoordinatorTest, AFailureCountsMoreThanLateness) {
+  ask(kRest);
+  ASSERT_TRUE(agreement().abort(1));
+  over(0, NoSwitch::kLate);
+  over(1, NoSwitch::kOnFailed);
+  ASSERT_TRUE(until_answered());
+  EXPECT_EQ(got->receipt.why, NoSwitch::kOnFailed);
+}
+
+TEST_F(SwitchCoordinatorTest, WhatIsCancelledIsNotTriedAgain) {
+  ask(kRest);
+  EXPECT_TRUE(coordinator().cancel());
+  over(0, NoSwitch::kLate);
+  over(1);
+  ASSERT_TRUE(until_answered());
+  EXPECT_EQ(got->receipt.why, NoSwitch::kCancelled);
+  EXPECT_EQ(agreement().plan().number, 1);
+}
+
+// Its manager is dead, and so may be the units: nobody else would close it.
+TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
+  coordinator().ask(kRest, "operate", milliseconds(1), now(), [](const SwitchOutcome&) {});
+  fake.kill_manager();
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  ask(kRest);
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->receipt.why, NoSwitch::kUnderWay);
+  EXPECT_EQ(got->under_way, "a switch that a manager before this one has ordered");
+  ASSERT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
+  over(0);
+  over(1);
+  ask(kRest);
+  EXPECT_FALSE(got);
+  EXPECT_EQ(agreement().plan().number, 2);
+}
+
 // The memory of a unit may hold anything.
 TEST_F(SwitchCoordinatorTest, APartThatDoesNotFitTheApplicationIsLeftOut) {
   ask(kRest);
