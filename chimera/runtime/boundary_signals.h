@@ -43,6 +43,8 @@ class BoundarySignals {
   Nanoseconds next_act() const noexcept { return next_act_; }
   /// The next instant at which that is so although no job ends before. Context: cycle; wait-free.
   Nanoseconds next_wake() const noexcept { return next_wake_; }
+  /// A switch has come further: next_act() and next_wake() anew.
+  void look_ahead() noexcept;
   /// Carries out the acts of the script that are due, goes on with a switch that is under way, and begins the one that
   /// a task asked for last.
   void act(Nanoseconds now) noexcept;
@@ -63,7 +65,6 @@ class BoundarySignals {
 
  private:
   bool take_request(Nanoseconds now) noexcept;
-  void look_ahead() noexcept;
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
   void ring(Task& task, Nanoseconds now) noexcept;
   void record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;

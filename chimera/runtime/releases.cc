@@ -82,7 +82,11 @@ void Releases::begin(Nanoseconds origin) noexcept {
 
 void Releases::take_edge(Nanoseconds now) noexcept {
   signals_.act(now);
-  if (guest_ != nullptr) guest_->take(signals_, now);
+  if (guest_ != nullptr) {
+    guest_->take(signals_, now);
+    switching_.step(now);  // what rang after the step in act() was heard by the guest: nobody rings again for it
+    signals_.look_ahead();
+  }
   signals_.carry_out_pending(now);
   members_.follow_all(now);
   settlement_.publish();
