@@ -172,11 +172,6 @@ void ManagerBackend::switch_to(const Request& request) {
         "no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
   }
   if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
-  for (const RtpuSpec& rtpu : spec.rtpus)
-    if (rtpu.preemptive)
-      return request.reply(RpcResponse::refused("other", "rtpu " + std::string(rtpu.name) +
-                                                " is preemptive: a switch while it runs needs `executor: executive`",
-                                                std::string(rtpu.name)));
   if (!world().logic.is_settled())
     return request.reply(RpcResponse::refused("under-way", "tasks are being brought up", "",
                                               "`chimera status` shows which; ask again when they are ON"));

@@ -12,6 +12,7 @@ namespace {
 constexpr Nanoseconds kLeastLead = milliseconds(1), kBeyondLongestJob = microseconds(200);
 constexpr Nanoseconds kGrace = milliseconds(500);  // within which the units abort by themselves
 constexpr int kMostTries = 3;                      // of a switch that was only too late
+constexpr std::int64_t kMoreTime = 8;              // each try leaves so many times as long until the change
 
 bool is_in_range(const TaskPart& part, const ApplicationSpec& spec, std::uint32_t rtpu) {
   return part.task.index < spec.tasks.size() && spec.tasks[part.task.index].rtpu.index == rtpu &&
@@ -162,7 +163,7 @@ void SwitchCoordinator::look(Nanoseconds now) {
   if (was_late && !present_->is_cancelled && present_->tries < kMostTries && judge(order.after)) {
     ++present_->tries;
     present_->order = make_order(order.after, order.until - now, now);
-    present_->order.lead = present_->order.lead * present_->tries;
+    for (int i = 1; i < present_->tries; ++i) present_->order.lead = present_->order.lead * kMoreTime;
     return announce(present_->order);
   }
   const Switched switched = std::move(present_->switched);

@@ -73,7 +73,7 @@ RunOptions CyclingThread::options() {
   options.guest = &place_.edge;
   options.stop = &place_.edge.unit_end().is_over();
   options.writer = &place_.writer;
-  if (!self().preemptive) options.switch_peers = &place_.switching;
+  options.switch_peers = &place_.switching;
   return options;
 }
 

@@ -6,20 +6,17 @@
 
 namespace chimera {
 
-void Changeover::hold(const SwitchPlan& plan, const TaskBits& before) noexcept {
+void Changeover::hold(const SwitchPlan& plan, const TaskBits& before, Nanoseconds at) noexcept {
   bits_ = before;
   set_.sources().begin_handover(plan.handovers);
   set_.judge_as(&bits_);
-}
-
-bool Changeover::has_old_job(TaskId id, Nanoseconds at) const noexcept {
-  return set_.tasks()[id.index].is_busy || queue_.has_waiting(id, at);
+  threads_.hold_releases(at);
 }
 
 void Changeover::make(const SwitchPlan& plan, const TaskBits& after, Nanoseconds at) noexcept {
   const bool was_illegal = set_.flag().is_up();
   for (const Task& task : set_.tasks())
-    has_old_job_[task.id.index] = set_.is_mine(task.id) && has_old_job(task.id, at);
+    has_old_job_[task.id.index] = set_.is_mine(task.id) && threads_.has_job_before(task.id, at);
   for (const TaskId id : plan.arriving) {
     Task& arriving = set_.tasks()[id.index];
     if (!set_.is_mine(id) || !arriving.owes_off) continue;  // a signal after the commit had it turned OFF
@@ -37,6 +34,10 @@ void Changeover::make(const SwitchPlan& plan, const TaskBits& after, Nanoseconds
     members_.follow(set_.tasks()[id.index], at);
     set_.sent().deliver(set_.tasks()[id.index]);
   }
+  for (const Task& task : set_.tasks()) {
+    if (has_old_job_[task.id.index]) threads_.await_job(task.id);
+    else threads_.let_release(task.id);
+  }
 }
 
 void Changeover::leave(Task& leaving, Nanoseconds at) noexcept {
@@ -50,12 +51,14 @@ bool Changeover::follow(const SwitchPlan& plan, Nanoseconds at) noexcept {
   for (const Task& task : set_.tasks()) {
     bool& waits = has_old_job_[task.id.index];
     if (!waits) continue;
-    waits = has_old_job(task.id, at);
+    waits = threads_.has_job_before(task.id, at);
     are_all = are_all && !waits;
+    if (waits) threads_.await_job(task.id);
     if (waits) continue;
     set_.sources().old_job_ended(task.id);
     const bool leaves = std::find(plan.leaving.begin(), plan.leaving.end(), task.id) != plan.leaving.end();
     if (leaves) leave(set_.tasks()[task.id.index], at);
+    threads_.let_release(task.id);
     has_left = has_left || leaves;
   }
   if (has_left) set_.on_set_changed();
@@ -65,6 +68,7 @@ bool Changeover::follow(const SwitchPlan& plan, Nanoseconds at) noexcept {
 void Changeover::release() noexcept {
   set_.sources().end_handover();
   set_.judge_as(nullptr);
+  for (const Task& task : set_.tasks()) threads_.let_release(task.id);
 }
 
 }  // namespace chimera

@@ -4,10 +4,10 @@
 #pragma once
 
 #include "chimera/runtime/context_tap.h"
+#include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/members.h"
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/task_set.h"
-#include "chimera/schedule/ready_queue.h"
 
 namespace chimera {
 
@@ -15,14 +15,15 @@ namespace chimera {
 class Changeover {
  public:
   /// All given outlive this.
-  Changeover(TaskSet& set, ReadyQueue& queue, Members& members, ContextTap& tap) noexcept
-      : set_(set), queue_(queue), members_(members), tap_(tap) {}
+  Changeover(TaskSet& set, JobThreads& threads, Members& members, ContextTap& tap) noexcept
+      : set_(set), threads_(threads), members_(members), tap_(tap) {}
   /// Context: setup.
   void prepare() { has_old_job_ = set_.setup_memory().take<bool>(set_.tasks().size()); }
 
-  /// From now on what other contexts change of the tasks of the plan changes nothing here: `before` are ON.
-  void hold(const SwitchPlan& plan, const TaskBits& before) noexcept;
-  /// The change, at `at`. Requires: hold(); what is released before `at` is in the ready queue, nothing later is.
+  /// From now on what other contexts change of the tasks of the plan changes nothing here: `before` are ON. No task of
+  /// this context takes a release at `at` or later before its change.
+  void hold(const SwitchPlan& plan, const TaskBits& before, Nanoseconds at) noexcept;
+  /// The change, at `at`. Requires: hold(); what is released before `at` has been released, nothing later has.
   void make(const SwitchPlan& plan, const TaskBits& after, Nanoseconds at) noexcept;
   /// Lets tasks change whose jobs released before `at` have ended since. True: all have changed.
   bool follow(const SwitchPlan& plan, Nanoseconds at) noexcept;
@@ -30,11 +31,10 @@ class Changeover {
   void release() noexcept;
 
  private:
-  bool has_old_job(TaskId task, Nanoseconds at) const noexcept;
   void leave(Task& task, Nanoseconds at) noexcept;
 
   TaskSet& set_;
-  ReadyQueue& queue_;
+  JobThreads& threads_;
   Members& members_;
   ContextTap& tap_;
   TaskBits bits_;                // what the set is judged as

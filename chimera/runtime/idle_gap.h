@@ -1,31 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a method other than a cycle may run beside the cycles of one processor without delaying any: while nothing is
-// released, in a gap that is as long as the method is known to take.
+// released, in a gap that is as long as the method is known to take. Where jobs preempt each other no gap is needed.
 #pragma once
 
 #include <algorithm>
 #include <span>
 
+#include "chimera/runtime/job_threads.h"
 #include "chimera/schedule/ready_queue.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
 
-/// For executors whose jobs run in the thread that takes the edges. Context: cycle boundary; wait-free.
+/// Context: cycle boundary; wait-free.
 class IdleGap {
  public:
   /// A method that was never called is taken to need the budget of its task; without one, so long.
   static constexpr Nanoseconds kUnknownMethod = microseconds(100);
 
   /// All given outlive this.
-  IdleGap(std::span<const Task> tasks, const ReadyQueue& queue) noexcept : tasks_(tasks), queue_(queue) {}
+  IdleGap(std::span<const Task> tasks, const ReadyQueue& queue, const JobThreads& threads) noexcept
+      : tasks_(tasks), queue_(queue), threads_(threads) {}
 
   /// No job is under way, and none that was released waits. O(tasks).
   bool is_there() const noexcept {
+    if (threads_.run_beside_methods()) return true;
     return queue_.is_empty() && std::none_of(tasks_.begin(), tasks_.end(), [](const Task& t) { return t.is_busy; });
   }
   /// It is, and the next release is so far away as the method took at most, and a fifth of that. O(tasks).
   bool is_for(const Task& task, Method method, Nanoseconds now) const noexcept {
+    if (threads_.run_beside_methods()) return true;
     const Spread& measured = task.profile.execution[static_cast<int>(method)];
     const Nanoseconds guess = task.spec->budget > Nanoseconds{} ? task.spec->budget : kUnknownMethod;
     const Nanoseconds need = measured.count == 0 ? guess : measured.max + Nanoseconds{measured.max.count / 5};
@@ -35,6 +39,7 @@ class IdleGap {
  private:
   std::span<const Task> tasks_;
   const ReadyQueue& queue_;
+  const JobThreads& threads_;
 };
 
 }  // namespace chimera

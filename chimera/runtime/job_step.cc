@@ -138,7 +138,7 @@ State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end
     case Answer::kNoEvent:
       return State::kOn;
     case Answer::kAborted:
-      ++task.profile.aborted;
+      add_to(task.profile.aborted, 1);
       return State::kOn;
     case Answer::kOk:
       if (!may_publish) {

@@ -7,6 +7,7 @@
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
 #include "chimera/runtime/job_step.h"
+#include "chimera/schedule/ready_queue.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -26,23 +27,50 @@ class JobThreads {
   /// and what the edge may touch may change meanwhile. Context: cycle boundary; as long as the method takes.
   virtual Answer call(Task& task, Method method, Nanoseconds now) noexcept { return call_method(task, method, now); }
 
+  // Of a switch (switching.h). Context of all: cycle boundary; wait-free.
+
+  /// call() delays no job that is more urgent than the task: no idle gap has to be waited for.
+  virtual bool run_beside_methods() const noexcept = 0;
+  /// No job has taken a later release.
+  virtual Nanoseconds latest_release() const noexcept = 0;
+  /// A job that was released before `at` is under way, or waits.
+  virtual bool has_job_before(TaskId task, Nanoseconds at) const noexcept = 0;
+  /// An edge follows the end of the job that is under way, or of the next one; the task has no other job before it.
+  virtual void await_job(TaskId task) noexcept = 0;
+  /// Releases at `from` and later are not taken, of no task, until let_release() says so for the task.
+  virtual void hold_releases(Nanoseconds from) noexcept = 0;
+  /// The task is released as its state says, also by what was held. No effect on tasks of other contexts.
+  virtual void let_release(TaskId task) noexcept = 0;
+  /// When an edge that waits for jobs may find something new although nobody asks for one.
+  virtual Nanoseconds next_look(Nanoseconds now) const noexcept = 0;
+
  protected:
   ~JobThreads() = default;
 };
 
 /// Jobs run in the thread that takes the edges: between two jobs none is under way, but for one that virtual time has
-/// begun and not ended.
-class JobsInLoop final : public JobThreads {
+/// begun and not ended. That thread takes no release while it is at an edge.
+class JobsInLoop : public JobThreads {
  public:
-  /// The tasks outlive this. Context: setup.
-  explicit JobsInLoop(std::span<const Task> tasks) noexcept : tasks_(tasks) {}
+  /// Both outlive this; `queue` may be null where nothing is switched. Context: setup.
+  JobsInLoop(std::span<const Task> tasks, const ReadyQueue* queue) noexcept : tasks_(tasks), queue_(queue) {}
 
   bool claim(TaskId task) noexcept override { return !tasks_[task.index].is_busy; }
   Nanoseconds used_by_job(TaskId) noexcept override { return {}; }
   bool is_blocked(TaskId) noexcept override { return false; }
+  bool run_beside_methods() const noexcept override { return false; }
+  Nanoseconds latest_release() const noexcept override { return queue_->latest_release(); }
+  bool has_job_before(TaskId task, Nanoseconds at) const noexcept override {
+    return tasks_[task.index].is_busy || queue_->has_waiting(task, at);
+  }
+  void await_job(TaskId) noexcept override {}
+  void hold_releases(Nanoseconds) noexcept override {}
+  void let_release(TaskId) noexcept override {}
+  Nanoseconds next_look(Nanoseconds) const noexcept override { return queue_->next_release(); }
 
  private:
   std::span<const Task> tasks_;
+  const ReadyQueue* queue_;
 };
 
 }  // namespace chimera

@@ -14,8 +14,9 @@ namespace {
 constexpr TaskId kFirst{0u}, kSecond{1u}, kThird{2u};
 
 /// Jobs that are under way, by task.
-class JobsUnderWay final : public JobThreads {
+class JobsUnderWay final : public JobsInLoop {
  public:
+  JobsUnderWay() : JobsInLoop({}, nullptr) {}
   bool claim(TaskId) noexcept override { return true; }
   Nanoseconds used_by_job(TaskId task) noexcept override {
     const auto found = used.find(task.index);
@@ -182,7 +183,7 @@ TEST_F(MissCauseTest, BlamesAJobWithoutABudgetForItsOwnLateness) {
 }
 
 TEST_F(MissCauseTest, WorksWithoutThreads) {
-  JobsInLoop in_loop(tasks);
+  JobsInLoop in_loop(tasks, nullptr);
   MissCause alone(tasks, in_loop, heap);
   alone.ended(kSecond, milliseconds(5), milliseconds(15));
   alone.missed(kFirst, milliseconds(10));

@@ -100,7 +100,7 @@ void MissPolicy::drop(const DroppedRelease& dropped) noexcept {
 }
 
 void MissPolicy::drop_on_purpose(const DroppedRelease& dropped) noexcept {
-  tasks_[dropped.task.index].profile.dropped += dropped.count;
+  add_to(tasks_[dropped.task.index].profile.dropped, dropped.count);
   records_[dropped.task.index].dropped += dropped.count;
   tap_.record(TapKind::kDrop, dropped.last, dropped.task, dropped.count);
 }

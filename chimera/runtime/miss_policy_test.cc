@@ -24,7 +24,7 @@ struct MissPolicyTest : ::testing::Test {
   Profile& profile() { return bare.first().profile; }
 
   BareTasks bare;
-  JobsInLoop in_loop{bare.tasks};
+  JobsInLoop in_loop{bare.tasks, nullptr};
   MissCause cause{bare.tasks, in_loop, bare.heap};
   MissPolicy misses{bare.tasks, bare.records, bare.context_tap, &cause, bare.clock};
   BodyEnd body;

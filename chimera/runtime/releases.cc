@@ -41,18 +41,17 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
       records_(set.setup_memory().take<JobRecord>(set.tasks().size())),
       tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr, set.setup_memory()),
-      in_loop_(set.tasks()), threads_(options.threads != nullptr ? *options.threads : in_loop_),
+      in_loop_(set.tasks(), &queue_), threads_(options.threads != nullptr ? *options.threads : in_loop_),
       queue_(options.policy, set.spec().tasks, storage_for(records_.size(), set.setup_memory())),
       misses_(set.tasks(), records_, tap_,
               guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_, set.setup_memory()) : nullptr, clock),
       jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock, tap_.is_on() || guest_ != nullptr),
       members_(set.tasks(), records_, queue_, tap_, guest_),
       settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
-      switching_({set, queue_, members_, settlement_, tap_, misses_, clock}),
+      switching_({set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
       signals_(set, options.script, tap_, settlement_, threads_, switching_, guest_) {
   const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
   const bool is_alone = set.others() == nullptr;
-  CHIMERA_ASSERT((n_switches == 0 && options.switch_peers == nullptr) || options.threads == nullptr);
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
   const bool takes_requests = is_alone && options.threads == nullptr && may_request(set.spec());
   switching_.prepare(n_switches + (takes_requests ? kKeptOfRequests : 0), options.switch_peers);

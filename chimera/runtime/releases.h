@@ -107,7 +107,7 @@ class Releases {
   Members& members() noexcept { return members_; }
   BoundarySignals& signals() noexcept { return signals_; }
   Settlement& settlement() noexcept { return settlement_; }
-  /// Switches that the script asks for. Requires: jobs run in the thread that takes the edges.
+  /// Switches of configurations.
   Switching& switching() noexcept { return switching_; }
   /// What happens is recorded here.
   ContextTap& tap() noexcept { return tap_; }

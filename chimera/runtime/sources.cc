@@ -116,6 +116,7 @@ void Sources::follow_others() noexcept {
 }
 
 void Sources::adopt(TaskId consumer) noexcept {
+  if (has_old_job_[consumer.index]) return;
   is_behind_[consumer.index] = false;
   Task& task = tasks_[consumer.index];
   copies_.follow(consumer);
@@ -153,7 +154,7 @@ const chimera_slot* Sources::latest(VariableId variable) noexcept {
   const Source& source = sources_[variable.index];
   const GroupReader reader = copies_.reader_of(source);
   if (!reader.is_bound()) return nullptr;
-  if (source.here.is_bound()) return reader.published();
+  if (source.here.is_bound() && !preemptive_) return reader.published();
   auto* slot = reinterpret_cast<chimera_slot*>(scratch_.data());
   return reader.try_read(slot) ? slot : nullptr;
 }

@@ -46,7 +46,8 @@ class Sources {
   /// From now on nothing is read from the groups of that task (invalid: the operator): their memory may go. What was
   /// read last stays, until follow_others() finds it produced again.
   void let_go(TaskId producer) noexcept;
-  /// The task reads from where its variables come from now. Requires: no job of it is under way. Wait-free.
+  /// The task reads from where its variables come from now; one with an old job (hand_over()) does not yet. Requires:
+  /// no job of it has begun. Wait-free.
   void adopt(TaskId consumer) noexcept;
   /// It does not yet.
   bool is_behind(TaskId consumer) const noexcept { return is_behind_[consumer.index]; }

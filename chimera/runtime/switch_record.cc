@@ -70,25 +70,38 @@ void SwitchRecord::changed(const SwitchPlan& plan, Nanoseconds at) noexcept {
   }
 }
 
+// A task with a job under way may be publishing: it is looked at when the job has ended.
 void SwitchRecord::keep_last_of_leaving() noexcept {
-  for (const VariablePart& part : receipt_->variables)
-    if (part.handover.from.task.is_valid() && set_.is_mine(part.handover.from.task)) steps_.keep_last_of(part.handover);
+  for (const VariablePart& part : receipt_->variables) {
+    const TaskId from = part.handover.from.task;
+    if (from.is_valid() && set_.is_mine(from) && !set_.tasks()[from.index].is_busy) steps_.keep_last_of(part.handover);
+  }
 }
 
-bool SwitchRecord::is_awaited(TaskId id) const noexcept {
+bool SwitchRecord::has_cycled(TaskId id) const noexcept {
   const Task& arriving = set_.tasks()[id.index];
-  return set_.is_mine(id) && !arriving.spec->aperiodic && arriving.state == State::kOn &&
-         arriving.profile.cycles == cycles_[id.index];
+  return !arriving.is_busy && arriving.profile.cycles != cycles_[id.index];
+}
+
+bool SwitchRecord::is_awaited(const TaskPart& part) const noexcept {
+  const Task& task = set_.tasks()[part.task.index];
+  return part.move == TaskMove::kArrives && set_.is_mine(part.task) && !task.spec->aperiodic &&
+         task.state == State::kOn && !has_cycled(part.task);
+}
+
+void SwitchRecord::await_first_cycles(JobThreads& threads) noexcept {
+  for (const TaskPart& part : receipt_->tasks)
+    if (is_awaited(part)) threads.await_job(part.task);
 }
 
 bool SwitchRecord::has_seen_first_cycles(Nanoseconds now) noexcept {
   for (VariablePart& part : receipt_->variables) {
     const TaskId to = part.handover.to.task;
     if (!set_.is_mine(to) || part.step_of_cycle.is_known) continue;
-    if (set_.tasks()[to.index].profile.cycles == cycles_[to.index]) continue;
+    if (!has_cycled(to)) continue;
     part.step_of_cycle = steps_.step_to(part.handover);
   }
-  const auto waits = [this](const TaskPart& part) { return part.move == TaskMove::kArrives && is_awaited(part.task); };
+  const auto waits = [this](const TaskPart& part) { return is_awaited(part); };
   return now >= first_cycles_by_ || std::none_of(receipt_->tasks.begin(), receipt_->tasks.end(), waits);
 }
 
@@ -107,9 +120,10 @@ TaskPart& SwitchRecord::part_of(TaskId id) noexcept {
   return *std::find_if(receipt_->tasks.begin(), receipt_->tasks.end(), is_its);
 }
 
+// Jobs count them also while an edge looks.
 std::uint64_t SwitchRecord::losses(TaskId id) const noexcept {
-  const Profile& profile = set_.tasks()[id.index].profile;
-  return profile.dropped + profile.aborted;
+  Profile& profile = set_.tasks()[id.index].profile;
+  return count_of(profile.dropped) + count_of(profile.aborted);
 }
 
 }  // namespace chimera

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "chimera/runtime/handover_steps.h"
+#include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/switch_receipt.h"
 #include "chimera/runtime/task_set.h"
 
@@ -39,6 +40,8 @@ class SwitchRecord {
   void keep_last_of_leaving() noexcept;
   /// Notes the steps of first cycles. True: there is none left to wait for.
   bool has_seen_first_cycles(Nanoseconds now) noexcept;
+  /// An edge follows each first cycle that has_seen_first_cycles() waits for.
+  void await_first_cycles(JobThreads& threads) noexcept;
   /// No first cycle is waited for beyond this instant.
   Nanoseconds first_cycles_by() const noexcept { return first_cycles_by_; }
   void end(SwitchEnd end, Nanoseconds now) noexcept;
@@ -46,7 +49,8 @@ class SwitchRecord {
  private:
   TaskPart& part_of(TaskId id) noexcept;
   std::uint64_t losses(TaskId id) const noexcept;
-  bool is_awaited(TaskId id) const noexcept;
+  bool has_cycled(TaskId id) const noexcept;
+  bool is_awaited(const TaskPart& part) const noexcept;
 
   TaskSet& set_;
   HandoverSteps steps_;

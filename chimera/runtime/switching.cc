@@ -57,8 +57,8 @@ bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t numbe
 
 Switching::Switching(const Parts& parts) noexcept
     : parts_(parts),
-      gap_(parts.set.tasks(), parts.queue),
-      changeover_(parts.set, parts.queue, parts.members, parts.tap),
+      gap_(parts.set.tasks(), parts.queue, parts.threads),
+      changeover_(parts.set, parts.threads, parts.members, parts.tap),
       record_(parts.set) {}
 
 void Switching::prepare(std::size_t n_switches, SwitchPeers* peers) {
@@ -272,7 +272,9 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
   return static_cast<bool>(report);
 }
 
+// Tasks that have threads take their releases themselves.
 void Switching::release_before(Nanoseconds instant) noexcept {
+  if (parts_.threads.run_beside_methods()) return;
   const auto drop = [this](const DroppedRelease& dropped) { parts_.misses.drop(dropped); };
   parts_.queue.release_due(instant - Nanoseconds{1}, drop);
 }
@@ -280,7 +282,7 @@ void Switching::release_before(Nanoseconds instant) noexcept {
 // What was released before `now` is a job of the time before the change.
 void Switching::propose(Nanoseconds now) noexcept {
   release_before(now);
-  const Nanoseconds unused = parts_.queue.latest_release() + Nanoseconds{1};
+  const Nanoseconds unused = parts_.threads.latest_release() + Nanoseconds{1};
   const Nanoseconds at = agreement().round_up(std::max(now + order_.lead, unused));
   if (at == kNever) return abort(NoSwitch::kLate, {}, {});
   if (agreement().propose(order_.number, at)) peers_->ring();
@@ -290,8 +292,8 @@ void Switching::propose(Nanoseconds now) noexcept {
 // From here on until the change, or the end, the tasks of other contexts count as they were.
 void Switching::agree(Nanoseconds now) noexcept {
   at_ = agreement().at(agreement().plan());
-  if (now > at_ || parts_.queue.latest_release() >= at_) return abort(NoSwitch::kLate, {}, {});
-  changeover_.hold(plan_, order_.on);
+  if (now > at_ || parts_.threads.latest_release() >= at_) return abort(NoSwitch::kLate, {}, {});
+  changeover_.hold(plan_, order_.on, at_);
   is_held_ = true;
   phase_ = Phase::kAgreed;
   if (agreement().agree(order_.number, me_)) peers_->ring();
@@ -314,7 +316,7 @@ void Switching::change(Nanoseconds now) noexcept {
   record_.keep_last_of_leaving();
   if (!changeover_.follow(plan_, at_)) {
     due_ = now;  // with the end of each job
-    wake_ = parts_.queue.next_release();
+    wake_ = parts_.threads.next_look(now);
     return;
   }
   phase_ = Phase::kAfter;
@@ -350,6 +352,7 @@ void Switching::settle(Nanoseconds now) noexcept {
   now = parts_.clock.now();
   if (undoes) return finish(SwitchEnd::kAborted, now);
   if (has_seen) return finish(SwitchEnd::kDone, now);
+  record_.await_first_cycles(parts_.threads);
   due_ = now;
   wake_ = record_.first_cycles_by();
 }
@@ -399,10 +402,11 @@ void Switching::end(Nanoseconds now) noexcept {
   finish(was_committed ? SwitchEnd::kDone : SwitchEnd::kAborted, parts_.clock.now());
 }
 
-// The next step is worth while when jobs have ended, or at the next release where the processor is idle.
+// The next step is worth while when jobs have ended, or at the next release where the processor is idle; where jobs
+// have threads only a value is waited for.
 void Switching::wait(Nanoseconds now) noexcept {
   const Nanoseconds limit = std::max(order_.until, now + Nanoseconds{1});
-  const Nanoseconds next = std::max(parts_.queue.next_release(), now);
+  const Nanoseconds next = std::max(parts_.threads.next_look(now), now);
   wake_ = std::min(next, limit);
   due_ = gap_.is_there() ? wake_ : now;
 }

@@ -14,8 +14,10 @@
 //   after    when all contexts have changed: `off` of each leaving task, against the data flow; the first cycles are
 //            looked at for the receipt
 //
-// `on` and `off` run while the processor is idle (idle_gap.h). Jobs take no part: each step is an act of an edge.
-// docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md, docs/decisions/0049-switch-in-one-context.md.
+// `on` and `off` run while the processor is idle (idle_gap.h), where jobs have threads of their own at the urgency of
+// the task (job_threads.h). Jobs take no part: each step is an act of an edge.
+// docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md, docs/decisions/0049-switch-in-one-context.md,
+// docs/decisions/0055-a-switch-among-threads.md.
 #pragma once
 
 #include <cstdint>
@@ -32,14 +34,15 @@
 
 namespace chimera {
 
-/// For executors whose jobs run in the thread that takes the edges. Context of everything not marked: cycle boundary;
-/// as long as the methods of components take; no allocation but theirs.
+/// Context of everything not marked: cycle boundary; as long as the methods of components take; no allocation but
+/// theirs.
 class Switching {
  public:
   /// What a switch works on; all of it outlives this.
   struct Parts {
     TaskSet& set;
     ReadyQueue& queue;
+    JobThreads& threads;
     Members& members;
     Settlement& settlement;
     ContextTap& tap;

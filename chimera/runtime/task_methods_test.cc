@@ -45,10 +45,8 @@ struct Device {
 };
 
 /// Calls methods itself, and says so.
-struct Threads final : JobThreads {
-  bool claim(TaskId) noexcept override { return true; }
-  Nanoseconds used_by_job(TaskId) noexcept override { return {}; }
-  bool is_blocked(TaskId) noexcept override { return false; }
+struct Threads final : JobsInLoop {
+  Threads() : JobsInLoop({}, nullptr) {}
   Answer call(Task& task, Method method, Nanoseconds now) noexcept override {
     story += "by threads: ";
     return call_method(task, method, now);

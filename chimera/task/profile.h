@@ -2,6 +2,7 @@
 // What a task costs and how punctual it is, always measured (1994 paper 3.3; reference HASE'96 for the idea).
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "chimera/base/time.h"
@@ -25,6 +26,16 @@ struct Spread {
   /// Mean, 0 when nothing was added.
   Nanoseconds mean() const noexcept { return {count == 0 ? 0 : sum.count / static_cast<std::int64_t>(count)}; }
 };
+
+/// Adds to a count that only the calling thread changes, and that count_of() may read meanwhile. Context: cycle;
+/// wait-free.
+inline void add_to(std::uint64_t& count, std::uint64_t n) noexcept {
+  const std::atomic_ref<std::uint64_t> shared(count);
+  shared.store(shared.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
+}
+inline std::uint64_t count_of(std::uint64_t& count) noexcept {
+  return std::atomic_ref<std::uint64_t>(count).load(std::memory_order_relaxed);
+}
 
 /// Everything counted about one task. Written by the job step and the executor of its context only.
 struct Profile {

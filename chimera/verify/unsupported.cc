@@ -97,16 +97,9 @@ class Refusals {
     refuse(task.server->at, "'server' of task '" + task.name.text + "'", remedy + " its rtpu 'executor: preemptive'");
   }
 
-  // Read by switches alone.
   bool are_on_several_rtpus() const {
     const auto tasks = configuration_.tasks();
     return std::any_of(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu != tasks[0].rtpu; });
-  }
-
-  void max_step(const NamedNode& step, const DraftTask& task, bool is_preemptive) {
-    if (executor_ == Executor::kProcesses && is_preemptive)
-      refuse(step.name.at, "'max_step' of task '" + task.name.text + "' on a preemptive rtpu",
-             "run with --virtual or --isolation none, or give its rtpu 'executor: executive'");
   }
 
   void judge(const DraftTask& task) {
@@ -121,7 +114,6 @@ class Refusals {
     server(task, preempts, here != tasks.end() && here->has_event_source);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
-    for (const NamedNode& step : task.max_step) max_step(step, task, preempts);
     if (task.stack_bytes && !preempts && executor_ == Executor::kProcesses)
       refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
              "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");

@@ -175,14 +175,20 @@ Counted count_on_two_rtpus() {
   });
 }
 
+// To a set in which nothing is ON, and back.
+std::vector<ScriptAct> with_switches(std::span<const ScriptAct> acts) {
+  std::vector<ScriptAct> all(acts.begin(), acts.end());
+  for (const std::uint32_t to : {1u, 0u}) {
+    all.push_back({milliseconds(200 - 50 * to), ScriptAct::Kind::kSwitch, Signal::kOn, TaskId()});
+    all.back().set = to;
+  }
+  return all;
+}
+
 Counted count(Kind kind) {
   return count_in_one({}, [kind](TaskSet& set, std::span<const ScriptAct> acts) {
-    std::vector<ScriptAct> with_switches(acts.begin(), acts.end());
-    for (const std::uint32_t to : {1u, 0u}) {
-      with_switches.push_back({milliseconds(200 - 50 * to), ScriptAct::Kind::kSwitch, Signal::kOn, TaskId()});
-      with_switches.back().set = to;
-    }
-    Runner runner(set, kind, Policy::kEdf, with_switches);
+    const std::vector<ScriptAct> script = with_switches(acts);
+    Runner runner(set, kind, Policy::kEdf, script);
     EXPECT_TRUE(runner.start());
     const std::size_t before = n_allocations;
     runner.run(milliseconds(2250));
@@ -197,16 +203,21 @@ Counted count_by_threads() {
   ContextPlace place;
   place.preemptive = true;
   return count_in_one(place, [](TaskSet& set, std::span<const ScriptAct> acts) {
+    const std::vector<ScriptAct> script = with_switches(acts);
     Listened listened;
     RunOptions options;
     options.policy = Policy::kEdf;
-    options.script = Script(acts);
+    options.script = Script(script);
     options.tap = listened.tap();
     PreemptiveExecutor executor(set, options, {});
     EXPECT_TRUE(executor.start());
     const std::size_t before = n_allocations;
     executor.run(milliseconds(600));
-    return n_allocations - before;
+    const std::size_t allocations = n_allocations - before;
+    const auto receipts = executor.releases().switching().receipts().all();
+    EXPECT_EQ(receipts.size(), 2u);
+    for (const SwitchReceipt& receipt : receipts) EXPECT_NE(receipt.end, SwitchEnd::kRefused);
+    return allocations;
   });
 }
 

@@ -10,7 +10,7 @@ import sources  # noqa: E402
 REFUSALS = "chimera/verify/unsupported.cc"
 # What a refusal says in the code, and how the limits of README.md call it.
 CALLED = (
-    ("llf in real time", "`llf` in real time"),
+    ("llf in real time", "policy `llf` in real time"),
     ("budgets above 0.93 of a CPU in real time", "budgets above 0.93 of a CPU"),
     ("budgets of all rtpus together above 0.93", "budgets above 0.93 of a CPU"),
     (": switch' of task", "reaction `switch`"),
@@ -20,7 +20,6 @@ CALLED = (
     ("\"on_fault\", task", "`on_fault` other than `error`"),
     ("\"stale_after\", task", "`stale_after`"),
     ("\"standby_for\", task", "`standby_for`"),
-    ("on a preemptive rtpu", "`max_step` on a preemptive rtpu"),
     ("where tasks are in several processes", "in several processes, or on several rtpus in virtual time"),
     ("on several rtpus in virtual time", "or on several rtpus in virtual time"),
     ("'stack' of task", "`stack`"),
@@ -68,9 +67,9 @@ def check(root):
     yield from table_complaints(root)
 
 
-_README = "# A\n\n## Limits\n\n- Refused: `max_step` on a preemptive rtpu, `standby_for`.\n\n## More\n"
+_README = "# A\n\n## Limits\n\n- Refused: policy `llf` in real time, `standby_for`.\n\n## More\n"
 _CODE = ('  void refuse_key(Place at, const char* key) {\n    refuse(at, "\'" + std::string(key) + "\' of");\n  }\n'
-         '  refuse(a, "\'max_step\' on a preemptive rtpu", "x");\n')
+         '  refuse(a, "policy llf in real time", "x");\n')
 _ROOM = "  constexpr std::uint64_t kMaxTableBytes = 4 << 20;\n"
 _TABLE = "outputs take more than\n4 MiB.\n"
 
@@ -82,11 +81,11 @@ def _tree(**other):
     return files | {names[key]: text for key, text in other.items()}
 
 
-_MISSING = "README.md: the limits do not say \"`max_step` on a preemptive rtpu\", which run refuses"
+_MISSING = "README.md: the limits do not say \"policy `llf` in real time\", which run refuses"
 PLANTED = (
     (_tree(), None),
-    (_tree(readme=_README.replace("`max_step` on a preemptive rtpu, ", "")), _MISSING),
-    (_tree(readme="# A\n\n`max_step` on a preemptive rtpu\n"), _MISSING),
+    (_tree(readme=_README.replace("policy `llf` in real time, ", "")), _MISSING),
+    (_tree(readme="# A\n\npolicy `llf` in real time\n"), _MISSING),
     (_tree(code=_CODE + '  refuse_key(a, "magic", task);\n'),
      f'{REFUSALS}: no phrase is known here for the refusal refuse_key(a, "magic", task'),
     (_tree(table=_TABLE.replace("4", "8")),

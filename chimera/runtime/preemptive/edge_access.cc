@@ -2,6 +2,9 @@
 // Tasks as the edge of a preemptive context sees them.
 #include "chimera/runtime/preemptive/edge_access.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace chimera {
 
 EdgeAccess::EdgeAccess(Releases& releases, ReadyJobs& ready, Processor& processor, JobClock& clock,
@@ -18,7 +21,7 @@ bool EdgeAccess::claim(TaskId task) noexcept {
     return true;
   }
   const bool is_free = job.phase.is_free();
-  job.is_awaited = !is_free;
+  job.is_awaited = job.is_awaited || !is_free;
   return is_free;
 }
 
@@ -34,6 +37,56 @@ Answer EdgeAccess::call(Task& task, Method method, Nanoseconds now) noexcept {
   const Answer answer = call_method(task, method, now);
   if (job != nullptr) return_from(*job);
   return answer;
+}
+
+Nanoseconds EdgeAccess::latest_release() const noexcept {
+  Nanoseconds latest{INT64_MIN / 2};
+  for (const JobThread& job : std::as_const(ready_).threads()) latest = std::max(latest, job.job.release);
+  return latest;
+}
+
+bool EdgeAccess::has_job_before(TaskId task, Nanoseconds at) const noexcept {
+  const JobThread* job = std::as_const(ready_).of(task);
+  return job != nullptr && (!job->phase.is_free() || (job->is_on && job->next_release < at));
+}
+
+void EdgeAccess::await_job(TaskId task) noexcept {
+  if (JobThread* job = ready_.of(task); job != nullptr) job->is_awaited = true;
+}
+
+void EdgeAccess::hold_releases(Nanoseconds from) noexcept {
+  for (JobThread& job : ready_.threads()) job.release_end = std::min(end_, from);
+}
+
+void EdgeAccess::let_release(TaskId task) noexcept {
+  JobThread* job = ready_.of(task);
+  if (job == nullptr) return;
+  job->release_end = end_;
+  follow(*job, job->next_release <= clock_.now());
+}
+
+void EdgeAccess::open(Nanoseconds until) noexcept {
+  for (JobThread& job : ready_.threads()) {
+    job.release_end = job.release_end == end_ ? until : std::min(job.release_end, until);  // some are held
+    follow(job, true);
+  }
+  end_ = until;
+}
+
+void EdgeAccess::follow_all() noexcept {
+  for (JobThread& job : ready_.threads()) follow(job, false);
+}
+
+void EdgeAccess::follow(JobThread& job, bool is_new) noexcept {
+  const bool is_on = releases_.members().is_on(job.id), has_event = job.sporadic && job.task.events > 0;
+  is_new = is_new || is_on != job.is_on || job.is_held || has_event;
+  const bool is_released = is_on && !job.is_on && !job.sporadic;
+  if (is_released) job.next_release = releases_.queue().classes().first_release(job.id.index);
+  if (!is_on) job.next_release = kNever;
+  if (!is_on && job.sporadic && job.sporadic->job().forget()) ++job.task.profile.events_lost;
+  job.is_on = is_on;
+  job.is_held = false;
+  if (is_new) job.wake();
 }
 
 // Out of the section, to the label of the task; null: stays.

@@ -27,6 +27,19 @@ class EdgeAccess final : public JobThreads {
   /// way, it runs in the section.
   Answer call(Task& task, Method method, Nanoseconds now) noexcept override;
 
+  bool run_beside_methods() const noexcept override { return true; }
+  Nanoseconds latest_release() const noexcept override;
+  bool has_job_before(TaskId task, Nanoseconds at) const noexcept override;
+  void await_job(TaskId task) noexcept override;
+  void hold_releases(Nanoseconds from) noexcept override;
+  void let_release(TaskId task) noexcept override;
+  Nanoseconds next_look(Nanoseconds now) const noexcept override { return now + kLook; }
+
+  /// Releases are taken, before `until`; all threads look at their tasks.
+  void open(Nanoseconds until) noexcept;
+  /// Threads follow the states of their tasks. Those for which nothing is new sleep on.
+  void follow_all() noexcept;
+
   /// Which jobs the edge at `now` reports as late that have begun and are not looked up yet. True when there are some:
   /// look_up_blocked() is due.
   bool collect_late(Nanoseconds now) noexcept;
@@ -42,6 +55,10 @@ class EdgeAccess final : public JobThreads {
     bool is_due = false, is_done = false, is_blocked = false;
   };
 
+  // The end of a job that is waited for asks for an edge; this is for one that never comes.
+  static constexpr Nanoseconds kLook = milliseconds(1);
+
+  void follow(JobThread& job, bool is_new) noexcept;
   JobThread* leave_for(TaskId task) noexcept;
   void return_from(JobThread& job) noexcept;
 
@@ -51,6 +68,7 @@ class EdgeAccess final : public JobThreads {
   JobClock& clock_;
   std::vector<LookUp> look_ups_;  // by task
   pid_t thread_ = 0;              // 0: nobody runs yet
+  Nanoseconds end_ = kNever;      // of the run
 };
 
 }  // namespace chimera

@@ -36,10 +36,10 @@ void JobLoop::run(JobThread& me, std::atomic<std::size_t>& n_attached) {
     if (quits_) break;
     const Nanoseconds now = clock_.now();
     if (me.sporadic) accept_event(me, now);
-    const ReleaseWindow& window = processor_.window();
-    const bool may_run = me.is_on && !me.is_held && !window.is_paused && me.next_release < window.end;
-    if (may_run && me.next_release <= now) run_job(me, now);
-    else wait(me, heard, may_run ? me.next_release : kNever);
+    const bool may_run = me.is_on && !me.is_held && !processor_.is_paused();
+    const bool is_due = me.next_release <= now;
+    if (may_run && is_due && me.takes_release()) run_job(me, now);
+    else wait(me, heard, may_run && !is_due ? me.next_release : kNever);
   }
   processor_.leave();
 }
@@ -66,7 +66,7 @@ void JobLoop::accept_event(JobThread& me, Nanoseconds now) noexcept {
 
 // No event has come, and one that does may be taken at once: the descriptor stays readable meanwhile.
 bool JobLoop::listens(const JobThread& me) const noexcept {
-  if (!me.sporadic || !me.is_on || me.is_held || processor_.window().is_paused) return false;
+  if (!me.sporadic || !me.is_on || me.is_held || processor_.is_paused()) return false;
   return me.task.descriptor >= 0 && !me.sporadic->job().has_event() && me.task.events == 0;
 }
 
@@ -96,8 +96,8 @@ bool JobLoop::accept_release(JobThread& me, Nanoseconds now) noexcept {
     prepare(me, {me.id, me.sporadic->job().release(), kNever});
     return true;
   }
-  const std::int64_t passed = (processor_.window().newest(now) - me.next_release) / s.period;
-  const Nanoseconds release = me.next_release + s.period * passed;
+  const Nanoseconds release = me.newest_release(now);
+  const std::int64_t passed = (release - me.next_release) / s.period;
   if (passed > 0) releases_.misses().drop({me.id, release - s.period, static_cast<std::uint32_t>(passed)});
   if (releases_.misses().has_lost_patience()) {
     me.is_held = true;
@@ -180,7 +180,7 @@ void JobLoop::end(JobThread& me, Nanoseconds now) noexcept {
   if (me.task.state != State::kOn) me.is_on = false;  // the edge will say so too
   if (me.is_awaited) me.is_held = true;  // until the edge has looked: the next job may be due already
   const bool leaves_something = releases_.settlement().is_unsettled(me.id) || !me.task.pending.empty();
-  if (me.is_awaited || leaves_something || processor_.window().is_paused) processor_.edge_bell().ring();
+  if (me.is_awaited || leaves_something || processor_.is_paused()) processor_.edge_bell().ring();
   me.is_awaited = false;
 }
 

@@ -143,7 +143,7 @@ TEST_F(JobLoopTest, BeginsNothingWhileItsTaskIsOffOrHeldOrEverythingIsPaused) {
     in_section([&] {
       job(0).is_on = is_on;
       job(0).is_held = is_held;
-      processor().window().is_paused = is_paused;
+      is_paused ? processor().pause() : processor().go_on();
       entries = processor().counts().checked;
     });
     job(0).wake();
@@ -159,7 +159,7 @@ TEST_F(JobLoopTest, BeginsNothingWhileItsTaskIsOffOrHeldOrEverythingIsPaused) {
   };
   EXPECT_TRUE(waits_when(true, true, false));
   EXPECT_TRUE(waits_when(true, false, true));
-  in_section([this] { processor().window().end = job(0).next_release; });
+  in_section([this] { job(0).release_end = job(0).next_release; });
   EXPECT_TRUE(waits_when(true, false, false)) << "the run ends with that release";
   end_thread(0);
   EXPECT_EQ(cycles(0), 0u);

@@ -2,6 +2,7 @@
 // One task of a preemptive context, its thread, and its present job.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <optional>
@@ -46,6 +47,14 @@ class JobThread {
   Nanoseconds used_before() const noexcept { return Nanoseconds{used_before_.load(std::memory_order_relaxed)}; }
   /// Execution time of the job that runs, or hangs; zero when its thread is gone.
   Nanoseconds used() const noexcept;
+  /// The next release is not held, and no run ends before it.
+  bool takes_release() const noexcept { return next_release < release_end; }
+  /// The newest release of its grid that is taken by `now`. Requires: takes_release(); next_release <= now.
+  Nanoseconds newest_release(Nanoseconds now) const noexcept {
+    const Nanoseconds newest = std::min(now, release_end - Nanoseconds{1});
+    return next_release + spec.period * ((newest - next_release) / spec.period);
+  }
+
   /// What a job of the task runs now: cycle, sync or error. Context: any.
   Method method() const noexcept { return std::atomic_ref(task.job_method).load(std::memory_order_relaxed); }
 
@@ -67,6 +76,7 @@ class JobThread {
   pid_t carrier = 0;  ///< who runs at the label of the task: its thread, or that of the edges
 
   Nanoseconds next_release = kNever;  ///< kNever: the task is not ON, or no event has come
+  Nanoseconds release_end = kNever;   ///< releases at this instant and later are not taken
   bool is_on = false;                 ///< as far as the thread was told
   bool is_held = false;               ///< no job begins until an edge has looked at the task
   bool is_awaited = false;            ///< an edge found a job under way and comes again at its end

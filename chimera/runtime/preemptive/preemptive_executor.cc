@@ -82,8 +82,8 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
   const Nanoseconds until = duration == kNever ? kNever : origin() + duration;
   access_.attach();
   at_edge([&] {
-    processor_.window() = {false, until};
-    notify_threads(true);
+    processor_.go_on();
+    access_.open(until);
   });
   for (;;) {
     const std::uint32_t heard = processor_.edge_bell().read();  // before the look at everything: no ring is lost
@@ -127,7 +127,7 @@ void PreemptiveExecutor::run_edge(Nanoseconds now) noexcept {
   if (releases_.edge_is_due(now)) releases_.take_edge(now);
   for (JobThread& job : ready_.threads())  // events are counted also while no job is run
     if ((job.sporadic || !job.is_shown) && job.phase.is_idle()) jobs_.show(job, now);
-  notify_threads(false);
+  access_.follow_all();
 }
 
 // Jobs that do not end by themselves, and one that was demoted for the share of the processor.
@@ -138,21 +138,6 @@ void PreemptiveExecutor::report_hanging(Nanoseconds now) noexcept {
     guest_->hangs(TaskWord(job.id, job.method()), is_gone ? Nanoseconds{} : now - job.job.release, now);
   }
   if (const TaskId task = share_.pop_demoted(); task.is_valid()) guest_->gave_way(task, share_.used(now), now);
-}
-
-// Threads follow the states of their tasks. Those for which nothing is new sleep on.
-void PreemptiveExecutor::notify_threads(bool all) noexcept {
-  const TaskClasses& releases = releases_.queue().classes();
-  for (JobThread& job : ready_.threads()) {
-    const bool is_on = releases_.members().is_on(job.id), has_event = job.sporadic && job.task.events > 0;
-    const bool is_new = all || is_on != job.is_on || job.is_held || has_event;
-    if (is_on && !job.is_on && !job.sporadic) job.next_release = releases.first_release(job.id.index);
-    if (!is_on) job.next_release = kNever;
-    if (!is_on && job.sporadic && job.sporadic->job().forget()) ++job.task.profile.events_lost;
-    job.is_on = is_on;
-    job.is_held = false;
-    if (is_new) job.wake();
-  }
 }
 
 bool PreemptiveExecutor::is_over(RunEnd& end, Nanoseconds until, Nanoseconds now) noexcept {
@@ -176,7 +161,7 @@ void PreemptiveExecutor::stop_jobs(RunEnd end) noexcept {
   };
   Settlement& settlement = releases_.settlement();
   processor_.enter();
-  processor_.window().is_paused = true;
+  processor_.pause();
   for (JobThread& job : ready_.threads()) (void)access_.claim(job.id);
   for (;;) {
     for (JobThread& job : ready_.threads())

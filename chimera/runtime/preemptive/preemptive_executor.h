@@ -53,7 +53,6 @@ class PreemptiveExecutor final {
   Nanoseconds enter_with_look_ups() noexcept;
   void run_edge(Nanoseconds now) noexcept;
   void report_hanging(Nanoseconds now) noexcept;
-  void notify_threads(bool all) noexcept;
   bool is_over(RunEnd& end, Nanoseconds until, Nanoseconds now) noexcept;
   bool is_idle() const noexcept;
   void stop_jobs(RunEnd end) noexcept;

@@ -18,14 +18,6 @@
 
 namespace chimera {
 
-/// When jobs are released. Written in the section.
-struct ReleaseWindow {
-  bool is_paused = true;     ///< no job begins
-  Nanoseconds end = kNever;  ///< releases at this instant and later do not come in this run
-  /// `now`, or the last instant of the run.
-  Nanoseconds newest(Nanoseconds now) const noexcept { return std::min(now, end - Nanoseconds{1}); }
-};
-
 /// In the section, unless said otherwise. Context: cycle; wait-free but for system calls that change a level or move
 /// the alarm.
 class Processor {
@@ -65,7 +57,10 @@ class Processor {
   /// When the laxity policy compares jobs again.
   Nanoseconds next_quantum(Nanoseconds now) const noexcept;
 
-  ReleaseWindow& window() noexcept { return window_; }
+  /// No job begins.
+  bool is_paused() const noexcept { return is_paused_; }
+  void pause() noexcept { is_paused_ = true; }
+  void go_on() noexcept { is_paused_ = false; }
   /// Where run() sleeps, and an edge is asked for. Context: any; wait-free.
   Doorbell edge_bell() const noexcept { return Doorbell(*bell_); }
   /// Written by those who count. Section and levels are in seen() alone.
@@ -86,7 +81,7 @@ class Processor {
   ProcessorPlace place_;
   Section section_;
   JobThread* on_processor_ = nullptr;
-  ReleaseWindow window_;
+  bool is_paused_ = true;
   std::atomic<std::uint32_t> own_bell_{0};  // pairs with itself: Doorbell::ring() and read()
   std::atomic<std::uint32_t>* bell_;        // that word, or the one of ProcessorPlace
   ProcessorCounts counts_;

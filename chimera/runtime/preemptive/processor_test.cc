@@ -140,13 +140,5 @@ TEST_F(ProcessorTest, WithChecksItCountsEntriesAndFindsNothingWrong) {
   EXPECT_EQ(processor().seen().section_taken, 0u);
 }
 
-TEST(ReleaseWindow, HasNoReleaseAtItsEnd) {
-  ReleaseWindow window;
-  EXPECT_EQ(window.newest(seconds(7)), seconds(7)) << "without an end";
-  window.end = seconds(5);
-  EXPECT_EQ(window.newest(seconds(4)), seconds(4));
-  EXPECT_EQ(window.newest(seconds(5)), seconds(5) - Nanoseconds{1});
-}
-
 }  // namespace
 }  // namespace chimera

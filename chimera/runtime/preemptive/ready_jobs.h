@@ -24,6 +24,7 @@ class ReadyJobs {
   const std::deque<JobThread>& threads() const noexcept { return threads_; }
   /// Null: a task of another context.
   JobThread* of(TaskId task) noexcept { return of_task_[task.index]; }
+  const JobThread* of(TaskId task) const noexcept { return of_task_[task.index]; }
 
   /// The job of the task, or another method of it, is ready and due at `deadline`. Answers with the level to which the
   /// thread of `own` (null: nobody) lowers itself; the levels of all others are changed here.

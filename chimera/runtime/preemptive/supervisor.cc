@@ -66,7 +66,7 @@ void Supervisor::check_jobs(Nanoseconds now) noexcept {
 Nanoseconds Supervisor::next_late(Nanoseconds now) const noexcept {
   Nanoseconds next = kNever;
   for (const JobThread& job : std::as_const(ready_).threads()) {
-    const bool comes = job.is_on && !job.sporadic && job.phase.is_idle() && job.next_release < processor_.window().end;
+    const bool comes = job.is_on && !job.sporadic && job.phase.is_idle() && job.takes_release();
     const Nanoseconds late = comes ? job.next_release + job.spec.deadline + JobChecks::kCoalesceWindow : kNever;
     if (late > now) next = std::min(next, late);  // else something keeps the job from being released
   }
@@ -88,7 +88,7 @@ void Supervisor::check_claimed(JobThread& job, Nanoseconds now) noexcept {
   if (now >= job.job.deadline) report_late(job, false);
   const bool is_expired = job.spec.on_miss == OnMiss::kAbort && now >= job.job.deadline;
   if (is_expired) releases_.misses().expire_unstarted(job.job);
-  else if (now >= job.next_release && job.next_release < processor_.window().end) follow_release(job, now);
+  else if (now >= job.next_release && job.takes_release()) follow_release(job, now);
   const bool is_starved = releases_.misses().has_lost_patience();
   if (is_starved) {
     job.is_held = true;
@@ -96,15 +96,15 @@ void Supervisor::check_claimed(JobThread& job, Nanoseconds now) noexcept {
   }
   if (is_expired || is_starved) return processor_.cancel(job, now);
   job.phase.unclaim();
-  const Nanoseconds next = job.next_release < processor_.window().end ? job.next_release : kNever;
+  const Nanoseconds next = job.takes_release() ? job.next_release : kNever;
   checks_.set(job, now < job.job.deadline ? std::min(next, job.job.deadline) : next);
 }
 
 // The job takes the newest release that has come; the one it had is dropped, and those in between.
 void Supervisor::follow_release(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = job.spec;
-  const std::int64_t passed = (processor_.window().newest(now) - job.next_release) / s.period;
-  const Nanoseconds release = job.next_release + s.period * passed;
+  const Nanoseconds release = job.newest_release(now);
+  const std::int64_t passed = (release - job.next_release) / s.period;
   releases_.misses().drop({job.id, release - s.period, static_cast<std::uint32_t>(passed + 1)});
   job.job = {job.id, release, release + s.deadline};
   releases_.misses().forget_reports(job.id);

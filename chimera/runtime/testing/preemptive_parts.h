@@ -60,7 +60,7 @@ class PreemptiveParts {
     parts = std::make_unique<Parts>(*this, policy);
     (void)set->life().start(origin);
     releases().begin(origin);
-    processor().window().is_paused = false;
+    processor().go_on();
     for (JobThread& job : ready().threads()) {
       job.attach();
       job.begin_use();
