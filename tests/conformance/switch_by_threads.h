@@ -77,14 +77,15 @@ inline constexpr TaskId kReader{0u}, kLoad{1u}, kOne{2u}, kObserver{3u}, kTwo{4u
 inline const std::vector<TaskId> kSets[] = {{kReader, kLoad, kOne}, {kReader, kLoad, kObserver, kTwo}};
 inline const NamedSet kNamedSets[] = {{"one", kSets[0]}, {"two", kSets[1]}};
 
-/// `n` switches, there and back, with a random pause of about `pause` before each. The load computes half of the time.
+/// `n` switches, there and back, each after a random time between a half and one and a half of `pause`. The load
+/// computes half of the time; a switch is over when the job has ended in which it came.
 inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseconds pause) {
   seen = {};
   seen.reader.reserve(static_cast<std::size_t>(n + 2) * static_cast<std::size_t>(pause * 2 / period + 2));
-  load = period * 5;
+  load = period * 2;
   testing::TestApplication app;
   app.add("reader", testing::component<Reader>("reader"), period);
-  app.add("load", testing::component<Load>("load"), period * 10);
+  app.add("load", testing::component<Load>("load"), period * 4);
   app.add("one", testing::component<One>("one"), period);
   app.add("observer", testing::component<Observer>("observer"), period);
   app.add("two", testing::component<Two>("two"), period);

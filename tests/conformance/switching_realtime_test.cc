@@ -17,7 +17,7 @@ TEST(SwitchingRealtime, FiveHundredSwitchesLoseNoCycle) {
   place.ceiling = kCeiling;
   place.base = 30;
   const auto got = judged(microseconds(500), [&] {
-    switch_by_threads::run(place, milliseconds(1), 500, milliseconds(5));
+    switch_by_threads::run(place, milliseconds(1), 500, milliseconds(11));
     return true;
   });
   if (!got) GTEST_SKIP() << "not judged: host stalled";

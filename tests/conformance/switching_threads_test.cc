@@ -10,7 +10,7 @@ using switch_by_threads::count;
 using switch_by_threads::seen;
 
 TEST(SwitchingThreads, EachJobReadsTheProducerOfItsRelease) {
-  switch_by_threads::run({}, milliseconds(2), 40, milliseconds(12));
+  switch_by_threads::run({}, milliseconds(2), 40, milliseconds(22));
   ASSERT_EQ(seen.receipts.size(), 40u);
   EXPECT_GT(count(SwitchEnd::kDone), 10);
   EXPECT_GT(seen.reader.size(), 50u);

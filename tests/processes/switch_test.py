@@ -38,6 +38,11 @@ SETS = {"gentle": {"reference", "slow", "here", "there"}, "quick": {"reference",
 VALUE = {"gentle": 2, "quick": 4}
 
 
+# The same with a thread for each task of the second unit, or of both.
+MIXED = TEXT.replace("second: {cpu: 1, policy: edf}", "second: {cpu: 1, policy: edf, executor: preemptive}")
+PREEMPTIVE = MIXED.replace("first: {cpu: 0, policy: edf}", "first: {cpu: 0, policy: edf, executor: preemptive}")
+
+
 class Switch(unittest.TestCase):
     def on(self, system):
         return {task["task"] for task in system.call("status")["tasks"] if task["state"] == "ON"}
@@ -49,7 +54,12 @@ class Switch(unittest.TestCase):
         await_that(both, 5, f"both readers to see {value}")
 
     def test_there_and_back(self):
-        with System(TEXT) as system:
+        for text in (TEXT, MIXED, PREEMPTIVE):
+            with self.subTest(preemptive=text.count("executor: preemptive")):
+                self.go_there_and_back(text)
+
+    def go_there_and_back(self, text):
+        with System(text) as system:
             numbers = []
             for target in ("quick", "gentle") * 5:
                 receipt = system.call("switch", configuration=target)
@@ -95,7 +105,7 @@ class Switch(unittest.TestCase):
         """A real-time unit or the manager is killed at any moment of a switch."""
         random.seed(SEED)
         print(f"seed {SEED}", file=sys.stderr)
-        with System(TEXT) as system:
+        with System(random.choice((TEXT, MIXED, PREEMPTIVE))) as system:
             for _ in range(ROUNDS):
                 before = next(name for name, tasks in SETS.items() if tasks == self.on(system))
                 target = "quick" if before == "gentle" else "gentle"
@@ -117,9 +127,16 @@ class Switch(unittest.TestCase):
                 self.assertTrue(system.kill(pid))
                 asking.join(30)
                 self.assertFalse(asking.is_alive())
-                await_that(lambda: self.on(system) in SETS.values(), 20,
+                await_that(lambda who=who, pid=pid: system.pids().get(who) not in (None, pid), 20, f"a new {who}")
+                found = []
+
+                def is_settled(found=found):
+                    tasks = self.on(system)
+                    found[:] = [name for name, its in SETS.items() if its == tasks]
+                    return found != []
+                await_that(is_settled, 20,
                            f"a configuration (killed {who} in a switch to {target}, {told}); {self.on(system)}")
-                now = next(name for name, tasks in SETS.items() if tasks == self.on(system))
+                now = found[0]
                 if isinstance(told[0], dict) and who == "manager":
                     self.assertEqual(now, target if told[0]["end"] != "aborted" else before)
                 time.sleep(4)  # three deaths in 10 s and a unit is given up

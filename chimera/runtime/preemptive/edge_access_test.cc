@@ -137,5 +137,69 @@ TEST_F(EdgeAccessTest, AJobThatHasNotBegunIsNotBlocked) {
   EXPECT_FALSE(access().collect_late(at(10)));
 }
 
+TEST_F(EdgeAccessTest, KnowsTheLatestReleaseThatAJobHasTaken) {
+  release(0, at(10));
+  release(1, at(20));
+  EXPECT_EQ(access().latest_release(), at(20));
+}
+
+TEST_F(EdgeAccessTest, HoldsReleasesFromAnInstantOnUntilTheTaskIsLetGo) {
+  access().open(at(100));
+  job(0).next_release = at(20);
+  job(1).next_release = at(40);
+  access().hold_releases(at(30));
+  EXPECT_TRUE(job(0).takes_release());
+  EXPECT_FALSE(job(1).takes_release());
+  access().let_release(TaskId(1u));
+  EXPECT_TRUE(job(1).takes_release());
+  EXPECT_EQ(job(0).release_end, at(30)) << "that of another task";
+  access().hold_releases(at(200));
+  EXPECT_EQ(job(1).release_end, at(100)) << "the run ends before";
+}
+
+TEST_F(EdgeAccessTest, ARunThatGoesOnKeepsWhatIsHeld) {
+  access().open(at(100));
+  access().hold_releases(at(30));
+  access().let_release(TaskId(1u));
+  access().open(at(200));
+  EXPECT_EQ(job(0).release_end, at(30));
+  EXPECT_EQ(job(1).release_end, at(200));
+  access().let_release(TaskId(0u));
+  EXPECT_EQ(job(0).release_end, at(200));
+}
+
+TEST_F(EdgeAccessTest, WakesAThreadWhoseReleaseCameWhileItWasHeld) {
+  access().open(at(100));
+  job(0).next_release = at(30);
+  access().hold_releases(at(30));
+  const std::uint32_t heard = job(0).heard();
+  clock.time = at(29);
+  access().let_release(TaskId(0u));
+  EXPECT_EQ(job(0).heard(), heard) << "its own alarm comes";
+  access().hold_releases(at(30));
+  clock.time = at(30);
+  access().let_release(TaskId(0u));
+  EXPECT_NE(job(0).heard(), heard);
+}
+
+TEST_F(EdgeAccessTest, AJobReleasedBeforeAnInstantIsUnderWayOrWaits) {
+  job(0).next_release = at(30);
+  EXPECT_FALSE(access().has_job_before(TaskId(0u), at(30)));
+  EXPECT_TRUE(access().has_job_before(TaskId(0u), at(31))) << "its thread has not taken it yet";
+  job(0).is_on = false;
+  EXPECT_FALSE(access().has_job_before(TaskId(0u), at(31)));
+  job(0).is_on = true;
+  begin(0, at(10));
+  job(0).next_release = at(50);
+  EXPECT_TRUE(access().has_job_before(TaskId(0u), at(30)));
+}
+
+TEST_F(EdgeAccessTest, WhatIsAwaitedStaysAwaitedWhenTheTaskIsClaimed) {
+  access().await_job(TaskId(0u));
+  EXPECT_TRUE(job(0).is_awaited);
+  EXPECT_TRUE(access().claim(TaskId(0u)));
+  EXPECT_TRUE(job(0).is_awaited) << "the one who awaits is another than the one who claims";
+}
+
 }  // namespace
 }  // namespace chimera

@@ -57,6 +57,19 @@ TEST_F(JobThreadTest, TheFirstSliceBeginsOnce) {
   EXPECT_EQ(job.slice(), milliseconds(5));
 }
 
+TEST_F(JobThreadTest, TakesNoReleaseAtTheEndOfItsReleasesOrLater) {
+  JobThread job(task_);
+  job.next_release = milliseconds(3);
+  EXPECT_TRUE(job.takes_release()) << "without an end";
+  EXPECT_EQ(job.newest_release(milliseconds(3)), milliseconds(3));
+  EXPECT_EQ(job.newest_release(microseconds(6900)), milliseconds(6));
+  job.release_end = milliseconds(5);
+  EXPECT_TRUE(job.takes_release());
+  EXPECT_EQ(job.newest_release(microseconds(6900)), milliseconds(4)) << "the one at the end is not taken";
+  job.release_end = milliseconds(3);
+  EXPECT_FALSE(job.takes_release());
+}
+
 TEST_F(JobThreadTest, SaysInWhichMethodItsJobIs) {
   JobThread job(task_);
   EXPECT_EQ(job.method(), Method::kCycle);
