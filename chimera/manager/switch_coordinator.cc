@@ -9,7 +9,6 @@
 namespace chimera::manager {
 namespace {
 
-constexpr Nanoseconds kLeastLead = milliseconds(1), kBeyondLongestJob = microseconds(200);
 constexpr Nanoseconds kGrace = milliseconds(500);  // within which the units abort by themselves
 constexpr int kMostTries = 3;                      // of a switch that was only too late
 constexpr std::int64_t kMoreTime = 8;              // each try leaves so many times as long until the change
@@ -86,7 +85,7 @@ Nanoseconds SwitchCoordinator::lead() const noexcept {
     const Profile profile = there.block().profile(TaskId(t));
     longest = std::max(longest, profile.execution[static_cast<int>(Method::kCycle)].max);
   }
-  return std::max(kLeastLead, longest + kBeyondLongestJob);
+  return lead_of(plan_, world_.spec().tasks, longest);
 }
 
 SwitchOrder SwitchCoordinator::make_order(std::uint32_t set, Nanoseconds wait, Nanoseconds now) {

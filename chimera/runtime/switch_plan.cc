@@ -22,6 +22,15 @@ SwitchRun find_run(const SwitchPlan& plan, std::span<const TaskSpec> tasks, std:
   return {plan.arriving.size(), plan.arriving.size()};
 }
 
+Nanoseconds lead_of(const SwitchPlan& plan, std::span<const TaskSpec> tasks, Nanoseconds longest_job) noexcept {
+  constexpr Nanoseconds kEnough = milliseconds(1), kBeyondLongestJob = microseconds(200);
+  Nanoseconds lead = kEnough;
+  for (const auto ids : {plan.arriving, plan.leaving})
+    for (const TaskId id : ids)
+      if (!tasks[id.index].aperiodic) lead = std::min(lead, Nanoseconds{tasks[id.index].period.count * 3 / 4});
+  return std::max(lead, longest_job + kBeyondLongestJob);
+}
+
 void SwitchPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   spec_ = &spec;
   in_target_ = memory.take<bool>(spec.tasks.size());

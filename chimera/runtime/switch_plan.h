@@ -42,6 +42,11 @@ struct SwitchRun {
 /// The run of that number; begin == end behind the last one. Context: cycle boundary; O(tasks).
 SwitchRun find_run(const SwitchPlan& plan, std::span<const TaskSpec> tasks, std::uint16_t number) noexcept;
 
+/// How long before the instant of the change it is proposed. Every context agrees between two jobs, so this is longer
+/// than `longest_job`, the longest cycle measured so far; else at most 1 ms, and three quarters of the period of the
+/// fastest task that arrives or leaves. Context: any; O(tasks).
+Nanoseconds lead_of(const SwitchPlan& plan, std::span<const TaskSpec> tasks, Nanoseconds longest_job) noexcept;
+
 /// Why a switch is not made. The first group is found before anything is done, the others abort what was begun.
 enum class NoSwitch : std::uint8_t {
   kNone,

@@ -133,6 +133,24 @@ TEST(SwitchPlan, WhatCannotBePlannedIsRefusedWithTheTask) {
   EXPECT_EQ(p.plan.number, 0u);
 }
 
+TEST(SwitchPlan, IsProposedShortBeforeTheChangeButLongerThanAJobTakes) {
+  const TaskId fast[] = {TaskId(0u)}, slow[] = {TaskId(1u)}, by_events[] = {TaskId(2u)};
+  TaskSpec tasks[3];
+  tasks[0].period = microseconds(400);
+  tasks[1].period = milliseconds(20);
+  tasks[2].aperiodic = true;
+  SwitchPlan plan;
+  EXPECT_EQ(lead_of(plan, tasks, {}), milliseconds(1));
+  plan.arriving = slow;
+  plan.leaving = by_events;
+  EXPECT_EQ(lead_of(plan, tasks, {}), milliseconds(1));
+  plan.leaving = fast;
+  EXPECT_EQ(lead_of(plan, tasks, {}), microseconds(300));
+  EXPECT_EQ(lead_of(plan, tasks, microseconds(100)), microseconds(300));
+  EXPECT_EQ(lead_of(plan, tasks, microseconds(250)), microseconds(450));
+  EXPECT_EQ(lead_of(plan, tasks, milliseconds(3)), microseconds(3200));
+}
+
 // Any states and any target: the plan, carried out, makes exactly the target; every reader has one producer.
 TEST(SwitchPlan, AnyPlanCarriedOutMakesTheTarget) {
   std::mt19937 random(1);

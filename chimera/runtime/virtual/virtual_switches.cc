@@ -10,7 +10,7 @@ namespace chimera {
 namespace {
 
 // As the manager has them.
-constexpr Nanoseconds kPatience = seconds(10), kLeastLead = milliseconds(1), kBeyondLongestJob = microseconds(200);
+constexpr Nanoseconds kPatience = seconds(10);
 
 Nanoseconds later(Nanoseconds a, Nanoseconds b) noexcept { return a == kNever ? b : b == kNever ? a : std::max(a, b); }
 
@@ -47,7 +47,7 @@ Nanoseconds VirtualSwitches::lead() const noexcept {
       if (tasks->is_mine(task.id) && task.state == State::kOn)
         longest = std::max(longest, task.profile.execution[static_cast<int>(Method::kCycle)].max);
   }
-  return std::max(kLeastLead, longest + kBeyondLongestJob);
+  return lead_of(plan_, peers_.spec().tasks, longest);
 }
 
 void VirtualSwitches::ask(std::uint32_t set, Nanoseconds now) noexcept {

@@ -80,7 +80,7 @@ TEST_P(VirtualSwitchesTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
   EXPECT_EQ(receipts[0].before, kDirect);
   EXPECT_EQ(receipts[0].asked, microseconds(5600));
-  EXPECT_EQ(receipts[0].at, receipts[0].armed + milliseconds(1));
+  EXPECT_EQ(receipts[0].at, receipts[0].armed + microseconds(750)) << "three quarters of a period";
   EXPECT_EQ(receipts[0].tasks.size(), 6u);
   EXPECT_EQ(receipts[0].variables.size(), 2u);
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off one"}));
