@@ -38,11 +38,11 @@ subsystem: subject
 rtpus: {unit: {cpu: 1, policy: edf}}
 tasks:
   probe: {component: t_delays, rtpu: unit, rate: 1 kHz, alias: {counts: of_probe}}
-  large: {component: mujoco_robot, rtpu: unit, rate: 500 Hz, resources: {model: puma560.xml}}
+  large: {component: mujoco_robot, rtpu: unit, rate: 500 Hz, resources: {model: MODEL}}
 operator: {q_ref: [0 rad, 1.4 rad, -1.4 rad, 0 rad, 0 rad, 0 rad]}
 configurations: {all: [probe], both: [probe, large]}
 start: all
-"""
+""".replace("MODEL", str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "library/puma_torque/puma560.xml"))
 
 
 def percentile(values, share):
