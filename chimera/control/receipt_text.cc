@@ -44,13 +44,26 @@ const char* word(TaskMove move) {
   return "?";
 }
 
-/// The variables of a receipt with the unit of their values.
+/// The port of that kind; null: there is none.
+const PortSpec* find_port(const PortOf& of, int kind, const ApplicationSpec& spec) {
+  std::uint32_t n = 0;
+  for (const PortSpec& port : spec.tasks[of.task.index].ports)
+    if (port.kind == static_cast<std::uint32_t>(kind) && n++ == of.index) return &port;
+  return nullptr;
+}
+
+/// Of a task that produces the variable, else of one that reads it.
+const PortSpec* port_of(const Variable& variable, const ApplicationSpec& spec) {
+  if (!variable.producers.empty()) return find_port(variable.producers[0], CHIMERA_OUT_VAR, spec);
+  return variable.consumers.empty() ? nullptr : find_port(variable.consumers[0], CHIMERA_IN_VAR, spec);
+}
+
+std::string unit_of(const PortSpec* port) {
+  return port == nullptr || port->unit == "1" ? "" : " " + std::string(port->unit);
+}
+
 std::string unit_of(const VariablePart& part, const ApplicationSpec& spec) {
-  std::uint32_t outs = 0;
-  for (const PortSpec& port : spec.tasks[part.handover.to.task.index].ports)
-    if (port.kind == CHIMERA_OUT_VAR && outs++ == part.handover.to.index)
-      return port.unit == "1" ? "" : " " + std::string(port.unit);
-  return {};
+  return unit_of(find_port(part.handover.to, CHIMERA_OUT_VAR, spec));
 }
 
 std::string step_text(const ValueStep& step, const std::string& unit) {
@@ -67,6 +80,20 @@ std::string asked_by(const SwitchReceipt& receipt, const ApplicationSpec& spec) 
     case SwitchCause::kFault: return "on_fault of " + name;
   }
   return "?";
+}
+
+/// "'speed' is 3 rad/s, and safe_when of 'hand' asks for speed < 0.1 rad/s".
+std::string unsafe_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const NamedSet& set = spec.sets[receipt.after];
+  const SafeCondition& asked = set.safe_when;
+  if (!asked.is_there() || receipt.variable != asked.variable) return reason_word(receipt.why);
+  const PortSpec* const port = port_of(spec.variables[asked.variable.index], spec);
+  const std::string unit = unit_of(port);
+  std::string name(spec.variables[asked.variable.index].name);
+  if (port != nullptr && port->max_count() > 1) name += "[" + std::to_string(asked.element) + "]";
+  const std::string is = std::isnan(receipt.value) ? " has no value" : " is " + number(receipt.value) + unit;
+  return quoted(name) + is + ", and safe_when of " + quoted(set.name) + " asks for " + name + " " +
+         sign_of(asked.comparison) + " " + number(asked.limit) + unit;
 }
 
 std::size_t count(const SwitchReceipt& receipt, TaskMove move) {
@@ -167,6 +194,7 @@ const char* reason_word(NoSwitch why) noexcept {
     case NoSwitch::kStepTooLarge: return "step-too-large";
     case NoSwitch::kNoGap: return "no-gap";
     case NoSwitch::kNoValue: return "no-value";
+    case NoSwitch::kNotSafe: return "not-safe";
     case NoSwitch::kDisturbed: return "disturbed";
     case NoSwitch::kFlagRaised: return "flag-raised";
     case NoSwitch::kRunEnded: return "run-ended";
@@ -197,6 +225,7 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
       return task.empty() ? "the processor was never idle for 10 s"
                           : "the processor was never idle for as long as on of task " + task + " takes, for 10 s";
     case NoSwitch::kNoValue: return "task " + task + " waited 10 s for a value of " + variable;
+    case NoSwitch::kNotSafe: return unsafe_text(receipt, spec);
     case NoSwitch::kDisturbed: return "task " + task + " went to another state meanwhile";
     case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised meanwhile";
     case NoSwitch::kRunEnded: return "the run ended";

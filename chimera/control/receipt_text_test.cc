@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace chimera::control {
 namespace {
 
@@ -81,6 +83,27 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
   told.receipt.before = kNoSet;
   told.receipt.why = NoSwitch::kUnderWay;
   EXPECT_EQ(told.text(), "switch 3 at 2.000 s to 'torque' refused: another switch is under way\n");
+}
+
+TEST(ReceiptText, OfOneThatWasNotSafeSaysTheValueAndWhatIsAsked) {
+  Told told;
+  const PortOf producers[] = {{kPid, 0}};
+  told.variable.producers = producers;
+  told.sets[1].safe_when = {kTau, 0, Relation::kLess, 0.5};
+  told.receipt.end = SwitchEnd::kAborted;
+  told.receipt.why = NoSwitch::kNotSafe;
+  told.receipt.variable = kTau;
+  told.receipt.value = 3.25;
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s from 'pid' to 'torque' aborted: 'tau' is 3.25 N.m, and safe_when of "
+                         "'torque' asks for tau < 0.5 N.m\n");
+  told.receipt.value = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s from 'pid' to 'torque' aborted: 'tau' has no value, and safe_when of "
+                         "'torque' asks for tau < 0.5 N.m\n");
+  told.port.extent[0].max = 6;
+  told.sets[1].safe_when.element = 4;
+  told.receipt.value = 1;
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s from 'pid' to 'torque' aborted: 'tau[4]' is 1 N.m, and safe_when of "
+                         "'torque' asks for tau[4] < 0.5 N.m\n");
 }
 
 TEST(ReceiptText, NamesTheTaskThatAsked) {

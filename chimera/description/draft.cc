@@ -299,15 +299,29 @@ void read_tasks(const Node& node, Draft& draft, Report& report) {
   }
 }
 
+void read_members(const Node& node, const std::string& what, DraftSet& set, Report& report) {
+  if (!expect(node, Node::Kind::kList, what, report, true)) return;
+  for (const Node& item : node.items)
+    if (auto task = read_name(item, "a task of " + what, report)) set.tasks.push_back(std::move(*task));
+}
+
+// {tasks: [...], safe_when: ...}
+void read_guarded_set(const Node& node, const std::string& what, DraftSet& set, Report& report) {
+  refuse_unknown_keys(node, kSetKeys, what, report);
+  if (const Node* tasks = node.find("tasks")) read_members(*tasks, "'tasks' of " + what, set, report);
+  if (const Node* condition = node.find("safe_when"))
+    set.safe_when = read_condition(*condition, "'safe_when' of " + what, report);
+}
+
 void read_configurations(const Node& node, Draft& draft, Report& report) {
   if (!expect(node, Node::Kind::kMap, "'configurations'", report, true)) return;
   for (std::size_t i = 0; i < node.keys.size(); ++i) {
     if (!check_name(node.keys[i], "the name of a configuration", report)) continue;
     const std::string what = "configuration '" + node.keys[i].text + "'";
-    DraftSet set{.name = node.keys[i], .tasks = {}};
-    if (expect(node.items[i], Node::Kind::kList, what, report, true))
-      for (const Node& item : node.items[i].items)
-        if (auto task = read_name(item, "a task of " + what, report)) set.tasks.push_back(std::move(*task));
+    DraftSet set{.name = node.keys[i], .tasks = {}, .safe_when = {}};
+    const Node& item = node.items[i];
+    if (item.is_map()) read_guarded_set(item, what, set, report);
+    else read_members(item, what, set, report);
     draft.configurations.push_back(std::move(set));
   }
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "chimera/base/time.h"
+#include "chimera/description/condition_text.h"
 #include "chimera/description/node.h"
 #include "chimera/description/report.h"
 #include "chimera/schedule/policy.h"
@@ -96,6 +97,7 @@ struct DraftRtpu {
 struct DraftSet {
   Word name;
   std::vector<Word> tasks;
+  std::optional<DraftCondition> safe_when;
 };
 
 struct Draft {

@@ -22,4 +22,7 @@ inline constexpr std::array<std::string_view, 2> kTolerateKeys = {"misses", "of"
 
 inline constexpr std::array<std::string_view, 3> kServerKeys = {"kind", "capacity", "period"};
 
+/// Of a configuration that is more than a list of tasks.
+inline constexpr std::array<std::string_view, 2> kSetKeys = {"tasks", "safe_when"};
+
 }  // namespace chimera

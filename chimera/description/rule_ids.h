@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 76> kRules = {
+inline constexpr std::array<std::string_view, 78> kRules = {
     // the text
     "file-unreadable",
     "text-size",
@@ -91,6 +91,8 @@ inline constexpr std::array<std::string_view, 76> kRules = {
     "task-unknown",
     "configuration-empty",
     "configuration-task-twice",
+    "condition-bad",
+    "condition-variable",
     // warnings
     "unused",
     "standby-same-rtpu",

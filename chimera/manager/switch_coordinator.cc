@@ -196,6 +196,7 @@ SwitchOutcome SwitchCoordinator::collect(const Present& over, Nanoseconds now) {
       receipt.why = part.why;
       if (part.task.index < spec.tasks.size()) receipt.task = part.task;
       if (part.variable.index < spec.variables.size()) receipt.variable = part.variable;
+      receipt.value = part.value;
       receipt.said.assign({part.said, ::strnlen(part.said, SwitchPart::kSaid)});
     }
     for (std::uint32_t i = 0; i < std::min<std::size_t>(part.n_tasks, part.tasks.size()); ++i)

@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "chimera/runtime/safe_condition.h"
 #include "chimera/schedule/policy.h"
 #include "chimera/task/task_spec.h"
 
@@ -62,6 +63,7 @@ struct RtpuSpec {
 struct NamedSet {
   std::string_view name;
   std::span<const TaskId> order;  ///< each task once, in data-flow order, hardware inputs first
+  SafeCondition safe_when{};      ///< must hold while a switch to it arms, and when its instant is proposed
 };
 
 /// Context: setup. Every span must outlive the runtime that is made from it.

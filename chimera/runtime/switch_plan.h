@@ -55,6 +55,7 @@ enum class NoSwitch : std::uint8_t {
   kStepTooLarge,  ///< of `variable`, which `task` would produce
   kNoGap,         ///< the processor was never idle for as long as `on` of `task` takes
   kNoValue,       ///< `variable`, which `task` reads, never had one
+  kNotSafe,       ///< `variable` did not hold what NamedSet::safe_when asks
   kDisturbed,     ///< a signal, an error or its own end moved `task`, which takes part, to another state
   kFlagRaised,    ///< somebody raised the illegal-configuration flag
   kRunEnded,      ///< before the instant of the change

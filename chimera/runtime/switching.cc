@@ -11,6 +11,8 @@ namespace {
 
 // How long after the deadline a context aborts that another one is to abort first, which knows why.
 constexpr Nanoseconds kGrace = milliseconds(100);
+// How often what `safe_when` asks is looked at where no job ends meanwhile: nobody rings for a value.
+constexpr Nanoseconds kLookForSafety = milliseconds(1);
 
 TaskBits bits_of(std::span<const TaskId> tasks) noexcept {
   TaskBits bits;
@@ -30,6 +32,10 @@ VariableId lacks_value(TaskSet& set, Task& task, std::span<const Handover> hando
     if (((port.slot->valid >> port.bit) & 1u) == 0) return variable;
   }
   return {};
+}
+
+bool holds(TaskSet& set, const SafeCondition& asked) noexcept {
+  return !asked.is_there() || is_safe(asked, present_value(set, asked));
 }
 
 void note_standing(std::span<const Task> tasks, std::span<TaskStanding> standing) noexcept {
@@ -130,7 +136,8 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   due_ = now;
 }
 
-void Switching::step(Nanoseconds now) noexcept {
+void Switching::step(Nanoseconds edge) noexcept {
+  Nanoseconds now = edge;
   const PlanWord plan = agreement().plan();
   if (phase_ == Phase::kNone && plan.number != seen_) take_up(plan, now);
   if (phase_ == Phase::kNone) return;
@@ -138,7 +145,7 @@ void Switching::step(Nanoseconds now) noexcept {
   const bool is_open = phase_ == Phase::kArming || phase_ == Phase::kAgreed;
   if (is_open && (plan.number != order_.number || plan.phase == SwitchPhase::kAborted))
     abort(NoSwitch::kNone, {}, {});  // another context did
-  if (phase_ == Phase::kArming) arm(now);
+  if (phase_ == Phase::kArming) arm(edge, now);
   if (phase_ == Phase::kAgreed) await_commit(now);
   if (phase_ == Phase::kChanging) change(now);
   if (phase_ == Phase::kAfter || phase_ == Phase::kUndoing) settle(parts_.clock.now());
@@ -186,7 +193,7 @@ bool Switching::make_plan(const SwitchOrder& order) noexcept {
   return is_made;
 }
 
-void Switching::arm(Nanoseconds now) noexcept {
+void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   if (agreement().plan().phase == SwitchPhase::kProposed) return agree(now);
   if (!may_go_on(now)) return;
   const auto number = agreement().run(order_.number);
@@ -195,7 +202,9 @@ void Switching::arm(Nanoseconds now) noexcept {
     due_ = wake_ = order_.until + kGrace;
     return;
   }
-  const Nanoseconds edge = now;
+  // The context that arms first asks before it arms, the last to arm before it proposes.
+  const SafeCondition& asked = parts_.set.spec().sets[order_.after].safe_when;
+  if (next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) return wait(now, kLookForSafety);
   for (next_armed_ = std::max(next_armed_, run.begin); next_armed_ < run.end;) {
     Task& next = task(plan_.arriving[next_armed_]);
     if (!gap_.is_for(next, Method::kOn, now)) return wait(now);
@@ -211,7 +220,10 @@ void Switching::arm(Nanoseconds now) noexcept {
   }
   if (const VariablePart* part = record_.find_too_large_step())
     return abort(NoSwitch::kStepTooLarge, part->handover.to.task, part->handover.variable);
-  if (run.end == plan_.arriving.size()) return propose(now);
+  if (run.end == plan_.arriving.size()) {
+    if (holds(parts_.set, asked)) return propose(now);
+    return abort(NoSwitch::kNotSafe, {}, asked.variable);
+  }
   (void)agreement().hand_on(order_.number, *number);
   peers_->ring();
   due_ = wake_ = order_.until + kGrace;
@@ -245,6 +257,11 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   const SwitchRun run = find_run(plan_, set.spec().tasks, number.value_or(UINT16_MAX));
   const bool is_mine = is_turn_of(parts_.set, plan_, run, order_.members);
   if (now < order_.until + (is_mine ? Nanoseconds{} : kGrace)) return true;
+  const SafeCondition& asked = set.spec().sets[order_.after].safe_when;
+  if (is_mine && next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) {
+    abort(NoSwitch::kNotSafe, {}, asked.variable);
+    return false;
+  }
   const bool has_next = is_mine && std::max(next_armed_, run.begin) < run.end;
   if (!has_next) {
     abort(NoSwitch::kNoGap, {}, {});
@@ -327,6 +344,8 @@ void Switching::abort(NoSwitch why, TaskId of, VariableId variable) noexcept {
     record_.receipt().why = why;
     record_.receipt().task = of;
     record_.receipt().variable = variable;
+    if (why == NoSwitch::kNotSafe)
+      record_.receipt().value = present_value(parts_.set, parts_.set.spec().sets[order_.after].safe_when);
     peers_->ring();
   } else if (const PlanWord plan = agreement().plan();
              plan.number == order_.number && plan.phase == SwitchPhase::kCommitted) {
@@ -400,10 +419,10 @@ void Switching::end(Nanoseconds now) noexcept {
 }
 
 // The next step is worth while when jobs have ended, or at the next release where the processor is idle.
-void Switching::wait(Nanoseconds now) noexcept {
+void Switching::wait(Nanoseconds now, Nanoseconds at_most) noexcept {
   const Nanoseconds limit = std::max(order_.until, now + Nanoseconds{1});
   const Nanoseconds next = std::max(parts_.queue.next_release(), now);
-  wake_ = std::min(next, limit);
+  wake_ = std::min({next, limit, at_most == kNever ? kNever : now + at_most});
   due_ = gap_.is_there() ? wake_ : now;
 }
 

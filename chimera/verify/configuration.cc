@@ -3,6 +3,7 @@
 // every link an id, every value the bytes that the rules accepted, every name a view into the parts).
 #include "chimera/verify/configuration.h"
 
+#include <algorithm>
 #include <cstring>
 #include <deque>
 
@@ -280,6 +281,14 @@ class SpecMaker {
   std::vector<std::uint32_t> ids_;  // of state variables or constants, by index in Model::variables
 };
 
+SafeCondition safe_condition(const SetModel& set, const Parts& parts) {
+  if (!set.safe_variable) return {};
+  SafeCondition condition = set.safe_when;
+  const auto at = std::ranges::find(parts.configured, *set.safe_variable);
+  condition.variable = VariableId(static_cast<std::size_t>(at - parts.configured.begin()));
+  return condition;
+}
+
 /// The half that the runtime reads; `parts` has its tasks already.
 void fill_spec(const Model& model, Parts& parts) {
   SpecMaker(model, parts).make();
@@ -291,7 +300,8 @@ void fill_spec(const Model& model, Parts& parts) {
   parts.spec.operators = parts.operators;
   parts.spec.init_order = parts.init_order;
   parts.spec.start = parts.sets[parts.start].order;
-  for (const ConfiguredSet& set : parts.sets) parts.named_sets.push_back({set.name, set.order});
+  for (std::size_t s = 0; s < parts.sets.size(); ++s)
+    parts.named_sets.push_back({parts.sets[s].name, parts.sets[s].order, safe_condition(model.sets[s], parts)});
   parts.spec.sets = parts.named_sets;
   parts.on_order = make_on_order(parts.spec);
   parts.spec.on_order = parts.on_order;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <deque>
 #include <set>
@@ -39,7 +40,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -209,11 +210,22 @@ void operator_fields(Archive& archive, ApplicationImage::Parts& parts, Applicati
   });
 }
 
+template <class Archive, class Condition>
+void condition_fields(Archive& archive, Condition& condition, std::size_t n_variables) {
+  archive.number(condition.variable);
+  archive.number(condition.element);
+  archive.choice(condition.comparison, Relation::kUnequal);
+  archive.number(condition.limit);
+  archive.require(!condition.is_there() || condition.variable.index < n_variables, "a variable that does not exist");
+  archive.require(std::isfinite(condition.limit), "a limit that is no finite number");
+}
+
 template <class Archive>
 void set_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationSpec& spec) {
   archive.list(spec.sets, parts.sets, kMostSets, "too many sets", [&](auto& set) {
     archive.text(set.name);
     task_ids(archive, set.order, parts.set_orders.emplace_back(), spec.tasks.size());
+    condition_fields(archive, set.safe_when, spec.variables.size());
   });
 }
 

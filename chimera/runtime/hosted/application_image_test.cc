@@ -72,7 +72,7 @@ struct Sample {
   TaskId init_order[2] = {TaskId{1u}, TaskId{0u}}, start[1] = {TaskId{1u}};
   TaskId on_order[2] = {TaskId{1u}, TaskId{0u}}, end_order[2] = {TaskId{0u}, TaskId{1u}};
   TaskId other[2] = {TaskId{0u}, TaskId{1u}};
-  NamedSet sets[2] = {{"both", other}, {"alone", start}};
+  NamedSet sets[2] = {{"both", other, {kX, 7, Relation::kAtLeast, -2.5}}, {"alone", start}};
   ComponentPlace places[2] = {{"/usr/lib/pid.so", 0x123456789abcdef0}, {"gain.so", 2}};
   RunSettings settings{40, milliseconds(5)};
   ApplicationSpec spec;
@@ -135,7 +135,7 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
   bytes[kVersionAt] = std::byte{7};
-  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 5");
+  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 6");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +

@@ -141,6 +141,7 @@ inline std::string first_difference(const ApplicationSpec& a, const ApplicationS
   d.list(a.sets, b.sets, "sets", [&](const NamedSet& p, const NamedSet& q) {
     d.compare(p.name, q.name, "name");
     d.values(p.order, q.order, "order");
+    d.compare(p.safe_when, q.safe_when, "safe_when");
   });
   return d.said();
 }

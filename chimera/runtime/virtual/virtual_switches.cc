@@ -109,6 +109,7 @@ void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept 
   present_->why = part.why;
   present_->task = part.task;
   present_->variable = part.variable;
+  present_->value = part.value;
   present_->said = part.said;
 }
 
@@ -125,8 +126,10 @@ void VirtualSwitches::look(Nanoseconds now) noexcept {
   present_->ended = now;
   present_->tasks = present_->tasks.first(n_tasks_);
   present_->variables = present_->variables.first(n_variables_);
-  std::stable_sort(present_->tasks.begin(), present_->tasks.end(),
-                   [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; });
+  const auto is_before = [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; };
+  const auto begin = present_->tasks.begin();
+  for (auto part = begin; part != present_->tasks.end(); ++part)  // std::stable_sort allocates
+    std::rotate(std::upper_bound(begin, part, *part, is_before), part, part + 1);
   present_ = nullptr;
 }
 
