@@ -70,18 +70,6 @@ std::string step_text(const ValueStep& step, const std::string& unit) {
   return number(step.size) + unit + (step.limit > 0 ? ", limit " + number(step.limit) + unit : "");
 }
 
-std::string asked_by(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
-  const std::string name = receipt.by.is_valid() ? std::string(spec.tasks[receipt.by.index].name) : "";
-  switch (receipt.cause) {
-    case SwitchCause::kScript: return "--at";
-    case SwitchCause::kRequest: return "task " + name;
-    case SwitchCause::kMiss: return "on_miss of " + name;
-    case SwitchCause::kOverrun: return "on_overrun of " + name;
-    case SwitchCause::kFault: return "on_fault of " + name;
-  }
-  return "?";
-}
-
 /// "'speed' is 3 rad/s, and safe_when of 'hand' asks for speed < 0.1 rad/s".
 std::string unsafe_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   const NamedSet& set = spec.sets[receipt.after];
@@ -182,6 +170,18 @@ std::string json_list(const Parts& parts, const ApplicationSpec& spec) {
 
 }  // namespace
 
+std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec) {
+  const std::string name = request.by.is_valid() ? std::string(spec.tasks[request.by.index].name) : "";
+  switch (request.cause) {
+    case SwitchCause::kScript: return "--at";
+    case SwitchCause::kRequest: return "task " + name;
+    case SwitchCause::kMiss: return "on_miss of " + name;
+    case SwitchCause::kOverrun: return "on_overrun of " + name;
+    case SwitchCause::kFault: return "on_fault of " + name;
+  }
+  return "?";
+}
+
 const char* reason_word(NoSwitch why) noexcept {
   switch (why) {
     case NoSwitch::kNone: return "none";
@@ -242,7 +242,8 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   const std::string when = " at " + at(receipt.asked, origin);
   if (receipt.end == SwitchEnd::kNothingToDo) return "switch" + when + ": " + to + " is in force, nothing to do\n";
   const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
-  const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(receipt, spec) + " ";
+  const SwitchRequest request{receipt.after, receipt.cause, receipt.by};
+  const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(request, spec) + " ";
   std::string text = "switch " + std::to_string(receipt.number) + when + " " + by + from + "to " + to;
   if (receipt.end == SwitchEnd::kDone) return text + done_text(receipt, spec) + bumps(receipt, spec);
   return text + " " + word(receipt.end) + ": " + reason_text(receipt, spec) + "\n";
@@ -252,12 +253,13 @@ std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& sp
                          std::string_view asked) {
   if (receipt.end == SwitchEnd::kNothingToDo) return {};
   const bool is_done = receipt.end == SwitchEnd::kDone;
+  const SwitchRequest request{receipt.after, receipt.cause, receipt.by};
   const bool has_before = receipt.before != kNoSet;
   return "{\"number\": " + std::to_string(receipt.number) + ", \"from\": " +
          json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
          json_string(std::string(spec.sets[receipt.after].name)) +
          ", \"way\": \"fast\", \"asked_by\": " +
-         json_string(asked.empty() ? asked_by(receipt, spec) : std::string(asked)) + ", \"end\": \"" +
+         json_string(asked.empty() ? asked_by(request, spec) : std::string(asked)) + ", \"end\": \"" +
          word(receipt.end) + "\", \"reason\": " +
          (is_done ? "null" : std::string("\"") + reason_word(receipt.why) + "\"") + ", \"why\": " +
          (is_done ? "null" : json_string(reason_text(receipt, spec))) +

@@ -17,6 +17,9 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
                          std::string_view asked_by = {});
 
+/// Who asks, as receipts say it: "on_miss of pid". Context: setup.
+std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec);
+
 /// Why a switch was refused or aborted: the word of the format, and a sentence. Context: setup.
 const char* reason_word(NoSwitch why) noexcept;
 std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spec);

@@ -182,8 +182,9 @@ void ManagerBackend::switch_to(const Request& request) {
                                               "`chimera status` shows which; ask again when they are ON"));
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
-  driver_.switches().ask(static_cast<std::uint32_t>(set - spec.sets.begin()), control::role_name(request.caller.role),
-                         wait, now(), [this, reply = request.reply](const SwitchOutcome& outcome) {
+  const auto number = static_cast<std::uint32_t>(set - spec.sets.begin());
+  driver_.switches().ask({number, SwitchCause::kScript, {}}, control::role_name(request.caller.role), wait, now(),
+                         [this, reply = request.reply](const SwitchOutcome& outcome) {
                            reply(switch_answer(world(), outcome));
                          });
 }

@@ -114,6 +114,7 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   bell_ = *std::move(bell);
   steps_ = std::make_unique<StepRunner>(*world_, *fleet_, mapped_->channel);
   switches_ = std::make_unique<SwitchCoordinator>(*world_);
+  wishes_ = std::make_unique<SwitchWishes>(*world_, *switches_);
   begun_ = counters_due_ = now();
   say_hello();
   steps_->begin();
@@ -240,6 +241,7 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
   }
   steps_->look(now());
   switches_->look(now());
+  if (is_ready_) wishes_->look(now());
   return true;
 }
 

@@ -106,17 +106,23 @@ void SwitchCoordinator::announce(const SwitchOrder& order) {
   world_.announce();
 }
 
-void SwitchCoordinator::ask(std::uint32_t set, std::string asked_by, Nanoseconds wait, Nanoseconds now,
+bool SwitchCoordinator::is_free() const noexcept {
+  const PlanWord open = agreement().plan();
+  return !present_ && !open.is_open() && (open.number == 0 || is_over(open.number, UINT16_MAX));
+}
+
+void SwitchCoordinator::ask(const SwitchRequest& request, std::string asked_by, Nanoseconds wait, Nanoseconds now,
                             Switched switched) {
+  const std::uint32_t set = request.set;
   SwitchOutcome refused;
   refused.asked_by = asked_by;
   refused.receipt.asked = now;
   refused.receipt.after = set;
+  refused.receipt.cause = request.cause;
+  refused.receipt.by = request.by;
   look(now);
-  const PlanWord open = agreement().plan();
-  const bool is_free = !present_ && !open.is_open() && (open.number == 0 || is_over(open.number, UINT16_MAX));
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  if (is_free) answer = judge(set);
+  if (is_free()) answer = judge(set);
   if (!answer) {
     const bool is_in_force = answer.why == NoSwitch::kNothingToDo;
     if (answer.why == NoSwitch::kUnderWay)
@@ -127,7 +133,7 @@ void SwitchCoordinator::ask(std::uint32_t set, std::string asked_by, Nanoseconds
     return switched(refused);
   }
   const SwitchOrder order = make_order(set, wait, now);
-  present_ = Present{order, std::move(asked_by), now, wait, plan_.before, 1, false, std::move(switched)};
+  present_ = Present{order, request, std::move(asked_by), now, wait, plan_.before, 1, false, std::move(switched)};
   world_.tell("switch", TaskId{}, RtpuId{}, under_way() + ": begun", now);
   announce(order);
 }
@@ -183,6 +189,8 @@ SwitchOutcome SwitchCoordinator::collect(const Present& over, Nanoseconds now) {
   receipt.before = over.before;
   receipt.after = over.order.after;
   receipt.asked = over.asked;
+  receipt.cause = over.request.cause;
+  receipt.by = over.request.by;
   receipt.ended = now;
   receipt.end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
   if (is_committed) receipt.at = agreement().at(word);

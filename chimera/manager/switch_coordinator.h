@@ -35,11 +35,15 @@ class SwitchCoordinator {
  public:
   explicit SwitchCoordinator(ManagerState& world);
 
-  /// Asks for the set of that number. `switched` is called when it is over, maybe at once. `asked_by`: a role and user.
-  void ask(std::uint32_t set, std::string asked_by, Nanoseconds wait, Nanoseconds now, Switched switched);
+  /// Asks for a switch. `switched` is called when it is over, maybe at once. `asked_by`: a role and user, or a task.
+  void ask(const SwitchRequest& request, std::string asked_by, Nanoseconds wait, Nanoseconds now, Switched switched);
   /// Aborts what is under way and not committed; false: there is nothing.
   bool cancel();
   bool is_under_way() const noexcept { return present_.has_value(); }
+  /// One that is asked for now would not be refused as under way; of a manager before this one neither.
+  bool is_free() const noexcept;
+  /// The switch that is under way is to that set.
+  bool leads_to(std::uint32_t set) const noexcept { return present_ && present_->order.after == set; }
   /// "switch 3 to 'hand', asked for by operate:ann"; "" without one.
   std::string under_way() const;
 
@@ -51,6 +55,7 @@ class SwitchCoordinator {
  private:
   struct Present {
     SwitchOrder order;
+    SwitchRequest request;
     std::string asked_by;
     Nanoseconds asked, wait;
     std::uint32_t before = kNoSet;

@@ -23,7 +23,8 @@ struct SwitchCoordinatorTest : ::testing::Test {
   SwitchAgreement agreement() { return {fake.driver().world().page.switching, fake.driver().world().keeper.origin}; }
   void ask(std::uint32_t set) {
     got.reset();
-    coordinator().ask(set, "operate", seconds(10), now(), [this](const SwitchOutcome& outcome) { got = outcome; });
+    coordinator().ask({set, SwitchCause::kScript, {}}, "operate", seconds(10), now(),
+                      [this](const SwitchOutcome& outcome) { got = outcome; });
   }
   SwitchPart& part(std::uint32_t r) { return fake.rtpu(r).block().switch_part(); }
   /// The unit has done what it has to do.
@@ -108,7 +109,8 @@ TEST_F(SwitchCoordinatorTest, ATaskInErrorIsNamed) {
 TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {
   ask(kRest);
   std::optional<SwitchOutcome> second;
-  coordinator().ask(kRest, "configure", seconds(1), now(), [&](const SwitchOutcome& outcome) { second = outcome; });
+  coordinator().ask({kRest, SwitchCause::kScript, {}}, "configure", seconds(1), now(),
+                      [&](const SwitchOutcome& outcome) { second = outcome; });
   ASSERT_TRUE(second);
   EXPECT_EQ(second->receipt.why, NoSwitch::kUnderWay);
   EXPECT_EQ(second->under_way, "switch 1 to 'rest', asked for by operate");
@@ -173,7 +175,8 @@ TEST_F(SwitchCoordinatorTest, WhatIsCancelledIsNotTriedAgain) {
 
 // Its manager is dead, and so may be the units: nobody else would close it.
 TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
-  coordinator().ask(kRest, "operate", milliseconds(1), now(), [](const SwitchOutcome&) {});
+  coordinator().ask({kRest, SwitchCause::kScript, {}}, "operate", milliseconds(1), now(),
+                    [](const SwitchOutcome&) {});
   fake.kill_manager();
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -224,7 +227,8 @@ TEST_F(SwitchCoordinatorTest, AUnitThatDiesBetweenCommitAndChangeComesBackToTheS
 
 TEST_F(SwitchCoordinatorTest, WithoutAnAnswerItIsAbortedBehindItsDeadline) {
   got.reset();
-  coordinator().ask(kRest, "operate", milliseconds(1), now(), [this](const SwitchOutcome& outcome) { got = outcome; });
+  coordinator().ask({kRest, SwitchCause::kScript, {}}, "operate", milliseconds(1), now(),
+                    [this](const SwitchOutcome& outcome) { got = outcome; });
   ASSERT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
   EXPECT_FALSE(got);
   over(0);

@@ -73,7 +73,8 @@ RunOptions CyclingThread::options() {
   options.guest = &place_.edge;
   options.stop = &place_.edge.unit_end().is_over();
   options.writer = &place_.writer;
-  if (!self().preemptive) options.switch_peers = &place_.switching;
+  const bool any_preempts = std::ranges::any_of(place_.spec.rtpus, &RtpuSpec::preemptive);
+  if (!any_preempts) options.switch_peers = &place_.switching;
   return options;
 }
 

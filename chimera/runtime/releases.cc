@@ -17,16 +17,6 @@ bool is_built(OnMiss reaction, bool can_demote, bool can_switch) noexcept {
   return (can_switch || reaction != OnMiss::kSwitch) && (can_demote || reaction != OnMiss::kDemote);
 }
 
-// Receipts of switches that tasks ask for; no more of them are kept.
-constexpr std::size_t kKeptOfRequests = 16;
-
-bool may_request(const ApplicationSpec& spec) noexcept {
-  const auto reacts = [](const TaskSpec& task) {
-    return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch || task.on_fault == OnFault::kSwitch;
-  };
-  return spec.sets.size() > 1 || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
-}
-
 QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
   return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n), memory.take<std::uint32_t>(n)},
           memory.take<QueueTask>(n),
@@ -36,6 +26,13 @@ QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
 }
 
 }  // namespace
+
+bool may_request(const ApplicationSpec& spec) noexcept {
+  const auto reacts = [](const TaskSpec& task) {
+    return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch || task.on_fault == OnFault::kSwitch;
+  };
+  return spec.sets.size() > 1 || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
+}
 
 Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
@@ -54,8 +51,10 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT((n_switches == 0 && options.switch_peers == nullptr) || options.threads == nullptr);
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
-  const bool takes_requests = is_alone && options.threads == nullptr && may_request(set.spec());
-  switching_.prepare(n_switches + (takes_requests ? kKeptOfRequests : 0), options.switch_peers);
+  const bool can_switch = options.threads == nullptr && (is_alone || options.switch_peers != nullptr);
+  const bool takes_requests = can_switch && may_request(set.spec());
+  const bool keeps_receipts = is_alone && takes_requests;
+  switching_.prepare(n_switches + (keeps_receipts ? kKeptOfRequests : 0), options.switch_peers);
   if (takes_requests) set.sent().allow_requests();
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;

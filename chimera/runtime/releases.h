@@ -29,6 +29,11 @@
 
 namespace chimera {
 
+/// A task may ask for a configuration: there is another one, or a reaction leads to one.
+bool may_request(const ApplicationSpec& spec) noexcept;
+/// Of switches that tasks ask for; no more receipts of them are kept.
+inline constexpr std::size_t kKeptOfRequests = 16;
+
 /// Owns the parts, which work in the memory that the set was built in. Context of everything not marked: cycle; no
 /// allocation, no system call.
 class Releases {

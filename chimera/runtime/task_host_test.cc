@@ -122,7 +122,7 @@ TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
   const_cast<ApplicationSpec&>(set->spec()).sets = sets;
   EXPECT_EQ(host().request(context(), "far"), CHIMERA_FAULT);
   EXPECT_STREQ(task().faults.note,
-               "asks for the configuration 'far': a switch of tasks in several processes cannot be done yet");
+               "asks for the configuration 'far': a switch with a preemptive rtpu in real time cannot be done yet");
   EXPECT_EQ(task().requested_set, kNoRequest);
   set->sent().allow_requests();
   task().has_news = false;

@@ -8,10 +8,6 @@
 namespace chimera {
 namespace {
 
-const char* fault_reaction(OnFault kind) {
-  return kind == OnFault::kFlag ? "flag" : kind == OnFault::kStop ? "stop" : "switch";
-}
-
 class Refusals {
  public:
   Refusals(const Configuration& configuration, Executor executor)
@@ -76,13 +72,14 @@ class Refusals {
     refuse(reaction->at, what, std::string(remedy) + ", or use another reaction");
   }
 
-  // What acts on tasks of other processes.
+  // Where it has to be carried out by an rtpu that does not take part in switches.
   void switches(Place at, const std::string& reaction, const DraftTask& task) {
-    if (is_virtual() && are_on_several_rtpus())
-      refuse(at, reaction + " of task '" + task.name.text + "' on several rtpus in virtual time",
-             "run with --isolation none, or use another reaction");
     if (executor_ != Executor::kProcesses) return;
-    refuse(at, reaction + " of task '" + task.name.text + "' where tasks are in several processes",
+    const auto rtpus = configuration_.rtpus();
+    const auto preempts = std::find_if(rtpus.begin(), rtpus.end(), [](const RtpuSpec& r) { return r.preemptive; });
+    if (preempts == rtpus.end()) return;
+    refuse(at, reaction + " of task '" + task.name.text + "' with the preemptive rtpu '" + std::string(preempts->name) +
+                   "' in real time",
            "run with --virtual or --isolation none, or use another reaction");
   }
 
@@ -95,12 +92,6 @@ class Refusals {
     std::string remedy = executor_ == Executor::kVirtual ? "run --virtual --preemptive, or give" : "give";
     if (executor_ == Executor::kOneProcess) remedy = "run without --isolation none, and give";
     refuse(task.server->at, "'server' of task '" + task.name.text + "'", remedy + " its rtpu 'executor: preemptive'");
-  }
-
-  // Read by switches alone.
-  bool are_on_several_rtpus() const {
-    const auto tasks = configuration_.tasks();
-    return std::any_of(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu != tasks[0].rtpu; });
   }
 
   void max_step(const NamedNode& step, const DraftTask& task, bool is_preemptive) {
@@ -116,8 +107,8 @@ class Refusals {
     const bool preempts = here != tasks.end() && is_preemptive(here->rtpu);
     reaction(task.on_miss, "on_miss", task, preempts);
     reaction(task.on_overrun, "on_overrun", task, preempts);
-    if (task.on_fault && task.on_fault->kind != OnFault::kError)
-      switches(task.on_fault->at, "'on_fault: " + std::string(fault_reaction(task.on_fault->kind)) + "'", task);
+    if (task.on_fault && task.on_fault->kind == OnFault::kSwitch)
+      switches(task.on_fault->at, "'on_fault: switch'", task);
     server(task, preempts, here != tasks.end() && here->has_event_source);
     if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
     if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);

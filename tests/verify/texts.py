@@ -17,12 +17,10 @@ CALLED = (
     (": demote' of task", "`demote`"),
     ("from a descriptor, in virtual time", "in virtual time events from a descriptor"),
     ("'server' of task", "in an executive `server`"),
-    ("\"on_fault\", task", "`on_fault` other than `error`"),
     ("\"stale_after\", task", "`stale_after`"),
     ("\"standby_for\", task", "`standby_for`"),
     ("on a preemptive rtpu", "`max_step` on a preemptive rtpu"),
-    ("where tasks are in several processes", "in several processes, or on several rtpus in virtual time"),
-    ("on several rtpus in virtual time", "or on several rtpus in virtual time"),
+    ("with the preemptive rtpu", "with a preemptive rtpu in real time"),
     ("'stack' of task", "`stack`"),
     ("\"isolation: process\", task", "`isolation: process` of a task"),
 )
