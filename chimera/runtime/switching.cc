@@ -218,7 +218,8 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
     now = parts_.clock.now();
     record_.receipt().armed = now;
   }
-  if (now > edge) {  // what came meanwhile goes first: a signal may abort the plan
+  const Nanoseconds armed = record_.receipt().armed;
+  if (armed != kNever && armed > edge) {  // what came meanwhile goes first: a signal may abort the plan
     due_ = wake_ = now;
     return;
   }

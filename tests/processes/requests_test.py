@@ -37,6 +37,7 @@ tasks:
     component: t_thrower
     rtpu: second
     rate: 100 Hz
+    alias: {count: n}
     constants: {where: cycle, how: 3, at: 100, recovers: false}
     on_fault: REACTION
   beside: {component: t_source, rtpu: second, rate: 100 Hz}
@@ -84,8 +85,13 @@ class Requests(unittest.TestCase):
             self.assertEqual(receipt["why"], "'seen' is 9, and safe_when of 'high' asks for seen < 8")
             self.assertEqual(on(system), SETS["low"])
             answers = []
-            asking = threading.Thread(
-                target=lambda: answers.append(Client(system.socket, 30).call("switch", configuration="high")))
+
+            def ask():
+                client = Client(system.socket, 30)
+                answers.append(client.call("switch", configuration="high"))
+                client.close()
+
+            asking = threading.Thread(target=ask)
             asking.start()
             time.sleep(0.3)
             self.assertEqual(on(system), SETS["low"])
