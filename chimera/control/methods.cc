@@ -58,7 +58,8 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kSet, "set", Role::kOperate, true, false, {{"values", Kind::kObject, true}}},
     {MethodId::kFlag, "flag", Role::kOperate, true, false, {{"up", Kind::kBool, true}}},
     {MethodId::kSwitch, "switch", Role::kOperate, true, false,
-     {{"configuration", Kind::kText, true}, count("wait_ms", 1, 600'000)}},
+     {{"configuration", Kind::kText, false}, count("wait_ms", 1, 600'000), {"on", Kind::kTexts, false},
+      {"off", Kind::kTexts, false}}},
     {MethodId::kSave, "save", Role::kConfigure, true, false, {}},
     {MethodId::kEnd, "end", Role::kConfigure, true, false, {count("code", 0, 255)}},
 };

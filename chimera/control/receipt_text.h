@@ -17,6 +17,9 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
                          std::string_view asked_by = {});
 
+/// "'hand'"; of kNoSet "other tasks". Context: setup.
+std::string set_text(std::uint32_t set, const ApplicationSpec& spec);
+
 /// Who asks, as receipts say it: "on_miss of pid". Context: setup.
 std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec);
 

@@ -10,6 +10,7 @@
 #include "chimera/manager/command_text.h"
 #include "chimera/control/receipt_text.h"
 #include "chimera/manager/operator_acts.h"
+#include "chimera/runtime/hosted/asked_set.h"
 
 namespace chimera::manager {
 namespace {
@@ -44,6 +45,39 @@ RpcResponse no_answer(const ManagerState& world, RtpuId rtpu, const std::string&
                        {{"rtpu", world.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
 }
 
+std::variant<TaskBits, RpcResponse> named_set(const ApplicationSpec& spec, const std::string& name) {
+  const auto set = std::ranges::find(spec.sets, std::string_view(name), &NamedSet::name);
+  if (set != spec.sets.end()) return tasks_of(spec, static_cast<std::uint32_t>(set - spec.sets.begin()));
+  std::vector<std::string> names;
+  for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
+  const std::string near = nearest(name, names);
+  return RpcResponse::unknown("no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                              name, near);
+}
+
+/// What `switch` asks for: a configuration, or what is ON and `on` without `off`.
+std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& world, const Json& parameters) {
+  const bool is_named = parameters.contains("configuration");
+  const bool is_listed = parameters.contains("on") || parameters.contains("off");
+  if (is_named == is_listed)
+    return RpcResponse::error(control::kBadParameters, "either 'configuration', or 'on' and 'off'",
+                              {{"where", is_named ? "configuration" : "on"}});
+  if (is_named) return named_set(world.spec(), parameters.at("configuration"));
+  std::vector<TaskId> lists[2];
+  const char* const keys[] = {"on", "off"};
+  for (const int i : {0, 1}) {
+    if (!parameters.contains(keys[i])) continue;
+    auto found = tasks_named(world, control::texts(parameters, keys[i]));
+    if (auto* refused = std::get_if<RpcResponse>(&found)) return std::move(*refused);
+    lists[i] = std::get<0>(std::move(found));
+  }
+  std::vector<bool> on(world.spec().tasks.size());
+  for (std::size_t t = 0; t < on.size(); ++t) on[t] = world.state(TaskId(t)) == State::kOn;
+  AskedSet asked = asked_set(world.spec(), std::move(on), lists[0], lists[1]);
+  if (asked) return asked.tasks;
+  return RpcResponse::refused("set", asked.why, "", asked.remedy);
+}
+
 }  // namespace
 
 RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer) {
@@ -66,7 +100,8 @@ RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAns
 
 RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome) {
   const SwitchReceipt& receipt = outcome.receipt;
-  const std::string to(world.spec().sets[receipt.after].name);
+  const bool is_named = receipt.after != kNoSet;
+  const Json to = is_named ? Json(std::string(world.spec().sets[receipt.after].name)) : Json();
   if (receipt.end == SwitchEnd::kNothingToDo) return RpcResponse::good({{"to", to}, {"end", "nothing-to-do"}});
   if (receipt.end != SwitchEnd::kRefused)
     return RpcResponse::ready(std::make_shared<const std::string>(
@@ -77,7 +112,8 @@ RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcom
   const char* remedy = receipt.why == NoSwitch::kInError      ? "`chimera clear"
                        : receipt.why == NoSwitch::kNotCreated ? "`chimera spawn"
                                                               : nullptr;
-  return RpcResponse::refused(control::reason_word(receipt.why), "switch to '" + to + "' is refused: " + why, task,
+  const std::string what = "switch to " + control::set_text(receipt.after, world.spec()) + " is refused: " + why;
+  return RpcResponse::refused(control::reason_word(receipt.why), what, task,
                               remedy == nullptr ? "" : std::string(remedy) + " " + task + "`");
 }
 
@@ -162,15 +198,8 @@ void ManagerBackend::flag(const Request& request) { request.reply(set_flag(world
 
 void ManagerBackend::switch_to(const Request& request) {
   const ApplicationSpec& spec = world().spec();
-  const std::string name = request.parameters.at("configuration");
-  const auto set = std::ranges::find(spec.sets, std::string_view(name), &NamedSet::name);
-  if (set == spec.sets.end()) {
-    std::vector<std::string> names;
-    for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
-    const std::string near = nearest(name, names);
-    return request.reply(RpcResponse::unknown(
-        "no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
-  }
+  auto wanted = wanted_tasks(world(), request.parameters);
+  if (const auto* refused = std::get_if<RpcResponse>(&wanted)) return request.reply(*refused);
   if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   for (const RtpuSpec& rtpu : spec.rtpus)
     if (rtpu.preemptive)
@@ -182,8 +211,11 @@ void ManagerBackend::switch_to(const Request& request) {
                                               "`chimera status` shows which; ask again when they are ON"));
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
-  const auto number = static_cast<std::uint32_t>(set - spec.sets.begin());
-  driver_.switches().ask({number, SwitchCause::kScript, {}}, control::role_name(request.caller.role), wait, now(),
+  const TaskBits target = std::get<TaskBits>(wanted);
+  std::uint32_t set = kNoSet;
+  for (std::uint32_t s = 0; s < spec.sets.size(); ++s)
+    if (tasks_of(spec, s) == target) set = s;
+  driver_.switches().ask({set, SwitchCause::kScript, {}}, target, control::role_name(request.caller.role), wait, now(),
                          [this, reply = request.reply](const SwitchOutcome& outcome) {
                            reply(switch_answer(world(), outcome));
                          });

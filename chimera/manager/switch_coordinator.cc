@@ -39,8 +39,7 @@ TaskStatus last_status(const ManagerState& world, TaskId task) {
   if (plan.phase != SwitchPhase::kCommitted || !was_member || !world.peers[rtpu].is_there()) return status;
   const SwitchProgress& progress = world.peers[rtpu].block().head().switching;
   if (progress.adopted.load(std::memory_order_acquire) == plan.number) return status;  // SwitchProgress
-  const auto after = world.spec().sets[order->after].order;
-  const bool is_after = std::ranges::find(after, task) != after.end();
+  const bool is_after = order->target.has(task);
   if (is_after && status.state == State::kOff) status.state = State::kOn;
   if (!is_after && status.state == State::kOn) status.state = State::kOff;
   return status;
@@ -52,8 +51,8 @@ SwitchCoordinator::SwitchCoordinator(ManagerState& world) : world_(world), stand
 
 std::string SwitchCoordinator::under_way() const {
   if (!present_) return "";
-  return "switch " + std::to_string(present_->order.number) + " to '" +
-         std::string(world_.spec().sets[present_->order.after].name) + "', asked for by " + present_->asked_by;
+  return "switch " + std::to_string(present_->order.number) + " to " +
+         control::set_text(present_->order.after, world_.spec()) + ", asked for by " + present_->asked_by;
 }
 
 // Those that live and serve this manager have done what they have to do.
@@ -66,7 +65,7 @@ bool SwitchCoordinator::is_over(std::uint16_t number, std::uint16_t members) con
   return true;
 }
 
-PlanAnswer SwitchCoordinator::judge(std::uint32_t set) {
+PlanAnswer SwitchCoordinator::judge(const TaskBits& target) {
   for (std::size_t t = 0; t < standing_.size(); ++t) {
     const TaskId task(t);
     const RtpuRecord& rtpu = world_.rtpus[world_.spec().tasks[t].rtpu.index];
@@ -74,7 +73,7 @@ PlanAnswer SwitchCoordinator::judge(std::uint32_t set) {
     const bool is_dead = !rtpu.is_alive && state != State::kNotCreated;
     standing_[t] = {is_dead ? State::kError : state, world_.peers.status(task).in_service};
   }
-  return planner_.plan(set, standing_, plan_);
+  return planner_.plan(target, standing_, plan_);
 }
 
 Nanoseconds SwitchCoordinator::lead() const noexcept {
@@ -88,12 +87,14 @@ Nanoseconds SwitchCoordinator::lead() const noexcept {
   return std::max(kLeastLead, longest + kBeyondLongestJob);
 }
 
-SwitchOrder SwitchCoordinator::make_order(std::uint32_t set, Nanoseconds wait, Nanoseconds now) {
+// Of the plan that was judged last.
+SwitchOrder SwitchCoordinator::make_order(const TaskBits& target, Nanoseconds wait, Nanoseconds now) {
   SwitchOrder order;
   order.number = next_plan(agreement().plan().number);
   for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r)
     if (world_.rtpus[r].is_alive) order.members = static_cast<std::uint16_t>(order.members | 1u << r);
-  order.after = set;
+  order.after = plan_.after;
+  order.target = target;
   order.until = now + wait;
   order.lead = lead();
   for (std::size_t t = 0; t < standing_.size(); ++t)
@@ -111,18 +112,17 @@ bool SwitchCoordinator::is_free() const noexcept {
   return !present_ && !open.is_open() && (open.number == 0 || is_over(open.number, UINT16_MAX));
 }
 
-void SwitchCoordinator::ask(const SwitchRequest& request, std::string asked_by, Nanoseconds wait, Nanoseconds now,
-                            Switched switched) {
-  const std::uint32_t set = request.set;
+void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target, std::string asked_by,
+                            Nanoseconds wait, Nanoseconds now, Switched switched) {
   SwitchOutcome refused;
   refused.asked_by = asked_by;
   refused.receipt.asked = now;
-  refused.receipt.after = set;
+  refused.receipt.after = request.set;
   refused.receipt.cause = request.cause;
   refused.receipt.by = request.by;
   look(now);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  if (is_free()) answer = judge(set);
+  if (is_free()) answer = judge(target);
   if (!answer) {
     const bool is_in_force = answer.why == NoSwitch::kNothingToDo;
     if (answer.why == NoSwitch::kUnderWay)
@@ -132,7 +132,7 @@ void SwitchCoordinator::ask(const SwitchRequest& request, std::string asked_by, 
     refused.receipt.task = answer.task;
     return switched(refused);
   }
-  const SwitchOrder order = make_order(set, wait, now);
+  const SwitchOrder order = make_order(target, wait, now);
   present_ = Present{order, request, std::move(asked_by), now, wait, plan_.before, 1, false, std::move(switched)};
   world_.tell("switch", TaskId{}, RtpuId{}, under_way() + ": begun", now);
   announce(order);
@@ -165,9 +165,9 @@ void SwitchCoordinator::look(Nanoseconds now) {
   if (agreement().plan().is_open() || !is_over(order.number, order.members)) return;
   SwitchOutcome outcome = collect(*present_, now);
   const bool was_late = outcome.receipt.why == NoSwitch::kLate && now < order.until;
-  if (was_late && !present_->is_cancelled && present_->tries < kMostTries && judge(order.after)) {
+  if (was_late && !present_->is_cancelled && present_->tries < kMostTries && judge(order.target)) {
     ++present_->tries;
-    present_->order = make_order(order.after, order.until - now, now);
+    present_->order = make_order(order.target, order.until - now, now);
     present_->order.lead = present_->order.lead * present_->tries;
     return announce(present_->order);
   }

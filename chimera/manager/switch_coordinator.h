@@ -35,8 +35,14 @@ class SwitchCoordinator {
  public:
   explicit SwitchCoordinator(ManagerState& world);
 
-  /// Asks for a switch. `switched` is called when it is over, maybe at once. `asked_by`: a role and user, or a task.
-  void ask(const SwitchRequest& request, std::string asked_by, Nanoseconds wait, Nanoseconds now, Switched switched);
+  /// Asks for a switch to a configuration. `switched` is called when it is over, maybe at once. `asked_by`: a role and
+  /// user, or a task.
+  void ask(const SwitchRequest& request, std::string asked_by, Nanoseconds wait, Nanoseconds now, Switched switched) {
+    ask(request, tasks_of(world_.spec(), request.set), std::move(asked_by), wait, now, std::move(switched));
+  }
+  /// The same to any set of tasks that is legal; request.set is its number or kNoSet.
+  void ask(const SwitchRequest& request, const TaskBits& target, std::string asked_by, Nanoseconds wait,
+           Nanoseconds now, Switched switched);
   /// Aborts what is under way and not committed; false: there is nothing.
   bool cancel();
   bool is_under_way() const noexcept { return present_.has_value(); }
@@ -68,8 +74,8 @@ class SwitchCoordinator {
   /// When the plan that is open and not of this manager is past its deadline; kNever: there is none.
   Nanoseconds orphan_due() const noexcept;
   bool is_over(std::uint16_t number, std::uint16_t members) const noexcept;
-  PlanAnswer judge(std::uint32_t set);
-  SwitchOrder make_order(std::uint32_t set, Nanoseconds wait, Nanoseconds now);
+  PlanAnswer judge(const TaskBits& target);
+  SwitchOrder make_order(const TaskBits& target, Nanoseconds wait, Nanoseconds now);
   Nanoseconds lead() const noexcept;
   void announce(const SwitchOrder& order);
   SwitchOutcome collect(const Present& over, Nanoseconds now);

@@ -127,7 +127,11 @@ CommandResult save(Session& session, const Call& call, const Screen&) {
 }
 
 CommandResult switch_to(Session& session, const Call& call, const Screen&) {
-  Json parameters{{"configuration", call.operands[0]}};
+  Json parameters = Json::object();
+  if (!call.operands.empty()) parameters["configuration"] = call.operands[0];
+  if (call.has("--on")) parameters["on"] = call.values("--on");
+  if (call.has("--off")) parameters["off"] = call.values("--off");
+  if (parameters.empty()) return wrong("switch: name a configuration, or tasks with --on and --off", call.json);
   if (call.has("--wait")) {
     const auto wait = parse_duration(call.value("--wait"));
     if (!wait) return wrong("--wait: " + std::string(wait.error().message.view()), call.json);

@@ -84,6 +84,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   order.number = next_plan(agreement().plan().number);
   order.members = living();
   order.after = request.set;
+  order.target = tasks_of(peers_.spec(), request.set);
   order.until = now + kPatience;
   order.lead = lead();
   agreement().announce(order);
