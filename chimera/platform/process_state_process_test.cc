@@ -31,9 +31,13 @@ TEST(ProcessState, TellsWhoWaitsFromWhoIsStopped) {
 
 TEST(ProcessState, CountsTheTimeThatItUsed) {
   const Nanoseconds before = process_state(::getpid()).used;
-  timespec used{};
-  do ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
-  while (used.tv_sec == 0 && used.tv_nsec < 60'000'000);
+  const auto used = [] {
+    timespec now{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return seconds(now.tv_sec) + Nanoseconds{now.tv_nsec};
+  };
+  for (const Nanoseconds end = used() + milliseconds(60); used() < end;) {
+  }
   EXPECT_GE(process_state(::getpid()).used, before + milliseconds(30));
   EXPECT_EQ(process_state(::getpid()).letter, 'R');
 }
