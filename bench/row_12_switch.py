@@ -2,7 +2,7 @@
 # Needs: demo component_gain_files component_t_delays_files component_mujoco_robot_files
 """Row 12, a switch of configurations. 100 tasks at 1 kHz on two real-time units, 25 of each unit leave and as many
 others arrive, there and back: from the return of the last `on` to the instant of the change, in periods, and how many
-cycles were lost by all of them. Baseline, in turn with it: the same change by `off` and then `on` of the same tasks.
+cycles were lost by all of them. Baseline of the whole command, right behind it: the same change by `off`, then `on`.
 Then what one task of a unit feels while a large component (mujoco_robot) is loaded there or goes: the longest start
 delay in windows of 0.5 s, beside as long ones in which nothing happens, and those twice (A/A)."""
 import json
@@ -88,7 +88,7 @@ def stalls():
                     system.signal("spawn", "large")
                 time.sleep(max(0, end - time.monotonic()))
                 system.signal("off", "probe")
-                counts = system.call("get", variables=["of_probe"])["values"][0]["value"]
+                counts = system.call("get", variables=["of_probe"])["values"]["of_probe"]["value"]
                 assert sum(counts) > SECONDS * 900, f"the probe did not run: {sum(counts)}"
                 seen.append(upper_end(counts))
     return found
@@ -103,7 +103,8 @@ print(json.dumps({"row": 12, "what": "cycles lost by 150 tasks", "unit": "", "fi
                   "baseline_name": "promised", "goal": "0", "met": LOST == 0, "n": SWITCHES}))
 print(json.dumps({"row": 12, "what": f"the whole command, p50 (p99 {percentile(TOOK, 0.99):.1f})", "unit": "ms",
                   "figure": round(statistics.median(TOOK), 2), "baseline": round(statistics.median(RESTARTED), 2),
-                  "baseline_name": "off, then on", "goal": "told", "met": True, "n": SWITCHES}))
+                  "baseline_name": "off, then on", "goal": "not slower",
+                  "met": statistics.median(TOOK) <= statistics.median(RESTARTED), "n": SWITCHES}))
 SEEN = stalls()
 RATIOS = {what: sorted(one / other for one, other in zip(SEEN[what], SEEN["nothing"])) for what in ("control", "large")}
 RATIO, LIMIT = statistics.median(RATIOS["large"]), RATIOS["control"][WINDOWS * 9 // 10]
