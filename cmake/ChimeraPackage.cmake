@@ -28,7 +28,7 @@ endforeach()
 install(FILES ${CMAKE_BINARY_DIR}/installed/chimeraConfig.cmake cmake/ChimeraComponent.cmake
   ${CMAKE_BINARY_DIR}/lib/cmake/chimera/chimeraConfigVersion.cmake DESTINATION lib/cmake/chimera COMPONENT sdk)
 install(FILES ${CMAKE_BINARY_DIR}/chimera/base/libchimera_base.a DESTINATION lib COMPONENT sdk)
-foreach(program chimera chimera-rtpu chimera-manager chimera-describe)
+foreach(program chimera chimera-guard chimera-rtpu chimera-manager chimera-describe)
   install(PROGRAMS ${CMAKE_BINARY_DIR}/bin/${program} DESTINATION bin COMPONENT sdk)
 endforeach()
 install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk PATTERN completion EXCLUDE)

@@ -11,8 +11,8 @@ import sources  # noqa: E402
 
 FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "rtpu": 6,
          "text": 6, "units": 7, "description": 8, "catalogue": 9, "verify": 10, "analysis": 11,
-         "keeper": 12, "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "cli": 13, "manager": 13,
-         "record": 13}
+         "keeper": 12, "guard": 12, "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "cli": 13,
+         "manager": 13, "record": 13}
 # Floors inside of one folder: a subfolder imports only those with lower numbers.
 INSIDE = {"cli": {"command": 0, "files": 1, "live": 1, "run": 2, "batch": 3}}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
@@ -63,6 +63,7 @@ TESTS = re.compile(r"^(tests|bench)/|/testing/|_(test|fuzz|stress)\.cc$")
 # Included by tests alone, and yet no support of our tests.
 OFFERED = {"chimera/task/rig.h": "the authors of components test with it",
            "chimera/task/rig_ports.h": "a part of rig.h",
+           "chimera/task/rig_safe_frames.h": "a part of rig.h",
            "chimera/platform/virtual/virtual_clock.h": "the Clock for machines without one"}
 
 

@@ -36,6 +36,7 @@ def row(port):
     repeated = "max_instances" in port
     name = f"`{port['name']}{'*' if repeated else ''}`"
     kind = port["kind"] + (", safety" if port.get("safety") else "")
+    kind += ", safe state" if port.get("safe_state") and port["kind"] != "resource" else ""
     if repeated:
         kind += f", up to {port['max_instances']}"
     if port["kind"] == "resource":

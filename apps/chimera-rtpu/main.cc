@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   start.decision_page = chimera::kDecisionPageDescriptor;
   start.keeper_page = chimera::kKeeperPageDescriptor;
   start.objects = chimera::kObjectsDescriptor;
+  start.guard = static_cast<int>(number(argc, argv, "--guard"));
   int code = 1;
   try {
     code = chimera::run_rtpu(start);

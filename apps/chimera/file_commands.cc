@@ -16,7 +16,12 @@ using cli::WordKind;
 namespace {
 
 int check(const Call& call, const cli::Workplace& workplace) {
-  return print(cli::check({call.operand(0), call.json, call.value("--graph"), settings_of(call)}, workplace));
+  return print(cli::check({.file = call.operand(0),
+                           .json = call.json,
+                           .graph = call.value("--graph"),
+                           .modes = call.has("--modes"),
+                           .settings = settings_of(call)},
+                          workplace));
 }
 
 int schedule(const Call& call, const cli::Workplace& workplace) {
@@ -67,7 +72,13 @@ FileCommand check_row() {
                                  .help = "draw it instead: dot, svg or text",
                                  .manual = "Draws the application instead: `dot`, `svg` or `text`.",
                                  .kind = WordKind::kOneOf,
-                                 .words = "dot svg text"}},
+                                 .words = "dot svg text"},
+                                {.name = "--modes",
+                                 .help = "judge the switches between its configurations instead",
+                                 .manual = "Judges the switch from each configuration to each other instead: who asks "
+                                           "for it without a person, and whether every deadline holds over it. Exit "
+                                           "code 1 also when a switch that a reaction asks for would be refused.",
+                                 .excludes = "--graph"}},
                     .json = "the report as one JSON object",
                     .example = "chimera check examples/01_puma_pid/puma_pid.yaml --graph svg > puma.svg",
                     .manual = "Reads the description FILE and prints every fault with its place, or the verdict that "

@@ -84,6 +84,20 @@ std::vector<std::string> face_of(const KeepRequest& request, const cli::RunPlan&
   return words;
 }
 
+bool has_device(const cli::RunPlan& plan) {
+  return std::ranges::any_of(plan.configuration.tasks(), &ConfiguredTask::is_hardware);
+}
+
+/// "TASK:PERIODS" of each task that may not be silent for long.
+std::vector<std::string> limits_of(const cli::RunPlan& plan) {
+  std::vector<std::string> limits;
+  const auto& tasks = plan.configuration.draft().tasks;
+  for (std::size_t t = 0; t < tasks.size(); ++t)
+    if (tasks[t].safe_after && tasks[t].safe_after->value > 0)
+      limits.push_back(std::to_string(t) + ":" + std::to_string(tasks[t].safe_after->value));
+  return limits;
+}
+
 /// Beside this program.
 std::string sibling(const char* name) {
   const std::string mine = cli::program_path();
@@ -107,6 +121,8 @@ Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
   const auto n_rtpus = static_cast<std::uint32_t>(plan.configuration.rtpus().size());
   Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"),
                            .manager_program = sibling("chimera-manager"),
+                           .guard_program = has_device(plan) ? sibling("chimera-guard") : "",
+                           .guard_limits = limits_of(plan),
                            .n_rtpus = n_rtpus,
                            .image = image->descriptor(),
                            .objects = objects->descriptor(),

@@ -70,6 +70,8 @@ std::string task_json(const TaskProfile& task, Nanoseconds origin) {
                      ", \"transfer\": {\"groups\": " + number(task.transfer.groups) +
                      ", \"bytes\": " + number(task.transfer.bytes) + "}";
   for (const Counter& counter : kCounters) text += ", " + json_string(counter.key) + ": " + number(p.*counter.count);
+  if (p.restarts > 0) text += ", \"restarts\": " + number(p.restarts);
+  if (p.takeovers > 0) text += ", \"takeovers\": " + number(p.takeovers);
   text += ", \"faults\": " + number(task.faults.count);
   if (task.faults.count > 0) text += ", \"last_fault\": " + fault_json(task.faults, origin);
   if (task.faults.notes > 0) text += std::string(", \"note\": ") + json_string(task.faults.note);

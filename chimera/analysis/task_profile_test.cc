@@ -59,6 +59,15 @@ TEST(TaskProfile, ReadsAsDocumented) {
             "\"note\": \"without its fan\"}]");
 }
 
+TEST(TaskProfile, SaysWhatCameBackOnlyWhereSomethingDid) {
+  TaskProfile task = sample();
+  EXPECT_EQ(profile_json({&task, 1}, kOrigin).find("takeovers"), std::string::npos);
+  task.profile.restarts = 2;
+  task.profile.takeovers = 1;
+  EXPECT_NE(profile_json({&task, 1}, kOrigin).find("\"restarts\": 2, \"takeovers\": 1, \"faults\": 1"),
+            std::string::npos);
+}
+
 TEST(TaskProfile, ReadsBackTheSame) {
   const TaskProfile task = sample();
   const std::string json = profile_json({&task, 1}, kOrigin);

@@ -54,7 +54,10 @@ Descriptor rich() {
   pose.initial = bytes<double>({0, -0.0, 1e-300});
   pose.initial[0] = std::byte{1};
   PortDescriptor file{.name = "file", .kind = CHIMERA_RESOURCE, .type = CHIMERA_STRING, .element_size = 256};
-  d.ports = {q, tau, ndof, big, bigger, narrow, label, mode, many, pose, file};
+  file.safe_state = true;
+  PortDescriptor held{.name = "held", .kind = CHIMERA_OUT_VAR, .type = CHIMERA_BOOL, .element_size = 1};
+  held.safe_state = true;
+  d.ports = {held, q, tau, ndof, big, bigger, narrow, label, mode, many, pose, file};
   const auto sound = complete(d);
   EXPECT_TRUE(sound) << (sound ? "" : sound.error().message.c_str());
   return d;

@@ -15,6 +15,7 @@ namespace chimera::control {
 struct Caller {
   Role role = Role::kNone;
   std::uint64_t connection = 0;  ///< number of the connection; never used again for another one
+  std::uint32_t user = 0;        ///< its number in the system
 };
 
 /// Called by ControlServer::serve() only, on its thread; must not throw and must not call the door back from within,

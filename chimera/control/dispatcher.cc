@@ -162,7 +162,7 @@ void Dispatcher::carry_out(Connection& connection, const Request& request, Nanos
   if (rule->id == MethodId::kUnsubscribe)
     return answer(connection, request, subscriptions_.close(connection.number(), *request.parameters));
   auto call = std::make_shared<Call>(*this, connection, request, rule->is_act);
-  backend_.call(*rule, *request.parameters, {connection.peer().role, connection.number()},
+  backend_.call(*rule, *request.parameters, {connection.peer().role, connection.number(), connection.peer().user},
                 [call = std::move(call)](const RpcResponse& said) { call->finish(said); });
 }
 

@@ -25,8 +25,8 @@ struct Parameter {
 
 /// Which function carries a method out: the key of a ControlBackend's table.
 enum class MethodId : unsigned char {
-  kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kWhy, kSubscribe, kUnsubscribe, kCheck, kSchedule, kLibrary,
-  kSignal, kRing, kSet, kFlag, kSwitch, kSave, kEnd
+  kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kReceipts, kWhy, kPlan, kSubscribe, kUnsubscribe, kCheck,
+  kSchedule, kLibrary, kSignal, kRing, kSet, kFlag, kSwitch, kCancel, kDrill, kSave, kEnd
 };
 
 struct MethodRule {

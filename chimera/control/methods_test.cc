@@ -68,7 +68,7 @@ TEST(Methods, ThatActAreForOperatorsAndNeverSentTwice) {
     acts += rule.is_act ? std::string(" ") + rule.name : "";
     EXPECT_EQ(static_cast<std::ptrdiff_t>(rule.id), &rule - methods().data()) << rule.name << ": keys of a table";
   }
-  EXPECT_EQ(acts, " signal ring set flag switch save end");
+  EXPECT_EQ(acts, " signal ring set flag switch cancel drill save end");
   EXPECT_EQ(find_method("nothing"), nullptr);
 }
 

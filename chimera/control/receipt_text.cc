@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "chimera/text/json_text.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::control {
 namespace {
@@ -44,14 +45,28 @@ const char* word(TaskMove move) {
   return "?";
 }
 
-/// The variables of a receipt with the unit of their values.
-std::string unit_of(const VariablePart& part, const ApplicationSpec& spec) {
-  std::uint32_t outs = 0;
-  for (const PortSpec& port : spec.tasks[part.handover.to.task.index].ports)
-    if (port.kind == CHIMERA_OUT_VAR && outs++ == part.handover.to.index)
-      return port.unit == "1" ? "" : " " + std::string(port.unit);
-  return {};
+/// The port of that kind; null: there is none.
+const PortSpec* find_port(const PortOf& of, int kind, const ApplicationSpec& spec) {
+  std::uint32_t n = 0;
+  for (const PortSpec& port : spec.tasks[of.task.index].ports)
+    if (port.kind == static_cast<std::uint32_t>(kind) && n++ == of.index) return &port;
+  return nullptr;
 }
+
+/// Of a task that produces the variable, else of one that reads it.
+const PortSpec* port_of(const Variable& variable, const ApplicationSpec& spec) {
+  if (!variable.producers.empty()) return find_port(variable.producers[0], CHIMERA_OUT_VAR, spec);
+  return variable.consumers.empty() ? nullptr : find_port(variable.consumers[0], CHIMERA_IN_VAR, spec);
+}
+
+std::string unit_of(const VariablePart& part, const ApplicationSpec& spec) {
+  const PortSpec* const port = find_port(part.handover.to, CHIMERA_OUT_VAR, spec);
+  return port == nullptr ? "1" : std::string(port->unit);
+}
+
+/// Behind a number.
+std::string unit_text(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
+std::string unit_text(const VariablePart& part, const ApplicationSpec& spec) { return unit_text(unit_of(part, spec)); }
 
 std::string step_text(const ValueStep& step, const std::string& unit) {
   return number(step.size) + unit + (step.limit > 0 ? ", limit " + number(step.limit) + unit : "");
@@ -67,6 +82,31 @@ std::string asked_by(const SwitchReceipt& receipt, const ApplicationSpec& spec) 
     case SwitchCause::kFault: return "on_fault of " + name;
   }
   return "?";
+}
+
+std::string json_asked_by(const SwitchReceipt& receipt, const ApplicationSpec& spec, const std::string& person) {
+  if (const std::size_t colon = person.find(':'); colon != std::string::npos)
+    return "{\"role\": " + json_string(person.substr(0, colon)) + ", \"user\": " +
+           json_string(person.substr(colon + 1)) + "}";
+  if (receipt.cause == SwitchCause::kScript) return "{\"script\": \"--at\"}";
+  const std::string task = "\"task\": " + json_string(std::string(spec.tasks[receipt.by.index].name)) + "}";
+  if (receipt.cause == SwitchCause::kRequest) return "{" + task;
+  const std::string by = asked_by(receipt, spec);
+  return "{\"reaction\": " + json_string(by.substr(0, by.find(' '))) + ", " + task;
+}
+
+/// "'speed' is 3 rad/s, and safe_when of 'hand' asks for speed < 0.1 rad/s".
+std::string unsafe_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const NamedSet& set = spec.sets[receipt.after];
+  const SafeCondition& asked = set.safe_when;
+  if (!asked.is_there() || receipt.variable != asked.variable) return reason_word(receipt.why);
+  const PortSpec* const port = port_of(spec.variables[asked.variable.index], spec);
+  const std::string unit = port == nullptr ? "" : unit_text(std::string(port->unit));
+  std::string name(spec.variables[asked.variable.index].name);
+  if (port != nullptr && port->max_count() > 1) name += "[" + std::to_string(asked.element) + "]";
+  const std::string is = std::isnan(receipt.value) ? " has no value" : " is " + number(receipt.value) + unit;
+  return "'" + name + "'" + is + ", and safe_when of " + quoted(set.name) + " asks for " + name + " " +
+         sign_of(asked.comparison) + " " + number(asked.limit) + unit;
 }
 
 std::size_t count(const SwitchReceipt& receipt, TaskMove move) {
@@ -95,7 +135,7 @@ std::string done_text(const SwitchReceipt& receipt, const ApplicationSpec& spec)
   for (const VariablePart& part : receipt.variables)
     if (seen(part).is_known)
       text += "; " + std::string(spec.variables[part.handover.variable.index].name) + " moves by " +
-              step_text(seen(part), unit_of(part, spec));
+              step_text(seen(part), unit_text(part, spec));
   return text + "\n";
 }
 
@@ -106,7 +146,7 @@ std::string bumps(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
       text += "bump: after switch " + std::to_string(receipt.number) + " the first cycle of task " +
               quoted(spec.tasks[part.handover.to.task.index].name) + " moved " +
               quoted(spec.variables[part.handover.variable.index].name) + " by " +
-              step_text(part.step_of_cycle, unit_of(part, spec)) + "\n";
+              step_text(part.step_of_cycle, unit_text(part, spec)) + "\n";
   return text;
 }
 
@@ -142,8 +182,18 @@ std::string json_of(const VariablePart& part, const ApplicationSpec& spec) {
          json_name(has_from, has_from ? spec.tasks[h.from.task.index].name : "") + ", \"to\": " +
          json_string(std::string(spec.tasks[h.to.task.index].name)) + ", \"step_of_on\": " +
          json_number(part.step_of_on.is_known, part.step_of_on.size) + ", \"step\": " +
-         json_number(step.is_known, step.size) + ", \"limit\": " + json_number(step.limit > 0, step.limit) +
+         json_number(step.is_known, step.size) + ", \"unit\": " + json_string(unit_of(part, spec)) +
+         ", \"limit\": " + json_number(step.limit > 0, step.limit) +
          ", \"beyond\": " + (step.is_beyond ? "true" : "false") + "}";
+}
+
+/// How long each phase took; null: it was not gone through.
+std::string json_durations(const SwitchReceipt& receipt) {
+  const auto between = [](Nanoseconds from, Nanoseconds to) {
+    return from == kNever || to == kNever ? "null" : std::to_string((to - from).count);
+  };
+  return "{\"arming\": " + between(receipt.asked, receipt.armed) + ", \"agreeing\": " +
+         between(receipt.armed, receipt.at) + ", \"ending\": " + between(receipt.at, receipt.ended) + "}";
 }
 
 template <class Parts>
@@ -151,6 +201,18 @@ std::string json_list(const Parts& parts, const ApplicationSpec& spec) {
   std::string json;
   for (const auto& part : parts) json += (json.empty() ? "" : ", ") + json_of(part, spec);
   return "[" + json + "]";
+}
+
+/// Who would miss what, and where to see more.
+std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  if (!receipt.task.is_valid()) return reason_word(receipt.why);
+  const TaskSpec& task = spec.tasks[receipt.task.index];
+  const std::string from = receipt.before == kNoSet ? "what is ON" : quoted(spec.sets[receipt.before].name);
+  return "the transition from " + from + " to " + quoted(spec.sets[receipt.after].name) +
+         " is not schedulable on CPU " + std::to_string(spec.rtpus[task.rtpu.index].cpu) + ": a cycle of task " +
+         quoted(task.name) + " may take " +
+         (receipt.takes == kNever ? "longer than its deadline of " + time_text(task.deadline)
+                                  : time_text(receipt.takes) + ", its deadline is " + time_text(task.deadline));
 }
 
 }  // namespace
@@ -163,10 +225,12 @@ const char* reason_word(NoSwitch why) noexcept {
     case NoSwitch::kInError: return "in-error";
     case NoSwitch::kNotCreated: return "not-created";
     case NoSwitch::kUnderWay: return "under-way";
+    case NoSwitch::kNotSchedulable: return "not-schedulable";
     case NoSwitch::kOnFailed: return "on-failed";
     case NoSwitch::kStepTooLarge: return "step-too-large";
     case NoSwitch::kNoGap: return "no-gap";
     case NoSwitch::kNoValue: return "no-value";
+    case NoSwitch::kNotSafe: return "not-safe";
     case NoSwitch::kDisturbed: return "disturbed";
     case NoSwitch::kFlagRaised: return "flag-raised";
     case NoSwitch::kRunEnded: return "run-ended";
@@ -184,26 +248,32 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
   switch (receipt.why) {
     case NoSwitch::kInError: return "task " + task + " is in ERROR: clear it first";
     case NoSwitch::kNotCreated: return "task " + task + " is not there: spawn it first";
-    case NoSwitch::kUnderWay: return "another switch is under way";
+    case NoSwitch::kUnderWay:
+      return receipt.said.view().empty() ? "another switch is under way" : std::string(receipt.said.view());
+    case NoSwitch::kNotSchedulable: return not_schedulable(receipt, spec);
     case NoSwitch::kOnFailed: return "on of task " + task + ": " + std::string(receipt.said.view());
     case NoSwitch::kStepTooLarge: {
       std::string text = "on of task " + task + " would move " + variable + " too far";
       for (const VariablePart& part : receipt.variables)
         if (part.handover.variable == receipt.variable)
-          text += ": by " + step_text(part.step_of_on, unit_of(part, spec));
+          text += ": by " + step_text(part.step_of_on, unit_text(part, spec));
       return text;
     }
     case NoSwitch::kNoGap:
       return task.empty() ? "the processor was never idle for 10 s"
                           : "the processor was never idle for as long as on of task " + task + " takes, for 10 s";
     case NoSwitch::kNoValue: return "task " + task + " waited 10 s for a value of " + variable;
+    case NoSwitch::kNotSafe: return unsafe_text(receipt, spec);
     case NoSwitch::kDisturbed: return "task " + task + " went to another state meanwhile";
     case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised meanwhile";
     case NoSwitch::kRunEnded: return "the run ended";
     case NoSwitch::kLate: return "a real-time unit was too late to agree to the instant of the change";
     case NoSwitch::kMemberDied: return "a real-time unit died";
     case NoSwitch::kDamaged: return "the order on the decision page is not what the manager wrote";
-    case NoSwitch::kCancelled: return "cancelled";
+    case NoSwitch::kCancelled: {
+      const std::string by(receipt.said.view());
+      return by.empty() ? "cancelled" : "cancelled by " + by;
+    }
     default: return reason_word(receipt.why);
   }
 }
@@ -220,22 +290,25 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
 }
 
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
-                         std::string_view asked) {
+                         const ReceiptFrame& frame) {
   if (receipt.end == SwitchEnd::kNothingToDo) return {};
   const bool is_done = receipt.end == SwitchEnd::kDone;
-  const bool has_before = receipt.before != kNoSet;
-  return "{\"number\": " + std::to_string(receipt.number) + ", \"from\": " +
+  const bool has_before = receipt.before != kNoSet, has_wall = frame.wall_ns >= 0;
+  const std::uint32_t tries = receipt.end == SwitchEnd::kRefused ? 0 : frame.tries;
+  return "{\"number\": " + std::to_string(receipt.number) + ", \"origin_ns\": " +
+         (has_wall ? std::to_string(origin.count) : "null") + ", \"from\": " +
          json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
          json_string(std::string(spec.sets[receipt.after].name)) +
-         ", \"way\": \"fast\", \"asked_by\": " +
-         json_string(asked.empty() ? asked_by(receipt, spec) : std::string(asked)) + ", \"end\": \"" +
+         ", \"way\": \"fast\", \"asked_by\": " + json_asked_by(receipt, spec, frame.asked_by) + ", \"end\": \"" +
          word(receipt.end) + "\", \"reason\": " +
          (is_done ? "null" : std::string("\"") + reason_word(receipt.why) + "\"") + ", \"why\": " +
-         (is_done ? "null" : json_string(reason_text(receipt, spec))) +
+         (is_done ? "null" : json_string(reason_text(receipt, spec))) + ", \"tries\": " + std::to_string(tries) +
+         ", \"wall_ns\": " + (has_wall ? std::to_string(frame.wall_ns) : "null") +
          ", \"asked_ns\": " + json_instant(receipt.asked, origin) +
          ", \"armed_ns\": " + json_instant(receipt.armed, origin) + ", \"at_ns\": " + json_instant(receipt.at, origin) +
-         ", \"ended_ns\": " + json_instant(receipt.ended, origin) + ", \"tasks\": " + json_list(receipt.tasks, spec) +
-         ", \"variables\": " + json_list(receipt.variables, spec) + "}";
+         ", \"ended_ns\": " + json_instant(receipt.ended, origin) + ", \"took_ns\": " + json_durations(receipt) +
+         ", \"tasks\": " + json_list(receipt.tasks, spec) + ", \"variables\": " + json_list(receipt.variables, spec) +
+         "}";
 }
 
 }  // namespace chimera::control

@@ -12,10 +12,17 @@ namespace chimera::control {
 /// Context: setup.
 std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin);
 
-/// One JSON object; "" for a request for what was in force. `asked_by`: a role; "": as the receipt says.
+/// What a manager knows of a switch beside its receipt. Plain value.
+struct ReceiptFrame {
+  std::string asked_by = {};   ///< a role and a user, "operate:ann"; "": as the receipt says
+  std::int64_t wall_ns = -1;   ///< nanoseconds since 1970 of the request; -1: virtual time
+  std::uint32_t tries = 1;     ///< plans that were announced for it
+};
+
+/// One JSON object, which begins with its number and the origin; "" for a request for what was in force.
 /// Context: setup.
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
-                         std::string_view asked_by = {});
+                         const ReceiptFrame& frame = {});
 
 /// Why a switch was refused or aborted: the word of the format, and a sentence. Context: setup.
 const char* reason_word(NoSwitch why) noexcept;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace chimera::control {
 namespace {
 
@@ -15,12 +17,14 @@ struct Told {
     port.kind = CHIMERA_OUT_VAR;
     port.unit = "N.m";
     for (TaskSpec& each : tasks) each.ports = {&port, 1};
+    for (TaskSpec& each : tasks) each.deadline = milliseconds(1), each.rtpu = RtpuId(0u);
     tasks[0].name = "pid";
     tasks[1].name = "torque";
     variable.name = "tau";
     spec.tasks = tasks;
     spec.variables = {&variable, 1};
     spec.sets = sets;
+    spec.rtpus = {&rtpu, 1};
     receipt.number = 3;
     receipt.before = 0;
     receipt.after = 1;
@@ -42,6 +46,7 @@ struct Told {
   PortSpec port;
   TaskSpec tasks[2];
   Variable variable;
+  RtpuSpec rtpu{"servo", 1};
   NamedSet sets[2] = {{"pid", {}}, {"torque", {}}};
   ApplicationSpec spec;
   TaskPart parts[2];
@@ -78,9 +83,37 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
   told.receipt.end = SwitchEnd::kRefused;
   told.receipt.why = NoSwitch::kInError;
   EXPECT_EQ(told.text(), begin + "refused: task 'torque' is in ERROR: clear it first\n");
+  told.receipt.why = NoSwitch::kNotSchedulable;
+  const std::string refused = begin + "refused: the transition from 'pid' to 'torque' is not schedulable on CPU 1: "
+                                      "a cycle of task 'torque' may ";
+  EXPECT_EQ(told.text(), refused + "take longer than its deadline of 1 ms\n");
+  told.receipt.takes = microseconds(1200);
+  EXPECT_EQ(told.text(), refused + "take 1.2 ms, its deadline is 1 ms\n");
   told.receipt.before = kNoSet;
   told.receipt.why = NoSwitch::kUnderWay;
+  told.receipt.said = {};
   EXPECT_EQ(told.text(), "switch 3 at 2.000 s to 'torque' refused: another switch is under way\n");
+}
+
+TEST(ReceiptText, OfOneThatWasNotSafeSaysTheValueAndWhatIsAsked) {
+  Told told;
+  const PortOf producers[] = {{kPid, 0}};
+  told.variable.producers = producers;
+  told.sets[1].safe_when = {kTau, 0, Relation::kLess, 0.5};
+  told.receipt.end = SwitchEnd::kAborted;
+  told.receipt.why = NoSwitch::kNotSafe;
+  told.receipt.variable = kTau;
+  told.receipt.value = 3.25;
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s from 'pid' to 'torque' aborted: 'tau' is 3.25 N.m, and safe_when of "
+                         "'torque' asks for tau < 0.5 N.m\n");
+  told.receipt.value = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s from 'pid' to 'torque' aborted: 'tau' has no value, and safe_when of "
+                         "'torque' asks for tau < 0.5 N.m\n");
+  told.port.extent[0].max = 6;
+  told.sets[1].safe_when.element = 4;
+  told.receipt.value = 1;
+  EXPECT_EQ(told.text(), "switch 3 at 2.000 s from 'pid' to 'torque' aborted: 'tau[4]' is 1 N.m, and safe_when of "
+                         "'torque' asks for tau[4] < 0.5 N.m\n");
 }
 
 TEST(ReceiptText, NamesTheTaskThatAsked) {
@@ -90,7 +123,24 @@ TEST(ReceiptText, NamesTheTaskThatAsked) {
   told.receipt.why = NoSwitch::kUnderWay;
   EXPECT_EQ(told.text(),
             "switch 3 at 2.000 s by task pid from 'pid' to 'torque' refused: another switch is under way\n");
-  EXPECT_NE(told.json().find("\"asked_by\": \"task pid\""), std::string::npos);
+  EXPECT_NE(told.json().find("\"asked_by\": {\"task\": \"pid\"}, \"end\""), std::string::npos) << told.json();
+  told.receipt.cause = SwitchCause::kMiss;
+  EXPECT_NE(told.json().find("\"asked_by\": {\"reaction\": \"on_miss\", \"task\": \"pid\"}, \"end\""),
+            std::string::npos);
+}
+
+TEST(ReceiptText, OfAManagerHasWhoAskedTheWallClockAndTheTries) {
+  Told told;
+  told.be_done();
+  const std::string json = receipt_json(told.receipt, told.spec, seconds(1), {"operate:ann", 1'700'000'000, 2});
+  EXPECT_TRUE(json.starts_with("{\"number\": 3, \"origin_ns\": 1000000000, \"from\": \"pid\", ")) << json;
+  EXPECT_NE(json.find("\"asked_by\": {\"role\": \"operate\", \"user\": \"ann\"}, "), std::string::npos) << json;
+  EXPECT_NE(json.find("\"tries\": 2, \"wall_ns\": 1700000000, \"asked_ns\": 2000000000, "), std::string::npos) << json;
+  told.receipt.end = SwitchEnd::kAborted;
+  told.receipt.why = NoSwitch::kCancelled;
+  EXPECT_TRUE(told.text().ends_with("to 'torque' aborted: cancelled\n")) << told.text();
+  told.receipt.said.assign("operate:ben");
+  EXPECT_TRUE(told.text().ends_with("to 'torque' aborted: cancelled by operate:ben\n")) << told.text();
 }
 
 TEST(ReceiptText, OfWhatIsInForceThereIsNoReceipt) {
@@ -105,13 +155,16 @@ TEST(ReceiptText, AsJsonHasEveryKey) {
   told.be_done();
   told.moved.step_of_on = {0.25, 5, true, false};
   EXPECT_EQ(told.json(),
-            "{\"number\": 3, \"from\": \"pid\", \"to\": \"torque\", \"way\": \"fast\", \"asked_by\": \"--at\", "
-            "\"end\": \"done\", \"reason\": null, \"why\": null, \"asked_ns\": 2000000000, \"armed_ns\": 2001500000, "
-            "\"at_ns\": 2001500000, \"ended_ns\": 2002000000, \"tasks\": [{\"task\": \"torque\", "
+            "{\"number\": 3, \"origin_ns\": null, \"from\": \"pid\", \"to\": \"torque\", \"way\": \"fast\", "
+            "\"asked_by\": {\"script\": \"--at\"}, \"end\": \"done\", \"reason\": null, \"why\": null, \"tries\": 1, "
+            "\"wall_ns\": null, \"asked_ns\": 2000000000, \"armed_ns\": 2001500000, "
+            "\"at_ns\": 2001500000, \"ended_ns\": 2002000000, "
+            "\"took_ns\": {\"arming\": 1500000, \"agreeing\": 0, \"ending\": 500000}, "
+            "\"tasks\": [{\"task\": \"torque\", "
             "\"move\": \"arrives\", \"on_ns\": 30000, \"off_ns\": null, \"lost\": 0}, {\"task\": \"pid\", "
             "\"move\": \"leaves\", \"on_ns\": null, \"off_ns\": 20000, \"lost\": 1}], \"variables\": "
             "[{\"variable\": \"tau\", \"from\": \"pid\", \"to\": \"torque\", \"step_of_on\": 0.25, \"step\": 0.25, "
-            "\"limit\": 5, \"beyond\": false}]}");
+            "\"unit\": \"N.m\", \"limit\": 5, \"beyond\": false}]}");
   told.receipt.before = kNoSet;
   told.receipt.end = SwitchEnd::kAborted;
   told.receipt.why = NoSwitch::kRunEnded;
@@ -119,6 +172,10 @@ TEST(ReceiptText, AsJsonHasEveryKey) {
   EXPECT_NE(told.json().find("\"from\": null"), std::string::npos);
   EXPECT_NE(told.json().find("\"reason\": \"run-ended\", \"why\": \"the run ended\""), std::string::npos);
   EXPECT_NE(told.json().find("\"at_ns\": null"), std::string::npos);
+  EXPECT_NE(told.json().find("\"took_ns\": {\"arming\": 1500000, \"agreeing\": null, \"ending\": null}"),
+            std::string::npos);
+  told.receipt.end = SwitchEnd::kRefused;
+  EXPECT_NE(told.json().find("\"tries\": 0, "), std::string::npos);
 }
 
 }  // namespace

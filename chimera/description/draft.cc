@@ -9,6 +9,7 @@
 #include "chimera/description/draft_values.h"
 #include "chimera/description/keys.h"
 #include "chimera/description/yaml_reader.h"
+#include "chimera/runtime/application_spec.h"
 
 namespace chimera {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 constexpr std::array<std::string_view, 9> kReactions = {"continue", "hold",   "skip", "abort", "demote",
                                                         "error",    "switch", "flag", "stop"};
 constexpr std::array<std::string_view, 4> kFaultReactions = {"error", "flag", "stop", "switch"};  // as OnFault
+constexpr std::array<std::string_view, 3> kRestartKeys = {"restart", "within", "then"};
 constexpr std::array<std::string_view, 2> kServerKinds = {"deferrable", "sporadic"};              // as ServerKind
 constexpr std::array<std::string_view, 2> kIsolations = {"shared", "process"};
 constexpr std::array<std::string_view, 1> kSwitchKeys = {"switch"};
@@ -73,8 +75,45 @@ std::optional<DraftReaction> reaction(const Node& node, const std::string& what,
   return out;
 }
 
+/// `{restart: N, within: T, then: REACTION}`; nullopt, with a fault, when something is wrong with it.
+std::optional<DraftOnFault> read_restart(const Node& node, const std::string& what, Report& report) {
+  DraftOnFault out{.kind = OnFault::kRestart, .configuration = {}, .at = node.at, .restart = {}};
+  refuse_unknown_keys(node, kRestartKeys, what, report);
+  const Node *restart = node.find("restart"), *within = node.find("within"), *then = node.find("then");
+  const auto most = read_whole(*restart, 1, kMostRestarts, "'restart' in " + what, report);
+  if (within == nullptr || then == nullptr)
+    report.add({.rule = "key-missing",
+                .at = node.at,
+                .message = std::string(within == nullptr ? "'within'" : "'then'") + " in " + what + " is missing",
+                .found = {},
+                .expected = within == nullptr ? "within" : "then",
+                .nearest = {},
+                .remedy = "write {restart: 3, within: 10 s, then: flag}"});
+  const auto window = within != nullptr ? read_duration(*within, "'within' in " + what, report) : std::nullopt;
+  std::optional<std::size_t> reaction;
+  if (then != nullptr)
+    reaction = read_reaction(*then, kFaultReactions, "'then' in " + what, out.configuration, report);
+  if (!most || !window || !reaction) return std::nullopt;
+  if (window->value.count == 0) {
+    report.add({.rule = "time-range",
+                .at = window->at,
+                .message = "'within' in " + what + " is 0 ns; expected more than 0",
+                .found = "0 ns",
+                .expected = "more than 0",
+                .nearest = {},
+                .remedy = {}});
+    return std::nullopt;
+  }
+  out.restart = {most->value, window->value, static_cast<OnFault>(*reaction)};
+  return out;
+}
+
 void read_on_fault(const Node& node, const std::string& what, DraftTask& task, Report& report) {
-  DraftOnFault out{.kind = OnFault::kError, .configuration = {}, .at = node.at};
+  if (node.is_map() && node.find("restart") != nullptr) {
+    task.on_fault = read_restart(node, what, report);
+    return;
+  }
+  DraftOnFault out{.kind = OnFault::kError, .configuration = {}, .at = node.at, .restart = {}};
   const auto index = read_reaction(node, kFaultReactions, what, out.configuration, report);
   if (!index) return;
   out.kind = static_cast<OnFault>(*index);
@@ -219,6 +258,7 @@ constexpr std::array<Read, kTaskKeys.size()> kReaders = {
       t.stack_bytes = read_bytes(n, 16 << 10, 64 << 20, w, r);
     },
     read_isolation,
+    read_number<&DraftTask::safe_after, 1'000'000>,
 };
 
 /// Reads `name: node` of `tasks`; what cannot be read is left out and stands in `report`.
@@ -299,15 +339,29 @@ void read_tasks(const Node& node, Draft& draft, Report& report) {
   }
 }
 
+void read_members(const Node& node, const std::string& what, DraftSet& set, Report& report) {
+  if (!expect(node, Node::Kind::kList, what, report, true)) return;
+  for (const Node& item : node.items)
+    if (auto task = read_name(item, "a task of " + what, report)) set.tasks.push_back(std::move(*task));
+}
+
+// {tasks: [...], safe_when: ...}
+void read_guarded_set(const Node& node, const std::string& what, DraftSet& set, Report& report) {
+  refuse_unknown_keys(node, kSetKeys, what, report);
+  if (const Node* tasks = node.find("tasks")) read_members(*tasks, "'tasks' of " + what, set, report);
+  if (const Node* condition = node.find("safe_when"))
+    set.safe_when = read_condition(*condition, "'safe_when' of " + what, report);
+}
+
 void read_configurations(const Node& node, Draft& draft, Report& report) {
   if (!expect(node, Node::Kind::kMap, "'configurations'", report, true)) return;
   for (std::size_t i = 0; i < node.keys.size(); ++i) {
     if (!check_name(node.keys[i], "the name of a configuration", report)) continue;
     const std::string what = "configuration '" + node.keys[i].text + "'";
-    DraftSet set{.name = node.keys[i], .tasks = {}};
-    if (expect(node.items[i], Node::Kind::kList, what, report, true))
-      for (const Node& item : node.items[i].items)
-        if (auto task = read_name(item, "a task of " + what, report)) set.tasks.push_back(std::move(*task));
+    DraftSet set{.name = node.keys[i], .tasks = {}, .safe_when = {}};
+    const Node& item = node.items[i];
+    if (item.is_map()) read_guarded_set(item, what, set, report);
+    else read_members(item, what, set, report);
     draft.configurations.push_back(std::move(set));
   }
 }

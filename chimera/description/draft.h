@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "chimera/base/time.h"
+#include "chimera/description/condition_text.h"
 #include "chimera/description/node.h"
 #include "chimera/description/report.h"
 #include "chimera/schedule/policy.h"
@@ -61,10 +62,18 @@ struct DraftTolerate {
   std::uint32_t of = 0;
 };
 
+/// `{restart: N, within: T, then: ...}`
+struct DraftRestart {
+  std::uint32_t most = 1;
+  Nanoseconds within;
+  OnFault then = OnFault::kError;
+};
+
 struct DraftOnFault {
   OnFault kind = OnFault::kError;
-  Word configuration;
+  Word configuration;  ///< of {switch: NAME}, also behind `then`
   Place at;
+  DraftRestart restart;  ///< of kRestart
 };
 
 struct DraftTask {
@@ -73,7 +82,7 @@ struct DraftTask {
   std::optional<Word> rtpu;
   std::optional<Located<Rate>> rate;
   std::optional<Located<Nanoseconds>> deadline, offset, budget, min_time, stale_after;
-  std::optional<Located<std::uint32_t>> criticality, user_priority, max_consecutive;
+  std::optional<Located<std::uint32_t>> criticality, user_priority, max_consecutive, safe_after;
   std::vector<DraftAlias> alias;
   std::vector<NamedNode> constants, resources, initial, max_step;
   std::optional<DraftReaction> on_miss, on_overrun;
@@ -96,6 +105,7 @@ struct DraftRtpu {
 struct DraftSet {
   Word name;
   std::vector<Word> tasks;
+  std::optional<DraftCondition> safe_when;
 };
 
 struct Draft {

@@ -13,13 +13,17 @@ inline constexpr std::array<std::string_view, 8> kFileKeys = {"version", "subsys
 
 inline constexpr std::array<std::string_view, 3> kRtpuKeys = {"cpu", "policy", "executor"};
 
-inline constexpr std::array<std::string_view, 24> kTaskKeys = {
+inline constexpr std::array<std::string_view, 25> kTaskKeys = {
     "component",     "rtpu",   "rate",        "deadline",    "offset",   "budget",   "min",        "criticality",
     "user_priority", "alias",  "constants",   "resources",   "initial",  "on_miss",  "on_overrun", "max_consecutive",
-    "tolerate",      "server", "stale_after", "standby_for", "on_fault", "max_step", "stack",      "isolation"};
+    "tolerate",      "server", "stale_after", "standby_for", "on_fault", "max_step", "stack",      "isolation",
+    "safe_after"};
 
 inline constexpr std::array<std::string_view, 2> kTolerateKeys = {"misses", "of"};
 
 inline constexpr std::array<std::string_view, 3> kServerKeys = {"kind", "capacity", "period"};
+
+/// Of a configuration that is more than a list of tasks.
+inline constexpr std::array<std::string_view, 2> kSetKeys = {"tasks", "safe_when"};
 
 }  // namespace chimera

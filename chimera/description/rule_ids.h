@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 76> kRules = {
+inline constexpr std::array<std::string_view, 79> kRules = {
     // the text
     "file-unreadable",
     "text-size",
@@ -87,10 +87,13 @@ inline constexpr std::array<std::string_view, 76> kRules = {
     "standby-in-configuration",
     "server-periodic",
     "server-key",
+    "safe-after",
     "configuration-unknown",
     "task-unknown",
     "configuration-empty",
     "configuration-task-twice",
+    "condition-bad",
+    "condition-variable",
     // warnings
     "unused",
     "standby-same-rtpu",

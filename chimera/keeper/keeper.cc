@@ -48,7 +48,8 @@ int Keeper::run() {
 }
 
 void Keeper::wait() {
-  std::vector<int> descriptors = {signals_.descriptor(), face_.pidfd()};
+  std::vector<int> descriptors = {signals_.descriptor(), face_.pidfd(), peers_.guard().channel(),
+                                  peers_.guard().pidfd()};
   for (std::uint32_t index = 0; index < peers_.size(); ++index) {
     descriptors.push_back(peers_[index].channel());
     descriptors.push_back(peers_[index].pidfd());
@@ -83,6 +84,7 @@ void Keeper::poll() {
     manager_due_ = ended + manager_pause_;
     manager_pause_ = std::clamp(manager_pause_ * 2, milliseconds(10), kLongestPause);
   }
+  peers_.read_guard();
   for (const KeeperMessage& wish : wishes) on_message(wish);
   check_face();
   peers_.check_orphans(face_.pid());
@@ -207,7 +209,7 @@ bool Keeper::advance() {
   } else if (phase_ == Phase::kFaceFinishes && (!face_.lives() || is_late)) {
     if (face_.lives())
       end_badly(Message("the process that prints did not end in time: the result of the run is not printed"));
-    manager.signal(SIGTERM);
+    peers_.finish_manager();
     enter(Phase::kManagerFinishes, kLastLimit);
   } else if (phase_ == Phase::kManagerFinishes && (!manager.lives() || is_late)) {
     phase_ = Phase::kDone;  // what is left ends with this keeper

@@ -3,7 +3,6 @@
 #include "chimera/keeper/kept_peer.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -11,6 +10,7 @@
 
 #include "chimera/platform/origin.h"
 #include "chimera/platform/process_id.h"
+#include "chimera/rtpu/guard_message.h"
 
 namespace chimera {
 
@@ -54,8 +54,10 @@ Result<void> KeptPeer::start(const PeerStart& start, Nanoseconds now) {
   if (!ends) return refuse(ends.error());
   const std::string numbers[] = {std::to_string(last_.index), std::to_string(incarnation),
                                  std::to_string(own_process_id())};
-  const std::array words = {start.program.c_str(), "--peer",   numbers[0].c_str(), "--incarnation",
-                            numbers[1].c_str(),    "--parent", numbers[2].c_str()};
+  const std::string line = std::to_string(kUnitGuardDescriptor);
+  std::vector<const char*> words = {start.program.c_str(), "--peer",   numbers[0].c_str(), "--incarnation",
+                                    numbers[1].c_str(),    "--parent", numbers[2].c_str()};
+  if (start.has_guard) words.insert(words.end(), {"--guard", line.c_str()});
   std::vector<int> passed = {ends->second.descriptor()};
   passed.insert(passed.end(), start.passed.begin(), start.passed.end());
   origin_ = start.origin_prefix + numbers[0] + "." + numbers[1];

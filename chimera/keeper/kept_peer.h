@@ -21,6 +21,7 @@ struct PeerStart {
   std::span<const int> passed;  ///< descriptors behind the one of its channel
   /// Of the origin by which it, and what it starts, is found again: the numbers of peer and incarnation come behind.
   const std::string& origin_prefix;
+  bool has_guard = false;  ///< the last of `passed` is its line to the guard
 };
 
 /// Single-threaded. Context: setup; never blocks but in wait().

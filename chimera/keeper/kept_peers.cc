@@ -12,7 +12,8 @@ using Kind = KeeperMessage::Kind;
 
 namespace {
 
-constexpr Nanoseconds kDyingLimit = seconds(1);  // for SIGKILL to be carried out
+constexpr Nanoseconds kDyingLimit = seconds(1);    // for SIGKILL to be carried out
+constexpr Nanoseconds kWritingLimit = seconds(3);  // longer than the guard waits for a device
 
 }  // namespace
 
@@ -26,11 +27,12 @@ void KeptPeers::end_all() {
   const Nanoseconds until = clock_.now() + kDyingLimit;
   for (const KeptPeer& peer : peers_) peer.signal(SIGKILL);
   for (KeptPeer& peer : peers_) peer.wait(until - clock_.now());
+  guard_.end(kWritingLimit);
   orphans_.end_all(kDyingLimit);
 }
 
 void KeptPeers::check_orphans(pid_t other) {
-  std::vector<pid_t> held = {other};
+  std::vector<pid_t> held = {other, guard_.pid()};
   for (const KeptPeer& peer : peers_) held.push_back(peer.pid());
   const auto lives = [this](std::string_view origin) {
     return std::ranges::any_of(peers_,
@@ -45,6 +47,8 @@ Result<void> KeptPeers::start_all() {
   auto pages = KeeperPages::create(plan_.n_rtpus, clock_.now());
   if (!pages) return pages.error();
   pages_ = *std::move(pages);
+  if (!plan_.guard_program.empty())
+    if (auto started = guard_.start(plan_.guard_program, plan_.guard_limits, plan_.image); !started) return started;
   // The manager has most to do before it can serve; the inventory it is owed is told as it comes into being.
   if (auto started = start(manager_index()); !started) return started;
   for (std::uint32_t rtpu = 0; rtpu < manager_index(); ++rtpu) {
@@ -61,12 +65,17 @@ Result<void> KeptPeers::start(std::uint32_t index) {
   std::vector<int> passed = {plan_.image, pages_.decision_descriptor(), pages_.keeper_descriptor()};
   if (is_manager) passed.insert(passed.end(), {plan_.listening, plan_.bundle});
   else passed.push_back(plan_.objects);
+  const Channel line = is_manager ? Channel() : guard_.make_line();
+  if (line.is_open()) passed.push_back(line.descriptor());
   pages_.show_life(index, incarnation);  // before it can look
   pages_.ring_all();
-  return peers_[index].start({.program = is_manager ? plan_.manager_program : plan_.rtpu_program,
-                              .passed = passed,
-                              .origin_prefix = orphans_.prefix()},
-                             clock_.now());
+  const auto started = peers_[index].start({.program = is_manager ? plan_.manager_program : plan_.rtpu_program,
+                                            .passed = passed,
+                                            .origin_prefix = orphans_.prefix(),
+                                            .has_guard = line.is_open()},
+                                           clock_.now());
+  if (started && !is_manager) guard_.watch(index, incarnation, peers_[index].pidfd());
+  return started;
 }
 
 void KeptPeers::restart(std::uint32_t index) {
@@ -91,6 +100,9 @@ void KeptPeers::introduce(std::uint32_t newcomer) {
     if (!lives) tell_life(rtpu);
   }
   peer.pass_segment_to(peer);  // its predecessor's
+  std::vector<KeeperMessage> news;
+  guard_.introduce(news);
+  for (const KeeperMessage& message : news) peer.send(message);
   peer.send({.kind = Kind::kComplete});
 }
 
@@ -107,6 +119,12 @@ void KeptPeers::read_messages(std::uint32_t index, std::vector<KeeperMessage>& w
       wishes.push_back(message);
     }
   }
+}
+
+void KeptPeers::read_guard() {
+  std::vector<KeeperMessage> news;
+  guard_.poll(news);
+  for (const KeeperMessage& message : news) manager().send(message);
 }
 
 bool KeptPeers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
@@ -128,6 +146,8 @@ void KeptPeers::finish_rtpus() {
   pages_.show_ending();
   for (std::uint32_t index = 0; index < manager_index(); ++index) peers_[index].send({.kind = Kind::kFinish});
 }
+
+void KeptPeers::finish_manager() { peers_[manager_index()].send({.kind = Kind::kFinish}); }
 
 bool KeptPeers::any_rtpu_lives() const noexcept {
   return std::any_of(peers_.begin(), peers_.end() - 1, [](const KeptPeer& peer) { return peer.lives(); });

@@ -9,6 +9,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/keeper/keeper_pages.h"
+#include "chimera/keeper/kept_guard.h"
 #include "chimera/keeper/kept_peer.h"
 #include "chimera/platform/linux_clock.h"
 #include "chimera/platform/orphans.h"
@@ -18,6 +19,8 @@ namespace chimera {
 /// What to start. The descriptors stay the caller's.
 struct PeerPlan {
   std::string rtpu_program, manager_program;
+  std::string guard_program{};              ///< empty: no task has a device
+  std::vector<std::string> guard_limits{};  ///< KeptGuard::start()
   std::uint32_t n_rtpus = 0;
   int image = -1, objects = -1, bundle = -1, listening = -1;
 };
@@ -36,10 +39,14 @@ class KeptPeers {
   void restart(std::uint32_t index);
   /// Takes what `index` has sent; its new memory goes to all others. What the manager wants is added to `wishes`.
   void read_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes);
+  /// Takes what the guard has said, for the manager.
+  void read_guard();
   /// True, once, when `index` has ended: then the others know.
   bool has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes);
   /// Tells every rtpu to end its tasks; from here on everybody sees that it ends.
   void finish_rtpus();
+  /// Tells the manager to end when it has done what is left.
+  void finish_manager();
   /// Ends the processes that dead rtpus left behind; `other` is a child that other code of this process waits for. Due
   /// again at orphans_due().
   void check_orphans(pid_t other);
@@ -51,6 +58,7 @@ class KeptPeers {
   std::uint32_t manager_index() const noexcept { return size() - 1; }
   const KeptPeer& operator[](std::uint32_t index) const noexcept { return peers_[index]; }
   const KeptPeer& manager() const noexcept { return peers_.back(); }
+  const KeptGuard& guard() const noexcept { return guard_; }
   bool any_rtpu_lives() const noexcept;
   /// What all of them see. Requires: start_all() was called.
   KeeperPages& pages() noexcept { return pages_; }
@@ -65,6 +73,7 @@ class KeptPeers {
   LinuxClock clock_;
   Orphans orphans_;
   KeeperPages pages_;
+  KeptGuard guard_;
   std::vector<KeptPeer> peers_;
 };
 

@@ -138,6 +138,13 @@ Verdict configuration_rule(const PortDescriptor& port) {
   return {};
 }
 
+Verdict safe_state_rule(const PortDescriptor& port) {
+  const bool says = port.kind == CHIMERA_OUT_VAR && port.type == CHIMERA_BOOL && port.shape.empty() && !port.repeated;
+  if (port.safe_state && !says && port.kind != CHIMERA_RESOURCE)
+    return "the safe state: expected an out-var of one bool, or a resource that never moves";
+  return {};
+}
+
 Verdict safety_rule(const PortDescriptor& port) {
   if (!port.safety) return {};
   if (port.kind != CHIMERA_OUT_VAR) return "safety is for out-vars, this is an " + std::string(kind_name(port.kind));
@@ -233,7 +240,7 @@ Verdict port_rules(const PortDescriptor& port) {
   if (port.unit.empty()) return "the unit is empty; write \"1\" for none";
   for (const auto rule :
        {text_rule, kind_rule, type_name_rule, fields_rule, instances_rule, range_rule, words_rule,
-        configuration_rule, safety_rule}) {
+        configuration_rule, safe_state_rule, safety_rule}) {
     if (Verdict v = rule(port); !v.empty()) return v;
   }
   return {};

@@ -170,6 +170,23 @@ TEST(DeclarationRules, RefusesSafetyOnAnythingButAFloatingOutput) {
   EXPECT_EQ(sample.refusal(), "component tderiv: port dx: a safety port is float32 or float64, declared is int64");
 }
 
+TEST(DeclarationRules, TheSafeStateIsOneBoolOrAResource) {
+  const char* const refused =
+      "component tderiv: port dx: the safe state: expected an out-var of one bool, or a resource that never moves";
+  Sample sample;
+  sample.ports[1].flags = CHIMERA_PORT_SAFE_STATE;
+  EXPECT_EQ(sample.refusal(), refused) << "a number";
+  sample.ports[1].type = CHIMERA_BOOL;
+  sample.ports[1].element_size = 1;
+  sample.ports[1].unit = "1";
+  EXPECT_EQ(sample.refusal(), "accepted");
+  sample.ports[1].shape = "[2]";
+  EXPECT_EQ(sample.refusal(), refused) << "several";
+  sample.ports[1].shape = "";
+  sample.ports[1].kind = CHIMERA_IN_VAR;
+  EXPECT_EQ(sample.refusal(), refused) << "an input";
+}
+
 TEST(DeclarationRules, RefusesAnUnorderedRangeAndAValueOutsideIt) {
   Sample sample;
   sample.ports[1].flags |= CHIMERA_PORT_HAS_RANGE;

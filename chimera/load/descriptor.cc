@@ -39,6 +39,7 @@ std::string range_text(const PortDescriptor& port) {
   if (!port.at_least.empty()) range += ", at least " + port.at_least;
   for (const std::string& word : port.one_of) range += (&word == &port.one_of.front() ? ", one of " : " ") + word;
   if (port.names_configuration) range += ", a configuration";
+  if (port.safe_state) range += ", the safe state";
   return range;
 }
 

@@ -68,6 +68,8 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
             "component: it was built with a newer chimera than this one: rebuild it, or install that chimera");
   sample.component.host_size = offsetof(chimera_host, request);
   EXPECT_TRUE(sample.described()) << "built before there were requests";
+  sample.component.host_size = offsetof(chimera_host, safe_frame);
+  EXPECT_TRUE(sample.described()) << "built before there were safe frames";
   sample.component.host_size = sizeof(chimera_host);
   EXPECT_TRUE(sample.described());
   sample.component.struct_size = size + 8;

@@ -10,6 +10,8 @@
 #include "chimera/manager/command_text.h"
 #include "chimera/control/receipt_text.h"
 #include "chimera/manager/operator_acts.h"
+#include "chimera/manager/status_json.h"
+#include "chimera/text/json_text.h"
 
 namespace chimera::manager {
 namespace {
@@ -69,16 +71,68 @@ RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcom
   const std::string to(world.spec().sets[receipt.after].name);
   if (receipt.end == SwitchEnd::kNothingToDo) return RpcResponse::good({{"to", to}, {"end", "nothing-to-do"}});
   if (receipt.end != SwitchEnd::kRefused)
-    return RpcResponse::ready(std::make_shared<const std::string>(
-        control::receipt_json(receipt, world.spec(), world.keeper.origin, outcome.asked_by)));
-  const std::string task = receipt.task.is_valid() ? world.name(receipt.task) : "";
-  const std::string why = outcome.under_way.empty() ? control::reason_text(receipt, world.spec())
-                                                    : outcome.under_way + ", is under way";
-  const char* remedy = receipt.why == NoSwitch::kInError      ? "`chimera clear"
-                       : receipt.why == NoSwitch::kNotCreated ? "`chimera spawn"
-                                                              : nullptr;
-  return RpcResponse::refused(control::reason_word(receipt.why), "switch to '" + to + "' is refused: " + why, task,
-                              remedy == nullptr ? "" : std::string(remedy) + " " + task + "`");
+    return RpcResponse::ready(std::make_shared<const std::string>(outcome.json));
+  return RpcResponse::refused(control::reason_word(receipt.why),
+                              "switch to '" + to + "' is refused: " + control::reason_text(receipt, world.spec()),
+                              receipt.task.is_valid() ? world.name(receipt.task) : "", outcome.remedy);
+}
+
+Json drill_json(const ManagerState& world, const DrillOutcome& outcome) {
+  Json tasks = Json::array();
+  for (const DrillPart& part : outcome.tasks) {
+    const bool is_safe = part.verdict == DrillVerdict::kSafe;
+    tasks.push_back({{"task", world.name(part.task)},
+                     {"verdict", verdict_word(part.verdict)},
+                     {"after_ns", is_safe ? Json(part.after.count) : Json()}});
+  }
+  Json killed;
+  if (const DrillKill& kill = outcome.killed; kill.rtpu.is_valid())
+    killed = {{"rtpu", world.name(kill.rtpu)},
+              {"is_told", kill.is_told},
+              {"written", kill.good},
+              {"lost", kill.bad},
+              {"after_ns", kill.good > 0 ? Json(kill.after.count) : Json()}};
+  return {{"safe", outcome.is_safe()},
+          {"flag_ns", outcome.flag_for.count},
+          {"tasks", std::move(tasks)},
+          {"killed", std::move(killed)}};
+}
+
+Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen) {
+  const SwitchReceipt& receipt = foreseen.receipt;
+  const ApplicationSpec& spec = world.spec();
+  const auto names = [&](std::span<const TaskId> tasks) {
+    Json list = Json::array();
+    for (const TaskId task : tasks) list.push_back(world.name(task));
+    return list;
+  };
+  Json variables = Json::array();
+  for (const Handover& handover : foreseen.plan.handovers)
+    variables.push_back({{"variable", spec.variables[handover.variable.index].name},
+                         {"from", handover.from.task.is_valid() ? Json(world.name(handover.from.task)) : Json()},
+                         {"to", world.name(handover.to.task)}});
+  const bool is_refused = receipt.end == SwitchEnd::kRefused;
+  return {{"from", receipt.before == kNoSet ? Json() : Json(spec.sets[receipt.before].name)},
+          {"to", spec.sets[receipt.after].name},
+          {"end", is_refused ? "refused" : receipt.end == SwitchEnd::kNothingToDo ? "nothing-to-do" : "possible"},
+          {"reason", is_refused ? Json(control::reason_word(receipt.why)) : Json()},
+          {"why", is_refused ? Json(control::reason_text(receipt, spec)) : Json()},
+          {"remedy", foreseen.remedy.empty() ? Json() : Json(foreseen.remedy)},
+          {"arrives", names(foreseen.plan.arriving)},
+          {"leaves", names(foreseen.plan.leaving)},
+          {"stays", names(foreseen.plan.staying)},
+          {"variables", std::move(variables)}};
+}
+
+RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n) {
+  const auto or_null = [](const std::string& text) { return text.empty() ? "null" : json_string(text); };
+  const std::deque<std::string>& kept = archive.kept();
+  std::string list;
+  for (std::size_t i = kept.size() - std::min(n, kept.size()); i < kept.size(); ++i)
+    list += (list.empty() ? "" : ", ") + kept[i];
+  return RpcResponse::ready(std::make_shared<const std::string>(
+      "{\"receipts\": [" + list + "], \"file\": " + or_null(archive.path()) + ", \"unfiled\": " +
+      std::to_string(archive.unfiled()) + ", \"fault\": " + or_null(archive.fault()) + "}"));
 }
 
 /// `subscribe` and `unsubscribe` are carried out by the door.
@@ -90,7 +144,9 @@ ManagerBackend::Handler ManagerBackend::handler(MethodId method) noexcept {
   } kHandlers[] = {
       {MethodId::kCheck, &Me::check}, {MethodId::kSchedule, &Me::schedule}, {MethodId::kSignal, &Me::signal},
       {MethodId::kRing, &Me::ring},   {MethodId::kSet, &Me::set},           {MethodId::kFlag, &Me::flag},
-      {MethodId::kSwitch, &Me::switch_to}, {MethodId::kSave, &Me::save}, {MethodId::kEnd, &Me::end},
+      {MethodId::kSwitch, &Me::switch_to}, {MethodId::kCancel, &Me::cancel}, {MethodId::kPlan, &Me::plan},
+      {MethodId::kDrill, &Me::drill}, {MethodId::kReceipts, &Me::receipts}, {MethodId::kSave, &Me::save},
+      {MethodId::kEnd, &Me::end},
   };
   const auto row = std::ranges::find_if(kHandlers, [method](const auto& one) { return one.method == method; });
   return row == std::end(kHandlers) ? &Me::unknown : row->handler;
@@ -160,27 +216,85 @@ void ManagerBackend::set(const Request& request) {
 
 void ManagerBackend::flag(const Request& request) { request.reply(set_flag(world(), request.parameters.at("up"))); }
 
-void ManagerBackend::switch_to(const Request& request) {
+void ManagerBackend::receipts(const Request& request) {
+  request.reply(receipts_answer(driver_.receipts(), control::number(request.parameters, "last", 20)));
+}
+
+/// None: there is no configuration of that name, which was answered.
+std::optional<std::uint32_t> ManagerBackend::set_named(const Request& request) const {
   const ApplicationSpec& spec = world().spec();
   const std::string name = request.parameters.at("configuration");
   const auto set = std::ranges::find(spec.sets, std::string_view(name), &NamedSet::name);
-  if (set == spec.sets.end()) {
-    std::vector<std::string> names;
-    for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
-    const std::string near = nearest(name, names);
-    return request.reply(RpcResponse::unknown(
-        "no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
-  }
+  if (set != spec.sets.end()) return static_cast<std::uint32_t>(set - spec.sets.begin());
+  std::vector<std::string> names;
+  for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
+  const std::string near = nearest(name, names);
+  request.reply(RpcResponse::unknown(
+      "no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
+  return std::nullopt;
+}
+
+void ManagerBackend::plan(const Request& request) {
+  const auto set = set_named(request);
+  if (!set) return;
+  request.reply(RpcResponse::good(plan_json(world(), driver_.switches().foresee(*set))));
+}
+
+void ManagerBackend::cancel(const Request& request) {
+  SwitchCoordinator& switches = driver_.switches();
+  if (!switches.is_under_way())
+    return request.reply(RpcResponse::refused("no-switch", "no switch is under way", ""));
+  const auto answer = [this, reply = request.reply](const SwitchOutcome& outcome) {
+    reply(switch_answer(world(), outcome));
+  };
+  if (!switches.cancel({request.caller.role, request.caller.user}, answer))
+    request.reply(RpcResponse::refused(
+        "too-late", switches.under_way() + ", cannot be cancelled: it is " + switches.progress(), ""));
+}
+
+void ManagerBackend::switch_to(const Request& request) {
+  const auto set = set_named(request);
+  if (!set) return;
   if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
-  if (!world().logic.is_settled())
-    return request.reply(RpcResponse::refused("under-way", "tasks are being brought up", "",
-                                              "`chimera status` shows which; ask again when they are ON"));
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
-  driver_.switches().ask(static_cast<std::uint32_t>(set - spec.sets.begin()), control::role_name(request.caller.role),
-                         wait, now(), [this, reply = request.reply](const SwitchOutcome& outcome) {
+  driver_.switches().ask(*set, {request.caller.role, request.caller.user}, wait, now(),
+                         [this, reply = request.reply](const SwitchOutcome& outcome) {
                            reply(switch_answer(world(), outcome));
                          });
+}
+
+void ManagerBackend::drill(const Request& request) {
+  const auto refuse = [&](const char* kind, const std::string& why, const char* remedy) {
+    request.reply(RpcResponse::refused(kind, "the drill is refused: " + why, "", remedy));
+  };
+  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
+  if (driver_.drill().is_under_way())
+    return refuse("under-way", "another one is under way", "ask again when it is over");
+  if (driver_.switches().is_under_way())
+    return refuse("under-way", driver_.switches().under_way() + ", is under way", "ask again when it is over");
+  if (!world().logic.is_settled())
+    return refuse("under-way", "tasks are being brought up",
+                  "`chimera status` shows which; ask again when they are ON");
+  if (const Json flag = flag_json(world()); flag["up"])
+    return refuse("flag-up", "the flag is up already, so it would measure nothing", "`chimera status` says by whom");
+  const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
+  const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
+  RtpuId to_kill;
+  if (request.parameters.contains("kill")) {
+    const std::string name = request.parameters.at("kill");
+    std::vector<std::string> names;
+    for (const RtpuSpec& rtpu : world().spec().rtpus) names.emplace_back(rtpu.name);
+    const auto at = std::ranges::find(names, name);
+    const std::string near = nearest(name, names);
+    if (at == names.end())
+      return request.reply(RpcResponse::unknown(
+          "no real-time unit '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
+    to_kill = RtpuId(static_cast<std::size_t>(at - names.begin()));
+  }
+  driver_.drill().begin(wait, to_kill, now(), [this, reply = request.reply](const DrillOutcome& outcome) {
+    reply(RpcResponse::good(drill_json(world(), outcome)));
+  });
 }
 
 void ManagerBackend::save(const Request& request) { request.reply(saved_values(world())); }

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "chimera/control/control_backend.h"
@@ -22,6 +23,14 @@ control::RpcResponse signal_answer(const ManagerState& world, const subsystem::C
 
 /// The receipt of a switch that was begun, or why it was not. Context: setup.
 control::RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome);
+
+/// What a drill found out, by task. Context: setup.
+control::Json drill_json(const ManagerState& world, const DrillOutcome& outcome);
+/// What a switch would do now, or why it would be refused. Context: setup.
+control::Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen);
+
+/// The last `n` receipts, and what is known of their file. Context: setup.
+control::RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n);
 
 /// Context: setup.
 class ManagerBackend final : public control::ControlBackend {
@@ -60,12 +69,17 @@ class ManagerBackend final : public control::ControlBackend {
   void ring(const Request& request);
   void set(const Request& request);
   void flag(const Request& request);
+  void receipts(const Request& request);
+  void plan(const Request& request);
   void switch_to(const Request& request);
+  void cancel(const Request& request);
+  void drill(const Request& request);
   void save(const Request& request);
   void end(const Request& request);
   void unknown(const Request& request);
 
   ManagerState& world() const noexcept { return driver_.world(); }
+  std::optional<std::uint32_t> set_named(const Request& request) const;
   void analyse(Question::Kind kind, const Request& request);
 
   ManagerLoop& driver_;

@@ -83,6 +83,26 @@ TEST_F(ManagerBackendTest, CarriesOutEveryMethodButThoseOfTheDoorItself) {
   }
 }
 
+TEST_F(ManagerBackendTest, ADrillWithoutHardwareTellsThatNothingIsSafe) {
+  EXPECT_EQ(good("drill")["tasks"], Json::array());
+  EXPECT_EQ(good("drill")["safe"], false);
+}
+
+TEST_F(ManagerBackendTest, ADrillBeginsWithTheFlagDown) {
+  good("flag", {{"up", true}});
+  EXPECT_EQ(refusal("drill", Json::object()),
+            "-32000 the drill is refused: the flag is up already, so it would measure nothing "
+            "{\"kind\":\"flag-up\",\"remedy\":\"`chimera status` says by whom\",\"where\":\"\"}");
+}
+
+TEST_F(ManagerBackendTest, NoDrillWhileASwitchIsUnderWay) {
+  fake_.driver().switches().ask(1, {control::Role::kOperate, 4'000'000'001u}, seconds(10), now(),
+                                [](const SwitchOutcome&) {});
+  EXPECT_EQ(refusal("drill", Json::object()),
+            "-32000 the drill is refused: switch 1 to 'rest', asked for by operate:4000000001, is under way "
+            "{\"kind\":\"under-way\",\"remedy\":\"ask again when it is over\",\"where\":\"\"}");
+}
+
 TEST_F(ManagerBackendTest, HelloSaysWhoSpeaks) {
   const Json hello = good("hello");
   EXPECT_EQ(hello["protocol"], 1);
@@ -442,7 +462,7 @@ TEST_F(IdleTest, ServesEditors) {
   EXPECT_EQ(good("hello")["file"], "");
   EXPECT_EQ(good("check", {{"text", kFakeText}})["legal"], true);
   EXPECT_EQ(good("schedule", {{"text", kFakeText}})["fits"], true);
-  EXPECT_EQ(good("library")["components"].size(), 4u);
+  EXPECT_EQ(good("library")["components"].size(), 7u);
   EXPECT_EQ(good("status")["tasks"], Json::array());
   EXPECT_EQ(good("describe")["tasks"], Json::array());
   EXPECT_EQ(good("get")["values"], Json::object());

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "chimera/control/state_folder.h"
+#include "chimera/manager/guard_news.h"
 #include "chimera/platform/doorbell.h"
 #include "chimera/platform/owned_descriptor.h"
 #include "chimera/platform/readiness.h"
@@ -113,7 +115,11 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   if (!bell) return bell.error();
   bell_ = *std::move(bell);
   steps_ = std::make_unique<StepRunner>(*world_, *fleet_, mapped_->channel);
-  switches_ = std::make_unique<SwitchCoordinator>(*world_);
+  auto receipts = ReceiptArchive::start(*world_, control::state_folder_of(std::string(world_->spec().name)));
+  if (!receipts) return receipts.error();
+  receipts_ = *std::move(receipts);
+  switches_ = std::make_unique<SwitchCoordinator>(*world_, *receipts_);
+  drill_ = std::make_unique<Drill>(*world_, [this](RtpuId rtpu) { end_unit(rtpu); });
   begun_ = counters_due_ = now();
   say_hello();
   steps_->begin();
@@ -155,8 +161,13 @@ void ManagerLoop::take(const KeeperMessage& message, int passed) {
     fleet_->started(message);
   } else if (message.kind == Kind::kEnded) {
     fleet_->ended(message, events);
+  } else if (message.kind == Kind::kFinish) {
+    is_finished_ = true;
   } else if (message.kind == Kind::kHung) {
     watch_->told(message, now());
+  } else {
+    drill_->take(message);
+    tell_of_guard(*world_, message, now());
   }
   const OwnedDescriptor unused(passed);
   steps_->step(events);
@@ -206,23 +217,29 @@ void ManagerLoop::watch() {
   const std::uint64_t beats = world_->keeper.beats.load(std::memory_order_acquire);
   if (beats != keeper_beats_ && mapped_->channel.send(bytes_of(message))) keeper_beats_ = beats;
   if (now() < watch_->due()) return;
-  for (const RtpuId rtpu : watch_->look(now())) {
-    message.kind = KeeperMessage::Kind::kEndChild;
-    message.index = rtpu.index;
-    message.incarnation = world_->rtpus[rtpu.index].incarnation;
-    [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: the keeper hangs itself
-  }
+  for (const RtpuId rtpu : watch_->look(now())) end_unit(rtpu);
+}
+
+void ManagerLoop::end_unit(RtpuId rtpu) {
+  KeeperMessage message;
+  message.kind = KeeperMessage::Kind::kEndChild;
+  message.index = rtpu.index;
+  message.incarnation = world_->rtpus[rtpu.index].incarnation;
+  [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: the keeper hangs itself
 }
 
 Nanoseconds ManagerLoop::next_due() const noexcept {
-  Nanoseconds due = std::min({steps_->next_due(), switches_->next_due(), counters_due_, watch_->due()});
+  Nanoseconds due = std::min(
+      {steps_->next_due(), receipts_->next_due(), drill_->next_due(), counters_due_, watch_->due()});
+  if (is_ready_) due = std::min(due, switches_->next_due());
   if (!is_ready_ || !fleet_->all_up()) due = std::min(due, now() + kLookEvery);
   return due;
 }
 
 /// A negative descriptor is passed over.
 void ManagerLoop::wait(Nanoseconds until, int also, int or_else) {
-  const int descriptors[] = {mapped_->channel.descriptor(), bell_->descriptor(), also, or_else};
+  const int descriptors[] = {mapped_->channel.descriptor(), bell_->descriptor(), receipts_->descriptor(), also,
+                             or_else};
   await_readable(descriptors, std::min(until - now(), seconds(1)));
 }
 
@@ -239,8 +256,15 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
     counters_due_ = now() + kCountersEvery;
   }
   steps_->look(now());
-  switches_->look(now());
-  return true;
+  if (is_ready_) switches_->look(now());  // before that nobody knows which tasks are ON
+  receipts_->look(now());
+  drill_->look(now());
+  return !is_finished_;
+}
+
+void ManagerLoop::finish() {
+  constexpr Nanoseconds kLimit = milliseconds(800);
+  receipts_->flush(kLimit);
 }
 
 }  // namespace chimera::manager

@@ -6,8 +6,10 @@
 #include <memory>
 
 #include "chimera/manager/bell_watch.h"
+#include "chimera/manager/drill.h"
 #include "chimera/manager/face_watch.h"
 #include "chimera/manager/manager_state.h"
+#include "chimera/manager/receipt_archive.h"
 #include "chimera/manager/rtpu_links.h"
 #include "chimera/manager/step_runner.h"
 #include "chimera/manager/switch_coordinator.h"
@@ -42,7 +44,7 @@ class ManagerLoop {
   ~ManagerLoop();
 
   /// One round: waits until something is due, `at_most`, or until `also` or `or_else` is readable; deals with
-  /// everything that is the driver's. False when the keeper is gone.
+  /// everything that is the driver's. False when the keeper is gone or wants no more.
   bool step(Nanoseconds at_most = kNever, int also = -1, int or_else = -1);
   /// Asks for a signal; `answered` is called when it is over, maybe at once.
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered) {
@@ -50,6 +52,9 @@ class ManagerLoop {
   }
   /// Rings doorbells, as RtpuLinks::ring.
   RtpuId ring(std::span<const TaskId> tasks);
+  /// The keeper has told it to finish, or is gone: step() answers false. Files what is left to be filed; may block for
+  /// most of the second that the keeper waits.
+  void finish();
   /// Has the keeper end everything; the keeper is told in the next step(), after the request was answered.
   void end(std::int32_t code);
   /// Hands over the listening socket, once.
@@ -59,6 +64,8 @@ class ManagerLoop {
 
   ManagerState& world() noexcept { return *world_; }
   SwitchCoordinator& switches() noexcept { return *switches_; }
+  const ReceiptArchive& receipts() const noexcept { return *receipts_; }
+  Drill& drill() noexcept { return *drill_; }
   /// Has the step function been given the whole inventory? Faces are served from then on.
   bool is_ready() const noexcept { return is_ready_; }
 
@@ -74,6 +81,7 @@ class ManagerLoop {
   void pass_end_on();
   void look_at_keeper();
   void watch();
+  void end_unit(RtpuId rtpu);
   Nanoseconds next_due() const noexcept;
   void wait(Nanoseconds until, int also, int or_else);
 
@@ -81,7 +89,9 @@ class ManagerLoop {
   std::unique_ptr<ManagerState> world_;
   std::unique_ptr<RtpuLinks> fleet_;
   std::unique_ptr<StepRunner> steps_;
+  std::unique_ptr<ReceiptArchive> receipts_;
   std::unique_ptr<SwitchCoordinator> switches_;
+  std::unique_ptr<Drill> drill_;
   std::unique_ptr<UnitWatch> watch_;
   std::uint64_t keeper_beats_ = 0;  // that were answered
   std::unique_ptr<UnitHealth> health_;
@@ -91,6 +101,7 @@ class ManagerLoop {
   bool is_ready_ = false;
   std::optional<std::int32_t> end_wish_;
   bool is_ending_ = false;
+  bool is_finished_ = false;
   FaceWatch face_watch_;
 };
 

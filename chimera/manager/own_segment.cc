@@ -2,6 +2,8 @@
 // Makes the manager's segment, or takes over what its predecessor left in one.
 #include "chimera/manager/own_segment.h"
 
+#include "chimera/manager/switch_journal.h"
+
 namespace chimera::manager {
 namespace {
 
@@ -42,6 +44,7 @@ Result<OwnSegment> OwnSegment::make(const Peers& peers, std::uint32_t incarnatio
 void OwnSegment::take_over(const BlockView& left, const Peers& peers) noexcept {
   for (std::uint32_t t = 0; t < peers.n_tasks(); ++t) block_.set_goal(TaskId(t), left.goal(TaskId(t)));
   block_.head().flag = left.head().flag & kOperatorFlag;
+  SwitchJournal(block_.journal()).take_over(left.journal());
   const ManagerMemory& from = left.memory();
   ManagerMemory& to = block_.memory();
   copy_word(to.events, from.events);

@@ -13,7 +13,7 @@ namespace chimera::manager {
 /// Made once by each manager; whatever the predecessor left in its segment is taken over. Context: setup.
 class OwnSegment {
  public:
-  /// `predecessor` may be null: the first manager. Goals, memory, the operator's flag and the operator variables are
+  /// `predecessor` may be null: the first manager. Goals, memory, journal, the operator's flag and variables are
   /// copied from it. `peers` outlives it. Refuses what the system refuses.
   static Result<OwnSegment> make(const Peers& peers, std::uint32_t incarnation, const PeerSegment* predecessor,
                                  Nanoseconds now);

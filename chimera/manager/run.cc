@@ -36,6 +36,7 @@ Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int3
     questions.serve(now());
   } while (
       driver.step(std::min((*door)->next_due(), questions.next_due()), (*door)->descriptor(), questions.descriptor()));
+  driver.finish();
   return 0;
 }
 

@@ -210,6 +210,23 @@ Json described_variable(const Configuration& configuration, const ConfiguredVari
           {"consumers", names(variable.consumers)}};
 }
 
+/// "run", "run with pid_spare for pid"; empty when other tasks are ON.
+std::string name_in_force(const ApplicationSpec& spec, const NamedSet& set, std::vector<bool> on) {
+  std::string name(set.name);
+  const char* joint = " with ";
+  for (const TaskId task : set.order) {
+    std::size_t by = task.index;
+    if (!on[by])
+      for (by = 0; by < on.size() && !(on[by] && spec.stand_in(task, TaskId(by)));) ++by;
+    if (by == on.size()) return "";
+    on[by] = false;
+    if (by == task.index) continue;
+    name += joint + std::string(spec.tasks[by].name) + " for " + std::string(spec.tasks[task.index].name);
+    joint = " and ";
+  }
+  return std::find(on.begin(), on.end(), true) == on.end() ? name : "";
+}
+
 }  // namespace
 
 Json flag_json(const ManagerState& world) {
@@ -219,7 +236,9 @@ Json flag_json(const ManagerState& world) {
     const bool raises = segment.is_there() && segment.block().head().flag.load(std::memory_order_acquire) != 0;
     if (raises || (all_are_dead(world) && has_lost_tasks(world, RtpuId(r)))) by.push_back(world.name(RtpuId(r)));
   }
-  if (world.own.block().head().flag.load(std::memory_order_acquire) != 0) by.push_back("operator");
+  const std::uint32_t own = world.own.block().head().flag.load(std::memory_order_acquire);  // BlockHead
+  if ((own & kOperatorFlag) != 0) by.push_back("operator");
+  if ((own & kDrillFlag) != 0) by.push_back("drill");
   return {{"up", !by.empty()}, {"by", std::move(by)}};
 }
 
@@ -231,14 +250,10 @@ std::string fault_text(const ManagerState& world, TaskId task) {
 
 std::string configuration_name(const ManagerState& world) {
   if (!world.configuration) return "";
-  const Configuration& configuration = *world.configuration;
   std::vector<bool> on(world.spec().tasks.size());
   for (std::size_t t = 0; t < on.size(); ++t) on[t] = world.state(TaskId(t)) == State::kOn;
-  for (const ConfiguredSet& set : configuration.sets()) {
-    std::vector<bool> wanted(on.size());
-    for (const TaskId task : set.order) wanted[task.index] = true;
-    if (wanted == on) return set.name;
-  }
+  for (const NamedSet& set : world.spec().sets)
+    if (const std::string name = name_in_force(world.spec(), set, on); !name.empty()) return name;
   return "";
 }
 

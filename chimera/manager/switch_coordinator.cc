@@ -3,6 +3,8 @@
 #include "chimera/manager/switch_coordinator.h"
 
 #include <algorithm>
+#include <ctime>
+#include <utility>
 
 #include "chimera/control/receipt_text.h"
 
@@ -27,6 +29,15 @@ bool is_in_range(const VariablePart& part, const ApplicationSpec& spec, std::uin
 
 Nanoseconds later(Nanoseconds a, Nanoseconds b) { return a == kNever ? b : b == kNever ? a : std::max(a, b); }
 
+/// "14:03:07", of the wall clock.
+std::string time_of_day(Nanoseconds at) {
+  const auto seconds_since = static_cast<std::time_t>(wall_ns(at) / 1'000'000'000);
+  std::tm broken_down{};
+  char text[16] = "?";
+  if (::localtime_r(&seconds_since, &broken_down) != nullptr) std::strftime(text, sizeof text, "%T", &broken_down);
+  return text;
+}
+
 }  // namespace
 
 TaskStatus last_status(const ManagerState& world, TaskId task) {
@@ -46,14 +57,51 @@ TaskStatus last_status(const ManagerState& world, TaskId task) {
   return status;
 }
 
-SwitchCoordinator::SwitchCoordinator(ManagerState& world) : world_(world), standing_(world.spec().tasks.size()) {
+SwitchCoordinator::SwitchCoordinator(ManagerState& world, ReceiptArchive& archive)
+    : world_(world),
+      archive_(archive),
+      journal_(world.own.block().journal()),
+      standing_(world.spec().tasks.size()) {
   planner_.prepare(world.spec(), memory_);
+  schedule_.prepare(world.spec(), memory_);
+  take_over();
+}
+
+/// What was never announced is forgotten; a try that was not announced is as if only those before it had been made.
+void SwitchCoordinator::take_over() {
+  auto begun = journal_.begun();
+  if (!begun) return;
+  const PlanWord plan = agreement().plan();
+  const std::size_t n_sets = world_.spec().sets.size();
+  const bool is_damaged = begun->order.after >= n_sets || (begun->before >= n_sets && begun->before != kNoSet) ||
+                          begun->asked_by.role > control::Role::kConfigure ||
+                          begun->cancelled_by.role > control::Role::kConfigure;
+  const bool is_announced = plan.number == begun->order.number;
+  if (is_damaged || (!is_announced && begun->tries <= 1)) return journal_.forget();
+  if (!is_announced) {
+    begun->order.number = plan.number;
+    --begun->tries;
+  }
+  present_ = Present{*begun, {}};
+  world_.announce();
 }
 
 std::string SwitchCoordinator::under_way() const {
   if (!present_) return "";
-  return "switch " + std::to_string(present_->order.number) + " to '" +
-         std::string(world_.spec().sets[present_->order.after].name) + "', asked for by " + present_->asked_by;
+  return "switch " + std::to_string(present_->begun.number) + " to '" +
+         std::string(world_.spec().sets[present_->begun.order.after].name) + "', asked for by " +
+         present_->begun.asked_by.text();
+}
+
+std::string SwitchCoordinator::progress() const {
+  const std::string until = ", until " + time_of_day(present_->begun.order.until);
+  switch (agreement().plan().phase) {
+    case SwitchPhase::kPrepared: return "arming" + until;
+    case SwitchPhase::kProposed: return "agreeing" + until;
+    case SwitchPhase::kCommitted: return "committed";
+    case SwitchPhase::kAborted: return "aborted";
+  }
+  return "?";
 }
 
 // Those that live and serve this manager have done what they have to do.
@@ -74,7 +122,8 @@ PlanAnswer SwitchCoordinator::judge(std::uint32_t set) {
     const bool is_dead = !rtpu.is_alive && state != State::kNotCreated;
     standing_[t] = {is_dead ? State::kError : state, world_.peers.status(task).in_service};
   }
-  return planner_.plan(set, standing_, plan_);
+  const PlanAnswer answer = planner_.plan(set, standing_, plan_);
+  return answer ? schedule_.judge(standing_, set) : answer;
 }
 
 Nanoseconds SwitchCoordinator::lead() const noexcept {
@@ -88,13 +137,13 @@ Nanoseconds SwitchCoordinator::lead() const noexcept {
   return lead_of(plan_, world_.spec().tasks, longest);
 }
 
-SwitchOrder SwitchCoordinator::make_order(std::uint32_t set, Nanoseconds wait, Nanoseconds now) {
+SwitchOrder SwitchCoordinator::make_order(std::uint32_t set, Nanoseconds until) const {
   SwitchOrder order;
   order.number = next_plan(agreement().plan().number);
   for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r)
     if (world_.rtpus[r].is_alive) order.members = static_cast<std::uint16_t>(order.members | 1u << r);
   order.after = set;
-  order.until = now + wait;
+  order.until = until;
   order.lead = lead();
   for (std::size_t t = 0; t < standing_.size(); ++t)
     if (standing_[t].state == State::kOn) order.on.add(TaskId(t));
@@ -106,109 +155,177 @@ void SwitchCoordinator::announce(const SwitchOrder& order) {
   world_.announce();
 }
 
-void SwitchCoordinator::ask(std::uint32_t set, std::string asked_by, Nanoseconds wait, Nanoseconds now,
-                            Switched switched) {
-  SwitchOutcome refused;
-  refused.asked_by = asked_by;
-  refused.receipt.asked = now;
-  refused.receipt.after = set;
-  look(now);
+/// What may begin is kDone, for as long as nothing has gone wrong.
+void SwitchCoordinator::assess(std::uint32_t set, SwitchOutcome& outcome) {
+  SwitchReceipt& receipt = outcome.receipt;
+  const PlanAnswer answer = judge(set);
+  receipt.before = planner_.set_in_force(standing_);
+  receipt.after = set;
+  receipt.why = answer.why;
+  receipt.task = answer.task;
+  receipt.takes = answer.takes;
   const PlanWord open = agreement().plan();
-  const bool is_free = !present_ && !open.is_open() && (open.number == 0 || is_over(open.number, UINT16_MAX));
-  PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  if (is_free) answer = judge(set);
-  if (!answer) {
-    const bool is_in_force = answer.why == NoSwitch::kNothingToDo;
-    if (answer.why == NoSwitch::kUnderWay)
-      refused.under_way = present_ ? under_way() : "a switch that a manager before this one has ordered";
-    refused.receipt.end = is_in_force ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
-    refused.receipt.why = answer.why;
-    refused.receipt.task = answer.task;
-    return switched(refused);
+  if (present_) {
+    receipt.said.assign(under_way() + ", is under way: " + progress());
+  } else if (open.is_open() || (open.number != 0 && !is_over(open.number, UINT16_MAX))) {
+    receipt.said.assign("the real-time units are not done with the last switch");
+  } else if (!world_.logic.is_settled()) {
+    receipt.said.assign("tasks are being brought up");
+    outcome.remedy = "`chimera status` shows which; ask again when they are ON";
   }
-  const SwitchOrder order = make_order(set, wait, now);
-  present_ = Present{order, std::move(asked_by), now, wait, plan_.before, 1, false, std::move(switched)};
-  world_.tell("switch", TaskId{}, RtpuId{}, under_way() + ": begun", now);
-  announce(order);
+  if (!receipt.said.view().empty()) {
+    receipt.why = NoSwitch::kUnderWay;
+    receipt.task = {};
+  }
+  const bool is_in_force = receipt.why == NoSwitch::kNothingToDo;
+  const bool may_begin = receipt.why == NoSwitch::kNone;
+  receipt.end = may_begin ? SwitchEnd::kDone : is_in_force ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
+  const std::string task = receipt.task.is_valid() ? world_.name(receipt.task) : "";
+  if (receipt.why == NoSwitch::kInError) outcome.remedy = "`chimera clear " + task + "`";
+  if (receipt.why == NoSwitch::kNotCreated) outcome.remedy = "`chimera spawn " + task + "`";
+  if (receipt.why == NoSwitch::kNotSchedulable) outcome.remedy = "`chimera check FILE --modes` judges all transitions";
 }
 
-bool SwitchCoordinator::cancel() {
-  if (!present_ || !agreement().abort(present_->order.number)) return false;
-  present_->is_cancelled = true;
+ForeseenSwitch SwitchCoordinator::foresee(std::uint32_t set) {
+  SwitchOutcome outcome;
+  assess(set, outcome);
+  const bool has_plan = outcome.receipt.end == SwitchEnd::kDone;
+  return {outcome.receipt, has_plan ? plan_ : SwitchPlan{}, outcome.remedy};
+}
+
+void SwitchCoordinator::ask(std::uint32_t set, Asker asked_by, Nanoseconds wait, Nanoseconds now, Switched switched) {
+  look(now);
+  auto outcome = std::make_shared<SwitchOutcome>();
+  assess(set, *outcome);
+  outcome->receipt.asked = now;
+  BegunSwitch begun;
+  begun.number = journal_.next();
+  begun.before = outcome->receipt.before;
+  begun.asked_by = asked_by;
+  begun.asked = now;
+  if (outcome->receipt.end == SwitchEnd::kNothingToDo) return switched(*outcome);
+  if (outcome->receipt.end == SwitchEnd::kRefused) {
+    outcome->receipt.number = begun.number;
+    std::vector<Switched> one;
+    one.push_back(std::move(switched));
+    return file(std::move(outcome), begun, now, std::move(one));
+  }
+  begun.order = make_order(set, now + wait);
+  journal_.begin(begun);
+  present_ = Present{begun, {}};
+  present_->switched.push_back(std::move(switched));
+  announce(begun.order);
+  world_.tell("switch", TaskId{}, RtpuId{}, under_way() + ": begun", now);
+}
+
+/// Who cancelled is noted before the plan is aborted: a successor may have to tell.
+bool SwitchCoordinator::cancel(Asker cancelled_by, Switched switched) {
+  if (!present_) return false;
+  BegunSwitch cancelled = present_->begun;
+  cancelled.cancelled_by = cancelled_by;
+  journal_.change(cancelled);
+  if (!agreement().abort(cancelled.order.number)) {
+    journal_.change(present_->begun);
+    return false;
+  }
+  present_->begun = cancelled;
+  present_->switched.push_back(std::move(switched));
   world_.announce();
   return true;
 }
 
-// An order that nobody wrote is due at once.
-Nanoseconds SwitchCoordinator::orphan_due() const noexcept {
-  const PlanWord plan = agreement().plan();
-  if (present_ || !plan.is_open()) return kNever;
-  const auto order = agreement().order(plan, world_.spec().sets.size(), world_.spec().tasks.size());
-  return order ? order->until + kGrace : Nanoseconds{};
-}
-
 Nanoseconds SwitchCoordinator::next_due() const noexcept {
-  return present_ ? present_->order.until + kGrace : orphan_due();
+  return present_ ? present_->begun.order.until + kGrace : kNever;
 }
 
+/// Of one that was only late, and that nobody has cancelled: it has more time then.
+bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds now) {
+  BegunSwitch& begun = present_->begun;
+  const bool was_late = receipt.why == NoSwitch::kLate && now < begun.order.until && !world_.is_ending();
+  const bool is_cancelled = begun.cancelled_by.role != control::Role::kNone;
+  if (!was_late || is_cancelled || begun.tries >= kMostTries || !judge(begun.order.after)) return false;
+  ++begun.tries;
+  begun.order = make_order(begun.order.after, begun.order.until);
+  for (std::uint32_t i = 1; i < begun.tries; ++i) begun.order.lead = begun.order.lead * kMoreTime;
+  journal_.change(begun);
+  announce(begun.order);
+  return true;
+}
+
+/// An open plan of which the journal knows nothing is nobody's.
 void SwitchCoordinator::look(Nanoseconds now) {
-  if (orphan_due() <= now && agreement().abort(agreement().plan().number)) world_.announce();
+  const PlanWord plan = agreement().plan();
+  if (!present_ && plan.is_open() && agreement().abort(plan.number)) world_.announce();
   if (!present_) return;
-  const SwitchOrder& order = present_->order;
-  if (now >= order.until + kGrace && agreement().abort(order.number)) world_.announce();
+  const SwitchOrder& order = present_->begun.order;
+  const bool is_due = now >= order.until + kGrace || world_.is_ending();
+  if (is_due && agreement().abort(order.number)) world_.announce();
   if (agreement().plan().is_open() || !is_over(order.number, order.members)) return;
-  SwitchOutcome outcome = collect(*present_, now);
-  const bool was_late = outcome.receipt.why == NoSwitch::kLate && now < order.until;
-  if (was_late && !present_->is_cancelled && present_->tries < kMostTries && judge(order.after)) {
-    ++present_->tries;
-    present_->order = make_order(order.after, order.until - now, now);
-    for (int i = 1; i < present_->tries; ++i) present_->order.lead = present_->order.lead * kMoreTime;
-    return announce(present_->order);
-  }
-  const Switched switched = std::move(present_->switched);
-  present_.reset();
-  tell(outcome, now);
-  switched(outcome);
+  auto outcome = collect(present_->begun, now);
+  if (is_tried_again(outcome->receipt, now)) return;
+  const Present over = *std::exchange(present_, std::nullopt);
+  tell(*outcome, now);
+  file(std::move(outcome), over.begun, now, over.switched);
 }
 
-// A part says anything when its unit has died: what does not fit the application is left out.
-SwitchOutcome SwitchCoordinator::collect(const Present& over, Nanoseconds now) {
+/// A part says anything when its unit has died: what does not fit the application is left out.
+void SwitchCoordinator::add_part(const SwitchPart& part, std::uint32_t rtpu, Nanoseconds now,
+                                 SwitchOutcome& outcome) const {
   const ApplicationSpec& spec = world_.spec();
+  SwitchReceipt& receipt = outcome.receipt;
+  const auto is_possible = [&](Nanoseconds at) { return at >= receipt.asked && at <= now; };
+  if (is_possible(part.armed)) receipt.armed = later(receipt.armed, part.armed);
+  if (is_possible(part.ended)) receipt.ended = later(receipt.ended, part.ended);
+  const bool says_more = receipt.why == NoSwitch::kNone || receipt.why == NoSwitch::kLate;
+  if (part.why != NoSwitch::kNone && says_more && receipt.end == SwitchEnd::kAborted) {
+    receipt.why = part.why;
+    if (part.task.index < spec.tasks.size()) receipt.task = part.task;
+    if (part.variable.index < spec.variables.size()) receipt.variable = part.variable;
+    receipt.value = part.value;
+    receipt.said.assign({part.said, ::strnlen(part.said, SwitchPart::kSaid)});
+  }
+  for (std::uint32_t i = 0; i < std::min<std::size_t>(part.n_tasks, part.tasks.size()); ++i)
+    if (is_in_range(part.tasks[i], spec, rtpu)) outcome.tasks.push_back(part.tasks[i]);
+  for (std::uint32_t i = 0; i < std::min(part.n_variables, SwitchPart::kVariablesKept); ++i)
+    if (is_in_range(part.variables[i], spec, rtpu)) outcome.variables.push_back(part.variables[i]);
+}
+
+std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& over, Nanoseconds now) const {
   const PlanWord word = agreement().plan();
   const bool is_committed = word.number == over.order.number && word.phase == SwitchPhase::kCommitted;
-  SwitchOutcome outcome;
-  outcome.asked_by = over.asked_by;
-  SwitchReceipt& receipt = outcome.receipt;
-  receipt.number = over.order.number;
+  auto outcome = std::make_shared<SwitchOutcome>();
+  SwitchReceipt& receipt = outcome->receipt;
+  receipt.number = over.number;
   receipt.before = over.before;
   receipt.after = over.order.after;
   receipt.asked = over.asked;
-  receipt.ended = now;
   receipt.end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
   if (is_committed) receipt.at = agreement().at(word);
   for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r) {
     if (((over.order.members >> r) & 1u) == 0 || !world_.peers[RtpuId(r)].is_there()) continue;
     const SwitchPart& part = world_.peers[RtpuId(r)].block().switch_part();
-    if (part.number != over.order.number) continue;
-    receipt.armed = later(receipt.armed, part.armed);
-    const bool says_more = receipt.why == NoSwitch::kNone || receipt.why == NoSwitch::kLate;
-    if (part.why != NoSwitch::kNone && says_more && !is_committed) {
-      receipt.why = part.why;
-      if (part.task.index < spec.tasks.size()) receipt.task = part.task;
-      if (part.variable.index < spec.variables.size()) receipt.variable = part.variable;
-      receipt.said.assign({part.said, ::strnlen(part.said, SwitchPart::kSaid)});
-    }
-    for (std::uint32_t i = 0; i < std::min<std::size_t>(part.n_tasks, part.tasks.size()); ++i)
-      if (is_in_range(part.tasks[i], spec, r)) outcome.tasks.push_back(part.tasks[i]);
-    for (std::uint32_t i = 0; i < std::min(part.n_variables, SwitchPart::kVariablesKept); ++i)
-      if (is_in_range(part.variables[i], spec, r)) outcome.variables.push_back(part.variables[i]);
+    if (part.number == over.order.number) add_part(part, r, now, *outcome);
   }
-  if (over.is_cancelled && !is_committed) receipt.why = NoSwitch::kCancelled;
-  if (!is_committed && receipt.why == NoSwitch::kNone) receipt.why = NoSwitch::kMemberDied;
-  std::ranges::stable_sort(outcome.tasks, {}, &TaskPart::move);
-  receipt.tasks = outcome.tasks;
-  receipt.variables = outcome.variables;
+  if (receipt.ended == kNever) receipt.ended = now;
+  if (over.cancelled_by.role != control::Role::kNone && !is_committed) {
+    receipt.why = NoSwitch::kCancelled;
+    receipt.said.assign(over.cancelled_by.text());
+  } else if (!is_committed && receipt.why == NoSwitch::kNone) {
+    receipt.why = world_.is_ending() ? NoSwitch::kRunEnded : NoSwitch::kMemberDied;
+  }
+  std::ranges::stable_sort(outcome->tasks, {}, &TaskPart::move);
+  receipt.tasks = outcome->tasks;
+  receipt.variables = outcome->variables;
   return outcome;
+}
+
+void SwitchCoordinator::file(std::shared_ptr<SwitchOutcome> outcome, const BegunSwitch& of, Nanoseconds now,
+                             std::vector<Switched> switched) {
+  outcome->json = control::receipt_json(outcome->receipt, world_.spec(), world_.keeper.origin,
+                                        {of.asked_by.text(), wall_ns(of.asked), of.tries});
+  archive_.add(of.number, outcome->json, now, [outcome, switched = std::move(switched)] {
+    for (const Switched& one : switched) one(*outcome);
+  });
 }
 
 void SwitchCoordinator::tell(const SwitchOutcome& outcome, Nanoseconds now) {

@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the manager does for a switch of configurations: it judges the request, orders the switch from the real-time
-// units, which carry it out and decide by themselves, and puts their parts together into one receipt.
+// units, which carry it out and decide by themselves, and puts their parts together into one receipt. What it must not
+// forget stands in the journal: a successor goes on where it stopped.
 // docs/formats/processes.md, docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "chimera/manager/asker.h"
 #include "chimera/manager/manager_state.h"
+#include "chimera/manager/receipt_archive.h"
+#include "chimera/manager/switch_journal.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_receipt.h"
+#include "chimera/runtime/switch_schedule.h"
 
 namespace chimera::manager {
 
@@ -21,10 +27,17 @@ struct SwitchOutcome {
   SwitchReceipt receipt;
   std::vector<TaskPart> tasks;
   std::vector<VariablePart> variables;
-  std::string asked_by;
-  std::string under_way;  ///< of NoSwitch::kUnderWay: which, asked for by whom
+  std::string remedy;  ///< of a refusal; "": none is known
+  std::string json;    ///< the receipt as it is filed; "": there is none
 };
 using Switched = std::function<void(const SwitchOutcome&)>;
+
+/// What a switch would do now. Lists point into the coordinator, until it is asked for anything else.
+struct ForeseenSwitch {
+  SwitchReceipt receipt;  ///< `before`, `after` and, where it would be refused, `why`, `task` and `said`
+  SwitchPlan plan;        ///< empty where it would be refused
+  std::string remedy;
+};
 
 /// The status word of a task of a unit that is dead, as it would be had the unit lived to make a change that was
 /// committed without it: what comes back is the set after the switch. Context: setup.
@@ -33,15 +46,21 @@ TaskStatus last_status(const ManagerState& world, TaskId task);
 /// Context: setup; never blocks. One request at a time.
 class SwitchCoordinator {
  public:
-  explicit SwitchCoordinator(ManagerState& world);
+  /// Takes up the switch that a predecessor has begun.
+  SwitchCoordinator(ManagerState& world, ReceiptArchive& archive);
 
-  /// Asks for the set of that number. `switched` is called when it is over, maybe at once. `asked_by`: a role and user.
-  void ask(std::uint32_t set, std::string asked_by, Nanoseconds wait, Nanoseconds now, Switched switched);
-  /// Aborts what is under way and not committed; false: there is nothing.
-  bool cancel();
+  /// Asks for the set of that number. `switched` is called when it is over and its receipt is filed, maybe at once.
+  void ask(std::uint32_t set, Asker asked_by, Nanoseconds wait, Nanoseconds now, Switched switched);
+  /// What ask() would do. Changes nothing.
+  ForeseenSwitch foresee(std::uint32_t set);
+  /// Aborts what is under way and not committed: `switched` gets the same receipt as who asked for it. False: there is
+  /// nothing, or it is too late.
+  bool cancel(Asker cancelled_by, Switched switched);
   bool is_under_way() const noexcept { return present_.has_value(); }
   /// "switch 3 to 'hand', asked for by operate:ann"; "" without one.
   std::string under_way() const;
+  /// How far it is, and until when it may take: "arming, until 14:03:07". Requires: is_under_way().
+  std::string progress() const;
 
   /// Deals with what the units have said since.
   void look(Nanoseconds now);
@@ -50,29 +69,32 @@ class SwitchCoordinator {
 
  private:
   struct Present {
-    SwitchOrder order;
-    std::string asked_by;
-    Nanoseconds asked, wait;
-    std::uint32_t before = kNoSet;
-    int tries = 1;
-    bool is_cancelled = false;
-    Switched switched;
+    BegunSwitch begun;
+    std::vector<Switched> switched;  // none: who asked, asked a predecessor
   };
 
   SwitchAgreement agreement() const noexcept { return {world_.page.switching, world_.keeper.origin}; }
-  /// When the plan that is open and not of this manager is past its deadline; kNever: there is none.
-  Nanoseconds orphan_due() const noexcept;
+  void take_over();
   bool is_over(std::uint16_t number, std::uint16_t members) const noexcept;
+  /// Can it be, and do all deadlines hold over it?
   PlanAnswer judge(std::uint32_t set);
-  SwitchOrder make_order(std::uint32_t set, Nanoseconds wait, Nanoseconds now);
+  void assess(std::uint32_t set, SwitchOutcome& outcome);
+  SwitchOrder make_order(std::uint32_t set, Nanoseconds until) const;
   Nanoseconds lead() const noexcept;
   void announce(const SwitchOrder& order);
-  SwitchOutcome collect(const Present& over, Nanoseconds now);
+  bool is_tried_again(const SwitchReceipt& receipt, Nanoseconds now);
+  std::shared_ptr<SwitchOutcome> collect(const BegunSwitch& over, Nanoseconds now) const;
+  void add_part(const SwitchPart& part, std::uint32_t rtpu, Nanoseconds now, SwitchOutcome& outcome) const;
+  void file(std::shared_ptr<SwitchOutcome> outcome, const BegunSwitch& of, Nanoseconds now,
+            std::vector<Switched> switched);
   void tell(const SwitchOutcome& outcome, Nanoseconds now);
 
   ManagerState& world_;
+  ReceiptArchive& archive_;
+  SwitchJournal journal_;
   HeapMemory memory_;  // behind the planner
   SwitchPlanner planner_;
+  SwitchSchedule schedule_;
   SwitchPlan plan_;
   std::vector<TaskStanding> standing_;  // by task, when a plan is judged
   std::optional<Present> present_;

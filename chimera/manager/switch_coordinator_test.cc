@@ -7,37 +7,60 @@
 #include <csignal>
 #include <cstring>
 
+#include "chimera/control/receipt_file.h"
+#include "chimera/control/receipt_text.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 
 namespace chimera::manager {
 namespace {
 
 constexpr std::uint32_t kRun = 0, kRest = 1;
+constexpr Asker kAnn{control::Role::kOperate, 4'000'000'001u}, kBen{control::Role::kConfigure, 4'000'000'002u};
+const std::string kByAnn = "asked for by operate:4000000001";
 
 struct SwitchCoordinatorTest : ::testing::Test {
   SwitchCoordinatorTest() {
     fake.start_manager();
-    EXPECT_TRUE(fake.until_on("law"));
+    EXPECT_TRUE(is_settled());
+  }
+  bool is_settled() {
+    return fake.until_on("law") && fake.until([this] { return fake.driver().world().logic.is_settled(); });
   }
   SwitchCoordinator& coordinator() { return fake.driver().switches(); }
   SwitchAgreement agreement() { return {fake.driver().world().page.switching, fake.driver().world().keeper.origin}; }
   void ask(std::uint32_t set) {
     got.reset();
-    coordinator().ask(set, "operate", seconds(10), now(), [this](const SwitchOutcome& outcome) { got = outcome; });
+    coordinator().ask(set, kAnn, seconds(10), now(), [this](const SwitchOutcome& outcome) { take(outcome); });
   }
+  void take(const SwitchOutcome& outcome) {
+    got = outcome;
+    got->receipt.tasks = got->tasks;
+    got->receipt.variables = got->variables;
+  }
+  /// What the file of receipts has.
+  std::vector<std::string> filed() const { return control::ReceiptFile(fake.state() + "/chimera/fake").last(1000); }
   SwitchPart& part(std::uint32_t r) { return fake.rtpu(r).block().switch_part(); }
   /// The unit has done what it has to do.
-  void over(std::uint32_t r, NoSwitch why = NoSwitch::kNone) {
-    part(r).number = agreement().plan().number;
+  void over(std::uint32_t r, DecisionPage& page, NoSwitch why = NoSwitch::kNone) {
+    part(r).number = PlanWord::of(page.switching.plan).number;
     part(r).why = why;
     fake.rtpu(r).block().head().switching.adopted = part(r).number;
     fake.rtpu(r).block().head().switching.over = part(r).number;
   }
-  void commit() {
-    const std::uint16_t number = agreement().plan().number;
-    ASSERT_TRUE(agreement().propose(number, agreement().round_up(now() + milliseconds(1))));
-    EXPECT_FALSE(agreement().agree(number, 0));
-    ASSERT_TRUE(agreement().agree(number, 1));
+  void over(std::uint32_t r, NoSwitch why = NoSwitch::kNone) { over(r, fake.decision_page(), why); }
+  void commit_in(DecisionPage& page) {
+    SwitchAgreement there(page.switching, fake.page().origin);
+    const std::uint16_t number = there.plan().number;
+    ASSERT_TRUE(there.propose(number, there.round_up(now() + milliseconds(1))));
+    EXPECT_FALSE(there.agree(number, 0));
+    ASSERT_TRUE(there.agree(number, 1));
+  }
+  void commit() { commit_in(fake.decision_page()); }
+  /// As if it had been killed.
+  void restart() {
+    fake.kill_manager();
+    fake.start_manager();
+    ASSERT_TRUE(is_settled());
   }
   bool until_answered() {
     return fake.until([this] { return got.has_value(); });
@@ -59,7 +82,7 @@ TEST_F(SwitchCoordinatorTest, OrdersWhatIsAskedForAndPutsThePartsTogether) {
   EXPECT_EQ(order->after, kRest);
   EXPECT_GE(order->lead, milliseconds(1));
   for (const char* name : {"sensor", "filter", "law"}) EXPECT_TRUE(order->on.has(fake.task(name))) << name;
-  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by operate");
+  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', " + kByAnn);
   commit();
   part(0).tasks[0] = {fake.task("sensor"), TaskMove::kStays, Nanoseconds{-1}, Nanoseconds{-1}, 0};
   part(0).tasks[1] = {fake.task("filter"), TaskMove::kLeaves, Nanoseconds{-1}, microseconds(7), 2};
@@ -79,7 +102,7 @@ TEST_F(SwitchCoordinatorTest, OrdersWhatIsAskedForAndPutsThePartsTogether) {
   EXPECT_EQ(got->tasks[0].task, fake.task("filter"));
   EXPECT_EQ(got->tasks[0].lost, 2u);
   EXPECT_FALSE(coordinator().is_under_way());
-  EXPECT_NE(fake.told("switch").find("switch 1 to 'rest', asked for by operate: begun\n"), std::string::npos);
+  EXPECT_NE(fake.told("switch").find("switch 1 to 'rest', " + kByAnn + ": begun\n"), std::string::npos);
   EXPECT_NE(fake.told("switch").find("0 tasks arrive, 2 leave, 2 cycles lost\n"), std::string::npos);
 }
 
@@ -99,26 +122,101 @@ TEST_F(SwitchCoordinatorTest, ATaskInErrorIsNamed) {
   fake.rtpu(1).fail(fake.task("law"), "as told");
   ASSERT_TRUE(fake.until([&] { return fake.driver().world().state(fake.task("law")) == State::kError; }));
   ask(kRun);
-  ASSERT_TRUE(got);
+  ASSERT_TRUE(until_answered());
   EXPECT_EQ(got->receipt.end, SwitchEnd::kRefused);
   EXPECT_EQ(got->receipt.why, NoSwitch::kInError);
   EXPECT_EQ(got->receipt.task, fake.task("law"));
+  EXPECT_EQ(got->remedy, "`chimera clear law`");
+  EXPECT_EQ(got->receipt.number, 2u);
+  EXPECT_EQ(filed().size(), 2u);
+}
+
+TEST(SwitchCoordinator, RefusesWhatMightMissADeadlineAndOrdersNothing) {
+  FakeSubsystem fake(R"(subsystem: fake
+rtpus: {servo: {cpu: 3, policy: edf}}
+tasks:
+  sensor: {rtpu: servo, rate: 10 Hz, budget: 80 ms}
+  other:  {component: sensor, rtpu: servo, rate: 10 Hz, offset: 90 ms, budget: 80 ms}
+  like:   {component: sensor, rtpu: servo, rate: 10 Hz, budget: 70 ms}
+configurations: {run: [sensor], late: [other], same: [like]}
+start: run
+)");
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("sensor"));
+  ASSERT_TRUE(fake.until([&] { return fake.driver().world().logic.is_settled(); }));
+  std::optional<SwitchOutcome> got;
+  const auto ask = [&](std::uint32_t set) {
+    got.reset();
+    fake.driver().switches().ask(set, kAnn, seconds(10), now(), [&](const SwitchOutcome& of) { got = of; });
+  };
+  ask(1);
+  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
+  EXPECT_EQ(got->receipt.end, SwitchEnd::kRefused);
+  EXPECT_EQ(got->receipt.why, NoSwitch::kNotSchedulable);
+  EXPECT_EQ(control::reason_text(got->receipt, fake.spec()),
+            "the transition from 'run' to 'late' is not schedulable on CPU 3: a cycle of task 'sensor' may take 400 "
+            "ms, its deadline is 100 ms");
+  EXPECT_FALSE(fake.driver().switches().is_under_way());
+  ask(2);
+  EXPECT_FALSE(got) << "like for like is ordered";
+  EXPECT_TRUE(fake.driver().switches().is_under_way());
 }
 
 TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {
+  EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
   ask(kRest);
-  std::optional<SwitchOutcome> second;
-  coordinator().ask(kRest, "configure", seconds(1), now(), [&](const SwitchOutcome& outcome) { second = outcome; });
-  ASSERT_TRUE(second);
-  EXPECT_EQ(second->receipt.why, NoSwitch::kUnderWay);
-  EXPECT_EQ(second->under_way, "switch 1 to 'rest', asked for by operate");
-  EXPECT_TRUE(coordinator().cancel());
-  EXPECT_FALSE(coordinator().cancel());
+  std::optional<std::string> second, third;
+  coordinator().ask(kRest, kBen, seconds(1), now(), [&](const SwitchOutcome& outcome) {
+    EXPECT_EQ(outcome.receipt.why, NoSwitch::kUnderWay);
+    EXPECT_EQ(outcome.receipt.number, 2u);
+    second = outcome.receipt.said.view();
+  });
+  ASSERT_TRUE(fake.until([&] { return second.has_value(); }));
+  const std::string begin = "switch 1 to 'rest', " + kByAnn + ", is under way: arming, until ";
+  EXPECT_EQ(second->substr(0, begin.size()), begin);
+  EXPECT_EQ(second->size(), begin.size() + std::strlen("14:03:07"));
+  EXPECT_TRUE(coordinator().cancel(kBen, [&](const SwitchOutcome& outcome) { third = outcome.json; }));
+  EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
   over(0);
   over(1);
   ASSERT_TRUE(until_answered());
   EXPECT_EQ(got->receipt.end, SwitchEnd::kAborted);
   EXPECT_EQ(got->receipt.why, NoSwitch::kCancelled);
+  EXPECT_EQ(got->receipt.said.view(), "configure:4000000002");
+  EXPECT_EQ(third, got->json) << "who cancelled gets the same receipt";
+}
+
+TEST_F(SwitchCoordinatorTest, WhatIsCommittedIsNotCancelled) {
+  ask(kRest);
+  commit();
+  EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
+  EXPECT_EQ(coordinator().progress(), "committed");
+  over(0);
+  over(1);
+  ASSERT_TRUE(until_answered());
+  EXPECT_EQ(got->receipt.end, SwitchEnd::kDone);
+}
+
+TEST_F(SwitchCoordinatorTest, ForeseesWhatWouldBeDoneAndChangesNothing) {
+  ForeseenSwitch foreseen = coordinator().foresee(kRest);
+  EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kDone);
+  EXPECT_EQ(foreseen.receipt.before, kRun);
+  EXPECT_EQ(foreseen.plan.leaving.size(), 2u);
+  EXPECT_EQ(foreseen.plan.staying.size(), 1u);
+  EXPECT_EQ(coordinator().foresee(kRun).receipt.end, SwitchEnd::kNothingToDo);
+  EXPECT_EQ(agreement().plan().number, 0);
+  EXPECT_FALSE(coordinator().is_under_way());
+  ask(kRest);
+  foreseen = coordinator().foresee(kRun);
+  EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kRefused);
+  EXPECT_EQ(foreseen.receipt.why, NoSwitch::kUnderWay);
+  EXPECT_TRUE(foreseen.plan.leaving.empty());
+  commit();
+  over(0);
+  over(1);
+  ASSERT_TRUE(until_answered());
+  EXPECT_EQ(got->receipt.number, 1u) << "what was foreseen has no number";
+  EXPECT_EQ(filed().size(), 1u);
 }
 
 TEST_F(SwitchCoordinatorTest, TheUnitThatAbortedSaysWhy) {
@@ -149,6 +247,8 @@ TEST_F(SwitchCoordinatorTest, OneThatWasOnlyLateIsTriedThreeTimes) {
   }
   ASSERT_TRUE(until_answered());
   EXPECT_EQ(got->receipt.why, NoSwitch::kLate);
+  EXPECT_EQ(got->receipt.number, 1u) << "three plans, one switch";
+  EXPECT_NE(got->json.find("\"tries\": 3, "), std::string::npos) << got->json;
   EXPECT_EQ(agreement().plan().number, 3);
 }
 
@@ -163,7 +263,7 @@ TEST_F(SwitchCoordinatorTest, AFailureCountsMoreThanLateness) {
 
 TEST_F(SwitchCoordinatorTest, WhatIsCancelledIsNotTriedAgain) {
   ask(kRest);
-  EXPECT_TRUE(coordinator().cancel());
+  EXPECT_TRUE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
   over(0, NoSwitch::kLate);
   over(1);
   ASSERT_TRUE(until_answered());
@@ -171,22 +271,93 @@ TEST_F(SwitchCoordinatorTest, WhatIsCancelledIsNotTriedAgain) {
   EXPECT_EQ(agreement().plan().number, 1);
 }
 
-// Its manager is dead, and so may be the units: nobody else would close it.
-TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
-  coordinator().ask(kRest, "operate", milliseconds(1), now(), [](const SwitchOutcome&) {});
-  fake.kill_manager();
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("law"));
+TEST_F(SwitchCoordinatorTest, ASuccessorGoesOnWithTheSwitchAndFilesItsReceipt) {
   ask(kRest);
-  ASSERT_TRUE(got);
+  restart();
+  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', " + kByAnn);
+  EXPECT_TRUE(agreement().plan().is_open()) << "the units need no manager";
+  commit();
+  over(0);
+  over(1);
+  ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
+  EXPECT_NE(filed()[0].find("\"number\": 1, "), std::string::npos);
+  EXPECT_NE(filed()[0].find("\"end\": \"done\""), std::string::npos) << filed()[0];
+  EXPECT_NE(filed()[0].find("\"user\": \"4000000001\""), std::string::npos) << filed()[0];
+  EXPECT_FALSE(coordinator().is_under_way());
+}
+
+TEST_F(SwitchCoordinatorTest, WhatTheUnitsDidWithoutAManagerIsCollected) {
+  ask(kRest);
+  fake.kill_manager();
+  commit_in(fake.decision_page());
+  over(0, fake.decision_page());
+  over(1, fake.decision_page());
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
+  EXPECT_NE(filed()[0].find("\"end\": \"done\""), std::string::npos) << filed()[0];
+}
+
+TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
+  coordinator().ask(kRest, kAnn, milliseconds(1), now(), [](const SwitchOutcome&) {});
+  restart();
+  ask(kRest);
+  ASSERT_TRUE(until_answered());
   EXPECT_EQ(got->receipt.why, NoSwitch::kUnderWay);
-  EXPECT_EQ(got->under_way, "a switch that a manager before this one has ordered");
+  EXPECT_TRUE(got->receipt.said.view().starts_with("switch 1 to 'rest', " + kByAnn + ", is under way: "));
   ASSERT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
   over(0);
   over(1);
+  ASSERT_TRUE(fake.until([&] { return filed().size() == 2; }));
   ask(kRest);
   EXPECT_FALSE(got);
   EXPECT_EQ(agreement().plan().number, 2);
+}
+
+// Killed between the journal and the plan: nobody was told of it, its number is the next one's.
+TEST_F(SwitchCoordinatorTest, WhatWasNeverAnnouncedIsForgotten) {
+  BegunSwitch begun;
+  begun.order.number = 1;
+  begun.order.after = kRest;
+  SwitchJournal(fake.driver().world().own.block().journal()).begin(begun);
+  restart();
+  EXPECT_FALSE(coordinator().is_under_way());
+  ask(kRest);
+  EXPECT_FALSE(got) << got->json;
+  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', " + kByAnn);
+}
+
+// Killed between the journal and the plan of another try: the first try was late, and that is what is told, or tried
+// again.
+TEST_F(SwitchCoordinatorTest, ATryThatWasNotAnnouncedIsMadeAgain) {
+  ask(kRest);
+  SwitchJournal journal(fake.driver().world().own.block().journal());
+  BegunSwitch second = *journal.begun();
+  second.tries = 2;
+  second.order.number = 2;
+  journal.change(second);
+  ASSERT_TRUE(agreement().abort(1));
+  over(0, NoSwitch::kLate);
+  over(1);
+  restart();
+  ASSERT_TRUE(fake.until([&] { return agreement().plan().number == 2; }));
+  commit();
+  over(0);
+  over(1);
+  ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
+  EXPECT_NE(filed()[0].find("\"tries\": 2, "), std::string::npos) << filed()[0];
+}
+
+// Its number is on the page, but the journal has nothing: somebody else wrote it.
+TEST_F(SwitchCoordinatorTest, APlanThatNobodyOrderedIsAborted) {
+  SwitchOrder order;
+  order.number = 7;
+  order.members = 0b11;
+  order.until = now() + seconds(100);
+  agreement().announce(order);
+  EXPECT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
+  ask(kRest);
+  ASSERT_TRUE(until_answered());
+  EXPECT_EQ(got->receipt.said.view(), "the real-time units are not done with the last switch");
 }
 
 // The memory of a unit may hold anything.
@@ -224,7 +395,7 @@ TEST_F(SwitchCoordinatorTest, AUnitThatDiesBetweenCommitAndChangeComesBackToTheS
 
 TEST_F(SwitchCoordinatorTest, WithoutAnAnswerItIsAbortedBehindItsDeadline) {
   got.reset();
-  coordinator().ask(kRest, "operate", milliseconds(1), now(), [this](const SwitchOutcome& outcome) { got = outcome; });
+  coordinator().ask(kRest, kAnn, milliseconds(1), now(), [this](const SwitchOutcome& outcome) { take(outcome); });
   ASSERT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
   EXPECT_FALSE(got);
   over(0);

@@ -68,6 +68,9 @@ void end_by_signal(int signal) noexcept;
 /// What this process starts by exec from now on does not have `descriptor`. Context: setup.
 void close_at_exec(int descriptor) noexcept;
 
+/// Sends `signal` to the process of that pidfd; false when it has ended. Context: any; one system call.
+bool signal_process(int pidfd, int signal) noexcept;
+
 /// By a child: sends `signal` to its parent, by pidfd. False when that is not `parent` (any more). Context: setup.
 bool signal_parent(pid_t parent, int signal) noexcept;
 

@@ -27,20 +27,24 @@ struct KeeperMessage {
     kSegment, kStart, kEndChild, kEnd,                        // to the keeper
     kPeer, kStarted, kEnded, kComplete, kFinish,              // from the keeper
     kBeat,                                                    // to the keeper: the manager goes round its loop
-    kHung                                                     // from the keeper: the manager did not
+    kHung,                                                    // from the keeper: the manager did not
+    kFramesWritten, kSilent, kGuardState                      // from the keeper: what the guard did, and how it is
   };
+  /// kGuardState in `code`.
+  enum : std::int32_t { kGuardIsWell, kGuardIsSlow, kGuardIsDead };
 
   Kind kind = Kind::kSegment;
   std::uint32_t index = 0;        ///< the peer it is about
   std::uint32_t incarnation = 0;
-  std::int32_t code = 0;          ///< kEnded: exit status or signal; kEnd: exit code; kHung: Life
+  std::int32_t code = 0;          ///< kEnded: exit status or signal; kEnd: exit code; kHung: Life; kSilent: the task;
+                                  ///< kFramesWritten: how many were; kGuardState
   std::uint32_t by_signal = 0;    ///< kEnded
   std::uint32_t core_dumped = 0;  ///< kEnded
   std::int32_t pid = 0;           ///< kStarted: for people; kHung: of the debugger
   std::uint32_t reserved = 0;
-  Nanoseconds at = {};          ///< kStarted, kEnded: when, CLOCK_MONOTONIC
-  Nanoseconds silent = {};      ///< kHung: for how long
-  std::uint32_t letter = 0;     ///< kHung: ProcessState::letter
+  Nanoseconds at = {};          ///< kStarted, kEnded: when, CLOCK_MONOTONIC; kFramesWritten: last byte taken
+  Nanoseconds silent = {};      ///< kHung: for how long; kFramesWritten: the death was seen
+  std::uint32_t letter = 0;     ///< kHung: ProcessState::letter; kFramesWritten: how many were not
   std::uint32_t was_ended = 0;  ///< kHung: by the keeper for that; else it runs again
   std::uint64_t unused = 0;
 };

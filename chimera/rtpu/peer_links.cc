@@ -23,6 +23,7 @@ PeerLinks::PeerLinks(const ApplicationSpec& spec, std::uint32_t me, std::span<st
       decision_(&decision),
       keeper_(&keeper),
       peers_(&peers),
+      claims_(decision, keeper, me, block_.head().incarnation),
       faults_(spec.tasks.size()),
       notes_(spec.tasks.size()),
       inboxes_(peers.count()),
@@ -91,6 +92,7 @@ void PeerLinks::publish(TaskSet& tasks) noexcept {
     if (change.kind == Change::Kind::kFlag) is_for_all |= publish_flag(tasks.flag());
   }
   tasks.changes().clear();
+  claims_.give_back();
   if (is_for_all) ring_all();
 }
 
@@ -125,7 +127,8 @@ bool PeerLinks::publish_flag(const IllegalFlag& flag) noexcept {
   const std::uint32_t judged = (flag.is_on_set_legal() ? 0 : kFlagIllegalSet) | (flag.is_raised() ? kFlagRaised : 0);
   const std::uint32_t before = block_.head().flag.load(std::memory_order_relaxed);
   // A unit that ends raises no flag any more: what its tasks lack is what was told to go.
-  const std::uint32_t now = is_told_to_end() ? judged & before : judged;
+  const bool is_told_to_end = keeper_->ending.load(std::memory_order_acquire) != 0;
+  const std::uint32_t now = is_told_to_end ? judged & before : judged;
   if (before == now) return false;
   block_.head().flag.store(now, std::memory_order_release);  // BlockHead
   Post post;

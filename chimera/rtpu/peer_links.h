@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chimera/platform/doorbell.h"
+#include "chimera/rtpu/group_claims.h"
 #include "chimera/rtpu/peers.h"
 #include "chimera/runtime/peer_view.h"
 #include "chimera/runtime/task_set.h"
@@ -35,6 +36,7 @@ class PeerLinks final : public PeerView {
   GroupReader constants(TaskId task) const noexcept override;
   GroupReader operator_variable(std::size_t index) const noexcept override;
   bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept override;
+  bool claim(std::size_t group) noexcept override { return !keeps_last_words_ && claims_.take(group); }
 
   /// Takes over segments that the main thread offered; true when there was one. One that follows another waits until
   /// no task reads that any more. Context: cycle boundary.
@@ -64,7 +66,6 @@ class PeerLinks final : public PeerView {
   const BlockOwner& block() const noexcept { return block_; }
 
  private:
-  bool is_told_to_end() const noexcept { return keeper_->ending.load(std::memory_order_acquire) != 0; }
   GroupReader group(std::uint32_t peer, GroupId id) const noexcept;
   void let_go_unread(const Sources& sources) noexcept;
   bool publish_status(const Task& task, TaskStatus before, TaskStatus now) noexcept;
@@ -80,6 +81,7 @@ class PeerLinks final : public PeerView {
   const KeeperPage* keeper_;
   MappedPeers* peers_;
   bool keeps_last_words_ = false;
+  GroupClaims claims_;
   std::vector<std::uint64_t> faults_, notes_;  // by task: of those that were told
   std::vector<Outbox> outboxes_;               // by peer
   std::vector<Inbox> inboxes_;                 // by peer

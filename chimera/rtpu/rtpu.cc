@@ -22,6 +22,7 @@
 #include "chimera/platform/wake_event.h"
 #include "chimera/rtpu/components.h"
 #include "chimera/rtpu/cycling_thread.h"
+#include "chimera/rtpu/guard_link.h"
 #include "chimera/rtpu/hang_watch.h"
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/rtpu/service_thread.h"
@@ -41,7 +42,8 @@ constexpr std::size_t kStackBytes = 256 * 1024;  // locked whole, and given back
 /// Everything a unit has, in the order in which it is made.
 class Rtpu {
  public:
-  explicit Rtpu(const RtpuStart& start) : start_(start), channel_(start.channel) {}
+  explicit Rtpu(const RtpuStart& start)
+      : start_(start), channel_(start.channel), guard_(start.guard, start.peer, start.incarnation) {}
 
   Result<void> prepare();
   int run();
@@ -66,6 +68,7 @@ class Rtpu {
 
   const RtpuStart start_;
   Channel channel_;
+  GuardLink guard_;
   ThreadStack stacks_{start_.parent != 0 ? kStackBytes : 0};  // of all threads that are started from here on
   SignalQueue signals_;
   WakeEvent over_;  // rung when there is something to look at
@@ -95,8 +98,9 @@ class Rtpu {
 
 Result<void> Rtpu::prepare() {
   if (start_.parent != 0) {
-    for (const int fd : {start_.channel, start_.image, start_.decision_page, start_.keeper_page, start_.objects})
-      close_at_exec(fd);  // what a component starts by exec has none of them
+    for (const int fd :
+         {start_.channel, start_.image, start_.decision_page, start_.keeper_page, start_.objects, start_.guard})
+      if (fd >= 0) close_at_exec(fd);  // what a component starts by exec has none of them
     constexpr int kTaken[] = {SIGTERM};  // a SIGINT or SIGHUP of the terminal is the keeper's to answer
     auto signals = SignalQueue::open(kTaken);
     if (!signals) return signals.error();
@@ -172,6 +176,7 @@ Result<void> Rtpu::make_tasks() {
   place.table = segment_.writable().subspan(sizeof(SegmentHeader));
   place.others = others_.get();
   place.service = service_.get();
+  if (guard_.is_there()) place.safe_frames = &guard_;
   place.running = &head.running;
   place.serving = &head.serving;
   place.preemptive = self().preemptive;
@@ -197,6 +202,7 @@ void Rtpu::announce() {
   message.index = start_.peer;
   message.incarnation = start_.incarnation;
   (void)channel_.send(bytes_of(message), segment_.descriptor());
+  if (guard_.is_there()) guard_.show(segment_.descriptor(), block_);
 }
 
 int Rtpu::run() {

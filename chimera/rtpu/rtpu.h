@@ -15,6 +15,7 @@ struct RtpuStart {
   std::uint32_t incarnation = 1;
   pid_t parent = 0;  ///< the keeper; 0: the same process, nobody to follow
   int channel = -1, image = -1, decision_page = -1, keeper_page = -1, objects = -1;
+  int guard = -1;    ///< the unit's end of its line to the guard; -1: there is none
 };
 
 /// Runs until the keeper says `finish`, SIGTERM comes, or the keeper is gone; then ends its tasks. Answers the exit

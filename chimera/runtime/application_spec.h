@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "chimera/runtime/safe_condition.h"
 #include "chimera/schedule/policy.h"
 #include "chimera/task/task_spec.h"
 
@@ -58,10 +59,34 @@ struct RtpuSpec {
   bool preemptive = false;  ///< a thread for each task; else one loop, the executive
 };
 
+/// The standby takes over the outputs of the primary when that fails. Both have the same outputs.
+struct StandbySpec {
+  TaskId primary;  ///< of no standby a primary itself
+  TaskId standby;  ///< of one primary
+};
+
+/// What the reaction `restart` of a task does: TaskSpec::on_fault.
+struct RestartSpec {
+  TaskId task;
+  std::uint32_t most = 1;           ///< restarts `within` so long; at most kMostRestarts
+  Nanoseconds within;               ///< above 0
+  OnFault then = OnFault::kError;   ///< beyond them, or where it cannot be restarted; `switch` to on_fault_set
+};
+
+/// What the task reads and was published longer ago than this is not valid for it.
+struct StaleSpec {
+  TaskId task;
+  Nanoseconds after;  ///< above 0
+};
+
+/// More restarts than that are not remembered.
+inline constexpr std::uint32_t kMostRestarts = 100;
+
 /// A configuration of the description: tasks that may be ON together.
 struct NamedSet {
   std::string_view name;
   std::span<const TaskId> order;  ///< each task once, in data-flow order, hardware inputs first
+  SafeCondition safe_when{};      ///< must hold while a switch to it arms, and when its instant is proposed
 };
 
 /// Context: setup. Every span must outlive the runtime that is made from it.
@@ -77,11 +102,23 @@ struct ApplicationSpec {
   std::span<const TaskId> on_order;    ///< every task in the order of going ON; OFF goes backwards: task_orders.h
   std::span<const TaskId> end_order;   ///< every task in the order in which the end turns OFF and kills: task_orders.h
   std::span<const NamedSet> sets;      ///< the configurations, no two of one name; `start` is one where there are any
+  std::span<const StandbySpec> standbys;  ///< in the order of the description
+  std::span<const RestartSpec> restarts;  ///< one for each task whose reaction on_fault is restart
+  std::span<const StaleSpec> stale;       ///< at most one for each task
 
   /// Name of what the port is linked to; "" when it is not linked. Context: any; wait-free.
   std::string_view link_name(const PortSpec& port) const noexcept {
     if (port.variable.is_valid()) return variables[port.variable.index].name;
     return port.constant.is_valid() ? constants[port.constant.index].name : std::string_view{};
+  }
+  /// The two tasks stand in for each other: a primary and its standby, or two standbys of one. Context: any; wait-free.
+  bool stand_in(TaskId a, TaskId b) const noexcept {
+    const auto primary_of = [this](TaskId task) {
+      for (const StandbySpec& each : standbys)
+        if (each.standby == task) return each.primary;
+      return task;
+    };
+    return a != b && primary_of(a) == primary_of(b);
   }
   /// Does `user` read a constant that `producer` makes? Context: any; wait-free.
   bool uses_constant_of(TaskId user, TaskId producer) const noexcept {

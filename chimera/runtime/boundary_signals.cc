@@ -15,8 +15,9 @@ void BoundarySignals::begin(Nanoseconds origin) noexcept {
 void BoundarySignals::look_ahead() noexcept {
   const Nanoseconds at = script_.next_at();
   const Nanoseconds act = at == kNever ? kNever : origin_ + at;
-  next_act_ = std::min(act, switching_.due());
-  next_wake_ = std::min(act, switching_.wake());
+  const Nanoseconds standbys = set_.standbys().due();
+  next_act_ = std::min({act, standbys, switching_.due()});
+  next_wake_ = std::min({act, standbys, switching_.wake()});
 }
 
 void BoundarySignals::act(Nanoseconds now) noexcept {

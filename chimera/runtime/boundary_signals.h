@@ -38,12 +38,13 @@ class BoundarySignals {
 
   /// The script counts from `origin`.
   void begin(Nanoseconds origin) noexcept;
-  /// From when on act() has something to do: an act of the script, or a step of a switch; kNever: nothing is left.
+  /// From when on an edge has something to do: an act of the script, a step of a switch, a standby that has not come;
+  /// kNever: nothing is left.
   /// Context: cycle; wait-free.
   Nanoseconds next_act() const noexcept { return next_act_; }
   /// The next instant at which that is so although no job ends before. Context: cycle; wait-free.
   Nanoseconds next_wake() const noexcept { return next_wake_; }
-  /// A switch has come further: next_act() and next_wake() anew.
+  /// A switch has come further, or a task failed: next_act() and next_wake() anew.
   void look_ahead() noexcept;
   /// Carries out the acts of the script that are due, goes on with a switch that is under way, and begins the one that
   /// a task asked for last.

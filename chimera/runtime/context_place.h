@@ -8,6 +8,7 @@
 #include <span>
 
 #include "chimera/runtime/peer_view.h"
+#include "chimera/runtime/safe_frame.h"
 #include "chimera/runtime/service.h"
 #include "chimera/task/task.h"
 
@@ -18,6 +19,7 @@ struct ContextPlace {
   RtpuId rtpu;                     ///< whose tasks are its own; invalid: all
   std::span<std::byte> table;      ///< zeroed bytes for PeerLayout::of(spec, rtpu); empty: memory of its own
   PeerView* others = nullptr;
+  SafeFrames* safe_frames = nullptr;  ///< null: nobody writes them
   Service* service = nullptr;  ///< null: init and kill run where the signal is taken
   // Words for whoever finds the process dead or hanging (TaskWord): written relaxed, pair with nothing.
   /// Told which task and method runs, as BlockHead::running says: by the context, and by the service thread.

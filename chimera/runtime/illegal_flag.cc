@@ -24,8 +24,8 @@ void IllegalFlag::raise_for(TaskId task, State in) noexcept {
   judge();
 }
 
-void IllegalFlag::follow(std::span<const bool> on) noexcept {
-  is_on_set_legal_ = is_legal_set(variables_, on);
+void IllegalFlag::follow(std::span<const bool> on, bool is_uncovered) noexcept {
+  is_on_set_legal_ = !is_uncovered && is_legal_set(variables_, on);
   if (raised_by_.is_valid()) lower(false);
   judge();
 }

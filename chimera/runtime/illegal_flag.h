@@ -27,7 +27,8 @@ class IllegalFlag {
       if (flag->load(std::memory_order_relaxed) != 0) return true;
     return false;
   }
-  /// The tasks that are ON over all contexts obey the two set equations, as of the last follow(). Wait-free.
+  /// The tasks that are ON over all contexts obey the two set equations, and none that failed lacks a standby, as of
+  /// the last follow(). Wait-free.
   bool is_on_set_legal() const noexcept { return is_on_set_legal_; }
   /// Somebody of this context holds it up, legal or not. Wait-free.
   bool is_raised() const noexcept { return is_raised_ || raised_by_.is_valid(); }
@@ -41,8 +42,8 @@ class IllegalFlag {
   TaskId raised_by() const noexcept { return raised_by_; }
   /// The flag words of the other processes, read from here on by is_up(). The words and the span outlive this.
   void watch(std::span<const std::atomic<std::uint32_t>* const> flags) noexcept { foreign_ = flags; }
-  /// `on[t]`: task t is ON, over all contexts.
-  void follow(std::span<const bool> on) noexcept;
+  /// `on[t]`: task t is ON, over all contexts. `is_uncovered`: a task that has standbys failed, and none took over.
+  void follow(std::span<const bool> on, bool is_uncovered) noexcept;
 
  private:
   void lower(bool for_all) noexcept;

@@ -48,6 +48,17 @@ void record_fault(Task& task, Method method, const char* text, Nanoseconds at) n
   note_fault(task, method, at);
 }
 
+void record_note(Task& task, const char* text) noexcept {
+  FaultRecord& record = task.faults;
+  task.has_news = true;
+  std::size_t size = 0;
+  while (size + 1 < sizeof record.note && text[size] != '\0') ++size;
+  std::memcpy(record.note, text, size);
+  record.note[size] = '\0';
+  ++record.notes;
+  ++record.told;
+}
+
 void run_background(Task& task, Method method, Nanoseconds at) noexcept {
   chimera_fault fault{};
   if (task.background(task.instance, &fault) == CHIMERA_OK) return;

@@ -72,6 +72,10 @@ State follow_error(Task& task, Next first, Nanoseconds now, JobClock* clock) noe
 /// Records a fault that the framework itself found. `text` is cut at CHIMERA_FAULT_TEXT - 1. Context: cycle; wait-free.
 void record_fault(Task& task, Method method, const char* text, Nanoseconds at) noexcept;
 
+/// Leaves a note for people, as one of the task; the next edge sees it as it sees a fault. `text` is cut at
+/// CHIMERA_FAULT_TEXT - 1. Context: cycle; wait-free.
+void record_note(Task& task, const char* text) noexcept;
+
 /// Calls what the component does beside its cycles; a fault is recorded as one of `method`, and then it is not called
 /// again. Requires: task.background. Context: virtual time, or where kill may run; may block.
 void run_background(Task& task, Method method, Nanoseconds at) noexcept;

@@ -24,6 +24,9 @@ class PeerView {
   /// Passes a signal on: to the rtpu of `target`; `on` to the manager, who alone turns tasks ON. `is_echo`: a
   /// reinit because a constant changed. False when there is no room. Context: cycle boundary; wait-free.
   virtual bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept = 0;
+  /// From now on until this context has shown what it changed, no other context turns a task of that group of standbys
+  /// (standbys.h) ON. False: another one is about to, or the run ends. Context: cycle boundary; wait-free.
+  virtual bool claim(std::size_t /*group*/) noexcept { return true; }
   /// A manager judges which tasks would be ON before it turns tasks ON; false: each context judges that over all
   /// contexts when it takes the signal. Context: cycle boundary; wait-free.
   virtual bool has_manager() const noexcept { return true; }

@@ -22,7 +22,8 @@ constexpr std::size_t kKeptOfRequests = 16;
 
 bool may_request(const ApplicationSpec& spec) noexcept {
   const auto reacts = [](const TaskSpec& task) {
-    return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch || task.on_fault == OnFault::kSwitch;
+    return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch ||
+           task.on_fault_set != UINT16_MAX;
   };
   return spec.sets.size() > 1 || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
 }
@@ -49,19 +50,21 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
       members_(set.tasks(), records_, queue_, tap_, guest_),
       settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
       switching_({set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
-      signals_(set, options.script, tap_, settlement_, threads_, switching_, guest_) {
+      signals_(set, options.script, tap_, settlement_, threads_, switching_, guest_),
+      recovery_({set, settlement_, switching_, signals_}) {
   const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
   const bool takes_requests = is_alone && options.threads == nullptr && may_request(set.spec());
   switching_.prepare(n_switches + (takes_requests ? kKeptOfRequests : 0), options.switch_peers);
   if (takes_requests) set.sent().allow_requests();
+  recovery_.prepare();
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
     const bool can = options.can_demote || !set.is_mine(task.id);
     const bool switches = takes_requests || !set.is_mine(task.id);
     CHIMERA_ASSERT(is_built(spec.on_miss, can, switches) && is_built(spec.on_overrun, can, switches));
-    CHIMERA_ASSERT(switches || spec.on_fault != OnFault::kSwitch);
+    CHIMERA_ASSERT(switches || spec.on_fault_set == UINT16_MAX);
     JobRecord& record = records_[task.id.index];
     record.task = &task;
     record.start_margin = start_margin(spec);
@@ -84,9 +87,10 @@ void Releases::take_edge(Nanoseconds now) noexcept {
   if (guest_ != nullptr) {
     guest_->take(signals_, now);
     switching_.step(now);  // what rang after the step in act() was heard by the guest: nobody rings again for it
-    signals_.look_ahead();
   }
   signals_.carry_out_pending(now);
+  recovery_.act(now);
+  signals_.look_ahead();
   members_.follow_all(now);
   settlement_.publish();
 }

@@ -22,6 +22,7 @@
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/members.h"
 #include "chimera/runtime/miss_policy.h"
+#include "chimera/runtime/recovery.h"
 #include "chimera/runtime/run_options.h"
 #include "chimera/runtime/settlement.h"
 #include "chimera/runtime/task_set.h"
@@ -135,6 +136,7 @@ class Releases {
   Settlement settlement_;
   Switching switching_;
   BoundarySignals signals_;
+  Recovery recovery_;
 };
 
 }  // namespace chimera

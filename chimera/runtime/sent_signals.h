@@ -27,7 +27,17 @@ class SentSignals {
   void deliver(Task& task) noexcept;
   /// The signal waits for the present method of the task to end.
   void defer(Task& task, Signal signal) noexcept;
-  /// True when some task has signals waiting, or a request does. Context: cycle; wait-free.
+  /// Something failed that an edge is to look at.
+  void want_edge() noexcept {
+    if (!wants_edge_) ++n_pending_;
+    wants_edge_ = true;
+  }
+  /// It has.
+  void had_edge() noexcept {
+    if (wants_edge_) --n_pending_;
+    wants_edge_ = false;
+  }
+  /// True when some task has signals waiting, or a request does, or want_edge() was called. Context: cycle; wait-free.
   bool has_pending() const noexcept { return n_pending_ != 0; }
   /// Takes the oldest waiting signal of `task`; false when there is none.
   bool take_pending(Task& task, Signal& signal) noexcept;
@@ -49,7 +59,8 @@ class SentSignals {
   std::span<const TaskMemory> memories_;
   PeerView* others_ = nullptr;
   SwitchRequest request_;
-  std::uint32_t n_pending_ = 0;  // signals, and the request
+  std::uint32_t n_pending_ = 0;  // signals, the request, and the wish for an edge
+  bool wants_edge_ = false;
   bool takes_requests_ = false;
 };
 

@@ -53,9 +53,14 @@ void Settlement::record_faults(Task& task) noexcept {
 void Settlement::follow_error(Task& task, Nanoseconds now) noexcept {
   const bool was_told = std::exchange(task.is_error_told, task.state == State::kError);
   if (was_told || task.state != State::kError) return;
-  if (task.spec->on_fault == OnFault::kFlag) raise_flag(task.id, State::kError, now);
-  if (task.spec->on_fault == OnFault::kStop) stop(task.id);
-  if (task.spec->on_fault == OnFault::kSwitch)
+  if (task.spec->on_fault == OnFault::kRestart) return parts_.set.sent().want_edge();
+  react_to_fault(task, task.spec->on_fault, now);
+}
+
+void Settlement::react_to_fault(Task& task, OnFault reaction, Nanoseconds now) noexcept {
+  if (reaction == OnFault::kFlag) raise_flag(task.id, task.state, now);
+  if (reaction == OnFault::kStop) stop(task.id);
+  if (reaction == OnFault::kSwitch)
     parts_.set.sent().request({task.spec->on_fault_set, SwitchCause::kFault, task.id});
 }
 

@@ -48,6 +48,9 @@ class Settlement {
   /// The reaction on_fault, once when the task has gone to ERROR.
   void follow_error(Task& task, Nanoseconds now) noexcept;
 
+  /// One of the reactions error, flag, stop and switch of on_fault.
+  void react_to_fault(Task& task, OnFault reaction, Nanoseconds now) noexcept;
+
   /// Has what changed published, if anything did.
   void publish() noexcept;
 

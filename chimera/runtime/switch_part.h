@@ -22,6 +22,7 @@ struct SwitchPart {
   NoSwitch why = NoSwitch::kNone;   ///< of kAborted, where this context aborted the plan; kNone: another one did
   TaskId task;                      ///< of `why`
   VariableId variable;              ///< of `why`
+  double value = 0;                 ///< of `variable`, as SwitchReceipt
   char said[kSaid + 1] = {};        ///< by `on` of `task`
   Nanoseconds armed = kNever;       ///< instants as of SwitchReceipt
   Nanoseconds at = kNever;
@@ -39,6 +40,7 @@ void write_part(const SwitchReceipt& receipt, IsMine is_mine, SwitchPart& part) 
   part.why = receipt.why;
   part.task = receipt.task;
   part.variable = receipt.variable;
+  part.value = receipt.value;
   std::memcpy(part.said, receipt.said.c_str(), receipt.said.view().size() + 1);
   part.armed = receipt.armed;
   part.at = receipt.at;

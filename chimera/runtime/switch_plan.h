@@ -55,11 +55,13 @@ enum class NoSwitch : std::uint8_t {
   kInError,      ///< `task`, of the target, is in ERROR: to be cleared first
   kNotCreated,   ///< `task`, of the target, is NOT-CREATED, or `init` or `kill` of it is under way
   kUnderWay,     ///< another switch is
+  kNotSchedulable,  ///< `task` might miss a deadline over it
 
   kOnFailed,      ///< `on` of `task` did
   kStepTooLarge,  ///< of `variable`, which `task` would produce
   kNoGap,         ///< the processor was never idle for as long as `on` of `task` takes
   kNoValue,       ///< `variable`, which `task` reads, never had one
+  kNotSafe,       ///< `variable` did not hold what NamedSet::safe_when asks
   kDisturbed,     ///< a signal, an error or its own end moved `task`, which takes part, to another state
   kFlagRaised,    ///< somebody raised the illegal-configuration flag
   kRunEnded,      ///< before the instant of the change
@@ -72,7 +74,8 @@ enum class NoSwitch : std::uint8_t {
 /// What became of a request for a plan.
 struct PlanAnswer {
   NoSwitch why = NoSwitch::kNone;
-  TaskId task;  ///< of kInError and kNotCreated: the first in data-flow order
+  TaskId task;  ///< of kInError and kNotCreated: the first in data-flow order; of kNotSchedulable: one that might miss
+  Nanoseconds takes = kNever;  ///< of kNotSchedulable: a cycle of `task` at most; kNever: no bound was found
 
   explicit operator bool() const noexcept { return why == NoSwitch::kNone; }
 };

@@ -53,6 +53,8 @@ struct SwitchReceipt {
   NoSwitch why = NoSwitch::kNone;  ///< of an end that is not kDone
   TaskId task;                     ///< of `why`
   VariableId variable;             ///< of `why`
+  double value = 0;                ///< of `variable`, of kNotSafe; NaN: it had none
+  Nanoseconds takes = kNever;      ///< of kNotSchedulable, as PlanAnswer::takes
   FixedString<160> said;           ///< by `on` of `task`, of its fault
   Nanoseconds asked = kNever;
   Nanoseconds armed = kNever;   ///< `on` of the last arriving task had returned

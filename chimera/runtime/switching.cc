@@ -11,6 +11,8 @@ namespace {
 
 // How long after the deadline a context aborts that another one is to abort first, which knows why.
 constexpr Nanoseconds kGrace = milliseconds(100);
+// How often what `safe_when` asks is looked at where no job ends meanwhile: nobody rings for a value.
+constexpr Nanoseconds kLookForSafety = milliseconds(1);
 
 TaskBits bits_of(std::span<const TaskId> tasks) noexcept {
   TaskBits bits;
@@ -30,6 +32,10 @@ VariableId lacks_value(TaskSet& set, Task& task, std::span<const Handover> hando
     if (((port.slot->valid >> port.bit) & 1u) == 0) return variable;
   }
   return {};
+}
+
+bool holds(TaskSet& set, const SafeCondition& asked) noexcept {
+  return !asked.is_there() || is_safe(asked, present_value(set, asked));
 }
 
 void note_standing(std::span<const Task> tasks, std::span<TaskStanding> standing) noexcept {
@@ -68,6 +74,8 @@ void Switching::prepare(std::size_t n_switches, SwitchPeers* peers) {
   if (peers != nullptr) {
     peers_ = peers;
     me_ = set.context();
+  } else {
+    schedule_.prepare(set.spec(), set.setup_memory());
   }
   planner_.prepare(set.spec(), set.setup_memory());
   record_.prepare(std::max<std::size_t>(n_switches, 1));
@@ -101,6 +109,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   note_standing(parts_.set.tasks(), standing_);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (phase_ == Phase::kNone) answer = planner_.plan(request.set, standing_, plan_);
+  if (answer) answer = schedule_.judge(standing_, request.set);
   if (answer.why != NoSwitch::kNothingToDo) ++n_asked_;
   SwitchReceipt* const added = phase_ == Phase::kNone ? &record_.add() : record_.add_beside();
   if (added == nullptr) return;
@@ -115,6 +124,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
     receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
     receipt.why = answer.why;
     receipt.task = answer.task;
+    receipt.takes = answer.takes;
     receipt.tasks = {};
     receipt.variables = {};
     return;
@@ -130,7 +140,8 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   due_ = now;
 }
 
-void Switching::step(Nanoseconds now) noexcept {
+void Switching::step(Nanoseconds edge) noexcept {
+  Nanoseconds now = edge;
   const PlanWord plan = agreement().plan();
   if (phase_ == Phase::kNone && plan.number != seen_) take_up(plan, now);
   if (phase_ == Phase::kNone) return;
@@ -138,8 +149,12 @@ void Switching::step(Nanoseconds now) noexcept {
   const bool is_open = phase_ == Phase::kArming || phase_ == Phase::kAgreed;
   if (is_open && (plan.number != order_.number || plan.phase == SwitchPhase::kAborted))
     abort(NoSwitch::kNone, {}, {});  // another context did
-  if (phase_ == Phase::kArming) arm(now);
-  if (phase_ == Phase::kAgreed) await_commit(now);
+  if (phase_ == Phase::kArming) arm(edge, now);
+  if (phase_ == Phase::kAgreed) {
+    due_ = wake_ = at_;
+    if (agreement().plan().phase == SwitchPhase::kCommitted) phase_ = Phase::kChanging;
+    else if (now >= at_) abort(NoSwitch::kLate, {}, {});
+  }
   if (phase_ == Phase::kChanging) change(now);
   if (phase_ == Phase::kAfter || phase_ == Phase::kUndoing) settle(parts_.clock.now());
 }
@@ -186,7 +201,7 @@ bool Switching::make_plan(const SwitchOrder& order) noexcept {
   return is_made;
 }
 
-void Switching::arm(Nanoseconds now) noexcept {
+void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   if (agreement().plan().phase == SwitchPhase::kProposed) return agree(now);
   if (!may_go_on(now)) return;
   const auto number = agreement().run(order_.number);
@@ -195,7 +210,9 @@ void Switching::arm(Nanoseconds now) noexcept {
     due_ = wake_ = order_.until + kGrace;
     return;
   }
-  const Nanoseconds edge = now;
+  // The context that arms first asks before it arms, the last to arm before it proposes.
+  const SafeCondition& asked = parts_.set.spec().sets[order_.after].safe_when;
+  if (next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) return wait(now, kLookForSafety);
   for (next_armed_ = std::max(next_armed_, run.begin); next_armed_ < run.end;) {
     Task& next = task(plan_.arriving[next_armed_]);
     if (!gap_.is_for(next, Method::kOn, now)) return wait(now);
@@ -205,13 +222,17 @@ void Switching::arm(Nanoseconds now) noexcept {
     now = parts_.clock.now();
     record_.receipt().armed = now;
   }
-  if (now > edge) {  // what came meanwhile goes first: a signal may abort the plan
+  const Nanoseconds armed = record_.receipt().armed;
+  if (armed != kNever && armed > edge) {  // what came meanwhile goes first: a signal may abort the plan
     due_ = wake_ = now;
     return;
   }
   if (const VariablePart* part = record_.find_too_large_step())
     return abort(NoSwitch::kStepTooLarge, part->handover.to.task, part->handover.variable);
-  if (run.end == plan_.arriving.size()) return propose(now);
+  if (run.end == plan_.arriving.size()) {
+    if (holds(parts_.set, asked)) return propose(now);
+    return abort(NoSwitch::kNotSafe, {}, asked.variable);
+  }
   (void)agreement().hand_on(order_.number, *number);
   peers_->ring();
   due_ = wake_ = order_.until + kGrace;
@@ -245,6 +266,11 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   const SwitchRun run = find_run(plan_, set.spec().tasks, number.value_or(UINT16_MAX));
   const bool is_mine = is_turn_of(parts_.set, plan_, run, order_.members);
   if (now < order_.until + (is_mine ? Nanoseconds{} : kGrace)) return true;
+  const SafeCondition& asked = set.spec().sets[order_.after].safe_when;
+  if (is_mine && next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) {
+    abort(NoSwitch::kNotSafe, {}, asked.variable);
+    return false;
+  }
   const bool has_next = is_mine && std::max(next_armed_, run.begin) < run.end;
   if (!has_next) {
     abort(NoSwitch::kNoGap, {}, {});
@@ -299,12 +325,6 @@ void Switching::agree(Nanoseconds now) noexcept {
   if (agreement().agree(order_.number, me_)) peers_->ring();
 }
 
-void Switching::await_commit(Nanoseconds now) noexcept {
-  due_ = wake_ = at_;
-  if (agreement().plan().phase == SwitchPhase::kCommitted) phase_ = Phase::kChanging;
-  else if (now >= at_) abort(NoSwitch::kLate, {}, {});
-}
-
 void Switching::change(Nanoseconds now) noexcept {
   if (now < at_) return;
   release_before(at_);
@@ -329,6 +349,8 @@ void Switching::abort(NoSwitch why, TaskId of, VariableId variable) noexcept {
     record_.receipt().why = why;
     record_.receipt().task = of;
     record_.receipt().variable = variable;
+    if (why == NoSwitch::kNotSafe)
+      record_.receipt().value = present_value(parts_.set, parts_.set.spec().sets[order_.after].safe_when);
     peers_->ring();
   } else if (const PlanWord plan = agreement().plan();
              plan.number == order_.number && plan.phase == SwitchPhase::kCommitted) {
@@ -390,6 +412,15 @@ void Switching::finish(SwitchEnd end, Nanoseconds now) noexcept {
   peers_->tell_over(record_.receipt());
 }
 
+bool Switching::give_way(TaskId to) noexcept {
+  if (phase_ == Phase::kArming || phase_ == Phase::kAgreed) abort(NoSwitch::kDisturbed, to, {});
+  if (phase_ == Phase::kUndoing && is_held_) {
+    changeover_.release();
+    is_held_ = false;
+  }
+  return !is_held_;
+}
+
 void Switching::end(Nanoseconds now) noexcept {
   if (phase_ == Phase::kNone) return;
   if (phase_ == Phase::kArming || phase_ == Phase::kAgreed) abort(NoSwitch::kRunEnded, {}, {});
@@ -404,10 +435,10 @@ void Switching::end(Nanoseconds now) noexcept {
 
 // The next step is worth while when jobs have ended, or at the next release where the processor is idle; where jobs
 // have threads only a value is waited for.
-void Switching::wait(Nanoseconds now) noexcept {
+void Switching::wait(Nanoseconds now, Nanoseconds at_most) noexcept {
   const Nanoseconds limit = std::max(order_.until, now + Nanoseconds{1});
   const Nanoseconds next = std::max(parts_.threads.next_look(now), now);
-  wake_ = std::min(next, limit);
+  wake_ = std::min({next, limit, at_most == kNever ? kNever : now + at_most});
   due_ = gap_.is_there() ? wake_ : now;
 }
 

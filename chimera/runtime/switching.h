@@ -3,6 +3,7 @@
 // or nothing, in this order:
 //
 //   plan     made from the order on the page that all contexts share (a context alone writes the order itself: ask())
+//            what the set asks by `safe_when` is waited for
 //   arm      `on` of each arriving task, producers first, beside its predecessor: the task reads what it will read,
 //            takes over the outputs that stand, writes into its own group
 //            what fails: `off` of those armed; nobody else saw them
@@ -31,6 +32,7 @@
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switch_record.h"
+#include "chimera/runtime/switch_schedule.h"
 
 namespace chimera {
 
@@ -63,7 +65,10 @@ class Switching {
   /// The set is in force, or is the one that is being switched to.
   bool leads_to(std::uint32_t set) noexcept;
   /// Goes on with the switch that is under way, or takes up one that others have planned. No effect without one.
-  void step(Nanoseconds now) noexcept;
+  void step(Nanoseconds edge) noexcept;
+  /// A task is to go ON in place of one that failed: a switch that is not committed is aborted. False: not now, the
+  /// change is under way.
+  bool give_way(TaskId to) noexcept;
   /// The run is over: what is not committed is aborted, what is committed is finished.
   void end(Nanoseconds now) noexcept;
 
@@ -83,19 +88,18 @@ class Switching {
   SwitchAgreement agreement() noexcept { return {peers_->page(), origin_}; }
   void take_up(const PlanWord& plan, Nanoseconds now) noexcept;
   bool make_plan(const SwitchOrder& order) noexcept;
-  void arm(Nanoseconds now) noexcept;
+  void arm(Nanoseconds edge, Nanoseconds now) noexcept;
   bool arm(Task& next, Nanoseconds now) noexcept;
   bool may_go_on(Nanoseconds now) noexcept;
   void release_before(Nanoseconds instant) noexcept;
   void propose(Nanoseconds now) noexcept;
   void agree(Nanoseconds now) noexcept;
-  void await_commit(Nanoseconds now) noexcept;
   void change(Nanoseconds now) noexcept;
   void abort(NoSwitch why, TaskId of, VariableId variable) noexcept;
   void settle(Nanoseconds now) noexcept;
   bool turn_off_all(Nanoseconds now, bool at_once) noexcept;
   void finish(SwitchEnd end, Nanoseconds now) noexcept;
-  void wait(Nanoseconds now) noexcept;
+  void wait(Nanoseconds now, Nanoseconds at_most = kNever) noexcept;
   Task& task(TaskId id) noexcept { return parts_.set.tasks()[id.index]; }
 
   Parts parts_;
@@ -103,6 +107,7 @@ class Switching {
   Changeover changeover_;
   SwitchRecord record_;
   SwitchPlanner planner_;
+  SwitchSchedule schedule_;
   NoSwitchPeers nobody_;
   SwitchPeers* peers_ = &nobody_;
   SwitchOrder order_;

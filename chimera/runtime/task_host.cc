@@ -40,18 +40,7 @@ std::int32_t host_signal(void* context, std::uint32_t signal, const char* name) 
 
 void host_spend(void* context, std::int64_t ns) { clock_of(host_of(context)).spend(Nanoseconds{ns}); }
 
-// The next edge sees the note as it sees a fault: a job reports nothing to other processes itself.
-void host_note(void* context, const char* text) {
-  Task& task = *host_of(context).task;
-  FaultRecord& record = task.faults;
-  task.has_news = true;
-  std::size_t size = 0;
-  while (size + 1 < sizeof record.note && text[size] != '\0') ++size;
-  std::memcpy(record.note, text, size);
-  record.note[size] = '\0';
-  ++record.notes;
-  ++record.told;
-}
+void host_note(void* context, const char* text) { record_note(*host_of(context).task, text); }
 
 // Says once for each task why its requests are refused.
 std::int32_t refuse_request(void* context, const char* name, std::string_view why) {
@@ -95,9 +84,25 @@ chimera_text host_unit(void* context, const chimera_port* port) {
   return {spec->unit.data(), static_cast<std::uint32_t>(spec->unit.size())};
 }
 
+SafeFrames* frames_of(void* context) noexcept { return host_of(context).set->safe_frames(); }
+
+std::int32_t host_safe_frame(void* context, std::uint32_t index, std::int32_t descriptor, std::int64_t pause_ns) {
+  SafeFrames* frames = frames_of(context);
+  if (frames == nullptr || index >= kSafeFrames) return CHIMERA_FAULT;
+  return frames->keep(host_of(context).task->id, index, descriptor, {pause_ns}) ? CHIMERA_OK : CHIMERA_FAULT;
+}
+
+std::int32_t host_safe_bytes(void* context, std::uint32_t index, const void* bytes, std::uint32_t size) {
+  SafeFrames* frames = frames_of(context);
+  if (index >= kSafeFrames || size > kSafeBytes) return CHIMERA_FAULT;
+  if (frames == nullptr) return CHIMERA_OK;
+  frames->of(host_of(context).task->id)[index].put({static_cast<const std::byte*>(bytes), size});
+  return CHIMERA_OK;
+}
+
 }  // namespace
 
-const chimera_host TaskHost::kCalls = {&host_expired, &host_signal,   &host_spend,
-                                       &host_note,    &host_variable, &host_unit, &host_request};
+const chimera_host TaskHost::kCalls = {&host_expired, &host_signal, &host_spend,   &host_note,      &host_variable,
+                                       &host_unit,    &host_request, &host_safe_frame, &host_safe_bytes};
 
 }  // namespace chimera

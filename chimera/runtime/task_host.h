@@ -10,12 +10,14 @@
 namespace chimera {
 
 class TaskSet;
+class StaleInputs;
 
 /// Of one task; chimera_call::context points at it.
 struct TaskHost {
   TaskSet* set = nullptr;
   Task* task = nullptr;
   JobClock* clock = nullptr;  ///< of the thread that runs the method; null: that of the context
+  StaleInputs* stale = nullptr;  ///< judges the age of its inputs; null: nobody does
 
   /// The functions behind chimera_call::host.
   static const chimera_host kCalls;

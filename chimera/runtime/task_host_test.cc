@@ -56,6 +56,48 @@ struct TaskHostTest : ::testing::Test {
   ModelledClock clock;
 };
 
+/// Keeps what it is given.
+struct KeptFrames final : SafeFrames {
+  std::span<SafeFrame, kSafeFrames> of(TaskId task) noexcept override {
+    return std::span<SafeFrame, kSafeFrames>(frames[task.index], kSafeFrames);
+  }
+  bool keep(TaskId task, std::uint32_t index, int descriptor, Nanoseconds pause) noexcept override {
+    kept = std::to_string(task.index) + "." + std::to_string(index) + " to " + std::to_string(descriptor) + " after " +
+           std::to_string(pause.count);
+    return true;
+  }
+  SafeFrame frames[2][kSafeFrames]{};
+  std::string kept;
+};
+
+TEST_F(TaskHostTest, NobodyWritesSafeFramesOfAContextThatIsAlone) {
+  EXPECT_EQ(host().safe_frame(context(), 0, 1, 0), CHIMERA_FAULT);
+  EXPECT_EQ(host().safe_bytes(context(), 0, "x", 1), CHIMERA_OK);
+}
+
+TEST_F(TaskHostTest, SafeFramesStandUntilOffOrKillHasEndedWell) {
+  KeptFrames frames;
+  ContextPlace place;
+  place.safe_frames = &frames;
+  set = *HeapTaskSet::create(app.spec, app.components, place);
+  set->methods().run_by({&clock});
+  ASSERT_TRUE(set->life().start({}));
+  EXPECT_EQ(host().safe_frame(context(), 3, 7, 2000), CHIMERA_OK);
+  EXPECT_EQ(frames.kept, "0.3 to 7 after 2000");
+  EXPECT_EQ(host().safe_frame(context(), 4, 7, 0), CHIMERA_FAULT);
+  const std::string most(kSafeBytes + 1, 'x');
+  EXPECT_EQ(host().safe_bytes(context(), 3, most.data(), kSafeBytes + 1), CHIMERA_FAULT);
+  EXPECT_EQ(host().safe_bytes(context(), 4, most.data(), 1), CHIMERA_FAULT);
+  EXPECT_TRUE(frames.frames[0][3].last_words().empty());
+  for (const Signal ends : {Signal::kOff, Signal::kKill}) {
+    EXPECT_EQ(host().safe_bytes(context(), 3, most.data(), kSafeBytes), CHIMERA_OK);
+    EXPECT_EQ(frames.frames[0][3].last_words().size(), kSafeBytes);
+    const TaskId asking(std::size_t{0});
+    EXPECT_TRUE(set->life().signal({&asking, 1}, ends, {}));
+    EXPECT_TRUE(frames.frames[0][3].last_words().empty()) << signal_name(ends);
+  }
+}
+
 TEST_F(TaskHostTest, AJobIsExpiredPastItsDeadlineOrWhenItIsToldToGiveUp) {
   task().call.deadline_ns = milliseconds(5).count;
   clock.set(milliseconds(5));

@@ -64,6 +64,10 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
     report.why = Refusal::kIllegalSet;
     return report;
   }
+  if (signal == Signal::kOn && !claims_groups_of(tasks)) {
+    report.why = Refusal::kIllegalSet;
+    return report;
+  }
   for (TaskId id : tasks) {
     report = carry_out(id, signal, now);
     if (signal != Signal::kOn || report.after == State::kOn) continue;
@@ -79,11 +83,41 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
   return report;
 }
 
+// Tasks that stand in for each other may be turned ON by several contexts: the one that has the claim looks once more.
+bool TaskLife::claims_groups_of(std::span<const TaskId> tasks) noexcept {
+  if (set_.others() == nullptr) return true;
+  const Standbys& standbys = set_.standbys();
+  for (const TaskId id : tasks) {
+    const std::size_t group = standbys.group_of(id);
+    if (group == standbys.n_groups()) continue;
+    const auto is_on = [&](TaskId mate) {
+      const State state = set_.is_mine(mate) ? set_.tasks()[mate.index].state : set_.others()->state(mate);
+      return mate != id && state == State::kOn;
+    };
+    const auto mates = standbys.members(group);
+    if (set_.others()->claim(group) && std::none_of(mates.begin(), mates.end(), is_on)) continue;
+    set_.changes().add_flag();  // so that something is shown, which ends the claim
+    return false;
+  }
+  return true;
+}
+
 bool TaskLife::would_be_legal(std::span<const TaskId> tasks) noexcept {
   for (const Task& task : set_.tasks())
     wanted_[task.id.index] = (set_.is_mine(task.id) ? task.state : set_.others()->state(task.id)) == State::kOn;
+  set_.standbys().add_covered(wanted_, tasks);
   for (TaskId id : tasks) wanted_[id.index] = true;
-  return is_legal_set(set_.spec().variables, wanted_);
+  if (is_legal_set(set_.spec().variables, wanted_)) return true;
+  // What a standby reads may have failed with its primary: the last values stand, and the flag is up for that.
+  const Standbys& standbys = set_.standbys();
+  const std::size_t group = tasks.size() == 1 ? standbys.group_of(tasks[0]) : standbys.n_groups();
+  if (group == standbys.n_groups() || standbys.next(group) != tasks[0]) return false;
+  const auto is_on = [this](const PortOf& port) -> bool { return wanted_[port.task.index]; };
+  const auto is_doubled = [&](const Variable& variable) {
+    const bool is_given = variable.operator_index != UINT32_MAX;
+    return set_fault(variable.producers, variable.consumers, is_given, is_on, is_on) == SetFault::kTwoProducers;
+  };
+  return std::none_of(set_.spec().variables.begin(), set_.spec().variables.end(), is_doubled);
 }
 
 SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {

@@ -54,6 +54,9 @@ class TaskLife {
   /// Runs the `off` that a task owes. Requires: it does. Any other signal to the task has that done first.
   SignalReport settle_off(TaskId task, Nanoseconds now);
 
+  /// No task would lack a producer and no variable would have two, if `tasks` were ON besides those that are, over all
+  /// contexts. A task that waits for its standby counts as ON, but beside that standby.
+  bool would_be_legal(std::span<const TaskId> tasks) noexcept;
   /// The set that the last call of signal() with `on` would have turned ON: wanted()[t] says whether task t is in it.
   std::span<const bool> wanted() const noexcept { return wanted_; }
 
@@ -73,11 +76,11 @@ class TaskLife {
   Next conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began);
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
   Answer after_ok(Task& task, const StepRule& step, Nanoseconds now);
+  bool claims_groups_of(std::span<const TaskId> tasks) noexcept;
   void reinit_users(TaskId of, Nanoseconds now);
   void take_over(Task& task, Nanoseconds now) noexcept;
   void tell_inherited(Task& task, std::uint32_t output, const chimera_slot& slot, Nanoseconds now) noexcept;
   std::uint64_t valid_after_on(const Task& task) const noexcept;
-  bool would_be_legal(std::span<const TaskId> tasks) noexcept;
   Nanoseconds read_clock(Nanoseconds otherwise) const noexcept;
 
   TaskSet& set_;

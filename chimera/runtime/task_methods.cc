@@ -3,6 +3,7 @@
 #include "chimera/runtime/task_methods.h"
 
 #include "chimera/runtime/making.h"
+#include "chimera/runtime/stale_inputs.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/task/background.h"
 #include "chimera/task/event_source.h"
@@ -13,6 +14,7 @@ Answer TaskMethods::construct(Task& task, Nanoseconds now) {
   show_making(*words_.making, task.id.index, Making::kConstructs);
   const auto constructed = memories_[task.id.index].construct(task, now);
   show_made(*words_.making);
+  if (constructed) StaleInputs::judge_cycles_of(task);
   if (constructed) return Answer::kOk;
   record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
   return Answer::kFault;
@@ -31,6 +33,8 @@ Answer TaskMethods::run(Task& task, Method method, Nanoseconds now, JobThreads* 
   if (method == Method::kKill) task.descriptor = -1;
   if (method == Method::kKill && !end_background(task, now)) return Answer::kFault;
   const Answer answer = threads != nullptr ? threads->call(task, method, now) : call_method(task, method, now);
+  const bool is_safe = (method == Method::kOff || method == Method::kKill) && answer == Answer::kOk;
+  if (is_safe && safe_frames_ != nullptr) safe_frames_->take_back(task.id);
   if (method != Method::kInit || answer != Answer::kOk) return answer;
   if (!begin_background(task, now)) return Answer::kFault;
   if (const chimera_event_source source = event_source_of(*task.component)) task.descriptor = source(task.instance);

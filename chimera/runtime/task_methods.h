@@ -10,6 +10,7 @@
 #include "chimera/runtime/job_clock.h"
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/job_threads.h"
+#include "chimera/runtime/safe_frame.h"
 #include "chimera/runtime/task_memory.h"
 
 namespace chimera {
@@ -32,10 +33,12 @@ class TaskMethods {
     std::atomic<std::uint32_t>* at_edge = nullptr;
     std::atomic<std::uint32_t>* making = nullptr;
   };
+  /// `safe_frames`: those of a task are taken back when its `off` or `kill` has ended well; null: there are none.
   /// Everything given outlives this. Context: setup.
-  void prepare(std::span<TaskMemory> memories, const Words& words) noexcept {
+  void prepare(std::span<TaskMemory> memories, const Words& words, SafeFrames* safe_frames = nullptr) noexcept {
     memories_ = memories;
     words_ = words;
+    safe_frames_ = safe_frames;
   }
   /// By the executor, before anything is signalled. Context: setup.
   void run_by(const MethodRunner& runner) noexcept { runner_ = runner; }
@@ -60,6 +63,7 @@ class TaskMethods {
 
   std::span<TaskMemory> memories_;
   Words words_;
+  SafeFrames* safe_frames_ = nullptr;
   MethodRunner runner_;
 };
 

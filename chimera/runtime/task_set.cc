@@ -3,8 +3,21 @@
 #include "chimera/runtime/task_set.h"
 
 #include "chimera/base/message.h"
+#include "chimera/runtime/stale_inputs.h"
 
 namespace chimera {
+namespace {
+
+Result<void> check_producers(const ApplicationSpec& spec) {
+  for (const Variable& variable : spec.variables) {
+    if (!variable.producers.empty() || variable.operator_index != UINT32_MAX) continue;
+    const std::string_view reader = spec.tasks[variable.consumers[0].task.index].name;
+    return (Message("nobody produces state variable ") << variable.name).error(ErrorCode::kBadInput, reader);
+  }
+  return {};
+}
+
+}  // namespace
 
 TaskSet::~TaskSet() {
   for (Task& task : tasks_) {
@@ -23,9 +36,10 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
   tasks_ = memory_.take<Task>(n);
   hosts_ = memory_.take<TaskHost>(n);
   on_ = memory_.take<bool>(n);
+  states_ = memory_.take<State>(n);
   listed_ = memory_.take<TaskStatus>(n);
   for (std::size_t t = 0; t < n; ++t) prepare_task(t, components[t]);
-  if (auto produced = check_producers(); !produced) return produced;
+  if (auto produced = check_producers(spec_); !produced) return produced;
   if (auto laid = table_.prepare(spec_, place_, memory_); !laid) return laid;
   for (const Task& task : tasks_)
     if (is_mine(task.id)) table_.place_outputs(task.id, memories_[task.id.index]);
@@ -48,7 +62,7 @@ void TaskSet::prepare_task(std::size_t t, const chimera_component* component) {
   task.spec = &spec_.tasks[t];
   task.id = TaskId(t);
   task.component = component;
-  hosts_[t] = {this, &task, nullptr};
+  hosts_[t] = {this, &task, nullptr, nullptr};
   task.call.fault = &task.said;
   task.call.host = &TaskHost::kCalls;
   task.call.context = &hosts_[t];
@@ -56,40 +70,44 @@ void TaskSet::prepare_task(std::size_t t, const chimera_component* component) {
   task.running = place_.running;
 }
 
-Result<void> TaskSet::check_producers() const {
-  for (const Variable& variable : spec_.variables) {
-    if (!variable.producers.empty() || variable.operator_index != UINT32_MAX) continue;
-    const std::string_view reader = spec_.tasks[variable.consumers[0].task.index].name;
-    return (Message("nobody produces state variable ") << variable.name).error(ErrorCode::kBadInput, reader);
-  }
-  return {};
-}
-
 void TaskSet::prepare_parts() {
-  methods_.prepare(memories_, {place_.at_edge, place_.making});
+  methods_.prepare(memories_, {place_.at_edge, place_.making}, place_.safe_frames);
   slow_.prepare(tasks_, hosts_, methods_, place_.service, *place_.serving, memory_);
   sent_.prepare(tasks_, memories_, place_.others);
   flag_.prepare(spec_.variables, tasks_, memory_);
+  standbys_.prepare(spec_, memory_);
   life_.prepare(tasks_.size(), memory_);
   if (place_.others != nullptr) changes_.prepare(tasks_.size(), memory_);
   constants_.prepare(spec_, table_, memories_, place_.others, memory_);
+  for (const StaleSpec& stale : spec_.stale)
+    if (TaskMemory& memory = memories_[stale.task.index]; memory.is_planned())
+      hosts_[stale.task.index].stale = &StaleInputs::make(stale.after, memory, spec_.variables, memory_);
   sources_.prepare(spec_, table_, tasks_, memories_, place_.others, place_.preemptive, memory_);
 }
 
 void TaskSet::judge_as(const TaskBits* target) noexcept {
   target_ = target;
+  if (target != nullptr) standbys_.follow_switch(*target);
   on_set_changed();
 }
 
 bool TaskSet::counts_as_on(TaskId task) const noexcept {
-  const State state = is_mine(task) ? tasks_[task.index].state : place_.others->state(task);
+  if (standbys_.is_covered(task)) return true;
+  const State state = states_[task.index];
   if (target_ == nullptr) return state == State::kOn;
   return target_->has(task) && (state == State::kOn || state == State::kOff);
 }
 
 void TaskSet::on_set_changed() noexcept {
+  for (const Task& task : tasks_)
+    states_[task.id.index] = is_mine(task.id) ? task.state : place_.others->state(task.id);
+  if (standbys_.n_groups() > 0) {
+    JobClock* const clock = methods_.clock();
+    standbys_.follow(states_, clock == nullptr ? Nanoseconds{} : clock->now());
+    if (standbys_.is_any_waiting()) sent_.want_edge();
+  }
   for (const Task& task : tasks_) on_[task.id.index] = counts_as_on(task.id);
-  flag_.follow(on_);
+  flag_.follow(on_, standbys_.is_any_uncovered());
   for (const Task& task : tasks_) {
     if (!is_mine(task.id)) continue;
     const TaskStatus now{task.state, task.in_service, memories_[task.id.index].incarnation()};

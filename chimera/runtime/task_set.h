@@ -15,6 +15,7 @@
 #include "chimera/runtime/sent_signals.h"
 #include "chimera/runtime/slow_methods.h"
 #include "chimera/runtime/sources.h"
+#include "chimera/runtime/standbys.h"
 #include "chimera/runtime/switch_page.h"
 #include "chimera/runtime/task_host.h"
 #include "chimera/runtime/task_life.h"
@@ -45,6 +46,8 @@ class TaskSet {
   SentSignals& sent() noexcept { return sent_; }
   /// The illegal-configuration flag.
   IllegalFlag& flag() noexcept { return flag_; }
+  /// Which task stands in for which, and who is to take over.
+  Standbys& standbys() noexcept { return standbys_; }
   /// How methods are called.
   TaskMethods& methods() noexcept { return methods_; }
   /// What the service thread runs.
@@ -79,6 +82,8 @@ class TaskSet {
   std::uint32_t context() const noexcept { return place_.rtpu.is_valid() ? place_.rtpu.index : 0; }
   /// What is known of other contexts; null: there is none.
   PeerView* others() const noexcept { return place_.others; }
+  /// What is written when this process is dead; null: nobody would.
+  SafeFrames* safe_frames() const noexcept { return place_.safe_frames; }
   const ApplicationSpec& spec() const noexcept { return spec_; }
   /// Where the set and its executors take their memory from. Context: setup.
   SetupMemory& setup_memory() noexcept { return memory_; }
@@ -86,7 +91,6 @@ class TaskSet {
  private:
   bool counts_as_on(TaskId task) const noexcept;
   Result<void> plan_memories(std::span<const chimera_component* const> components);
-  Result<void> check_producers() const;
   void prepare_parts();
   void prepare_task(std::size_t t, const chimera_component* component);
 
@@ -103,9 +107,11 @@ class TaskSet {
   SlowMethods slow_;
   SentSignals sent_;
   IllegalFlag flag_;
+  Standbys standbys_;
   Changes changes_;
   TaskLife life_{*this};
   std::span<bool> on_;            // by task, over all contexts: ON at the last on_set_changed()
+  std::span<State> states_;       // by task, over all contexts, at the last on_set_changed()
   const TaskBits* target_ = nullptr;  // in place of the states, while they change
   std::span<TaskStatus> listed_;  // by task: the status that was listed in changes_ last
 };

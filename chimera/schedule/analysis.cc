@@ -6,30 +6,13 @@
 
 #include "chimera/base/assert.h"
 #include "chimera/base/math.h"
+#include "chimera/schedule/rank.h"
 #include "chimera/schedule/response.h"
 
 namespace chimera {
 namespace {
 
 constexpr std::int64_t kMostTerms = 100'000'000;
-
-bool has_criticalities(Policy policy) noexcept { return policy == Policy::kMuf || policy == Policy::kMufLaxity; }
-
-LevelOrder order_of(Policy policy) noexcept {
-  if (policy == Policy::kRm) return LevelOrder::kAlone;
-  return policy == Policy::kEdf || policy == Policy::kMuf ? LevelOrder::kDeadline : LevelOrder::kLaxity;
-}
-
-/// Rtpus of the same CPU with a higher band than `index`.
-std::uint32_t band_of(std::span<const ProcessorUse> uses, std::uint32_t index) noexcept {
-  std::uint32_t above = 0;
-  for (std::uint32_t i = 0; i < uses.size(); ++i) {
-    if (i == index || uses[i].cpu != uses[index].cpu) continue;
-    const bool same = uses[i].criticality == uses[index].criticality;
-    if (uses[i].criticality > uses[index].criticality || (same && i < index)) ++above;
-  }
-  return above;
-}
 
 /// Tasks of one rtpu. The time that a policy looks at within a level, and at ranks of a level each.
 Nanoseconds key_of(const Work& w, Policy policy) noexcept { return policy == Policy::kRm ? w.period : w.deadline; }
@@ -73,25 +56,13 @@ class Analysis {
   }
 
  private:
-  RankedWork ranked_work(std::uint32_t task) const noexcept {
-    RankedWork made{works_[task], task, band_of(uses_, works_[task].rtpu), {}, {}};
-    Work& w = made.work;
-    w.time = std::min(w.time, w.period);  // beyond it does not fit anyway, and sums must stay in bounds
-    if (w.server != ServerKind::kDeferrable) return made;
-    // In an executive what begins just before the end of a period runs on into the next.
-    const bool preemptive = uses_[w.rtpu].dispatch == Dispatch::kPreemptive;
-    made.early = preemptive ? w.time : Nanoseconds{};
-    made.jitter = w.period - (preemptive ? w.time : Nanoseconds{1});
-    return made;
-  }
-
   std::span<RankedWork> rank(std::span<RankedWork> room) noexcept {
     std::size_t n = 0;
     for (std::uint32_t i = 0; i < works_.size(); ++i) {
       CHIMERA_ASSERT(works_[i].rtpu < uses_.size() && works_[i].period > Nanoseconds{});
       if (uses_[works_[i].rtpu].cpu != verdict_.cpu) continue;
       CHIMERA_ASSERT(n < room.size());
-      room[n++] = ranked_work(i);
+      room[n++] = ranked_work(works_, uses_, i);
     }
     const auto ranked = room.first(n);
     std::sort(ranked.begin(), ranked.end(),

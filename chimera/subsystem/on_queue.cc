@@ -34,17 +34,28 @@ bool OnQueue::advance() {
   return changed;
 }
 
-// One that was killed or failed since it was spawned is left out; whether the rest is legal is judged next.
+// One that was killed or failed since it was spawned is left out, and one in whose place a standby is ON; whether the
+// rest is legal is judged next.
 bool OnQueue::fail_lost_goals() {
   bool changed = false;
   for (TaskId task : goals_.with(kGoalOn)) {
     const State state = state_.observed.state(task);
+    if (state != State::kOn && is_replaced(task)) {
+      changed = goals_.clear(task, kGoalOn) || changed;
+      continue;
+    }
     const bool is_known = state_.observed.life_of(task) == RtpuLife::kUp && !state_.is_busy(task);
     if (!is_known || state == State::kOn || state == State::kOff) continue;
     goals_.fail(task, state_.illegal(Signal::kOn, task, state, {&task, 1}));
     changed = true;
   }
   return changed;
+}
+
+bool OnQueue::is_replaced(TaskId task) const noexcept {
+  for (std::size_t t = 0; t < state_.spec.tasks.size(); ++t)
+    if (state_.spec.stand_in(task, TaskId(t)) && state_.observed.state(TaskId(t)) == State::kOn) return true;
+  return false;
 }
 
 // True: begun, or no goal is left.

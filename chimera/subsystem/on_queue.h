@@ -31,6 +31,7 @@ class OnQueue {
     bool has_waited = false;  // for goals of its tasks
   };
   bool fail_lost_goals();
+  bool is_replaced(TaskId task) const noexcept;
   bool try_begin_goals();
   void begin(OnRequest request);
   bool try_begin(Waiting& waiting);

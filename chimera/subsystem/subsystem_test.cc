@@ -222,6 +222,27 @@ TEST_F(SubsystemTest, ADeadRtpuComesBackWithWhatWasOn) {
   EXPECT_EQ(report(kPid, State::kOn), "goal arm 0\ngoal pid 0\nstarted: arm pid are ON\n");
 }
 
+TEST_F(SubsystemTest, ATaskInWhosePlaceItsStandbyIsOnComesBackOff) {
+  const StandbySpec pair[] = {{kPid, kReserve}};
+  spec.standbys = pair;
+  die(kServo);
+  seen(kReserve, State::kOn);  // by itself
+  step(RtpuUp{kServo, 2});
+  EXPECT_EQ(report(kArm, State::kOff), "goal arm 2\nsend servo: spawn pid\n");
+  EXPECT_EQ(report(kPid, State::kOff), "goal pid 2\ngoal pid 0\nsend servo: on arm\n");
+  EXPECT_EQ(report(kArm, State::kOn), "goal arm 0\nstarted: arm is ON\n");
+}
+
+TEST_F(SubsystemTest, ATaskWhoseStandbyDidNotComeIsTurnedOnAgain) {
+  const StandbySpec pair[] = {{kPid, kReserve}};
+  spec.standbys = pair;
+  die(kServo);
+  seen(kReserve, State::kError);  // its on failed
+  step(RtpuUp{kServo, 2});
+  report(kArm, State::kOff);
+  EXPECT_EQ(report(kPid, State::kOff), "goal pid 2\nsend servo: on arm pid\n");
+}
+
 TEST_F(SubsystemTest, WhoWaitsForADeadRtpuIsToldWhy) {
   command(Signal::kOff, {kPid});
   EXPECT_EQ(die(kServo),

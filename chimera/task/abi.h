@@ -85,6 +85,8 @@ enum {
   CHIMERA_PORT_REPEATED = 1u << 1,    /* instances come from the description */
   CHIMERA_PORT_HAS_RANGE = 1u << 2,   /* min and max count */
   CHIMERA_PORT_CONFIGURATION = 1u << 4, /* in-const of text: names a configuration of the description, or is empty */
+  CHIMERA_PORT_SAFE_STATE = 1u << 5, /* out-var of bool: true while the device is in the state that the
+                                        illegal-configuration flag asks for; resource: nothing of it ever moves */
   CHIMERA_PORT_HAS_INITIAL = 1u << 3  /* out-var: value at spawn; in-const: default when nobody produces it */
 };
 
@@ -92,6 +94,8 @@ enum {
 #define CHIMERA_MAX_EXTENTS 2u     /* dimensions of a shape */
 #define CHIMERA_MAX_INSTANCES 16u  /* instances of one repeated port */
 #define CHIMERA_FAULT_TEXT 160u
+#define CHIMERA_SAFE_FRAMES 4u     /* of a task */
+#define CHIMERA_SAFE_BYTES 256u    /* of a safe frame */
 
 /* One field of a struct element. */
 typedef struct chimera_field {
@@ -165,7 +169,7 @@ typedef struct chimera_fault {
   char text[CHIMERA_FAULT_TEXT];
 } chimera_fault;
 
-/* What a method may ask of the framework. All are wait-free and safe in the cycle context. */
+/* What a method may ask of the framework. All but safe_frame are wait-free and safe in the cycle context. */
 typedef struct chimera_host {
   /* 1 when the job is past its deadline or was told to give up. */
   int32_t (*expired)(void* context);
@@ -185,6 +189,14 @@ typedef struct chimera_host {
    * CHIMERA_OK, or CHIMERA_FAULT when there is no such configuration or it cannot be switched to in this run: told as a
    * note, once for each task. Acted upon after the present method. */
   int32_t (*request)(void* context, const char* configuration);
+  /* Safe frame `index` of this task is written to `descriptor`, of which a copy is kept, by another process, when this
+   * one is dead; below 0: there is no such frame any more. Before it is written, output that waits in the queue of a
+   * terminal is dropped, and the line rests for `pause_ns`. In init or clear; may block for a moment, the only one
+   * here that does. CHIMERA_FAULT: nobody would write it (virtual time, one process), or there is no such index. */
+  int32_t (*safe_frame)(void* context, uint32_t index, int32_t descriptor, int64_t pause_ns);
+  /* What is written there: a copy of `size` bytes. It stands until the next one; 0 bytes take it back, and so do an
+   * `off` and a `kill` that end well. From on on, in any method. CHIMERA_FAULT: no such index, or too many bytes. */
+  int32_t (*safe_bytes)(void* context, uint32_t index, const void* bytes, uint32_t size);
 } chimera_host;
 
 /* Given to every method. */

@@ -53,6 +53,18 @@ class Cycle {
   bool request(const char* configuration) const noexcept {
     return call_->host->request(call_->context, configuration) == CHIMERA_OK;
   }
+  /// What another process writes to the device when this one is dead: safe frame `index` (0 to 3) goes to `descriptor`,
+  /// of which it keeps a copy; a `descriptor` below 0 takes it back. Output that waits in the queue of a terminal is
+  /// dropped before, and the line rests for `pause`. Belongs into init, and into clear where that opens anew. False:
+  /// nobody would write it, because the run is one process or virtual. Context: setup; may block.
+  bool safe_frame(std::uint32_t index, int descriptor, Nanoseconds pause = {}) const noexcept {
+    return call_->host->safe_frame(call_->context, index, descriptor, pause.count) == CHIMERA_OK;
+  }
+  /// The bytes of safe frame `index`, at most 256: from on on, and whenever they change. They stand until the next
+  /// ones; none take them back, and so do an off and a kill that end well. Context: any; wait-free.
+  bool safe_bytes(std::uint32_t index, const void* bytes, std::size_t size) const noexcept {
+    return call_->host->safe_bytes(call_->context, index, bytes, static_cast<std::uint32_t>(size)) == CHIMERA_OK;
+  }
   /// The variable or constant that `port` is joined to; empty: none. Good as long as the task. Context: any; wait-free.
   template <class Port>
   std::string_view variable(const Port& port) const noexcept {

@@ -130,6 +130,8 @@ constexpr bool check_option() {
                 "one_of goes with an in-const of text: it is checked before anything runs");
   static_assert(!std::is_same_v<Option, ConfigurationIs> || Kind == CHIMERA_IN_CONST,
                 "configuration goes with an in-const of text: it is checked before anything runs");
+  static_assert(!std::is_same_v<Option, SafeStateIs> || Kind == CHIMERA_OUT_VAR || Kind == CHIMERA_RESOURCE,
+                "safe_state goes with an out-var of bool, or with a resource that never moves");
   static_assert(!std::is_same_v<Option, RangeIs> || Kind != CHIMERA_RESOURCE, "a resource has no range");
   return true;
 }
@@ -189,6 +191,12 @@ template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const ConfigurationIs&) {
   static_assert(element_type<E>() == CHIMERA_STRING, "configuration goes with text: a configuration has a name");
   port.flags |= CHIMERA_PORT_CONFIGURATION;
+}
+template <class E>
+void apply_option(chimera_port_decl& port, Collector& to, const SafeStateIs&) {
+  if (port.kind != CHIMERA_RESOURCE && element_type<E>() != CHIMERA_BOOL)
+    to.refuse(port.name, "is a safe_state and no bool");
+  port.flags |= CHIMERA_PORT_SAFE_STATE;
 }
 template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const SafetyIs&) {

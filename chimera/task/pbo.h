@@ -75,6 +75,7 @@ typedef struct pboPort_t {
   int has_range;
   int safety;
   int configuration;
+  int safe_state;
 } pboPort_t;
 
 /* Options of a port. */
@@ -85,6 +86,7 @@ typedef struct pboPort_t {
 #define PBO_AT_LEAST(lower) .at_least = lower /* in_const of numbers: no element is below that of in_const `lower` */
 #define PBO_ONE_OF(words) .one_of = words /* in_const of text: "the words it may be", with spaces between them */
 #define PBO_CONFIGURATION .configuration = 1 /* in_const of text: names a configuration, or is empty */
+#define PBO_SAFE_STATE .safe_state = 1 /* out_var of bool: the device is as the flag asks; resource: it never moves */
 #define PBO_INITIAL(type, ...) \
   .initial = (const PBO_TYPE_##type[]){__VA_ARGS__}, .initial_bytes = sizeof((const PBO_TYPE_##type[]){__VA_ARGS__})
 
@@ -166,6 +168,9 @@ typedef struct pboPort_t {
 #define PBO_EXPIRED (PBO_CALL->host->expired(PBO_CALL->context))
 #define PBO_SIGNAL(which, task) (PBO_CALL->host->signal(PBO_CALL->context, which, task))
 #define PBO_RING(task) PBO_SIGNAL(CHIMERA_SIGNAL_WAKEUP, task) /* one event for a task behind a server */
+#define PBO_SAFE_FRAME(index, descriptor, pause_ns) /* what is written when this process is dead; CHIMERA_OK or not */ \
+  (PBO_CALL->host->safe_frame(PBO_CALL->context, index, descriptor, pause_ns))
+#define PBO_SAFE_BYTES(index, bytes, size) (PBO_CALL->host->safe_bytes(PBO_CALL->context, index, bytes, size))
 #define PBO_REQUEST(name) (PBO_CALL->host->request(PBO_CALL->context, name)) /* a configuration; CHIMERA_OK or not */
 #define PBO_SPEND(ns) (PBO_CALL->host->spend(PBO_CALL->context, ns))
 /* Notes the text of a fault and is PBO_ERROR: return PBO_FAULT("the device does not answer"); */
@@ -220,6 +225,7 @@ static inline void pboDeclarePort(chimera_port_decl* to, const pboPort_t* from) 
   to->max = from->max;
   to->flags = (from->safety ? (uint32_t)CHIMERA_PORT_SAFETY : 0u) |
               (from->configuration ? (uint32_t)CHIMERA_PORT_CONFIGURATION : 0u) |
+              (from->safe_state ? (uint32_t)CHIMERA_PORT_SAFE_STATE : 0u) |
               (from->has_range ? (uint32_t)CHIMERA_PORT_HAS_RANGE : 0u) |
               (from->initial != NULL ? (uint32_t)CHIMERA_PORT_HAS_INITIAL : 0u);
 }

@@ -44,6 +44,9 @@ struct Profile {
   Spread start_delay;                 ///< release to start of a cycle: its max minus min is the start jitter
   std::uint64_t cycles = 0;           ///< completed (published) cycles since spawn
   std::uint32_t missed_in_a_row = 0;
+  // Where they take no room: a job step multiplies by the size of a task. 65535: or more.
+  std::uint16_t restarts = 0;         ///< by the reaction `restart` of on_fault
+  std::uint16_t takeovers = 0;        ///< times it went ON in place of a task that failed
   /// Time that a method used, both its transfers included; virtual time: modelled.
   Spread execution[CHIMERA_METHODS];
   std::uint64_t aborted = 0;          ///< cycles that gave up

@@ -19,6 +19,7 @@
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/rig_ports.h"
+#include "chimera/task/rig_safe_frames.h"
 #include "chimera/task/signal.h"
 #include "chimera/task/text.h"
 
@@ -33,8 +34,9 @@ struct RigAnswer {
   explicit operator bool() const noexcept { return status == CHIMERA_OK; }
 };
 
-/// One component under test. Its ports are set and read as RigPorts says. Context: setup.
-class Rig : public RigPorts {
+/// One component under test. Its ports are set and read as RigPorts says, its safe frames as RigSafeFrames.
+/// Context: setup.
+class Rig : public RigPorts, public RigSafeFrames {
  public:
   /// Finds the component of that name in this program and constructs it; throws when its constructor fails.
   explicit Rig(const char* component) : RigPorts(component, &call_.now_ns) {
@@ -109,12 +111,12 @@ class Rig : public RigPorts {
  private:
   RigAnswer run(Method method) {
     const chimera_method function = component().methods[static_cast<std::uint32_t>(method)];
-    if (function == nullptr) return {};
     chimera_fault fault{};
     call_.fault = &fault;
-    const std::int32_t status = function(state(), &call_);
+    const std::int32_t status = function == nullptr ? CHIMERA_OK : function(state(), &call_);
     call_.fault = nullptr;
     if (method == Method::kInit || method == Method::kReinit) fix_extents();
+    if ((method == Method::kOff || method == Method::kKill) && status == CHIMERA_OK) take_back();
     return {status, fault.code, fault.text};
   }
 
@@ -140,8 +142,8 @@ class Rig : public RigPorts {
   static chimera_text text_of(const std::string& text) {
     return {text.data(), static_cast<std::uint32_t>(text.size())};
   }
-  static constexpr chimera_host kHost{&host_expired, &host_signal,   &host_spend,
-                                      &host_note,    &host_variable, &host_unit, &host_request};
+  static constexpr chimera_host kHost{&host_expired, &host_signal, &host_spend,   &host_note,      &host_variable,
+                                      &host_unit,    &host_request, &host_safe_frame<Rig>, &host_safe_bytes<Rig>};
 
   chimera_call call_{};
   std::vector<std::string> signals_;

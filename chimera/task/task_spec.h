@@ -58,6 +58,7 @@ enum class OnFault : std::uint8_t {
   kFlag,    ///< the illegal-configuration flag goes up, until the task is no longer in ERROR
   kStop,    ///< the executor stops
   kSwitch,  ///< a configuration is asked for
+  kRestart,  ///< `clear` and `on`, as RestartSpec says (runtime/application_spec.h)
 };
 
 /// One task. Times are zero or positive; period > 0.

@@ -3,6 +3,7 @@
 // every link an id, every value the bytes that the rules accepted, every name a view into the parts).
 #include "chimera/verify/configuration.h"
 
+#include <algorithm>
 #include <cstring>
 #include <deque>
 
@@ -34,6 +35,9 @@ struct Configuration::Parts {
   Links links;
   std::vector<TaskId> init_order, on_order, end_order;
   std::vector<NamedSet> named_sets;
+  std::vector<StandbySpec> standbys;
+  std::vector<RestartSpec> restarts;
+  std::vector<StaleSpec> stale;
   ApplicationSpec spec;
 };
 
@@ -131,6 +135,29 @@ void take_reactions(const Model& model, const DraftTask& draft, TaskSpec& spec) 
   take(draft.on_miss, spec.on_miss, spec.on_miss_set);
   take(draft.on_overrun, spec.on_overrun, spec.on_overrun_set);
   take(draft.on_fault, spec.on_fault, spec.on_fault_set);
+}
+
+/// In the order of the tasks.
+void take_standbys(const Model& model, std::vector<StandbySpec>& standbys) {
+  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
+    const auto& name = model.tasks[t].draft->standby_for;
+    const auto primary = name ? model.task_named(name->text) : std::nullopt;
+    if (primary) standbys.push_back({TaskId(*primary), TaskId(t)});
+  }
+}
+
+void take_restarts(const Model& model, std::vector<RestartSpec>& restarts) {
+  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
+    const auto& on_fault = model.tasks[t].draft->on_fault;
+    if (!on_fault || on_fault->kind != OnFault::kRestart) continue;
+    const DraftRestart& restart = on_fault->restart;
+    restarts.push_back({TaskId(t), restart.most, restart.within, restart.then});
+  }
+}
+
+void take_stale(const Model& model, std::vector<StaleSpec>& stale) {
+  for (std::size_t t = 0; t < model.tasks.size(); ++t)
+    if (const auto& after = model.tasks[t].draft->stale_after) stale.push_back({TaskId(t), after->value});
 }
 
 TaskSpec task_spec(const Model& model, const TaskModel& task, const ConfiguredTask& configured,
@@ -280,6 +307,14 @@ class SpecMaker {
   std::vector<std::uint32_t> ids_;  // of state variables or constants, by index in Model::variables
 };
 
+SafeCondition safe_condition(const SetModel& set, const Parts& parts) {
+  if (!set.safe_variable) return {};
+  SafeCondition condition = set.safe_when;
+  const auto at = std::ranges::find(parts.configured, *set.safe_variable);
+  condition.variable = VariableId(static_cast<std::size_t>(at - parts.configured.begin()));
+  return condition;
+}
+
 /// The half that the runtime reads; `parts` has its tasks already.
 void fill_spec(const Model& model, Parts& parts) {
   SpecMaker(model, parts).make();
@@ -291,8 +326,15 @@ void fill_spec(const Model& model, Parts& parts) {
   parts.spec.operators = parts.operators;
   parts.spec.init_order = parts.init_order;
   parts.spec.start = parts.sets[parts.start].order;
-  for (const ConfiguredSet& set : parts.sets) parts.named_sets.push_back({set.name, set.order});
+  for (std::size_t s = 0; s < parts.sets.size(); ++s)
+    parts.named_sets.push_back({parts.sets[s].name, parts.sets[s].order, safe_condition(model.sets[s], parts)});
   parts.spec.sets = parts.named_sets;
+  take_standbys(model, parts.standbys);
+  take_restarts(model, parts.restarts);
+  parts.spec.standbys = parts.standbys;
+  parts.spec.restarts = parts.restarts;
+  take_stale(model, parts.stale);
+  parts.spec.stale = parts.stale;
   parts.on_order = make_on_order(parts.spec);
   parts.spec.on_order = parts.on_order;
   parts.end_order = make_end_order(parts.spec);

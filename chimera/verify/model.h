@@ -99,6 +99,8 @@ struct SetModel {
   std::vector<std::size_t> tasks;  ///< indices, in the order of the description
   bool is_whole = true;            ///< false: names a task that is unknown, so nothing is said about its inputs
   std::vector<TaskId> order;
+  SafeCondition safe_when;                 ///< its variable is `safe_variable`
+  std::optional<std::size_t> safe_variable;  ///< in Model::variables; nothing: none is asked for
 
   bool has(std::size_t task) const noexcept;
 };

@@ -12,6 +12,14 @@ const char* fault_reaction(OnFault kind) {
   return kind == OnFault::kFlag ? "flag" : kind == OnFault::kStop ? "stop" : "switch";
 }
 
+// As it is written, for messages: what acts when a task is in ERROR and stays there; "" when nothing does.
+std::string fault_reaction(const DraftOnFault& on_fault) {
+  const bool restarts = on_fault.kind == OnFault::kRestart;
+  const OnFault last = restarts ? on_fault.restart.then : on_fault.kind;
+  if (last == OnFault::kError) return "";
+  return std::string(restarts ? "'then: " : "'on_fault: ") + fault_reaction(last) + "'";
+}
+
 class Refusals {
  public:
   Refusals(const Configuration& configuration, Executor executor)
@@ -109,11 +117,9 @@ class Refusals {
     const bool preempts = here != tasks.end() && is_preemptive(here->rtpu);
     reaction(task.on_miss, "on_miss", task, preempts);
     reaction(task.on_overrun, "on_overrun", task, preempts);
-    if (task.on_fault && task.on_fault->kind != OnFault::kError)
-      switches(task.on_fault->at, "'on_fault: " + std::string(fault_reaction(task.on_fault->kind)) + "'", task);
+    if (const std::string last = task.on_fault ? fault_reaction(*task.on_fault) : ""; !last.empty())
+      switches(task.on_fault->at, last, task);
     server(task, preempts, here != tasks.end() && here->has_event_source);
-    if (task.stale_after) refuse_key(task.stale_after->at, "stale_after", task);
-    if (task.standby_for) refuse_key(task.standby_for->at, "standby_for", task);
     if (task.stack_bytes && !preempts && executor_ == Executor::kProcesses)
       refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",
              "give its rtpu 'executor: preemptive': in one loop tasks have no stacks of their own");

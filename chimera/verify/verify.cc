@@ -31,6 +31,7 @@ void judge_values(Model& model) {
   share_maxima(model);
   limit_table(model);
   check_values(model);
+  check_conditions(model);
   check_order_of_constants(model);
 }
 

@@ -25,6 +25,7 @@ struct Car : library::RollingCar {
       opening_ += (wanted - opening_) * h / (engine_.lag + h);
       return engine_.force(opening_, present_speed());
     });
+    *coasts = c.illegal() && opening_ < 0.01;
     return ok();
   }
 

@@ -44,8 +44,10 @@ TEST_F(CarTest, TheEngineFollowsTheGasAfterItsLagAndIsCutAtOne) {
 TEST_F(CarTest, RollsWhileTheConfigurationIsIllegal) {
   rig.set("start_speed", 20.0);
   ASSERT_TRUE(rig.init());
+  EXPECT_FALSE(rig.get<bool>("coasts"));
   rig.illegal(true);
   ASSERT_TRUE(rig.drive(2));
+  EXPECT_TRUE(rig.get<bool>("coasts"));
   const double free = rig.speed();
   for (const char* input : {"gas", "fb"}) {
     rig.set("gas", 0.0);

@@ -15,6 +15,8 @@ struct RollingCar {
   Out<double> xw{"xw", "rad", doc = "Angle of a wheel since init, forward positive."};
   Out<double> speed{"speed", "km/h", doc = "True speed, for judging; no module of the control reads it."};
   Out<double> grade{"grade", "1", doc = "Rise over run where the car is."};
+  Out<bool> coasts{"coasts", initial = false, safe_state,
+                   doc = "The flag is up: the car rolls, nobody drives or brakes."};
   InConst<double> mass{"mass", "kg", initial = 1600.0, range(500, 40000), doc = "With load."};
   InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Of the tyre under load."};
   InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "At init."};
@@ -39,6 +41,7 @@ struct RollingCar {
     const bool has_predecessor = xw.inherited() != kNever && speed.inherited() != kNever;
     const bool is_elsewhere = *xw != car_.wheel_angle() || *speed != car_.speed() * 3.6;
     if (has_predecessor && is_elsewhere && std::isfinite(*xw) && std::isfinite(*speed)) car_.resume(*speed / 3.6, *xw);
+    *coasts = false;
     publish();
   }
 

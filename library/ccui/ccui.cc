@@ -10,7 +10,8 @@ namespace {
 struct Ccui {
   Out<double> vr{"vr",   "m/s",        initial = 0.0,
                  safety, range(0, 70), doc = "Speed to hold; 0: the cruise control is off."};
-  Resource buttons{"buttons", doc = "Script of seconds:km/h, each held until the next; \"0:0\" is never switched on."};
+  Resource buttons{"buttons", safe_state,
+                   doc = "Script of seconds:km/h, each held until the next; \"0:0\" is never switched on."};
 
   Outcome init() {
     const char* const wrong = speed_.read(buttons.text(), 0, 250, "a set speed is 0 to 250 km/h");

@@ -36,7 +36,7 @@ struct CsvLog {
   Out<std::int64_t>     lost{"lost", "1", initial = 0, doc = "Rows that found no room."};
   Out<std::int32_t>     disk_error{"disk_error", "1", initial = 0,
                                    doc = "0: the disk takes what it is given; else the error number of its refusal."};
-  Resource              file{"file", doc = "The file to write; what was in it is lost."};
+  Resource              file{"file", safe_state, doc = "The file to write; what was in it is lost."};
 
   void init(Cycle c) {
     check_inputs();

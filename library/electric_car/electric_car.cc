@@ -23,6 +23,7 @@ struct ElectricCar : library::RollingCar {
       const double limit = std::min(*force_max, *power_max / std::max(1.0, std::abs(present_speed())));
       return std::clamp(wanted, -limit, limit);
     });
+    *coasts = c.illegal();
     return ok();
   }
 

@@ -22,6 +22,8 @@ struct FrameDevice {
   Out<bool> connected{"connected", initial = false, doc = "A good frame came within the timeout."};
   Out<std::int64_t> received{"received", "1", initial = 0, doc = "Good frames."};
   Out<std::int64_t> wrong{"wrong", "1", initial = 0, doc = "Frames with a wrong CRC or a value that is not finite."};
+  Out<bool> idled{"idled", initial = false, safe_state,
+                  doc = "The flag is up and a frame with `idle` has gone out since."};
   Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Commands that were not finite, or found the line full."};
   InConst<std::int32_t> fields{"fields", "1", initial = 1, range(1, 16), doc = "Values in a frame of the device."};
   InConst<Text<8>> form{"form", initial = "float32", one_of = "float32 int16",
@@ -56,7 +58,7 @@ struct FrameDevice {
   void begin(Cycle c) {
     heard_ = c.now();
     lost_ = nullptr;
-    *connected = false;
+    *connected = *idled = false;
     *age = 0;
   }
   /// The frame for this cycle behind to[2 + number_bytes]; its payload, 0: there is nothing to send.
@@ -73,6 +75,8 @@ struct FrameDevice {
     }
     return static_cast<std::size_t>(at - to) - 2;
   }
+  /// For cycle, after what was sent: whether a whole frame with the idle command has gone out in it.
+  void tell_idled(Cycle c, bool is_idle_out) { *idled = c.illegal() && (*idled || is_idle_out); }
   /// Takes the values of a good frame.
   void take_state(std::span<const std::uint8_t> frame, Nanoseconds now) {
     std::array<double, 16> values{};

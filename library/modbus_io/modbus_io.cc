@@ -12,6 +12,7 @@
 #include "library/device/latest.h"
 #include "library/device/sentence.h"
 #include "library/modbus_io/modbus_line.h"
+#include "library/modbus_io/modbus_request.h"
 
 using namespace chimera;
 using namespace chimera::library;
@@ -29,7 +30,8 @@ struct ModbusIo {
   Many<In<bool>, kMostPoints> coil{"coil*", "1", doc = "Written to coils, from first_coil on."};
   Out<double> age{"age", "s", initial = 0.0, doc = "Since the last exchange was seen; since on before the first."};
   Out<bool> connected{"connected", initial = false, doc = "An exchange succeeded within the timeout."};
-  Out<std::int64_t> exchanges{"exchanges", "1", initial = 0, doc = "Exchanges that succeeded."};
+  Out<bool> idled{"idled", initial = false, safe_state,
+                  doc = "The flag is up, and `idle` and fallen coils have been written since."};
   Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Cycles with an input that is not finite: not passed on."};
   InConst<std::int32_t> first_input{"first_input", "1", initial = 0, range(0, 65535), doc = "Address of input[0]."};
   InConst<std::int32_t> first_contact{"first_contact", "1", initial = 0, range(0, 65535), doc = "Of contact[0]."};
@@ -46,7 +48,7 @@ struct ModbusIo {
   InConst<std::int32_t> baud{"baud", "1", initial = 19200, range(1200, 115200), doc = "Of rtu; 8 bits, even parity."};
   Resource device{"device", doc = "tcp:ADDRESS:PORT or rtu:PATH."};
 
-  void init() {
+  void init(Cycle c) {
     if (input.size() + contact.size() + holding.size() + coil.size() == 0)
       throw std::runtime_error("nothing is exchanged: name at least one input, contact, holding or coil");
     for (const double r : {*input_resolution, *holding_resolution})
@@ -58,24 +60,31 @@ struct ModbusIo {
     if (error == 0) error = line_.exchange({}, reading_);
     if (error != 0) throw std::runtime_error(refusal(error));
     brought(0);
+    if (holding.size() + coil.size() > 0) hand_over_line(c);
   }
   void on(Cycle c) {
     is_lost_ = false;
     heard_ = c.now();
     *age = 0;
+    *idled = false;
+    idle_from_ = 0;
+    put_safe_frames(c);
   }
   Outcome cycle(Cycle c) {
     if (is_lost_) return fault(lost_.text(), error_.load(std::memory_order_relaxed));
+    if (has_lost_second_.load(std::memory_order_relaxed)) tell_lost_second(c);
     const ModbusReading& now = brought_.get();
     if (now.exchange != seen_) heard_ = c.now();
     seen_ = now.exchange;
     for (std::size_t i = 0; i < input.size(); ++i) *input[i] = value_of(now.inputs[i]);
     for (std::size_t i = 0; i < contact.size(); ++i) *contact[i] = now.contacts[i] != 0;
-    *exchanges = static_cast<std::int64_t>(now.exchange);
     *age = to_seconds(c.now() - heard_);
     is_lost_ = *age > *timeout;
     *connected = !is_lost_;
     tell(is_lost_ || c.illegal());
+    if (!c.illegal()) idle_from_ = 0;
+    else if (idle_from_ == 0) idle_from_ = told_number_;
+    *idled = idle_from_ != 0 && now.command >= idle_from_;
     return ok();
   }
   void off() {
@@ -89,13 +98,43 @@ struct ModbusIo {
   void background() {
     if (!is_good_.load(std::memory_order_relaxed)) {
       if (++calls_ % kCallsBetweenTries != 0) return;
+      if (line_.has_second()) has_lost_second_.store(true, std::memory_order_relaxed);
       if (const int error = line_.connect(); error != 0) return brought(error);
     }
     brought(line_.exchange(told_.get(), reading_));
   }
-  void kill() { line_.close(); }
+  void kill(Cycle c) {
+    for (const std::uint32_t frame : {0u, 1u}) c.safe_frame(frame, -1);
+    line_.close();
+  }
 
  private:
+  // A serial line has to rest for 3.5 characters, or what comes belongs to the request that was cut. The second request
+  // leaves the device time to answer the first.
+  void hand_over_line(Cycle c) {
+    const int descriptor = line_.open_second();
+    if (descriptor < 0) c.note("takes no second connection: nothing tells it to idle when this process dies");
+    const Nanoseconds rest = line_.is_tcp() ? Nanoseconds{} : Nanoseconds{38'500'000'000 / *baud};
+    c.safe_frame(0, descriptor, rest);
+    c.safe_frame(1, descriptor, rest + (holding.size() == 0 ? Nanoseconds{} : milliseconds(50)));
+  }
+  void tell_lost_second(Cycle c) {
+    has_lost_second_.store(false, std::memory_order_relaxed);
+    c.note("was connected anew: nothing tells it to idle when this process dies, until `kill` and `spawn`");
+  }
+  void put_safe_frames(Cycle c) {
+    std::array<std::uint16_t, kMostPoints> values;
+    values.fill(raw_of(*idle));
+    const std::array<std::uint8_t, kMostPoints> fallen{};
+    if (holding.size() > 0) {
+      const auto request = ModbusRequest::registers(line_.is_tcp(), *unit, *first_holding,
+                                                    std::span(values).first(holding.size()));
+      c.safe_bytes(0, request.bytes().data(), request.bytes().size());
+    }
+    if (coil.size() == 0) return;
+    const auto request = ModbusRequest::coils(line_.is_tcp(), *unit, *first_coil, std::span(fallen).first(coil.size()));
+    c.safe_bytes(1, request.bytes().data(), request.bytes().size());
+  }
   ModbusPlan plan() const {
     return {std::string(device.text()), *unit,          *baud,
             *first_input,               count(input),   *first_contact, count(contact),
@@ -120,7 +159,6 @@ struct ModbusIo {
   }
   void tell(bool is_idle) {
     ModbusCommand command;
-    command.is_given = true;
     for (std::size_t i = 0; i < holding.size(); ++i) {
       if (!is_idle && !math::is_finite(*holding[i])) {
         *unsent += 1;
@@ -129,6 +167,7 @@ struct ModbusIo {
       command.holdings[i] = raw_of(is_idle ? *idle : *holding[i]);
     }
     for (std::size_t i = 0; i < coil.size(); ++i) command.coils[i] = !is_idle && *coil[i] ? 1 : 0;
+    command.number = ++told_number_;
     told_.put(command);
   }
   // The result of an exchange, or of the try to connect before it.
@@ -145,6 +184,7 @@ struct ModbusIo {
   // Relaxed, pair with nothing: by background, told by the cycle in a fault.
   std::atomic<bool> is_good_{false};
   std::atomic<int> error_{0};
+  std::atomic<bool> has_lost_second_{false};  // by background, told by the cycle in a note
   // Of background, after init.
   ModbusLine line_;
   ModbusReading reading_;
@@ -153,6 +193,8 @@ struct ModbusIo {
   LostSentence lost_;
   Nanoseconds heard_;
   std::uint64_t seen_ = 0;
+  std::uint64_t told_number_ = 0;  // of the last command
+  std::uint64_t idle_from_ = 0;    // of the first command since the flag is up; 0: it is down
   bool is_lost_ = false;
 };
 

@@ -179,6 +179,68 @@ TEST_F(ModbusIoTest, NothingIsWrittenBeforeOnAndIdleAtOff) {
   ASSERT_TRUE(rig.kill());
 }
 
+TEST_F(ModbusIoTest, SaysThatIdleHasBeenWrittenSinceTheFlagIsUp) {
+  start(device.tcp());
+  rig.set("holding", 9.0, 0, 0);
+  ASSERT_TRUE(rig.cycle());
+  exchange();
+  rig.illegal(true);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("idled")) << "no exchange since";
+  exchange();
+  EXPECT_EQ(device.points->holdings[0], 0);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(rig.get<bool>("idled"));
+  rig.illegal(false);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("idled"));
+}
+
+/// What the guard does when the process is dead.
+void write_safe_frames(Rig& rig) {
+  for (const std::uint32_t index : {0u, 1u}) {
+    const auto& frame = rig.safe_frame(index);
+    ASSERT_GE(frame.descriptor, 0);
+    ::usleep(static_cast<useconds_t>(frame.pause.count / 1000));
+    ASSERT_EQ(::write(frame.descriptor, frame.bytes, frame.size), static_cast<ssize_t>(frame.size));
+  }
+}
+
+TEST_F(ModbusIoTest, TheSafeFramesWriteIdleOverASerialLine) {
+  rig.set("idle", 5.0);
+  rig.set("first_holding", std::int32_t{2});
+  start(device.rtu());
+  device.points->holdings[2] = device.points->holdings[3] = 77;
+  device.points->holdings[4] = 78;
+  device.points->coils[0] = device.points->coils[1] = device.points->coils[2] = 1;
+  write_safe_frames(rig);
+  for (int i = 0; i < 2000 && device.points->coils[1] != 0; ++i) ::usleep(1000);
+  EXPECT_EQ(device.points->holdings[2], 5);
+  EXPECT_EQ(device.points->holdings[3], 5);
+  EXPECT_EQ(device.points->holdings[4], 78) << "not ours";
+  EXPECT_EQ(device.points->coils[0], 0);
+  EXPECT_EQ(device.points->coils[1], 0);
+  EXPECT_EQ(device.points->coils[2], 1) << "not ours";
+  ASSERT_TRUE(rig.off());
+  EXPECT_EQ(rig.safe_frame(0).size, 0u);
+}
+
+TEST_F(ModbusIoTest, TheSafeFramesWriteIdleOverASecondConnection) {
+  rig.set("idle", 5.0);
+  start(device.tcp());
+  device.points->holdings[0] = device.points->holdings[1] = 77;
+  device.points->coils[1] = 1;
+  const int second = ::dup(rig.safe_frame(0).descriptor);
+  const std::string bytes(reinterpret_cast<const char*>(rig.safe_frame(0).bytes), rig.safe_frame(0).size);
+  ASSERT_EQ(rig.safe_frame(0).descriptor, rig.safe_frame(1).descriptor);
+  ASSERT_EQ(::write(second, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  ASSERT_TRUE(rig.kill());  // the first connection ends: this device serves one at a time
+  for (int i = 0; i < 2000 && device.points->holdings[1] != 5; ++i) ::usleep(1000);
+  EXPECT_EQ(device.points->holdings[0], 5);
+  EXPECT_EQ(device.points->holdings[1], 5);
+  ::close(second);
+}
+
 TEST_F(ModbusIoTest, WhatIsNotFiniteIsNeverWrittenAndTheRestIsHeldWithinTheRegister) {
   start(device.tcp());
   rig.set("holding", 7.0, 0, 0);

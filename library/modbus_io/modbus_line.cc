@@ -43,13 +43,14 @@ void ModbusLine::plan(const ModbusPlan& plan) {
 }
 
 int ModbusLine::connect() noexcept {
+  give_up_second();
   modbus_close(context_);
   return modbus_connect(context_) == 0 ? 0 : errno;
 }
 
 int ModbusLine::exchange(const ModbusCommand& command, ModbusReading& reading) noexcept {
   const ModbusPlan& p = plan_;
-  const bool writes = command.is_given;
+  const bool writes = command.number != 0;
   errno = 0;
   if (writes && p.holdings > 0 &&
       modbus_write_registers(context_, p.first_holding, p.holdings, command.holdings.data()) != p.holdings)
@@ -62,10 +63,29 @@ int ModbusLine::exchange(const ModbusCommand& command, ModbusReading& reading) n
   if (p.contacts > 0 &&
       modbus_read_input_bits(context_, p.first_contact, p.contacts, reading.contacts.data()) != p.contacts)
     return errno;
+  reading.command = command.number;
   return 0;
 }
 
+int ModbusLine::open_second() noexcept {
+  if (!is_tcp()) return modbus_get_socket(context_);
+  give_up_second();
+  second_ = made_of(plan_);
+  if (second_ == nullptr) return -1;
+  modbus_set_response_timeout(second_, 0, kAnswerMicroseconds);
+  if (modbus_connect(second_) == 0) return modbus_get_socket(second_);
+  give_up_second();
+  return -1;
+}
+
+void ModbusLine::give_up_second() noexcept {
+  if (second_ == nullptr) return;
+  modbus_close(second_);
+  modbus_free(std::exchange(second_, nullptr));
+}
+
 void ModbusLine::close() noexcept {
+  give_up_second();
   if (context_ == nullptr) return;
   modbus_close(context_);
   modbus_free(std::exchange(context_, nullptr));

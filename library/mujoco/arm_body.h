@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +19,8 @@ template <class Arm>
 struct ArmBody {
   Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
   Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
+  Out<bool> held{"held", initial = false, safe_state,
+                 doc = "The arm stands and holds itself, because the flag is up or it is off."};
 
   // A simulated arm that takes the place of another goes on where that one is, whatever its own start_pose says: at the
   // speed that is handed over, else at rest, for an arm that goes off brakes. One that stands where its out-vars say is
@@ -28,12 +31,12 @@ struct ArmBody {
         if (!qd.is_handed_over()) speed = 0;
       if (!arm_.resume({q.begin(), q.size()}, {qd.begin(), qd.size()})) return fault(arm_.fault());
     }
-    publish();
+    publish(false);
     return ok();
   }
   void off() {
     arm_.brake();
-    publish();
+    publish(true);
   }
   // The arm refused a step and stands as before it: with the brakes on it is in a sound state again.
   bool error() {
@@ -47,19 +50,22 @@ struct ArmBody {
   static void check(const Result<void>& result) {
     if (!result) throw std::runtime_error(std::string(result.error().message.view()));
   }
-  /// For cycle: what becomes of a step that has `moved` the arm, or has not.
-  Outcome after(bool moved) {
+  /// For cycle: what becomes of a step that has `moved` the arm, or has not, with a command or by itself.
+  Outcome after(bool moved, bool holds_itself) {
     if (!moved) return fault(arm_.fault());
-    publish();
+    publish(holds_itself);
     return ok();
   }
 
   Arm arm_;
 
  private:
-  void publish() {
+  static constexpr double kStanding = 0.01;  // rad/s: slower than that a joint stands
+
+  void publish(bool holds_itself) {
     std::ranges::copy(arm_.position(), q.begin());
     std::ranges::copy(arm_.velocity(), qd.begin());
+    *held = holds_itself && std::ranges::all_of(qd, [](double speed) { return std::abs(speed) < kStanding; });
   }
 };
 

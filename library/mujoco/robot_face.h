@@ -50,7 +50,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
   Outcome move(ArmInterface interface, const In<double[]>& command, Cycle c) {
     const bool moved = c.illegal() ? arm_.step_locally_stable(c.dt())
                                    : arm_.step(interface, {command.begin(), command.size()}, c.dt());
-    return after(moved);
+    return after(moved, c.illegal());
   }
 
  private:

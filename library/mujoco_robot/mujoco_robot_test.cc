@@ -85,6 +85,11 @@ TEST_F(RobotTest, IgnoresItsCommandWhileTheConfigurationIsIllegal) {
   rig.set("q_ref", std::nan(""), 0);
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(rig.cycle());
   EXPECT_NEAR(rig.get<double>("q", 0), 0, 2e-2);
+  EXPECT_TRUE(rig.get<bool>("held"));
+  rig.illegal(false);
+  rig.set("q_ref", 0.0, 0);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("held"));
 }
 
 TEST_F(RobotTest, ACommandThatIsNotANumberIsAFaultAndBrakes) {

@@ -34,7 +34,7 @@ struct Puma : library::PumaBody {
   Outcome cycle(Cycle c) {
     const bool moved = c.illegal() ? arm_.step_locally_stable(c.dt())
                                    : arm_.step(library::ArmInterface::kPosition, Joints(q_ref.begin(), 6), c.dt());
-    return after(moved);
+    return after(moved, c.illegal());
   }
 
  private:

@@ -37,7 +37,7 @@ struct PumaTorque : library::PumaBody {
   }
   Outcome cycle(Cycle c) {
     const PumaInput torque(tau.begin(), library::kPumaJoints);
-    return after(c.illegal() ? arm_.step_locally_stable(c.dt()) : arm_.step(torque, c.dt()));
+    return after(c.illegal() ? arm_.step_locally_stable(c.dt()) : arm_.step(torque, c.dt()), c.illegal());
   }
 
  private:

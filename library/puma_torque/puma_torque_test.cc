@@ -107,8 +107,12 @@ TEST_F(PumaTorqueTest, FallsWithoutTorqueAndHoldsWhenTheConfigurationIsIllegal) 
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle());
   EXPECT_LT(rig.get<double>("q", 1), -0.03);
   EXPECT_LT(rig.get<double>("qd", 1), -0.5);
+  EXPECT_FALSE(rig.get<bool>("held"));
   rig.illegal(true);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("held")) << "it has not come to rest";
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(rig.get<bool>("held"));
   const double held = rig.get<double>("q", 1);
   rig.set("tau", std::nan(""), 1);
   for (int i = 0; i < 500; ++i) ASSERT_TRUE(rig.cycle());

@@ -14,21 +14,24 @@ struct SerialFrame : FrameDevice {
   Out<std::int64_t> noise{"noise", "1", initial = 0, doc = "Bytes that belonged to no frame."};
   Resource device{"device", doc = "Serial device, such as /dev/ttyUSB0."};
 
-  void init() {
+  void init(Cycle c) {
     prepare(device.text(), 0);
-    port_.open(device.c_str(), *baud);
+    open(c);
   }
   void on(Cycle c) {
     begin(c);
     port_.flush();
     reader_.reset(payload());
     sent_ = filled_ = 0;
+    is_idle_frame_ = false;
+    put_safe_frame(c);
   }
   Outcome cycle(Cycle c) {
     if (lost() != nullptr) return fault(lost(), port_.error());
     const bool is_open = receive(c.now());
     const bool is_idle = is_lost(c, is_open) || c.illegal();
     if (is_open && !send(is_idle)) is_lost(c, false);
+    tell_idled(c, is_open && is_idle_frame_ && sent_ == filled_);
     return ok();
   }
   // What is left of a cut frame goes first: the device must understand the idle one.
@@ -39,13 +42,27 @@ struct SerialFrame : FrameDevice {
     if (lost() == nullptr) port_.write(std::span(out_).first(filled_));
     *connected = false;
   }
-  bool clear() {
-    port_.open(device.c_str(), *baud);
+  bool clear(Cycle c) {
+    open(c);
     return true;
   }
-  void kill() { port_.close(); }
+  void kill(Cycle c) {
+    c.safe_frame(0, -1);
+    port_.close();
+  }
 
  private:
+  void open(Cycle c) {
+    c.safe_frame(0, -1);
+    port_.open(device.c_str(), *baud);
+    c.safe_frame(0, port_.descriptor());
+  }
+  // A frame that the end of this process cuts is filled up by what begins none: the device understands the idle one.
+  void put_safe_frame(Cycle c) {
+    std::uint8_t bytes[2 * kLongestFrame] = {};
+    std::uint8_t* const frame = bytes + kLongestFrame;
+    c.safe_bytes(0, bytes, kLongestFrame + close_frame(frame, put_command(frame, true)));
+  }
   bool receive(Nanoseconds now) {
     const int got = port_.read(reader_.room());
     if (got < 0) return false;
@@ -64,6 +81,7 @@ struct SerialFrame : FrameDevice {
       if (payload == 0) return true;
       sent_ = 0;
       filled_ = close_frame(out_.data(), payload);
+      is_idle_frame_ = is_idle;
     }
     const int put = port_.write(std::span(out_).subspan(sent_, filled_ - sent_));
     if (put > 0) sent_ += static_cast<std::size_t>(put);
@@ -74,6 +92,7 @@ struct SerialFrame : FrameDevice {
   FrameReader reader_;
   std::array<std::uint8_t, 2 * kLongestFrame> out_{};
   std::size_t sent_ = 0, filled_ = 0;
+  bool is_idle_frame_ = false;  // what lies in out_
 };
 
 CHIMERA_COMPONENT(SerialFrame, "serial_frame", "Exchanges framed values with a device on a serial line.", rate = 100.0);

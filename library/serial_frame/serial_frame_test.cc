@@ -157,14 +157,42 @@ TEST_F(SerialFrameTest, IdleIsSentAtOffAndWhileTheFlagIsUp) {
   rig.set("idle", 0.25);
   start(1, 1);
   rig.set("command", 5.0);
+  EXPECT_FALSE(rig.get<bool>("idled"));
   rig.illegal(true);
   ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(rig.get<bool>("idled"));
   EXPECT_EQ(heard(8), frame({0.25}));
   rig.illegal(false);
   ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("idled"));
   EXPECT_EQ(heard(8), frame({5}));
   ASSERT_TRUE(rig.off());
   EXPECT_EQ(heard(8), frame({0.25}));
+}
+
+TEST_F(SerialFrameTest, TheSafeFrameIsIdleBehindWhatEndsACutFrame) {
+  rig.set("idle", 0.25);
+  start(1, 1);
+  const auto& safe = rig.safe_frame(0);
+  EXPECT_GE(safe.descriptor, 0);
+  const Bytes bytes(safe.bytes, safe.bytes + safe.size);
+  ASSERT_EQ(bytes.size(), kLongestFrame + 8);
+  FrameReader reader;
+  reader.reset(4);
+  const Bytes cut = frame({7});
+  std::size_t size = 3;  // of the frame that was being sent
+  std::memcpy(reader.room().data(), cut.data(), size);
+  std::memcpy(reader.room().data() + size, bytes.data(), bytes.size());
+  reader.taken(size + bytes.size());
+  std::vector<double> heard_values;
+  reader.frames([&](std::span<const std::uint8_t> payload) {
+    heard_values.push_back(get_value(payload.data(), Form::kFloat32, 1));
+  });
+  EXPECT_EQ(heard_values, std::vector<double>{0.25});
+  ASSERT_TRUE(rig.off());
+  EXPECT_EQ(rig.safe_frame(0).size, 0u);
+  ASSERT_TRUE(rig.kill());
+  EXPECT_LT(rig.safe_frame(0).descriptor, 0);
 }
 
 TEST_F(SerialFrameTest, ALineThatIsFullWaitsForNobodyAndLosesNoFrameInTheMiddle) {
@@ -172,6 +200,10 @@ TEST_F(SerialFrameTest, ALineThatIsFullWaitsForNobodyAndLosesNoFrameInTheMiddle)
   start(1, 16);
   for (int i = 0; i < 3000; ++i) ASSERT_TRUE(rig.cycle());  // nobody reads
   EXPECT_GT(count("unsent"), 100);
+  rig.illegal(true);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("idled")) << "the idle frame has found no room";
+  rig.illegal(false);
   FrameReader reader;
   reader.reset(64);
   int whole = 0;

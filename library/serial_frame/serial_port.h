@@ -61,6 +61,8 @@ class SerialPort {
     const ssize_t put = ::write(file_, from.data(), from.size());
     return put > 0 ? static_cast<int>(put) : waits(put) ? 0 : -1;
   }
+  /// Below 0: it is not open. Context: any; wait-free.
+  int descriptor() const noexcept { return file_; }
   /// Error number of what failed last; 0: it hung up.
   int error() const noexcept { return error_; }
 

@@ -31,7 +31,7 @@ struct TrackBall {
                              doc = "Counts of the device at full deflection."};
   InConst<double> hold{"hold", "s", initial = 0.2, range(0.001, 10),
                        doc = "An axis or key that is silent for so long has been let go."};
-  Resource device{"device", doc = "Input device, FIFO of its events, terminal (its keys), or recording."};
+  Resource device{"device", safe_state, doc = "Input device, FIFO of its events, terminal (its keys), or recording."};
 
   void init() {
     source_.open(device.c_str());

@@ -10,6 +10,9 @@ using namespace chimera::library;
 namespace {
 
 constexpr int kMostDatagrams = 8;  // a cycle
+// How far ahead the number of the safe frame is of the last one that was sent, and when it moves on: a device that
+// drops what is old takes it, whatever was on the way.
+constexpr std::uint32_t kAhead = 1u << 30, kAnewAfter = 1u << 20;
 
 struct UdpFrame : FrameDevice {
   InConst<std::int32_t> local_port{"local_port", "1", initial = 0, range(0, 65535),
@@ -20,15 +23,16 @@ struct UdpFrame : FrameDevice {
                         doc = "Datagrams with a number that was there or passed over already."};
   Resource device{"device", doc = "Address and port of the device in numbers, such as 192.168.0.7:5000."};
 
-  void init() {
+  void init(Cycle c) {
     prepare(device.text(), 4);
-    socket_.open(std::string(device.text()), *local_port);
+    open(c);
   }
   void on(Cycle c) {
     begin(c);
     std::uint8_t forgotten[1];
     for (int i = 0; i < 1000 && socket_.receive(forgotten) > 0;) ++i;
     has_number_ = false;
+    put_safe_frame(c);
   }
   Outcome cycle(Cycle c) {
     if (lost() != nullptr) return fault(lost(), socket_.error());
@@ -38,20 +42,36 @@ struct UdpFrame : FrameDevice {
       if (size == 0) break;
       take(bytes, size, c.now());
     }
-    send(is_lost(c, true) || c.illegal());
+    const bool has_sent = send(is_lost(c, true) || c.illegal());
+    tell_idled(c, has_sent);
+    if (sent_ % kAnewAfter == 0) put_safe_frame(c);
     return ok();
   }
   void off() {
     send(true);
     *connected = false;
   }
-  bool clear() {
-    socket_.open(std::string(device.text()), *local_port);
+  bool clear(Cycle c) {
+    open(c);
     return true;
   }
-  void kill() { socket_.close(); }
+  void kill(Cycle c) {
+    c.safe_frame(0, -1);
+    socket_.close();
+  }
 
  private:
+  void open(Cycle c) {
+    c.safe_frame(0, -1);
+    socket_.open(std::string(device.text()), *local_port);
+    c.safe_frame(0, socket_.descriptor());
+  }
+  void put_safe_frame(Cycle c) {
+    std::uint8_t bytes[kLongestFrame];
+    const std::size_t size = put_command(bytes, true);
+    put_bytes(bytes + 2, sent_ + kAhead, 4);
+    c.safe_bytes(0, bytes, close_frame(bytes, size));
+  }
   void take(const std::uint8_t* bytes, std::size_t size, Nanoseconds now) {
     if (size != payload() + kFrameOverhead || !is_frame({bytes, size}, payload())) {
       *wrong += 1;
@@ -68,12 +88,14 @@ struct UdpFrame : FrameDevice {
     number_ = number;
     take_state({bytes + 2, payload()}, now);
   }
-  void send(bool is_idle) {
+  bool send(bool is_idle) {
     std::uint8_t bytes[kLongestFrame];
     const std::size_t size = put_command(bytes, is_idle);
-    if (size == 0) return;
+    if (size == 0) return false;
     put_bytes(bytes + 2, ++sent_, 4);
-    if (!socket_.send({bytes, close_frame(bytes, size)})) *unsent += 1;
+    if (socket_.send({bytes, close_frame(bytes, size)})) return true;
+    *unsent += 1;
+    return false;
   }
 
   UdpSocket socket_;

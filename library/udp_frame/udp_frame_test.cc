@@ -80,6 +80,38 @@ TEST_F(UdpFrameTest, ACommandGoesOutAndAStateComesIn) {
   EXPECT_TRUE(rig.get<bool>("connected"));
 }
 
+TEST_F(UdpFrameTest, SaysThatIdleHasGoneOutSinceTheFlagIsUp) {
+  start();
+  rig.set("command", 2.5);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("idled"));
+  rig.illegal(true);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(rig.get<bool>("idled"));
+  rig.illegal(false);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("idled"));
+}
+
+TEST_F(UdpFrameTest, TheSafeFrameHasANumberThatADeviceStillTakes) {
+  start();
+  rig.set("command", 2.5);
+  const auto& safe = rig.safe_frame(0);
+  EXPECT_GE(safe.descriptor, 0);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(rig.cycle());
+  const Bytes bytes(safe.bytes, safe.bytes + safe.size);
+  const std::uint32_t number = get_bytes(bytes.data() + 2, 4);
+  EXPECT_EQ(bytes, datagram(number, 0));
+  EXPECT_EQ(number, 1u << 30);
+  say(datagram(3, 1));
+  say(bytes);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(count("old"), 0);
+  EXPECT_EQ(count("received"), 2) << "this side stands for the device: it drops what is old";
+  ASSERT_TRUE(rig.off());
+  EXPECT_EQ(rig.safe_frame(0).size, 0u);
+}
+
 TEST_F(UdpFrameTest, LostOldAndWrongDatagramsAreCounted) {
   start();
   for (const std::uint32_t number : {0xFFFFFFFEu, 0xFFFFFFFFu, 2u, 1u, 2u, 3u})

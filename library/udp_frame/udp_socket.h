@@ -55,6 +55,8 @@ class UdpSocket {
     error_ = put < 0 ? errno : error_;
     return put == static_cast<ssize_t>(from.size());
   }
+  /// Below 0: it is not open. Context: any; wait-free.
+  int descriptor() const noexcept { return file_; }
   /// Error number of what failed last (111: nobody has that port there); 0: nothing did.
   int error() const noexcept { return error_; }
 

@@ -25,7 +25,7 @@ def faults(receipts):
     found = []
     for number, receipt in enumerate(receipts, 1):
         away = number % 2 == 1
-        wanted = {"number": number, "end": "done", "asked_by": "task singularity",
+        wanted = {"number": number, "end": "done", "asked_by": {"task": "singularity"},
                   "from": "figure_8" if away else "figure_9", "to": "figure_9" if away else "figure_8"}
         found += [f"{number}: {key} is {receipt[key]}" for key, value in wanted.items() if receipt[key] != value]
         found += [f"{number}: {task['task']} lost {task['lost']}" for task in receipt["tasks"] if task["lost"]]

@@ -216,7 +216,8 @@ Counted count_by_threads() {
     const std::size_t allocations = n_allocations - before;
     const auto receipts = executor.releases().switching().receipts().all();
     EXPECT_EQ(receipts.size(), 2u);
-    for (const SwitchReceipt& receipt : receipts) EXPECT_NE(receipt.end, SwitchEnd::kRefused);
+    for (const SwitchReceipt& receipt : receipts)
+      EXPECT_NE(receipt.end, SwitchEnd::kRefused) << static_cast<int>(receipt.why) << ", task " << receipt.task.index;
     return allocations;
   });
 }

@@ -89,6 +89,7 @@ inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseco
   app.add("one", testing::component<One>("one"), period);
   app.add("observer", testing::component<Observer>("observer"), period);
   app.add("two", testing::component<Two>("two"), period);
+  for (TaskSpec& task : app.tasks) task.rtpu = RtpuId{0u};
   app.make(kSets[0], false);
   app.spec.sets = kNamedSets;
   ContextPlace context;

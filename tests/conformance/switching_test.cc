@@ -381,11 +381,30 @@ TEST_P(Switches, ARaisedFlagUndoesWhatIsNotCommitted) {
   EXPECT_EQ(receipts[0].why, NoSwitch::kFlagRaised);
 }
 
+// What would break a promise is refused before anything is done.
+TEST_P(Switches, OverWhichATaskMightMissItsDeadlineIsRefused) {
+  build();
+  acts_ = {to(kObserved, milliseconds(5)), to(kDirect, milliseconds(8))};
+  app_->tasks[kObserver.index].budget = milliseconds(2);
+  runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+  EXPECT_TRUE(runner_->start());
+  EXPECT_EQ(runner_->run(milliseconds(20)), RunEnd::kTime);
+  const SwitchReceipt& receipt = runner_->receipts()[0];
+  EXPECT_EQ(receipt.end, SwitchEnd::kRefused);
+  EXPECT_EQ(receipt.why, NoSwitch::kNotSchedulable);
+  EXPECT_TRUE(receipt.task.is_valid());
+  EXPECT_EQ(receipt.before, kDirect);
+  EXPECT_EQ(runner_->receipts()[1].end, SwitchEnd::kNothingToDo);
+  EXPECT_EQ(std::ranges::count(scene.story, "on observer"), 0);
+  EXPECT_EQ(losses(), 0u);
+}
+
 // Without a gap before each release that `on` would fit in, the switch is given up and nothing was touched.
 TEST_P(Switches, WithoutAGapItIsGivenUpAfterTenSeconds) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
   app_->tasks[kObserver.index].budget = milliseconds(2);
+  for (TaskSpec& task : app_->tasks) task.on_miss = OnMiss::kAbort;  // or it is refused: 2 ms of each ms
   runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
   EXPECT_TRUE(runner_->start());
   EXPECT_EQ(runner_->run(seconds(11)), RunEnd::kTime);

@@ -10,7 +10,8 @@ fail() { echo "installed: $*"; exit 1; }
 
 cmake --install "$tree" --prefix "$place/prefix" > "$place/log" 2>&1 || { cat "$place/log"; fail "cmake --install"; }
 cd "$place/prefix"
-for file in bin/chimera bin/chimera-rtpu bin/chimera-manager bin/chimera-describe lib/chimera/components/gain.so \
+for file in bin/chimera bin/chimera-rtpu bin/chimera-guard \
+  bin/chimera-manager bin/chimera-describe lib/chimera/components/gain.so \
   lib/chimera/components/gain.component.json lib/chimera/components/puma560.xml lib/chimera/components/gain.md \
   lib/chimera/components/pid_joint.test.yaml share/chimera/units.xml \
   share/chimera/schema/description.schema.json share/chimera/schema/descriptor.schema.json \

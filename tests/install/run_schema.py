@@ -13,7 +13,7 @@ import sys
 import jsonschema
 
 
-KINDS = ("run", "check", "list", "test", "cases", "sweep", "schedule", "error")
+KINDS = ("run", "check", "list", "test", "cases", "sweep", "schedule", "modes", "error")
 
 
 def definition(schema, name):
@@ -35,6 +35,9 @@ def outputs(source):
     yield "cases", 0, ["test", source / "examples/02_cruise_control"]
     yield "sweep", 0, ["sweep", source / "examples/02_cruise_control/cruise_control.yaml", "--over",
                        "car.start_speed = 80, 90 km/h", "--for", "20 ms", "--measure", "vz", "--expect", "vz >= 0 m/s"]
+    yield "modes", 0, ["check", source / "examples/17_switch/switch.yaml", "--modes"]
+    yield "modes", 0, ["check", examples[0], "--modes"]
+    yield "check", 1, ["check", faulty[0], "--modes"]
     yield "schedule", 0, ["schedule", examples[0]]
     yield "schedule", 1, ["schedule", source / "examples/06_schedules/edf.yaml"]
     yield "schedule", 1, ["schedule", source / "examples/06_schedules/muf.yaml"]

@@ -21,6 +21,7 @@ CAMPAIGNS = {
     "logging": ((("logging_test.py", 5),), None),
     "preemptive": ((("preemptive_test.py", 5),), "bad jobs"),
     "switch": ((("switch_test.py", 10),), None),
+    "receipts": ((("receipts_test.py", 30),), "receipts"),
     "numbers": ((("numbers_test.py", 50),), "restarts"),
 }
 

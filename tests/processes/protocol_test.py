@@ -43,6 +43,7 @@ tasks:
 operator: {level: 1}
 configurations:
   all: [steady, adder, victim]
+  less: [steady, adder]
 start: all
 """
 
@@ -129,13 +130,15 @@ class Judged(Client):
 
 
 GOOD = {"hello": {}, "status": {}, "describe": {}, "get": {"variables": ["count"]}, "profile": {},
-        "events": {"since": 0, "limit": 10}, "why": {"variable": "count"},
+        "events": {"since": 0, "limit": 10}, "receipts": {"last": 20}, "why": {"variable": "count"},
+        "plan": {"configuration": "all"},
         "subscribe": {"to": "values", "period_ms": 20, "variables": ["count"], "since": 0},
         "unsubscribe": {"subscription": 1}, "check": {"text": "subsystem: a", "file": "a.yaml"},
         "schedule": {"text": "subsystem: a", "file": "a.yaml"}, "library": {},
         "signal": {"signal": "on", "tasks": ["steady"]}, "ring": {"tasks": ["steady"]},
         "set": {"values": {"level": 2}}, "flag": {"up": False},
-        "switch": {"configuration": "all", "wait_ms": 1000}, "save": {}, "end": {"code": 0}}
+        "switch": {"configuration": "all", "wait_ms": 1000}, "cancel": {}, "drill": {"wait_ms": 100}, "save": {},
+        "end": {"code": 0}}
 VALUES = [None, True, "", "nothing", [], ["count", 1], {}, -1, 0, 1, 1.5, 19, 20, 255, 256, 1000, 1001, 60000, 60001,
           2 ** 63 - 1]
 
@@ -176,11 +179,12 @@ class Protocol(unittest.TestCase):
         self.assertEqual(self.client.faults, [])
 
     def read_all(self):
-        for method in ("hello", "status", "describe", "profile", "events", "library", "get", "save"):
+        for method in ("hello", "status", "describe", "profile", "events", "library", "get", "save", "receipts"):
             self.assertIsNotNone(self.client.exchange(method), method)
         for variable in ("count", "level", "x", "y_victim"):
             self.assertIsNotNone(self.client.exchange("why", variable=variable))
         self.assertTrue(self.client.exchange("get")["values"]["count"]["valid"])
+        self.assertIsNotNone(self.client.exchange("plan", configuration="all"))
         for text in (APPLICATION, "subsystem: [", ""):
             self.assertIsNotNone(self.client.exchange("check", text=text, file="a.yaml"))
             self.assertIsNotNone(self.client.exchange("schedule", text=text, file="a.yaml"))
@@ -211,6 +215,12 @@ class Protocol(unittest.TestCase):
         self.assertEqual(self.client.exchange("set", values={"level": 4})["values"]["level"]["value"], 4)
         for wrong in ({"level": "3 m"}, {"level": [1, 2]}, {"count": 1}, {"lvel": 1}):
             self.assertIsNone(self.client.exchange("set", values=wrong))
+        self.assertEqual(self.client.exchange("switch", configuration="less")["end"], "done")
+        self.assertEqual(self.client.exchange("plan", configuration="all")["end"], "possible")
+        self.assertIsNone(self.client.exchange("plan", configuration="al"))
+        self.assertIsNone(self.client.exchange("cancel"))
+        self.assertEqual(len(self.client.exchange("receipts")["receipts"]), 1)
+        self.assertEqual(self.client.exchange("switch", configuration="all")["end"], "done")
         self.assertIsNotNone(self.client.exchange("flag", up=True))
         self.assertEqual(self.client.exchange("status")["flag"], {"up": True, "by": ["operator"]})
         self.assertIsNotNone(self.client.exchange("flag", up=False))

@@ -153,12 +153,14 @@ class System:
         self.place = pathlib.Path(tempfile.mkdtemp(prefix="chimera-processes-"))
         self.runtime = self.place / "runtime"
         self.runtime.mkdir(mode=0o700)
+        self.state_home = self.place / "state"  # of what outlives it: receipts
         self.record = self.place / "record"
         self.armed = self.place / "armed"
         self.file = self.place / f"{name}.yaml"
         self.file.write_text(text.replace("ARMED", str(self.armed)))
         self.marker = f"CHIMERA_TEST_MARK={self.place}"
-        self.environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), CHIMERA_TEST_MARK=str(self.place),
+        self.environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), XDG_STATE_HOME=str(self.state_home),
+                                CHIMERA_TEST_MARK=str(self.place),
                                 CHIMERA_TEST_RECORD=str(self.record), **{"ASAN_OPTIONS": QUIET, **(environment or {})})
         self.output = open(self.place / "output", "w+b")
         streams = {"stdout": self.output, "stderr": self.output, **(popen or {})}

@@ -18,6 +18,7 @@ inline constexpr Tick kFar = INT64_MAX / 4;
 /// What the world does to one set.
 struct Scenario {
   std::vector<Tick> first;     ///< first release of each task; server: its first event
+  std::vector<Tick> until;     ///< of each task: no release, or event, from here on; empty: all go on
   std::vector<Tick> boundary;  ///< deferrable server: its periods begin here, plus or minus whole periods
   bool gaps = false;           ///< releases come later than a period apart, now and then
   bool shorter = false;        ///< jobs use less than their time, now and then
@@ -72,6 +73,7 @@ class Processor {
   };
 
   std::uint32_t dice(std::uint32_t sides) { return static_cast<std::uint32_t>(random_() % sides); }
+  Tick until(std::size_t task) const { return scenario_.until.empty() ? kFar : scenario_.until[task]; }
   bool is_executive(std::size_t task) const { return uses_[works_[task].rtpu].dispatch == Dispatch::kExecutive; }
   bool is_under_way(std::size_t i) const { return is_executive(i) && running_[works_[i].rtpu] == i; }
 
@@ -89,7 +91,7 @@ class Processor {
   void arrive(std::size_t i) {
     if (works_[i].server) return serve(i);
     Task& t = tasks_[i];
-    if (now_ != t.next) return;
+    if (now_ != t.next || now_ >= until(i)) return;
     const Tick period = works_[i].period.count;
     t.next += period + (scenario_.gaps && dice(3) == 0 ? dice(static_cast<std::uint32_t>(period)) : 0);
     if (works_[i].time.count == 0) return;
@@ -106,7 +108,7 @@ class Processor {
   void draw_events(std::size_t i) {
     Task& t = tasks_[i];
     const bool was = t.is_busy && now_ > scenario_.first[i];
-    if (now_ < scenario_.first[i]) t.is_busy = false;
+    if (now_ < scenario_.first[i] || now_ >= until(i)) t.is_busy = false;
     else if (!scenario_.scarce) t.is_busy = true;
     else if (now_ == scenario_.first[i] || dice(5) == 0) t.is_busy = dice(2) == 0;
     if (t.is_busy && !was) t.busy_since = now_;

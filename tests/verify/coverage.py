@@ -28,7 +28,8 @@ def uncovered(reports, rules, keys):
 def key_patterns(text):
     patterns = []
     for array_name, place in (("kFileKeys", r"(?!\w)"), ("kRtpuKeys", " of rtpu"), ("kTaskKeys", " of task"),
-                              ("kTolerateKeys", " in 'tolerate'"), ("kServerKeys", " in 'server'")):
+                              ("kTolerateKeys", " in 'tolerate'"), ("kServerKeys", " in 'server'"),
+                              ("kSetKeys", " of configuration")):
         for key in array(text, array_name):
             # `operator`, `tasks` and the like may be spoken of without quotes ("the version of the format").
             quote = "'?" if array_name == "kFileKeys" else "'"

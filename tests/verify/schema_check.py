@@ -33,7 +33,8 @@ def keys_of(schema):
     task = schema["definitions"]["task"]["properties"]
     rtpu = schema["properties"]["rtpus"]["additionalProperties"]["properties"]
     return {"kFileKeys": schema["properties"], "kRtpuKeys": rtpu, "kTaskKeys": task,
-            "kTolerateKeys": task["tolerate"]["properties"], "kServerKeys": task["server"]["properties"]}
+            "kTolerateKeys": task["tolerate"]["properties"], "kServerKeys": task["server"]["properties"],
+            "kSetKeys": schema["properties"]["configurations"]["additionalProperties"]["oneOf"][1]["properties"]}
 
 
 def main():

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and verifies a description and prints its verdict, its order of tasks, or its picture.
+// Reads and verifies a description and prints its verdict, its order of tasks, its picture, or its switches.
 #include "chimera/cli/files/check.h"
 
 #include <cstdio>
 
+#include "chimera/analysis/mode_report.h"
 #include "chimera/cli/files/graph_of.h"
+#include "chimera/cli/files/modes_text.h"
 #include "chimera/draw/graph.h"
 
 namespace chimera::cli {
@@ -18,6 +20,20 @@ std::string order_text(const Configuration& configuration, const ConfiguredSet& 
   std::string text;
   for (TaskId id : set.order) text += (text.empty() ? "" : " -> ") + configuration.tasks()[id.index].name;
   return text;
+}
+
+CommandResult check_modes(const CheckOptions& options, const Verdict& verdict, const Library& library) {
+  const ModeReport report = mode_report(*verdict.configuration, library);
+  CommandResult output;
+  output.code = report.is_accepted() ? kOk : kRefused;
+  if (options.json) {
+    output.out = mode_json(*verdict.configuration, report) + "\n";
+    return output;
+  }
+  output.err = verdict.report.text();
+  for (const std::string& warning : report.warnings) output.err += options.file + ": warning: " + warning + "\n";
+  output.out = modes_text(*verdict.configuration, report);
+  return output;
 }
 
 }  // namespace
@@ -59,6 +75,8 @@ CommandResult check(const CheckOptions& options, const Workplace& workplace) {
     verdict.configuration = *std::move(set);
     verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
   }
+  if (options.modes && verdict.configuration && verdict.report.is_legal())
+    return check_modes(options, verdict, *library);
   CommandResult output;
   output.code = verdict.report.is_legal() ? kOk : kRefused;
   if (options.json) {

@@ -17,10 +17,12 @@ struct CheckOptions {
   std::string file;
   bool json = false;
   std::string graph;  ///< "", "dot", "svg" or "text"
+  bool modes = false;   ///< judge the switches between its configurations instead
   std::vector<Setting> settings = {};  ///< values in the place of those of the file
 };
 
-/// Reads and verifies; code kRefused when the description has a fault. Context: setup; may block.
+/// Reads and verifies; code kRefused when the description has a fault, or a reaction asks for a switch that would be
+/// refused. Context: setup; may block.
 CommandResult check(const CheckOptions& options, const Workplace& workplace);
 
 /// The lines that a legal description earns: tasks, order, load.

@@ -60,6 +60,99 @@ TEST(Check, DrawsInsteadOfJudging) {
   EXPECT_NE(checked(kCounterText, false, "text").out.find("counter"), std::string::npos);
 }
 
+// heavy and late meet in the transition; light replaces heavy like for like.
+constexpr const char* kModes = R"(subsystem: modes
+rtpus: {main: {cpu: 1}}
+tasks:
+  a: {component: t_counter, rate: 100 Hz, budget: 8 ms, on_miss: {switch: light}}
+  b: {component: t_counter, rate: 100 Hz, budget: 8 ms, offset: 9 ms}
+  c: {component: t_counter, rate: 100 Hz, budget: 1 ms}
+configurations: {heavy: [a], late: [b], light: [c]}
+start: heavy
+)";
+
+CommandResult modes_of(std::string text, const std::string& instead = "", const std::string& of = "",
+                       bool json = false) {
+  if (const std::size_t at = of.empty() ? std::string::npos : text.find(of); at != std::string::npos)
+    text.replace(at, of.size(), instead);
+  const TestFile file(text);
+  CommandResult output = check({.file = file.path(), .json = json, .graph = "", .modes = true}, test_place());
+  for (std::size_t at; (at = output.err.find(file.path())) != std::string::npos;)
+    output.err.replace(at, file.path().size(), "FILE");
+  return output;
+}
+
+TEST(CheckModes, JudgesEachSwitchAndSaysWhoAsks) {
+  const CommandResult output = modes_of(kModes);
+  EXPECT_EQ(output.code, kOk);
+  EXPECT_EQ(output.err, "");
+  EXPECT_EQ(output.out,
+            "heavy -> late: refused; asked for by an operator\n"
+            "  CPU 1: not schedulable: a cycle of task 'a' may take 40 ms, its deadline is 10 ms\n"
+            "heavy -> light: fast; asked for by on_miss of a, an operator\n"
+            "  CPU 1: schedulable; what was released before has ended 8 ms after the change\n"
+            "late -> heavy: refused; asked for by an operator\n"
+            "  CPU 1: not schedulable: a cycle of task 'a' may take 40 ms, its deadline is 10 ms\n"
+            "late -> light: fast; asked for by an operator\n"
+            "  CPU 1: schedulable; what was released before has ended 9 ms after the change\n"
+            "light -> heavy: fast; asked for by an operator\n"
+            "  CPU 1: schedulable; what was released before has ended 8 ms after the change\n"
+            "light -> late: fast; asked for by an operator\n"
+            "  CPU 1: schedulable; what was released before has ended 9 ms after the change\n"
+            "unreachable except by an operator: late\n");
+}
+
+TEST(CheckModes, AReactionWhoseSwitchWouldBeRefusedIsAFault) {
+  const CommandResult output = modes_of(kModes, "{switch: late}", "{switch: light}");
+  EXPECT_EQ(output.code, kRefused);
+  EXPECT_EQ(output.out.rfind("heavy -> late: refused; asked for by on_miss of a, an operator\n", 0), 0u) << output.out;
+  EXPECT_NE(output.out.find("unreachable except by an operator: light\n"), std::string::npos) << output.out;
+}
+
+TEST(CheckModes, WarnsOfATaskThatGoesOnWhereItsFailureLeads) {
+  const CommandResult output = modes_of(R"(subsystem: modes
+tasks:
+  a: {component: t_counter, rate: 100 Hz, budget: 1 ms, on_miss: {switch: both}, on_fault: {switch: both}}
+  b: {component: t_source, rate: 10 Hz, budget: 1 ms}
+configurations: {alone: [a], both: [a, b], other: [b]}
+start: alone
+)");
+  EXPECT_EQ(output.code, kOk);
+  EXPECT_EQ(output.err,
+            "FILE: warning: on_miss of a asks for configuration 'both', which contains the task itself: it goes on "
+            "there as it is\n"
+            "FILE: warning: on_fault of a asks for configuration 'both', which contains the task itself: in ERROR it "
+            "cannot be part of it, so the switch is refused\n");
+  EXPECT_EQ(output.out.rfind("alone -> both: fast; asked for by on_miss of a, on_fault of a, an operator\n", 0), 0u);
+}
+
+TEST(CheckModes, TellsWhatHasNoBudgetAndWhatHasNothingToSwitchTo) {
+  const CommandResult output = modes_of(kModes, "c: {component: t_counter, rate: 100 Hz}",
+                                        "c: {component: t_counter, rate: 100 Hz, budget: 1 ms}");
+  EXPECT_NE(output.out.find("heavy -> light: fast; asked for by on_miss of a, an operator\n"
+                            "  CPU 1: not judged whole: task 'c' has no budget"),
+            std::string::npos)
+      << output.out;
+  EXPECT_EQ(modes_of(kCounterText).out, "small has one configuration: there is nothing to switch to\n");
+  EXPECT_EQ(modes_of("subsystem: small\ntasks:\n  counter: {component: t_countr}\n").code, kRefused);
+}
+
+TEST(CheckModes, AsJsonHasEveryKey) {
+  const CommandResult output = modes_of(kModes, "", "", true);
+  EXPECT_EQ(output.err, "");
+  const std::string begin =
+      "{\"subsystem\":\"modes\",\"accepted\":true,\"configurations\":[{\"name\":\"heavy\",\"start\":true},"
+      "{\"name\":\"late\",\"start\":false},{\"name\":\"light\",\"start\":false}],\"transitions\":["
+      "{\"from\":\"heavy\",\"to\":\"late\",\"asked_by\":[],\"legal\":true,\"way\":\"refused\",\"cpus\":[{\"cpu\":1,"
+      "\"schedulable\":\"no\",\"task\":\"a\",\"takes_ns\":40000000,\"settled_ns\":40000000,\"promised_before\":true}]},"
+      "{\"from\":\"heavy\",\"to\":\"light\",\"asked_by\":[{\"cause\":\"on_miss\",\"task\":\"a\",\"constant\":null}],"
+      "\"legal\":true,\"way\":\"fast\",\"cpus\":[{\"cpu\":1,\"schedulable\":\"yes\",\"task\":null,\"takes_ns\":null,"
+      "\"settled_ns\":8000000,\"promised_before\":true}]},";
+  EXPECT_EQ(output.out.substr(0, begin.size()), begin);
+  const std::string end = "],\"by_operator_only\":[\"late\"],\"warnings\":[]}\n";
+  EXPECT_EQ(output.out.substr(output.out.size() - end.size()), end);
+}
+
 TEST(GraphOf, HasEveryTaskWithItsPortsAndRate) {
   const Library library = test_library();
   const Configuration configuration = test_configuration(

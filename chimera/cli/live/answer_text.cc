@@ -118,9 +118,57 @@ std::string switch_text(const Json& answer) {
     const Json& step = field(variable, "step");
     if (!step.is_number()) continue;
     const Json& limit = field(variable, "limit");
-    text += "  " + text_of(variable, "variable") + " moves by " + figure(step) +
-            (limit.is_number() ? ", limit " + figure(limit) : "") +
+    const std::string unit = text_of(variable, "unit") == "1" ? "" : " " + text_of(variable, "unit");
+    text += "  " + text_of(variable, "variable") + " moves by " + figure(step) + unit +
+            (limit.is_number() ? ", limit " + figure(limit) + unit : "") +
             (truth_of(variable, "beyond") ? ": beyond it\n" : "\n");
+  }
+  return text;
+}
+
+std::string drill_text(const Json& answer) {
+  const Json& tasks = field(answer, "tasks");
+  std::string text = tasks.empty() ? "no task that is ON has hardware that could move\n" : "";
+  for (const Json& task : tasks) {
+    const std::string verdict = text_of(task, "verdict");
+    text += text_of(task, "task") + ": ";
+    if (verdict == "safe") text += "safe " + figure(Json(number_of(task, "after_ns") / 1e6)) + " ms after the flag\n";
+    else if (verdict == "cannot-tell") text += "cannot tell: its component has no safe_state output\n";
+    else if (verdict == "left") text += "left service before it was safe\n";
+    else text += "not safe\n";
+  }
+  const Json& killed = field(answer, "killed");
+  if (killed.is_object()) {
+    const std::int64_t written = whole_of(killed, "written"), lost = whole_of(killed, "lost");
+    text += text_of(killed, "rtpu") + ": killed, ";
+    if (!truth_of(killed, "is_told")) text += "and the guard has not told what it wrote\n";
+    else if (written + lost == 0) text += "and it had no safe frame\n";
+    else text += std::to_string(written) + " of " + std::to_string(written + lost) + " safe frames written";
+    if (written > 0) text += " " + figure(Json(number_of(killed, "after_ns") / 1e6)) + " ms after the kill";
+    if (written + lost > 0) text += "\n";
+  }
+  return text + "flag up for " + figure(Json(number_of(answer, "flag_ns") / 1e6)) + " ms\n";
+}
+
+std::string plan_text(const Json& answer) {
+  const std::string to = "'" + text_of(answer, "to") + "'";
+  const std::string end = text_of(answer, "end"), from = text_of(answer, "from");
+  if (end == "nothing-to-do") return to + " is in force, nothing to do\n";
+  const std::string begin = "switch" + (from.empty() ? "" : " from '" + from + "'") + " to " + to;
+  if (end == "refused") {
+    const std::string remedy = text_of(answer, "remedy");
+    return begin + " would be refused: " + text_of(answer, "why") + (remedy.empty() ? "" : "; " + remedy) + "\n";
+  }
+  std::string text = begin + " would begin\n";
+  for (const char* move : {"arrives", "leaves", "stays"}) {
+    std::string names;
+    for (const std::string& task : texts_of(answer, move)) names += (names.empty() ? "" : ", ") + task;
+    if (!names.empty()) text += "  " + std::string(move) + ": " + names + "\n";
+  }
+  for (const Json& variable : field(answer, "variables")) {
+    const std::string producer = text_of(variable, "from");
+    text += "  " + text_of(variable, "variable") + ": from " + (producer.empty() ? "nobody" : producer) + " to " +
+            text_of(variable, "to") + "\n";
   }
   return text;
 }

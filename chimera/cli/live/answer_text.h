@@ -20,6 +20,10 @@ std::string save_text(const nlohmann::json& answer);
 /// `ring`: "lamp: rung" for each.
 std::string ring_text(const nlohmann::json& answer);
 std::string switch_text(const nlohmann::json& answer);
+/// `drill`: a line for each hardware task, one about the flag.
+std::string drill_text(const nlohmann::json& answer);
+/// What a switch would do, or why it would be refused.
+std::string plan_text(const nlohmann::json& answer);
 /// `flag`: "flag up" or "flag down".
 std::string flag_text(const nlohmann::json& answer);
 /// `why` on one screen of `height` lines: who produces the variable, when, from what; then its ancestors, those in

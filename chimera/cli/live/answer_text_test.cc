@@ -39,6 +39,27 @@ TEST(AnswerText, TheFlagSaysWhoKeepsItUp) {
   EXPECT_EQ(flag_text(Json::parse(R"({"up": false, "by": []})")), "flag down\n");
 }
 
+TEST(AnswerText, ADrillTellsOfEachTaskWhetherItIsSafe) {
+  EXPECT_EQ(drill_text(Json::parse(R"({"safe": false, "flag_ns": 31000000, "tasks": [
+              {"task": "arm", "verdict": "safe", "after_ns": 28400000},
+              {"task": "winch", "verdict": "cannot-tell", "after_ns": null},
+              {"task": "lift", "verdict": "waiting", "after_ns": null},
+              {"task": "door", "verdict": "left", "after_ns": null}]})")),
+            "arm: safe 28.4 ms after the flag\n"
+            "winch: cannot tell: its component has no safe_state output\n"
+            "lift: not safe\n"
+            "door: left service before it was safe\n"
+            "flag up for 31 ms\n");
+  EXPECT_EQ(drill_text(Json::parse(R"({"flag_ns": 1000000, "tasks": [{"task": "a", "verdict": "waiting"}],
+              "killed": {"rtpu": "servo", "is_told": true, "written": 1, "lost": 1, "after_ns": 400000}})")),
+            "a: not safe\nservo: killed, 1 of 2 safe frames written 0.4 ms after the kill\nflag up for 1 ms\n");
+  EXPECT_EQ(drill_text(Json::parse(R"({"flag_ns": 1000000, "tasks": [{"task": "a", "verdict": "waiting"}],
+              "killed": {"rtpu": "servo", "is_told": true, "written": 0, "lost": 0, "after_ns": null}})")),
+            "a: not safe\nservo: killed, and it had no safe frame\nflag up for 1 ms\n");
+  EXPECT_EQ(drill_text(Json::parse(R"({"safe": false, "flag_ns": 0, "tasks": []})")),
+            "no task that is ON has hardware that could move\nflag up for 0 ms\n");
+}
+
 TEST(AnswerText, SaveSpeaksTheWordsOfADescription) {
   EXPECT_EQ(save_text(Json::parse(R"({"operator": {"kp": "[100 N.m/rad, 90 N.m/rad]", "name": "\"x\""}})")),
             "operator:\n  kp: [100 N.m/rad, 90 N.m/rad]\n  name: \"x\"\n");

@@ -9,6 +9,7 @@
 #include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/live.h"
 #include "chimera/cli/live/one_shot.h"
+#include "chimera/cli/live/receipts_command.h"
 #include "chimera/cli/live/scope_command.h"
 #include "chimera/cli/live/status_text.h"
 #include "chimera/task/signal.h"
@@ -37,6 +38,28 @@ RunningCommand signal_row(Signal to_send, const char* help, const char* manual, 
 RunningCommand clear_row() {
   return signal_row(Signal::kClear, "Bring tasks from ERROR to OFF", "Brings each TASK from ERROR to OFF.",
                     "chimera clear pid");
+}
+
+RunningCommand drill_row() {
+  return {.words = {.name = "drill",
+                    .help = "Raise the flag, wait until each device is safe, lower it; exit code 1 unless all are",
+                    .options = {{.name = "--wait", .value = "TIME", .help = "how long to wait for them ('10 s')"},
+                                {.name = "--kill",
+                                 .value = "RTPU",
+                                 .help = "also kill this real-time unit and tell when its safe frames were written",
+                                 .manual = "Also kills this real-time unit when all are safe, and tells the time from "
+                                           "the kill to the last byte of its safe frames; the exit code is 1 unless "
+                                           "it had one and all were written. It is restarted as after any death."},
+                                {.name = "--yes", .help = "do not ask before"}},
+                    .example = "chimera drill --yes",
+                    .manual = "Raises the illegal-configuration flag while the machine runs, waits until each "
+                              "hardware task that is ON says by its `safe_state` output that its device is in the "
+                              "state that the flag asks for, lowers the flag, and prints the time from the flag to "
+                              "that. The exit code is 1 when one does not say so in time, or has no such output and "
+                              "cannot tell. Asks before unless `--yes` is given, because it stops the machine.",
+                    .is_act = true},
+          .method = "drill",
+          .once = drill};
 }
 
 RunningCommand end_row() {
@@ -154,6 +177,30 @@ RunningCommand profile_row() {
       .once = profile};
 }
 
+RunningCommand receipts_row() {
+  return {.words = {.name = "receipts",
+                    .help = "Print what became of the last switches of configurations",
+                    .operands = "[SUBSYSTEM]",
+                    .most = 1,
+                    .options = {{.name = "--last",
+                                 .value = "N",
+                                 .help = "how many (20)",
+                                 .kind = WordKind::kNumber,
+                                 .least = 1,
+                                 .most = 200}},
+                    .footer = "change: from the request to the instant of the change; lost: cycles; moves: how far "
+                              "each variable did\nthat got another producer",
+                    .example = "chimera receipts --last 5",
+                    .manual = "Prints what became of the last requests for a switch of configurations: who asked, from "
+                              "where to where, done or why not, how long until the change, how many cycles were "
+                              "lost, how far each variable moved that got another producer. When the subsystem does "
+                              "not run, from its file: `$XDG_STATE_HOME/chimera/SUBSYSTEM/receipts.jsonl`, else in "
+                              "`~/.local/state`."},
+          .method = "receipts",
+          .once = receipts,
+          .without = filed_receipts};
+}
+
 RunningCommand reinit_row() {
   return signal_row(Signal::kReinit, "Have tasks read their constants anew", "Has tasks read their constants anew.",
                     "chimera reinit pid");
@@ -267,13 +314,17 @@ RunningCommand status_row() {
 RunningCommand switch_row() {
   return {.words = {.name = "switch",
                     .help = "Change to a configuration while everything cycles: exactly its tasks are ON then",
-                    .operands = "CONFIGURATION",
-                    .least = 1,
+                    .operands = "[CONFIGURATION]",
                     .most = 1,
                     .operand_kind = WordKind::kTaskOrConfiguration,
                     .options = {{.name = "--wait",
                                  .value = "TIME",
-                                 .help = "how long to wait for slack and for inputs with a value ('10 s')"}},
+                                 .help = "how long to wait for slack and for inputs with a value ('10 s')"},
+                                {.name = "--dry-run", .help = "only say what it would do; changes nothing"},
+                                {.name = "--cancel",
+                                 .help = "take back the switch that is under way",
+                                 .manual = "Takes back the switch that is under way, whoever asked for it: it is "
+                                           "aborted unless it is committed. Prints its receipt."}},
                     .example = "chimera switch hand",
                     .manual = "Changes to a configuration while everything cycles: exactly its tasks are ON "
                               "afterwards. `on` of those that arrive runs beside their predecessors, all real-time "
@@ -335,9 +386,9 @@ RunningCommand why_row() {
 }
 
 std::vector<RunningCommand> table() {
-  std::vector<RunningCommand> rows = {clear_row(),  end_row(),  events_row(), flag_row(),    get_row(),
-                                      kill_row(),   off_row(),  on_row(),     profile_row(), reinit_row(),
-                                      ring_row(),   save_row(), scope_row(),  set_row(),     spawn_row(),
+  std::vector<RunningCommand> rows = {clear_row(),  drill_row(), end_row(),    events_row(), flag_row(), get_row(),
+                                      kill_row(),   off_row(),   on_row(),     profile_row(), receipts_row(),
+                                      reinit_row(), ring_row(),  save_row(),   scope_row(),  set_row(),  spawn_row(),
                                       status_row(), switch_row(), top_row(),  watch_row(),  why_row()};
   for (RunningCommand& row : rows) row.words.which = kWhichOne;
   return rows;

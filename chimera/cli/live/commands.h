@@ -37,6 +37,8 @@ struct RunningCommand {
   /// Prints until somebody ends it; returns the exit code.
   int (*live)(Session&, const Call&, std::FILE* out, std::FILE* err) = nullptr;
   const char* live_option = nullptr;  ///< `live` only with this option; nullptr: always
+  /// What it does when no such subsystem runs, of the name that is its operand; nullptr: it is refused.
+  CommandResult (*without)(const Call&, const std::string& subsystem, const Error& why) = nullptr;
   bool names_its_subsystem = false;   ///< its answer for people begins with the name of the subsystem
 
   bool is_live(const Call& call) const { return live != nullptr && (live_option == nullptr || call.has(live_option)); }

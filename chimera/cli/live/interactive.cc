@@ -17,9 +17,9 @@
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/cli/live/commands.h"
 #include "chimera/cli/live/fields.h"
-#include "chimera/cli/live/state_folder.h"
 #include "chimera/cli/live/terminal.h"
 #include "chimera/cli/live/words.h"
+#include "chimera/control/state_folder.h"
 
 namespace chimera::cli {
 namespace {
@@ -56,7 +56,7 @@ class Editor {
     HistEvent event{};
     ::history(history_.get(), &event, H_SETSIZE, 1000);
     ::history(history_.get(), &event, H_SETUNIQUE, 1);
-    if (make_state_folder()) file_ = state_folder() + "/history";
+    if (control::make_state_folder()) file_ = control::state_folder() + "/history";
     if (!file_.empty()) ::history(history_.get(), &event, H_LOAD, file_.c_str());
     ::el_set(edit_.get(), EL_CLIENTDATA, this);
     ::el_set(edit_.get(), EL_PROMPT, &Editor::prompt);

@@ -13,7 +13,9 @@
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/save_file.h"
 #include "chimera/cli/live/status_text.h"
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/cli/live/words.h"
+#include "chimera/platform/terminal.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 
@@ -67,6 +69,25 @@ CommandResult pid(Session& session, const Call& call) {
                                               : "--pid: no real-time unit '" + name + "'" +
                                                     (near.empty() ? "" : "; did you mean '" + near + "'?");
   return refused(Error{ErrorCode::kNotFound, std::string_view(why), {}}, call.json);
+}
+
+/// `parameters` with the option --wait of the call.
+Result<Json> with_wait(const Call& call, Json parameters) {
+  if (!call.has("--wait")) return parameters;
+  const auto wait = parse_duration(call.value("--wait"));
+  const std::string why = wait ? "" : "--wait: " + std::string(wait.error().message.view());
+  if (!wait) return Error{ErrorCode::kBadInput, std::string_view(why), {}};
+  parameters["wait_ms"] = wait->count / 1'000'000;
+  return parameters;
+}
+
+/// Asks on the terminal; nobody there has agreed to nothing.
+bool has_agreed(const std::string& question) {
+  if (!is_terminal(kStandardInput)) return false;
+  std::fprintf(stderr, "%s [yes/no] ", plain_line(question).c_str());
+  std::string typed;
+  while (typed.find_first_of("\r\n") == std::string::npos && read_keys(typed)) continue;
+  return typed.substr(0, typed.find_first_of("\r\n")) == "yes";
 }
 
 Json only(const EventLines& lines, Json answer) {
@@ -127,15 +148,33 @@ CommandResult save(Session& session, const Call& call, const Screen&) {
 }
 
 CommandResult switch_to(Session& session, const Call& call, const Screen&) {
-  Json parameters{{"configuration", call.operands[0]}};
-  if (call.has("--wait")) {
-    const auto wait = parse_duration(call.value("--wait"));
-    if (!wait) return wrong("--wait: " + std::string(wait.error().message.view()), call.json);
-    parameters["wait_ms"] = wait->count / 1'000'000;
-  }
-  const control::RpcResponse answer = session.ask("switch", parameters);
+  const bool is_cancel = call.has("--cancel"), is_dry = call.has("--dry-run");
+  if (is_cancel == !call.operands.empty() || (is_cancel && (is_dry || call.has("--wait"))))
+    return wrong("switch: name a configuration, or give --cancel alone", call.json);
+  if (is_dry)
+    return answered(session.ask("plan", {{"configuration", call.operands[0]}}), call.json, plan_text);
+  Json named = Json::object();
+  if (!is_cancel) named["configuration"] = call.operands[0];
+  const auto parameters = with_wait(call, std::move(named));
+  if (!parameters) return refused(parameters.error(), call.json, kUsage);
+  const control::RpcResponse answer = session.ask(is_cancel ? "cancel" : "switch", *parameters);
   CommandResult result = answered(answer, call.json, switch_text);
-  if (answer.is_good() && text_of(*answer.result, "end") == "aborted") result.code = kRefused;
+  if (answer.is_good() && text_of(*answer.result, "end") == "aborted" && !is_cancel) result.code = kRefused;
+  return result;
+}
+
+CommandResult drill(Session& session, const Call& call, const Screen&) {
+  auto parameters = with_wait(call, Json::object());
+  if (!parameters) return refused(parameters.error(), call.json, kUsage);
+  if (call.has("--kill")) (*parameters)["kill"] = call.value("--kill");
+  if (!call.has("--yes") && !has_agreed("the drill raises the flag of '" + session.subsystem() +
+                                        "': every device goes to its safe state" +
+                                        (call.has("--kill") ? ", then " + call.value("--kill") + " is killed" : "") +
+                                        ". Go on?"))
+    return wrong("drill: not agreed to; `--yes` does not ask", call.json);
+  const control::RpcResponse answer = session.ask("drill", *parameters);
+  CommandResult result = answered(answer, call.json, drill_text);
+  if (answer.is_good() && !truth_of(*answer.result, "safe")) result.code = kRefused;
   return result;
 }
 

@@ -14,6 +14,7 @@ CommandResult save(Session& session, const Call& call, const Screen& screen);
 CommandResult events(Session& session, const Call& call, const Screen& screen);
 CommandResult flag(Session& session, const Call& call, const Screen& screen);
 CommandResult switch_to(Session& session, const Call& call, const Screen& screen);
+CommandResult drill(Session& session, const Call& call, const Screen& screen);
 CommandResult why(Session& session, const Call& call, const Screen& screen);
 CommandResult end(Session& session, const Call& call, const Screen& screen);
 

@@ -14,7 +14,7 @@
 #include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/operator_text.h"
-#include "chimera/cli/live/state_folder.h"
+#include "chimera/control/state_folder.h"
 #include "chimera/platform/file_state.h"
 
 namespace chimera::cli {
@@ -51,7 +51,7 @@ std::string own_record(const DescriptionFile& file) {
   return file.path + "\n" + std::to_string(file.state.inode) + " " + std::to_string(file.state.changed_ns) + "\n";
 }
 
-std::string record_path(const std::string& subsystem) { return state_folder() + "/saved-" + subsystem; }
+std::string record_path(const std::string& subsystem) { return control::state_folder() + "/saved-" + subsystem; }
 
 /// The file is as it was when the subsystem read it, or as this command left it.
 bool is_as_known(const DescriptionFile& file, std::int64_t started_wall_ns, const std::string& subsystem) {
@@ -116,7 +116,7 @@ CommandResult save_to_file(Session& session, const Call& call) {
     DescriptionFile written = file.value();
     const auto state = state_of_file(written.path);
     if (state) written.state = *state;
-    if (state && make_state_folder())
+    if (state && control::make_state_folder())
       std::ofstream(record_path(subsystem), std::ios::binary) << own_record(written);
   }
   if (call.json) return {json_line({{"file", file->path}, {"changed", is_new}, {"operator", values}}), "", kOk};

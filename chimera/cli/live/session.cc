@@ -19,7 +19,9 @@ namespace {
 constexpr Nanoseconds kWorkLimit = seconds(65);
 
 Nanoseconds limit_of(std::string_view method, const nlohmann::json& parameters) {
-  if (method == "switch") return kWorkLimit + milliseconds(parameters.value("wait_ms", std::int64_t{10'000}));
+  if (method == "switch" || method == "drill")
+    return kWorkLimit + milliseconds(parameters.value("wait_ms", std::int64_t{10'000}));
+  if (method == "cancel") return kWorkLimit;
   const bool runs_methods = method == "signal" && parameters.value("signal", "") != "off";
   return runs_methods || method == "check" || method == "schedule" ? kWorkLimit : control::kCallLimit;
 }
@@ -128,15 +130,18 @@ int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err
 }
 
 int carry_out(const Surroundings& surroundings, const Call& call, std::FILE* out, std::FILE* err) {
+  const RunningCommand& row = row_of(call);
   Surroundings known = surroundings;
   known.command = command_line(call);
+  if (row.without != nullptr && !call.operands.empty()) known.subsystem = call.operand(0);
   auto session = Session::open(known);
+  if (!session && row.without != nullptr) return print(row.without(call, known.subsystem, session.error()), out, err);
   if (!session) return print(refused(session.error(), call.json), out, err);
   // Whoever does not answer now will not answer the command either: one limit, not one for each question of it.
   if (const control::RpcResponse hello = session->hello(); !hello.is_good())
     return print(refused(hello, call.json), out, err);
   // Who did not say which one learns which one it is; status and top head with it, an act says it in every line.
-  const bool says_itself = call.json || call.is_act() || row_of(call).names_its_subsystem;
+  const bool says_itself = call.json || call.is_act() || row.names_its_subsystem;
   if (!session->is_named() && !says_itself) std::fprintf(err, "[%s]\n", session->subsystem().c_str());
   return carry_out(*session, call, out, err);
 }

@@ -41,9 +41,12 @@ constexpr Seldom kSeldom[] = {{"over budget", &Profile::overrun},
 /// "pid: 12 preempted, 1 demoted", or nothing.
 std::string seldom_line(const TaskProfile& task) {
   std::string text;
-  for (const Seldom& kind : kSeldom)
-    if (const std::uint64_t n = task.profile.*kind.count; n > 0)
-      text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + kind.name;
+  const auto add = [&text](std::uint64_t n, const char* name) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + name;
+  };
+  for (const Seldom& kind : kSeldom) add(task.profile.*kind.count, kind.name);
+  add(task.profile.restarts, "restarts");
+  add(task.profile.takeovers, "takeovers");
   return text.empty() ? "" : task.task + ": " + text + "\n";
 }
 

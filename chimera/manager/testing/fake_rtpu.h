@@ -103,6 +103,8 @@ class FakeRtpu {
   }
   /// Of the doorbells of its tasks.
   std::atomic<int> rings{0};
+  /// Of every byte that its tasks publish; below 0: they count.
+  std::atomic<int> filled_with{-1};
   /// Serves no signal until set again.
   std::atomic<bool> is_deaf{false};
 
@@ -200,6 +202,8 @@ class FakeRtpu {
     const auto count = static_cast<double>(profile.cycles);
     for (std::size_t at = 0; at + sizeof count <= payload.size(); at += sizeof count)
       std::memcpy(payload.data() + at, &count, sizeof count);
+    const int byte = filled_with;
+    if (byte >= 0) std::memset(payload.data(), byte, payload.size());
     out.write(payload.data(), clock_.now(), ~std::uint64_t{0});
     tap_->append({.at = clock_.now(), .a = CHIMERA_CYCLE, .task = task, .kind = TapKind::kRun});
     if (profile.cycles % 8 == 0) tap_->append({.at = clock_.now(), .b = 5000, .task = task, .kind = TapKind::kOverrun});

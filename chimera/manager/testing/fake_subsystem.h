@@ -4,6 +4,8 @@
 
 #include <fcntl.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -62,6 +64,26 @@ configurations: {run: [sensor, lamp]}
 start: run
 )";
 
+/// Hardware of each kind: arm says when it is safe, winch cannot, log never moves.
+inline constexpr const char* kHardwareText = R"(subsystem: fake
+rtpus: {servo: {cpu: 0, policy: edf}, spare: {cpu: 1, policy: muf}}
+tasks:
+  arm:   {rtpu: servo, rate: 10 Hz, resources: {device: a}}
+  winch: {rtpu: spare, rate: 10 Hz, resources: {device: b}}
+  log:   {rtpu: spare, rate: 10 Hz, resources: {file: c}}
+configurations: {run: [arm, log], all: [arm, winch, log], none: [log]}
+start: run
+)";
+
+/// A resource, or an out-var of bool, that is declared `safe_state` or not.
+inline PortDescriptor device_port(const std::string& name, std::uint32_t kind, bool safe_state) {
+  PortDescriptor port = test_port(name, kind);
+  port.type = kind == CHIMERA_RESOURCE ? CHIMERA_STRING : CHIMERA_BOOL;
+  port.element_size = kind == CHIMERA_RESOURCE ? 256 : 1;
+  port.safe_state = safe_state;
+  return port;
+}
+
 inline Bundle fake_bundle(const std::string& text = kFakeText) {
   Descriptor lamp = test_component("lamp", {test_port("lit", CHIMERA_OUT_VAR)});
   lamp.methods[CHIMERA_SYNC] = true;
@@ -70,7 +92,12 @@ inline Bundle fake_bundle(const std::string& text = kFakeText) {
        test_component("filter", {test_port("x", CHIMERA_IN_VAR, "rad", "[2]"), test_port("y", CHIMERA_OUT_VAR, "rad")}),
        test_component("law", {test_port("y", CHIMERA_IN_VAR, "rad"), test_port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"),
                               test_port("tau", CHIMERA_OUT_VAR, "N.m")}),
-       lamp},
+       lamp,
+       test_component("arm", {test_port("q", CHIMERA_OUT_VAR, "rad"), device_port("held", CHIMERA_OUT_VAR, true),
+                              device_port("device", CHIMERA_RESOURCE, false)}),
+       test_component("winch", {test_port("rope", CHIMERA_OUT_VAR, "m"), device_port("full", CHIMERA_OUT_VAR, false),
+                                device_port("device", CHIMERA_RESOURCE, false)}),
+       test_component("log", {test_port("rows", CHIMERA_OUT_VAR), device_port("file", CHIMERA_RESOURCE, true)})},
       our_units());
   return {"0.1.0", text.empty() ? "" : "fake.yaml", text, {}, {}, {}, std::move(library)};
 }
@@ -79,6 +106,8 @@ inline Bundle fake_bundle(const std::string& text = kFakeText) {
 class FakeSubsystem {
  public:
   explicit FakeSubsystem(const std::string& text = kFakeText) : bundle_(fake_bundle(text)) {
+    EXPECT_NE(::mkdtemp(state_), nullptr);
+    ::setenv("XDG_STATE_HOME", state_, 1);
     if (!bundle_.is_idle()) {
       const Verdict verdict = verify(bundle_);
       EXPECT_TRUE(verdict.configuration) << verdict.report.text();
@@ -102,12 +131,17 @@ class FakeSubsystem {
   ~FakeSubsystem() {
     driver_.reset();
     rtpus_.clear();
+    std::error_code error;  // a manager that is left behind may still file
+    std::filesystem::remove_all(state_, error);
   }
 
   const ApplicationSpec& spec() const noexcept { return spec_; }
+  /// XDG_STATE_HOME of its managers.
+  std::string state() const { return state_; }
   std::uint32_t n_rtpus() const noexcept { return static_cast<std::uint32_t>(spec_.rtpus.size()); }
   FakeRtpu& rtpu(std::uint32_t index) { return *rtpus_[index]; }
   KeeperPage& page() { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
+  DecisionPage& decision_page() { return *reinterpret_cast<DecisionPage*>(decision_.bytes().data()); }
   ManagerLoop& driver() { return *driver_; }
   TaskId task(std::string_view name) const {
     for (std::size_t t = 0; t < spec_.tasks.size(); ++t)
@@ -199,12 +233,15 @@ class FakeSubsystem {
       } else if (message.kind == KeeperMessage::Kind::kStart && ended_[message.index]) {
         revive(message.index);
         introduce(message.index);
+      } else if (message.kind == KeeperMessage::Kind::kEndChild) {
+        killed = message.index;
       } else if (message.kind == KeeperMessage::Kind::kEnd) {
         end_asked = message.code;
       }
     }
   }
   std::optional<std::int32_t> end_asked;
+  std::optional<std::uint32_t> killed;  ///< the unit that the manager has asked to be killed; nobody is
 
  private:
   /// The channel of a new manager, with the inventory in it.
@@ -230,11 +267,11 @@ class FakeSubsystem {
   }
   void revive(std::uint32_t r) {
     ended_[r].reset();
-    auto& page = *reinterpret_cast<DecisionPage*>(decision_.bytes().data());
     const std::uint32_t incarnation = rtpus_[r] == nullptr ? 1 : rtpus_[r]->incarnation() + 1;
-    rtpus_[r] = std::make_unique<FakeRtpu>(spec_, r, incarnation, page);
+    rtpus_[r] = std::make_unique<FakeRtpu>(spec_, r, incarnation, decision_page());
     if (manager_segment_ >= 0) rtpus_[r]->meet(again(manager_segment_), segment_incarnation_);
   }
+  char state_[40] = "/tmp/chimera_state_XXXXXX";
   Bundle bundle_;
   std::optional<Configuration> configuration_;
   ApplicationSpec spec_;

@@ -150,6 +150,8 @@ bool Process::wait(ProcessEnd& end, std::int64_t limit_ns) noexcept {
 
 bool Process::signal(int number) const noexcept { return pidfd_ >= 0 && pidfd_send_signal(pidfd_, number); }
 
+bool signal_process(int pidfd, int signal) noexcept { return pidfd_send_signal(pidfd, signal); }
+
 bool adopt_orphans() noexcept { return ::prctl(PR_SET_CHILD_SUBREAPER, 1) == 0; }
 
 bool follow_parent(pid_t parent, int signal) noexcept {

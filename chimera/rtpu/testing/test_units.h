@@ -51,8 +51,10 @@ struct Unit {
        std::uint32_t incarnation, DecisionPage& decision, KeeperPage& keeper)
       : bell(decision.bells[me].word), segment(spec, me, incarnation), peers(*MappedPeers::create(spec)),
         clock(decision_now), others(spec, me, segment.region.writable(), segment.block, decision, keeper, *peers) {
-    const ContextPlace place{RtpuId(me), segment.region.writable().subspan(sizeof(SegmentHeader)), &others, &service,
-                             &segment.block.head().running, &segment.block.head().serving};
+    const ContextPlace place{RtpuId(me), segment.region.writable().subspan(sizeof(SegmentHeader)),
+                             &others,    nullptr,
+                             &service,   &segment.block.head().running,
+                             &segment.block.head().serving};
     auto made = HeapTaskSet::create(spec, components, place);
     EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message.c_str());
     tasks = *std::move(made);

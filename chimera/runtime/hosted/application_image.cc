@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <deque>
 #include <set>
@@ -28,6 +29,9 @@ struct ApplicationImage::Parts {
   std::vector<ConstantSpec> constants;
   std::vector<GivenSpec> operators;
   std::vector<TaskId> init_order, start, on_order, end_order;
+  std::vector<StandbySpec> standbys;
+  std::vector<RestartSpec> restarts;
+  std::vector<StaleSpec> stale;
   std::vector<NamedSet> sets;
   std::deque<std::vector<TaskId>> set_orders;  // of one set each
   Links links;
@@ -39,7 +43,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 7;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -160,7 +164,7 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   archive.number(task.user_priority);
   archive.choice(task.on_miss, OnMiss::kStop);
   archive.choice(task.on_overrun, OnMiss::kStop);
-  archive.choice(task.on_fault, OnFault::kSwitch);
+  archive.choice(task.on_fault, OnFault::kRestart);
   for (auto* set : {&task.on_miss_set, &task.on_overrun_set, &task.on_fault_set}) archive.number(*set);
   archive.number(task.max_consecutive);
   archive.number(task.tolerated_misses);
@@ -188,7 +192,7 @@ void task_ids(Archive& archive, Ids& ids, std::vector<TaskId>& storage, std::siz
 }
 
 // Far beyond what a description of 256 KiB can hold.
-constexpr std::size_t kMostTasks = 4096, kMostLinks = 65536, kMostSets = 4096;
+constexpr std::size_t kMostTasks = 4096, kMostLinks = 65536, kMostSets = 4096, kMostStandbys = 256;
 
 // The lists that ids point into come before the ids.
 template <class Archive>
@@ -209,11 +213,48 @@ void operator_fields(Archive& archive, ApplicationImage::Parts& parts, Applicati
   });
 }
 
+template <class Archive, class Condition>
+void condition_fields(Archive& archive, Condition& condition, std::size_t n_variables) {
+  archive.number(condition.variable);
+  archive.number(condition.element);
+  archive.choice(condition.comparison, Relation::kUnequal);
+  archive.number(condition.limit);
+  archive.require(!condition.is_there() || condition.variable.index < n_variables, "a variable that does not exist");
+  archive.require(std::isfinite(condition.limit), "a limit that is no finite number");
+}
+
 template <class Archive>
 void set_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationSpec& spec) {
   archive.list(spec.sets, parts.sets, kMostSets, "too many sets", [&](auto& set) {
     archive.text(set.name);
     task_ids(archive, set.order, parts.set_orders.emplace_back(), spec.tasks.size());
+    condition_fields(archive, set.safe_when, spec.variables.size());
+  });
+}
+
+template <class Archive>
+void recovery_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationSpec& spec) {
+  const auto is_task = [&](TaskId id) { archive.require(id.index < spec.tasks.size(), "a task that does not exist"); };
+  archive.list(spec.standbys, parts.standbys, kMostStandbys, "too many standbys", [&](auto& standby) {
+    archive.number(standby.primary);
+    archive.number(standby.standby);
+    is_task(standby.primary);
+    is_task(standby.standby);
+  });
+  archive.list(spec.restarts, parts.restarts, kMostTasks, "too many restarts", [&](auto& restart) {
+    archive.number(restart.task);
+    archive.number(restart.most);
+    archive.number(restart.within);
+    archive.choice(restart.then, OnFault::kSwitch);
+    is_task(restart.task);
+    archive.require(restart.most >= 1 && restart.most <= kMostRestarts && restart.within > Nanoseconds{},
+                    "a restart out of range");
+  });
+  archive.list(spec.stale, parts.stale, kMostTasks, "too many limits of age", [&](auto& stale) {
+    archive.number(stale.task);
+    archive.number(stale.after);
+    is_task(stale.task);
+    archive.require(stale.after > Nanoseconds{}, "a limit of age out of range");
   });
 }
 
@@ -247,6 +288,7 @@ void image_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationS
   task_ids(archive, spec.on_order, parts.on_order, spec.tasks.size());
   task_ids(archive, spec.end_order, parts.end_order, spec.tasks.size());
   set_fields(archive, parts, spec);
+  recovery_fields(archive, parts, spec);
 }
 
 bool holds_none_twice(std::span<const TaskId> order, std::size_t n_tasks) {
@@ -276,8 +318,39 @@ void judge_reactions(const ApplicationImage::Parts& parts, ImageReader& reader) 
   for (const TaskSpec& task : parts.tasks) {
     judge(task.on_miss == OnMiss::kSwitch, task.on_miss_set);
     judge(task.on_overrun == OnMiss::kSwitch, task.on_overrun_set);
-    judge(task.on_fault == OnFault::kSwitch, task.on_fault_set);
+    if (task.on_fault != OnFault::kRestart) judge(task.on_fault == OnFault::kSwitch, task.on_fault_set);
   }
+  std::vector<char> restarts(parts.tasks.size(), 0);
+  for (const RestartSpec& restart : parts.restarts) {
+    const TaskSpec& task = parts.tasks[restart.task.index];
+    reader.require(std::exchange(restarts[restart.task.index], 1) == 0, "two restarts of a task");
+    reader.require(task.on_fault == OnFault::kRestart, "a restart of a task without that reaction");
+    judge(restart.then == OnFault::kSwitch, task.on_fault_set);
+  }
+  const auto restarted = [](const TaskSpec& task) { return task.on_fault == OnFault::kRestart; };
+  reader.require(std::ranges::count_if(parts.tasks, restarted) == static_cast<std::ptrdiff_t>(parts.restarts.size()),
+                 "a reaction restart that is not told");
+}
+
+// A primary is no standby, a standby has one primary, and both have the same outputs.
+void judge_recovery(const ApplicationImage::Parts& parts, ImageReader& reader) {
+  const auto outputs = [&](TaskId id) {
+    std::set<std::uint32_t> variables;
+    for (const PortSpec& port : parts.tasks[id.index].ports)
+      if (port.kind == CHIMERA_OUT_VAR) variables.insert(port.variable.index);
+    return variables;
+  };
+  std::set<std::uint32_t> primaries, standbys;
+  for (const StandbySpec& each : parts.standbys) {
+    primaries.insert(each.primary.index);
+    reader.require(standbys.insert(each.standby.index).second, "a standby of two tasks");
+    reader.require(outputs(each.primary) == outputs(each.standby), "a standby with other outputs");
+  }
+  reader.require(std::ranges::none_of(primaries, [&](std::uint32_t id) { return standbys.contains(id); }),
+                 "a standby of a standby");
+  std::set<std::uint32_t> judged;
+  for (const StaleSpec& each : parts.stale)
+    reader.require(judged.insert(each.task.index).second, "two limits of age for a task");
 }
 
 // Collects who is linked to what, and refuses links that verification never makes.
@@ -296,6 +369,7 @@ void link(ApplicationImage::Parts& parts, ImageReader& reader) {
     reader.require(holds_every_task_once(*order, parts.tasks.size()), "an order that does not hold every task once");
   judge_sets(parts, reader);
   judge_reactions(parts, reader);
+  judge_recovery(parts, reader);
 }
 
 Error refusal(std::string text) { return {ErrorCode::kBadInput, {std::move(text)}, {}}; }

@@ -15,7 +15,7 @@ using namespace chimera;
 /// The bytes behind a header that is right: otherwise the hash would refuse nearly everything.
 std::vector<std::byte> with_header(const std::uint8_t* bytes, std::size_t size) {
   const std::uint64_t magic = 0x31474d49'4d494843, total = size + 32;
-  const std::uint32_t version = 5, header_bytes = 32;
+  const std::uint32_t version = 7, header_bytes = 32;
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
   std::vector<std::byte> image(total);
@@ -91,6 +91,12 @@ unsigned check_spec(const ApplicationSpec& spec) {
   }
   for (const auto ids : {spec.init_order, spec.start, spec.on_order, spec.end_order})
     for (const TaskId id : ids) require(id.index < spec.tasks.size(), "every task in an order is there");
+  for (const StandbySpec& each : spec.standbys)
+    require(each.primary.index < spec.tasks.size() && each.standby.index < spec.tasks.size(), "both tasks are there");
+  for (const RestartSpec& each : spec.restarts)
+    require(each.task.index < spec.tasks.size() && each.most >= 1 && each.within.count > 0, "a restart is in order");
+  for (const StaleSpec& each : spec.stale)
+    require(each.task.index < spec.tasks.size() && each.after.count > 0, "a limit of age is in order");
   for (const NamedSet& set : spec.sets) {
     for (const TaskId id : set.order) require(id.index < spec.tasks.size(), "every task in a set is there");
     all += sum(set.name);

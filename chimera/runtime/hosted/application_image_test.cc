@@ -38,6 +38,8 @@ struct Sample {
     more_ports[4].variable = kX;
     more_ports[5].kind = CHIMERA_IN_VAR;
     more_ports[5].variable = kKi;
+    spare_ports[0].kind = CHIMERA_OUT_VAR;
+    spare_ports[0].variable = kX;
     tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
                 .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
                 .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kSwitch,
@@ -47,6 +49,9 @@ struct Sample {
     tasks[1] = {.name = "plain", .component = "gain", .period = Nanoseconds{20}, .offset = {},
                 .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .rtpu = RtpuId{0u}, .ports = more_ports,
                 .server = {}};
+    tasks[2] = {.name = "spare", .component = "spare", .period = Nanoseconds{5}, .offset = {},
+                .deadline = Nanoseconds{5}, .budget = {}, .min_time = {}, .on_fault = OnFault::kRestart,
+                .rtpu = RtpuId{0u}, .on_fault_set = 1, .ports = spare_ports, .server = {}};
     variables[kKp.index].name = "kp";
     variables[kKi.index].name = "ki";
     variables[kX.index].name = "x";
@@ -55,7 +60,8 @@ struct Sample {
     operators[0] = {"kp", kKp, CHIMERA_FLOAT32, 4, {}, bytes_of("abcd"), {}};
     operators[1] = {"ki", kKi, CHIMERA_FLOAT64, 8, {}, bytes_of("abcdefgh"), {}};
     spec = {"arm",     rtpus,      tasks, variables, constants,
-            operators, init_order, start, on_order,  end_order, sets};
+            operators, init_order, start, on_order,  end_order, sets,
+            standbys, restarts, stale};
     links.fill(tasks, operators, variables, constants);
   }
 
@@ -63,17 +69,20 @@ struct Sample {
   static constexpr ConstantId kN{0u}, kM{1u};
 
   RtpuSpec rtpus[2] = {{"spare", 3, Policy::kMuf}, {"servo", 1, Policy::kRm}};
-  PortSpec ports[2], more_ports[6];
-  TaskSpec tasks[2];
+  PortSpec ports[2], more_ports[6], spare_ports[1];
+  TaskSpec tasks[3];
   Variable variables[3];
   ConstantSpec constants[2];
   GivenSpec operators[2];
   Links links;
-  TaskId init_order[2] = {TaskId{1u}, TaskId{0u}}, start[1] = {TaskId{1u}};
-  TaskId on_order[2] = {TaskId{1u}, TaskId{0u}}, end_order[2] = {TaskId{0u}, TaskId{1u}};
+  TaskId init_order[3] = {TaskId{1u}, TaskId{0u}, TaskId{2u}}, start[1] = {TaskId{1u}};
+  TaskId on_order[3] = {TaskId{2u}, TaskId{1u}, TaskId{0u}}, end_order[3] = {TaskId{0u}, TaskId{1u}, TaskId{2u}};
   TaskId other[2] = {TaskId{0u}, TaskId{1u}};
-  NamedSet sets[2] = {{"both", other}, {"alone", start}};
-  ComponentPlace places[2] = {{"/usr/lib/pid.so", 0x123456789abcdef0}, {"gain.so", 2}};
+  StandbySpec standbys[1] = {{TaskId{0u}, TaskId{2u}}};
+  RestartSpec restarts[1] = {{TaskId{2u}, 4, seconds(10), OnFault::kSwitch}};
+  StaleSpec stale[1] = {{TaskId{1u}, milliseconds(3)}};
+  NamedSet sets[2] = {{"both", other, {kX, 7, Relation::kAtLeast, -2.5}}, {"alone", start}};
+  ComponentPlace places[3] = {{"/usr/lib/pid.so", 0x123456789abcdef0}, {"gain.so", 2}, {"spare.so", 3}};
   RunSettings settings{40, milliseconds(5)};
   ApplicationSpec spec;
 };
@@ -100,7 +109,7 @@ TEST(ApplicationImage, EveryFieldComesBack) {
   ASSERT_TRUE(image) << image.error().message.c_str();
   const ApplicationImage moved = std::move(*image);
   EXPECT_EQ(first_difference(moved.spec(), sample.spec), "");
-  ASSERT_EQ(moved.places().size(), 2u);
+  ASSERT_EQ(moved.places().size(), 3u);
   EXPECT_EQ(moved.places()[0].object_file, "/usr/lib/pid.so");
   EXPECT_EQ(moved.places()[0].fingerprint, 0x123456789abcdef0u);
   EXPECT_EQ(moved.settings().priority, 40);
@@ -124,6 +133,14 @@ TEST(ApplicationImage, ADifferenceInAnySpecIsSeen) {  // so that the test above 
   EXPECT_EQ(first_difference(e.spec, Sample().spec), "sets[0].order");
   f.ports[0].max_step = {};
   EXPECT_EQ(first_difference(f.spec, Sample().spec), "tasks[0].ports[0].max_step");
+  Sample g, h;
+  g.standbys[0].primary = TaskId{1u};
+  EXPECT_EQ(first_difference(g.spec, Sample().spec), "standbys[0].primary");
+  h.restarts[0].within = seconds(9);
+  EXPECT_EQ(first_difference(h.spec, Sample().spec), "restarts[0].within");
+  Sample i;
+  i.stale[0].after = seconds(1);
+  EXPECT_EQ(first_difference(i.spec, Sample().spec), "stale[0].after");
 }
 
 TEST(ApplicationImage, StrangersAreRefusedByName) {
@@ -134,8 +151,8 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   bytes[0] = std::byte{'X'};
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
-  bytes[kVersionAt] = std::byte{7};
-  EXPECT_EQ(refusal(bytes), "image version 7, this program reads 5");
+  bytes[kVersionAt] = std::byte{8};
+  EXPECT_EQ(refusal(bytes), "image version 8, this program reads 7");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +
@@ -159,7 +176,7 @@ bool says(const std::string& refusal, const char* why) {
 TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
   EXPECT_EQ(refusal_of([](Sample&) {}), "accepted");
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].rtpu = RtpuId{2u}; }), "an rtpu that does not exist"));
-  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.start[0] = TaskId{2u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.start[0] = TaskId{3u}; }), "a task that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.init_order[0] = TaskId{}; }), "a task that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].period = {}; }), "times that are not in order"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].deadline = seconds(1); }), "times that are not in order"));
@@ -199,8 +216,8 @@ TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.on_order[0] = TaskId{0u}; }), unordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.end_order[0] = TaskId{1u}; }), unordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.spec.init_order = s.spec.init_order.first(1); }), unordered));
-  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.on_order[0] = TaskId{2u}; }), "a task that does not exist"));
-  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.other[0] = TaskId{2u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.on_order[0] = TaskId{3u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.other[0] = TaskId{3u}; }), "a task that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.other[0] = TaskId{1u}; }), "a set that holds a task twice"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.sets[0].name = "alone"; }), "two sets of one name"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.sets[1].order = s.sets[0].order; }),
@@ -219,6 +236,40 @@ TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
 TEST(ApplicationImage, AReactionWithoutItsSetIsRefused) {
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].on_fault_set = 2; }), "a reaction with a wrong set"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].on_miss_set = 0; }), "a reaction with a wrong set"));
+}
+
+TEST(ApplicationImage, AStandbyThatCannotStandInIsRefused) {
+  const char* unlike = "a standby with other outputs";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].primary = TaskId{3u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].standby = TaskId{3u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].primary = TaskId{1u}; }), unlike));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].standby = TaskId{0u}; }), "a standby of a standby"));
+  const StandbySpec twice[2] = {{TaskId{0u}, TaskId{2u}}, {TaskId{0u}, TaskId{2u}}};
+  EXPECT_TRUE(says(refusal_of([&](Sample& s) { s.spec.standbys = twice; }), "a standby of two tasks"));
+}
+
+TEST(ApplicationImage, ARestartThatCannotBeDoneIsRefused) {
+  const char* beyond = "a restart out of range";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.restarts[0].task = TaskId{3u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.restarts[0].most = 0; }), beyond));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.restarts[0].most = kMostRestarts + 1; }), beyond));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.restarts[0].within = {}; }), beyond));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.restarts[0].then = OnFault::kRestart; }),
+                   "a choice that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.restarts[0].task = TaskId{1u}; }),
+                   "a restart of a task without that reaction"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.spec.restarts = {}; }), "a reaction restart that is not told"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.restarts[0].then = OnFault::kFlag; }), "a reaction with a wrong set"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[2].on_fault_set = UINT16_MAX; }), "a reaction with a wrong set"));
+  const RestartSpec restart = {TaskId{2u}, 1, seconds(1), OnFault::kSwitch}, twice[2] = {restart, restart};
+  EXPECT_TRUE(says(refusal_of([&](Sample& s) { s.spec.restarts = twice; }), "two restarts of a task"));
+}
+
+TEST(ApplicationImage, ALimitOfAgeThatMakesNoSenseIsRefused) {
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.stale[0].task = TaskId{3u}; }), "a task that does not exist"));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.stale[0].after = {}; }), "a limit of age out of range"));
+  const StaleSpec twice[2] = {{TaskId{1u}, seconds(1)}, {TaskId{1u}, seconds(2)}};
+  EXPECT_TRUE(says(refusal_of([&](Sample& s) { s.spec.stale = twice; }), "two limits of age for a task"));
 }
 
 TEST(ApplicationImage, NoTruncationAndNoChangedByteIsEverMoreThanARefusal) {

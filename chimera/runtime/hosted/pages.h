@@ -11,6 +11,7 @@
 namespace chimera {
 
 inline constexpr std::uint32_t kMaxRtpus = 16;             // description/draft.cc refuses more
+inline constexpr std::size_t kMaxGroups = 256;            // an image has no more standbys
 inline constexpr std::uint32_t kMaxPeers = kMaxRtpus + 1;  // the manager is peer number n_rtpus
 
 /// One word on a cache line of its own, so that ringing one bell does not slow the reader of another.
@@ -29,6 +30,10 @@ struct DecisionPage {
   /// By peer: what it makes before it shows a block of its own, as show_making() writes it. Relaxed, pairs with
   /// nothing: read when the peer is dead or hangs.
   alignas(64) std::atomic<std::uint32_t> making[kMaxPeers];
+  /// By group of standbys (runtime/standbys.h): the rtpu that is about to turn one of its tasks ON, bits 32-63 its
+  /// number and 1, bits 0-31 its incarnation; 0: none. Compare-and-swap, acq_rel: who has the claim sees the status
+  /// words that the one before has stored. What a dead process holds is free.
+  alignas(64) std::atomic<std::uint64_t> claims[kMaxGroups];
   /// How far a switch of configurations has come. Outlives the manager, which plans.
   SwitchPage switching;
 };

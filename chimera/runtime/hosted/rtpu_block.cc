@@ -24,6 +24,7 @@ struct Wish {
 
 static_assert(std::is_trivially_copyable_v<Profile> && sizeof(Profile) % 8 == 0);
 static_assert(sizeof(BlockHead) % 64 == 0 && sizeof(PostProgress) == 8 && sizeof(Wish) == 8);
+static_assert(std::is_trivially_destructible_v<SafeFrame> && alignof(SafeFrame) <= 64);
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free);
 
 constexpr std::uint64_t round_up(std::uint64_t value, std::uint64_t to) noexcept { return (value + to - 1) / to * to; }
@@ -35,12 +36,17 @@ constexpr std::uint64_t kProgressAt = after(kMemoryAt, sizeof(ManagerMemory));
 constexpr std::uint64_t kOutboxAt = after(kProgressAt, sizeof(PostProgress) * kMaxPeers);
 constexpr std::uint64_t kTapAt = after(kOutboxAt, sizeof(PostRing) * kMaxPeers);
 constexpr std::uint64_t kSwitchPartAt = after(kTapAt, sizeof(TapRing));
-constexpr std::uint64_t kStatusAt = after(kSwitchPartAt, sizeof(SwitchPart));
+constexpr std::uint64_t kJournalAt = after(kSwitchPartAt, sizeof(SwitchPart));
+constexpr std::uint64_t kStatusAt = after(kJournalAt, kJournalBytes);
 constexpr std::uint64_t wish_at(std::uint32_t n_tasks) noexcept {
   return after(kStatusAt, sizeof(std::uint64_t) * std::uint64_t{n_tasks});
 }
 constexpr std::uint64_t profile_at(std::uint32_t n_tasks) noexcept {
   return after(wish_at(n_tasks), sizeof(Wish) * std::uint64_t{n_tasks});
+}
+
+constexpr std::uint64_t safe_at(std::uint32_t n_tasks) noexcept {
+  return after(profile_at(n_tasks), sizeof(Profile) * std::uint64_t{n_tasks});
 }
 
 template <class Part>
@@ -61,7 +67,7 @@ using StatusWord = std::atomic<std::uint64_t>;
 std::uint64_t block_offset(const TableLayout& layout) noexcept { return round_up(segment_bytes(layout, 0), 4096); }
 
 std::uint64_t block_bytes(std::uint32_t n_tasks) noexcept {
-  return after(profile_at(n_tasks), sizeof(Profile) * std::uint64_t{n_tasks});
+  return after(safe_at(n_tasks), sizeof(SafeFrame) * kSafeFrames * std::uint64_t{n_tasks});
 }
 
 BlockView::BlockView(const std::byte* bytes, std::uint32_t n_tasks) noexcept : bytes_(bytes), n_tasks_(n_tasks) {
@@ -111,6 +117,11 @@ const PostRing& BlockView::outbox(std::uint32_t peer) const noexcept {
 const TapRing& BlockView::tap() const noexcept { return part<TapRing>(bytes_, kTapAt); }
 const ManagerMemory& BlockView::memory() const noexcept { return part<ManagerMemory>(bytes_, kMemoryAt); }
 const SwitchPart& BlockView::switch_part() const noexcept { return part<SwitchPart>(bytes_, kSwitchPartAt); }
+std::span<const std::byte> BlockView::journal() const noexcept { return {bytes_ + kJournalAt, kJournalBytes}; }
+const SafeFrame& BlockView::safe_frame(TaskId task, std::uint32_t index) const noexcept {
+  CHIMERA_ASSERT(task.index < n_tasks_ && index < kSafeFrames);
+  return part<SafeFrame>(bytes_, safe_at(n_tasks_), task.index * kSafeFrames + index);
+}
 
 BlockOwner::BlockOwner(std::byte* bytes, std::uint32_t peer, std::uint32_t incarnation, std::uint32_t n_tasks,
                        std::uint32_t n_peers) noexcept
@@ -124,6 +135,12 @@ BlockOwner::BlockOwner(std::byte* bytes, std::uint32_t peer, std::uint32_t incar
   head->magic = kBlockMagic;
   // Zeroed bytes are an empty ring, a task that is not there, no progress; but not a profile.
   for (std::uint32_t i = 0; i < n_tasks; ++i) new (&profile(TaskId{i})) Profile;
+}
+
+std::span<SafeFrame, kSafeFrames> BlockOwner::safe_frames(TaskId task) const noexcept {
+  CHIMERA_ASSERT(task.index < n_tasks_);
+  return std::span<SafeFrame, kSafeFrames>(&part<SafeFrame>(bytes_, safe_at(n_tasks_), task.index * kSafeFrames),
+                                           kSafeFrames);
 }
 
 BlockHead& BlockOwner::head() const noexcept { return part<BlockHead>(bytes_, 0); }
@@ -161,5 +178,6 @@ PostRing& BlockOwner::outbox(std::uint32_t peer) const noexcept {
 TapRing& BlockOwner::tap() const noexcept { return part<TapRing>(bytes_, kTapAt); }
 ManagerMemory& BlockOwner::memory() const noexcept { return part<ManagerMemory>(bytes_, kMemoryAt); }
 SwitchPart& BlockOwner::switch_part() const noexcept { return part<SwitchPart>(bytes_, kSwitchPartAt); }
+std::span<std::byte> BlockOwner::journal() const noexcept { return {bytes_ + kJournalAt, kJournalBytes}; }
 
 }  // namespace chimera

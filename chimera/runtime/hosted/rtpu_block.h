@@ -13,6 +13,7 @@
 
 #include "chimera/base/ids.h"
 #include "chimera/runtime/outbox.h"
+#include "chimera/runtime/safe_frame.h"
 #include "chimera/runtime/hosted/pages.h"
 #include "chimera/runtime/switch_part.h"
 #include "chimera/runtime/tap_ring.h"
@@ -25,6 +26,7 @@ namespace chimera {
 enum class PeerPhase : std::uint32_t { kStarting, kServing, kEnding, kEnded };
 
 inline constexpr std::uint32_t kOperatorFlag = 4;  ///< bit 2 of BlockHead::flag: an operator raised it
+inline constexpr std::uint32_t kDrillFlag = 8;     ///< bit 3: up for a drill; ends with the manager that began it
 
 /// At the start of a block. Words of one writer, the owner; other processes read.
 /// `phase`, `flag`, `seen_changes` and `attended` are stored with release and loaded with acquire: what the owner wrote
@@ -36,7 +38,7 @@ struct alignas(64) BlockHead {
   std::uint32_t n_tasks = 0;
   std::uint32_t n_peers = 0;
   std::atomic<PeerPhase> phase{PeerPhase::kStarting};
-  std::atomic<std::uint32_t> flag{0};          ///< bit 0: the ON set is not legal; 1: a task raised it; kOperatorFlag
+  std::atomic<std::uint32_t> flag{0};          ///< bit 0: the ON set is not legal; 1: a task raised it; the bits above
   std::atomic<std::uint32_t> running{0};       ///< TaskWord of the task and method; 0: between jobs
   std::atomic<std::uint32_t> serving{0};       ///< the same for the service thread: init and kill
   std::atomic<std::uint32_t> seen_changes{0};
@@ -63,6 +65,9 @@ struct ManagerMemory {
   std::atomic<std::int64_t> started_at{0};                      ///< instant at which it went ON; 0: not yet
 };
 
+/// The journal of switches, which only the manager's block has in use: chimera/manager/switch_journal.h has its form.
+inline constexpr std::size_t kJournalBytes = (128u << 10) + 1024;
+
 /// Views into a block over mapped bytes. Plain value; every accessor is O(1) and wait-free.
 class BlockView {
  public:
@@ -82,6 +87,9 @@ class BlockView {
   const TapRing& tap() const noexcept;
   const ManagerMemory& memory() const noexcept;
   const SwitchPart& switch_part() const noexcept;
+  std::span<const std::byte> journal() const noexcept;
+  /// Of a task of a unit: what is written when the unit is dead.
+  const SafeFrame& safe_frame(TaskId task, std::uint32_t index) const noexcept;
   bool is_there() const noexcept { return bytes_ != nullptr; }
 
  private:
@@ -107,6 +115,8 @@ class BlockOwner {
   TapRing& tap() const noexcept;
   ManagerMemory& memory() const noexcept;
   SwitchPart& switch_part() const noexcept;
+  std::span<std::byte> journal() const noexcept;
+  std::span<SafeFrame, kSafeFrames> safe_frames(TaskId task) const noexcept;
   BlockView view() const noexcept { return BlockView(bytes_, n_tasks_); }
 
  private:

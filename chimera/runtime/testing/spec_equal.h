@@ -141,6 +141,21 @@ inline std::string first_difference(const ApplicationSpec& a, const ApplicationS
   d.list(a.sets, b.sets, "sets", [&](const NamedSet& p, const NamedSet& q) {
     d.compare(p.name, q.name, "name");
     d.values(p.order, q.order, "order");
+    d.compare(p.safe_when, q.safe_when, "safe_when");
+  });
+  d.list(a.standbys, b.standbys, "standbys", [&](const StandbySpec& p, const StandbySpec& q) {
+    d.compare(p.primary, q.primary, "primary");
+    d.compare(p.standby, q.standby, "standby");
+  });
+  d.list(a.restarts, b.restarts, "restarts", [&](const RestartSpec& p, const RestartSpec& q) {
+    d.compare(p.task, q.task, "task");
+    d.compare(p.most, q.most, "most");
+    d.compare(p.within, q.within, "within");
+    d.compare(p.then, q.then, "then");
+  });
+  d.list(a.stale, b.stale, "stale", [&](const StaleSpec& p, const StaleSpec& q) {
+    d.compare(p.task, q.task, "task");
+    d.compare(p.after, q.after, "after");
   });
   return d.said();
 }

@@ -22,6 +22,7 @@ VirtualSwitches::VirtualSwitches(VirtualPeers& peers, std::size_t n) : peers_(pe
   if (n == 0) return;
   CHIMERA_ASSERT(spec.tasks.size() <= kMaxSwitchedTasks && spec.rtpus.size() <= kMaxContexts);
   planner_.prepare(spec, memory_);
+  schedule_.prepare(spec, memory_);
   receipts_.prepare(spec, n, memory_);
   standing_ = memory_.take<TaskStanding>(spec.tasks.size());
 }
@@ -59,6 +60,7 @@ void VirtualSwitches::ask(std::uint32_t set, Nanoseconds now) noexcept {
   }
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (!is_under_way()) answer = planner_.plan(set, standing_, plan_);
+  if (answer) answer = schedule_.judge(standing_, set);
   SwitchReceipt& receipt = receipts_.add();
   receipt.asked = now;
   receipt.after = set;
@@ -68,6 +70,7 @@ void VirtualSwitches::ask(std::uint32_t set, Nanoseconds now) noexcept {
     receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
     receipt.why = answer.why;
     receipt.task = answer.task;
+    receipt.takes = answer.takes;
     receipt.tasks = {};
     receipt.variables = {};
     return;
@@ -109,6 +112,7 @@ void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept 
   present_->why = part.why;
   present_->task = part.task;
   present_->variable = part.variable;
+  present_->value = part.value;
   present_->said = part.said;
 }
 
@@ -125,8 +129,10 @@ void VirtualSwitches::look(Nanoseconds now) noexcept {
   present_->ended = now;
   present_->tasks = present_->tasks.first(n_tasks_);
   present_->variables = present_->variables.first(n_variables_);
-  std::stable_sort(present_->tasks.begin(), present_->tasks.end(),
-                   [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; });
+  const auto is_before = [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; };
+  const auto begin = present_->tasks.begin();
+  for (auto part = begin; part != present_->tasks.end(); ++part)  // std::stable_sort allocates
+    std::rotate(std::upper_bound(begin, part, *part, is_before), part, part + 1);
   present_ = nullptr;
 }
 

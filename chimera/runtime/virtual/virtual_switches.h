@@ -9,6 +9,7 @@
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
+#include "chimera/runtime/switch_schedule.h"
 #include "chimera/runtime/virtual/virtual_peers.h"
 
 namespace chimera {
@@ -64,6 +65,7 @@ class VirtualSwitches {
   SwitchPage page_;
   std::deque<Member> members_;  // by rtpu
   SwitchPlanner planner_;
+  SwitchSchedule schedule_;
   SwitchPlan plan_;
   std::span<TaskStanding> standing_;  // by task, when a plan is judged
   SwitchReceipts receipts_;

@@ -86,7 +86,7 @@ void check_server(Model& model, const TaskModel& task) {
       {"rate", place_of(draft.rate)},        {"deadline", place_of(draft.deadline)},
       {"offset", place_of(draft.offset)},    {"min", place_of(draft.min_time)},
       {"on_miss", place_of(draft.on_miss)},  {"max_consecutive", place_of(draft.max_consecutive)},
-      {"tolerate", place_of(draft.tolerate)}};
+      {"tolerate", place_of(draft.tolerate)}, {"safe_after", place_of(draft.safe_after)}};
   for (const auto& [key, at] : of_releases) {
     if (!at) continue;
     model.error(

@@ -39,6 +39,11 @@ void check_steps(Model& model, TaskModel& task) {
 }
 
 void check_resources(Model& model, const TaskModel& task) {
+  if (const auto& limit = task.draft->safe_after; limit && !task.has_resource() && task.component != nullptr)
+    model.error("safe-after", limit->at,
+                "task '" + task.name() + "' has 'safe_after', and component '" + task.component->name +
+                    "' has no resource port: it has no device that could be told to idle",
+                task.component->name, "a component with a resource port", {}, "take 'safe_after' out");
   for (const LinkedPort& port : task.ports) {
     if (!port.is(CHIMERA_RESOURCE) || port.own == nullptr) continue;
     if (!port.own->is_scalar())

@@ -55,6 +55,10 @@ void limit_table(Model& model);
 /// Every value of the description fits its port in type, unit, shape and range. Makes LinkedPort::value.
 void check_values(Model& model);
 
+// rule_conditions.cc
+/// What `safe_when` compares is one number or truth value that another configuration produces, or the operator.
+void check_conditions(Model& model);
+
 // rule_order.cc
 /// No element of a constant is below that of the constant which its component names as the lower one.
 void check_order_of_constants(Model& model);

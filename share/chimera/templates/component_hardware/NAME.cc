@@ -21,6 +21,7 @@ struct @TYPE@Component {
   In<double>      speed{"speed", "m/s", doc = "what the device is told"};
   Out<double>     position{"position", "m", initial = 0.0, doc = "what it said last"};
   Out<bool>       connected{"connected", initial = false, doc = "it said something within the timeout"};
+  Out<bool>       idled{"idled", initial = false, safe_state, doc = "the flag is up and it was told to stop since"};
   InConst<double> limit{"limit", "m/s", initial = 1.0, range(0, 100), doc = "speeds are held within +- limit"};
   InConst<double> timeout{"timeout", "s", initial = 0.1, range(0.001, 60), doc = "silence after which it is lost"};
   Resource        device{"device", doc = "serial device, such as /dev/ttyUSB0"};
@@ -43,7 +44,7 @@ struct @TYPE@Component {
     held_ = 0;
     heard_ = c.now();
     is_lost_ = false;
-    *connected = false;
+    *connected = *idled = false;
   }
   // Two system calls, none of which waits. A device that is lost is told in `connected` first, then as a fault.
   Outcome cycle(Cycle c) {
@@ -51,7 +52,8 @@ struct @TYPE@Component {
     const bool is_there = receive(c.now());
     is_lost_ = !is_there || c.now() - heard_ > Nanoseconds{static_cast<std::int64_t>(*timeout * 1e9)};
     if (is_lost_) *connected = false;
-    if (is_there) send(is_lost_ || c.illegal() ? 0 : *speed);
+    const bool is_told = is_there && send(is_lost_ || c.illegal() ? 0 : *speed);
+    *idled = c.illegal() && (*idled || is_told);
     return ok();
   }
   void off() {
@@ -74,11 +76,13 @@ struct @TYPE@Component {
                            : ": plug the device in, or name another under `resources`";
   }
   // NaN never reaches a device; what is too fast is held at the limit.
-  void send(double value) {
-    if (std::isnan(value)) return;
+  bool send(double value) {
+    if (std::isnan(value)) return false;
     char line[40];
     const int size = std::snprintf(line, sizeof line, "S %.3f\n", std::fmin(std::fmax(value, -*limit), *limit));
-    if (::write(file_, line, static_cast<std::size_t>(size)) < 0 && errno != EAGAIN) errno_ = errno;
+    const ssize_t put = ::write(file_, line, static_cast<std::size_t>(size));
+    if (put < 0 && errno != EAGAIN) errno_ = errno;
+    return put == size;
   }
   // False: the device is gone. A line that is cut is kept for the next cycle, one that is wrong is passed over.
   bool receive(Nanoseconds now) {

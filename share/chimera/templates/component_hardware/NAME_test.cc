@@ -101,6 +101,21 @@ TEST_F(@TYPE@, StopsTheDeviceAtOff) {
   EXPECT_EQ(heard(8), "S 0.000\n");
 }
 
+TEST_F(@TYPE@, IsToldToStopWhileTheFlagIsUpAndSaysSo) {
+  start();
+  rig.set("speed", 1.0);
+  say("P 1\n");
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("idled"));
+  rig.illegal(true);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_TRUE(rig.get<bool>("idled"));
+  rig.illegal(false);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_FALSE(rig.get<bool>("idled"));
+  EXPECT_EQ(heard(24), "S 1.000\nS 0.000\nS 1.000\n");
+}
+
 TEST_F(@TYPE@, ALostDeviceIsAFaultAndComesBackByClear) {
   start();
   say("P 1\n");

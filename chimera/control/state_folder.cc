@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds and makes the folder in which the shell keeps its state.
-#include "chimera/cli/live/state_folder.h"
+// Finds and makes the folder of what outlives a call.
+#include "chimera/control/state_folder.h"
 
 #include <cstdlib>
 #include <filesystem>
 
 #include "chimera/platform/file_state.h"
 
-namespace chimera::cli {
+namespace chimera::control {
 
 std::string state_folder() {
   const char* given = std::getenv("XDG_STATE_HOME");
@@ -24,4 +24,9 @@ bool make_state_folder() {
   return make_private_folder(folder.string());
 }
 
-}  // namespace chimera::cli
+std::string state_folder_of(const std::string& subsystem) {
+  const std::string folder = state_folder();
+  return folder.empty() ? "" : folder + "/" + subsystem;
+}
+
+}  // namespace chimera::control

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes the configurations of a description and the switches between them as JSON.
+#include <nlohmann/json.hpp>
+
+#include "chimera/analysis/mode_report.h"
+
+namespace chimera {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json time_json(Nanoseconds time) { return time == kNever ? Json() : Json(time.count); }
+
+const char* cause_word(ModeCause cause) {
+  constexpr const char* kWords[] = {"on_miss", "on_overrun", "on_fault", "constant"};
+  return kWords[static_cast<std::size_t>(cause)];
+}
+
+Json json_of(const Configuration& configuration, const CpuTransition& cpu) {
+  const bool is_well = cpu.guarantee == Guarantee::kYes;
+  return {{"cpu", cpu.cpu},
+          {"schedulable", schedulable_word(cpu.guarantee)},
+          {"task", is_well ? Json() : Json(configuration.tasks()[cpu.task.index].name)},
+          {"takes_ns", cpu.is_lost() ? time_json(cpu.takes) : Json()},
+          {"settled_ns", time_json(cpu.settled)},
+          {"promised_before", cpu.was_promised}};
+}
+
+Json json_of(const Configuration& configuration, const ModeEdge& edge) {
+  Json askers = Json::array(), cpus = Json::array();
+  for (const ModeAsker& asker : edge.askers)
+    askers.push_back({{"cause", cause_word(asker.cause)},
+                      {"task", configuration.tasks()[asker.task].name},
+                      {"constant", asker.constant.empty() ? Json() : Json(asker.constant)}});
+  for (const CpuTransition& cpu : edge.cpus) cpus.push_back(json_of(configuration, cpu));
+  return {{"from", configuration.sets()[edge.from].name},
+          {"to", configuration.sets()[edge.to].name},
+          {"asked_by", std::move(askers)},
+          {"legal", true},
+          {"way", edge.is_refused() ? "refused" : "fast"},
+          {"cpus", std::move(cpus)}};
+}
+
+}  // namespace
+
+std::string mode_json(const Configuration& configuration, const ModeReport& report) {
+  Json sets = Json::array(), edges = Json::array(), alone = Json::array();
+  for (std::size_t set = 0; set < configuration.sets().size(); ++set)
+    sets.push_back({{"name", configuration.sets()[set].name}, {"start", set == configuration.start()}});
+  for (const ModeEdge& edge : report.edges) edges.push_back(json_of(configuration, edge));
+  for (const std::size_t set : report.by_operator) alone.push_back(configuration.sets()[set].name);
+  const Json all = {{"subsystem", configuration.subsystem()},
+                    {"accepted", report.is_accepted()},
+                    {"configurations", std::move(sets)},
+                    {"transitions", std::move(edges)},
+                    {"by_operator_only", std::move(alone)},
+                    {"warnings", report.warnings}};
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace chimera

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds who asks for which configuration, and judges the switch from each configuration to each other.
+#include "chimera/analysis/mode_report.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "chimera/runtime/hosted/heap_memory.h"
+
+namespace chimera {
+namespace {
+
+/// Something of a task that asks for the set of that number.
+struct AskedSet {
+  ModeAsker asker;
+  std::size_t set = 0;
+};
+
+class ModeWriter {
+ public:
+  ModeWriter(const Configuration& configuration, const Library& library)
+      : configuration_(configuration), library_(library), standing_(configuration.tasks().size()) {
+    schedule_.prepare(configuration.spec(), memory_);
+  }
+
+  ModeReport write() {
+    for (std::size_t t = 0; t < configuration_.tasks().size(); ++t) find_wishes(t);
+    const std::size_t n = configuration_.sets().size();
+    for (std::size_t from = 0; from < n; ++from)
+      for (std::size_t to = 0; to < n; ++to)
+        if (from != to) report_.edges.push_back(edge(from, to));
+    for (std::size_t set = 0; set < n; ++set)
+      if (set != configuration_.start() && !is_asked_for(set)) report_.by_operator.push_back(set);
+    for (const AskedSet& wish : wishes_) warn(wish);
+    return std::move(report_);
+  }
+
+ private:
+  void find_wishes(std::size_t task) {
+    const DraftTask& draft = configuration_.draft().tasks[task];
+    const auto add = [&](const Word& name, ModeCause cause) {
+      if (const auto set = find_set(name.text)) wishes_.push_back({{cause, task, {}}, *set});
+    };
+    if (draft.on_miss) add(draft.on_miss->configuration, ModeCause::kMiss);
+    if (draft.on_overrun) add(draft.on_overrun->configuration, ModeCause::kOverrun);
+    if (draft.on_fault) add(draft.on_fault->configuration, ModeCause::kFault);
+    const LibraryEntry* const entry = library_.find(configuration_.tasks()[task].component);
+    if (entry == nullptr) return;
+    const ApplicationSpec& spec = configuration_.spec();
+    const std::span<const ConfiguredPort> ports = configuration_.tasks()[task].ports;
+    for (const PortSpec& port : spec.tasks[task].ports) {
+      if (port.kind != CHIMERA_IN_CONST || !entry->descriptor.ports[port.declared].names_configuration) continue;
+      const auto bytes = port.constant.is_valid() ? spec.constants[port.constant.index].value : port.value;
+      for (std::size_t at = 0; at + port.element_bytes <= bytes.size(); at += port.element_bytes) {
+        const auto* text = reinterpret_cast<const char*>(bytes.data() + at);
+        if (const auto set = find_set({text, ::strnlen(text, port.element_bytes)}))
+          wishes_.push_back({{ModeCause::kConstant, task, name_of(ports, port)}, *set});
+      }
+    }
+  }
+
+  static std::string name_of(std::span<const ConfiguredPort> ports, const PortSpec& spec) {
+    for (const ConfiguredPort& port : ports)
+      if (port.declared == spec.declared && port.instance == spec.instance) return port.name;
+    return {};
+  }
+
+  std::optional<std::size_t> find_set(std::string_view name) const {
+    const auto sets = configuration_.sets();
+    const auto found = std::ranges::find(sets, name, &ConfiguredSet::name);
+    if (name.empty() || found == sets.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - sets.begin());
+  }
+
+  bool has(std::size_t set, std::size_t task) const {
+    return std::ranges::find(configuration_.sets()[set].order, TaskId(task)) != configuration_.sets()[set].order.end();
+  }
+  bool is_asked_for(std::size_t set) const {
+    return std::ranges::any_of(report_.edges,
+                               [&](const ModeEdge& edge) { return edge.to == set && !edge.askers.empty(); });
+  }
+
+  ModeEdge edge(std::size_t from, std::size_t to) {
+    ModeEdge made{.from = from, .to = to, .askers = {}, .cpus = {}};
+    for (const AskedSet& wish : wishes_)
+      if (wish.set == to && has(from, wish.asker.task)) made.askers.push_back(wish.asker);
+    for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t].state = has(from, t) ? State::kOn : State::kOff;
+    schedule_.consider(standing_, static_cast<std::uint32_t>(to));
+    for (std::size_t r = 0; r < configuration_.rtpus().size(); ++r) {
+      if (!schedule_.is_first_of_cpu(RtpuId(r))) continue;
+      const CpuTransition cpu = schedule_.on_cpu_of(RtpuId(r));
+      if (cpu.is_moved) made.cpus.push_back(cpu);
+    }
+    return made;
+  }
+
+  /// Of a task that fails and is to go on in the set that its failure leads to.
+  void warn(const AskedSet& wish) {
+    if (!wish.asker.is_reaction() || !has(wish.set, wish.asker.task)) return;
+    const bool leaves_any = std::ranges::any_of(report_.edges, [&](const ModeEdge& edge) {
+      return edge.to == wish.set && has(edge.from, wish.asker.task);
+    });
+    if (!leaves_any) return;
+    const std::string text = asker_text(configuration_, wish.asker) + " asks for configuration '" +
+                             configuration_.sets()[wish.set].name + "', which contains the task itself: ";
+    report_.warnings.push_back(text + (wish.asker.cause == ModeCause::kFault
+                                           ? "in ERROR it cannot be part of it, so the switch is refused"
+                                           : "it goes on there as it is"));
+  }
+
+  const Configuration& configuration_;
+  const Library& library_;
+  HeapMemory memory_;
+  SwitchSchedule schedule_;
+  std::vector<TaskStanding> standing_;
+  std::vector<AskedSet> wishes_;
+  ModeReport report_;
+};
+
+}  // namespace
+
+bool ModeEdge::is_refused() const noexcept {
+  return std::ranges::any_of(cpus, [](const CpuTransition& cpu) { return cpu.is_lost() && cpu.was_promised; });
+}
+
+bool ModeEdge::has_reaction() const noexcept { return std::ranges::any_of(askers, &ModeAsker::is_reaction); }
+
+bool ModeReport::is_accepted() const noexcept {
+  return std::ranges::none_of(edges, [](const ModeEdge& edge) { return edge.is_refused() && edge.has_reaction(); });
+}
+
+ModeReport mode_report(const Configuration& configuration, const Library& library) {
+  return ModeWriter(configuration, library).write();
+}
+
+std::string asker_text(const Configuration& configuration, const ModeAsker& asker) {
+  const std::string& task = configuration.tasks()[asker.task].name;
+  switch (asker.cause) {
+    case ModeCause::kMiss: return "on_miss of " + task;
+    case ModeCause::kOverrun: return "on_overrun of " + task;
+    case ModeCause::kFault: return "on_fault of " + task;
+    case ModeCause::kConstant: return "constant " + asker.constant + " of " + task;
+  }
+  return "?";
+}
+
+const char* schedulable_word(Guarantee guarantee) noexcept {
+  switch (guarantee) {
+    case Guarantee::kYes: return "yes";
+    case Guarantee::kNo: return "no";
+    case Guarantee::kNotStated: return "not-stated";
+    case Guarantee::kTooLong: return "not-decided";
+  }
+  return "?";
+}
+
+}  // namespace chimera

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes what is known of each switch between configurations, a paragraph for each.
+#include "chimera/cli/files/modes_text.h"
+
+#include "chimera/text/time_text.h"
+
+namespace chimera::cli {
+namespace {
+
+class ModeLines {
+ public:
+  explicit ModeLines(const Configuration& configuration) : configuration_(configuration) {}
+
+  std::string edge(const ModeEdge& edge) const {
+    std::string text = set(edge.from) + " -> " + set(edge.to) + ": " + (edge.is_refused() ? "refused" : "fast") +
+                       "; asked for by ";
+    for (const ModeAsker& asker : edge.askers) text += asker_text(configuration_, asker) + ", ";
+    text += "an operator\n";
+    for (const CpuTransition& one : edge.cpus) text += "  CPU " + std::to_string(one.cpu) + ": " + cpu(one) + "\n";
+    return text;
+  }
+
+  const std::string& set(std::size_t index) const { return configuration_.sets()[index].name; }
+
+ private:
+  std::string cpu(const CpuTransition& cpu) const {
+    const std::string settled =
+        cpu.settled == kNever || cpu.settled == Nanoseconds{}  // nobody was there before
+            ? ""
+            : "; what was released before has ended " + time_text(cpu.settled) + " after the change";
+    switch (cpu.guarantee) {
+      case Guarantee::kYes: return "schedulable" + settled;
+      case Guarantee::kNotStated: return "not judged whole: task " + task(cpu) + " has no budget";
+      case Guarantee::kTooLong: return "not decided: too much to search for task " + task(cpu) + before(cpu);
+      case Guarantee::kNo: break;
+    }
+    const Nanoseconds deadline = configuration_.spec().tasks[cpu.task.index].deadline;
+    return "not schedulable: a cycle of task " + task(cpu) + " may take " +
+           (cpu.takes == kNever ? "longer than its deadline of " + time_text(deadline)
+                                : time_text(cpu.takes) + ", its deadline is " + time_text(deadline)) +
+           before(cpu);
+  }
+  static std::string before(const CpuTransition& cpu) {
+    return cpu.was_promised ? "" : "; neither is the configuration before, so nothing is lost";
+  }
+  std::string task(const CpuTransition& cpu) const {
+    return "'" + configuration_.tasks()[cpu.task.index].name + "'";
+  }
+
+  const Configuration& configuration_;
+};
+
+}  // namespace
+
+std::string modes_text(const Configuration& configuration, const ModeReport& report) {
+  const ModeLines lines(configuration);
+  std::string text;
+  for (const ModeEdge& edge : report.edges) text += lines.edge(edge);
+  if (report.edges.empty())
+    return configuration.subsystem() + " has one configuration: there is nothing to switch to\n";
+  if (report.by_operator.empty()) return text;
+  text += "unreachable except by an operator:";
+  for (const std::size_t set : report.by_operator) text += " " + lines.set(set);
+  return text + "\n";
+}
+
+}  // namespace chimera::cli

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Asks for receipts, or reads them from their file, and makes a table of them.
+#include "chimera/cli/live/receipts_command.h"
+
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "chimera/cli/live/answer_text.h"
+#include "chimera/cli/live/columns.h"
+#include "chimera/cli/live/fields.h"
+#include "chimera/cli/live/figures.h"
+#include "chimera/control/receipt_file.h"
+#include "chimera/control/state_folder.h"
+
+namespace chimera::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uint64_t kLast = 20, kMostLast = 200;
+
+/// None: it is no number that --last may have.
+std::optional<std::uint64_t> last_of(const Call& call) {
+  if (!call.has("--last")) return kLast;
+  const std::string text = call.value("--last");
+  std::uint64_t last = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), last);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  return is_number && last >= 1 && last <= kMostLast ? std::optional(last) : std::nullopt;
+}
+
+CommandResult wrong_last(const Call& call) {
+  const std::string text = "--last: '" + call.value("--last") + "' is not a whole number from 1 to 200";
+  return refused(Error{ErrorCode::kBadInput, std::string_view(text), {}}, call.json, kUsage);
+}
+
+/// The only subsystem with receipts; "" where there is none, or there are several.
+std::string only_one() {
+  std::string only;
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(control::state_folder(), error), end; !error && at != end;
+       at.increment(error)) {
+    if (!std::filesystem::exists(control::ReceiptFile(at->path().string()).path(), error)) continue;
+    if (!only.empty()) return "";
+    only = at->path().filename().string();
+  }
+  return only;
+}
+
+std::string asked_at(const Json& receipt) {
+  const auto at = static_cast<std::time_t>(whole_of(receipt, "wall_ns") / 1'000'000'000);
+  std::tm local{};
+  char text[32];
+  if (::localtime_r(&at, &local) == nullptr || std::strftime(text, sizeof text, "%F %T", &local) == 0) return "?";
+  return text;
+}
+
+std::string asked_by(const Json& receipt) {
+  const Json& by = field(receipt, "asked_by");
+  const std::string role = text_of(by, "role"), reaction = text_of(by, "reaction"), task = text_of(by, "task");
+  if (!role.empty()) return role + ":" + text_of(by, "user");
+  if (!reaction.empty()) return reaction + " of " + task;
+  return task.empty() ? text_of(by, "script") : "task " + task;
+}
+
+std::string figure(const Json& number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", number.get<double>());
+  return text;
+}
+
+/// "wanted 2 of 3 m/s, tau 0.1 N.m": the limit where there is one.
+std::string moves(const Json& receipt) {
+  std::string text;
+  for (const Json& variable : field(receipt, "variables")) {
+    const Json &step = field(variable, "step"), &limit = field(variable, "limit");
+    if (!step.is_number()) continue;
+    const std::string unit = text_of(variable, "unit");
+    text += (text.empty() ? "" : ", ") + text_of(variable, "variable") + " " + figure(step) +
+            (limit.is_number() ? " of " + figure(limit) : "") + (unit == "1" ? "" : " " + unit) +
+            (truth_of(variable, "beyond") ? " (beyond)" : "");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string receipts_text(const Json& answer) {
+  Columns table({">number", "asked", "by", "from", "to", "end", ">change", ">lost", "moves"});
+  std::string whys;
+  for (const Json& receipt : field(answer, "receipts")) {
+    const std::string number = std::to_string(whole_of(receipt, "number")), end = text_of(receipt, "end");
+    const auto at = whole_or_none(receipt, "at_ns");
+    std::int64_t lost = 0;
+    for (const Json& task : field(receipt, "tasks")) lost += whole_of(task, "lost");
+    const std::string from = text_of(receipt, "from");
+    table.add({number, asked_at(receipt), asked_by(receipt), from.empty() ? "-" : from, text_of(receipt, "to"), end,
+               at ? duration_text(*at - whole_of(receipt, "asked_ns")) : "-",
+               end == "refused" ? "-" : std::to_string(lost), end == "done" ? moves(receipt) : ""});
+    if (end != "done") whys += "switch " + number + ": " + text_of(receipt, "why") + "\n";
+  }
+  std::string text = table.empty() ? "no receipts\n" : table.text();
+  const std::int64_t unfiled = whole_of(answer, "unfiled");
+  if (const std::string fault = text_of(answer, "fault"); !fault.empty())
+    whys += std::to_string(unfiled) + (unfiled == 1 ? " is" : " are") + " not filed: " + fault + "\n";
+  return text + (whys.empty() ? "" : "\n" + whys);
+}
+
+CommandResult receipts(Session& session, const Call& call, const Screen&) {
+  const auto last = last_of(call);
+  if (!last) return wrong_last(call);
+  const std::string named = call.operand(0);
+  if (!named.empty() && named.find('/') == std::string::npos && named != session.subsystem()) {
+    const std::string why = "has no receipts here";
+    return filed_receipts(call, named, {ErrorCode::kNotFound, std::string_view(why), std::string_view(named)});
+  }
+  return answered(session.ask("receipts", {{"last", *last}}), call.json, receipts_text);
+}
+
+CommandResult filed_receipts(const Call& call, const std::string& subsystem, const Error& why) {
+  const auto last = last_of(call);
+  if (!last) return wrong_last(call);
+  if (why.code != ErrorCode::kNotFound) return refused(why, call.json);  // it may run
+  const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
+  const std::string asked = !subsystem.empty() ? subsystem : chosen != nullptr ? chosen : "";
+  const std::string name = asked.empty() ? only_one() : asked;
+  if (name.empty() || name.find('/') != std::string::npos) return refused(why, call.json);
+  const control::ReceiptFile file(control::state_folder_of(name));
+  const std::vector<std::string> lines = file.last(*last);
+  if (lines.empty()) return refused(why, call.json);
+  Json receipts = Json::array();
+  for (const std::string& line : lines) receipts.push_back(Json::parse(line));
+  const Json answer = {{"receipts", std::move(receipts)}, {"file", file.path()}, {"unfiled", 0}, {"fault", Json()},
+                       {"subsystem", name}};
+  if (call.json) return {json_line(answer), "", kOk};
+  return {receipts_text(answer), "'" + name + "' does not run: from " + file.path() + "\n", kOk};
+}
+
+}  // namespace chimera::cli

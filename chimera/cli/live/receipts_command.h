@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// `chimera receipts`: what became of the last switches, from the manager or, when none runs, from the file.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "chimera/cli/live/commands.h"
+
+namespace chimera::cli {
+
+// Context of all: setup; may block.
+CommandResult receipts(Session& session, const Call& call, const Screen& screen);
+/// Of a subsystem that does not run, for the reason `why`, which is the answer where it has none either. `subsystem`:
+/// "" stands for the only one that has receipts.
+CommandResult filed_receipts(const Call& call, const std::string& subsystem, const Error& why);
+
+/// An answer of `receipts` as a table, with a line for each one that was not done.
+std::string receipts_text(const nlohmann::json& answer);
+
+}  // namespace chimera::cli

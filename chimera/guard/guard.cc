@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// Waits for deaths, and writes what the dead have left for their devices.
+#include "chimera/guard/guard.h"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+
+#include "chimera/platform/process.h"
+#include "chimera/platform/readiness.h"
+#include "chimera/runtime/hosted/pages.h"
+
+namespace chimera {
+
+using Kind = GuardMessage::Kind;
+
+Guard::Guard(Channel keeper, const ApplicationImage& image)
+    : keeper_(std::move(keeper)), spec_(image.spec()), writes_(static_cast<std::uint32_t>(image.spec().tasks.size())) {}
+
+Result<std::unique_ptr<Guard>> Guard::create(Channel keeper, const ApplicationImage& image,
+                                             std::span<const SilenceLimit> limits) {
+  std::unique_ptr<Guard> guard(new Guard(std::move(keeper), image));
+  if (const auto prepared = guard->prepare(limits); !prepared) return prepared.error();
+  return guard;
+}
+
+Result<void> Guard::prepare(std::span<const SilenceLimit> limits) {
+  for (std::uint32_t rtpu = 0; rtpu < spec_.rtpus.size(); ++rtpu) {
+    auto layout = PeerLayout::of(spec_, rtpu, memory_);
+    if (!layout) return layout.error();
+    layouts_.push_back(*layout);
+  }
+  units_ = std::vector<Unit>(spec_.rtpus.size());
+  for (const SilenceLimit& limit : limits) {
+    if (limit.task.index >= spec_.tasks.size() || limit.periods == 0)
+      return Error{ErrorCode::kBadInput, {"a limit of silence for a task that there is not"}, {}};
+    silences_.emplace_back(limit.task, spec_.tasks[limit.task.index].period, limit.periods);
+  }
+  return {};
+}
+
+void Guard::say_ready(bool has_rights) noexcept { tell({.kind = Kind::kReady, .good = has_rights ? 1u : 0u}); }
+
+// A keeper that is gone or full is not waited for.
+void Guard::tell(GuardMessage message) noexcept {
+  if (keeper_.is_open()) (void)keeper_.send(bytes_of(message));
+}
+
+bool Guard::is_needed() const noexcept {
+  return keeper_.is_open() ||
+         std::ranges::any_of(units_, [](const Unit& unit) { return unit.process.fd >= 0 || unit.is_writing; });
+}
+
+bool Guard::step(Nanoseconds at_most) noexcept {
+  wait(at_most);
+  writes_.advance(clock_.now());
+  for (std::uint32_t index = 0; index < units_.size(); ++index) finish(index);
+  if (!silences_.empty()) look_for_silence();
+  return is_needed();
+}
+
+// Deaths first: what the keeper says next may be of a successor.
+void Guard::wait(Nanoseconds at_most) noexcept {
+  std::array<Watched, 1 + 2 * kMaxRtpus> watched{};
+  watched[0].descriptor = keeper_.descriptor();
+  for (std::uint32_t index = 0; index < units_.size(); ++index) {
+    watched[1 + 2 * index].descriptor = units_[index].process.fd;
+    watched[2 + 2 * index].descriptor = units_[index].line.descriptor();
+  }
+  Nanoseconds due = writes_.due();
+  for (const Silence& silence : silences_) due = std::min(due, silence.due());
+  const Nanoseconds until_due = due == kNever ? kNever : due - clock_.now();
+  if (await_ready(watched, std::min(until_due, at_most)) <= 0) return;
+  for (std::uint32_t index = 0; index < units_.size(); ++index) {
+    if (watched[2 + 2 * index].is_ready) listen_to_unit(index);
+    if (watched[1 + 2 * index].is_ready) bury(index);
+  }
+  if (watched[0].is_ready) listen_to_keeper();
+}
+
+void Guard::listen_to_keeper() noexcept {
+  GuardMessage message;
+  for (int passed = -1;;) {
+    const Channel::Got got = keeper_.receive(bytes_of(message), passed);
+    if (got == Channel::Got::kNothing) return;
+    if (got == Channel::Got::kClosed) {
+      keeper_ = Channel();
+      return;
+    }
+    take(message, OwnedDescriptor(passed));
+  }
+}
+
+// A unit is started when its predecessor is dead: whether that was seen here before or not.
+void Guard::take(const GuardMessage& message, OwnedDescriptor passed) noexcept {
+  if (message.index >= units_.size() || passed.fd < 0) return;
+  Unit& unit = units_[message.index];
+  if (message.kind == Kind::kUnit) {
+    if (unit.process.fd >= 0) bury(message.index);
+    finish(message.index, true);  // from here on the devices are the successor's
+    unit.process = std::move(passed);
+    unit.incarnation = message.incarnation;
+  } else if (message.kind == Kind::kLine && message.incarnation == unit.incarnation) {
+    unit.line = Channel(passed.release());
+  }
+}
+
+// What it has sent can be taken after its death, too.
+void Guard::listen_to_unit(std::uint32_t index) noexcept {
+  Unit& unit = units_[index];
+  GuardMessage message;
+  for (int passed = -1; unit.line.is_open();) {
+    const Channel::Got got = unit.line.receive(bytes_of(message), passed);
+    OwnedDescriptor owned(passed);
+    if (got == Channel::Got::kNothing) return;
+    if (got == Channel::Got::kClosed) {
+      unit.line = Channel();
+    } else if (message.kind == Kind::kSegment && owned.fd >= 0) {
+      auto opened = PeerSegment::open(owned.fd, layouts_[index], static_cast<std::uint32_t>(spec_.tasks.size()), index,
+                                      unit.incarnation);
+      if (opened) unit.segment = *std::move(opened);
+    } else if (message.kind == Kind::kFrame && message.task < spec_.tasks.size() &&
+               spec_.tasks[message.task].rtpu.index == index) {
+      writes_.keep(message.task, message.frame, std::move(owned), message.pause);
+    }
+  }
+}
+
+// It is proved dead: its memory does not change any more.
+void Guard::bury(std::uint32_t index) noexcept {
+  Unit& unit = units_[index];
+  listen_to_unit(index);
+  unit.process = OwnedDescriptor();
+  unit.line = Channel();
+  unit.died = clock_.now();
+  unit.is_writing = true;
+  if (unit.segment.is_there() && unit.segment.incarnation() == unit.incarnation)
+    for (std::uint32_t task = 0; task < spec_.tasks.size(); ++task)
+      if (spec_.tasks[task].rtpu.index == index) writes_.begin(TaskId(task), unit.segment.block(), unit.died);
+  unit.segment = PeerSegment();
+  writes_.advance(clock_.now());
+  finish(index);
+}
+
+void Guard::finish(std::uint32_t index, bool is_at_once) noexcept {
+  Unit& unit = units_[index];
+  if (!unit.is_writing) return;
+  WrittenFrames written;
+  bool is_over = true;
+  for (std::uint32_t task = 0; task < spec_.tasks.size(); ++task)
+    if (spec_.tasks[task].rtpu.index == index) is_over &= !writes_.is_on_its_way(TaskId(task));
+  if (!is_over && !is_at_once) return;
+  for (std::uint32_t task = 0; task < spec_.tasks.size(); ++task)
+    if (spec_.tasks[task].rtpu.index == index) writes_.finish(TaskId(task), written);
+  unit.is_writing = false;
+  tell({.kind = Kind::kWritten,
+        .index = index,
+        .incarnation = unit.incarnation,
+        .good = written.good,
+        .bad = written.bad,
+        .died = unit.died,
+        .at = written.at});
+}
+
+// SIGKILL is not yet the end: what there is to write is written when that is proved.
+void Guard::look_for_silence() noexcept {
+  const Nanoseconds now = clock_.now();
+  for (Silence& silence : silences_) {
+    if (silence.due() > now) continue;
+    const std::uint32_t index = spec_.tasks[silence.task().index].rtpu.index;
+    const Unit& unit = units_[index];
+    const bool is_there = unit.process.fd >= 0 && unit.segment.is_there();
+    const TaskStatus status = is_there ? unit.segment.block().status(silence.task()) : TaskStatus{};
+    chimera_slot slot{};
+    if (is_there) {
+      const GroupReader group = unit.segment.group(layouts_[index].outputs(silence.task(), status.incarnation));
+      if (!group.try_read_part(slot, 0, {})) slot = {};
+    }
+    if (!silence.look(status.state == State::kOn, slot.sequence, now)) continue;
+    (void)signal_process(unit.process.fd, SIGKILL);
+    tell({.kind = Kind::kSilent, .index = index, .incarnation = unit.incarnation, .task = silence.task().index});
+  }
+}
+
+}  // namespace chimera

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Starts the guard, tells it who lives, and passes on what it says.
+#include "chimera/keeper/kept_guard.h"
+
+#include <algorithm>
+#include <csignal>
+
+#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/process_id.h"
+
+namespace chimera {
+
+Result<void> KeptGuard::start(const std::string& program, std::span<const std::string> limits, int image) {
+  auto ends = Channel::pair();
+  if (!ends) return ends.error();
+  const std::string parent = std::to_string(own_process_id());
+  std::vector<const char*> words = {program.c_str(), "--parent", parent.c_str()};
+  for (const std::string& limit : limits) words.insert(words.end(), {"--silent", limit.c_str()});
+  const int passed[] = {ends->second.descriptor(), image};
+  auto process = Process::start(program.c_str(), words, passed);
+  if (!process) return process.error();
+  process_ = *std::move(process);
+  channel_ = std::move(ends->first);
+  return {};
+}
+
+Channel KeptGuard::make_line() {
+  auto ends = lives() ? Channel::pair() : Result<std::pair<Channel, Channel>>(std::pair<Channel, Channel>());
+  if (!ends) return {};  // as without a guard
+  new_line_ = std::move(ends->first);
+  return std::move(ends->second);
+}
+
+void KeptGuard::watch(std::uint32_t index, std::uint32_t incarnation, int pidfd) {
+  if (!new_line_.is_open()) return;
+  const auto kUnit = GuardMessage::Kind::kUnit, kLine = GuardMessage::Kind::kLine;
+  send({.kind = kUnit, .index = index, .incarnation = incarnation}, pidfd);
+  send({.kind = kLine, .index = index, .incarnation = incarnation}, new_line_.descriptor());
+  new_line_ = Channel();
+}
+
+// A guard that does not take its messages would write nothing for whom it does not know.
+void KeptGuard::send(const GuardMessage& message, int passed) const {
+  if (channel_.is_open() && !channel_.send(bytes_of(message), passed)) process_.signal(SIGKILL);
+}
+
+void KeptGuard::poll(std::vector<KeeperMessage>& news) {
+  GuardMessage said;
+  int passed = -1;
+  while (channel_.is_open() && channel_.receive(bytes_of(said), passed) == Channel::Got::kMessage) {
+    const OwnedDescriptor unwanted(passed);
+    KeeperMessage message{.index = said.index, .incarnation = said.incarnation};
+    if (said.kind == GuardMessage::Kind::kReady && said.good == 0) {
+      state_.code = KeeperMessage::kGuardIsSlow;
+      introduce(news);
+    } else if (said.kind == GuardMessage::Kind::kWritten) {
+      message.kind = KeeperMessage::Kind::kFramesWritten;
+      message.code = static_cast<std::int32_t>(said.good);
+      message.letter = said.bad;
+      message.at = said.at;
+      message.silent = said.died;
+      news.push_back(message);
+    } else if (said.kind == GuardMessage::Kind::kSilent) {
+      message.kind = KeeperMessage::Kind::kSilent;
+      message.code = static_cast<std::int32_t>(said.task);
+      news.push_back(message);
+    }
+  }
+  ProcessEnd how;
+  if (!process_.is_held() || !process_.has_ended(how)) return;
+  channel_ = Channel();
+  state_.code = KeeperMessage::kGuardIsDead;
+  introduce(news);
+}
+
+void KeptGuard::introduce(std::vector<KeeperMessage>& news) const {
+  if (state_.code != KeeperMessage::kGuardIsWell) news.push_back(state_);
+}
+
+void KeptGuard::end(Nanoseconds limit) {
+  channel_ = Channel();
+  ProcessEnd how;
+  if (!process_.is_held() || process_.wait(how, limit.count)) return;
+  process_.signal(SIGKILL);
+  process_.wait(how, limit.count);
+}
+
+}  // namespace chimera

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who asked the manager for something that leaves a receipt.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "chimera/control/rpc_response.h"
+#include "chimera/platform/user_name.h"
+
+namespace chimera::manager {
+
+/// Plain value.
+struct Asker {
+  control::Role role = control::Role::kNone;
+  std::uint32_t user = 0;
+
+  /// "operate:ann". Context: setup; reads /etc/passwd.
+  std::string text() const { return std::string(control::role_name(role)) + ":" + user_name(user); }
+};
+
+}  // namespace chimera::manager

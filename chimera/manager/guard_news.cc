@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts into words what the guard did.
+#include "chimera/manager/guard_news.h"
+
+#include <cstdio>
+
+namespace chimera::manager {
+namespace {
+
+std::string frames_text(const KeeperMessage& message) {
+  char text[128];
+  std::snprintf(text, sizeof text, "%d safe %s written", message.code, message.code == 1 ? "frame" : "frames");
+  std::string words = text;
+  if (message.code > 0) {
+    const double ms = static_cast<double>((message.at - message.silent).count) / 1e6;
+    std::snprintf(text, sizeof text, ", the last byte %.3f ms after the guard saw the death", ms);
+    words += text;
+  }
+  if (message.letter == 0) return words;
+  std::snprintf(text, sizeof text, "; %u COULD NOT BE WRITTEN: the device took nothing for 1 s", message.letter);
+  return words + text;
+}
+
+}  // namespace
+
+void tell_of_guard(ManagerState& world, const KeeperMessage& message, Nanoseconds now) {
+  using Kind = KeeperMessage::Kind;
+  const bool is_of_unit = message.index < world.peers.n_rtpus();
+  if (message.kind == Kind::kFramesWritten && is_of_unit && (message.code > 0 || message.letter > 0)) {
+    world.tell("safe", TaskId{}, RtpuId(message.index), frames_text(message), now);
+  } else if (message.kind == Kind::kSilent && is_of_unit &&
+             static_cast<std::uint32_t>(message.code) < world.peers.n_tasks()) {
+    const TaskId task(static_cast<std::uint32_t>(message.code));
+    world.tell("safe", task, RtpuId(message.index),
+               "published nothing for as long as `safe_after` says: its real-time unit is ended", now);
+  } else if (message.kind == Kind::kGuardState && message.code == KeeperMessage::kGuardIsSlow) {
+    world.tell("safe", TaskId{}, RtpuId{},
+               "the guard has no real-time rights: it writes safe frames, and nothing bounds when", now);
+  } else if (message.kind == Kind::kGuardState && message.code == KeeperMessage::kGuardIsDead) {
+    world.tell("safe", TaskId{}, RtpuId{}, "the guard is dead: nobody writes safe frames until the next run", now);
+  }
+}
+
+}  // namespace chimera::manager

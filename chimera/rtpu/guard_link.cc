@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hands the unit's memory and the descriptors of its devices to the guard.
+#include "chimera/rtpu/guard_link.h"
+
+#include "chimera/platform/readiness.h"
+
+namespace chimera {
+namespace {
+
+constexpr Nanoseconds kPatience = milliseconds(500);  // the guard is above all others: it takes what comes at once
+
+}  // namespace
+
+void GuardLink::show(int segment, const BlockOwner& block) noexcept {
+  block_ = block;
+  (void)send({.kind = GuardMessage::Kind::kSegment}, segment);  // not sent: as if the guard were dead
+}
+
+bool GuardLink::keep(TaskId task, std::uint32_t index, int descriptor, Nanoseconds pause) noexcept {
+  return send({.kind = GuardMessage::Kind::kFrame, .task = task.index, .frame = index, .pause = pause}, descriptor);
+}
+
+bool GuardLink::send(GuardMessage message, int passed) noexcept {
+  message.index = peer_;
+  message.incarnation = incarnation_;
+  if (line_.send(bytes_of(message), passed)) return true;
+  Watched room{.descriptor = line_.descriptor(), .for_room = true};
+  return await_ready({&room, 1}, kPatience) > 0 && line_.send(bytes_of(message), passed);
+}
+
+}  // namespace chimera

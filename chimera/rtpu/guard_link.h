@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A real-time unit's line to the guard, which writes to the devices when the unit is dead.
+#pragma once
+
+#include "chimera/platform/channel.h"
+#include "chimera/rtpu/guard_message.h"
+#include "chimera/runtime/hosted/rtpu_block.h"
+#include "chimera/runtime/safe_frame.h"
+
+namespace chimera {
+
+/// What it sends outlives the unit: the guard takes it from the line before it writes. Any thread of the unit.
+class GuardLink final : public SafeFrames {
+ public:
+  /// Takes over the unit's end of the line; below 0: there is no guard. Context: setup.
+  GuardLink(int descriptor, std::uint32_t peer, std::uint32_t incarnation) noexcept
+      : line_(descriptor), peer_(peer), incarnation_(incarnation) {}
+
+  bool is_there() const noexcept { return line_.is_open(); }
+  /// The memory in which the frames of this unit stand; before the first task is made. Context: setup.
+  void show(int segment, const BlockOwner& block) noexcept;
+
+  std::span<SafeFrame, kSafeFrames> of(TaskId task) noexcept override { return block_.safe_frames(task); }
+  bool keep(TaskId task, std::uint32_t index, int descriptor, Nanoseconds pause) noexcept override;
+
+ private:
+  bool send(GuardMessage message, int passed) noexcept;
+
+  const Channel line_;
+  const std::uint32_t peer_, incarnation_;
+  BlockOwner block_;
+};
+
+}  // namespace chimera

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// A standby in another real-time unit takes over by what status words and the keeper's page say, without a manager.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "chimera/rtpu/testing/test_units.h"
+
+namespace chimera {
+namespace {
+
+using testing::TestApplication;
+using testing::Units;
+
+struct Primary {
+  Out<double> u{"u", "1", initial = 0.0};
+  static inline bool fails = false;
+  Outcome cycle(Cycle c) {
+    *u = static_cast<double>(c.count()) + 1;
+    return fails ? fault("no current") : ok();
+  }
+};
+
+struct Standby {
+  Out<double> u{"u", "1", initial = 0.0};
+  static inline bool fails = false;
+  static inline double inherited = -1;
+  Outcome on(Cycle) {
+    inherited = *u;
+    return fails ? fault("no voltage") : ok();
+  }
+  void cycle(Cycle) { *u = *u + 1000; }
+};
+
+struct User {
+  In<double> u{"u", "1"};
+  Out<double> seen{"seen", "1", initial = 0.0};
+  static inline int illegal = 0;
+  void cycle(Cycle c) {
+    *seen = *u;
+    illegal += c.illegal() ? 1 : 0;
+  }
+};
+
+constexpr TaskId kPrimary{0u}, kUser{1u}, kSpare{2u}, kLast{3u};
+
+/// The primary, what reads it, and its two standbys, each in a unit of its own, as processes are.
+struct StandbyLinksTest : ::testing::Test {
+  StandbyLinksTest() {
+    Primary::fails = Standby::fails = false;
+    app.rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kEdf}, {"c", 2, Policy::kEdf}, {"d", 3, Policy::kEdf}};
+    app.add("primary", testing::component<Primary>("primary")).rtpu = RtpuId(0u);
+    app.add("user", testing::component<User>("user")).rtpu = RtpuId(1u);
+    app.add("spare", testing::component<Standby>("standby")).rtpu = RtpuId(2u);
+    app.add("last", testing::component<Standby>("standby")).rtpu = RtpuId(3u);
+    app.make({kPrimary, kUser}, false);
+    app.spec.standbys = pairs;
+    units = std::make_unique<Units>(app);
+    units->run(milliseconds(1));
+    for (std::uint32_t t = 0; t <= kLast.index; ++t) units->send(Signal::kSpawn, {TaskId(t)});
+    units->run(milliseconds(2));
+    units->send(Signal::kOn, {kPrimary});
+    units->run(milliseconds(1));
+    units->send(Signal::kOn, {kUser});
+    units->run(milliseconds(5));
+    User::illegal = 0;
+  }
+  State state(TaskId task) const { return units->units[app.tasks[task.index].rtpu.index]->state(task); }
+  std::uint64_t claim() const { return units->decision.claims[0].load(); }
+
+  std::vector<StandbySpec> pairs{{kPrimary, kSpare}, {kPrimary, kLast}};
+  TestApplication app;
+  std::unique_ptr<Units> units;
+};
+
+TEST_F(StandbyLinksTest, TakesOverFromATaskThatFails) {
+  Primary::fails = true;
+  units->run(milliseconds(5));
+  EXPECT_EQ(state(kPrimary), State::kError);
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_EQ(state(kLast), State::kOff);
+  EXPECT_GT(Standby::inherited, 0);
+  EXPECT_GE(units->units[1]->output(kUser), 1000) << "the reader follows";
+  EXPECT_FALSE(units->flag_is_up());
+  EXPECT_EQ(User::illegal, 0);
+  EXPECT_EQ(claim(), 0u);
+}
+
+TEST_F(StandbyLinksTest, TakesOverFromAProcessThatDiesWithTheManager) {
+  units->keeper.alive[4] = 0;
+  units->die(0);
+  units->run(milliseconds(5));
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_GE(units->units[1]->output(kUser), 1000);
+  EXPECT_EQ(User::illegal, 0);
+}
+
+TEST_F(StandbyLinksTest, TheNextOneTakesOverWhenTheFirstIsDeadOrCannot) {
+  units->die(2);
+  units->run(milliseconds(2));
+  units->die(0);
+  units->run(milliseconds(5));
+  EXPECT_EQ(state(kLast), State::kOn);
+  EXPECT_EQ(User::illegal, 0);
+}
+
+TEST_F(StandbyLinksTest, OneWhoseOnFailsMakesPlace) {
+  Standby::fails = true;
+  units->die(0);
+  units->run(milliseconds(1));
+  EXPECT_EQ(state(kSpare), State::kError);
+  EXPECT_EQ(state(kLast), State::kError);
+  units->run(milliseconds(3));
+  EXPECT_TRUE(units->flag_is_up());
+}
+
+TEST_F(StandbyLinksTest, AnotherUnitWithTheClaimIsWaitedForUnlessItIsDead) {
+  units->decision.claims[0] = std::uint64_t{4} << 32 | 1;  // the unit of `last`
+  Primary::fails = true;
+  units->run(milliseconds(3));
+  EXPECT_EQ(state(kSpare), State::kOff);
+  EXPECT_TRUE(units->flag_is_up()) << "a period is over";
+  units->die(3);
+  units->run(milliseconds(3));
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_FALSE(units->flag_is_up());
+}
+
+TEST_F(StandbyLinksTest, AProcessThatEndsWithTheRunIsNotReplaced) {
+  units->keeper.ending = 1;
+  units->die(0);
+  units->run(milliseconds(5));
+  EXPECT_EQ(state(kSpare), State::kOff);
+}
+
+TEST_F(StandbyLinksTest, ASecondOnOfTheGroupIsRefusedByTheUnitItself) {
+  units->send(Signal::kOn, {kSpare});  // a manager that knew of nothing
+  units->run(milliseconds(2));
+  EXPECT_EQ(state(kSpare), State::kOff);
+  EXPECT_EQ(claim(), 0u);
+}
+
+}  // namespace
+}  // namespace chimera

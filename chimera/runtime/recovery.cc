@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns standbys ON and restarts tasks at edges.
+#include "chimera/runtime/recovery.h"
+
+#include <algorithm>
+
+#include "chimera/base/message.h"
+
+namespace chimera {
+namespace {
+
+void count(std::uint16_t& counter) noexcept {
+  if (counter < UINT16_MAX) ++counter;
+}
+
+}  // namespace
+
+void Recovery::prepare() {
+  TaskSet& set = parts_.set;
+  const auto specs = set.spec().restarts;
+  const auto is_mine = [&](const RestartSpec& spec) { return set.is_mine(spec.task); };
+  restarts_ = set.setup_memory().take<Restart>(
+      static_cast<std::size_t>(std::count_if(specs.begin(), specs.end(), is_mine)));
+  std::size_t n = 0;
+  for (const RestartSpec& spec : specs) {
+    if (!is_mine(spec)) continue;
+    restarts_[n].spec = &spec;
+    restarts_[n].done = set.setup_memory().take<Nanoseconds>(spec.most);
+    std::fill(restarts_[n].done.begin(), restarts_[n].done.end(), Nanoseconds{INT64_MIN});
+    ++n;
+  }
+}
+
+// A task that may not be touched yet is looked at again with the next edge.
+void Recovery::act(Nanoseconds now) noexcept {
+  Standbys& standbys = parts_.set.standbys();
+  if (restarts_.empty() && standbys.n_groups() == 0) return;
+  if (standbys.due() <= now) parts_.set.on_set_changed();
+  bool is_done = true;
+  for (std::size_t group = 0; group < standbys.n_groups(); ++group) is_done = take_over(group, now) && is_done;
+  for (Restart& each : restarts_) is_done = restart(each, now) && is_done;
+  if (is_done) parts_.set.sent().had_edge();
+}
+
+// A switch that is not committed gives way to it; the change of one that is comes first.
+bool Recovery::may_touch(Task& task) noexcept {
+  return !task.in_service && parts_.switching.give_way(task.id) && parts_.signals.may_touch(task.id);
+}
+
+// False: later.
+bool Recovery::take_over(std::size_t group, Nanoseconds now) noexcept {
+  TaskSet& set = parts_.set;
+  for (;;) {
+    const TaskId id = set.standbys().next(group);
+    if (!id.is_valid() || !set.is_mine(id)) return true;
+    Task& task = set.tasks()[id.index];
+    if (!may_touch(task)) return false;
+    if (!set.life().would_be_legal({&id, 1})) return true;  // once an input has a producer again
+    const TaskId failed = set.standbys().failed(group);
+    const SignalReport report = parts_.signals.signal({&id, 1}, Signal::kOn, now);
+    if (report.why == Refusal::kIllegalSet) return true;  // another context turns one ON
+    if (task.state == State::kOn) {
+      count(task.profile.takeovers);
+      note(task, "took over from ", failed);
+      return true;
+    }
+    set.standbys().rule_out(id);
+    set.on_set_changed();
+  }
+}
+
+// False: later.
+bool Recovery::restart(Restart& each, Nanoseconds now) noexcept {
+  Task& task = parts_.set.tasks()[each.spec->task.index];
+  if (task.state != State::kError) each.is_answered = false;
+  while (task.state == State::kError && !each.is_answered) {
+    if (parts_.set.standbys().is_awaited(task.id) || !may_touch(task)) return false;
+    answer(each, task, now);
+  }
+  return true;
+}
+
+void Recovery::answer(Restart& each, Task& task, Nanoseconds now) noexcept {
+  TaskSet& set = parts_.set;
+  const TaskId id = task.id;
+  const bool is_replaced = set.standbys().is_replaced(id);
+  const bool is_too_often = each.done.front() > now - each.spec->within;
+  if (!is_too_often && (is_replaced || set.life().would_be_legal({&id, 1}))) {
+    std::move(each.done.begin() + 1, each.done.end(), each.done.begin());
+    each.done.back() = now;
+    count(task.profile.restarts);
+    (void)parts_.signals.signal({&id, 1}, Signal::kClear, now);
+    if (task.state == State::kOff && is_replaced) return note(task, "is cleared; it stays OFF beside its standby", {});
+    const bool is_cleared = task.state == State::kOff;
+    if (is_cleared) (void)parts_.signals.signal({&id, 1}, Signal::kOn, now);
+    if (task.state == State::kOn) return note(task, "restarted after a fault", {});
+    if (is_cleared && task.state == State::kError) return;  // on failed: another fault
+  }
+  each.is_answered = true;
+  parts_.settlement.react_to_fault(task, each.spec->then, now);
+}
+
+void Recovery::note(Task& task, const char* what, TaskId of) noexcept {
+  Message message(what);
+  if (of.is_valid()) message << "'" << parts_.set.spec().tasks[of.index].name << "'";
+  record_note(task, FixedString<CHIMERA_FAULT_TEXT - 1>(message.view()).c_str());
+  parts_.settlement.record_faults(task);
+}
+
+}  // namespace chimera

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Brings back what failed in one context, at edges and without anybody being asked: turns standbys ON in place of tasks
+// that failed here or elsewhere (runtime/standbys.h says which), and carries out the reaction `restart` of on_fault. A
+// task that failed and has a standby is replaced first; restarted, it is only cleared then, and stays OFF.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/runtime/boundary_signals.h"
+#include "chimera/runtime/settlement.h"
+#include "chimera/runtime/switching.h"
+#include "chimera/runtime/task_set.h"
+
+namespace chimera {
+
+/// Context of everything not marked: edge; as long as the methods of components take; no allocation but theirs.
+class Recovery {
+ public:
+  /// All of it outlives this.
+  struct Parts {
+    TaskSet& set;
+    Settlement& settlement;
+    Switching& switching;
+    BoundarySignals& signals;
+  };
+  explicit Recovery(const Parts& parts) noexcept : parts_(parts) {}
+  /// Context: setup.
+  void prepare();
+
+  /// Does what is due. Of no effect where no task has a standby or is restarted.
+  void act(Nanoseconds now) noexcept;
+
+ private:
+  /// The reaction of one task.
+  struct Restart {
+    const RestartSpec* spec = nullptr;
+    std::span<Nanoseconds> done;  // instants of the last restarts, the oldest first
+    bool is_answered = false;     // the task is in ERROR, and stays there
+  };
+
+  bool take_over(std::size_t group, Nanoseconds now) noexcept;
+  bool restart(Restart& restart, Nanoseconds now) noexcept;
+  void answer(Restart& restart, Task& task, Nanoseconds now) noexcept;
+  bool may_touch(Task& task) noexcept;
+  void note(Task& task, const char* what, TaskId of) noexcept;
+
+  Parts parts_;
+  std::span<Restart> restarts_;
+};
+
+}  // namespace chimera

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tasks that stand in for each other. A primary and its standbys are a group, of which one is ON at a time. When that
+// one goes to ERROR, or its process dies, another one takes over, in this order: the primary, its standbys in the order
+// of the description. Follows from the states of tasks over all contexts, so that every context comes to the same; who
+// turns tasks ON is runtime/recovery.h. docs/decisions/0059-standbys-take-over-by-themselves.md.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/base/setup_memory.h"
+#include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/switch_page.h"
+#include "chimera/task/state_machine.h"
+
+namespace chimera {
+
+/// Context of everything not marked: edge; O(members of groups); no allocation.
+class Standbys {
+ public:
+  /// So many takeovers of one group within so long; a failure beyond them is not answered.
+  static constexpr std::size_t kMostTakeovers = 3;
+  static constexpr Nanoseconds kWindow = seconds(10);
+
+  /// The spec outlives this. Context: setup.
+  void prepare(const ApplicationSpec& spec, SetupMemory& memory);
+  std::size_t n_groups() const noexcept { return groups_.size(); }
+
+  /// `states[t]` is that of task t, over all contexts, at `now`.
+  void follow(std::span<const State> states, Nanoseconds now) noexcept;
+  /// A switch leads to `target`: a group of which no task is in it is given up.
+  void follow_switch(const TaskBits& target) noexcept;
+  /// The task has failed, and a standby that is OFF may be ON within one period of its own: until then the task counts
+  /// as ON where the illegal-configuration flag is judged.
+  bool is_covered(TaskId task) const noexcept { return is_covered_[task.index]; }
+  /// Some group lost the task that was ON, which is in ERROR yet, and nobody took over in time.
+  bool is_any_uncovered() const noexcept { return is_any_uncovered_; }
+  /// Some group waits for a task to take over.
+  bool is_any_waiting() const noexcept { return is_any_waiting_; }
+  /// When follow() comes to something else although no state has changed; kNever: never.
+  Nanoseconds due() const noexcept { return due_; }
+
+  /// The group that the task belongs to; n_groups(): none.
+  std::size_t group_of(TaskId task) const noexcept;
+  std::span<const TaskId> members(std::size_t group) const noexcept { return groups_[group].members; }
+  /// The task that is to go ON in place of the one that failed in group `group`; invalid: none is, or can be.
+  TaskId next(std::size_t group) const noexcept;
+  /// The task of that group that failed. Requires: next(group) is valid.
+  TaskId failed(std::size_t group) const noexcept { return groups_[group].on; }
+  /// It could not go ON: it is passed over until the group has a task that is ON again.
+  void rule_out(TaskId task) noexcept { is_out_[task.index] = true; }
+  /// The task stands in a group that waits for another one to take over from it.
+  bool is_awaited(TaskId task) const noexcept;
+  /// Adds the tasks that are covered, but for those of whose groups one of `beside` is.
+  void add_covered(std::span<bool> on, std::span<const TaskId> beside) const noexcept;
+  /// A task of its group other than itself is ON.
+  bool is_replaced(TaskId task) const noexcept;
+
+ private:
+  struct Group {
+    std::span<const TaskId> members;  // the primary first
+    TaskId on;                        // the member that was ON last; invalid: none, or it was turned OFF
+    bool is_lost = false;             // it failed, and none is ON since
+    bool is_waiting = false;          // and somebody may take over
+    Nanoseconds until;                // it is covered until then
+    Nanoseconds taken_over[kMostTakeovers] = {Nanoseconds{INT64_MIN}, Nanoseconds{INT64_MIN}, Nanoseconds{INT64_MIN}};
+  };
+
+  void follow(Group& group, Nanoseconds now) noexcept;
+  void lose(Group& group, Nanoseconds now) noexcept;
+  void gain(Group& group, TaskId on, Nanoseconds now) noexcept;
+  void sum_up(Nanoseconds now) noexcept;
+  TaskId next(const Group& group) const noexcept;
+  static bool has(const Group& group, TaskId task) noexcept;
+  State state(TaskId task) const noexcept { return states_[task.index]; }
+
+  std::span<const TaskSpec> tasks_;
+  std::span<Group> groups_;
+  std::span<TaskId> members_;
+  std::span<State> states_;      // by task, at the last follow()
+  std::span<bool> is_covered_;   // by task
+  std::span<bool> is_out_;       // by task
+  Nanoseconds due_ = kNever;
+  bool is_any_uncovered_ = false;
+  bool is_any_waiting_ = false;
+};
+
+}  // namespace chimera

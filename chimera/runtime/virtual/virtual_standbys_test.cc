@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Standbys on other rtpus of virtual time: they take over from a task that fails and from an rtpu that dies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "chimera/runtime/hosted/heap_task_set.h"
+#include "chimera/runtime/testing/test_application.h"
+#include "chimera/runtime/virtual/virtual_rtpus.h"
+
+namespace chimera {
+namespace {
+
+/// What the components of a run do, and what they saw. One run at a time.
+struct Scene {
+  std::vector<double> u;
+  std::int64_t fails_at = -1;  // of the primary
+  bool on_of_spare_fails = false;
+  std::vector<std::int64_t> illegal;  // cycles that saw the flag up
+};
+Scene scene;
+
+struct Primary {
+  Out<double> u{"u", "1", initial = 0.0};
+  Outcome cycle(Cycle c) {
+    *u = static_cast<double>(c.count()) + 1;
+    return c.now().count == scene.fails_at ? fault("no current") : ok();
+  }
+};
+
+struct Standby {
+  In<double> x{"x", "1"};  // from the rtpu of the primary
+  Out<double> u{"u", "1", initial = 0.0};
+  Outcome on(Cycle) { return scene.on_of_spare_fails ? fault("no voltage") : ok(); }
+  void cycle(Cycle) { *u = *u + 100; }
+};
+
+struct Source {
+  Out<double> x{"x", "1", initial = 0.0};
+  void cycle(Cycle) { *x = 1; }
+};
+
+struct User {
+  In<double> u{"u", "1"};
+  Out<double> seen{"seen", "1", initial = 0.0};
+  void cycle(Cycle c) {
+    *seen = *u;
+    scene.u.push_back(*u);
+    if (c.illegal()) scene.illegal.push_back(c.now().count);
+  }
+};
+
+constexpr TaskId kPrimary{0u}, kUser{1u}, kSpare{2u}, kLast{3u}, kSource{4u};
+
+ScriptAct death_at(Nanoseconds at, std::uint32_t rtpu) {
+  ScriptAct act;
+  act.at = at;
+  act.kind = ScriptAct::Kind::kDie;
+  act.rtpu = RtpuId(rtpu);
+  return act;
+}
+
+/// The primary, what reads it, and its two standbys, each on an rtpu of its own.
+struct VirtualStandbysTest : ::testing::TestWithParam<bool> {
+  void go(Nanoseconds duration, std::vector<ScriptAct> acts = {}) {
+    run.reset();
+    sets.clear();
+    acts_ = std::move(acts);
+    app = std::make_unique<testing::TestApplication>();
+    app->rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kEdf}, {"c", 2, Policy::kEdf}, {"d", 3, Policy::kEdf}};
+    app->add("primary", testing::component<Primary>("primary")).rtpu = RtpuId(0u);
+    app->add("user", testing::component<User>("user")).rtpu = RtpuId(1u);
+    app->add("spare", testing::component<Standby>("standby")).rtpu = RtpuId(2u);
+    app->add("last", testing::component<Standby>("standby")).rtpu = RtpuId(3u);
+    app->add("source", testing::component<Source>("source")).rtpu = RtpuId(source_rtpu);
+    app->make({kSource, kPrimary, kUser}, false);
+    app->spec.standbys = pairs;
+    peers = *VirtualPeers::create(app->spec);
+    for (std::uint32_t r = 0; r < 4; ++r) {
+      ContextPlace place;
+      place.rtpu = RtpuId(r);
+      place.others = peers.get();
+      sets.push_back(*HeapTaskSet::create(app->spec, app->components, place));
+      peers->join(RtpuId(r), *sets.back());
+    }
+    RunOptions options;
+    options.script = Script(acts_);
+    VirtualOptions how;
+    how.preemptive = GetParam();
+    run = std::make_unique<VirtualRtpus>(*peers, options, how);
+    EXPECT_TRUE(run->start());
+    EXPECT_EQ(run->run(duration), RunEnd::kTime);
+  }
+  State state(TaskId task) const { return peers->state(task); }
+  void SetUp() override { scene = {}; }
+  void TearDown() override { run.reset(); }
+
+  std::uint32_t source_rtpu = 1;
+  std::vector<StandbySpec> pairs{{kPrimary, kSpare}, {kPrimary, kLast}};
+  std::vector<ScriptAct> acts_;
+  std::unique_ptr<testing::TestApplication> app;
+  std::unique_ptr<VirtualPeers> peers;
+  std::vector<std::unique_ptr<HeapTaskSet>> sets;
+  std::unique_ptr<VirtualRtpus> run;
+};
+
+INSTANTIATE_TEST_SUITE_P(All, VirtualStandbysTest, ::testing::Bool(),
+                         [](const auto& one) { return one.param ? "Preemptive" : "Executive"; });
+
+TEST_P(VirtualStandbysTest, TakeOverFromATaskThatFailsElsewhere) {
+  scene.fails_at = milliseconds(4).count;
+  go(milliseconds(8));
+  EXPECT_EQ(state(kPrimary), State::kError);
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_EQ(state(kLast), State::kOff);
+  EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
+  // It goes ON at the instant of the fault and is released at that instant too: it loses no cycle.
+  EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
+}
+
+TEST_P(VirtualStandbysTest, TakeOverFromARtpuThatDies) {
+  go(milliseconds(8), {death_at(microseconds(3500), 0)});
+  EXPECT_EQ(state(kPrimary), State::kError);
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
+  EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
+}
+
+TEST_P(VirtualStandbysTest, TheNextOneTakesOverWhenTheFirstIsDeadOrFails) {
+  go(milliseconds(10), {death_at(microseconds(2500), 2), death_at(microseconds(3500), 0)});
+  EXPECT_EQ(state(kLast), State::kOn);
+  EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
+  go(milliseconds(10), {death_at(microseconds(3500), 0), death_at(microseconds(5500), 2)});
+  EXPECT_EQ(state(kLast), State::kOn);
+  EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
+  scene.on_of_spare_fails = true;
+  go(milliseconds(10), {death_at(microseconds(3500), 0)});
+  EXPECT_EQ(state(kSpare), State::kError);
+  EXPECT_EQ(state(kLast), State::kError);
+  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "nobody is left: at once";
+}
+
+TEST_P(VirtualStandbysTest, WithoutAFitOneTheFlagIsUpAtOnce) {
+  pairs = {{kPrimary, kSpare}};
+  go(milliseconds(8), {death_at(microseconds(3500), 0), death_at(microseconds(3500), 2)});
+  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "no standby that is fit is left";
+}
+
+TEST_P(VirtualStandbysTest, TakeOverAlsoWhereWhatTheyReadFailedWithThePrimary) {
+  source_rtpu = 0;
+  go(milliseconds(8), {death_at(microseconds(3500), 0)});
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
+  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "nobody produces x";
+}
+
+TEST_P(VirtualStandbysTest, ARunRepeatsExactly) {
+  scene.fails_at = milliseconds(4).count;
+  go(milliseconds(8), {death_at(milliseconds(6), 2)});
+  const std::vector<double> first = scene.u;
+  scene.u.clear();
+  go(milliseconds(8), {death_at(milliseconds(6), 2)});
+  EXPECT_EQ(scene.u, first);
+  EXPECT_EQ(state(kLast), State::kOn);
+}
+
+}  // namespace
+}  // namespace chimera

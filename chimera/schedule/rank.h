@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a task stands among those of its CPU, by the band of its rtpu and what its policy looks at: what the analysis
+// of a set and that of a transition have in common.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "chimera/schedule/level.h"
+#include "chimera/schedule/work.h"
+
+namespace chimera {
+
+/// Whether all of one criticality go before all of a lower one. Context: any; pure.
+constexpr bool has_criticalities(Policy policy) noexcept {
+  return policy == Policy::kMuf || policy == Policy::kMufLaxity;
+}
+
+/// How tasks of a level are ordered under `policy`. Context: any; pure.
+constexpr LevelOrder order_of(Policy policy) noexcept {
+  if (policy == Policy::kRm) return LevelOrder::kAlone;
+  return policy == Policy::kEdf || policy == Policy::kMuf ? LevelOrder::kDeadline : LevelOrder::kLaxity;
+}
+
+/// Rtpus of the same CPU with a higher band than `index`. Context: setup; pure.
+constexpr std::uint32_t band_of(std::span<const ProcessorUse> uses, std::uint32_t index) noexcept {
+  std::uint32_t above = 0;
+  for (std::uint32_t i = 0; i < uses.size(); ++i) {
+    if (i == index || uses[i].cpu != uses[index].cpu) continue;
+    const bool same = uses[i].criticality == uses[index].criticality;
+    if (uses[i].criticality > uses[index].criticality || (same && i < index)) ++above;
+  }
+  return above;
+}
+
+/// works[task] as the analysis takes it. Context: setup; pure.
+constexpr RankedWork ranked_work(std::span<const Work> works, std::span<const ProcessorUse> uses,
+                                 std::uint32_t task) noexcept {
+  RankedWork made{works[task], task, band_of(uses, works[task].rtpu), {}, {}};
+  Work& w = made.work;
+  w.time = std::min(w.time, w.period);  // beyond it does not fit anyway, and sums must stay in bounds
+  if (w.server != ServerKind::kDeferrable) return made;
+  // In an executive what begins just before the end of a period runs on into the next.
+  const bool preemptive = uses[w.rtpu].dispatch == Dispatch::kPreemptive;
+  made.early = preemptive ? w.time : Nanoseconds{};
+  made.jitter = w.period - (preemptive ? w.time : Nanoseconds{1});
+  return made;
+}
+
+}  // namespace chimera

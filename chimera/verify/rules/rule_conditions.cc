@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rules on `safe_when`: what a condition compares is one number or truth value that is there when a switch begins.
+#include <algorithm>
+
+#include "chimera/description/draft_values.h"
+#include "chimera/task/number_at.h"
+#include "chimera/text/nearest.h"
+#include "chimera/verify/rules/rules.h"
+#include "chimera/verify/values.h"
+
+namespace chimera {
+namespace {
+
+// Above it not every whole number is a double.
+constexpr double kLargestWhole = 9007199254740992.0;
+
+/// One condition and where it stands.
+class ConditionJudge {
+ public:
+  ConditionJudge(Model& model, const DraftSet& draft, SetModel& set)
+      : model_(model), draft_(*draft.safe_when), set_(set),
+        what_("'safe_when' of configuration '" + set.name + "'") {}
+
+  void judge() {
+    const VariableModel* variable = find();
+    if (variable == nullptr || !is_produced(*variable)) return;
+    const LinkedPort& port =
+        model_.port(variable->producers.empty() ? variable->consumers[0] : variable->producers[0]);
+    if (!is_solved(port) || !is_number(port) || !is_one_element(port)) return;
+    const auto bytes = value_bytes(model_, draft_.value, {port, what_});
+    if (!bytes) return;
+    const std::uint32_t element = draft_.element.value_or(0);
+    const double limit = number_at(*port.type, bytes->data() + std::size_t{element} * port.element_bytes);
+    if (*port.type == CHIMERA_INT64 && !(limit > -kLargestWhole && limit < kLargestWhole))
+      return refuse("value-range", "compares with " + draft_.value.text + "; expected less than 2^53",
+                    draft_.value.text, "a number of at most 53 bits");
+    set_.safe_when = {{}, element, draft_.comparison, limit};
+    set_.safe_variable = static_cast<std::size_t>(variable - model_.variables.data());
+  }
+
+ private:
+  void refuse(std::string_view rule, const std::string& said, const std::string& found, std::string expected,
+              std::string near = {}, std::string remedy = {}) {
+    model_.error(rule, draft_.variable.at, what_ + ' ' + said, found, std::move(expected), std::move(near),
+                 std::move(remedy));
+  }
+
+  const VariableModel* find() {
+    const std::string& name = draft_.variable.text;
+    const VariableModel* found = model_.variable(name);
+    if (found != nullptr && !found->is_constant) return found;
+    if (model_.is_incomplete()) return nullptr;
+    std::vector<std::string> names;
+    for (const VariableModel& one : model_.variables)
+      if (!one.is_constant) names.push_back(one.name);
+    const std::string near = nearest(name, names);
+    refuse("condition-variable",
+           found != nullptr ? "names '" + name + "', which is a constant and never changes"
+                            : "names the variable '" + name + "', which is not there",
+           name, "a state variable", near, near.empty() && !names.empty() ? "there are: " + listed(names) : "");
+    return nullptr;
+  }
+
+  /// By the operator, or in a configuration that a switch to this one can begin in.
+  bool is_produced(const VariableModel& variable) {
+    if (variable.given != nullptr && !variable.consumers.empty()) return true;
+    if (model_.is_incomplete()) return false;
+    const bool is_elsewhere = std::ranges::any_of(model_.sets, [&](const SetModel& other) {
+      return &other != &set_ && std::ranges::any_of(variable.producers, [&](PortRef p) { return other.has(p.task); });
+    });
+    if (!is_elsewhere)
+      refuse("condition-variable",
+             "can never hold: no other configuration produces '" + variable.name + "', so it has no value there",
+             variable.name, "a variable of another configuration", {},
+             "name a variable that is produced where the switch begins");
+    return is_elsewhere;
+  }
+
+  bool is_number(const LinkedPort& port) {
+    if (*port.type == CHIMERA_STRING || *port.type == CHIMERA_STRUCT) {
+      refuse("condition-variable", "names '" + draft_.variable.text + "', a " + type_text(port) +
+             "; expected a number or a truth value", type_text(port), "a number or a truth value");
+      return false;
+    }
+    const bool is_equality = draft_.comparison == Relation::kEqual || draft_.comparison == Relation::kUnequal;
+    if (*port.type != CHIMERA_BOOL || is_equality) return true;
+    const std::string sign = sign_of(draft_.comparison);
+    refuse("condition-bad", "compares '" + draft_.variable.text + "', a truth value, by " + sign +
+           "; expected == or !=", sign, "== or !=");
+    return false;
+  }
+
+  bool is_one_element(const LinkedPort& port) {
+    const std::string& name = draft_.variable.text;
+    const std::string shape = shape_text(port.extents);
+    const bool is_matrix = port.extents.size() > 1;
+    if (is_matrix || (!draft_.element && element_count(port.extents) > 1)) {
+      refuse("condition-variable", "names '" + name + "', which has the shape " + shape +
+             (is_matrix ? "; expected a number, or an element of a vector" : ""), name,
+             "one number", {}, is_matrix ? "" : "name one element: '" + name + "[0]'");
+      return false;
+    }
+    const std::uint32_t length =
+        port.extents.empty() ? 1 : port.extents[0].known.value_or(port.extents[0].max);
+    if (draft_.element.value_or(0) < length) return true;
+    refuse("condition-variable", "names element " + std::to_string(*draft_.element) + " of '" + name + "', which has " +
+           std::to_string(length) + ", from 0", std::to_string(*draft_.element), "0 to " + std::to_string(length - 1));
+    return false;
+  }
+
+  Model& model_;
+  const DraftCondition& draft_;
+  SetModel& set_;
+  std::string what_;
+};
+
+}  // namespace
+
+void check_conditions(Model& model) {
+  for (std::size_t i = 0; i < model.draft.configurations.size(); ++i)
+    if (model.draft.configurations[i].safe_when)
+      ConditionJudge(model, model.draft.configurations[i], model.sets[i]).judge();
+}
+
+}  // namespace chimera

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// What failed comes back by itself, on every executor of one context: standbys take over from tasks that went to ERROR,
+// and on_fault restarts tasks.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "chimera/runtime/testing/test_application.h"
+#include "tests/conformance/runner.h"
+
+namespace chimera::toy {
+namespace {
+
+/// What the components of a run do, and what they saw. One run at a time.
+struct Scene {
+  std::function<Outcome(Cycle)> cycle_of_first, on_of_first, clear_of_first, cycle_of_spare, on_of_spare;
+  std::vector<double> u;         // that the reader read
+  std::vector<bool> illegal;     // and whether the flag was up then
+  std::vector<bool> valid;       // and whether that was valid
+  std::int64_t inherited_ns = -1;
+  double inherited = -1;
+  int ons_of_first = 0;
+};
+Scene scene;
+
+struct First {
+  Out<double> u{"u", "1", initial = 0.0};
+  Outcome on(Cycle c) {
+    ++scene.ons_of_first;
+    return scene.on_of_first ? scene.on_of_first(c) : ok();
+  }
+  Outcome cycle(Cycle c) {
+    const Outcome outcome = scene.cycle_of_first ? scene.cycle_of_first(c) : ok();
+    *u = static_cast<double>(c.count()) + 1;
+    return outcome;
+  }
+  Outcome clear(Cycle c) { return scene.clear_of_first ? scene.clear_of_first(c) : ok(); }
+};
+
+struct Spare {
+  Out<double> u{"u", "1", initial = 0.0};
+  Outcome on(Cycle c) {
+    scene.inherited = *u;
+    scene.inherited_ns = u.inherited().count;
+    return scene.on_of_spare ? scene.on_of_spare(c) : ok();
+  }
+  Outcome cycle(Cycle c) {
+    const Outcome outcome = scene.cycle_of_spare ? scene.cycle_of_spare(c) : ok();
+    *u = 100 + static_cast<double>(c.count());
+    return outcome;
+  }
+};
+
+struct Reader {
+  In<double> u{"u", "1"};
+  Out<double> seen{"seen", "1", initial = 0.0};
+  void cycle(Cycle c) {
+    *seen = *u;
+    scene.u.push_back(*u);
+    scene.illegal.push_back(c.illegal());
+    scene.valid.push_back(u.valid());
+  }
+};
+
+constexpr TaskId kFirst{0u}, kReader{1u}, kSpare{2u}, kThird{3u};
+constexpr std::uint32_t kPlain = 0, kAlone = 1;
+
+class RecoveryTest : public ::testing::TestWithParam<Kind> {
+ protected:
+  RecoveryTest() { scene = {}; }
+  void go(Nanoseconds duration, const std::vector<ScriptAct>& acts = {}) {
+    acts_ = acts;
+    runner_.reset();
+    set_.reset();
+    app_ = std::make_unique<testing::TestApplication>();
+    app_->add("first", testing::component<First>("first")).budget = microseconds(20);
+    app_->add("reader", testing::component<Reader>("reader")).budget = microseconds(20);
+    app_->add("spare", testing::component<Spare>("spare")).budget = microseconds(20);
+    app_->add("third", testing::component<Spare>("spare")).budget = microseconds(20);
+    if (!restarts_.empty()) app_->tasks[kFirst.index].on_fault = OnFault::kRestart;
+    if (!restarts_.empty() && restarts_[0].then == OnFault::kSwitch) app_->tasks[kFirst.index].on_fault_set = kAlone;
+    app_->make({kFirst, kReader}, false);
+    app_->spec.standbys = standbys_;
+    app_->spec.restarts = restarts_;
+    app_->spec.stale = stale_;
+    app_->spec.sets = sets_;
+    set_ = *HeapTaskSet::create(app_->spec, app_->components);
+    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+    EXPECT_TRUE(runner_->start());
+    EXPECT_EQ(runner_->run(duration), end_);
+  }
+  void fail_first_in(std::uint64_t cycle) {
+    scene.cycle_of_first = [cycle](Cycle c) -> Outcome {
+      return c.count() == cycle ? fault("no current") : ok();
+    };
+  }
+  const Task& task(TaskId id) const { return set_->tasks()[id.index]; }
+  chimera::State state(TaskId id) const { return task(id).state; }
+  static bool was_up() { return std::find(scene.illegal.begin(), scene.illegal.end(), true) != scene.illegal.end(); }
+  static ScriptAct signal(Nanoseconds at, Signal signal, TaskId task) {
+    return {at, ScriptAct::Kind::kSignal, signal, task};
+  }
+
+  std::vector<StandbySpec> standbys_{{kFirst, kSpare}, {kFirst, kThird}};
+  std::vector<RestartSpec> restarts_;
+  std::vector<StaleSpec> stale_;
+  std::vector<TaskId> plain_{kFirst, kReader}, alone_{kThird, kReader};
+  NamedSet sets_[2] = {{"plain", plain_}, {"alone", alone_}};
+  RunEnd end_ = RunEnd::kTime;
+  std::vector<ScriptAct> acts_;
+  std::unique_ptr<testing::TestApplication> app_;
+  std::unique_ptr<HeapTaskSet> set_;
+  std::unique_ptr<Runner> runner_;
+};
+
+INSTANTIATE_TEST_SUITE_P(All, RecoveryTest,
+                         ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
+                         [](const auto& one) { return kind_name(one.param); });
+
+TEST_P(RecoveryTest, AStandbyTakesOverWithinItsPeriodAndTheFlagStaysDown) {
+  fail_first_in(5);
+  go(milliseconds(10));
+  EXPECT_EQ(state(kFirst), chimera::State::kError);
+  EXPECT_EQ(state(kSpare), chimera::State::kOn);
+  EXPECT_EQ(state(kThird), chimera::State::kOff);
+  EXPECT_EQ(task(kSpare).profile.takeovers, 1u);
+  EXPECT_STREQ(task(kSpare).faults.note, "took over from 'first'");
+  EXPECT_EQ(scene.inherited, 5) << "the last good output of the primary";
+  EXPECT_GE(scene.inherited_ns, 900'000);
+  EXPECT_LE(scene.inherited_ns, 1'000'000);
+  // In the cycle of the fault, and in the next one, in which the reader comes before the standby.
+  EXPECT_EQ(scene.u, (std::vector<double>{1, 2, 3, 4, 5, 5, 5, 100, 101, 102}));
+  EXPECT_FALSE(was_up());
+  EXPECT_FALSE(set_->flag().is_up());
+}
+
+TEST_P(RecoveryTest, OneThatCannotGoOnMakesPlaceForTheNext) {
+  fail_first_in(5);
+  scene.on_of_spare = [n = 0](Cycle) mutable -> Outcome { return n++ == 0 ? fault("no voltage") : ok(); };
+  go(milliseconds(10));
+  EXPECT_EQ(state(kSpare), chimera::State::kError);
+  EXPECT_EQ(state(kThird), chimera::State::kOn);
+  EXPECT_FALSE(was_up());
+}
+
+TEST_P(RecoveryTest, WithoutAnyThatCanTheFlagIsUpAtOnce) {
+  fail_first_in(5);
+  scene.on_of_spare = [](Cycle) -> Outcome { return fault("no voltage"); };
+  go(milliseconds(10));
+  EXPECT_EQ(state(kSpare), chimera::State::kError);
+  EXPECT_EQ(state(kThird), chimera::State::kError);
+  EXPECT_TRUE(set_->flag().is_up());
+  ASSERT_EQ(scene.illegal.size(), 10u);
+  EXPECT_FALSE(scene.illegal[4]);
+  EXPECT_TRUE(scene.illegal[6]);
+}
+
+TEST_P(RecoveryTest, ThePrimaryComesBackOffAndStandsInForItsStandby) {
+  fail_first_in(3);
+  scene.cycle_of_spare = [](Cycle c) -> Outcome { return c.count() == 5 ? fault("no current") : ok(); };
+  go(milliseconds(12), {signal(milliseconds(6), Signal::kClear, kFirst)});
+  EXPECT_EQ(state(kFirst), chimera::State::kOn);
+  EXPECT_EQ(state(kSpare), chimera::State::kError);
+  EXPECT_EQ(scene.ons_of_first, 2);
+  EXPECT_EQ(task(kFirst).profile.takeovers, 1u);
+  EXPECT_FALSE(was_up());
+}
+
+TEST_P(RecoveryTest, TheFourthFailureInTenSecondsStaysAndTheFlagIsUp) {
+  restarts_ = {{kFirst, 100, seconds(10), OnFault::kError}};
+  standbys_ = {{kFirst, kSpare}};
+  const auto fails = [](Cycle c) -> Outcome { return c.count() == 2 ? fault("no current") : ok(); };
+  scene.cycle_of_first = scene.cycle_of_spare = fails;
+  go(milliseconds(40), {signal(milliseconds(7), Signal::kClear, kSpare)});
+  EXPECT_EQ(task(kFirst).profile.takeovers, 1u);
+  EXPECT_EQ(task(kSpare).profile.takeovers, 2u);
+  EXPECT_EQ(state(kSpare), chimera::State::kError);
+  EXPECT_TRUE(set_->flag().is_up());
+}
+
+TEST_P(RecoveryTest, ATaskThatWasTurnedOffIsNotReplaced) {
+  go(milliseconds(10), {signal(milliseconds(3), Signal::kOff, kFirst)});
+  EXPECT_EQ(state(kFirst), chimera::State::kOff);
+  EXPECT_EQ(state(kSpare), chimera::State::kOff);
+  EXPECT_TRUE(set_->flag().is_up());
+}
+
+TEST_P(RecoveryTest, AStandbyIsRefusedBesideItsPrimary) {
+  go(milliseconds(10), {signal(milliseconds(3), Signal::kOn, kSpare)});
+  EXPECT_EQ(state(kSpare), chimera::State::kOff);
+  EXPECT_FALSE(was_up());
+}
+
+TEST_P(RecoveryTest, ATakeoverAbortsASwitchThatIsNotCommittedAndLeavesACommittedOne) {
+  scene.cycle_of_first = [](Cycle c) -> Outcome {
+    if (c.count() == 3) c.request("alone");
+    return c.count() == 4 ? fault("no current") : ok();
+  };
+  scene.on_of_spare = [n = 0](Cycle c) mutable {
+    if (n++ == 0) c.spend(microseconds(1500));  // `first` fails while `third` is armed
+    return ok();
+  };
+  go(milliseconds(12));
+  ASSERT_EQ(runner_->receipts().size(), 1u);
+  // Preemptive, the change comes before the job that fails, which was released before it.
+  const bool is_committed = GetParam() == Kind::kPreemptive;
+  EXPECT_EQ(runner_->receipts()[0].end, is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted);
+  EXPECT_EQ(runner_->receipts()[0].why, is_committed ? NoSwitch::kNone : NoSwitch::kDisturbed);
+  EXPECT_EQ(state(kFirst), chimera::State::kError);
+  EXPECT_EQ(state(kSpare) == chimera::State::kOn, !is_committed);
+  EXPECT_EQ(state(kThird) == chimera::State::kOn, is_committed);
+  EXPECT_FALSE(was_up());
+}
+
+TEST_P(RecoveryTest, AnInputThatIsTooOldIsNotValid) {
+  standbys_ = {};
+  stale_ = {{kReader, microseconds(2500)}};
+  fail_first_in(3);
+  go(milliseconds(8), {signal(microseconds(6500), Signal::kClear, kFirst)});
+  // Published at 2 ms for the last time; what clear leaves as it was stays as old as it is.
+  EXPECT_EQ(scene.valid, (std::vector<bool>{true, true, true, true, true, false, false, false}));
+}
+
+TEST_P(RecoveryTest, ARestartIsClearThenOn) {
+  standbys_ = {};
+  restarts_ = {{kFirst, 1, seconds(1), OnFault::kError}};
+  scene.cycle_of_first = [n = 0](Cycle) mutable -> Outcome { return ++n == 4 ? fault("no current") : ok(); };
+  go(milliseconds(10));
+  EXPECT_EQ(state(kFirst), chimera::State::kOn);
+  EXPECT_EQ(task(kFirst).profile.restarts, 1u);
+  EXPECT_STREQ(task(kFirst).faults.note, "restarted after a fault");
+  EXPECT_EQ(scene.ons_of_first, 2);
+  EXPECT_EQ(scene.u.size(), 10u);
+  EXPECT_FALSE(was_up()) << "no job ran between the fault and the restart";
+}
+
+TEST_P(RecoveryTest, MoreFaultsThanRestartsHaveTheReactionBehind) {
+  standbys_ = {};
+  restarts_ = {{kFirst, 2, seconds(1), OnFault::kFlag}};
+  scene.cycle_of_first = [](Cycle c) -> Outcome { return c.count() == 1 ? fault("no current") : ok(); };
+  go(milliseconds(10));
+  EXPECT_EQ(state(kFirst), chimera::State::kError);
+  EXPECT_EQ(task(kFirst).profile.restarts, 2u);
+  EXPECT_EQ(scene.ons_of_first, 3);
+  EXPECT_TRUE(set_->flag().is_raised());
+}
+
+TEST_P(RecoveryTest, RestartsAreCountedWithinTheirTime) {
+  standbys_ = {};
+  restarts_ = {{kFirst, 2, milliseconds(5), OnFault::kFlag}};
+  scene.cycle_of_first = [](Cycle c) -> Outcome { return c.count() == 2 ? fault("no current") : ok(); };
+  go(milliseconds(60));
+  EXPECT_EQ(state(kFirst), chimera::State::kOn) << "a fault every 3 ms: two within 5 ms, never three";
+  EXPECT_GE(task(kFirst).profile.restarts, 18u);
+}
+
+TEST_P(RecoveryTest, AnOnThatFailsIsAnotherFault) {
+  standbys_ = {};
+  restarts_ = {{kFirst, 3, seconds(1), OnFault::kStop}};
+  fail_first_in(3);
+  scene.on_of_first = [n = 0](Cycle) mutable -> Outcome { return n++ == 0 ? ok() : fault("no voltage"); };
+  end_ = RunEnd::kTaskStopped;
+  go(milliseconds(10));
+  EXPECT_EQ(scene.ons_of_first, 4);
+  EXPECT_EQ(task(kFirst).profile.restarts, 3u);
+}
+
+TEST_P(RecoveryTest, AClearThatFailsHasTheReactionBehind) {
+  standbys_ = {};
+  restarts_ = {{kFirst, 3, seconds(1), OnFault::kSwitch}};
+  fail_first_in(3);
+  scene.clear_of_first = [](Cycle) -> Outcome { return fault("broken"); };
+  go(milliseconds(10));
+  EXPECT_EQ(state(kFirst), chimera::State::kError);
+  EXPECT_EQ(task(kFirst).profile.restarts, 1u);
+  ASSERT_EQ(runner_->receipts().size(), 1u);
+  EXPECT_EQ(runner_->receipts()[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(runner_->receipts()[0].cause, SwitchCause::kFault);
+  EXPECT_EQ(state(kThird), chimera::State::kOn);
+}
+
+TEST_P(RecoveryTest, ARestartedTaskWithAStandbyIsOnlyCleared) {
+  restarts_ = {{kFirst, 1, seconds(1), OnFault::kError}};
+  fail_first_in(3);
+  go(milliseconds(10));
+  EXPECT_EQ(state(kFirst), chimera::State::kOff);
+  EXPECT_EQ(state(kSpare), chimera::State::kOn);
+  EXPECT_EQ(scene.ons_of_first, 1);
+  EXPECT_STREQ(task(kFirst).faults.note, "is cleared; it stays OFF beside its standby");
+}
+
+}  // namespace
+}  // namespace chimera::toy

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Safe frames on real processes: a drive on a serial line goes on with the torque that it was told last, until somebody
+tells it another one. When its task is killed the guard does; when the keeper is killed with it, too."""
+import os
+import pathlib
+import select
+import struct
+import threading
+import time
+import tty
+import unittest
+
+from system import UNITS, System, await_that
+
+TEXT = UNITS + """
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  drive:
+    {component: serial_frame, rtpu: second, rate: RATE, alias: {command: torque}, constants: {timeout: 60 s},
+     resources: {device: LINE}}
+operator: {torque: TORQUE}
+configurations: {all: [steady, drive]}
+start: all
+"""
+START, FILL = 0xA5, 132
+
+
+def crc16(data):
+    crc = 0xFFFF
+    for byte in data:
+        crc ^= byte << 8
+        for _ in range(8):
+            crc = (crc << 1 ^ 0x1021 if crc & 0x8000 else crc << 1) & 0xFFFF
+    return crc
+
+
+class Drive:
+    """Turns by the torque of the last good frame, for ever. `torques`: of every good frame, in order."""
+
+    def __init__(self, axes):
+        self.payload = 4 * axes
+        self.master, self.slave = os.openpty()
+        os.set_blocking(self.master, False)
+        tty.setraw(self.slave)
+        self.name = os.ttyname(self.slave)
+        self.torques, self.fills, self.angle, self.held = [], 0, 0.0, b""
+        self.is_deaf, self.is_over = False, False
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+
+    def end(self):
+        self.is_over = True
+        self.thread.join()
+        os.close(self.master)
+        os.close(self.slave)
+
+    def run(self):
+        last = time.monotonic()
+        while not self.is_over:
+            now = time.monotonic()
+            self.angle += (self.torques[-1] if self.torques else 0) * (now - last)
+            last = now
+            if self.is_deaf or not select.select([self.master], [], [], 0.005)[0]:
+                time.sleep(0.005 if self.is_deaf else 0)
+                continue
+            try:
+                self.held += os.read(self.master, 65536)
+            except (BlockingIOError, OSError):
+                continue
+            self.take()
+
+    def take(self):
+        """As a device takes a stream: a start byte that begins no frame is passed over."""
+        self.fills += self.held.count(bytes(FILL))
+        end = self.payload + 4
+        while len(self.held) >= end:
+            if self.held[0] != START or self.held[1] != self.payload:
+                self.held = self.held[1:]
+            elif crc16(self.held[1:end - 2]) != int.from_bytes(self.held[end - 2:end], "little"):
+                self.held = self.held[1:]
+            else:
+                self.torques.append(struct.unpack("<f", self.held[2:6])[0])
+                self.held = self.held[end:]
+
+    def moves(self):
+        before = self.angle
+        time.sleep(0.1)
+        return abs(self.angle - before) > 1e-9
+
+
+class Frames(unittest.TestCase):
+    def start(self, axes=1, rate="100 Hz"):
+        self.drive = Drive(axes)
+        self.addCleanup(self.drive.end)
+        text = TEXT.replace("LINE", self.drive.name).replace("RATE", rate)
+        system = System(text.replace("TORQUE", str([3] * axes)))
+        system.await_state("drive", "ON")
+        await_that(lambda: self.drive.torques[-1:] == [3.0], 10, "the drive to turn")
+        return system
+
+    def guard(self, system):
+        return next(pid for pid in system.left_over()
+                    if pathlib.Path(f"/proc/{pid}/comm").read_text().strip() == "chimera-guard")
+
+    def test_an_rtpu_that_is_killed_leaves_the_drive_at_rest_and_comes_back(self):
+        with self.start() as system:
+            self.assertEqual(self.drive.fills, 0)
+            system.kill(system.pids()["second"])
+            await_that(lambda: self.drive.fills == 1, 10, "the safe frame")
+            told = await_that(lambda: [e["text"] for e in system.events() if e["kind"] == "safe" and "written" in
+                                       e["text"]], 10, "the event")
+            self.assertRegex(told[0], r"^1 safe frame written, the last byte [0-9.]+ ms after the guard saw")
+            at = self.drive.torques.index(0.0)
+            self.assertEqual(set(self.drive.torques[:at]), {3.0})
+            system.await_state("drive", "ON")
+            await_that(lambda: self.drive.torques[-1] == 3.0, 10, "the drive to turn again")
+
+    def test_with_the_keeper_killed_as_well_the_drive_stops(self):
+        system = self.start()
+        try:
+            pids = system.pids()
+            system.kill(pids["keeper"])
+            system.kill(pids["second"])
+            await_that(lambda: self.drive.torques[-1] == 0.0, 10, "the safe frame")
+            self.assertFalse(self.drive.moves())
+            system.await_nothing_left(20)
+            self.assertEqual((self.drive.fills, self.drive.torques[-1]), (1, 0.0))
+        finally:
+            system.end()
+
+    def test_without_the_guard_the_drive_goes_on(self):
+        system = self.start()
+        try:
+            pids = system.pids()
+            system.kill(self.guard(system))
+            await_that(lambda: [e for e in system.events() if e["text"].startswith("the guard is dead")], 9, "an event")
+            system.kill(pids["keeper"])
+            system.kill(pids["second"])
+            system.await_nothing_left(20)
+            self.assertTrue(self.drive.moves())
+            self.assertEqual(set(self.drive.torques), {3.0})
+        finally:
+            system.end()
+
+    def test_a_frame_that_was_cut_by_the_death_hides_nothing(self):
+        system = self.start(16, "1 kHz")
+        try:
+            self.drive.is_deaf = True
+            await_that(lambda: system.call("get", variables=["unsent"])["values"]["unsent"]["value"] > 5, 60,
+                       "a line that is full")
+            pids = system.pids()
+            system.kill(pids["keeper"])
+            system.kill(pids["second"])
+            system.await_nothing_left(20)
+            self.drive.is_deaf = False
+            await_that(lambda: self.drive.torques[-1] == 0.0, 10, "the safe frame")
+            self.assertFalse(self.drive.moves())
+        finally:
+            system.end()
+
+    def test_a_drill_kills_and_tells_when_the_frame_was_written(self):
+        with self.start() as system:
+            answer = system.call("drill", kill="second")
+            self.assertEqual([(t["task"], t["verdict"]) for t in answer["tasks"]], [("drive", "safe")])
+            self.assertEqual((answer["killed"]["written"], answer["killed"]["lost"]), (1, 0))
+            self.assertGreater(answer["killed"]["after_ns"], 0)
+            self.assertTrue(answer["safe"])
+            await_that(lambda: self.drive.fills == 1, 10, "the safe frame")
+            system.await_state("drive", "ON")
+            await_that(lambda: self.drive.torques[-1] == 3.0, 10, "the drive to turn again")
+
+    def test_a_task_that_is_silent_for_too_long_is_ended_and_its_frame_written(self):
+        self.drive = Drive(1)
+        self.addCleanup(self.drive.end)
+        text = TEXT.replace("LINE", self.drive.name).replace("RATE", "100 Hz").replace("TORQUE", "[3]")
+        text = text.replace("    {component: serial_frame, rtpu: second,",
+                            "    {component: serial_frame, rtpu: second, safe_after: 20,")
+        with System(text) as system:
+            system.await_state("drive", "ON")
+            await_that(lambda: self.drive.torques[-1:] == [3.0], 10, "the drive to turn")
+            pid = system.pids()["second"]
+            system.kill(pid, 19)  # SIGSTOP: it publishes nothing any more, and would be found after 3 s
+            began = time.monotonic()
+            await_that(lambda: self.drive.fills == 1, 10, "the safe frame")
+            self.assertLess(time.monotonic() - began, 2)
+            await_that(lambda: [e for e in system.events() if e["kind"] == "safe" and e.get("task") == "drive" and
+                                "safe_after" in e["text"]], 10, "the event")
+            system.await_state("drive", "ON")
+
+    def test_a_task_that_was_turned_off_leaves_nothing_to_write(self):
+        with self.start() as system:
+            system.signal("off", "drive")
+            await_that(lambda: self.drive.torques[-1] == 0.0, 10, "the frame of off")
+            system.kill(system.pids()["second"])
+            system.await_state("drive", "OFF")
+            self.assertEqual(self.drive.fills, 0)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A standby takes over in real processes, whoever dies, with and without a manager. A bounded count here; more of them
+are the campaign `process_standby`. CHIMERA_ROUNDS: kills at random."""
+import os
+import random
+import sys
+import time
+import unittest
+
+from system import Refused, System, UNITS, await_that
+
+ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "3"))
+SEED = int(os.environ.get("CHIMERA_SEED", str(random.SystemRandom().randrange(1 << 32))))
+
+# `wanted` comes from a task of the first unit or from its standby in the second one; it is read in the second.
+TEXT = UNITS + """
+tasks:
+  reference:
+    {component: signal_generator, rtpu: second, rate: 100 Hz, alias: {y: vref},
+     constants: {amplitude: 0 m/s, offset: 1 m/s}}
+  main: {component: gain, rtpu: first, rate: 100 Hz, alias: {x: vref, y: wanted}, constants: {k: 2}}
+  spare: {component: gain, rtpu: second, rate: 50 Hz, alias: {x: vref, y: wanted}, constants: {k: 3}, standby_for: main}
+  user: {component: gain, rtpu: second, rate: 100 Hz, alias: {x: wanted, y: seen}, constants: {k: 1}}
+configurations: {run: [reference, main, user]}
+"""
+
+
+class Standby(unittest.TestCase):
+    def await_seen(self, system, value):
+        await_that(lambda: system.call("get", variables=["seen"])["values"]["seen"]["value"] == value, 5,
+                   f"the reader to see {value}")
+
+    def flags(self, system, since):
+        return [event for event in system.events() if event["kind"] == "flag" and event["at_ns"] > since
+                and "up" in event["text"]]
+
+    def take_over(self, system, *who):
+        pids = system.pids()
+        for name in who:
+            self.assertTrue(system.kill(pids[name]))
+        system.await_state("spare", "ON")
+        self.await_seen(system, 3)
+
+    def test_from_a_process_that_dies(self):
+        with System(TEXT) as system:
+            self.await_seen(system, 2)
+            started = system.call("status")["started_ns"]
+            self.take_over(system, "first")
+            self.assertEqual(self.flags(system, started), [])
+            system.await_state("main", "OFF")  # its process is restarted, and it stays OFF
+            self.assertEqual(system.call("status")["configuration"], "run with spare for main")
+            self.assertIn("took over from 'main'", str([e["text"] for e in system.events() if e["kind"] == "note"]))
+            with self.assertRaises(Refused):
+                system.signal("on", "main")
+            receipt = system.call("switch", configuration="run")  # back, by a person
+            self.assertEqual((receipt["end"], receipt["reason"]), ("done", None))
+            self.await_seen(system, 2)
+            self.assertEqual(system.call("status")["configuration"], "run")
+            self.assertEqual(self.flags(system, started), [])
+
+    def test_with_what_it_reads(self):
+        """The producer of the standby's input dies with the primary, and comes back where the primary does not."""
+        with System(TEXT.replace("signal_generator, rtpu: second", "signal_generator, rtpu: first")) as system:
+            self.await_seen(system, 2)
+            self.take_over(system, "first")
+            system.await_state("reference", "ON")
+            system.await_state("main", "OFF")
+            await_that(lambda: not system.call("status")["flag"]["up"], 10, "the flag to be down")
+
+    def test_while_the_manager_is_dead(self):
+        with System(TEXT) as system:
+            self.await_seen(system, 2)
+            self.take_over(system, "manager", "first")
+            system.await_state("main", "OFF")
+
+    def test_the_primary_stands_in_for_its_standby(self):
+        with System(TEXT) as system:
+            self.take_over(system, "first")
+            system.await_state("main", "OFF")
+            self.assertTrue(system.kill(system.pids()["second"]))
+            system.await_state("main", "ON")
+            await_that(lambda: system.state("user") == "ON", 10, "the reader is back")
+            self.await_seen(system, 2)
+            system.await_state("spare", "OFF")
+
+    def test_whoever_dies_one_of_them_is_on(self):
+        random.seed(SEED)
+        print(f"seed {SEED}", file=sys.stderr)
+        with System(TEXT) as system:
+            for _ in range(ROUNDS):
+                victims = random.sample(["first", "second", "manager"], random.choice([1, 1, 2]))
+                pids = system.pids()
+                for name in victims:
+                    system.kill(pids[name])
+                    time.sleep(random.random() * 0.01)
+
+                def one_is_on():
+                    states = {task["task"]: task["state"] for task in system.call("status")["tasks"]}
+                    on = [name for name in ("main", "spare") if states[name] == "ON"]
+                    self.assertLess(len(on), 2, f"killed {victims}")
+                    return len(on) == 1 and states["user"] == states["reference"] == "ON"
+                await_that(one_is_on, 20, f"one of them to be ON (killed {victims}): "
+                           f"{[(t['task'], t['state']) for t in system.call('status')['tasks']]}")
+                self.await_seen(system, 2 if system.state("main") == "ON" else 3)
+                time.sleep(4)  # three deaths in 10 s and a unit is given up
+
+
+if __name__ == "__main__":
+    unittest.main()
