@@ -72,26 +72,15 @@ std::string step_text(const ValueStep& step, const std::string& unit) {
   return number(step.size) + unit + (step.limit > 0 ? ", limit " + number(step.limit) + unit : "");
 }
 
-std::string asked_by(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
-  const std::string name = receipt.by.is_valid() ? std::string(spec.tasks[receipt.by.index].name) : "";
-  switch (receipt.cause) {
-    case SwitchCause::kScript: return "--at";
-    case SwitchCause::kRequest: return "task " + name;
-    case SwitchCause::kMiss: return "on_miss of " + name;
-    case SwitchCause::kOverrun: return "on_overrun of " + name;
-    case SwitchCause::kFault: return "on_fault of " + name;
-  }
-  return "?";
-}
-
 std::string json_asked_by(const SwitchReceipt& receipt, const ApplicationSpec& spec, const std::string& person) {
-  if (const std::size_t colon = person.find(':'); colon != std::string::npos)
+  const std::size_t colon = person.find(':');
+  if (receipt.cause == SwitchCause::kScript && colon != std::string::npos)
     return "{\"role\": " + json_string(person.substr(0, colon)) + ", \"user\": " +
            json_string(person.substr(colon + 1)) + "}";
   if (receipt.cause == SwitchCause::kScript) return "{\"script\": \"--at\"}";
   const std::string task = "\"task\": " + json_string(std::string(spec.tasks[receipt.by.index].name)) + "}";
   if (receipt.cause == SwitchCause::kRequest) return "{" + task;
-  const std::string by = asked_by(receipt, spec);
+  const std::string by = asked_by(SwitchRequest{receipt.after, receipt.cause, receipt.by}, spec);
   return "{\"reaction\": " + json_string(by.substr(0, by.find(' '))) + ", " + task;
 }
 
@@ -217,6 +206,18 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
 
 }  // namespace
 
+std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec) {
+  const std::string name = request.by.is_valid() ? std::string(spec.tasks[request.by.index].name) : "";
+  switch (request.cause) {
+    case SwitchCause::kScript: return "--at";
+    case SwitchCause::kRequest: return "task " + name;
+    case SwitchCause::kMiss: return "on_miss of " + name;
+    case SwitchCause::kOverrun: return "on_overrun of " + name;
+    case SwitchCause::kFault: return "on_fault of " + name;
+  }
+  return "?";
+}
+
 const char* reason_word(NoSwitch why) noexcept {
   switch (why) {
     case NoSwitch::kNone: return "none";
@@ -283,7 +284,8 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   const std::string when = " at " + at(receipt.asked, origin);
   if (receipt.end == SwitchEnd::kNothingToDo) return "switch" + when + ": " + to + " is in force, nothing to do\n";
   const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
-  const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(receipt, spec) + " ";
+  const SwitchRequest request{receipt.after, receipt.cause, receipt.by};
+  const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(request, spec) + " ";
   std::string text = "switch " + std::to_string(receipt.number) + when + " " + by + from + "to " + to;
   if (receipt.end == SwitchEnd::kDone) return text + done_text(receipt, spec) + bumps(receipt, spec);
   return text + " " + word(receipt.end) + ": " + reason_text(receipt, spec) + "\n";

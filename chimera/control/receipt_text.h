@@ -24,6 +24,9 @@ struct ReceiptFrame {
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
                          const ReceiptFrame& frame = {});
 
+/// Who asks, as receipts say it: "on_miss of pid". Context: setup.
+std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec);
+
 /// Why a switch was refused or aborted: the word of the format, and a sentence. Context: setup.
 const char* reason_word(NoSwitch why) noexcept;
 std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spec);

@@ -258,7 +258,7 @@ void ManagerBackend::switch_to(const Request& request) {
   if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
-  driver_.switches().ask(*set, {request.caller.role, request.caller.user}, wait, now(),
+  driver_.switches().ask({*set, SwitchCause::kScript, {}}, {request.caller.role, request.caller.user}, wait, now(),
                          [this, reply = request.reply](const SwitchOutcome& outcome) {
                            reply(switch_answer(world(), outcome));
                          });

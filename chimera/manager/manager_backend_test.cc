@@ -96,7 +96,8 @@ TEST_F(ManagerBackendTest, ADrillBeginsWithTheFlagDown) {
 }
 
 TEST_F(ManagerBackendTest, NoDrillWhileASwitchIsUnderWay) {
-  fake_.driver().switches().ask(1, {control::Role::kOperate, 4'000'000'001u}, seconds(10), now(),
+  const Asker ann{control::Role::kOperate, 4'000'000'001u};
+  fake_.driver().switches().ask({1, SwitchCause::kScript, {}}, ann, seconds(10), now(),
                                 [](const SwitchOutcome&) {});
   EXPECT_EQ(refusal("drill", Json::object()),
             "-32000 the drill is refused: switch 1 to 'rest', asked for by operate:4000000001, is under way "

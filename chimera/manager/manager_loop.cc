@@ -119,6 +119,7 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   if (!receipts) return receipts.error();
   receipts_ = *std::move(receipts);
   switches_ = std::make_unique<SwitchCoordinator>(*world_, *receipts_);
+  wishes_ = std::make_unique<SwitchWishes>(*world_, *switches_);
   drill_ = std::make_unique<Drill>(*world_, [this](RtpuId rtpu) { end_unit(rtpu); });
   begun_ = counters_due_ = now();
   say_hello();
@@ -256,7 +257,10 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
     counters_due_ = now() + kCountersEvery;
   }
   steps_->look(now());
-  if (is_ready_) switches_->look(now());  // before that nobody knows which tasks are ON
+  if (is_ready_) {  // before that nobody knows which tasks are ON
+    switches_->look(now());
+    wishes_->look(now());
+  }
   receipts_->look(now());
   drill_->look(now());
   return !is_finished_;

@@ -38,6 +38,17 @@ std::string time_of_day(Nanoseconds at) {
   return text;
 }
 
+/// It may have been left by a manager that wrote where it should not.
+bool is_cause(const BegunSwitch& begun, const ApplicationSpec& spec) {
+  const bool is_of_task = begun.cause > SwitchCause::kScript && begun.cause <= SwitchCause::kFault;
+  return is_of_task ? begun.by.index < spec.tasks.size() : begun.cause == SwitchCause::kScript && !begun.by.is_valid();
+}
+
+std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
+  if (begun.cause == SwitchCause::kScript) return begun.asked_by.text();
+  return control::asked_by({begun.order.after, begun.cause, begun.by}, spec);
+}
+
 }  // namespace
 
 TaskStatus last_status(const ManagerState& world, TaskId task) {
@@ -75,7 +86,7 @@ void SwitchCoordinator::take_over() {
   const std::size_t n_sets = world_.spec().sets.size();
   const bool is_damaged = begun->order.after >= n_sets || (begun->before >= n_sets && begun->before != kNoSet) ||
                           begun->asked_by.role > control::Role::kConfigure ||
-                          begun->cancelled_by.role > control::Role::kConfigure;
+                          begun->cancelled_by.role > control::Role::kConfigure || !is_cause(*begun, world_.spec());
   const bool is_announced = plan.number == begun->order.number;
   if (is_damaged || (!is_announced && begun->tries <= 1)) return journal_.forget();
   if (!is_announced) {
@@ -90,7 +101,7 @@ std::string SwitchCoordinator::under_way() const {
   if (!present_) return "";
   return "switch " + std::to_string(present_->begun.number) + " to '" +
          std::string(world_.spec().sets[present_->begun.order.after].name) + "', asked for by " +
-         present_->begun.asked_by.text();
+         asker_text(present_->begun, world_.spec());
 }
 
 std::string SwitchCoordinator::progress() const {
@@ -155,6 +166,11 @@ void SwitchCoordinator::announce(const SwitchOrder& order) {
   world_.announce();
 }
 
+bool SwitchCoordinator::is_free() const noexcept {
+  const PlanWord open = agreement().plan();
+  return !present_ && !open.is_open() && (open.number == 0 || is_over(open.number, UINT16_MAX));
+}
+
 /// What may begin is kDone, for as long as nothing has gone wrong.
 void SwitchCoordinator::assess(std::uint32_t set, SwitchOutcome& outcome) {
   SwitchReceipt& receipt = outcome.receipt;
@@ -164,10 +180,9 @@ void SwitchCoordinator::assess(std::uint32_t set, SwitchOutcome& outcome) {
   receipt.why = answer.why;
   receipt.task = answer.task;
   receipt.takes = answer.takes;
-  const PlanWord open = agreement().plan();
   if (present_) {
     receipt.said.assign(under_way() + ", is under way: " + progress());
-  } else if (open.is_open() || (open.number != 0 && !is_over(open.number, UINT16_MAX))) {
+  } else if (!is_free()) {
     receipt.said.assign("the real-time units are not done with the last switch");
   } else if (!world_.logic.is_settled()) {
     receipt.said.assign("tasks are being brought up");
@@ -193,14 +208,19 @@ ForeseenSwitch SwitchCoordinator::foresee(std::uint32_t set) {
   return {outcome.receipt, has_plan ? plan_ : SwitchPlan{}, outcome.remedy};
 }
 
-void SwitchCoordinator::ask(std::uint32_t set, Asker asked_by, Nanoseconds wait, Nanoseconds now, Switched switched) {
+void SwitchCoordinator::ask(const SwitchRequest& request, Asker asked_by, Nanoseconds wait, Nanoseconds now,
+                            Switched switched) {
   look(now);
   auto outcome = std::make_shared<SwitchOutcome>();
-  assess(set, *outcome);
+  assess(request.set, *outcome);
   outcome->receipt.asked = now;
+  outcome->receipt.cause = request.cause;
+  outcome->receipt.by = request.by;
   BegunSwitch begun;
   begun.number = journal_.next();
   begun.before = outcome->receipt.before;
+  begun.cause = request.cause;
+  begun.by = request.by;
   begun.asked_by = asked_by;
   begun.asked = now;
   if (outcome->receipt.end == SwitchEnd::kNothingToDo) return switched(*outcome);
@@ -210,7 +230,7 @@ void SwitchCoordinator::ask(std::uint32_t set, Asker asked_by, Nanoseconds wait,
     one.push_back(std::move(switched));
     return file(std::move(outcome), begun, now, std::move(one));
   }
-  begun.order = make_order(set, now + wait);
+  begun.order = make_order(request.set, now + wait);
   journal_.begin(begun);
   present_ = Present{begun, {}};
   present_->switched.push_back(std::move(switched));
@@ -299,6 +319,8 @@ std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& ove
   receipt.before = over.before;
   receipt.after = over.order.after;
   receipt.asked = over.asked;
+  receipt.cause = over.cause;
+  receipt.by = over.by;
   receipt.end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
   if (is_committed) receipt.at = agreement().at(word);
   for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r) {
@@ -322,7 +344,7 @@ std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& ove
 void SwitchCoordinator::file(std::shared_ptr<SwitchOutcome> outcome, const BegunSwitch& of, Nanoseconds now,
                              std::vector<Switched> switched) {
   outcome->json = control::receipt_json(outcome->receipt, world_.spec(), world_.keeper.origin,
-                                        {of.asked_by.text(), wall_ns(of.asked), of.tries});
+                                        {asker_text(of, world_.spec()), wall_ns(of.asked), of.tries});
   archive_.add(of.number, outcome->json, now, [outcome, switched = std::move(switched)] {
     for (const Switched& one : switched) one(*outcome);
   });

@@ -49,15 +49,20 @@ class SwitchCoordinator {
   /// Takes up the switch that a predecessor has begun.
   SwitchCoordinator(ManagerState& world, ReceiptArchive& archive);
 
-  /// Asks for the set of that number. `switched` is called when it is over and its receipt is filed, maybe at once.
-  void ask(std::uint32_t set, Asker asked_by, Nanoseconds wait, Nanoseconds now, Switched switched);
+  /// Asks for a switch. `asked_by`: of a person; without a role of a task or reaction, which the request names.
+  /// `switched` is called when it is over and its receipt is filed, maybe at once.
+  void ask(const SwitchRequest& request, Asker asked_by, Nanoseconds wait, Nanoseconds now, Switched switched);
   /// What ask() would do. Changes nothing.
   ForeseenSwitch foresee(std::uint32_t set);
   /// Aborts what is under way and not committed: `switched` gets the same receipt as who asked for it. False: there is
   /// nothing, or it is too late.
   bool cancel(Asker cancelled_by, Switched switched);
   bool is_under_way() const noexcept { return present_.has_value(); }
-  /// "switch 3 to 'hand', asked for by operate:ann"; "" without one.
+  /// One that is asked for now would not be refused as under way; of a manager before this one neither.
+  bool is_free() const noexcept;
+  /// The switch that is under way is to that set.
+  bool leads_to(std::uint32_t set) const noexcept { return present_ && present_->begun.order.after == set; }
+  /// "switch 3 to 'hand', asked for by operate:ann", or "by task law", or "by on_fault of law"; "" without one.
   std::string under_way() const;
   /// How far it is, and until when it may take: "arming, until 14:03:07". Requires: is_under_way().
   std::string progress() const;

@@ -30,7 +30,8 @@ struct SwitchCoordinatorTest : ::testing::Test {
   SwitchAgreement agreement() { return {fake.driver().world().page.switching, fake.driver().world().keeper.origin}; }
   void ask(std::uint32_t set) {
     got.reset();
-    coordinator().ask(set, kAnn, seconds(10), now(), [this](const SwitchOutcome& outcome) { take(outcome); });
+    coordinator().ask({set, SwitchCause::kScript, {}}, kAnn, seconds(10), now(),
+                      [this](const SwitchOutcome& outcome) { take(outcome); });
   }
   void take(const SwitchOutcome& outcome) {
     got = outcome;
@@ -147,7 +148,8 @@ start: run
   std::optional<SwitchOutcome> got;
   const auto ask = [&](std::uint32_t set) {
     got.reset();
-    fake.driver().switches().ask(set, kAnn, seconds(10), now(), [&](const SwitchOutcome& of) { got = of; });
+    fake.driver().switches().ask({set, SwitchCause::kScript, {}}, kAnn, seconds(10), now(),
+                                 [&](const SwitchOutcome& of) { got = of; });
   };
   ask(1);
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
@@ -166,7 +168,7 @@ TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {
   EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
   ask(kRest);
   std::optional<std::string> second, third;
-  coordinator().ask(kRest, kBen, seconds(1), now(), [&](const SwitchOutcome& outcome) {
+  coordinator().ask({kRest, SwitchCause::kScript, {}}, kBen, seconds(1), now(), [&](const SwitchOutcome& outcome) {
     EXPECT_EQ(outcome.receipt.why, NoSwitch::kUnderWay);
     EXPECT_EQ(outcome.receipt.number, 2u);
     second = outcome.receipt.said.view();
@@ -298,7 +300,7 @@ TEST_F(SwitchCoordinatorTest, WhatTheUnitsDidWithoutAManagerIsCollected) {
 }
 
 TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
-  coordinator().ask(kRest, kAnn, milliseconds(1), now(), [](const SwitchOutcome&) {});
+  coordinator().ask({kRest, SwitchCause::kScript, {}}, kAnn, milliseconds(1), now(), [](const SwitchOutcome&) {});
   restart();
   ask(kRest);
   ASSERT_TRUE(until_answered());
@@ -345,6 +347,41 @@ TEST_F(SwitchCoordinatorTest, ATryThatWasNotAnnouncedIsMadeAgain) {
   over(1);
   ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
   EXPECT_NE(filed()[0].find("\"tries\": 2, "), std::string::npos) << filed()[0];
+}
+
+// A switch that a task asked for, in the journal.
+TEST_F(SwitchCoordinatorTest, ASuccessorKnowsTheTaskThatAsked) {
+  const TaskId law = fake.task("law");
+  coordinator().ask({kRest, SwitchCause::kMiss, law}, {}, seconds(10), now(), [](const SwitchOutcome&) {});
+  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by on_miss of law");
+  restart();
+  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by on_miss of law");
+  commit();
+  over(0);
+  over(1);
+  ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
+  EXPECT_NE(filed()[0].find("{\"reaction\": \"on_miss\", \"task\": \"law\"}"), std::string::npos) << filed()[0];
+}
+
+TEST_F(SwitchCoordinatorTest, ACauseOrATaskThatCannotBeIsForgotten) {
+  const auto change = [&](SwitchCause cause, TaskId by) {
+    coordinator().ask({kRest, SwitchCause::kMiss, fake.task("law")}, {}, seconds(10), now(),
+                      [](const SwitchOutcome&) {});
+    SwitchJournal journal(fake.driver().world().own.block().journal());
+    BegunSwitch damaged = *journal.begun();
+    damaged.cause = cause;
+    damaged.by = by;
+    journal.change(damaged);
+    restart();
+    EXPECT_FALSE(coordinator().is_under_way());
+    ASSERT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
+    over(0);
+    over(1);
+  };
+  change(SwitchCause::kMiss, TaskId{});
+  change(SwitchCause::kFault, TaskId(99u));
+  change(SwitchCause::kScript, TaskId(99u));
+  change(static_cast<SwitchCause>(9), fake.task("law"));
 }
 
 // Its number is on the page, but the journal has nothing: somebody else wrote it.
@@ -395,7 +432,8 @@ TEST_F(SwitchCoordinatorTest, AUnitThatDiesBetweenCommitAndChangeComesBackToTheS
 
 TEST_F(SwitchCoordinatorTest, WithoutAnAnswerItIsAbortedBehindItsDeadline) {
   got.reset();
-  coordinator().ask(kRest, kAnn, milliseconds(1), now(), [this](const SwitchOutcome& outcome) { take(outcome); });
+  coordinator().ask({kRest, SwitchCause::kScript, {}}, kAnn, milliseconds(1), now(),
+                    [this](const SwitchOutcome& outcome) { take(outcome); });
   ASSERT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
   EXPECT_FALSE(got);
   over(0);

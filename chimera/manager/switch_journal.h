@@ -20,6 +20,7 @@
 #include "chimera/manager/asker.h"
 #include "chimera/runtime/hosted/rtpu_block.h"
 #include "chimera/runtime/switch_plan.h"
+#include "chimera/runtime/switch_request.h"
 
 namespace chimera::manager {
 
@@ -28,7 +29,9 @@ struct BegunSwitch {
   std::uint32_t number = 0;  ///< of its receipt
   std::uint32_t tries = 1;
   std::uint32_t before = kNoSet;
-  Asker asked_by;
+  SwitchCause cause = SwitchCause::kScript;
+  TaskId by;           ///< as SwitchRequest::by
+  Asker asked_by;      ///< kNone: a task or reaction did
   Asker cancelled_by;  ///< kNone: it was not
   Nanoseconds asked;
   SwitchOrder order;   ///< that was announced last, or is about to be

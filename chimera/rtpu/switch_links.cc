@@ -32,4 +32,21 @@ void SwitchLinks::tell_over(const SwitchReceipt& receipt) noexcept {
   others_.ring_all();
 }
 
+// States that it follows from are shown before it.
+void SwitchLinks::wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept {
+  BlockHead& head = others_.block().head();
+  const SwitchWish last = SwitchWish::of(head.wish.word.load(std::memory_order_relaxed));  // its only writer is here
+  const PeerSegment* manager = others_.at(others_.manager());
+  const std::uint64_t dealt = wish_dealt_with(head.incarnation, last.number);
+  const auto was_dealt_with = [&] {
+    return manager != nullptr && manager->block().memory().wishes[me_].load(std::memory_order_relaxed) == dealt;
+  };
+  const bool is_open = last.is_there() && !was_dealt_with();
+  if (!is_new_wish(request.set, changes_nothing, is_open, last.set)) return;
+  others_.publish(tasks_);
+  head.wish.at.store(now.count, std::memory_order_relaxed);
+  head.wish.word.store(last.next(request).word(), std::memory_order_release);  // SwitchWishWords
+  others_.ring_all();
+}
+
 }  // namespace chimera

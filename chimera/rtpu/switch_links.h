@@ -20,6 +20,7 @@ class SwitchLinks final : public SwitchPeers {
   void ring() noexcept override { others_.ring_all(); }
   void tell_adopted(std::uint16_t number) noexcept override;
   void tell_over(const SwitchReceipt& receipt) noexcept override;
+  void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept override;
 
  private:
   TaskSet& tasks_;

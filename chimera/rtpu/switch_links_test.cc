@@ -83,6 +83,32 @@ TEST_F(SwitchLinksTest, TwoUnitsChangeAtOneInstant) {
   EXPECT_TRUE(units->part(1).variables[0].step_of_on.is_known);
 }
 
+TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
+  const auto wish = [&] { return SwitchWish::of(units->units[1]->segment.block.head().wish.word.load()); };
+  std::string wanted = "direct";
+  scene.in_reader = [&](Cycle c) { EXPECT_TRUE(c.request(wanted.c_str())); };
+  units->run(milliseconds(5));
+  EXPECT_FALSE(wish().is_there()) << "it is in force";
+  wanted = "observed";
+  units->run(milliseconds(5));
+  EXPECT_EQ(wish(), (SwitchWish{1, kObserved, static_cast<std::uint16_t>(kReader.index), SwitchCause::kRequest}));
+  EXPECT_NE(units->units[1]->segment.block.head().wish.at.load(), 0);
+  wanted = "direct";
+  units->run(milliseconds(5));
+  EXPECT_EQ(wish().number, 2) << "it takes the wish back that nobody has dealt with";
+  EXPECT_EQ(wish().set, kDirect);
+  units->manager->block.memory().wishes[1] = wish_dealt_with(1, 2);
+  units->run(milliseconds(5));
+  EXPECT_EQ(wish().number, 2);
+  wanted = "observed";
+  units->run(milliseconds(1));
+  units->manager->block.memory().wishes[1] = wish_dealt_with(1, 3);
+  (void)units->switch_to(kObserved);
+  units->run(milliseconds(10));
+  EXPECT_TRUE(are_on(kSets[kObserved]));
+  EXPECT_EQ(wish().number, 3) << "what is under way, and in force later, is not asked for again";
+}
+
 TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {
   const Nanoseconds begin = units->now;
   std::mt19937 random(5);

@@ -32,6 +32,10 @@ void BoundarySignals::act(Nanoseconds now) noexcept {
 bool BoundarySignals::take_request(Nanoseconds now) noexcept {
   if (const SwitchRequest last = set_.sent().take_request()) request_ = last;
   if (!request_) return false;
+  if (set_.others() != nullptr) {  // another one plans for all, and keeps the last request
+    switching_.ask(std::exchange(request_, {}), now);
+    return false;
+  }
   if (switching_.leads_to(request_.set)) request_ = {};
   if (!request_ || switching_.is_under_way()) return false;
   switching_.ask(std::exchange(request_, {}), now);

@@ -17,17 +17,6 @@ bool is_built(OnMiss reaction, bool can_demote, bool can_switch) noexcept {
   return (can_switch || reaction != OnMiss::kSwitch) && (can_demote || reaction != OnMiss::kDemote);
 }
 
-// Receipts of switches that tasks ask for; no more of them are kept.
-constexpr std::size_t kKeptOfRequests = 16;
-
-bool may_request(const ApplicationSpec& spec) noexcept {
-  const auto reacts = [](const TaskSpec& task) {
-    return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch ||
-           task.on_fault_set != UINT16_MAX;
-  };
-  return spec.sets.size() > 1 || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
-}
-
 QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
   return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n), memory.take<std::uint32_t>(n)},
           memory.take<QueueTask>(n),
@@ -37,6 +26,14 @@ QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
 }
 
 }  // namespace
+
+bool may_request(const ApplicationSpec& spec) noexcept {
+  const auto reacts = [](const TaskSpec& task) {
+    return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch ||
+           task.on_fault_set != UINT16_MAX;
+  };
+  return spec.sets.size() > 1 || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
+}
 
 Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
@@ -55,8 +52,9 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
-  const bool takes_requests = is_alone && options.threads == nullptr && may_request(set.spec());
-  switching_.prepare(n_switches + (takes_requests ? kKeptOfRequests : 0), options.switch_peers);
+  const bool takes_requests = (is_alone || options.switch_peers != nullptr) && may_request(set.spec());
+  const bool keeps_receipts = is_alone && takes_requests;
+  switching_.prepare(n_switches + (keeps_receipts ? kKeptOfRequests : 0), options.switch_peers);
   if (takes_requests) set.sent().allow_requests();
   recovery_.prepare();
   for (Task& task : set.tasks()) {

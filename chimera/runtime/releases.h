@@ -30,12 +30,17 @@
 
 namespace chimera {
 
+/// A task may ask for a configuration: there is another one, or a reaction leads to one.
+bool may_request(const ApplicationSpec& spec) noexcept;
+/// Of switches that tasks ask for; no more receipts of them are kept.
+inline constexpr std::size_t kKeptOfRequests = 16;
+
 /// Owns the parts, which work in the memory that the set was built in. Context of everything not marked: cycle; no
 /// allocation, no system call.
 class Releases {
  public:
   /// `clock` is what methods see, and is made the clock of the set. Requires: no task of this context with the reaction
-  /// switch where there are other contexts or threads for jobs, nor demote unless that can be done. Everything given
+  /// switch where there are other contexts without switch_peers, nor demote unless that can be done. Everything given
   /// outlives this. Context: setup.
   Releases(TaskSet& set, JobClock& clock, const RunOptions& options);
   Releases(const Releases&) = delete;

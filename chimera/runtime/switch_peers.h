@@ -21,6 +21,9 @@ class SwitchPeers {
   virtual void tell_adopted(std::uint16_t number) noexcept = 0;
   /// Nothing is left to do for the plan: the part of this context in its receipt is shown, then the number.
   virtual void tell_over(const SwitchReceipt& receipt) noexcept = 0;
+  /// A task of this context asks for a switch: whoever plans is to see it. `changes_nothing`: it is for what is in
+  /// force, or is being switched to.
+  virtual void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept = 0;
 
  protected:
   ~SwitchPeers() = default;
@@ -35,6 +38,7 @@ class NoSwitchPeers final : public SwitchPeers {
   void ring() noexcept override {}
   void tell_adopted(std::uint16_t) noexcept override {}
   void tell_over(const SwitchReceipt&) noexcept override {}
+  void wish(const SwitchRequest&, bool, Nanoseconds) noexcept override {}
 
  private:
   SwitchPage page_;

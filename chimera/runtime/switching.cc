@@ -38,8 +38,11 @@ bool holds(TaskSet& set, const SafeCondition& asked) noexcept {
   return !asked.is_there() || is_safe(asked, present_value(set, asked));
 }
 
-void note_standing(std::span<const Task> tasks, std::span<TaskStanding> standing) noexcept {
-  for (const Task& each : tasks) standing[each.id.index] = {each.state, each.in_service};
+void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcept {
+  for (const Task& each : set.tasks()) {
+    const bool is_elsewhere = set.others() != nullptr && !set.is_mine(each.id);
+    standing[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.state, each.in_service};
+  }
 }
 
 // Whose tasks are armed next; behind the last run, which nobody has when nothing arrives, the first member's turn.
@@ -99,14 +102,15 @@ void Switching::begin(Nanoseconds origin) noexcept {
 
 bool Switching::leads_to(std::uint32_t set) noexcept {
   if (is_under_way()) return phase_ != Phase::kUndoing && plan_.after == set;
-  note_standing(parts_.set.tasks(), standing_);
+  note_standing(parts_.set, standing_);
   return planner_.set_in_force(standing_) == set;
 }
 
 void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
+  if (peers_ != &nobody_) return peers_->wish(request, leads_to(request.set), now);
   const bool only_watches = phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
   if (only_watches) finish(SwitchEnd::kDone, now);
-  note_standing(parts_.set.tasks(), standing_);
+  note_standing(parts_.set, standing_);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (phase_ == Phase::kNone) answer = planner_.plan(request.set, standing_, plan_);
   if (answer) answer = schedule_.judge(standing_, request.set);

@@ -58,8 +58,8 @@ class Switching {
   /// Instants on the page count from `origin`, that of the grid of releases.
   void begin(Nanoseconds origin) noexcept;
 
-  /// Makes a plan and begins to carry it out; what became of it is in receipts(). Requires: no peers; prepare() took
-  /// memory.
+  /// Makes a plan and begins to carry it out; what became of it is in receipts(). With peers: whoever plans for all is
+  /// told. Requires: prepare() took memory.
   void ask(const SwitchRequest& request, Nanoseconds now) noexcept;
   bool is_under_way() const noexcept { return phase_ != Phase::kNone; }
   /// The set is in force, or is the one that is being switched to.

@@ -60,7 +60,7 @@ std::int32_t host_request(void* context, const char* name) {
   if (set == sets.size()) return refuse_request(context, name, "there is none of this name");
   if (sets.size() == 1) return refuse_request(context, name, "it is the only one");
   if (!host.set->sent().takes_requests())
-    return refuse_request(context, name, "a switch of tasks in several processes cannot be done yet");
+    return refuse_request(context, name, "nobody takes requests here");
   host.task->requested_set = static_cast<std::uint16_t>(set);
   host.task->has_news = true;
   return CHIMERA_OK;

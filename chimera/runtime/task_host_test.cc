@@ -163,8 +163,7 @@ TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
   const NamedSet sets[] = {{"near", {}}, {"far", {}}};
   const_cast<ApplicationSpec&>(set->spec()).sets = sets;
   EXPECT_EQ(host().request(context(), "far"), CHIMERA_FAULT);
-  EXPECT_STREQ(task().faults.note,
-               "asks for the configuration 'far': a switch of tasks in several processes cannot be done yet");
+  EXPECT_STREQ(task().faults.note, "asks for the configuration 'far': nobody takes requests here");
   EXPECT_EQ(task().requested_set, kNoRequest);
   set->sent().allow_requests();
   task().has_news = false;

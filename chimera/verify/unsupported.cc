@@ -8,18 +8,6 @@
 namespace chimera {
 namespace {
 
-const char* fault_reaction(OnFault kind) {
-  return kind == OnFault::kFlag ? "flag" : kind == OnFault::kStop ? "stop" : "switch";
-}
-
-// As it is written, for messages: what acts when a task is in ERROR and stays there; "" when nothing does.
-std::string fault_reaction(const DraftOnFault& on_fault) {
-  const bool restarts = on_fault.kind == OnFault::kRestart;
-  const OnFault last = restarts ? on_fault.restart.then : on_fault.kind;
-  if (last == OnFault::kError) return "";
-  return std::string(restarts ? "'then: " : "'on_fault: ") + fault_reaction(last) + "'";
-}
-
 class Refusals {
  public:
   Refusals(const Configuration& configuration, Executor executor)
@@ -73,25 +61,12 @@ class Refusals {
 
   void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task,
                 bool is_preemptive) {
-    if (!reaction || (reaction->kind != OnMiss::kDemote && reaction->kind != OnMiss::kSwitch)) return;
-    const std::string begin = "'" + std::string(key);
-    if (reaction->kind == OnMiss::kSwitch) return switches(reaction->at, begin + ": switch'", task);
-    if (is_preemptive) return;
-    const std::string what = begin + ": demote' of task '" + task.name.text + "'";
+    if (!reaction || reaction->kind != OnMiss::kDemote || is_preemptive) return;
+    const std::string what = "'" + std::string(key) + ": demote' of task '" + task.name.text + "'";
     const char* const remedy = executor_ == Executor::kOneProcess ? "run without --isolation none"
                                : executor_ == Executor::kVirtual  ? "run with --preemptive"
                                                                   : "give its rtpu 'executor: preemptive'";
     refuse(reaction->at, what, std::string(remedy) + ", or use another reaction");
-  }
-
-  // What acts on tasks of other processes.
-  void switches(Place at, const std::string& reaction, const DraftTask& task) {
-    if (is_virtual() && are_on_several_rtpus())
-      refuse(at, reaction + " of task '" + task.name.text + "' on several rtpus in virtual time",
-             "run with --isolation none, or use another reaction");
-    if (executor_ != Executor::kProcesses) return;
-    refuse(at, reaction + " of task '" + task.name.text + "' where tasks are in several processes",
-           "run with --virtual or --isolation none, or use another reaction");
   }
 
   // A job behind a server is taken off the processor when the capacity is used up: one loop cannot do that.
@@ -105,11 +80,6 @@ class Refusals {
     refuse(task.server->at, "'server' of task '" + task.name.text + "'", remedy + " its rtpu 'executor: preemptive'");
   }
 
-  bool are_on_several_rtpus() const {
-    const auto tasks = configuration_.tasks();
-    return std::any_of(tasks.begin(), tasks.end(), [&](const ConfiguredTask& t) { return t.rtpu != tasks[0].rtpu; });
-  }
-
   void judge(const DraftTask& task) {
     const auto tasks = configuration_.tasks();
     const auto here =
@@ -117,8 +87,6 @@ class Refusals {
     const bool preempts = here != tasks.end() && is_preemptive(here->rtpu);
     reaction(task.on_miss, "on_miss", task, preempts);
     reaction(task.on_overrun, "on_overrun", task, preempts);
-    if (const std::string last = task.on_fault ? fault_reaction(*task.on_fault) : ""; !last.empty())
-      switches(task.on_fault->at, last, task);
     server(task, preempts, here != tasks.end() && here->has_event_source);
     if (task.stack_bytes && !preempts && executor_ == Executor::kProcesses)
       refuse(task.stack_bytes->at, "'stack' of task '" + task.name.text + "'",

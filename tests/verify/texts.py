@@ -13,12 +13,9 @@ CALLED = (
     ("llf in real time", "policy `llf` in real time"),
     ("budgets above 0.93 of a CPU in real time", "budgets above 0.93 of a CPU"),
     ("budgets of all rtpus together above 0.93", "budgets above 0.93 of a CPU"),
-    (": switch' of task", "reaction `switch`"),
     (": demote' of task", "`demote`"),
     ("from a descriptor, in virtual time", "in virtual time events from a descriptor"),
     ("'server' of task", "in an executive `server`"),
-    ("where tasks are in several processes", "in several processes, or on several rtpus in virtual time"),
-    ("on several rtpus in virtual time", "or on several rtpus in virtual time"),
     ("'stack' of task", "`stack`"),
     ("\"isolation: process\", task", "`isolation: process` of a task"),
 )

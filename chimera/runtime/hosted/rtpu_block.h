@@ -16,6 +16,7 @@
 #include "chimera/runtime/safe_frame.h"
 #include "chimera/runtime/hosted/pages.h"
 #include "chimera/runtime/switch_part.h"
+#include "chimera/runtime/switch_wish.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/runtime/task_status.h"
 #include "chimera/table/segment.h"
@@ -52,6 +53,7 @@ struct alignas(64) BlockHead {
   std::atomic<std::uint32_t> background{0};  ///< as `running`: the background that is under way longest; 0: none
   std::atomic<std::uint32_t> jobs{0};        ///< cycles of the task in `running` that ended, as the main thread saw
   SwitchProgress switching;                  ///< how far this unit has come with a switch
+  SwitchWishWords wish;                      ///< the configuration that a task of this unit asked for last
 };
 inline constexpr std::uint64_t kBlockMagic = 0x314b4c42'4d494843;  // "CHIMBLK1" in memory
 
@@ -63,6 +65,9 @@ struct ManagerMemory {
   std::atomic<std::int64_t> restarts[kMaxRtpus][4];             ///< instants of the last restarts
   std::atomic<std::uint32_t> started{0};                        ///< 1: the start set has been asked for
   std::atomic<std::int64_t> started_at{0};                      ///< instant at which it went ON; 0: not yet
+  /// The wish of each unit that was dealt with, as wish_dealt_with(); units that live read it, too: relaxed, pairs with
+  /// nothing.
+  std::atomic<std::uint64_t> wishes[kMaxRtpus];
 };
 
 /// The journal of switches, which only the manager's block has in use: chimera/manager/switch_journal.h has its form.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,7 @@ using Log = std::vector<std::tuple<std::int64_t, double>>;
 struct Scene {
   Log plant, beacon, u, reader;
   std::vector<std::string> story;
+  std::function<void(Cycle)> in_plant, in_reader;  // of two rtpus
   double on_of_two = 0;
   bool on_of_two_fails = false;
   int illegal = 0;  // cycles that saw the flag up
@@ -33,6 +35,7 @@ struct Plant {
     *y = *y + 0.1 * (*u - *y);
     scene.plant.emplace_back(c.now().count, *y);
     scene.u.emplace_back(c.now().count, *u);
+    if (scene.in_plant) scene.in_plant(c);
     scene.illegal += c.illegal() ? 1 : 0;
   }
 };
@@ -52,6 +55,7 @@ struct Reader {
   void cycle(Cycle c) {
     *seen = *u;
     scene.reader.emplace_back(c.now().count, *u);
+    if (scene.in_reader) scene.in_reader(c);
     scene.illegal += c.illegal() ? 1 : 0;
   }
 };

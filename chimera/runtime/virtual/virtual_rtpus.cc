@@ -64,9 +64,10 @@ VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const
     : peers_(peers),
       stop_(options.stop != nullptr ? options.stop : &kNoStop),
       script_(options.script),
-      switches_(peers, options.script.count(ScriptAct::Kind::kSwitch)) {
+      switches_(peers, options.script.count(ScriptAct::Kind::kSwitch) +
+                           (may_request(peers.spec()) ? kKeptOfRequests : 0)) {
   CHIMERA_ASSERT(how.quantum > Nanoseconds{} && options.guest == nullptr);
-  const bool has_switches = script_.count(ScriptAct::Kind::kSwitch) > 0;
+  const bool has_switches = script_.count(ScriptAct::Kind::kSwitch) > 0 || may_request(peers.spec());
   for (std::size_t r = 0; r < peers.spec().rtpus.size(); ++r) {
     SwitchPeers* const switches = has_switches ? &switches_.of(RtpuId(r)) : nullptr;
     if (peers.tasks(RtpuId(r)) != nullptr)
@@ -212,7 +213,7 @@ void VirtualRtpus::act(const ScriptAct& act, Unit*& last) noexcept {
     case ScriptAct::Kind::kDie:
       return die(act.rtpu);
     case ScriptAct::Kind::kSwitch:
-      return switches_.ask(act.set, now_);
+      return switches_.ask({act.set, SwitchCause::kScript, {}}, now_);
   }
 }
 

@@ -47,7 +47,7 @@ class VirtualRtpus {
   Nanoseconds origin() const noexcept { return origin_; }
   /// In order of time. Context: setup, between runs.
   std::vector<RefusedSignal> refused();
-  /// Of every switch that the script asked for. Context: setup, between runs.
+  /// Of every switch that the script or a task asked for. Context: setup, between runs.
   const SwitchReceipts& receipts() const noexcept { return switches_.receipts(); }
 
  private:

@@ -3,6 +3,7 @@
 #include "chimera/runtime/virtual/virtual_switches.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "chimera/base/assert.h"
 
@@ -51,23 +52,29 @@ Nanoseconds VirtualSwitches::lead() const noexcept {
   return lead_of(plan_, peers_.spec().tasks, longest);
 }
 
-void VirtualSwitches::ask(std::uint32_t set, Nanoseconds now) noexcept {
-  look(now);
+void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
+  finish(now);
   SwitchOrder order;
   for (std::size_t t = 0; t < standing_.size(); ++t) {
     standing_[t] = {peers_.state(TaskId(t)), false};
     if (standing_[t].state == State::kOn) order.on.add(TaskId(t));
   }
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  if (!is_under_way()) answer = planner_.plan(set, standing_, plan_);
-  if (answer) answer = schedule_.judge(standing_, set);
+  if (!is_under_way()) answer = planner_.plan(request.set, standing_, plan_);
+  if (answer) answer = schedule_.judge(standing_, request.set);
+  const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
+  if (is_nothing && request.cause != SwitchCause::kScript) return;
+  if (!is_nothing) ++n_asked_;
+  if (is_under_way() && !receipts_.has_room()) return receipts_.leave_out();  // the last place is that of the present
   SwitchReceipt& receipt = receipts_.add();
   receipt.asked = now;
-  receipt.after = set;
+  receipt.after = request.set;
+  receipt.cause = request.cause;
+  receipt.by = request.by;
   receipt.before = planner_.set_in_force(standing_);
-  if (answer.why != NoSwitch::kNothingToDo) receipt.number = ++n_asked_;
+  if (!is_nothing) receipt.number = n_asked_;
   if (!answer) {
-    receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
+    receipt.end = is_nothing ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
     receipt.why = answer.why;
     receipt.task = answer.task;
     receipt.takes = answer.takes;
@@ -79,7 +86,7 @@ void VirtualSwitches::ask(std::uint32_t set, Nanoseconds now) noexcept {
   n_tasks_ = n_variables_ = 0;
   order.number = next_plan(agreement().plan().number);
   order.members = living();
-  order.after = set;
+  order.after = request.set;
   order.until = now + kPatience;
   order.lead = lead();
   agreement().announce(order);
@@ -117,6 +124,12 @@ void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept 
 }
 
 void VirtualSwitches::look(Nanoseconds now) noexcept {
+  finish(now);
+  if (wish_ && is_under_way() && present_->after == wish_.set) wish_ = {};
+  if (wish_ && !is_under_way()) ask(std::exchange(wish_, {}), now);
+}
+
+void VirtualSwitches::finish(Nanoseconds now) noexcept {
   const PlanWord plan = agreement().plan();
   if (!is_under_way() || plan.is_open()) return;
   for (std::uint32_t r = 0; r < members_.size(); ++r)

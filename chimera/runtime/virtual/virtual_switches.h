@@ -10,6 +10,7 @@
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switch_schedule.h"
+#include "chimera/runtime/switch_wish.h"
 #include "chimera/runtime/virtual/virtual_peers.h"
 
 namespace chimera {
@@ -17,17 +18,16 @@ namespace chimera {
 /// One thread. Context of everything not marked: edge; no allocation.
 class VirtualSwitches {
  public:
-  /// Memory for the receipts of `n` switches of the rtpus that have joined `peers`, which outlives this.
-  /// Context: setup.
+  /// Memory for the receipts of `n` switches of the rtpus that have joined `peers`, which outlives this; of more the
+  /// first and the last are kept. Context: setup.
   VirtualSwitches(VirtualPeers& peers, std::size_t n);
   /// What the unit knows of the others in a switch. Context: setup.
   SwitchPeers& of(RtpuId rtpu) noexcept { return members_[rtpu.index]; }
   void begin(Nanoseconds origin) noexcept { origin_ = origin; }
 
-  /// Judges the request and orders the switch; what became of it is in receipts(). Requires: fewer were asked for than
-  /// there is memory for.
-  void ask(std::uint32_t set, Nanoseconds now) noexcept;
-  /// A switch of which nothing is left to do is over.
+  /// Judges the request and orders the switch; what became of it is in receipts(). Requires: memory for a receipt.
+  void ask(const SwitchRequest& request, Nanoseconds now) noexcept;
+  /// A switch of which nothing is left to do is over; then the last wish of a task is taken up.
   void look(Nanoseconds now) noexcept;
   bool is_under_way() const noexcept { return present_ != nullptr; }
   /// Context: setup, between runs.
@@ -46,6 +46,10 @@ class VirtualSwitches {
     void ring() noexcept override { all_.ring(); }
     void tell_adopted(std::uint16_t number) noexcept override;
     void tell_over(const SwitchReceipt& receipt) noexcept override;
+    void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds) noexcept override {
+      if (is_new_wish(request.set, changes_nothing, static_cast<bool>(all_.wish_), all_.wish_.set))
+        all_.wish_ = request;
+    }
     bool is_over(std::uint16_t number) const noexcept { return progress_.over == number; }
 
    private:
@@ -58,6 +62,7 @@ class VirtualSwitches {
   std::uint16_t living() const noexcept;
   Nanoseconds lead() const noexcept;
   void ring() noexcept;
+  void finish(Nanoseconds now) noexcept;
   void add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept;
 
   VirtualPeers& peers_;
@@ -72,6 +77,7 @@ class VirtualSwitches {
   SwitchReceipt* present_ = nullptr;  // of the switch under way
   std::size_t n_tasks_ = 0, n_variables_ = 0;  // in it
   std::uint32_t n_asked_ = 0;
+  SwitchRequest wish_;  // of the task that asked last: waits for the switch that is under way to end
   Nanoseconds origin_;
 };
 

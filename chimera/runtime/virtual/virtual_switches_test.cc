@@ -120,6 +120,63 @@ TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfTenThousandSwitches) {
   EXPECT_TRUE(reader == scene.reader);
 }
 
+TEST_P(VirtualSwitchesTest, ATaskOfEitherRtpuAsks) {
+  scene.in_reader = [](Cycle c) {
+    if (c.count() == 5) c.request("observed");
+  };
+  scene.in_plant = [](Cycle c) {
+    if (c.count() == 15) c.request("beside");
+  };
+  const auto receipts = go(milliseconds(30));
+  ASSERT_EQ(receipts.size(), 2u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[0].cause, SwitchCause::kRequest);
+  EXPECT_EQ(receipts[0].by, kReader);
+  EXPECT_EQ(receipts[0].after, kObserved);
+  EXPECT_GE(receipts[0].asked, milliseconds(5));
+  EXPECT_LE(receipts[0].asked, milliseconds(6));
+  EXPECT_EQ(receipts[1].by, kPlant);
+  EXPECT_EQ(receipts[1].before, kObserved);
+  EXPECT_TRUE(are_on(kSets[kBeside]));
+  EXPECT_EQ(lost(), 0u);
+  EXPECT_EQ(scene.illegal, 0);
+}
+
+TEST_P(VirtualSwitchesTest, OfTheWishesThatComeMeanwhileTheLastIsTakenNext) {
+  scene.in_plant = [](Cycle c) {
+    if (c.count() == 6) c.request("beside");  // under way: observed
+  };
+  scene.in_reader = [](Cycle c) {
+    if (c.count() == 6) c.request("observed");
+    if (c.count() == 20) c.request("observed");  // in force
+  };
+  ScriptAct first = act_at(microseconds(5950), ScriptAct::Kind::kSwitch, kObserved);
+  const auto receipts = go(milliseconds(30), {first});
+  ASSERT_EQ(receipts.size(), 1u) << "the wish of the second rtpu, for what is under way, takes that of the first back";
+  EXPECT_TRUE(are_on(kSets[kObserved]));
+}
+
+// One that chatters in each cycle, of which the receipts that there is room for are kept.
+TEST_P(VirtualSwitchesTest, WhoAsksAllTheTimeFillsNothing) {
+  scene.in_reader = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
+  scene.in_plant = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
+  const auto receipts = go(seconds(1));
+  EXPECT_EQ(receipts.size(), 16u);
+  EXPECT_GT(run->receipts().left_out(), 50u);
+  for (const SwitchReceipt& receipt : receipts.first(15)) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_EQ(lost(), 0u);
+}
+
+TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
+  scene.in_reader = [](Cycle c) {
+    if (c.count() == 5) c.request("nowhere");
+    if (c.count() == 6) c.request("direct");
+  };
+  const auto receipts = go(milliseconds(30));
+  EXPECT_EQ(receipts.size(), 0u);
+  EXPECT_EQ(sets[1]->tasks()[kReader.index].requests_refused, 1);
+}
+
 TEST_P(VirtualSwitchesTest, WhatFailsOnOneRtpuIsUndoneOnTheOther) {
   scene.on_of_two_fails = true;
   const auto receipts = go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kObserved)});

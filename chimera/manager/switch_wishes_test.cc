@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the manager does with the wishes of units; the test plays the units.
+#include "chimera/manager/switch_wishes.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "chimera/control/receipt_file.h"
+#include "chimera/manager/testing/fake_subsystem.h"
+
+namespace chimera::manager {
+namespace {
+
+constexpr std::uint16_t kRun = 0, kRest = 1;
+constexpr Asker kAnn{control::Role::kOperate, 4'000'000'001u};
+
+struct SwitchWishesTest : ::testing::Test {
+  SwitchWishesTest() {
+    fake.start_manager();
+    EXPECT_TRUE(fake.until_on("law"));
+    EXPECT_TRUE(fake.until([this] { return fake.driver().world().logic.is_settled(); }));
+  }
+  PlanWord plan() { return SwitchAgreement(page().switching, {}).plan(); }
+  DecisionPage& page() { return fake.driver().world().page; }
+  SwitchCoordinator& coordinator() { return fake.driver().switches(); }
+  /// As a task of the unit would.
+  void wish(std::uint32_t unit, std::uint16_t set, const char* task, SwitchCause cause = SwitchCause::kRequest) {
+    SwitchWishWords& words = fake.rtpu(unit).block().head().wish;
+    SwitchWish next = SwitchWish::of(words.word.load()).next({set, cause, fake.task(task)});
+    words.at = now().count;
+    words.word = next.word();
+  }
+  void rounds(int n = 5) {
+    for (int i = 0; i < n; ++i) ASSERT_TRUE(fake.step());
+  }
+  /// The units carry out what is ordered.
+  void carry_out() {
+    SwitchAgreement agreement(page().switching, fake.page().origin);
+    const std::uint16_t number = agreement.plan().number;
+    ASSERT_TRUE(agreement.propose(number, agreement.round_up(now() + milliseconds(1))));
+    (void)agreement.agree(number, 0);
+    ASSERT_TRUE(agreement.agree(number, 1));
+    over();
+    const bool is_rest = coordinator().leads_to(kRest);
+    fake.rtpu(0).block().set_status(fake.task("filter"), {is_rest ? State::kOff : State::kOn, false, 1});
+    fake.rtpu(1).block().set_status(fake.task("law"), {is_rest ? State::kOff : State::kOn, false, 1});
+    rounds();
+  }
+  void over() {
+    for (const std::uint32_t r : {0u, 1u}) {
+      fake.rtpu(r).block().switch_part().number = plan().number;
+      fake.rtpu(r).block().head().switching.adopted = plan().number;
+      fake.rtpu(r).block().head().switching.over = plan().number;
+    }
+  }
+
+  /// What the file of receipts has.
+  std::vector<std::string> filed() const { return control::ReceiptFile(fake.state() + "/chimera/fake").last(1000); }
+
+  FakeSubsystem fake;
+};
+
+TEST_F(SwitchWishesTest, AreCarriedOutAndNameWhoAsked) {
+  wish(1, kRest, "law", SwitchCause::kFault);
+  rounds();
+  EXPECT_EQ(plan().phase, SwitchPhase::kPrepared);
+  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by on_fault of law");
+  carry_out();
+  rounds();
+  EXPECT_EQ(plan().number, 1) << "dealt with once";
+  EXPECT_FALSE(coordinator().is_under_way());
+  EXPECT_NE(fake.told("switch").find("by on_fault of law from 'run' to 'rest'"), std::string::npos)
+      << fake.told("switch");
+  ASSERT_TRUE(fake.until([this] { return filed().size() == 1; }));
+  EXPECT_NE(filed()[0].find("\"asked_by\": {\"reaction\": \"on_fault\", \"task\": \"law\"}"), std::string::npos)
+      << filed()[0];
+}
+
+TEST_F(SwitchWishesTest, ForWhatIsInForceChangeNothing) {
+  wish(0, kRun, "sensor");
+  rounds();
+  EXPECT_EQ(plan().number, 0);
+  EXPECT_EQ(fake.told("switch"), "");
+}
+
+TEST_F(SwitchWishesTest, TheLastOfAllStands) {
+  wish(1, kRest, "law");
+  wish(0, kRun, "sensor");
+  rounds();
+  EXPECT_EQ(plan().number, 0);
+}
+
+TEST_F(SwitchWishesTest, WaitForTheSwitchThatIsUnderWay) {
+  coordinator().ask({kRest, SwitchCause::kScript, {}}, kAnn, seconds(5), now(), [](const SwitchOutcome&) {});
+  wish(0, kRest, "sensor");
+  rounds();
+  wish(0, kRun, "sensor");
+  rounds();
+  EXPECT_EQ(plan().number, 1);
+  carry_out();
+  rounds();
+  EXPECT_EQ(plan().number, 2);
+  EXPECT_TRUE(coordinator().leads_to(kRun));
+}
+
+TEST_F(SwitchWishesTest, ASuccessorFindsWhatIsOpenAndOnlyThat) {
+  fake.kill_manager();
+  wish(1, kRest, "law");
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([this] { return plan().phase == SwitchPhase::kPrepared; }));
+  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by task law");
+  carry_out();
+  fake.kill_manager();
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([this] { return fake.driver().is_ready(); }));
+  rounds();
+  EXPECT_EQ(plan().number, 1);
+}
+
+// It was ordered, and its manager died.
+TEST_F(SwitchWishesTest, WhatAPredecessorHasOrderedIsNotOrderedAgain) {
+  wish(1, kRest, "law");
+  rounds();
+  EXPECT_EQ(plan().number, 1);
+  fake.kill_manager();
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([this] { return fake.driver().is_ready(); }));
+  rounds();
+  EXPECT_EQ(plan().number, 1);
+}
+
+TEST_F(SwitchWishesTest, ThatCannotBeAreToldOnce) {
+  fake.rtpu(1).fail(fake.task("law"), "as told");
+  ASSERT_TRUE(fake.until([&] { return fake.driver().world().state(fake.task("law")) == State::kError; }));
+  wish(0, kRun, "sensor");
+  ASSERT_TRUE(fake.until([this] { return filed().size() == 1 && !fake.told("switch").empty(); }));
+  rounds(20);
+  ASSERT_EQ(filed().size(), 1u);
+  EXPECT_NE(filed()[0].find("\"asked_by\": {\"task\": \"sensor\"}, \"end\": \"refused\""), std::string::npos)
+      << filed()[0];
+  EXPECT_EQ(fake.told("switch"),
+            "switch to 'run', asked for by task sensor, is refused: task 'law' is in ERROR: clear it first\n");
+}
+
+TEST_F(SwitchWishesTest, OfAUnitThatHasDiedSinceStand) {
+  wish(1, kRest, "law");
+  fake.kill_rtpu(1, SIGKILL);
+  EXPECT_TRUE(fake.until([this] { return plan().number == 1; }));
+  EXPECT_TRUE(coordinator().leads_to(kRest));
+}
+
+// The memory of a unit may hold anything.
+TEST_F(SwitchWishesTest, WhatDoesNotFitTheApplicationIsPassedOver) {
+  std::atomic<std::uint64_t>& word = fake.rtpu(1).block().head().wish.word;
+  const auto law = static_cast<std::uint16_t>(fake.task("law").index);
+  const auto sensor = static_cast<std::uint16_t>(fake.task("sensor").index);
+  for (const std::uint64_t one :
+       {~std::uint64_t{0}, SwitchWish{1, 2, law, SwitchCause::kRequest}.word(),
+        SwitchWish{1, kRest, 99, SwitchCause::kRequest}.word(), SwitchWish{1, kRest, sensor, SwitchCause::kMiss}.word(),
+        SwitchWish{1, kRest, law, SwitchCause::kScript}.word(), SwitchWish{0, kRest, law, SwitchCause::kMiss}.word()}) {
+    word = one;
+    rounds(2);
+    EXPECT_EQ(plan().number, 0) << std::hex << one;
+  }
+}
+
+}  // namespace
+}  // namespace chimera::manager
