@@ -11,7 +11,7 @@ namespace chimera {
 namespace {
 
 /// Something of a task that asks for the set of that number.
-struct AskedSet {
+struct ModeWish {
   ModeAsker asker;
   std::size_t set = 0;
 };
@@ -31,7 +31,7 @@ class ModeWriter {
         if (from != to) report_.edges.push_back(edge(from, to));
     for (std::size_t set = 0; set < n; ++set)
       if (set != configuration_.start() && !is_asked_for(set)) report_.by_operator.push_back(set);
-    for (const AskedSet& wish : wishes_) warn(wish);
+    for (const ModeWish& wish : wishes_) warn(wish);
     return std::move(report_);
   }
 
@@ -82,10 +82,14 @@ class ModeWriter {
 
   ModeEdge edge(std::size_t from, std::size_t to) {
     ModeEdge made{.from = from, .to = to, .askers = {}, .cpus = {}};
-    for (const AskedSet& wish : wishes_)
+    for (const ModeWish& wish : wishes_)
       if (wish.set == to && has(from, wish.asker.task)) made.askers.push_back(wish.asker);
-    for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t].state = has(from, t) ? State::kOn : State::kOff;
-    schedule_.consider(standing_, static_cast<std::uint32_t>(to));
+    TaskBits after;
+    for (std::size_t t = 0; t < standing_.size(); ++t) {
+      standing_[t].state = has(from, t) ? State::kOn : State::kOff;
+      if (has(to, t)) after.add(TaskId(t));
+    }
+    schedule_.consider(standing_, after);
     for (std::size_t r = 0; r < configuration_.rtpus().size(); ++r) {
       if (!schedule_.is_first_of_cpu(RtpuId(r))) continue;
       const CpuTransition cpu = schedule_.on_cpu_of(RtpuId(r));
@@ -95,7 +99,7 @@ class ModeWriter {
   }
 
   /// Of a task that fails and is to go on in the set that its failure leads to.
-  void warn(const AskedSet& wish) {
+  void warn(const ModeWish& wish) {
     if (!wish.asker.is_reaction() || !has(wish.set, wish.asker.task)) return;
     const bool leaves_any = std::ranges::any_of(report_.edges, [&](const ModeEdge& edge) {
       return edge.to == wish.set && has(edge.from, wish.asker.task);
@@ -113,7 +117,7 @@ class ModeWriter {
   HeapMemory memory_;
   SwitchSchedule schedule_;
   std::vector<TaskStanding> standing_;
-  std::vector<AskedSet> wishes_;
+  std::vector<ModeWish> wishes_;
   ModeReport report_;
 };
 

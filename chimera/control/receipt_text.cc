@@ -86,15 +86,14 @@ std::string json_asked_by(const SwitchReceipt& receipt, const ApplicationSpec& s
 
 /// "'speed' is 3 rad/s, and safe_when of 'hand' asks for speed < 0.1 rad/s".
 std::string unsafe_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
-  const NamedSet& set = spec.sets[receipt.after];
-  const SafeCondition& asked = set.safe_when;
+  const SafeCondition& asked = asked_of(spec, receipt.after);
   if (!asked.is_there() || receipt.variable != asked.variable) return reason_word(receipt.why);
   const PortSpec* const port = port_of(spec.variables[asked.variable.index], spec);
   const std::string unit = port == nullptr ? "" : unit_text(std::string(port->unit));
   std::string name(spec.variables[asked.variable.index].name);
   if (port != nullptr && port->max_count() > 1) name += "[" + std::to_string(asked.element) + "]";
   const std::string is = std::isnan(receipt.value) ? " has no value" : " is " + number(receipt.value) + unit;
-  return "'" + name + "'" + is + ", and safe_when of " + quoted(set.name) + " asks for " + name + " " +
+  return "'" + name + "'" + is + ", and safe_when of " + set_text(receipt.after, spec) + " asks for " + name + " " +
          sign_of(asked.comparison) + " " + number(asked.limit) + unit;
 }
 
@@ -197,7 +196,7 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
   if (!receipt.task.is_valid()) return reason_word(receipt.why);
   const TaskSpec& task = spec.tasks[receipt.task.index];
   const std::string from = receipt.before == kNoSet ? "what is ON" : quoted(spec.sets[receipt.before].name);
-  return "the transition from " + from + " to " + quoted(spec.sets[receipt.after].name) +
+  return "the transition from " + from + " to " + set_text(receipt.after, spec) +
          " is not schedulable on CPU " + std::to_string(spec.rtpus[task.rtpu.index].cpu) + ": a cycle of task " +
          quoted(task.name) + " may take " +
          (receipt.takes == kNever ? "longer than its deadline of " + time_text(task.deadline)
@@ -205,6 +204,10 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
 }
 
 }  // namespace
+
+std::string set_text(std::uint32_t set, const ApplicationSpec& spec) {
+  return set == kNoSet ? "other tasks" : quoted(spec.sets[set].name);
+}
 
 std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec) {
   const std::string name = request.by.is_valid() ? std::string(spec.tasks[request.by.index].name) : "";
@@ -280,7 +283,7 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
 }
 
 std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin) {
-  const std::string to = quoted(spec.sets[receipt.after].name);
+  const std::string to = set_text(receipt.after, spec);
   const std::string when = " at " + at(receipt.asked, origin);
   if (receipt.end == SwitchEnd::kNothingToDo) return "switch" + when + ": " + to + " is in force, nothing to do\n";
   const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
@@ -300,7 +303,7 @@ std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& sp
   return "{\"number\": " + std::to_string(receipt.number) + ", \"origin_ns\": " +
          (has_wall ? std::to_string(origin.count) : "null") + ", \"from\": " +
          json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
-         json_string(std::string(spec.sets[receipt.after].name)) +
+         json_name(receipt.after != kNoSet, receipt.after != kNoSet ? spec.sets[receipt.after].name : "") +
          ", \"way\": \"fast\", \"asked_by\": " + json_asked_by(receipt, spec, frame.asked_by) + ", \"end\": \"" +
          word(receipt.end) + "\", \"reason\": " +
          (is_done ? "null" : std::string("\"") + reason_word(receipt.why) + "\"") + ", \"why\": " +

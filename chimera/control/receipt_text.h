@@ -24,6 +24,9 @@ struct ReceiptFrame {
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
                          const ReceiptFrame& frame = {});
 
+/// "'hand'"; of kNoSet "other tasks". Context: setup.
+std::string set_text(std::uint32_t set, const ApplicationSpec& spec);
+
 /// Who asks, as receipts say it: "on_miss of pid". Context: setup.
 std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec);
 

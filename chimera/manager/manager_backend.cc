@@ -11,6 +11,7 @@
 #include "chimera/control/receipt_text.h"
 #include "chimera/manager/operator_acts.h"
 #include "chimera/manager/status_json.h"
+#include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/text/json_text.h"
 
 namespace chimera::manager {
@@ -46,6 +47,39 @@ RpcResponse no_answer(const ManagerState& world, RtpuId rtpu, const std::string&
                        {{"rtpu", world.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
 }
 
+std::variant<TaskBits, RpcResponse> named_set(const ApplicationSpec& spec, const std::string& name) {
+  const auto set = std::ranges::find(spec.sets, std::string_view(name), &NamedSet::name);
+  if (set != spec.sets.end()) return tasks_of(spec, static_cast<std::uint32_t>(set - spec.sets.begin()));
+  std::vector<std::string> names;
+  for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
+  const std::string near = nearest(name, names);
+  return RpcResponse::unknown("no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                              name, near);
+}
+
+/// What `switch` asks for: a configuration, or what is ON and `on` without `off`.
+std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& world, const Json& parameters) {
+  const bool is_named = parameters.contains("configuration");
+  const bool is_listed = parameters.contains("on") || parameters.contains("off");
+  if (is_named == is_listed)
+    return RpcResponse::error(control::kBadParameters, "either 'configuration', or 'on' and 'off'",
+                              {{"where", is_named ? "configuration" : "on"}});
+  if (is_named) return named_set(world.spec(), parameters.at("configuration"));
+  std::vector<TaskId> lists[2];
+  const char* const keys[] = {"on", "off"};
+  for (const int i : {0, 1}) {
+    if (!parameters.contains(keys[i])) continue;
+    auto found = tasks_named(world, control::texts(parameters, keys[i]));
+    if (auto* refused = std::get_if<RpcResponse>(&found)) return std::move(*refused);
+    lists[i] = std::get<0>(std::move(found));
+  }
+  std::vector<bool> on(world.spec().tasks.size());
+  for (std::size_t t = 0; t < on.size(); ++t) on[t] = world.state(TaskId(t)) == State::kOn;
+  AskedSet asked = asked_set(world.spec(), std::move(on), lists[0], lists[1]);
+  if (asked) return asked.tasks;
+  return RpcResponse::refused("set", asked.why, "", asked.remedy);
+}
+
 }  // namespace
 
 RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer) {
@@ -68,12 +102,13 @@ RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAns
 
 RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome) {
   const SwitchReceipt& receipt = outcome.receipt;
-  const std::string to(world.spec().sets[receipt.after].name);
+  const bool is_named = receipt.after != kNoSet;
+  const Json to = is_named ? Json(std::string(world.spec().sets[receipt.after].name)) : Json();
   if (receipt.end == SwitchEnd::kNothingToDo) return RpcResponse::good({{"to", to}, {"end", "nothing-to-do"}});
   if (receipt.end != SwitchEnd::kRefused)
     return RpcResponse::ready(std::make_shared<const std::string>(outcome.json));
   return RpcResponse::refused(control::reason_word(receipt.why),
-                              "switch to '" + to + "' is refused: " + control::reason_text(receipt, world.spec()),
+                              "switch to " + control::set_text(receipt.after, world.spec()) + " is refused: " + control::reason_text(receipt, world.spec()),
                               receipt.task.is_valid() ? world.name(receipt.task) : "", outcome.remedy);
 }
 
@@ -113,7 +148,7 @@ Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen) {
                          {"to", world.name(handover.to.task)}});
   const bool is_refused = receipt.end == SwitchEnd::kRefused;
   return {{"from", receipt.before == kNoSet ? Json() : Json(spec.sets[receipt.before].name)},
-          {"to", spec.sets[receipt.after].name},
+          {"to", receipt.after == kNoSet ? Json() : Json(spec.sets[receipt.after].name)},
           {"end", is_refused ? "refused" : receipt.end == SwitchEnd::kNothingToDo ? "nothing-to-do" : "possible"},
           {"reason", is_refused ? Json(control::reason_word(receipt.why)) : Json()},
           {"why", is_refused ? Json(control::reason_text(receipt, spec)) : Json()},
@@ -220,24 +255,20 @@ void ManagerBackend::receipts(const Request& request) {
   request.reply(receipts_answer(driver_.receipts(), control::number(request.parameters, "last", 20)));
 }
 
-/// None: there is no configuration of that name, which was answered.
-std::optional<std::uint32_t> ManagerBackend::set_named(const Request& request) const {
-  const ApplicationSpec& spec = world().spec();
-  const std::string name = request.parameters.at("configuration");
-  const auto set = std::ranges::find(spec.sets, std::string_view(name), &NamedSet::name);
-  if (set != spec.sets.end()) return static_cast<std::uint32_t>(set - spec.sets.begin());
-  std::vector<std::string> names;
-  for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
-  const std::string near = nearest(name, names);
-  request.reply(RpcResponse::unknown(
-      "no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
-  return std::nullopt;
+/// None: it was answered why there is no such set of tasks.
+std::optional<TaskBits> ManagerBackend::wanted(const Request& request) const {
+  auto found = wanted_tasks(world(), request.parameters);
+  if (const auto* refused = std::get_if<RpcResponse>(&found)) {
+    request.reply(*refused);
+    return std::nullopt;
+  }
+  return std::get<TaskBits>(found);
 }
 
 void ManagerBackend::plan(const Request& request) {
-  const auto set = set_named(request);
-  if (!set) return;
-  request.reply(RpcResponse::good(plan_json(world(), driver_.switches().foresee(*set))));
+  const auto to = wanted(request);
+  if (!to) return;
+  request.reply(RpcResponse::good(plan_json(world(), driver_.switches().foresee(*to))));
 }
 
 void ManagerBackend::cancel(const Request& request) {
@@ -253,12 +284,13 @@ void ManagerBackend::cancel(const Request& request) {
 }
 
 void ManagerBackend::switch_to(const Request& request) {
-  const auto set = set_named(request);
-  if (!set) return;
+  const auto to = wanted(request);
+  if (!to) return;
   if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
-  driver_.switches().ask({*set, SwitchCause::kScript, {}}, {request.caller.role, request.caller.user}, wait, now(),
+  const SwitchRequest asked{set_of(world().spec(), *to), SwitchCause::kScript, {}};
+  driver_.switches().ask(asked, *to, {request.caller.role, request.caller.user}, wait, now(),
                          [this, reply = request.reply](const SwitchOutcome& outcome) {
                            reply(switch_answer(world(), outcome));
                          });

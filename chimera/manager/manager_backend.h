@@ -79,7 +79,7 @@ class ManagerBackend final : public control::ControlBackend {
   void unknown(const Request& request);
 
   ManagerState& world() const noexcept { return driver_.world(); }
-  std::optional<std::uint32_t> set_named(const Request& request) const;
+  std::optional<TaskBits> wanted(const Request& request) const;
   void analyse(Question::Kind kind, const Request& request);
 
   ManagerLoop& driver_;

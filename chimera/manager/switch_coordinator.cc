@@ -61,8 +61,7 @@ TaskStatus last_status(const ManagerState& world, TaskId task) {
   if (plan.phase != SwitchPhase::kCommitted || !was_member || !world.peers[rtpu].is_there()) return status;
   const SwitchProgress& progress = world.peers[rtpu].block().head().switching;
   if (progress.adopted.load(std::memory_order_acquire) == plan.number) return status;  // SwitchProgress
-  const auto after = world.spec().sets[order->after].order;
-  const bool is_after = std::ranges::find(after, task) != after.end();
+  const bool is_after = order->target.has(task);
   if (is_after && status.state == State::kOff) status.state = State::kOn;
   if (!is_after && status.state == State::kOn) status.state = State::kOff;
   return status;
@@ -84,7 +83,8 @@ void SwitchCoordinator::take_over() {
   if (!begun) return;
   const PlanWord plan = agreement().plan();
   const std::size_t n_sets = world_.spec().sets.size();
-  const bool is_damaged = begun->order.after >= n_sets || (begun->before >= n_sets && begun->before != kNoSet) ||
+  const bool is_damaged = begun->order.after != set_of(world_.spec(), begun->order.target) ||
+                          (begun->before >= n_sets && begun->before != kNoSet) ||
                           begun->asked_by.role > control::Role::kConfigure ||
                           begun->cancelled_by.role > control::Role::kConfigure || !is_cause(*begun, world_.spec());
   const bool is_announced = plan.number == begun->order.number;
@@ -99,9 +99,8 @@ void SwitchCoordinator::take_over() {
 
 std::string SwitchCoordinator::under_way() const {
   if (!present_) return "";
-  return "switch " + std::to_string(present_->begun.number) + " to '" +
-         std::string(world_.spec().sets[present_->begun.order.after].name) + "', asked for by " +
-         asker_text(present_->begun, world_.spec());
+  return "switch " + std::to_string(present_->begun.number) + " to " +
+         control::set_text(present_->begun.order.after, world_.spec()) + ", asked for by " + asker_text(present_->begun, world_.spec());
 }
 
 std::string SwitchCoordinator::progress() const {
@@ -125,7 +124,7 @@ bool SwitchCoordinator::is_over(std::uint16_t number, std::uint16_t members) con
   return true;
 }
 
-PlanAnswer SwitchCoordinator::judge(std::uint32_t set) {
+PlanAnswer SwitchCoordinator::judge(const TaskBits& target) {
   for (std::size_t t = 0; t < standing_.size(); ++t) {
     const TaskId task(t);
     const RtpuRecord& rtpu = world_.rtpus[world_.spec().tasks[t].rtpu.index];
@@ -133,8 +132,8 @@ PlanAnswer SwitchCoordinator::judge(std::uint32_t set) {
     const bool is_dead = !rtpu.is_alive && state != State::kNotCreated;
     standing_[t] = {is_dead ? State::kError : state, world_.peers.status(task).in_service};
   }
-  const PlanAnswer answer = planner_.plan(set, standing_, plan_);
-  return answer ? schedule_.judge(standing_, set) : answer;
+  const PlanAnswer answer = planner_.plan(target, standing_, plan_);
+  return answer ? schedule_.judge(standing_, target) : answer;
 }
 
 Nanoseconds SwitchCoordinator::lead() const noexcept {
@@ -148,12 +147,13 @@ Nanoseconds SwitchCoordinator::lead() const noexcept {
   return lead_of(plan_, world_.spec().tasks, longest);
 }
 
-SwitchOrder SwitchCoordinator::make_order(std::uint32_t set, Nanoseconds until) const {
+SwitchOrder SwitchCoordinator::make_order(const TaskBits& target, Nanoseconds until) const {
   SwitchOrder order;
   order.number = next_plan(agreement().plan().number);
   for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r)
     if (world_.rtpus[r].is_alive) order.members = static_cast<std::uint16_t>(order.members | 1u << r);
-  order.after = set;
+  order.after = plan_.after;
+  order.target = target;
   order.until = until;
   order.lead = lead();
   for (std::size_t t = 0; t < standing_.size(); ++t)
@@ -172,11 +172,11 @@ bool SwitchCoordinator::is_free() const noexcept {
 }
 
 /// What may begin is kDone, for as long as nothing has gone wrong.
-void SwitchCoordinator::assess(std::uint32_t set, SwitchOutcome& outcome) {
+void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
   SwitchReceipt& receipt = outcome.receipt;
-  const PlanAnswer answer = judge(set);
+  const PlanAnswer answer = judge(target);
   receipt.before = planner_.set_in_force(standing_);
-  receipt.after = set;
+  receipt.after = set_of(world_.spec(), target);
   receipt.why = answer.why;
   receipt.task = answer.task;
   receipt.takes = answer.takes;
@@ -201,18 +201,18 @@ void SwitchCoordinator::assess(std::uint32_t set, SwitchOutcome& outcome) {
   if (receipt.why == NoSwitch::kNotSchedulable) outcome.remedy = "`chimera check FILE --modes` judges all transitions";
 }
 
-ForeseenSwitch SwitchCoordinator::foresee(std::uint32_t set) {
+ForeseenSwitch SwitchCoordinator::foresee(const TaskBits& target) {
   SwitchOutcome outcome;
-  assess(set, outcome);
+  assess(target, outcome);
   const bool has_plan = outcome.receipt.end == SwitchEnd::kDone;
   return {outcome.receipt, has_plan ? plan_ : SwitchPlan{}, outcome.remedy};
 }
 
-void SwitchCoordinator::ask(const SwitchRequest& request, Asker asked_by, Nanoseconds wait, Nanoseconds now,
-                            Switched switched) {
+void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target, Asker asked_by, Nanoseconds wait,
+                            Nanoseconds now, Switched switched) {
   look(now);
   auto outcome = std::make_shared<SwitchOutcome>();
-  assess(request.set, *outcome);
+  assess(target, *outcome);
   outcome->receipt.asked = now;
   outcome->receipt.cause = request.cause;
   outcome->receipt.by = request.by;
@@ -230,7 +230,7 @@ void SwitchCoordinator::ask(const SwitchRequest& request, Asker asked_by, Nanose
     one.push_back(std::move(switched));
     return file(std::move(outcome), begun, now, std::move(one));
   }
-  begun.order = make_order(request.set, now + wait);
+  begun.order = make_order(target, now + wait);
   journal_.begin(begun);
   present_ = Present{begun, {}};
   present_->switched.push_back(std::move(switched));
@@ -263,9 +263,9 @@ bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds
   BegunSwitch& begun = present_->begun;
   const bool was_late = receipt.why == NoSwitch::kLate && now < begun.order.until && !world_.is_ending();
   const bool is_cancelled = begun.cancelled_by.role != control::Role::kNone;
-  if (!was_late || is_cancelled || begun.tries >= kMostTries || !judge(begun.order.after)) return false;
+  if (!was_late || is_cancelled || begun.tries >= kMostTries || !judge(begun.order.target)) return false;
   ++begun.tries;
-  begun.order = make_order(begun.order.after, begun.order.until);
+  begun.order = make_order(begun.order.target, begun.order.until);
   for (std::uint32_t i = 1; i < begun.tries; ++i) begun.order.lead = begun.order.lead * kMoreTime;
   journal_.change(begun);
   announce(begun.order);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chimera/manager/asker.h"
@@ -49,11 +50,16 @@ class SwitchCoordinator {
   /// Takes up the switch that a predecessor has begun.
   SwitchCoordinator(ManagerState& world, ReceiptArchive& archive);
 
-  /// Asks for a switch. `asked_by`: of a person; without a role of a task or reaction, which the request names.
-  /// `switched` is called when it is over and its receipt is filed, maybe at once.
-  void ask(const SwitchRequest& request, Asker asked_by, Nanoseconds wait, Nanoseconds now, Switched switched);
+  /// Asks for a switch to sets[request.set]. `asked_by`: of a person; without a role of a task or reaction, which the
+  /// request names. `switched` is called when it is over and its receipt is filed, maybe at once.
+  void ask(const SwitchRequest& request, Asker asked_by, Nanoseconds wait, Nanoseconds now, Switched switched) {
+    ask(request, tasks_of(world_.spec(), request.set), asked_by, wait, now, std::move(switched));
+  }
+  /// The same to any set of tasks that is legal; request.set is its number or kNoSet.
+  void ask(const SwitchRequest& request, const TaskBits& target, Asker asked_by, Nanoseconds wait, Nanoseconds now,
+           Switched switched);
   /// What ask() would do. Changes nothing.
-  ForeseenSwitch foresee(std::uint32_t set);
+  ForeseenSwitch foresee(const TaskBits& target);
   /// Aborts what is under way and not committed: `switched` gets the same receipt as who asked for it. False: there is
   /// nothing, or it is too late.
   bool cancel(Asker cancelled_by, Switched switched);
@@ -82,9 +88,10 @@ class SwitchCoordinator {
   void take_over();
   bool is_over(std::uint16_t number, std::uint16_t members) const noexcept;
   /// Can it be, and do all deadlines hold over it?
-  PlanAnswer judge(std::uint32_t set);
-  void assess(std::uint32_t set, SwitchOutcome& outcome);
-  SwitchOrder make_order(std::uint32_t set, Nanoseconds until) const;
+  PlanAnswer judge(const TaskBits& target);
+  void assess(const TaskBits& target, SwitchOutcome& outcome);
+  /// Of the plan that was judged last.
+  SwitchOrder make_order(const TaskBits& target, Nanoseconds until) const;
   Nanoseconds lead() const noexcept;
   void announce(const SwitchOrder& order);
   bool is_tried_again(const SwitchReceipt& receipt, Nanoseconds now);

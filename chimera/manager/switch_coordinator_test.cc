@@ -200,16 +200,16 @@ TEST_F(SwitchCoordinatorTest, WhatIsCommittedIsNotCancelled) {
 }
 
 TEST_F(SwitchCoordinatorTest, ForeseesWhatWouldBeDoneAndChangesNothing) {
-  ForeseenSwitch foreseen = coordinator().foresee(kRest);
+  ForeseenSwitch foreseen = coordinator().foresee(tasks_of(fake.spec(), kRest));
   EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kDone);
   EXPECT_EQ(foreseen.receipt.before, kRun);
   EXPECT_EQ(foreseen.plan.leaving.size(), 2u);
   EXPECT_EQ(foreseen.plan.staying.size(), 1u);
-  EXPECT_EQ(coordinator().foresee(kRun).receipt.end, SwitchEnd::kNothingToDo);
+  EXPECT_EQ(coordinator().foresee(tasks_of(fake.spec(), kRun)).receipt.end, SwitchEnd::kNothingToDo);
   EXPECT_EQ(agreement().plan().number, 0);
   EXPECT_FALSE(coordinator().is_under_way());
   ask(kRest);
-  foreseen = coordinator().foresee(kRun);
+  foreseen = coordinator().foresee(tasks_of(fake.spec(), kRun));
   EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kRefused);
   EXPECT_EQ(foreseen.receipt.why, NoSwitch::kUnderWay);
   EXPECT_TRUE(foreseen.plan.leaving.empty());

@@ -2,6 +2,8 @@
 // Moves the plan word and the turn word of a switch.
 #include "chimera/runtime/switch_agreement.h"
 
+#include <algorithm>
+
 #include "chimera/base/assert.h"
 
 namespace chimera {
@@ -15,7 +17,8 @@ Words words_of(const SwitchOrder& order) noexcept {
   words[1] = order.after;
   words[2] = static_cast<std::uint64_t>(order.until.count);
   words[3] = static_cast<std::uint64_t>(order.lead.count);
-  for (std::size_t i = 0; i < order.on.words.size(); ++i) words[4 + i] = order.on.words[i];
+  std::copy(order.on.words.begin(), order.on.words.end(), words.begin() + 4);
+  std::copy(order.target.words.begin(), order.target.words.end(), words.begin() + 4 + order.on.words.size());
   return words;
 }
 
@@ -46,10 +49,14 @@ std::optional<SwitchOrder> SwitchAgreement::order(const PlanWord& plan, std::siz
   order.after = static_cast<std::uint32_t>(words[1]);
   order.until = {static_cast<std::int64_t>(words[2])};
   order.lead = {static_cast<std::int64_t>(words[3])};
-  for (std::size_t i = 0; i < order.on.words.size(); ++i) order.on.words[i] = words[4 + i];
+  for (std::size_t i = 0; i < order.on.words.size(); ++i) {
+    order.on.words[i] = words[4 + i];
+    order.target.words[i] = words[4 + order.on.words.size() + i];
+  }
   const bool is_sane = order.number == plan.number && order.number != 0 && order.members != 0 &&
-                       words[1] < n_sets && words[0] >> 32 == 0 && order.lead >= Nanoseconds{};
-  if (!is_sane || !names_only(order.on, n_tasks)) return std::nullopt;
+                       (words[1] < n_sets || words[1] == UINT32_MAX) && words[0] >> 32 == 0 &&
+                       order.lead >= Nanoseconds{};
+  if (!is_sane || !names_only(order.on, n_tasks) || !names_only(order.target, n_tasks)) return std::nullopt;
   return order;
 }
 

@@ -23,6 +23,7 @@ SwitchOrder some_order(std::uint16_t number = 7, std::uint16_t members = 0b11) {
   order.lead = microseconds(300);
   order.on.add(TaskId(0u));
   order.on.add(TaskId(66u));
+  order.target.add(TaskId(65u));
   return order;
 }
 
@@ -54,6 +55,13 @@ TEST_F(SwitchAgreementTest, AnOrderThatDoesNotFitTheApplicationIsNone) {
   EXPECT_FALSE(agreement.order(agreement.plan(), 1, 70)) << "there is no set 1";
   EXPECT_FALSE(agreement.order(agreement.plan(), 2, 66)) << "there is no task 66";
   EXPECT_FALSE(agreement.order({8, SwitchPhase::kPrepared, 0}, 2, 70)) << "it is of plan 7";
+  SwitchOrder other = some_order();
+  other.after = UINT32_MAX;
+  agreement.announce(other);
+  ASSERT_TRUE(agreement.order(agreement.plan(), 2, 70)) << "a set without a name";
+  other.target.add(TaskId(70u));
+  agreement.announce(other);
+  EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "there is no task 70";
   agreement.announce(some_order(9, 0));
   EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "nobody takes part";
 }

@@ -66,10 +66,11 @@ struct TurnWord {
 struct SwitchOrder {
   std::uint16_t number = 0;   ///< never 0; another one than that of the order before
   std::uint16_t members = 0;  ///< bit c: context c lives and takes part
-  std::uint32_t after = 0;    ///< the set that is to be ON, in ApplicationSpec::sets
+  std::uint32_t after = 0;    ///< the set that is to be ON, in ApplicationSpec::sets; UINT32_MAX: it is none of them
   Nanoseconds until;          ///< what is not committed by then is aborted
   Nanoseconds lead;           ///< from the proposal to the instant of the change, at least
   TaskBits on;                ///< the tasks that are ON
+  TaskBits target;            ///< the tasks that are to be ON
   constexpr bool operator==(const SwitchOrder&) const noexcept = default;
 };
 
@@ -77,7 +78,7 @@ struct SwitchOrder {
 /// live are over with it; relaxed, published by `plan`. `plan` and `turn` are changed by compare-and-swap alone
 /// (switch_agreement.h): release, acquired by whoever loads them.
 struct SwitchPage {
-  static constexpr std::size_t kOrderWords = 4 + kMaxSwitchedTasks / 64;
+  static constexpr std::size_t kOrderWords = 4 + 2 * (kMaxSwitchedTasks / 64);
   alignas(64) std::atomic<std::uint64_t> plan{0};
   alignas(64) std::atomic<std::uint64_t> turn{0};
   alignas(64) std::atomic<std::uint64_t> order[kOrderWords + 1];  // the last: a sum over the others

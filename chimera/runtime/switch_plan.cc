@@ -11,6 +11,23 @@ bool is_on(const TaskStanding& standing) noexcept { return standing.state == Sta
 
 }  // namespace
 
+TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept {
+  TaskBits bits;
+  for (const TaskId id : spec.sets[set].order) bits.add(id);
+  return bits;
+}
+
+std::uint32_t set_of(const ApplicationSpec& spec, const TaskBits& tasks) noexcept {
+  for (std::uint32_t s = 0; s < spec.sets.size(); ++s)
+    if (tasks_of(spec, s) == tasks) return s;
+  return kNoSet;
+}
+
+const SafeCondition& asked_of(const ApplicationSpec& spec, std::uint32_t set) noexcept {
+  static constexpr SafeCondition kNothing;
+  return set == kNoSet ? kNothing : spec.sets[set].safe_when;
+}
+
 SwitchRun find_run(const SwitchPlan& plan, std::span<const TaskSpec> tasks, std::uint16_t number) noexcept {
   const auto rtpu = [&](std::size_t i) { return tasks[plan.arriving[i].index].rtpu; };
   SwitchRun run;
@@ -37,6 +54,7 @@ void SwitchPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   arriving_ = memory.take<TaskId>(spec.tasks.size());
   leaving_ = memory.take<TaskId>(spec.tasks.size());
   staying_ = memory.take<TaskId>(spec.tasks.size());
+  target_ = memory.take<TaskId>(spec.tasks.size());
   handovers_ = memory.take<Handover>(spec.variables.size());
 }
 
@@ -53,7 +71,24 @@ std::uint32_t SwitchPlanner::set_in_force(std::span<const TaskStanding> standing
 PlanAnswer SwitchPlanner::plan(std::uint32_t target, std::span<const TaskStanding> standing,
                                SwitchPlan& plan) noexcept {
   if (target >= spec_->sets.size()) return {NoSwitch::kUnknownSet, {}};
-  const std::span<const TaskId> order = spec_->sets[target].order;
+  const PlanAnswer answer = plan_for(spec_->sets[target].order, standing, plan);
+  if (answer) plan.after = target;
+  return answer;
+}
+
+PlanAnswer SwitchPlanner::plan(const TaskBits& target, std::span<const TaskStanding> standing,
+                               SwitchPlan& plan) noexcept {
+  if (const std::uint32_t set = set_of(*spec_, target); set != kNoSet) return this->plan(set, standing, plan);
+  std::size_t n = 0;
+  for (const TaskId id : spec_->on_order)
+    if (target.has(id)) target_[n++] = id;
+  const PlanAnswer answer = plan_for(target_.first(n), standing, plan);
+  if (answer) plan.after = kNoSet;
+  return answer;
+}
+
+PlanAnswer SwitchPlanner::plan_for(std::span<const TaskId> order, std::span<const TaskStanding> standing,
+                                   SwitchPlan& plan) noexcept {
   std::size_t arriving = 0, leaving = 0, staying = 0;
   std::fill(in_target_.begin(), in_target_.end(), false);
   for (const TaskId id : order) {
@@ -70,7 +105,6 @@ PlanAnswer SwitchPlanner::plan(std::uint32_t target, std::span<const TaskStandin
   }
   if (arriving == 0 && leaving == 0) return {NoSwitch::kNothingToDo, {}};
   plan.before = set_in_force(standing);
-  plan.after = target;
   plan.arriving = arriving_.first(arriving);
   plan.leaving = leaving_.first(leaving);
   plan.staying = staying_.first(staying);

@@ -9,6 +9,7 @@
 
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/switch_page.h"
 #include "chimera/task/state_machine.h"
 
 namespace chimera {
@@ -27,7 +28,7 @@ struct Handover {
 struct SwitchPlan {
   std::uint32_t number = 0;
   std::uint32_t before = kNoSet;       ///< in ApplicationSpec::sets; kNoSet: what is ON is none of them
-  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets
+  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets; kNoSet: what is to be ON is none of them
   std::span<const TaskId> arriving;    ///< in data-flow order, producers first
   std::span<const TaskId> leaving;     ///< against the data flow
   std::span<const TaskId> staying;     ///< in data-flow order
@@ -86,6 +87,13 @@ struct TaskStanding {
   bool in_service = false;  ///< `init` or `kill` of it is under way
 };
 
+/// The tasks of the set of that number. Requires: it is one of them. Context: cycle boundary.
+TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
+/// Which of the sets is exactly these tasks; kNoSet: none. Context: cycle boundary; O(sets * tasks).
+std::uint32_t set_of(const ApplicationSpec& spec, const TaskBits& tasks) noexcept;
+/// What must hold before that set may be switched to; of kNoSet nothing. Context: cycle boundary.
+const SafeCondition& asked_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
+
 /// Holds the lists of one plan at a time.
 class SwitchPlanner {
  public:
@@ -96,17 +104,21 @@ class SwitchPlanner {
   /// task t. Writes `plan` only when there is one; its number is left as it was. Replaces the lists of the plan before.
   /// Context: cycle boundary; O(tasks + links); no allocation.
   PlanAnswer plan(std::uint32_t target, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
+  /// The same for any set of tasks: for one of the sets the plan above.
+  PlanAnswer plan(const TaskBits& target, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
 
   /// Which of the sets is exactly the tasks that are ON; kNoSet: none. Context: cycle boundary; O(sets * tasks).
   std::uint32_t set_in_force(std::span<const TaskStanding> standing) const noexcept;
 
  private:
+  PlanAnswer plan_for(std::span<const TaskId> order, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
   bool is_in_target(TaskId task) const noexcept { return in_target_[task.index]; }
   std::span<const Handover> list_handovers(std::span<const TaskStanding> standing) noexcept;
 
   const ApplicationSpec* spec_ = nullptr;
   std::span<bool> in_target_;  // by task
   std::span<TaskId> arriving_, leaving_, staying_;
+  std::span<TaskId> target_;  // of a set without a name, in data-flow order
   std::span<Handover> handovers_;  // one for each variable
 };
 

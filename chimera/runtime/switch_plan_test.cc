@@ -55,6 +55,7 @@ struct Planned {
     for (TaskStanding& each : standing) each.state = State::kOff;
     for (const TaskId id : on) standing[id.index].state = State::kOn;
   }
+  PlanAnswer make(const TaskBits& target) { return planner.plan(target, standing, plan); }
   PlanAnswer make(std::uint32_t target) { return planner.plan(target, standing, plan); }
   VariableId variable(std::string_view name) const {
     std::size_t v = 0;
@@ -170,6 +171,29 @@ TEST(SwitchPlan, AnyPlanCarriedOutMakesTheTarget) {
     ASSERT_EQ(p.planner.set_in_force(p.standing), target) << i;
     EXPECT_EQ(p.make(target).why, NoSwitch::kNothingToDo);
   }
+}
+
+TEST(SwitchPlanner, PlansForAnySetOfTasks) {
+  Planned planned;
+  TaskBits target;
+  for (const TaskId id : {kPlant, kOne, kObserver}) target.add(id);
+  ASSERT_TRUE(planned.make(target));
+  EXPECT_EQ(planned.plan.before, 0u);
+  EXPECT_EQ(planned.plan.after, kNoSet);
+  ASSERT_EQ(planned.plan.arriving.size(), 1u);
+  EXPECT_EQ(planned.plan.arriving[0], kObserver);
+  EXPECT_TRUE(planned.plan.leaving.empty());
+  EXPECT_EQ(planned.plan.staying.size(), 2u);
+  EXPECT_EQ(planned.make(tasks_of(planned.app.spec, 0)).why, NoSwitch::kNothingToDo);
+}
+
+TEST(SwitchPlanner, OfTheTasksOfASetIsThePlanOfThatSet) {
+  Planned planned;
+  ASSERT_TRUE(planned.make(1u));
+  const std::vector<TaskId> arriving(planned.plan.arriving.begin(), planned.plan.arriving.end());
+  ASSERT_TRUE(planned.make(tasks_of(planned.app.spec, 1)));
+  EXPECT_EQ(planned.plan.after, 1u);
+  EXPECT_TRUE(std::ranges::equal(planned.plan.arriving, arriving));
 }
 
 }  // namespace

@@ -45,12 +45,11 @@ void SwitchSchedule::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   }
 }
 
-void SwitchSchedule::consider(std::span<const TaskStanding> standing, std::uint32_t after) noexcept {
-  for (std::size_t t = 0; t < parts_.size(); ++t)
-    parts_[t] = standing[t].state == State::kOn ? TransitionPart::kLeaves : TransitionPart::kAbsent;
-  for (const TaskId id : spec_->sets[after].order) {
-    TransitionPart& part = parts_[id.index];
-    part = part == TransitionPart::kLeaves ? TransitionPart::kStays : TransitionPart::kArrives;
+void SwitchSchedule::consider(std::span<const TaskStanding> standing, const TaskBits& after) noexcept {
+  for (std::size_t t = 0; t < parts_.size(); ++t) {
+    const bool was_on = standing[t].state == State::kOn, is_on = after.has(TaskId(t));
+    parts_[t] = was_on ? (is_on ? TransitionPart::kStays : TransitionPart::kLeaves)
+                       : (is_on ? TransitionPart::kArrives : TransitionPart::kAbsent);
   }
 }
 
@@ -94,7 +93,7 @@ CpuTransition SwitchSchedule::on_cpu_of(RtpuId rtpu) noexcept {
   return found;
 }
 
-PlanAnswer SwitchSchedule::judge(std::span<const TaskStanding> standing, std::uint32_t after) noexcept {
+PlanAnswer SwitchSchedule::judge(std::span<const TaskStanding> standing, const TaskBits& after) noexcept {
   consider(standing, after);
   for (std::uint32_t r = 0; r < uses_.size(); ++r) {
     if (!is_first_of_cpu(RtpuId(r))) continue;

@@ -33,8 +33,8 @@ class SwitchSchedule {
   /// Takes memory for `spec`, which outlives this. Context: setup.
   void prepare(const ApplicationSpec& spec, SetupMemory& memory);
 
-  /// From the tasks that are ON by `standing` to those of sets[after]: takes the place of what was considered before.
-  void consider(std::span<const TaskStanding> standing, std::uint32_t after) noexcept;
+  /// From the tasks that are ON by `standing` to those of `after`: takes the place of what was considered before.
+  void consider(std::span<const TaskStanding> standing, const TaskBits& after) noexcept;
   /// What was considered, on the CPU of that rtpu.
   CpuTransition on_cpu_of(RtpuId rtpu) noexcept;
   /// The first rtpu of its CPU: one of each CPU is.
@@ -42,7 +42,7 @@ class SwitchSchedule {
 
   /// kNotSchedulable, with the task and what its cycle may take, where a promise that holds before the switch would not
   /// hold over it; where nothing is promised before, nothing is lost. Budgets that are not stated count as nothing.
-  PlanAnswer judge(std::span<const TaskStanding> standing, std::uint32_t after) noexcept;
+  PlanAnswer judge(std::span<const TaskStanding> standing, const TaskBits& after) noexcept;
 
  private:
   void analyse(std::span<const TransitionPart> parts, CpuTransition& found) noexcept;

@@ -33,7 +33,7 @@ struct Scene {
   PlanAnswer judge(std::uint32_t before, std::uint32_t after) {
     for (TaskStanding& each : standing) each.state = State::kOff;
     for (const TaskId id : orders[before]) standing[id.index].state = State::kOn;
-    return schedule.judge(standing, after);
+    return schedule.judge(standing, tasks_of(spec, after));
   }
 
   std::vector<TaskSpec> tasks;
@@ -84,7 +84,7 @@ TEST(SwitchSchedule, WhereNothingIsPromisedBeforeTheSwitchIsAllowed) {
 TEST(SwitchSchedule, TellsOfACpuWhatWasConsidered) {
   Scene scene({task(10, 4), task(10, 0), task(20, 2, 1)}, {{kA, kC}, {kB, kC}});
   scene.standing[0].state = scene.standing[2].state = State::kOn;
-  scene.schedule.consider(scene.standing, 1);
+  scene.schedule.consider(scene.standing, tasks_of(scene.spec, 1));
   const CpuTransition moved = scene.schedule.on_cpu_of(RtpuId(0u));
   EXPECT_TRUE(moved.is_moved);
   EXPECT_EQ(moved.cpu, 1u);

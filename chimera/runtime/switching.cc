@@ -14,12 +14,6 @@ constexpr Nanoseconds kGrace = milliseconds(100);
 // How often what `safe_when` asks is looked at where no job ends meanwhile: nobody rings for a value.
 constexpr Nanoseconds kLookForSafety = milliseconds(1);
 
-TaskBits bits_of(std::span<const TaskId> tasks) noexcept {
-  TaskBits bits;
-  for (const TaskId id : tasks) bits.add(id);
-  return bits;
-}
-
 // The first variable that the task reads and that never had a value; what an arriving task will write is not asked for.
 VariableId lacks_value(TaskSet& set, Task& task, std::span<const Handover> handovers) noexcept {
   read_inputs(task);
@@ -113,7 +107,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   note_standing(parts_.set, standing_);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (phase_ == Phase::kNone) answer = planner_.plan(request.set, standing_, plan_);
-  if (answer) answer = schedule_.judge(standing_, request.set);
+  if (answer) answer = schedule_.judge(standing_, tasks_of(parts_.set.spec(), request.set));
   if (answer.why != NoSwitch::kNothingToDo) ++n_asked_;
   SwitchReceipt* const added = phase_ == Phase::kNone ? &record_.add() : record_.add_beside();
   if (added == nullptr) return;
@@ -139,6 +133,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   order.number = next_plan(agreement().plan().number);
   order.members = 1;
   order.after = request.set;
+  order.target = tasks_of(parts_.set.spec(), request.set);
   order.until = now + kPatience;
   agreement().announce(order);
   due_ = now;
@@ -199,7 +194,7 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
 bool Switching::make_plan(const SwitchOrder& order) noexcept {
   for (const Task& each : parts_.set.tasks())
     standing_[each.id.index] = {order.on.has(each.id) ? State::kOn : State::kOff, false};
-  const bool is_made = static_cast<bool>(planner_.plan(order.after, standing_, plan_));
+  const bool is_made = planner_.plan(order.target, standing_, plan_) && plan_.after == order.after;
   record_.receipt().before = is_made ? plan_.before : kNoSet;
   record_.receipt().after = order.after;
   return is_made;
@@ -215,7 +210,7 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
     return;
   }
   // The context that arms first asks before it arms, the last to arm before it proposes.
-  const SafeCondition& asked = parts_.set.spec().sets[order_.after].safe_when;
+  const SafeCondition& asked = asked_of(parts_.set.spec(), order_.after);
   if (next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) return wait(now, kLookForSafety);
   for (next_armed_ = std::max(next_armed_, run.begin); next_armed_ < run.end;) {
     Task& next = task(plan_.arriving[next_armed_]);
@@ -270,7 +265,7 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   const SwitchRun run = find_run(plan_, set.spec().tasks, number.value_or(UINT16_MAX));
   const bool is_mine = is_turn_of(parts_.set, plan_, run, order_.members);
   if (now < order_.until + (is_mine ? Nanoseconds{} : kGrace)) return true;
-  const SafeCondition& asked = set.spec().sets[order_.after].safe_when;
+  const SafeCondition& asked = asked_of(set.spec(), order_.after);
   if (is_mine && next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) {
     abort(NoSwitch::kNotSafe, {}, asked.variable);
     return false;
@@ -335,7 +330,7 @@ void Switching::change(Nanoseconds now) noexcept {
   if (!is_changed_) {
     is_changed_ = true;
     record_.changed(plan_, at_);
-    changeover_.make(plan_, bits_of(parts_.set.spec().sets[order_.after].order), at_);
+    changeover_.make(plan_, order_.target, at_);
   }
   record_.keep_last_of_leaving();
   if (!changeover_.follow(plan_, at_)) {
@@ -354,7 +349,7 @@ void Switching::abort(NoSwitch why, TaskId of, VariableId variable) noexcept {
     record_.receipt().task = of;
     record_.receipt().variable = variable;
     if (why == NoSwitch::kNotSafe)
-      record_.receipt().value = present_value(parts_.set, parts_.set.spec().sets[order_.after].safe_when);
+      record_.receipt().value = present_value(parts_.set, asked_of(parts_.set.spec(), order_.after));
     peers_->ring();
   } else if (const PlanWord plan = agreement().plan();
              plan.number == order_.number && plan.phase == SwitchPhase::kCommitted) {

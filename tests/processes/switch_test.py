@@ -78,6 +78,25 @@ class Switch(unittest.TestCase):
             started = system.call("status")["started_ns"]
             self.assertEqual([event for event in flags if event["at_ns"] > started], [])
 
+    def test_tasks_instead_of_a_configuration(self):
+        with System(TEXT) as system:
+            receipt = system.call("switch", on=["fast"])
+            self.assertEqual((receipt["from"], receipt["to"], receipt["end"]), ("gentle", "quick", "done"))
+            self.assertEqual(self.on(system), SETS["quick"])
+            receipt = system.call("switch", off=["there"])
+            self.assertEqual((receipt["from"], receipt["to"], receipt["end"]), ("quick", None, "done"))
+            self.assertEqual(self.on(system), SETS["quick"] - {"there"})
+            self.assertEqual(system.call("switch", off=["there"]), {"to": None, "end": "nothing-to-do"})
+            for parameters, why in (({"off": ["fast"]}, "wanted would have no producer, and there is a choice: 'slow' "
+                                                        "or 'steep'"),
+                                    ({"off": ["reference"]}, "vref would have no producer"),
+                                    ({"on": ["slow", "steep"]}, "wanted would have two producers: slow and steep")):
+                with self.assertRaises(Refused) as refused:
+                    system.call("switch", **parameters)
+                self.assertEqual((refused.exception.data["kind"], str(refused.exception)), ("set", why))
+            receipt = system.call("switch", on=["slow", "there"])
+            self.assertEqual((receipt["from"], receipt["to"], receipt["end"]), (None, "gentle", "done"))
+
     def test_what_would_step_too_far_changes_nothing(self):
         with System(TEXT) as system:
             system.call("switch", configuration="quick")

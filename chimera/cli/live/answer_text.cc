@@ -60,6 +60,12 @@ std::string why_head(const Json& link) {
   return text + "\n  from         " + (inputs.empty() ? "no inputs" : inputs) + "\n";
 }
 
+/// "'hand'"; of tasks that are no configuration "other tasks".
+std::string target_of(const Json& answer) {
+  const std::string to = text_of(answer, "to");
+  return to.empty() ? "other tasks" : "'" + to + "'";
+}
+
 }  // namespace
 
 std::string json_line(const Json& answer) { return answer.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
@@ -99,7 +105,7 @@ std::string ring_text(const Json& answer) {
 }
 
 std::string switch_text(const Json& answer) {
-  const std::string to = "'" + text_of(answer, "to") + "'";
+  const std::string to = target_of(answer);
   const std::string end = text_of(answer, "end"), from = text_of(answer, "from");
   if (end == "nothing-to-do") return to + " is in force, nothing to do\n";
   std::string text = "switch " + std::to_string(whole_of(answer, "number")) +
@@ -151,7 +157,7 @@ std::string drill_text(const Json& answer) {
 }
 
 std::string plan_text(const Json& answer) {
-  const std::string to = "'" + text_of(answer, "to") + "'";
+  const std::string to = target_of(answer);
   const std::string end = text_of(answer, "end"), from = text_of(answer, "from");
   if (end == "nothing-to-do") return to + " is in force, nothing to do\n";
   const std::string begin = "switch" + (from.empty() ? "" : " from '" + from + "'") + " to " + to;

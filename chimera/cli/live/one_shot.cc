@@ -149,13 +149,14 @@ CommandResult save(Session& session, const Call& call, const Screen&) {
 
 CommandResult switch_to(Session& session, const Call& call, const Screen&) {
   const bool is_cancel = call.has("--cancel"), is_dry = call.has("--dry-run");
-  if (is_cancel == !call.operands.empty() || (is_cancel && (is_dry || call.has("--wait"))))
-    return wrong("switch: name a configuration, or give --cancel alone", call.json);
-  if (is_dry)
-    return answered(session.ask("plan", {{"configuration", call.operands[0]}}), call.json, plan_text);
-  Json named = Json::object();
-  if (!is_cancel) named["configuration"] = call.operands[0];
-  const auto parameters = with_wait(call, std::move(named));
+  Json asked = Json::object();
+  if (!call.operands.empty()) asked["configuration"] = call.operands[0];
+  if (call.has("--on")) asked["on"] = call.values("--on");
+  if (call.has("--off")) asked["off"] = call.values("--off");
+  if (is_cancel != asked.empty() || (is_cancel && (is_dry || call.has("--wait"))))
+    return wrong("switch: name a configuration, or tasks with --on and --off, or give --cancel alone", call.json);
+  if (is_dry) return answered(session.ask("plan", asked), call.json, plan_text);
+  const auto parameters = with_wait(call, std::move(asked));
   if (!parameters) return refused(parameters.error(), call.json, kUsage);
   const control::RpcResponse answer = session.ask(is_cancel ? "cancel" : "switch", *parameters);
   CommandResult result = answered(answer, call.json, switch_text);

@@ -98,8 +98,8 @@ std::string receipts_text(const Json& answer) {
     const auto at = whole_or_none(receipt, "at_ns");
     std::int64_t lost = 0;
     for (const Json& task : field(receipt, "tasks")) lost += whole_of(task, "lost");
-    const std::string from = text_of(receipt, "from");
-    table.add({number, asked_at(receipt), asked_by(receipt), from.empty() ? "-" : from, text_of(receipt, "to"), end,
+    const std::string from = text_of(receipt, "from"), to = text_of(receipt, "to");
+    table.add({number, asked_at(receipt), asked_by(receipt), from.empty() ? "-" : from, to.empty() ? "-" : to, end,
                at ? duration_text(*at - whole_of(receipt, "asked_ns")) : "-",
                end == "refused" ? "-" : std::to_string(lost), end == "done" ? moves(receipt) : ""});
     if (end != "done") whys += "switch " + number + ": " + text_of(receipt, "why") + "\n";

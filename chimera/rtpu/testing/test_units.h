@@ -170,6 +170,7 @@ class Units {
     for (std::uint32_t u = 0; u < n; ++u)
       if (keeper.alive[u] != 0) order.members = static_cast<std::uint16_t>(order.members | 1u << u);
     order.after = set;
+    order.target = tasks_of(app.spec, set);
     order.until = now + wait;
     order.lead = lead;
     for (const TaskSpec& task : app.tasks) {

@@ -61,7 +61,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   }
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (!is_under_way()) answer = planner_.plan(request.set, standing_, plan_);
-  if (answer) answer = schedule_.judge(standing_, request.set);
+  if (answer) answer = schedule_.judge(standing_, tasks_of(peers_.spec(), request.set));
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   if (is_nothing && request.cause != SwitchCause::kScript) return;
   if (!is_nothing) ++n_asked_;
@@ -87,6 +87,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   order.number = next_plan(agreement().plan().number);
   order.members = living();
   order.after = request.set;
+  order.target = tasks_of(peers_.spec(), request.set);
   order.until = now + kPatience;
   order.lead = lead();
   agreement().announce(order);

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Works out which tasks are ON when some are asked for and others are not wanted, and judges that set.
+#include "chimera/runtime/hosted/asked_set.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "chimera/runtime/hosted/variables.h"
+#include "chimera/schedule/utilisation.h"
+
+namespace chimera {
+namespace {
+
+class SetMaker {
+ public:
+  SetMaker(const ApplicationSpec& spec, std::vector<bool> on, std::span<const TaskId> plus,
+           std::span<const TaskId> minus)
+      : spec_(spec), variables_(spec), on_(std::move(on)), plus_(plus), minus_(minus) {}
+
+  AskedSet make() {
+    for (const TaskId task : plus_) {
+      if (has(minus_, task)) refuse("task " + name(task) + " cannot be both ON and OFF");
+      on_[task.index] = true;
+    }
+    for (const TaskId task : minus_) on_[task.index] = false;
+    displace();
+    while (asked_ && complete()) {
+    }
+    if (asked_) judge_links();
+    if (asked_) judge_loops();
+    if (asked_) judge_load();
+    for (std::size_t t = 0; t < on_.size(); ++t)
+      if (on_[t]) asked_.tasks.add(TaskId(t));
+    return std::move(asked_);
+  }
+
+ private:
+  static bool has(std::span<const TaskId> tasks, TaskId task) { return std::ranges::find(tasks, task) != tasks.end(); }
+  std::string name(TaskId task) const { return "'" + std::string(spec_.tasks[task.index].name) + "'"; }
+  void refuse(std::string why, std::string remedy = {}) {
+    if (!asked_) return;
+    asked_.why = std::move(why);
+    asked_.remedy = std::move(remedy);
+  }
+
+  /// Whoever produces what an asked task produces goes OFF, unless it was asked for, too.
+  void displace() {
+    for (const Variable& variable : spec_.variables) {
+      const auto is_asked = [this](const PortOf& p) { return has(plus_, p.task); };
+      if (std::ranges::none_of(variable.producers, is_asked)) continue;
+      for (const PortOf& producer : variable.producers)
+        if (!is_asked(producer)) on_[producer.task.index] = false;
+    }
+  }
+
+  /// Adds the only producer of a variable that has none; false: nothing is missing, or it cannot be mended.
+  bool complete() {
+    for (const Variable& variable : spec_.variables) {
+      const auto is_on = [this](const PortOf& p) -> bool { return on_[p.task.index]; };
+      const bool is_given = variable.operator_index != UINT32_MAX;
+      if (set_fault(variable.producers, variable.consumers, is_given, is_on, is_on) != SetFault::kNoProducer) continue;
+      std::vector<TaskId> may;
+      for (const PortOf& producer : variable.producers)
+        if (!has(minus_, producer.task)) may.push_back(producer.task);
+      if (may.size() == 1) {
+        on_[may[0].index] = true;
+        return true;
+      }
+      std::string names;
+      for (const TaskId task : may) names += (names.empty() ? "" : " or ") + name(task);
+      const std::string lacks = std::string(variable.name) + " would have no producer";
+      refuse(may.empty() ? lacks : lacks + ", and there is a choice: " + names,
+             may.empty() ? "" : "`--on` with one of them");
+      return false;
+    }
+    return false;
+  }
+
+  void judge_links() {
+    if (std::string fault = variables_.fault(on_, spec_.tasks); !fault.empty()) refuse(std::move(fault));
+    if (std::ranges::find(on_, true) == on_.end()) refuse("no task would be ON");
+  }
+
+  /// An arc from a producer to a reader counts when the output has no initial value. What is left when tasks without an
+  /// arc to them are taken away again and again stands in a loop, or behind one.
+  void judge_loops() {
+    std::vector<bool> left = on_;
+    for (bool goes_on = true; goes_on;) {
+      goes_on = false;
+      for (std::size_t t = 0; t < left.size(); ++t) {
+        if (!left[t] || is_fed(TaskId(t), left)) continue;
+        left[t] = false;
+        goes_on = true;
+      }
+    }
+    std::string names;
+    for (std::size_t t = 0; t < left.size(); ++t)
+      if (left[t]) names += (names.empty() ? "" : " ") + std::string(spec_.tasks[t].name);
+    if (!names.empty()) refuse("a loop of data would have no initial value, among: " + names);
+  }
+  bool is_fed(TaskId reader, const std::vector<bool>& left) const {
+    for (const PortSpec& in : spec_.tasks[reader.index].ports) {
+      if (in.kind != CHIMERA_IN_VAR) continue;
+      for (const PortOf& producer : spec_.variables[in.variable.index].producers)
+        if (left[producer.task.index] && !has_initial(producer)) return true;
+    }
+    return false;
+  }
+  bool has_initial(const PortOf& output) const {
+    std::uint32_t n = 0;
+    for (const PortSpec& port : spec_.tasks[output.task.index].ports)
+      if (port.kind == CHIMERA_OUT_VAR && n++ == output.index) return !port.value.empty();
+    return false;
+  }
+
+  void judge_load() {
+    for (const RtpuSpec& one : spec_.rtpus) {
+      double sum = 0;
+      for (std::size_t t = 0; t < on_.size(); ++t)
+        if (on_[t] && spec_.rtpus[spec_.tasks[t].rtpu.index].cpu == one.cpu) sum += load_of(spec_.tasks[t]);
+      if (!is_beyond(sum)) continue;
+      char text[120];
+      std::snprintf(text, sizeof text, "the budgets would take %.3f of CPU %u; expected at most %.2f", sum, one.cpu,
+                    kMaxUtilisation);
+      return refuse(text, "turn other tasks of that CPU OFF");
+    }
+  }
+
+  const ApplicationSpec& spec_;
+  Variables variables_;
+  std::vector<bool> on_;
+  std::span<const TaskId> plus_, minus_;
+  AskedSet asked_;
+};
+
+}  // namespace
+
+AskedSet asked_set(const ApplicationSpec& spec, std::vector<bool> on, std::span<const TaskId> plus,
+                   std::span<const TaskId> minus) {
+  return SetMaker(spec, std::move(on), plus, minus).make();
+}
+
+}  // namespace chimera

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/hosted/asked_set.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "chimera/runtime/testing/test_application.h"
+
+namespace chimera {
+namespace {
+
+using testing::component;
+using testing::TestApplication;
+
+struct Sensor {
+  Out<double> q{"q", "1"};
+  void cycle(Cycle) {}
+};
+struct Controller {
+  In<double> q{"q", "1"};
+  Out<double> u{"u", "1"};
+  void cycle(Cycle) {}
+};
+struct Filtered {
+  In<double> z{"z", "1"};
+  Out<double> u{"u", "1"};
+  void cycle(Cycle) {}
+};
+struct Filter {
+  In<double> q{"q", "1"};
+  Out<double> z{"z", "1"};
+  void cycle(Cycle) {}
+};
+struct Motor {
+  In<double> u{"u", "1"};
+  void cycle(Cycle) {}
+};
+struct Circle {
+  In<double> u{"u", "1"};
+  Out<double> z{"z", "1"};
+  void cycle(Cycle) {}
+};
+
+constexpr TaskId kSensor{0u}, kPid{1u}, kSmooth{2u}, kFilter{3u}, kMotor{4u}, kSpare{5u}, kCircle{6u};
+
+struct AskedSetTest : ::testing::Test {
+  AskedSetTest() {
+    app.add("sensor", component<Sensor>("sensor"));
+    app.add("pid", component<Controller>("controller"));
+    app.add("smooth", component<Filtered>("filtered"));
+    app.add("filter", component<Filter>("filter"));
+    app.add("motor", component<Motor>("motor"));
+    app.add("spare", component<Filter>("filter"));
+    app.add("circle", component<Circle>("circle"));
+    for (TaskSpec& task : app.tasks) task.rtpu = RtpuId{0u};
+    app.link(kSpare.index, 1, "z2");
+    make();
+  }
+  void make() { app.make({}, false); }
+  /// "sensor pid motor", or why not.
+  std::string ask(std::vector<TaskId> plus, std::vector<TaskId> minus = {}) {
+    std::vector<bool> on(app.spec.tasks.size());
+    for (const TaskId task : {kSensor, kPid, kMotor}) on[task.index] = true;
+    const AskedSet asked = asked_set(app.spec, on, plus, minus);
+    if (!asked) return asked.why + (asked.remedy.empty() ? "" : "; " + asked.remedy);
+    std::string names;
+    for (std::size_t t = 0; t < app.spec.tasks.size(); ++t)
+      if (asked.tasks.has(TaskId(t))) names += (names.empty() ? "" : " ") + std::string(app.spec.tasks[t].name);
+    return names;
+  }
+  TestApplication app;
+};
+
+TEST_F(AskedSetTest, WhoProducesTheSameGivesWayAndTheOnlyProducerComesAlong) {
+  app.link(kCircle.index, 1, "nothing_else");
+  make();
+  EXPECT_EQ(ask({kSmooth}), "sensor smooth filter motor");
+}
+
+TEST_F(AskedSetTest, AChoiceIsRefusedWithTheCandidates) {
+  EXPECT_EQ(ask({kSmooth}), "z would have no producer, and there is a choice: 'filter' or 'circle'; `--on` with one of "
+                            "them");
+  EXPECT_EQ(ask({kSmooth, kFilter}), "sensor smooth filter motor");
+}
+
+TEST_F(AskedSetTest, WhatIsMissingIsAddedOnlyWhereItIsWanted) {
+  app.link(kCircle.index, 1, "nothing_else");
+  make();
+  EXPECT_EQ(ask({kSmooth}, {kFilter}), "z would have no producer");
+  EXPECT_EQ(ask({}, {kSensor}), "q would have no producer");
+  EXPECT_EQ(ask({}, {kMotor}), "sensor pid");
+  EXPECT_EQ(ask({kSpare}), "sensor pid motor spare");
+}
+
+TEST_F(AskedSetTest, ContradictionsAreRefused) {
+  EXPECT_EQ(ask({kFilter}, {kFilter}), "task 'filter' cannot be both ON and OFF");
+  EXPECT_EQ(ask({kPid, kSmooth, kFilter}), "u would have two producers: pid and smooth");
+  EXPECT_EQ(ask({}, {kSensor, kPid, kMotor}), "no task would be ON");
+}
+
+TEST_F(AskedSetTest, ALoopWithoutAnInitialValueIsRefused) {
+  EXPECT_EQ(ask({kSmooth, kCircle}), "a loop of data would have no initial value, among: smooth motor circle");
+  const double zero = 0;
+  app.port(kCircle.index, 1).value = std::as_bytes(std::span(&zero, 1));
+  make();
+  EXPECT_EQ(ask({kSmooth, kCircle}), "sensor smooth motor circle");
+}
+
+TEST_F(AskedSetTest, WhatTakesMoreOfACpuThanCheckAllowsIsRefused) {
+  app.tasks[kSensor.index].budget = microseconds(500);
+  app.tasks[kSpare.index].budget = microseconds(430);
+  make();
+  EXPECT_EQ(ask({kSpare}), "sensor pid motor spare");
+  app.tasks[kSpare.index].budget = microseconds(440);
+  make();
+  EXPECT_EQ(ask({kSpare}),
+            "the budgets would take 0.940 of CPU 0; expected at most 0.93; turn other tasks of that CPU OFF");
+}
+
+}  // namespace
+}  // namespace chimera
