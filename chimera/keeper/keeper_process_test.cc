@@ -121,7 +121,7 @@ TEST_F(KeeperProcess, StartsEverybodyAndPassesTheirMemoryOn) {
   EXPECT_EQ(code_of_keeper(), 3);
   EXPECT_TRUE(has("0.1 finish"));
   EXPECT_TRUE(has("1.1 finish"));
-  EXPECT_TRUE(has("2.1 terminated"));
+  EXPECT_TRUE(has("2.1 finish"));
   EXPECT_TRUE(nobody_is_left());
 }
 
@@ -191,7 +191,7 @@ TEST_F(KeeperProcess, SignalsEndEverythingWithTheCodeOfTheFace) {
     EXPECT_EQ(code_of_keeper(), 5) << number;
     const std::string all = log();
     EXPECT_LT(all.find("face finishes"), all.find("0.1 finish"));
-    EXPECT_LT(all.find("0.1 finish"), all.find("1.1 terminated"));
+    EXPECT_LT(all.find("0.1 finish"), all.find("1.1 finish"));
     EXPECT_TRUE(nobody_is_left());
   }
 }
@@ -202,10 +202,10 @@ TEST_F(KeeperProcess, AFaceThatHasLookedSeesHowTheOthersEnd) {
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
   order("face", "look");
   EXPECT_TRUE(wait_for("1.1 ended 0 1")) << "the rtpu has ended, the manager and the face have not";
-  EXPECT_FALSE(has("1.1 terminated"));
+  EXPECT_FALSE(has("1.1 finish"));
   order("face", "exit 4");
   EXPECT_EQ(code_of_keeper(), 4);
-  EXPECT_TRUE(has("1.1 terminated"));
+  EXPECT_TRUE(has("1.1 finish"));
   EXPECT_TRUE(nobody_is_left());
 }
 

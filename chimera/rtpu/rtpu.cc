@@ -47,6 +47,8 @@ class Rtpu {
 
   Result<void> prepare();
   int run();
+  /// Context: after run().
+  bool is_without_keeper();
 
  private:
   Result<void> map();
@@ -91,6 +93,7 @@ class Rtpu {
   std::unique_ptr<HangWatch> hang_watch_;
   std::unique_ptr<CyclingThread> cycling_;
   bool is_ending_ = false;
+  bool keeper_is_gone_ = false;
   bool ends_alone_ = false;    // the others go on
   bool is_giving_up_ = false;  // because a job does not end
   LinuxClock wall_;
@@ -270,6 +273,7 @@ void Rtpu::read_messages() {
     if (got == Channel::Got::kNothing) return;
     if (got == Channel::Got::kClosed) {
       channel_ = Channel();
+      keeper_is_gone_ = true;
       return end(false);
     }
     if (message.kind == KeeperMessage::Kind::kFinish) end(false);
@@ -314,10 +318,17 @@ bool Rtpu::loop_hangs() {
   return hang_watch_->loop_hangs(running, block_.head().beats + jobs_of(TaskWord::found(running).task()), wall_.now());
 }
 
+// A process that ends closes its channels first and loses its children a little later: a unit without much to do has
+// ended by then, and its parent is the keeper still.
+bool Rtpu::is_without_keeper() {
+  if (start_.parent == 0) return false;
+  read_messages();
+  return keeper_is_gone_ || parent_process_id() != start_.parent;
+}
+
 // What components left behind is the keeper's to end, as long as there is one.
-void end_children_without_keeper(const RtpuStart& start) {
-  const char* mine = std::getenv(kOriginVariable);
-  if (start.parent != 0 && parent_process_id() != start.parent && mine != nullptr) (void)end_all_from(mine, seconds(1));
+void end_children_of_this_unit() {
+  if (const char* mine = std::getenv(kOriginVariable); mine != nullptr) (void)end_all_from(mine, seconds(1));
 }
 
 }  // namespace
@@ -329,7 +340,7 @@ int run_rtpu(const RtpuStart& start) {
     return kCouldNotStart;
   }
   const int code = rtpu.run();
-  end_children_without_keeper(start);
+  if (rtpu.is_without_keeper()) end_children_of_this_unit();
   if (code == kTerminated) end_by_signal(SIGTERM);  // of a process that is not the keeper: the keeper sees the death
   if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads are still in components: nothing can be taken down
   return code;
