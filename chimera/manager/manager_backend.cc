@@ -53,8 +53,8 @@ std::variant<TaskBits, RpcResponse> named_set(const ApplicationSpec& spec, const
   std::vector<std::string> names;
   for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
   const std::string near = nearest(name, names);
-  return RpcResponse::unknown("no configuration '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                              name, near);
+  const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
+  return RpcResponse::unknown("no configuration '" + name + "'" + hint, name, near);
 }
 
 /// What `switch` asks for: a configuration, or what is ON and `on` without `off`.
@@ -107,8 +107,9 @@ RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcom
   if (receipt.end == SwitchEnd::kNothingToDo) return RpcResponse::good({{"to", to}, {"end", "nothing-to-do"}});
   if (receipt.end != SwitchEnd::kRefused)
     return RpcResponse::ready(std::make_shared<const std::string>(outcome.json));
-  return RpcResponse::refused(control::reason_word(receipt.why),
-                              "switch to " + control::set_text(receipt.after, world.spec()) + " is refused: " + control::reason_text(receipt, world.spec()),
+  const std::string what = "switch to " + control::set_text(receipt.after, world.spec()) + " is refused: " +
+                           control::reason_text(receipt, world.spec());
+  return RpcResponse::refused(control::reason_word(receipt.why), what,
                               receipt.task.is_valid() ? world.name(receipt.task) : "", outcome.remedy);
 }
 

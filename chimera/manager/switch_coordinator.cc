@@ -100,7 +100,8 @@ void SwitchCoordinator::take_over() {
 std::string SwitchCoordinator::under_way() const {
   if (!present_) return "";
   return "switch " + std::to_string(present_->begun.number) + " to " +
-         control::set_text(present_->begun.order.after, world_.spec()) + ", asked for by " + asker_text(present_->begun, world_.spec());
+         control::set_text(present_->begun.order.after, world_.spec()) + ", asked for by " +
+         asker_text(present_->begun, world_.spec());
 }
 
 std::string SwitchCoordinator::progress() const {

@@ -51,7 +51,8 @@ class Rig(System):
     def children(self):
         """Of components: neither of the project's own processes."""
         own = set(self.pids().values()) | {self.process.pid}
-        return [p for p in self.left_over() if p not in own and name_of(p) not in ("memory-holder", "chimera", "chimera-guard", "")]
+        ours = ("memory-holder", "chimera", "chimera-guard", "")
+        return [p for p in self.left_over() if p not in own and name_of(p) not in ours]
 
     def memory_holder_of(self, pid):
         found = [p for p in self.left_over() if name_of(p) == "memory-holder" and parent_of(p) == pid]
