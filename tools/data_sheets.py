@@ -120,6 +120,20 @@ def check(name, text, descriptor):
             yield f"port {port['name']}: the code has no doc = \"...\""
 
 
+SIMULATED_HARDWARE = ("car", "electric_car", "mujoco_robot", "mujoco_robot_torque", "mujoco_robot_velocity", "puma",
+                      "puma_torque", "rmms")
+
+
+def unsafe(name, descriptor):
+    """What moves hardware says when that is safe, so that a drill can ask it: docs/howto/drill.md."""
+    ports = descriptor["ports"]
+    resources = [port for port in ports if port["kind"] == "resource"]
+    tells = [port["name"] for port in ports if port.get("safe_state") and port["kind"] == "out-var"]
+    moves = name in SIMULATED_HARDWARE or any(not port.get("safe_state") for port in resources)
+    if moves and not tells:
+        yield "its code has hardware and no safe_state: on an output that tells, or on a resource that moves nothing"
+
+
 def pictures(folder, text):
     """What is wrong with the pictures of a sheet: shown and not there, or there and not shown."""
     shown = set(re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text))
@@ -222,6 +236,13 @@ def planted():
     for sheet, descriptor, expected in PLANTED:
         if list(check("t", sheet, descriptor)) != expected:
             yield f"a planted fault is not found: {expected}, but {list(check('t', sheet, descriptor))}"
+    device, moved = {"name": "device", "kind": "resource"}, {"name": "held", "kind": "out-var", "safe_state": True}
+    for name, ports, is_right in (("t", [device], False), ("t", [device, moved], True), ("t", [], True),
+                                  ("puma", [], False), ("puma", [moved], True),
+                                  ("t", [device | {"safe_state": True}], True),
+                                  ("t", [device | {"safe_state": True}, device], False)):
+        if (list(unsafe(name, {"ports": ports})) == []) != is_right:
+            yield f"hardware without a safe state is judged wrongly: {name} {ports}"
     if list(listed("| [a](a/README.md) | A. |\n| [b](b/README.md) | B. |", [{"name": "a", "doc": "Another."}])) != [
             "has no line | [a](a/README.md) | Another. |", "lists what is not there: | [a](a/README.md) | A. |",
             "lists what is not there: | [b](b/README.md) | B. |"]:
@@ -260,7 +281,7 @@ def main():
         if (said.write or said.measure) and text:
             text = with_table(text, descriptor)
             sheet.write_text(text)
-        found = [*check(name, text, descriptor), *pictures(sheet.parent, text)]
+        found = [*check(name, text, descriptor), *unsafe(name, descriptor), *pictures(sheet.parent, text)]
         faults += [f"library/{name}/README.md: {fault}" for fault in found]
     if not said.names:
         index = (said.library / "README.md").read_text()

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the headers, segments and exported symbols of an ELF file against the bytes that it has.
+// Checks the headers, segments and exported symbols of an ELF file against the bytes that it has, and that nothing of
+// it makes real-time threads wait.
 #include "chimera/load/elf_check.h"
 
 #include <elf.h>
@@ -43,6 +44,51 @@ bool is_whole(int file, const Elf64_Ehdr& head, std::uint64_t size) noexcept {
     if (!is_inside(segment.p_offset, segment.p_filesz, size)) return false;
   }
   return true;
+}
+
+/// The `index`th segment of a whole file.
+Elf64_Phdr segment_of(int file, const Elf64_Ehdr& head, std::uint16_t index) noexcept {
+  Elf64_Phdr segment{};
+  read_at(file, head.e_phoff + std::uint64_t{index} * sizeof segment, std::as_writable_bytes(std::span(&segment, 1)));
+  return segment;
+}
+
+/// What the dynamic section tells of the whole object.
+struct Marks {
+  bool has_text_relocations = false;
+  bool has_static_tls = false;  // its thread_local variables lie in the block that every thread has from its start
+};
+
+Marks marks_of(int file, const Elf64_Phdr& dynamic) noexcept {
+  Marks marks;
+  Elf64_Dyn entry{};
+  for (std::uint64_t at = 0; at + sizeof entry <= dynamic.p_filesz; at += sizeof entry) {
+    const auto bytes = std::as_writable_bytes(std::span(&entry, 1));
+    if (read_at(file, dynamic.p_offset + at, bytes) != sizeof entry || entry.d_tag == DT_NULL) break;
+    const std::uint64_t flags = entry.d_tag == DT_FLAGS ? entry.d_un.d_val : 0;
+    marks.has_text_relocations |= entry.d_tag == DT_TEXTREL || (flags & DF_TEXTREL) != 0;
+    marks.has_static_tls |= (flags & DF_STATIC_TLS) != 0;
+  }
+  return marks;
+}
+
+/// What loads, and then is no real-time code: memory that a thread asks for at its first use of a variable, code that
+/// is written when it is loaded.
+Message unfit_for_real_time(int file, const Elf64_Ehdr& head) noexcept {
+  constexpr std::uint64_t kOfTheFramework = sizeof(void*);  // task/declare_port.h, used while ports are declared
+  std::uint64_t tls = 0;
+  Marks marks;
+  for (std::uint16_t i = 0; i < head.e_phnum; ++i) {
+    const Elf64_Phdr segment = segment_of(file, head, i);
+    if (segment.p_type == PT_TLS) tls = segment.p_memsz;
+    if (segment.p_type == PT_DYNAMIC) marks = marks_of(file, segment);
+  }
+  if (marks.has_text_relocations)
+    return Message("has text relocations, so its code is written when it is loaded: compile all of it with -fPIC");
+  if (tls > kOfTheFramework && !marks.has_static_tls)
+    return Message("has a thread_local variable, whose first use in a real-time thread asks the heap: make it a member "
+                   "of the component, or give it __attribute__((tls_model(\"initial-exec\")))");
+  return {};
 }
 
 /// The whole file; empty when it cannot be read.
@@ -105,7 +151,7 @@ Message elf_fault(int file) noexcept {
   if (head.e_type != ET_DYN) return Message("is not a shared object: it is another kind of ELF file");
   if (head.e_phentsize != sizeof(Elf64_Phdr)) return Message("has damaged headers");
   if (!is_whole(file, head, static_cast<std::uint64_t>(size))) return cut;
-  return {};
+  return unfit_for_real_time(file, head);
 }
 
 Message elf_fault(int file, std::string_view component) {

@@ -9,8 +9,9 @@
 
 namespace chimera {
 
-/// Reads the headers of the file behind the descriptor `file`. Empty when it is whole, else why not, as a clause that
-/// goes after the file's name. Context: setup; may block.
+/// Reads the headers of the file behind the descriptor `file`. Empty when it is whole and has neither text relocations
+/// nor thread_local variables that are made at their first use, else what is wrong, as a clause that goes after the
+/// file's name. Context: setup; may block.
 Message elf_fault(int file) noexcept;
 
 /// As elf_fault(file), and whether the file offers components, and one of that name, as far as that is seen without

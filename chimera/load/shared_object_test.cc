@@ -123,6 +123,22 @@ TEST(SharedObject, RefusesAnObjectWithoutComponents) {
   EXPECT_EQ(refusal(object("nothing_offered.so")), "nothing_offered.so offers no component. Rebuild the component.");
 }
 
+TEST(SharedObject, RefusesWhatMakesRealTimeThreadsWait) {
+  const std::string tls = rebuild("thread_local.so",
+                                  "has a thread_local variable, whose first use in a real-time thread asks the heap: "
+                                  "make it a member of the component, or give it "
+                                  "__attribute__((tls_model(\"initial-exec\")))");
+  EXPECT_EQ(refusal(object("thread_local.so")), tls);
+  EXPECT_EQ(inspection(object("thread_local.so")), tls);
+  const std::string text = rebuild(
+      "text_relocations.so",
+      "has text relocations, so its code is written when it is loaded: compile all of it with -fPIC");
+  EXPECT_EQ(refusal(object("text_relocations.so")), text);
+  EXPECT_EQ(inspection(object("text_relocations.so")), text);
+  EXPECT_EQ(inspection(object("static_tls.so")),  // which is looked at beyond that
+            rebuild("static_tls.so", "offers no components: it has no symbol " CHIMERA_COMPONENTS_SYMBOL));
+}
+
 TEST(SharedObject, RefusesAnotherVersionOfTheInterface) {
   EXPECT_EQ(refusal(object("other_abi.so")),
             "other_abi.so was built for another ABI; this chimera needs ABI 1. Rebuild the component.");

@@ -36,6 +36,9 @@ bool names_only(const TaskBits& bits, std::size_t n_tasks) noexcept {
   return true;
 }
 
+// Instants and lengths of time that may be added to each other: 73 years.
+bool can_be_added(Nanoseconds time) noexcept { return time.count >= 0 && time.count <= INT64_MAX / 4; }
+
 }  // namespace
 
 std::optional<SwitchOrder> SwitchAgreement::order(const PlanWord& plan, std::size_t n_sets,
@@ -54,9 +57,9 @@ std::optional<SwitchOrder> SwitchAgreement::order(const PlanWord& plan, std::siz
     order.target.words[i] = words[4 + order.on.words.size() + i];
   }
   const bool is_sane = order.number == plan.number && order.number != 0 && order.members != 0 &&
-                       (words[1] < n_sets || words[1] == UINT32_MAX) && words[0] >> 32 == 0 &&
-                       order.lead >= Nanoseconds{};
-  if (!is_sane || !names_only(order.on, n_tasks) || !names_only(order.target, n_tasks)) return std::nullopt;
+                       (words[1] < n_sets || words[1] == UINT32_MAX) && words[0] >> 32 == 0;
+  if (!is_sane || !can_be_added(order.until) || !can_be_added(order.lead)) return std::nullopt;
+  if (!names_only(order.on, n_tasks) || !names_only(order.target, n_tasks)) return std::nullopt;
   return order;
 }
 

@@ -66,6 +66,18 @@ TEST_F(SwitchAgreementTest, AnOrderThatDoesNotFitTheApplicationIsNone) {
   EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "nobody takes part";
 }
 
+TEST_F(SwitchAgreementTest, AnOrderWhoseTimesCannotBeAddedIsNone) {
+  for (const std::int64_t far : {INT64_MAX, INT64_MAX / 2, INT64_MIN, std::int64_t{-1}}) {
+    SwitchOrder late = some_order(), early = some_order();
+    late.until = {far};
+    early.lead = {far};
+    agreement.announce(late);
+    EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << far;
+    agreement.announce(early);
+    EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << far;
+  }
+}
+
 TEST_F(SwitchAgreementTest, AStrayWriteIsFound) {
   agreement.announce(some_order());
   for (auto& word : page.order)

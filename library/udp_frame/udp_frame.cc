@@ -51,8 +51,10 @@ struct UdpFrame : FrameDevice {
     send(true);
     *connected = false;
   }
+  // The port stays ours: the guard has a copy of the descriptor, and gives it back in its own time.
   bool clear(Cycle c) {
-    open(c);
+    if (socket_.descriptor() < 0) open(c);
+    else socket_.connect(std::string(device.text()));
     return true;
   }
   void kill(Cycle c) {

@@ -183,6 +183,27 @@ TEST_F(UdpFrameTest, ADeviceThatGoesIsAFaultAndComesBackByClear) {
   EXPECT_EQ(state(), 2);
 }
 
+TEST_F(UdpFrameTest, ItsPortIsNotLostToTheCopyThatTheGuardHas) {
+  const int found = ::socket(AF_INET, SOCK_DGRAM, 0);  // a port that is free
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  socklen_t size = sizeof here;
+  ASSERT_EQ(::bind(found, reinterpret_cast<sockaddr*>(&here), size), 0);
+  ASSERT_EQ(::getsockname(found, reinterpret_cast<sockaddr*>(&here), &size), 0);
+  ::close(found);
+  rig.set("local_port", std::int32_t{ntohs(here.sin_port)});
+  start();
+  const int copy = ::dup(rig.safe_frame(0).descriptor);
+  ASSERT_GE(copy, 0);
+  for (int i = 0; i < 12; ++i) rig.cycle(milliseconds(10));
+  const RigAnswer cleared = rig.clear();
+  EXPECT_TRUE(cleared) << cleared.text;
+  ASSERT_TRUE(rig.on());
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_GE(rig.safe_frame(0).descriptor, 0);
+  ::close(copy);
+}
+
 TEST_F(UdpFrameTest, SendsIdleAtOff) {
   start();
   rig.set("command", 5.0);

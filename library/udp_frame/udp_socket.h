@@ -28,7 +28,7 @@ class UdpSocket {
   /// Throws std::runtime_error with a remedy. Context: setup; no look-up of names, nothing is waited for.
   void open(const std::string& peer, int local_port) {
     close();
-    const sockaddr_in there = address_of(peer);
+    (void)address_of(peer);
     file_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (file_ < 0) refuse(peer, "");
     sockaddr_in here{};
@@ -36,8 +36,16 @@ class UdpSocket {
     here.sin_port = htons(static_cast<std::uint16_t>(local_port));
     if (::bind(file_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0)
       refuse("UDP port " + std::to_string(local_port), ": name another `local_port`, or end who has it");
+    connect(peer);
+  }
+  /// As open() to another peer, with the port that it has: a copy of the descriptor, such as the guard's, would keep
+  /// that from being taken anew. Requires: it is open, and stays so. Throws as open(). Context: setup; nothing is
+  /// waited for.
+  void connect(const std::string& peer) {
+    const sockaddr_in there = address_of(peer);
     if (::connect(file_, reinterpret_cast<const sockaddr*>(&there), sizeof there) != 0)
-      refuse(peer, ": there is no way to that address; see `ip route get`");
+      throw std::runtime_error(peer + ": " + std::strerror(errno) +
+                               ": there is no way to that address; see `ip route get`");
   }
   void close() noexcept {
     if (file_ >= 0) ::close(std::exchange(file_, -1));

@@ -15,7 +15,7 @@ APPLICATIONS = {
     "11_another_robot/generic": FOLLOWS, "11_another_robot/closed_form": FOLLOWS,
     "12_by_itself/rmms": FOLLOWS, "12_by_itself/puma": FOLLOWS,
     "13_visual_servoing/inverse_kinematics": FOLLOWS, "13_visual_servoing/damped_least_squares": FOLLOWS,
-    "15_singular_pose/damped_least_squares": PASSES, "17_switch/switch": PASSES}
+    "15_singular_pose/damped_least_squares": PASSES, "17_switch/switch": PASSES, "19_standby/standby": FOLLOWS}
 # Figure 8 past a singular pose: what the drives cannot follow.
 BESIDE = "15_singular_pose/inverse_kinematics"
 BESIDE_SAYS = ("holds: max_distance", "FAILS: max_angle", "FAILS: max_error", "holds: target_moved")

@@ -1,52 +1,153 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The lesson about processes, command by command as its README shows them."""
+"""The lessons about processes, command by command as their READMEs show them."""
 import pathlib
 import re
 import shlex
+import socket
 import subprocess
 import unittest
 
 from system import CHIMERA, System, await_that
 
-LESSON = pathlib.Path(__file__).resolve().parents[2] / "examples/09_processes"
+LESSONS = pathlib.Path(__file__).resolve().parents[2] / "examples"
 
 
-def commands():
-    blocks = re.findall(r"```sh\n(.*?)```", (LESSON / "README.md").read_text(), re.S)
-    return [line for block in blocks for line in block.splitlines()]
+def commands(lesson):
+    """Of the `sh` blocks; a line that ends in a backslash goes on, what is behind a # is a remark."""
+    blocks = re.findall(r"```sh\n(.*?)```", (LESSONS / lesson / "README.md").read_text(), re.S)
+    lines = "".join(blocks).replace("\\\n", " ").splitlines()
+    return [re.sub(r"\s+#.*", "", line) for line in lines]
 
 
-class Lesson(unittest.TestCase):
+class Typed(unittest.TestCase):
+    """What is typed in a folder of examples/; `said`: the last output of each command, by its first word."""
+
+    def begin(self, lesson):
+        self.folder, self.said = LESSONS / lesson, {}
+
+    def type(self, system, command):
+        words = shlex.split(command)
+        self.assertEqual(words[0], "chimera", command)
+        done = subprocess.run([str(CHIMERA), *words[1:]], env=system.environment, capture_output=True, text=True,
+                              timeout=30, stdin=subprocess.DEVNULL, cwd=self.folder)
+        self.assertIn(done.returncode, (0, 1) if "reactions.yaml" in command else (0,),
+                      command + ": " + done.stdout + done.stderr)
+        self.said[words[1]] = done.stdout
+        return done.stdout
+
+    def kill(self, system, unit, how=9):
+        """As `kill -KILL "$(chimera status --pid UNIT)"`; the incarnation before."""
+        before = system.rtpu(unit)
+        self.assertEqual(self.type(system, f"chimera status --pid {unit}"), f"{before['pid']}\n")
+        self.assertTrue(system.kill(before["pid"], how))
+        return before["incarnation"]
+
+    def await_restart(self, system, unit, before):
+        await_that(lambda: system.rtpu(unit)["incarnation"] > before and system.rtpu(unit)["alive"], 10, "a restart")
+
+
+class Processes(Typed):
     def test_every_command_of_the_lesson_does_what_it_says(self):
-        first, *others = commands()
+        self.begin("09_processes")
+        first, *others = commands("09_processes")
         self.assertEqual(first, "chimera run processes.yaml")
-        with System((LESSON / "processes.yaml").read_text(), name="processes") as system:
-            said = {}
+        with System((self.folder / "processes.yaml").read_text(), name="processes") as system:
             for command in others:
                 if command == 'kill -KILL "$(chimera status --pid plan)"':
                     self.kill_the_plan(system)
-                    continue
-                words = shlex.split(command)[1:]
-                done = subprocess.run([str(CHIMERA), *words], env=system.environment, capture_output=True, text=True,
-                                      timeout=30, stdin=subprocess.DEVNULL, cwd=LESSON)
-                self.assertEqual(done.returncode, 0, command + ": " + done.stdout + done.stderr)
-                said[words[0]] = done.stdout
-            self.assertIn("plan", said["status"])
-            self.assertIn("plan ended by signal 9 (SIGKILL)", said["events"])
-            self.assertIn("plan is restarted, 1 of at most 3 times", said["events"])
-            self.assertIn("q_ref", said["why"])
-            self.assertIn("plan died at 1.000 s", said["run"])
+                else:
+                    self.type(system, command)
+            self.assertIn("plan", self.said["status"])
+            self.assertIn("plan ended by signal 9 (SIGKILL)", self.said["events"])
+            self.assertIn("plan is restarted, 1 of at most 3 times", self.said["events"])
+            self.assertIn("q_ref", self.said["why"])
+            self.assertIn("plan died at 1.000 s", self.said["run"])
 
     def kill_the_plan(self, system):
-        before, unit = system.task("arm"), system.rtpu("plan")
-        pid = subprocess.run([str(CHIMERA), "status", "--pid", "plan"], env=system.environment, capture_output=True,
-                             text=True, timeout=30, check=True).stdout
-        self.assertEqual(pid, f"{unit['pid']}\n")
-        self.assertTrue(system.kill(int(pid)))
-        await_that(lambda: system.rtpu("plan")["incarnation"] > unit["incarnation"], 10, "a restart")
+        before = system.task("arm")
+        self.await_restart(system, "plan", self.kill(system, "plan"))
         system.await_state("trajectory", "ON")
         after = await_that(lambda: (t := system.task("arm"))["cycles"] > before["cycles"] + 10 and t, 5, "cycles")
         self.assertEqual((after["state"], after["incarnation"], after["faults"]), ("ON", before["incarnation"], 0))
+
+
+class Standby(Typed):
+    def test_every_command_of_the_lesson_does_what_it_says(self):
+        self.begin("19_standby")
+        typed = commands("19_standby")
+        real = typed.index("chimera run standby.yaml") + 1
+        self.assertEqual(len([c for c in typed[:real - 1] if "--virtual" in c]), 2)  # tests/examples has them
+        with System((self.folder / "standby.yaml").read_text(), name="standby") as system:
+            system.await_state("pinvkin", "ON")
+            for command in typed[real:]:
+                if command == 'kill -KILL "$(chimera status --pid trial)"':
+                    self.await_restart(system, "trial", self.kill(system, "trial"))
+                    system.await_state("ginvkin", "ON")
+                    system.await_state("pinvkin", "OFF")
+                    continue
+                if command == "chimera switch figure_3d":
+                    self.assertIn("standby: figure_3d with ginvkin for pinvkin", self.said["status"])
+                    self.assertIn("took over from 'pinvkin'", self.said["events"])
+                self.type(system, command)
+            self.assertRegex(self.said["switch"], r"1 task arrives, 1 leaves, \d+ cycles? lost\n.*q_ref moves "
+                                                  r"by [^ ]+ rad, limit 0.005 rad\n")
+            self.assertIn("figure_3d", self.said["receipts"])
+
+
+class SafeMachine(Typed):
+    def description(self, name):
+        text = (self.folder / f"{name}.yaml").read_text()
+        for port, free in self.ports.items():
+            text = text.replace(port, free)
+        return text
+
+    def free_port(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found:
+            found.bind(("127.0.0.1", 0))
+            return str(found.getsockname()[1])
+
+    def told(self):
+        return self.drive.call("get", variables=["told"])["values"]["told"]["value"]
+
+    def await_turning(self):
+        await_that(lambda: self.told() == [3.0], 20, "the drive to turn")
+
+    def safe_frames(self):
+        return [e for e in self.machine.events() if e["kind"] == "safe" and "written" in e["text"]]
+
+    def shoot(self, how):
+        """The drive stands, and turns again when the machine is back."""
+        before, restarted = len(self.safe_frames()), self.kill(self.machine, "servo", how)
+        await_that(lambda: self.told() == [0.0], 10, "the drive to stand")
+        await_that(lambda: len(self.safe_frames()) > before, 10, "the event")
+        self.await_restart(self.machine, "servo", restarted)
+
+    def do(self, command):
+        if command.startswith(("chimera run", "sleep")) and "--virtual" not in command:
+            return
+        if command.startswith("kill"):
+            return self.shoot({"-KILL": 9, "-STOP": 19}[command.split()[1]])
+        if "drill" in command:
+            self.await_turning()
+        self.type(self.drive if "--subsystem drive" in command else self.machine, command)
+        if command == "chimera end --subsystem drive":
+            await_that(lambda: self.machine.call("status")["flag"]["up"], 20, "the flag, after three restarts")
+
+    def test_every_command_of_the_lesson_does_what_it_says(self):
+        self.begin("20_safe_machine")
+        self.ports = {"5621": self.free_port(), "5622": self.free_port()}
+        with System(self.description("drive"), name="drive") as self.drive, \
+                System(self.description("machine"), name="machine") as self.machine:
+            self.await_turning()
+            for command in commands("20_safe_machine"):
+                self.do(command)
+                if "--kill" in command:
+                    self.assertRegex(self.said["drill"], r"servo: killed, 1 of 1 safe frames written [0-9.]+ ms after")
+                if command.startswith("chimera events") and "safe" in command:
+                    self.assertIn("1 safe frame written", self.said["events"])
+            self.assertIn("is silent: bring it back", self.said["events"])
+            self.assertIn("flag UP", self.said["status"])
+            self.assertIn("ended by the reaction `stop` of task 'brake'", self.said["run"])
 
 
 if __name__ == "__main__":

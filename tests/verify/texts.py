@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sentences of README.md and docs/ that name limits of the code, held against the code."""
+import json
 import pathlib
 import re
 import sys
@@ -7,6 +8,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools" / "check"))
 import sources  # noqa: E402
 
+RECEIPT = "docs/formats/receipt.md"
 REFUSALS = "chimera/verify/unsupported.cc"
 # What a refusal says in the code, and how the limits of README.md call it.
 CALLED = (
@@ -56,22 +58,51 @@ def table_complaints(root):
                f"{most and most[1]}")
 
 
+def words_of(schema):
+    """Every key that the schema of an object has, and every word that a value may be."""
+    for key, value in schema.get("properties", {}).items():
+        yield key
+        yield from words_of(value)
+    yield from words_of(schema.get("items", {})) if "items" in schema else ()
+    yield from (word for word in schema.get("enum", []) if word)
+
+
+def receipt_complaints(root):
+    schema = json.loads(sources.text(root, "docs/formats/run.schema.json"))["definitions"]["receipt"]
+    document = sources.text(root, RECEIPT)
+    yield from (f"{RECEIPT}: does not say what `{word}` is" for word in words_of(schema) if f"`{word}`" not in document)
+    reasons = {word for word in schema["properties"]["reason"]["enum"] if word}
+    code = sources.text(root, "chimera/control/receipt_text.cc")
+    named = set(re.findall(r'case NoSwitch::k\w+: return "([a-z-]+)";', code)) - {"none"}
+    yield from (f"{RECEIPT}: the code has no reason `{word}`" for word in sorted(reasons - named))
+    rows = set(re.findall(r"^\| `([a-z]+(?:-[a-z]+)*)` \|", document.split("| reason |", 1)[-1], re.MULTILINE))
+    yield from (f"{RECEIPT}: has a row for the reason `{word}`, which the schema has not"
+                for word in sorted(rows - reasons))
+
+
 def check(root):
     yield from refusal_complaints(root)
     yield from table_complaints(root)
+    yield from receipt_complaints(root)
 
 
 _README = "# A\n\n## Limits\n\n- Refused: policy `llf` in real time, `standby_for`.\n\n## More\n"
 _CODE = ('  void refuse_key(Place at, const char* key) {\n    refuse(at, "\'" + std::string(key) + "\' of");\n  }\n'
          '  refuse(a, "policy llf in real time", "x");\n')
 _ROOM = "  constexpr std::uint64_t kMaxTableBytes = 4 << 20;\n"
+_SCHEMA = json.dumps({"definitions": {"receipt": {"properties": {
+    "tries": {"type": "integer"}, "reason": {"enum": [None, "late"]}}}}})
+_RECEIPT = "| key |\n| `tries` | x |\n| `reason` | x |\n\n| reason |\n|---|\n| `late` | x |\n"
+_REASONS = '    case NoSwitch::kNone: return "none";\n    case NoSwitch::kLate: return "late";\n'
 _TABLE = "outputs take more than\n4 MiB.\n"
 
 
 def _tree(**other):
     files = {"README.md": _README, REFUSALS: _CODE, "chimera/verify/rules/rule_room.cc": _ROOM,
-             "docs/formats/table.md": _TABLE}
-    names = {"readme": "README.md", "code": REFUSALS, "table": "docs/formats/table.md"}
+             "docs/formats/table.md": _TABLE, "docs/formats/run.schema.json": _SCHEMA, RECEIPT: _RECEIPT,
+             "chimera/control/receipt_text.cc": _REASONS}
+    names = {"readme": "README.md", "code": REFUSALS, "table": "docs/formats/table.md", "receipt": RECEIPT,
+             "reasons": "chimera/control/receipt_text.cc"}
     return files | {names[key]: text for key, text in other.items()}
 
 
@@ -84,6 +115,10 @@ PLANTED = (
      f'{REFUSALS}: no phrase is known here for the refusal refuse_key(a, "magic", task'),
     (_tree(table=_TABLE.replace("4", "8")),
      "docs/formats/table.md: says 8 MiB for all outputs, the rule table-limit has 4"),
+    (_tree(receipt=_RECEIPT.replace("`tries`", "tries")), f"{RECEIPT}: does not say what `tries` is"),
+    (_tree(receipt=_RECEIPT + "| `early` | x |\n"),
+     f"{RECEIPT}: has a row for the reason `early`, which the schema has not"),
+    (_tree(reasons=_REASONS.replace('"late"', '"too-late"')), f"{RECEIPT}: the code has no reason `late`"),
 )
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@
 #include "chimera/cli/live/save_file.h"
 #include "chimera/cli/live/status_text.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/message.h"
 #include "chimera/cli/live/words.h"
 #include "chimera/platform/terminal.h"
 #include "chimera/text/nearest.h"
@@ -75,8 +76,9 @@ CommandResult pid(Session& session, const Call& call) {
 Result<Json> with_wait(const Call& call, Json parameters) {
   if (!call.has("--wait")) return parameters;
   const auto wait = parse_duration(call.value("--wait"));
-  const std::string why = wait ? "" : "--wait: " + std::string(wait.error().message.view());
-  if (!wait) return Error{ErrorCode::kBadInput, std::string_view(why), {}};
+  const bool is_right = wait && *wait >= milliseconds(1) && *wait <= seconds(600);
+  const std::string why = wait ? "write 1 ms to 10 min" : std::string(wait.error().message.view());
+  if (!is_right) return (Message() << "--wait: " << why).error(ErrorCode::kBadInput, {});
   parameters["wait_ms"] = wait->count / 1'000'000;
   return parameters;
 }

@@ -45,8 +45,8 @@ std::string seldom_line(const TaskProfile& task) {
     if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + name;
   };
   for (const Seldom& kind : kSeldom) add(task.profile.*kind.count, kind.name);
-  add(task.profile.restarts, "restarts");
-  add(task.profile.takeovers, "takeovers");
+  add(task.profile.restarts, task.profile.restarts == 1 ? "restart" : "restarts");
+  add(task.profile.takeovers, task.profile.takeovers == 1 ? "takeover" : "takeovers");
   return text.empty() ? "" : task.task + ": " + text + "\n";
 }
 

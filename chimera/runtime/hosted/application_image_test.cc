@@ -239,10 +239,10 @@ TEST(ApplicationImage, AReactionWithoutItsSetIsRefused) {
 }
 
 TEST(ApplicationImage, AStandbyThatCannotStandInIsRefused) {
-  const char* unlike = "a standby with other outputs";
+  const char* unlike = "a standby without an output of its primary";
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].primary = TaskId{3u}; }), "a task that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].standby = TaskId{3u}; }), "a task that does not exist"));
-  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].primary = TaskId{1u}; }), unlike));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].standby = TaskId{1u}; }), unlike));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].standby = TaskId{0u}; }), "a standby of a standby"));
   const StandbySpec twice[2] = {{TaskId{0u}, TaskId{2u}}, {TaskId{0u}, TaskId{2u}}};
   EXPECT_TRUE(says(refusal_of([&](Sample& s) { s.spec.standbys = twice; }), "a standby of two tasks"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules on standby tasks: same outputs as the primary, and never in one configuration with it.
+// Rules on standby tasks: the outputs of the primary and of nobody else, and never in one configuration with it.
 #include <algorithm>
 #include <set>
 
@@ -39,14 +39,43 @@ std::optional<std::size_t> primary_of(Model& model, std::size_t standby) {
   return std::nullopt;
 }
 
+/// A task that is neither the primary nor one of its standbys and produces the variable; nullptr: there is none.
+const TaskModel* produced_elsewhere(const Model& model, const VariableModel& variable, std::size_t primary) {
+  for (const PortRef ref : variable.producers) {
+    const auto& stands_in_for = model.tasks[ref.task].draft->standby_for;
+    const bool is_of_group =
+        ref.task == primary || (stands_in_for && stands_in_for->text == model.tasks[primary].name());
+    if (!is_of_group) return &model.tasks[ref.task];
+  }
+  return nullptr;
+}
+
+/// A standby produces what its primary does, so that nobody misses anything; and what nobody else does.
+void check_outputs(Model& model, std::size_t standby, std::size_t primary, Place at) {
+  const TaskModel &task = model.tasks[standby], &other = model.tasks[primary];
+  if (task.component == nullptr || other.component == nullptr) return;
+  const std::set<std::string> mine = outputs(task), expected = outputs(other);
+  const std::string who = "task '" + task.name() + "' stands in for '" + other.name() + "' and produces ";
+  if (!std::includes(mine.begin(), mine.end(), expected.begin(), expected.end())) {
+    model.error("standby-outputs", at, who + text(mine) + "; expected " + text(expected), text(mine), text(expected),
+                {}, "link its outputs by alias");
+    return;
+  }
+  for (const std::string& name : mine) {
+    const VariableModel* variable = expected.contains(name) ? nullptr : model.variable(name);
+    if (variable == nullptr) continue;
+    const TaskModel* elsewhere = produced_elsewhere(model, *variable, primary);
+    if (elsewhere == nullptr && variable->given == nullptr) continue;
+    const std::string by = elsewhere != nullptr ? "task '" + elsewhere->name() + "'" : "the operator";
+    model.error("standby-outputs", at, who + "'" + name + "', which comes from " + by + " too", name, text(expected),
+                {}, "give that output another name by alias");
+  }
+}
+
 void check(Model& model, std::size_t standby, std::size_t primary) {
   const TaskModel &task = model.tasks[standby], &other = model.tasks[primary];
   const Place at = task.draft->standby_for->at;
-  if (task.component != nullptr && other.component != nullptr && outputs(task) != outputs(other))
-    model.error("standby-outputs", at,
-                "task '" + task.name() + "' stands in for '" + other.name() + "' and produces " + text(outputs(task)) +
-                    "; expected " + text(outputs(other)),
-                text(outputs(task)), text(outputs(other)), {}, "link its outputs by alias");
+  check_outputs(model, standby, primary, at);
   for (const SetModel& set : model.sets)
     if (set.has(standby) && set.has(primary))
       model.error(
