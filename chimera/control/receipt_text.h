@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "chimera/runtime/switch_receipt.h"
 
@@ -26,6 +27,10 @@ std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& sp
 
 /// Who asks, as receipts say it: "on_miss of pid". Context: setup.
 std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec);
+
+/// Why a switch goes the slow way: the words of the format, and a sentence; empty: it does not. Context: setup.
+std::vector<std::string> slow_words(const SwitchWay& way);
+std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec);
 
 /// Why a switch was refused or aborted: the word of the format, and a sentence. Context: setup.
 const char* reason_word(NoSwitch why) noexcept;

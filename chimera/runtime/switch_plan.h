@@ -55,7 +55,7 @@ enum class NoSwitch : std::uint8_t {
   kInError,      ///< `task`, of the target, is in ERROR: to be cleared first
   kNotCreated,   ///< `task`, of the target, is NOT-CREATED, or `init` or `kill` of it is under way
   kUnderWay,     ///< another switch is
-  kNotSchedulable,  ///< `task` might miss a deadline over it
+  kNotSchedulable,  ///< `task` might miss a deadline if leaving and arriving tasks met: it is slow for that
 
   kOnFailed,      ///< `on` of `task` did
   kStepTooLarge,  ///< of `variable`, which `task` would produce
@@ -69,6 +69,9 @@ enum class NoSwitch : std::uint8_t {
   kMemberDied,    ///< a real-time unit that takes part
   kDamaged,       ///< the order on the shared page is not what was written, or does not fit the application
   kCancelled,     ///< who asked for it took it back
+  kBadConstant,   ///< `task` cannot be initialised with the constants after it
+  kStepFailed,    ///< a method of `task` did, in a slow switch
+  kNotReady,      ///< `task` was not ready within the deadline, in a slow switch
 };
 
 /// What became of a request for a plan.
