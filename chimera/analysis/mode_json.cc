@@ -37,7 +37,7 @@ Json json_of(const Configuration& configuration, const ModeEdge& edge) {
           {"to", configuration.sets()[edge.to].name},
           {"asked_by", std::move(askers)},
           {"legal", true},
-          {"way", edge.is_refused() ? "refused" : "fast"},
+          {"way", edge.is_slow() ? "slow" : "fast"},
           {"cpus", std::move(cpus)}};
 }
 

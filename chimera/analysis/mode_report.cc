@@ -123,14 +123,14 @@ class ModeWriter {
 
 }  // namespace
 
-bool ModeEdge::is_refused() const noexcept {
+bool ModeEdge::is_slow() const noexcept {
   return std::ranges::any_of(cpus, [](const CpuTransition& cpu) { return cpu.is_lost() && cpu.was_promised; });
 }
 
 bool ModeEdge::has_reaction() const noexcept { return std::ranges::any_of(askers, &ModeAsker::is_reaction); }
 
 bool ModeReport::is_accepted() const noexcept {
-  return std::ranges::none_of(edges, [](const ModeEdge& edge) { return edge.is_refused() && edge.has_reaction(); });
+  return std::ranges::none_of(edges, [](const ModeEdge& edge) { return edge.is_slow() && edge.has_reaction(); });
 }
 
 ModeReport mode_report(const Configuration& configuration, const Library& library) {

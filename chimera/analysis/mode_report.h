@@ -31,8 +31,9 @@ struct ModeEdge {
   std::vector<ModeAsker> askers;    ///< in the order of tasks
   std::vector<CpuTransition> cpus;  ///< on which a task arrives or leaves
 
-  /// It would be refused: a promise that holds before would not hold over it.
-  bool is_refused() const noexcept;
+  /// It goes the slow way, under the flag: a promise that holds before would not hold if both were there. Constants,
+  /// which only `init` makes, are not looked at.
+  bool is_slow() const noexcept;
   bool has_reaction() const noexcept;
 };
 
@@ -41,7 +42,7 @@ struct ModeReport {
   std::vector<std::size_t> by_operator;     ///< configurations that are not the start and that nobody else asks for
   std::vector<std::string> warnings;
 
-  /// No switch that a reaction asks for is refused.
+  /// No switch that a reaction asks for is slow.
   bool is_accepted() const noexcept;
 };
 

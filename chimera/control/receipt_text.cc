@@ -112,14 +112,24 @@ const ValueStep& seen(const VariablePart& part) {
   return part.step_of_cycle.is_known ? part.step_of_cycle : part.step_of_on;
 }
 
+std::string names(std::span<const TaskId> tasks, const ApplicationSpec& spec) {
+  std::string text;
+  for (const TaskId task : tasks) text += (text.empty() ? "" : ", ") + std::string(spec.tasks[task.index].name);
+  return text;
+}
+
 std::string done_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   char took[40];
-  std::snprintf(took, sizeof took, " after %.3f ms: ", to_seconds(receipt.at - receipt.asked) * 1e3);
+  std::snprintf(took, sizeof took, " after %.3f ms", to_seconds(receipt.at - receipt.asked) * 1e3);
+  const bool is_slow = receipt.way.slow != 0;
+  const std::string under = is_slow ? ", " + time_text(receipt.flag) + " under the flag" : "";
   std::uint64_t lost = 0;
   for (const TaskPart& part : receipt.tasks) lost += part.lost;
-  std::string text = took + counted(count(receipt, TaskMove::kArrives), "task arrives", "tasks arrive") + ", " +
+  std::string text = took + under + ": " +
+                     counted(count(receipt, TaskMove::kArrives), "task arrives", "tasks arrive") + ", " +
                      counted(count(receipt, TaskMove::kLeaves), "leaves", "leave") + ", " +
                      counted(lost, "cycle lost", "cycles lost");
+  if (!receipt.reinitialised.empty()) text += "; " + names(receipt.reinitialised, spec) + " re-initialised";
   for (const VariablePart& part : receipt.variables)
     if (seen(part).is_known)
       text += "; " + std::string(spec.variables[part.handover.variable.index].name) + " moves by " +
@@ -193,20 +203,64 @@ std::string json_list(const Parts& parts, const ApplicationSpec& spec) {
 
 /// Who would miss what, and where to see more.
 std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
-  if (!receipt.task.is_valid()) return reason_word(receipt.why);
-  const TaskSpec& task = spec.tasks[receipt.task.index];
+  const TaskId late = receipt.way.deadline.task;
+  if (!late.is_valid()) return reason_word(NoSwitch::kNotSchedulable);
+  const TaskSpec& task = spec.tasks[late.index];
   const std::string from = receipt.before == kNoSet ? "what is ON" : quoted(spec.sets[receipt.before].name);
+  const Nanoseconds takes = receipt.way.deadline.takes;
   return "the transition from " + from + " to " + set_text(receipt.after, spec) +
          " is not schedulable on CPU " + std::to_string(spec.rtpus[task.rtpu.index].cpu) + ": a cycle of task " +
          quoted(task.name) + " may take " +
-         (receipt.takes == kNever ? "longer than its deadline of " + time_text(task.deadline)
-                                  : time_text(receipt.takes) + ", its deadline is " + time_text(task.deadline));
+         (takes == kNever ? "longer than its deadline of " + time_text(task.deadline)
+                          : time_text(takes) + ", its deadline is " + time_text(task.deadline));
+}
+
+/// Behind a line of the text, of a slow switch.
+std::string rolled_back(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  if (receipt.way.slow == 0 || receipt.end != SwitchEnd::kAborted || receipt.flag == Nanoseconds{}) return "";
+  std::string text = "; rolled back, " + time_text(receipt.flag) + " under the flag";
+  if (receipt.not_back.is_valid())
+    text += "; task " + quoted(spec.tasks[receipt.not_back.index].name) + " did not come back";
+  return text;
+}
+
+std::string json_way(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const bool is_slow = receipt.way.slow != 0;
+  std::string reasons, list;
+  for (const std::string& word : slow_words(receipt.way)) reasons += (reasons.empty() ? "\"" : ", \"") + word + "\"";
+  for (const TaskId task : receipt.reinitialised)
+    list += (list.empty() ? "" : ", ") + json_string(std::string(spec.tasks[task.index].name));
+  const bool is_back = !receipt.not_back.is_valid();
+  return std::string("\"way\": \"") + (is_slow ? "slow" : "fast") + "\", \"slow_because\": [" + reasons +
+         "], \"slow_why\": " + json_name(is_slow, slow_text(receipt, spec)) + ", \"flag_ns\": " +
+         std::to_string(receipt.flag.count) + ", \"reinitialised\": [" + list + "], \"not_back\": " +
+         json_name(!is_back, is_back ? "" : spec.tasks[receipt.not_back.index].name);
 }
 
 }  // namespace
 
 std::string set_text(std::uint32_t set, const ApplicationSpec& spec) {
   return set == kNoSet ? "other tasks" : quoted(spec.sets[set].name);
+}
+
+std::vector<std::string> slow_words(const SwitchWay& way) {
+  std::vector<std::string> words;
+  if ((way.slow & kSlowForConstants) != 0) words.emplace_back("constants");
+  if ((way.slow & kSlowForGap) != 0) words.emplace_back("no-gap");
+  if ((way.slow & kSlowForDeadlines) != 0) words.emplace_back("not-schedulable");
+  return words;
+}
+
+std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const SwitchWay& way = receipt.way;
+  std::string text;
+  const auto add = [&text](const std::string& why) { text += (text.empty() ? "" : "; ") + why; };
+  if ((way.slow & kSlowForConstants) != 0 && way.constant.task.is_valid())
+    add("constant " + quoted(spec.constants[way.constant.constant.index].name) + " of task " +
+        quoted(spec.tasks[way.constant.task.index].name) + ", which stays, changes");
+  if ((way.slow & kSlowForGap) != 0) add("on of an arriving task fits no gap");
+  if ((way.slow & kSlowForDeadlines) != 0) add(not_schedulable(receipt, spec));
+  return text;
 }
 
 std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec) {
@@ -242,6 +296,9 @@ const char* reason_word(NoSwitch why) noexcept {
     case NoSwitch::kMemberDied: return "member-died";
     case NoSwitch::kDamaged: return "damaged";
     case NoSwitch::kCancelled: return "cancelled";
+    case NoSwitch::kBadConstant: return "bad-constant";
+    case NoSwitch::kStepFailed: return "step-failed";
+    case NoSwitch::kNotReady: return "not-ready";
   }
   return "?";
 }
@@ -254,7 +311,6 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
     case NoSwitch::kNotCreated: return "task " + task + " is not there: spawn it first";
     case NoSwitch::kUnderWay:
       return receipt.said.view().empty() ? "another switch is under way" : std::string(receipt.said.view());
-    case NoSwitch::kNotSchedulable: return not_schedulable(receipt, spec);
     case NoSwitch::kOnFailed: return "on of task " + task + ": " + std::string(receipt.said.view());
     case NoSwitch::kStepTooLarge: {
       std::string text = "on of task " + task + " would move " + variable + " too far";
@@ -278,6 +334,12 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
       const std::string by(receipt.said.view());
       return by.empty() ? "cancelled" : "cancelled by " + by;
     }
+    case NoSwitch::kBadConstant:
+      return "task " + task + " cannot be initialised with the constants of " + quoted(spec.sets[receipt.after].name) +
+             ": " + std::string(receipt.said.view());
+    case NoSwitch::kStepFailed: return "a method of task " + task + " failed: " + std::string(receipt.said.view());
+    case NoSwitch::kNotReady:
+      return task.empty() ? "a real-time unit was not ready for 10 s" : "task " + task + " was not ready for 10 s";
     default: return reason_word(receipt.why);
   }
 }
@@ -289,9 +351,11 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
   const SwitchRequest request{receipt.after, receipt.cause, receipt.by};
   const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(request, spec) + " ";
+  const bool is_slow = receipt.way.slow != 0 && receipt.end != SwitchEnd::kRefused;
   std::string text = "switch " + std::to_string(receipt.number) + when + " " + by + from + "to " + to;
+  if (is_slow) text += " slowly, for " + slow_text(receipt, spec) + ",";
   if (receipt.end == SwitchEnd::kDone) return text + done_text(receipt, spec) + bumps(receipt, spec);
-  return text + " " + word(receipt.end) + ": " + reason_text(receipt, spec) + "\n";
+  return text + " " + word(receipt.end) + ": " + reason_text(receipt, spec) + rolled_back(receipt, spec) + "\n";
 }
 
 std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin,
@@ -303,8 +367,9 @@ std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& sp
   return "{\"number\": " + std::to_string(receipt.number) + ", \"origin_ns\": " +
          (has_wall ? std::to_string(origin.count) : "null") + ", \"from\": " +
          json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
-         json_name(receipt.after != kNoSet, receipt.after != kNoSet ? spec.sets[receipt.after].name : "") +
-         ", \"way\": \"fast\", \"asked_by\": " + json_asked_by(receipt, spec, frame.asked_by) + ", \"end\": \"" +
+         json_name(receipt.after != kNoSet, receipt.after != kNoSet ? spec.sets[receipt.after].name : "") + ", " +
+         json_way(receipt, spec) + ", \"asked_by\": " + json_asked_by(receipt, spec, frame.asked_by) +
+         ", \"end\": \"" +
          word(receipt.end) + "\", \"reason\": " +
          (is_done ? "null" : std::string("\"") + reason_word(receipt.why) + "\"") + ", \"why\": " +
          (is_done ? "null" : json_string(reason_text(receipt, spec))) + ", \"tries\": " + std::to_string(tries) +

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "chimera/runtime/switch_receipt.h"
 
@@ -29,6 +30,10 @@ std::string set_text(std::uint32_t set, const ApplicationSpec& spec);
 
 /// Who asks, as receipts say it: "on_miss of pid". Context: setup.
 std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec);
+
+/// Why a switch goes the slow way: the words of the format, and a sentence; empty: it does not. Context: setup.
+std::vector<std::string> slow_words(const SwitchWay& way);
+std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec);
 
 /// Why a switch was refused or aborted: the word of the format, and a sentence. Context: setup.
 const char* reason_word(NoSwitch why) noexcept;

@@ -83,16 +83,59 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
   told.receipt.end = SwitchEnd::kRefused;
   told.receipt.why = NoSwitch::kInError;
   EXPECT_EQ(told.text(), begin + "refused: task 'torque' is in ERROR: clear it first\n");
-  told.receipt.why = NoSwitch::kNotSchedulable;
-  const std::string refused = begin + "refused: the transition from 'pid' to 'torque' is not schedulable on CPU 1: "
-                                      "a cycle of task 'torque' may ";
-  EXPECT_EQ(told.text(), refused + "take longer than its deadline of 1 ms\n");
-  told.receipt.takes = microseconds(1200);
-  EXPECT_EQ(told.text(), refused + "take 1.2 ms, its deadline is 1 ms\n");
+  told.receipt.end = SwitchEnd::kDone;
+  told.receipt.at = seconds(3) + milliseconds(12);
+  told.receipt.flag = milliseconds(11);
+  told.receipt.way = {kSlowForDeadlines, {}, {NoSwitch::kNotSchedulable, kTorque, kNever}};
+  const std::string slow = begin + "slowly, for the transition from 'pid' to 'torque' is not schedulable on CPU 1: "
+                                   "a cycle of task 'torque' may ";
+  const std::string after = ", after 12.000 ms, 11 ms under the flag: 1 task arrives, 1 leaves, 1 cycle lost\n";
+  told.moved = {told.moved.handover, {}, {}};
+  EXPECT_EQ(told.text(), slow + "take longer than its deadline of 1 ms" + after);
+  told.receipt.way.deadline.takes = microseconds(1200);
+  EXPECT_EQ(told.text(), slow + "take 1.2 ms, its deadline is 1 ms" + after);
+  told.receipt.way = {};
+  told.receipt.end = SwitchEnd::kRefused;
   told.receipt.before = kNoSet;
   told.receipt.why = NoSwitch::kUnderWay;
   told.receipt.said = {};
   EXPECT_EQ(told.text(), "switch 3 at 2.000 s to 'torque' refused: another switch is under way\n");
+}
+
+TEST(ReceiptText, OfASlowOneSaysWhyHowLongAndWhatWasReinitialised) {
+  Told told;
+  ConstantSpec mass;
+  mass.name = "mass";
+  told.spec.constants = {&mass, 1};
+  told.be_done();
+  told.receipt.way = {kSlowForConstants, {kPid, ConstantId(0u)}, {}};
+  told.receipt.flag = microseconds(1400);
+  TaskId again[] = {kPid, kTorque};
+  told.receipt.reinitialised = again;
+  const std::string begin = "switch 3 at 2.000 s from 'pid' to 'torque' slowly, for constant 'mass' of task 'pid', "
+                            "which stays, changes, ";
+  EXPECT_EQ(told.text(), begin + "after 1.500 ms, 1.4 ms under the flag: 1 task arrives, 1 leaves, 1 cycle lost; "
+                                 "pid, torque re-initialised\n");
+  const std::string json = told.json();
+  EXPECT_NE(json.find(R"("way": "slow", "slow_because": ["constants"], "slow_why": "constant 'mass' of task 'pid', )"
+                      R"(which stays, changes", "flag_ns": 1400000, "reinitialised": ["pid", "torque"], )"
+                      R"("not_back": null)"),
+            std::string::npos)
+      << json;
+  told.receipt.end = SwitchEnd::kAborted;
+  told.receipt.why = NoSwitch::kStepFailed;
+  told.receipt.task = kPid;
+  told.receipt.said.assign("no");
+  EXPECT_EQ(told.text(), begin + "aborted: a method of task 'pid' failed: no; rolled back, 1.4 ms under the flag\n");
+  told.receipt.not_back = kPid;
+  EXPECT_EQ(told.text(), begin + "aborted: a method of task 'pid' failed: no; rolled back, 1.4 ms under the flag; "
+                                 "task 'pid' did not come back\n");
+  told.receipt.flag = {};
+  told.receipt.not_back = {};
+  told.receipt.why = NoSwitch::kBadConstant;
+  told.receipt.said.assign("extent n = 5 of port q is outside 1 to 4");
+  EXPECT_EQ(told.text(), begin + "aborted: task 'pid' cannot be initialised with the constants of 'torque': "
+                                 "extent n = 5 of port q is outside 1 to 4\n");
 }
 
 TEST(ReceiptText, OfOneThatWasNotSafeSaysTheValueAndWhatIsAsked) {
@@ -156,6 +199,7 @@ TEST(ReceiptText, AsJsonHasEveryKey) {
   told.moved.step_of_on = {0.25, 5, true, false};
   EXPECT_EQ(told.json(),
             "{\"number\": 3, \"origin_ns\": null, \"from\": \"pid\", \"to\": \"torque\", \"way\": \"fast\", "
+            "\"slow_because\": [], \"slow_why\": null, \"flag_ns\": 0, \"reinitialised\": [], \"not_back\": null, "
             "\"asked_by\": {\"script\": \"--at\"}, \"end\": \"done\", \"reason\": null, \"why\": null, \"tries\": 1, "
             "\"wall_ns\": null, \"asked_ns\": 2000000000, \"armed_ns\": 2001500000, "
             "\"at_ns\": 2001500000, \"ended_ns\": 2002000000, "

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "chimera/control/receipt_text.h"
+#include "chimera/runtime/idle_gap.h"
 
 namespace chimera::manager {
 namespace {
@@ -38,10 +39,48 @@ std::string time_of_day(Nanoseconds at) {
   return text;
 }
 
+/// What producers made, as their units show it.
+class ShownConstants final : public MadeConstants {
+ public:
+  explicit ShownConstants(const ManagerState& world) : world_(world) {}
+  bool differ(ConstantId constant, std::uint32_t a, std::uint32_t b) const noexcept override {
+    const std::vector<std::byte> one = value(constant, a), other = value(constant, b);
+    return one.empty() || one != other;
+  }
+
+ private:
+  std::vector<std::byte> value(ConstantId constant, std::uint32_t producer) const {
+    const TaskId task = world_.spec().constants[constant.index].producers[producer].task;
+    const PeerLayout& layout = world_.peers.layout(world_.spec().tasks[task.index].rtpu);
+    const GroupId group = layout.constants(task);
+    if (!world_.peers.of(task).is_there()) return {};
+    std::vector<std::byte> payload(layout.place(group).payload_bytes);
+    chimera_slot slot;
+    const GroupReader reader = world_.peers.of(task).group(group);
+    if (!reader.is_bound() || !reader.try_read(slot, payload.data()) || slot.sequence == 0) return {};
+    std::size_t i = 0;
+    for (const PortSpec& port : world_.spec().tasks[task.index].ports) {
+      if (port.kind != CHIMERA_OUT_CONST) continue;
+      const std::byte* const at = payload.data() + layout.variables(group)[i++].offset;
+      if (port.constant == constant) return {at, at + port.max_bytes()};
+    }
+    return {};
+  }
+
+  const ManagerState& world_;
+};
+
 /// It may have been left by a manager that wrote where it should not.
 bool is_cause(const BegunSwitch& begun, const ApplicationSpec& spec) {
   const bool is_of_task = begun.cause > SwitchCause::kScript && begun.cause <= SwitchCause::kFault;
   return is_of_task ? begun.by.index < spec.tasks.size() : begun.cause == SwitchCause::kScript && !begun.by.is_valid();
+}
+
+bool is_way(const SwitchWay& way, const ApplicationSpec& spec) {
+  const auto is_task = [&](TaskId task) { return !task.is_valid() || task.index < spec.tasks.size(); };
+  const ConstantUsers::Found& found = way.constant;
+  return way.slow <= kSlowReasons && is_task(found.task) && is_task(way.deadline.task) &&
+         (!found.task.is_valid() || found.constant.index < spec.constants.size());
 }
 
 std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
@@ -58,9 +97,14 @@ TaskStatus last_status(const ManagerState& world, TaskId task) {
   const RtpuId rtpu = world.spec().tasks[task.index].rtpu;
   const auto order = agreement.order(plan, world.spec().sets.size(), world.spec().tasks.size());
   const bool was_member = order && ((order->members >> rtpu.index) & 1u) != 0;
-  if (plan.phase != SwitchPhase::kCommitted || !was_member || !world.peers[rtpu].is_there()) return status;
+  if (!was_member || !world.peers[rtpu].is_there()) return status;
   const SwitchProgress& progress = world.peers[rtpu].block().head().switching;
   if (progress.adopted.load(std::memory_order_acquire) == plan.number) return status;  // SwitchProgress
+  if (plan.phase != SwitchPhase::kCommitted) {  // of a slow one it may have done a part
+    if (order->slow != 0 && status.state <= State::kOn)
+      status.state = order->on.has(task) ? State::kOn : std::min(status.state, State::kOff);
+    return status;
+  }
   const bool is_after = order->target.has(task);
   if (is_after && status.state == State::kOff) status.state = State::kOn;
   if (!is_after && status.state == State::kOn) status.state = State::kOff;
@@ -73,7 +117,8 @@ SwitchCoordinator::SwitchCoordinator(ManagerState& world, ReceiptArchive& archiv
       journal_(world.own.block().journal()),
       standing_(world.spec().tasks.size()) {
   planner_.prepare(world.spec(), memory_);
-  schedule_.prepare(world.spec(), memory_);
+  ways_.prepare(world.spec(), memory_);
+  slow_.prepare(world.spec(), memory_);
   take_over();
 }
 
@@ -86,7 +131,8 @@ void SwitchCoordinator::take_over() {
   const bool is_damaged = begun->order.after != set_of(world_.spec(), begun->order.target) ||
                           (begun->before >= n_sets && begun->before != kNoSet) ||
                           begun->asked_by.role > control::Role::kConfigure ||
-                          begun->cancelled_by.role > control::Role::kConfigure || !is_cause(*begun, world_.spec());
+                          begun->cancelled_by.role > control::Role::kConfigure || !is_cause(*begun, world_.spec()) ||
+                          !is_way(begun->way, world_.spec());
   const bool is_announced = plan.number == begun->order.number;
   if (is_damaged || (!is_announced && begun->tries <= 1)) return journal_.forget();
   if (!is_announced) {
@@ -134,7 +180,16 @@ PlanAnswer SwitchCoordinator::judge(const TaskBits& target) {
     standing_[t] = {is_dead ? State::kError : state, world_.peers.status(task).in_service};
   }
   const PlanAnswer answer = planner_.plan(target, standing_, plan_);
-  return answer ? schedule_.judge(standing_, target) : answer;
+  way_ = answer ? ways_.judge(plan_, standing_, constants_in_force(), ShownConstants(world_)) : SwitchWay();
+  return answer;
+}
+
+/// Those of the configuration that was switched to last; at first of the start.
+std::uint32_t SwitchCoordinator::constants_in_force() const {
+  const PlanWord plan = agreement().plan();
+  const auto order = agreement().order(plan, world_.spec().sets.size(), world_.spec().tasks.size());
+  if (!order) return set_of_start(world_.spec());
+  return plan.phase == SwitchPhase::kCommitted ? order->constants_after() : order->constants;
 }
 
 Nanoseconds SwitchCoordinator::lead() const noexcept {
@@ -148,13 +203,15 @@ Nanoseconds SwitchCoordinator::lead() const noexcept {
   return lead_of(plan_, world_.spec().tasks, longest);
 }
 
-SwitchOrder SwitchCoordinator::make_order(const TaskBits& target, Nanoseconds until) const {
+SwitchOrder SwitchCoordinator::make_order(const TaskBits& target, std::uint8_t slow, Nanoseconds until) const {
   SwitchOrder order;
   order.number = next_plan(agreement().plan().number);
   for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r)
     if (world_.rtpus[r].is_alive) order.members = static_cast<std::uint16_t>(order.members | 1u << r);
   order.after = plan_.after;
   order.target = target;
+  order.slow = slow;
+  order.constants = constants_in_force();
   order.until = until;
   order.lead = lead();
   for (std::size_t t = 0; t < standing_.size(); ++t)
@@ -180,7 +237,7 @@ void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
   receipt.after = set_of(world_.spec(), target);
   receipt.why = answer.why;
   receipt.task = answer.task;
-  receipt.takes = answer.takes;
+  receipt.way = way_;
   if (present_) {
     receipt.said.assign(under_way() + ", is under way: " + progress());
   } else if (!is_free()) {
@@ -195,18 +252,42 @@ void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
   }
   const bool is_in_force = receipt.why == NoSwitch::kNothingToDo;
   const bool may_begin = receipt.why == NoSwitch::kNone;
+  if (!may_begin) receipt.way.slow = 0;
   receipt.end = may_begin ? SwitchEnd::kDone : is_in_force ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
   const std::string task = receipt.task.is_valid() ? world_.name(receipt.task) : "";
   if (receipt.why == NoSwitch::kInError) outcome.remedy = "`chimera clear " + task + "`";
   if (receipt.why == NoSwitch::kNotCreated) outcome.remedy = "`chimera spawn " + task + "`";
-  if (receipt.why == NoSwitch::kNotSchedulable) outcome.remedy = "`chimera check FILE --modes` judges all transitions";
 }
 
 ForeseenSwitch SwitchCoordinator::foresee(const TaskBits& target) {
   SwitchOutcome outcome;
   assess(target, outcome);
   const bool has_plan = outcome.receipt.end == SwitchEnd::kDone;
-  return {outcome.receipt, has_plan ? plan_ : SwitchPlan{}, outcome.remedy};
+  return {outcome.receipt, has_plan ? plan_ : SwitchPlan{}, outcome.remedy, has_plan ? expected() : Nanoseconds{}};
+}
+
+/// Of methods that were never called: as IdleGap takes them.
+Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
+  const Nanoseconds budget = world_.spec().tasks[task.index].budget;
+  const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
+  const PeerSegment& there = world_.peers.of(task);
+  if (!there.is_there()) return guess;
+  const Spread measured = there.block().profile(task).execution[static_cast<int>(method)];
+  return measured.count == 0 ? guess : measured.max;
+}
+
+/// To the change, when nothing has to be waited for but the flag. Requires: plan_ and way_ were judged.
+Nanoseconds SwitchCoordinator::expected() {
+  Nanoseconds sum;
+  if (way_.slow == 0) {
+    for (const TaskId task : plan_.arriving) sum = sum + method_time(task, Method::kOn);
+    return sum + lead();
+  }
+  const Method methods[] = {Method::kCycle, Method::kOff, Method::kReinit, Method::kOn};  // by SlowAct
+  for (const SlowStep& step : slow_.plan(plan_, constants_in_force()))
+    if (step.act != SlowAct::kCheck) sum = sum + method_time(step.task, methods[static_cast<int>(step.act)]);
+  const TaskBits on = make_order(target_of(plan_), way_.slow, {}).on;
+  return (way_.slow & kSlowForConstants) != 0 ? sum + flag_lead(world_.spec(), on) : sum;
 }
 
 void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target, Asker asked_by, Nanoseconds wait,
@@ -231,7 +312,8 @@ void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target
     one.push_back(std::move(switched));
     return file(std::move(outcome), begun, now, std::move(one));
   }
-  begun.order = make_order(target, now + wait);
+  begun.way = way_;
+  begun.order = make_order(target, way_.slow, now + wait);
   journal_.begin(begun);
   present_ = Present{begun, {}};
   present_->switched.push_back(std::move(switched));
@@ -262,11 +344,15 @@ Nanoseconds SwitchCoordinator::next_due() const noexcept {
 /// Of one that was only late, and that nobody has cancelled: it has more time then.
 bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds now) {
   BegunSwitch& begun = present_->begun;
-  const bool was_late = receipt.why == NoSwitch::kLate && now < begun.order.until && !world_.is_ending();
+  const bool had_no_gap = receipt.why == NoSwitch::kNoGap && begun.order.slow == 0;  // it goes the slow way
+  const bool was_late = receipt.why == NoSwitch::kLate && now < begun.order.until;
   const bool is_cancelled = begun.cancelled_by.role != control::Role::kNone;
-  if (!was_late || is_cancelled || begun.tries >= kMostTries || !judge(begun.order.target)) return false;
+  if ((!was_late && !had_no_gap) || is_cancelled || world_.is_ending()) return false;
+  if (begun.tries >= kMostTries || !judge(begun.order.target)) return false;
   ++begun.tries;
-  begun.order = make_order(begun.order.target, begun.order.until);
+  if (had_no_gap) begun.way.slow = kSlowForGap;
+  const Nanoseconds until = had_no_gap ? now + (begun.order.until - begun.asked) : begun.order.until;
+  begun.order = make_order(begun.order.target, begun.way.slow, until);
   for (std::uint32_t i = 1; i < begun.tries; ++i) begun.order.lead = begun.order.lead * kMoreTime;
   journal_.change(begun);
   announce(begun.order);
@@ -296,6 +382,13 @@ void SwitchCoordinator::add_part(const SwitchPart& part, std::uint32_t rtpu, Nan
   SwitchReceipt& receipt = outcome.receipt;
   const auto is_possible = [&](Nanoseconds at) { return at >= receipt.asked && at <= now; };
   if (is_possible(part.armed)) receipt.armed = later(receipt.armed, part.armed);
+  if (part.flag > Nanoseconds{} && part.flag <= now - receipt.asked) receipt.flag = std::max(receipt.flag, part.flag);
+  const auto is_its = [&](TaskId task) {
+    return task.index < spec.tasks.size() && spec.tasks[task.index].rtpu.index == rtpu;
+  };
+  if (is_its(part.not_back)) receipt.not_back = part.not_back;
+  for (std::uint32_t i = 0; i < std::min<std::size_t>(part.n_reinitialised, part.reinitialised.size()); ++i)
+    if (is_its(part.reinitialised[i])) outcome.reinitialised.push_back(part.reinitialised[i]);
   if (is_possible(part.ended)) receipt.ended = later(receipt.ended, part.ended);
   const bool says_more = receipt.why == NoSwitch::kNone || receipt.why == NoSwitch::kLate;
   if (part.why != NoSwitch::kNone && says_more && receipt.end == SwitchEnd::kAborted) {
@@ -322,6 +415,7 @@ std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& ove
   receipt.asked = over.asked;
   receipt.cause = over.cause;
   receipt.by = over.by;
+  receipt.way = over.way;
   receipt.end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
   if (is_committed) receipt.at = agreement().at(word);
   for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r) {
@@ -337,6 +431,10 @@ std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& ove
     receipt.why = world_.is_ending() ? NoSwitch::kRunEnded : NoSwitch::kMemberDied;
   }
   std::ranges::stable_sort(outcome->tasks, {}, &TaskPart::move);
+  const std::span<const TaskId> order = world_.spec().init_order;
+  const auto place = [order](TaskId task) { return std::ranges::find(order, task) - order.begin(); };
+  std::ranges::sort(outcome->reinitialised, {}, place);
+  receipt.reinitialised = outcome->reinitialised;
   receipt.tasks = outcome->tasks;
   receipt.variables = outcome->variables;
   return outcome;

@@ -18,8 +18,9 @@
 #include "chimera/manager/switch_journal.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/switch_agreement.h"
+#include "chimera/runtime/slow_plan.h"
 #include "chimera/runtime/switch_receipt.h"
-#include "chimera/runtime/switch_schedule.h"
+#include "chimera/runtime/switch_way.h"
 
 namespace chimera::manager {
 
@@ -28,6 +29,7 @@ struct SwitchOutcome {
   SwitchReceipt receipt;
   std::vector<TaskPart> tasks;
   std::vector<VariablePart> variables;
+  std::vector<TaskId> reinitialised;
   std::string remedy;  ///< of a refusal; "": none is known
   std::string json;    ///< the receipt as it is filed; "": there is none
 };
@@ -38,6 +40,7 @@ struct ForeseenSwitch {
   SwitchReceipt receipt;  ///< `before`, `after` and, where it would be refused, `why`, `task` and `said`
   SwitchPlan plan;        ///< empty where it would be refused
   std::string remedy;
+  Nanoseconds expected;   ///< about so long from the request to the change; gaps, inputs and `safe_when` come on top
 };
 
 /// The status word of a task of a unit that is dead, as it would be had the unit lived to make a change that was
@@ -91,8 +94,11 @@ class SwitchCoordinator {
   PlanAnswer judge(const TaskBits& target);
   void assess(const TaskBits& target, SwitchOutcome& outcome);
   /// Of the plan that was judged last.
-  SwitchOrder make_order(const TaskBits& target, Nanoseconds until) const;
+  SwitchOrder make_order(const TaskBits& target, std::uint8_t slow, Nanoseconds until) const;
+  std::uint32_t constants_in_force() const;
   Nanoseconds lead() const noexcept;
+  Nanoseconds method_time(TaskId task, Method method) const;
+  Nanoseconds expected();
   void announce(const SwitchOrder& order);
   bool is_tried_again(const SwitchReceipt& receipt, Nanoseconds now);
   std::shared_ptr<SwitchOutcome> collect(const BegunSwitch& over, Nanoseconds now) const;
@@ -106,7 +112,9 @@ class SwitchCoordinator {
   SwitchJournal journal_;
   HeapMemory memory_;  // behind the planner
   SwitchPlanner planner_;
-  SwitchSchedule schedule_;
+  SwitchWays ways_;
+  SwitchWay way_;  // of plan_
+  SlowPlanner slow_;
   SwitchPlan plan_;
   std::vector<TaskStanding> standing_;  // by task, when a plan is judged
   std::optional<Present> present_;

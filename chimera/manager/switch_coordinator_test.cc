@@ -132,7 +132,7 @@ TEST_F(SwitchCoordinatorTest, ATaskInErrorIsNamed) {
   EXPECT_EQ(filed().size(), 2u);
 }
 
-TEST(SwitchCoordinator, RefusesWhatMightMissADeadlineAndOrdersNothing) {
+TEST(SwitchCoordinator, GoesTheSlowWayWhereATaskMightMissADeadline) {
   FakeSubsystem fake(R"(subsystem: fake
 rtpus: {servo: {cpu: 3, policy: edf}}
 tasks:
@@ -145,23 +145,19 @@ start: run
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("sensor"));
   ASSERT_TRUE(fake.until([&] { return fake.driver().world().logic.is_settled(); }));
-  std::optional<SwitchOutcome> got;
-  const auto ask = [&](std::uint32_t set) {
-    got.reset();
-    fake.driver().switches().ask({set, SwitchCause::kScript, {}}, kAnn, seconds(10), now(),
-                                 [&](const SwitchOutcome& of) { got = of; });
-  };
-  ask(1);
-  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
-  EXPECT_EQ(got->receipt.end, SwitchEnd::kRefused);
-  EXPECT_EQ(got->receipt.why, NoSwitch::kNotSchedulable);
-  EXPECT_EQ(control::reason_text(got->receipt, fake.spec()),
+  SwitchCoordinator& switches = fake.driver().switches();
+  const ForeseenSwitch foreseen = switches.foresee(1);
+  EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kDone);
+  EXPECT_EQ(foreseen.receipt.way.slow, kSlowForDeadlines);
+  EXPECT_EQ(control::slow_text(foreseen.receipt, fake.spec()),
             "the transition from 'run' to 'late' is not schedulable on CPU 3: a cycle of task 'sensor' may take 400 "
             "ms, its deadline is 100 ms");
-  EXPECT_FALSE(fake.driver().switches().is_under_way());
-  ask(2);
-  EXPECT_FALSE(got) << "like for like is ordered";
-  EXPECT_TRUE(fake.driver().switches().is_under_way());
+  EXPECT_EQ(foreseen.expected, milliseconds(160)) << "off and on, which were never called: their budgets";
+  EXPECT_EQ(switches.foresee(2).receipt.way.slow, 0) << "like for like";
+  switches.ask({1, SwitchCause::kScript, {}}, kAnn, seconds(10), now(), [](const SwitchOutcome&) {});
+  EXPECT_TRUE(switches.is_under_way());
+  SwitchAgreement agreement(fake.driver().world().page.switching, {});
+  EXPECT_EQ(agreement.order(agreement.plan(), 3, 3)->slow, kSlowForDeadlines);
 }
 
 TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {

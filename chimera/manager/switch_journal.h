@@ -21,6 +21,7 @@
 #include "chimera/runtime/hosted/rtpu_block.h"
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/switch_request.h"
+#include "chimera/runtime/switch_way.h"
 
 namespace chimera::manager {
 
@@ -34,6 +35,7 @@ struct BegunSwitch {
   Asker asked_by;      ///< kNone: a task or reaction did
   Asker cancelled_by;  ///< kNone: it was not
   Nanoseconds asked;
+  SwitchWay way;       ///< that it goes, and why
   SwitchOrder order;   ///< that was announced last, or is about to be
 };
 

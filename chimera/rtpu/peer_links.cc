@@ -124,7 +124,8 @@ bool PeerLinks::publish_status(const Task& task, TaskStatus before, TaskStatus n
 }
 
 bool PeerLinks::publish_flag(const IllegalFlag& flag) noexcept {
-  const std::uint32_t judged = (flag.is_on_set_legal() ? 0 : kFlagIllegalSet) | (flag.is_raised() ? kFlagRaised : 0);
+  const bool is_raised = flag.is_raised() || flag.is_held();
+  const std::uint32_t judged = (flag.is_on_set_legal() ? 0 : kFlagIllegalSet) | (is_raised ? kFlagRaised : 0);
   const std::uint32_t before = block_.head().flag.load(std::memory_order_relaxed);
   // A unit that ends raises no flag any more: what its tasks lack is what was told to go.
   const bool is_told_to_end = keeper_->ending.load(std::memory_order_acquire) != 0;

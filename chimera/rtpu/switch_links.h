@@ -18,6 +18,7 @@ class SwitchLinks final : public SwitchPeers {
   std::uint16_t living() const noexcept override;
   const SwitchProgress* progress(std::uint32_t context) const noexcept override;
   void ring() noexcept override { others_.ring_all(); }
+  void show() noexcept override { others_.publish(tasks_); }
   void tell_adopted(std::uint16_t number) noexcept override;
   void tell_over(const SwitchReceipt& receipt) noexcept override;
   void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept override;

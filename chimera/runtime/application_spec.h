@@ -120,13 +120,20 @@ struct ApplicationSpec {
     };
     return a != b && primary_of(a) == primary_of(b);
   }
-  /// Does `user` read a constant that `producer` makes? Context: any; wait-free.
-  bool uses_constant_of(TaskId user, TaskId producer) const noexcept {
+  /// A port of the task is linked to the constant, or has it for an extent. Context: any; wait-free.
+  bool uses(TaskId user, ConstantId constant) const noexcept {
     for (const PortSpec& port : tasks[user.index].ports) {
-      if (port.kind != CHIMERA_IN_CONST || !port.constant.is_valid()) continue;
-      for (const PortOf& made : constants[port.constant.index].producers)
-        if (made.task == producer) return true;
+      if (port.kind == CHIMERA_IN_CONST && port.constant == constant) return true;
+      for (const ExtentSpec& extent : port.extent)
+        if (extent.constant == constant) return true;
     }
+    return false;
+  }
+  /// Does `user` use a constant that `producer` makes? Context: any; wait-free.
+  bool uses_constant_of(TaskId user, TaskId producer) const noexcept {
+    for (std::size_t c = 0; c < constants.size(); ++c)
+      for (const PortOf& made : constants[c].producers)
+        if (made.task == producer && uses(user, ConstantId(c))) return true;
     return false;
   }
 };

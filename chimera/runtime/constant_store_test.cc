@@ -53,10 +53,25 @@ TEST_F(ConstantStoreTest, HasRoomForTheLargestPort) { EXPECT_EQ(ConstantStore(sp
 TEST_F(ConstantStoreTest, TellsWhetherAValueIsAnother) {
   ConstantStore store(spec, heap);
   const std::int64_t one[3] = {1, 2, 3}, other[3] = {1, 2, 4};
-  EXPECT_TRUE(store.set(kMade, bytes_of(one)));
-  EXPECT_FALSE(store.set(kMade, bytes_of(one)));
-  EXPECT_TRUE(store.set(kMade, bytes_of(other)));
+  EXPECT_TRUE(store.set(kMade, 0, bytes_of(one)));
+  EXPECT_FALSE(store.set(kMade, 0, bytes_of(one)));
+  EXPECT_TRUE(store.set(kMade, 0, bytes_of(other)));
   EXPECT_EQ(store.integer(kMade, -1), 1);
+}
+
+TEST_F(ConstantStoreTest, KeepsAValueForEachProducerOfWhichOneCounts) {
+  const PortOf producers[2] = {{TaskId(3u), 0}, {TaskId(5u), 1}};
+  constants[1].producers = producers;
+  ConstantStore store(spec, heap);
+  const std::int64_t one = 1, other = 2;
+  EXPECT_TRUE(store.set_by(TaskId(3u), kMade, bytes_of(one)));
+  EXPECT_TRUE(store.set_by(TaskId(5u), kMade, bytes_of(other)));
+  EXPECT_EQ(store.integer(kMade, -1), 1);
+  store.choose(kMade, 1);
+  EXPECT_EQ(store.integer(kMade, -1), 2);
+  EXPECT_FALSE(store.set(kMade, 1, bytes_of(other)));
+  EXPECT_EQ(store.of(kMade, 0).value[0], std::byte{1});
+  EXPECT_EQ(store.integer(kGiven, -1), 7);
 }
 
 TEST_F(ConstantStoreTest, ANumberThatDoesNotFitItsBytesIsNone) {  // an image may say so

@@ -16,7 +16,32 @@ void ContextConstants::prepare(const ApplicationSpec& spec, const ContextTable& 
   memories_ = memories;
   others_ = others;
   store_ = ConstantStore(spec, memory);
+  for (const ConstantSpec& constant : spec.constants) has_choice_ = has_choice_ || constant.producers.size() > 1;
+  in_force_ = set_of_start(spec);
   plan_foreign(memory);
+}
+
+// The producers that count for the task do so until the next task is looked at.
+void ContextConstants::choose_for(TaskId task) noexcept {
+  if (!has_choice_) return;
+  for (std::size_t c = 0; c < spec_->constants.size(); ++c)
+    store_.choose(ConstantId(c), producer_for(*spec_, ConstantId(c), task, in_force_));
+}
+
+bool ContextConstants::uses_changed(TaskId task) noexcept {
+  choose_for(task);
+  return memories_[task.index].uses_changed(store_);
+}
+
+bool ContextConstants::would_take(TaskId task, FixedString<160>& why) noexcept {
+  choose_for(task);
+  return memories_[task.index].would_take(store_, why) && lists_fit(task, why);
+}
+
+bool ContextConstants::differ(ConstantId constant, std::uint32_t a, std::uint32_t b) const noexcept {
+  const Constant &one = store_.of(constant, a), &other = store_.of(constant, b);
+  if (!one.is_known || !other.is_known) return true;
+  return std::memcmp(one.value.data(), other.value.data(), one.value.size()) != 0;
 }
 
 void ContextConstants::plan_foreign(SetupMemory& memory) {
@@ -46,18 +71,20 @@ void ContextConstants::read_foreign() noexcept {
     const GroupReader reader = others_->constants(constant.producer);
     chimera_slot slot;
     if (!reader.is_bound() || !reader.try_read(slot, scratch_.data()) || slot.sequence == 0) continue;
-    store_.set(constant.id, {scratch_.data() + constant.offset, constant.bytes});
+    store_.set_by(constant.producer, constant.id, {scratch_.data() + constant.offset, constant.bytes});
   }
 }
 
 bool ContextConstants::give(TaskId task, FixedString<160>& why) noexcept {
   read_foreign();
+  choose_for(task);
   return memories_[task.index].read_constants(store_, why) && lists_fit(task, why);
 }
 
 bool ContextConstants::collect(TaskId task, FixedString<160>& why) noexcept {
   TaskMemory& memory = memories_[task.index];
-  const int changed = memory.write_constants(store_);
+  const int changed = memory.write_constants(store_, task);
+  choose_for(task);
   has_new_ = false;
   if (!memory.fix_extents(store_, why) || !lists_fit(task, why)) return false;
   if (others_ != nullptr) publish(task);
@@ -72,7 +99,12 @@ void ContextConstants::publish(TaskId task) noexcept {
   std::size_t i = 0;
   for (const PortSpec& port : spec_->tasks[task.index].ports) {
     if (port.kind != CHIMERA_OUT_CONST) continue;
-    std::memcpy(writer.staging() + places[i].offset, store_[port.constant].value.data(), places[i].bytes);
+    const auto producers = spec_->constants[port.constant.index].producers;
+    const auto is_it = [task](const PortOf& each) { return each.task == task; };
+    const auto found = std::find_if(producers.begin(), producers.end(), is_it);
+    const auto k = static_cast<std::uint32_t>(found == producers.end() ? 0 : found - producers.begin());
+    const Constant& made = store_.of(port.constant, k);
+    std::memcpy(writer.staging() + places[i].offset, made.value.data(), places[i].bytes);
     ++i;
   }
   writer.publish(Nanoseconds{}, ~std::uint64_t{0});

@@ -8,6 +8,7 @@
 
 #include "chimera/base/fixed.h"
 #include "chimera/base/setup_memory.h"
+#include "chimera/runtime/constant_choice.h"
 #include "chimera/runtime/constant_store.h"
 #include "chimera/runtime/context_table.h"
 #include "chimera/runtime/peer_view.h"
@@ -16,8 +17,9 @@
 
 namespace chimera {
 
-/// Context of everything not marked: edge; no allocation.
-class ContextConstants {
+/// Where several tasks produce a constant, the configuration in force says which of them counts: at first the one that
+/// is the start set. Context of everything not marked: edge; no allocation.
+class ContextConstants final : public MadeConstants {
  public:
   /// `memories[t]` is planned for the tasks of this context and empty for those of others; `others` null: there are
   /// none. Everything given outlives this. Context: setup.
@@ -32,8 +34,18 @@ class ContextConstants {
   bool collect(TaskId task, FixedString<160>& why) noexcept;
   /// The last collect() brought a value that is another than before.
   bool has_new() const noexcept { return has_new_; }
-  /// A constant that the task was initialised with has another value by now.
-  bool uses_changed(TaskId task) const noexcept { return memories_[task.index].uses_changed(store_); }
+  /// A constant that the task was initialised with has another value by now. Requires: it was constructed.
+  bool uses_changed(TaskId task) noexcept;
+  /// Some constant has several producers.
+  bool has_choice() const noexcept { return has_choice_; }
+  /// From now on the constants of that configuration are in force. Nobody is re-initialised by it.
+  void put_in_force(std::uint32_t set) noexcept { in_force_ = set; }
+  /// kNoSet: the application has none that is its start set.
+  std::uint32_t in_force() const noexcept { return in_force_; }
+  /// Could the task be initialised with the constants that are in force? As give(), and changes nothing.
+  bool would_take(TaskId task, FixedString<160>& why) noexcept;
+  /// Of the values as they were read last.
+  bool differ(ConstantId constant, std::uint32_t a, std::uint32_t b) const noexcept override;
   /// Takes over what tasks of other contexts have made since. O(constants of others).
   void read_foreign() noexcept;
 
@@ -48,6 +60,7 @@ class ContextConstants {
   void publish(TaskId task) noexcept;
   std::span<const std::uint32_t> listed(const PortSpec& port) const noexcept;
   bool lists_fit(TaskId task, FixedString<160>& why) const noexcept;
+  void choose_for(TaskId task) noexcept;
 
   const ApplicationSpec* spec_ = nullptr;
   const ContextTable* table_ = nullptr;
@@ -56,6 +69,8 @@ class ContextConstants {
   ConstantStore store_;
   std::span<Foreign> foreign_;
   std::span<std::byte> scratch_;  // a payload of the largest group of foreign constants
+  std::uint32_t in_force_ = kNoSet;
+  bool has_choice_ = false;  // some constant has several producers
   bool has_new_ = false;
 };
 

@@ -18,6 +18,11 @@ void IllegalFlag::raise(bool up) noexcept {
   judge();
 }
 
+void IllegalFlag::hold(bool up) noexcept {
+  is_held_ = up;
+  judge();
+}
+
 void IllegalFlag::raise_for(TaskId task, State in) noexcept {
   raised_by_ = task;
   raises_in_[task.index] = in;

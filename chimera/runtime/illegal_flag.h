@@ -35,6 +35,9 @@ class IllegalFlag {
   /// Raises or lowers the part of the flag that does not follow from the ON set. Lowered, it is also for the tasks
   /// that hold it up.
   void raise(bool up) noexcept;
+  /// A slow switch holds it up, in each context, until it is over.
+  void hold(bool up) noexcept;
+  bool is_held() const noexcept { return is_held_; }
   /// A reaction of the task, of this context, holds it up until that task is no longer in state `in`, ON or ERROR.
   void raise_for(TaskId task, State in) noexcept;
   bool raises(TaskId task) const noexcept { return raises_in_[task.index] != State::kNotCreated; }
@@ -47,7 +50,7 @@ class IllegalFlag {
 
  private:
   void lower(bool for_all) noexcept;
-  void judge() noexcept { is_up_here_ = is_raised() || !is_on_set_legal_; }
+  void judge() noexcept { is_up_here_ = is_raised() || is_held_ || !is_on_set_legal_; }
 
   std::span<const Variable> variables_;
   std::span<const Task> tasks_;
@@ -56,6 +59,7 @@ class IllegalFlag {
   std::span<State> raises_in_;  // by task: its reaction holds the flag up in this state; NOT-CREATED: it does not
   TaskId raised_by_;          // one of them
   bool is_raised_ = false;
+  bool is_held_ = false;
   bool is_on_set_legal_ = true;
   bool is_up_here_ = false;  // what these come to, for every job
 };

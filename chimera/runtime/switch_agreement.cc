@@ -13,8 +13,8 @@ using Words = std::array<std::uint64_t, SwitchPage::kOrderWords>;
 
 Words words_of(const SwitchOrder& order) noexcept {
   Words words{};
-  words[0] = std::uint64_t{order.number} | std::uint64_t{order.members} << 16;
-  words[1] = order.after;
+  words[0] = std::uint64_t{order.number} | std::uint64_t{order.members} << 16 | std::uint64_t{order.slow} << 32;
+  words[1] = std::uint64_t{order.after} | std::uint64_t{order.constants} << 32;
   words[2] = static_cast<std::uint64_t>(order.until.count);
   words[3] = static_cast<std::uint64_t>(order.lead.count);
   std::copy(order.on.words.begin(), order.on.words.end(), words.begin() + 4);
@@ -49,7 +49,9 @@ std::optional<SwitchOrder> SwitchAgreement::order(const PlanWord& plan, std::siz
   SwitchOrder order;
   order.number = static_cast<std::uint16_t>(words[0]);
   order.members = static_cast<std::uint16_t>(words[0] >> 16);
+  order.slow = static_cast<std::uint8_t>(words[0] >> 32);
   order.after = static_cast<std::uint32_t>(words[1]);
+  order.constants = static_cast<std::uint32_t>(words[1] >> 32);
   order.until = {static_cast<std::int64_t>(words[2])};
   order.lead = {static_cast<std::int64_t>(words[3])};
   for (std::size_t i = 0; i < order.on.words.size(); ++i) {
@@ -57,7 +59,8 @@ std::optional<SwitchOrder> SwitchAgreement::order(const PlanWord& plan, std::siz
     order.target.words[i] = words[4 + order.on.words.size() + i];
   }
   const bool is_sane = order.number == plan.number && order.number != 0 && order.members != 0 &&
-                       (words[1] < n_sets || words[1] == UINT32_MAX) && words[0] >> 32 == 0;
+                       (order.after < n_sets || order.after == UINT32_MAX) &&
+                       (order.constants < n_sets || order.constants == UINT32_MAX) && words[0] >> 32 <= kSlowReasons;
   if (!is_sane || !can_be_added(order.until) || !can_be_added(order.lead)) return std::nullopt;
   if (!names_only(order.on, n_tasks) || !names_only(order.target, n_tasks)) return std::nullopt;
   return order;
@@ -80,11 +83,15 @@ void SwitchAgreement::announce(const SwitchOrder& order) noexcept {
 }
 
 bool SwitchAgreement::hand_on(std::uint16_t number, std::uint16_t run) noexcept {
+  return move_turn(number, run, static_cast<std::uint16_t>(run + 1));
+}
+
+bool SwitchAgreement::move_turn(std::uint16_t number, std::uint16_t from, std::uint16_t to) noexcept {
   std::uint64_t word = page_->turn.load(std::memory_order_acquire);
   for (;;) {
     TurnWord turn = TurnWord::of(word);
-    if (turn.number != number || turn.run != run) return false;
-    ++turn.run;
+    if (turn.number != number || turn.run != from) return false;
+    turn.run = to;
     if (page_->turn.compare_exchange_weak(word, turn.word(), std::memory_order_acq_rel, std::memory_order_acquire))
       return true;
   }
@@ -100,6 +107,17 @@ bool SwitchAgreement::propose(std::uint16_t number, Nanoseconds at) noexcept {
   const auto us = static_cast<std::uint64_t>((at - origin_).count / 1000);
   CHIMERA_ASSERT(at >= origin_ && us <= PlanWord::kLatest);
   return move(number, SwitchPhase::kPrepared, {number, SwitchPhase::kProposed, us});
+}
+
+bool SwitchAgreement::have_all_agreed(std::uint16_t number) const noexcept {
+  const TurnWord turn = TurnWord::of(page_->turn.load(std::memory_order_acquire));
+  return turn.number == number && turn.missing == 0;
+}
+
+bool SwitchAgreement::commit(std::uint16_t number, Nanoseconds at) noexcept {
+  const auto us = static_cast<std::uint64_t>((at - origin_).count / 1000);
+  CHIMERA_ASSERT(at >= origin_ && us <= PlanWord::kLatest);
+  return move(number, SwitchPhase::kPrepared, {number, SwitchPhase::kCommitted, us});
 }
 
 bool SwitchAgreement::agree(std::uint16_t number, std::uint32_t context) noexcept {

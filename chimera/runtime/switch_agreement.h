@@ -6,6 +6,8 @@
 //   hand_on    run k -> run k + 1                  by the context of run k, when its tasks are armed
 //   propose    PREPARED -> PROPOSED with T         by the context of the last run
 //   agree      one bit of `missing` less; the last: PROPOSED -> COMMITTED
+//   move_turn  step k -> step k + 1, of a slow switch, or backwards
+//   commit     PREPARED -> COMMITTED               of a slow switch, by the context of the last step
 //   abort      PREPARED or PROPOSED -> ABORTED     by any; never after COMMITTED
 #pragma once
 
@@ -37,6 +39,12 @@ class SwitchAgreement {
   void announce(const SwitchOrder& order) noexcept;
   /// False: the plan is no longer in that run.
   bool hand_on(std::uint16_t number, std::uint16_t run) noexcept;
+  /// Of a slow switch: so many steps are done, or left to be undone (TurnWord). False: it was not at `from`.
+  bool move_turn(std::uint16_t number, std::uint16_t from, std::uint16_t to) noexcept;
+  /// Every context has agreed, to the instant or that it takes part in a slow switch.
+  bool have_all_agreed(std::uint16_t number) const noexcept;
+  /// All steps of a slow switch are done: PREPARED -> COMMITTED, at once. Requires: `at` comes from round_up().
+  bool commit(std::uint16_t number, Nanoseconds at) noexcept;
   /// The earliest instant that can be proposed at or after `instant`: whole microseconds. kNever: it is too far away.
   Nanoseconds round_up(Nanoseconds instant) const noexcept;
   /// Requires: `at` comes from round_up(). False: the plan is no longer PREPARED.

@@ -137,6 +137,33 @@ TEST_F(SwitchAgreementTest, WhoComesLateWithAnOlderPlanChangesNothing) {
   EXPECT_EQ(page.turn, turn);
 }
 
+TEST_F(SwitchAgreementTest, ASlowPlanCountsItsStepsForwardsAndBackAndCommitsAtOnce) {
+  SwitchOrder order = some_order();
+  order.slow = kSlowForConstants;
+  order.constants = 0;
+  agreement.announce(order);
+  EXPECT_EQ(*agreement.order(agreement.plan(), 2, 70), order);
+  EXPECT_TRUE(agreement.move_turn(7, 0, 1));
+  EXPECT_FALSE(agreement.move_turn(7, 0, 1)) << "another one did";
+  EXPECT_TRUE(agreement.move_turn(7, 1, TurnWord::kBack | 1));
+  EXPECT_FALSE(agreement.move_turn(6, TurnWord::kBack | 1, 0)) << "it is of plan 7";
+  EXPECT_EQ(agreement.run(7), TurnWord::kBack | 1);
+  EXPECT_FALSE(agreement.agree(7, 0) || agreement.have_all_agreed(7));
+  EXPECT_FALSE(agreement.agree(7, 1));
+  EXPECT_TRUE(agreement.have_all_agreed(7));
+  EXPECT_EQ(agreement.plan().phase, SwitchPhase::kPrepared);
+  EXPECT_TRUE(agreement.commit(7, kOrigin + microseconds(9)));
+  EXPECT_EQ(agreement.plan().phase, SwitchPhase::kCommitted);
+  EXPECT_EQ(agreement.at(agreement.plan()), kOrigin + microseconds(9));
+  EXPECT_FALSE(agreement.abort(7));
+  order.constants = 2;
+  order.number = 8;
+  agreement.announce(order);
+  EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "there is no set 2";
+  EXPECT_TRUE(agreement.abort(8));
+  EXPECT_FALSE(agreement.commit(8, kOrigin));
+}
+
 TEST_F(SwitchAgreementTest, InstantsAreWholeMicrosecondsOfTheGrid) {
   EXPECT_EQ(agreement.round_up(kOrigin + microseconds(3)), kOrigin + microseconds(3));
   EXPECT_EQ(agreement.round_up(kOrigin + Nanoseconds{3001}), kOrigin + microseconds(4));

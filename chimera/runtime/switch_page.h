@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
@@ -26,6 +27,13 @@ struct TaskBits {
   constexpr void add(TaskId task) noexcept { words[task.index / 64] |= std::uint64_t{1} << task.index % 64; }
   constexpr bool operator==(const TaskBits&) const noexcept = default;
 };
+
+/// Context: any; wait-free.
+constexpr TaskBits bits_of(std::span<const TaskId> tasks) noexcept {
+  TaskBits bits;
+  for (const TaskId id : tasks) bits.add(id);
+  return bits;
+}
 
 /// How far a plan has come. A page of zeros says that plan 0 was aborted.
 enum class SwitchPhase : std::uint8_t { kAborted, kPrepared, kProposed, kCommitted };
@@ -48,7 +56,9 @@ struct PlanWord {
 };
 
 /// SwitchPage::turn: bits 0-15 number of the plan, 16-31 the run that is arming, 32-47 contexts that have not agreed.
+/// Of a slow switch the run is the number of steps that are done, or with kBack that are left to be undone.
 struct TurnWord {
+  static constexpr std::uint16_t kBack = 0x8000;
   std::uint16_t number = 0;
   std::uint16_t run = 0;
   std::uint16_t missing = 0;  ///< bit c: context c
@@ -62,6 +72,14 @@ struct TurnWord {
   }
 };
 
+/// Why a switch is slow: bits. docs/decisions/0061-a-slow-switch.md.
+enum SlowReason : std::uint8_t {
+  kSlowForConstants = 1,  ///< a task that stays ON is initialised with a constant that becomes another one
+  kSlowForGap = 2,        ///< `on` of an arriving task fits no gap
+  kSlowForDeadlines = 4,  ///< a task might miss a deadline if leaving and arriving tasks met
+};
+inline constexpr std::uint8_t kSlowReasons = 7;
+
 /// What is to be switched. From it, and from the application, every context makes one and the same SwitchPlan.
 struct SwitchOrder {
   std::uint16_t number = 0;   ///< never 0; another one than that of the order before
@@ -71,6 +89,10 @@ struct SwitchOrder {
   Nanoseconds lead;           ///< from the proposal to the instant of the change, at least
   TaskBits on;                ///< the tasks that are ON
   TaskBits target;            ///< the tasks that are to be ON
+  std::uint8_t slow = 0;      ///< SlowReason: leaving tasks go OFF first, under the flag; 0: it is fast
+  std::uint32_t constants = UINT32_MAX;  ///< the set whose constants are in force until then; UINT32_MAX: of none
+  /// The set whose constants are in force then: tasks that are no configuration keep those that they have.
+  constexpr std::uint32_t constants_after() const noexcept { return after == UINT32_MAX ? constants : after; }
   constexpr bool operator==(const SwitchOrder&) const noexcept = default;
 };
 

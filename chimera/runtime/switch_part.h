@@ -27,9 +27,13 @@ struct SwitchPart {
   Nanoseconds armed = kNever;       ///< instants as of SwitchReceipt
   Nanoseconds at = kNever;
   Nanoseconds ended = kNever;
+  Nanoseconds flag;                 ///< as SwitchReceipt
+  TaskId not_back;
+  std::uint32_t n_reinitialised = 0;
   std::uint32_t n_tasks = 0;        ///< of this context, in `tasks`
   std::uint32_t n_variables = 0;    ///< handed over to tasks of this context; only kVariablesKept of them are kept
   std::array<TaskPart, kMaxSwitchedTasks> tasks;
+  std::array<TaskId, kMaxSwitchedTasks> reinitialised;
   std::array<VariablePart, kVariablesKept> variables;
 };
 
@@ -45,7 +49,10 @@ void write_part(const SwitchReceipt& receipt, IsMine is_mine, SwitchPart& part) 
   part.armed = receipt.armed;
   part.at = receipt.at;
   part.ended = receipt.ended;
-  part.n_tasks = part.n_variables = 0;
+  part.flag = receipt.flag;
+  part.not_back = receipt.not_back;
+  part.n_tasks = part.n_variables = part.n_reinitialised = 0;
+  for (const TaskId task : receipt.reinitialised) part.reinitialised[part.n_reinitialised++] = task;
   for (const TaskPart& task : receipt.tasks)
     if (is_mine(task.task)) part.tasks[part.n_tasks++] = task;
   for (const VariablePart& variable : receipt.variables) {

@@ -17,6 +17,8 @@ class SwitchPeers {
   virtual const SwitchProgress* progress(std::uint32_t context) const noexcept = 0;
   /// A word of the page changed: the others are to look at it.
   virtual void ring() noexcept = 0;
+  /// What changed is shown to the others.
+  virtual void show() noexcept = 0;
   /// All jobs of this context use the bindings of that plan: what changed is shown to the others, then the number.
   virtual void tell_adopted(std::uint16_t number) noexcept = 0;
   /// Nothing is left to do for the plan: the part of this context in its receipt is shown, then the number.
@@ -36,6 +38,7 @@ class NoSwitchPeers final : public SwitchPeers {
   std::uint16_t living() const noexcept override { return 1; }
   const SwitchProgress* progress(std::uint32_t) const noexcept override { return nullptr; }
   void ring() noexcept override {}
+  void show() noexcept override {}
   void tell_adopted(std::uint16_t) noexcept override {}
   void tell_over(const SwitchReceipt&) noexcept override {}
   void wish(const SwitchRequest&, bool, Nanoseconds) noexcept override {}

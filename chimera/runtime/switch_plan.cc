@@ -17,6 +17,13 @@ TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept {
   return bits;
 }
 
+TaskBits target_of(const SwitchPlan& plan) noexcept {
+  TaskBits bits;
+  for (const auto ids : {plan.arriving, plan.staying})
+    for (const TaskId id : ids) bits.add(id);
+  return bits;
+}
+
 std::uint32_t set_of(const ApplicationSpec& spec, const TaskBits& tasks) noexcept {
   for (std::uint32_t s = 0; s < spec.sets.size(); ++s)
     if (tasks_of(spec, s) == tasks) return s;

@@ -56,7 +56,7 @@ enum class NoSwitch : std::uint8_t {
   kInError,      ///< `task`, of the target, is in ERROR: to be cleared first
   kNotCreated,   ///< `task`, of the target, is NOT-CREATED, or `init` or `kill` of it is under way
   kUnderWay,     ///< another switch is
-  kNotSchedulable,  ///< `task` might miss a deadline over it
+  kNotSchedulable,  ///< `task` might miss a deadline if leaving and arriving tasks met: it is slow for that
 
   kOnFailed,      ///< `on` of `task` did
   kStepTooLarge,  ///< of `variable`, which `task` would produce
@@ -70,6 +70,9 @@ enum class NoSwitch : std::uint8_t {
   kMemberDied,    ///< a real-time unit that takes part
   kDamaged,       ///< the order on the shared page is not what was written, or does not fit the application
   kCancelled,     ///< who asked for it took it back
+  kBadConstant,   ///< `task` cannot be initialised with the constants after it
+  kStepFailed,    ///< a method of `task` did, in a slow switch
+  kNotReady,      ///< `task` was not ready within the deadline, in a slow switch
 };
 
 /// What became of a request for a plan.
@@ -89,6 +92,8 @@ struct TaskStanding {
 
 /// The tasks of the set of that number. Requires: it is one of them. Context: cycle boundary.
 TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
+/// The tasks that are ON after it. Context: cycle boundary.
+TaskBits target_of(const SwitchPlan& plan) noexcept;
 /// Which of the sets is exactly these tasks; kNoSet: none. Context: cycle boundary; O(sets * tasks).
 std::uint32_t set_of(const ApplicationSpec& spec, const TaskBits& tasks) noexcept;
 /// What must hold before that set may be switched to; of kNoSet nothing. Context: cycle boundary.

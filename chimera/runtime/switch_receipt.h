@@ -10,11 +10,19 @@
 #include "chimera/base/fixed.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/base/time.h"
+#include "chimera/runtime/switch_page.h"
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/switch_request.h"
+#include "chimera/runtime/switch_way.h"
 #include "chimera/runtime/value_step.h"
 
 namespace chimera {
+
+/// Adds one behind the list. Requires: room behind it, as SwitchReceipts gives it.
+inline void append(std::span<TaskId>& list, TaskId task) noexcept {
+  list = {list.data(), list.size() + 1};
+  list.back() = task;
+}
 
 /// What a switch does to a task.
 enum class TaskMove : std::uint8_t { kArrives, kLeaves, kStays };
@@ -54,14 +62,17 @@ struct SwitchReceipt {
   TaskId task;                     ///< of `why`
   VariableId variable;             ///< of `why`
   double value = 0;                ///< of `variable`, of kNotSafe; NaN: it had none
-  Nanoseconds takes = kNever;      ///< of kNotSchedulable, as PlanAnswer::takes
   FixedString<160> said;           ///< by `on` of `task`, of its fault
   Nanoseconds asked = kNever;
   Nanoseconds armed = kNever;   ///< `on` of the last arriving task had returned
   Nanoseconds at = kNever;      ///< the instant of the change
+  SwitchWay way;                ///< that it went last
+  Nanoseconds flag;             ///< so long the switch held the illegal-configuration flag up
+  TaskId not_back;              ///< of kAborted: a task that was ON and did not come back
   Nanoseconds ended = kNever;   ///< `off` of the last leaving task had returned and the first cycles were seen
   std::span<TaskPart> tasks;
   std::span<VariablePart> variables;
+  std::span<TaskId> reinitialised;  ///< in this order
 };
 
 /// The receipts of a run. Where more are made than were planned for, the first and the last are kept.
@@ -73,6 +84,7 @@ class SwitchReceipts {
     n_tasks_ = spec.tasks.size();
     n_variables_ = spec.variables.size();
     tasks_ = memory.take<TaskPart>(n * n_tasks_);
+    reinitialised_ = memory.take<TaskId>(n * n_tasks_);
     variables_ = memory.take<VariablePart>(n * n_variables_);
   }
   /// The next receipt, empty but for its lists, which are as long as they may become; without room in the place of the
@@ -84,6 +96,7 @@ class SwitchReceipts {
     const std::size_t at = n_ - 1;
     all_[at] = {};
     all_[at].tasks = tasks_.subspan(at * n_tasks_, n_tasks_);
+    all_[at].reinitialised = reinitialised_.subspan(at * n_tasks_, 0);
     all_[at].variables = variables_.subspan(at * n_variables_, n_variables_);
     return all_[at];
   }
@@ -100,6 +113,7 @@ class SwitchReceipts {
  private:
   std::span<SwitchReceipt> all_;
   std::span<TaskPart> tasks_;
+  std::span<TaskId> reinitialised_;
   std::span<VariablePart> variables_;
   std::size_t n_ = 0, n_tasks_ = 0, n_variables_ = 0;
   std::uint64_t n_left_out_ = 0;

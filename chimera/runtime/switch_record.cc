@@ -26,18 +26,20 @@ SwitchReceipt& SwitchRecord::restart() noexcept {
 }
 
 void SwitchRecord::take_up(const SwitchPlan& plan) noexcept {
+  first_cycles_by_ = kNever;
   std::size_t n = 0;
+  receipt_->reinitialised = receipt_->reinitialised.first(0);
   const auto list = [&](std::span<const TaskId> ids, TaskMove move) {
     for (const TaskId id : ids) {
-      receipt_->tasks[n++] = {id, move, Nanoseconds{-1}, Nanoseconds{-1}, 0};
+      receipt_->tasks.data()[n++] = {id, move, Nanoseconds{-1}, Nanoseconds{-1}, 0};
       before_[id.index] = losses(id);
     }
   };
   list(plan.arriving, TaskMove::kArrives);
   list(plan.leaving, TaskMove::kLeaves);
   list(plan.staying, TaskMove::kStays);
-  receipt_->tasks = receipt_->tasks.first(n);
-  receipt_->variables = receipt_->variables.first(plan.handovers.size());
+  receipt_->tasks = {receipt_->tasks.data(), n};
+  receipt_->variables = {receipt_->variables.data(), plan.handovers.size()};
   for (std::size_t h = 0; h < plan.handovers.size(); ++h) receipt_->variables[h] = {plan.handovers[h], {}, {}};
 }
 
@@ -56,18 +58,45 @@ const VariablePart* SwitchRecord::find_too_large_step() noexcept {
   return nullptr;
 }
 
+void SwitchRecord::leaves(TaskId task) noexcept {
+  part_of(task).lost = losses(task) - before_[task.index];
+  for (const VariablePart& part : receipt_->variables)
+    if (part.handover.from.task == task) steps_.keep_last_of(part.handover);
+}
+
+const VariablePart* SwitchRecord::arrives(TaskId id, Nanoseconds now) noexcept {
+  follow_arrival(id, now);
+  const VariablePart* found = nullptr;
+  for (VariablePart& part : receipt_->variables) {
+    if (part.handover.to.task != id) continue;
+    part.step_of_on = steps_.step_to(part.handover);
+    if (part.step_of_on.is_beyond && found == nullptr) found = &part;
+  }
+  return found;
+}
+
+// Who is re-initialised again on the way back is not listed again.
+void SwitchRecord::reinitialised(TaskId task) noexcept {
+  const std::span<TaskId> list = receipt_->reinitialised;
+  if (std::find(list.begin(), list.end(), task) == list.end()) append(receipt_->reinitialised, task);
+}
+
+// Losses and first cycles of an arriving task count from here.
+void SwitchRecord::follow_arrival(TaskId id, Nanoseconds at) noexcept {
+  const Task& arriving = set_.tasks()[id.index];
+  before_[id.index] = losses(id);
+  cycles_[id.index] = arriving.profile.cycles;
+  if (first_cycles_by_ == kNever) first_cycles_by_ = at;
+  if (!arriving.spec->aperiodic)
+    first_cycles_by_ = std::max(first_cycles_by_, at + arriving.spec->period + arriving.spec->deadline);
+}
+
 void SwitchRecord::changed(const SwitchPlan& plan, Nanoseconds at) noexcept {
   receipt_->at = first_cycles_by_ = at;
   steps_.keep_last(receipt_->variables);
   for (const TaskId id : plan.leaving) part_of(id).lost = losses(id) - before_[id.index];
-  for (const TaskId id : plan.arriving) {
-    if (!set_.is_mine(id)) continue;
-    const Task& arriving = set_.tasks()[id.index];
-    before_[id.index] = losses(id);
-    cycles_[id.index] = arriving.profile.cycles;
-    if (arriving.spec->aperiodic) continue;
-    first_cycles_by_ = std::max(first_cycles_by_, at + arriving.spec->period + arriving.spec->deadline);
-  }
+  for (const TaskId id : plan.arriving)
+    if (set_.is_mine(id)) follow_arrival(id, at);
 }
 
 // A task with a job under way may be publishing: it is looked at when the job has ended.

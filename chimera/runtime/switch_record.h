@@ -34,6 +34,16 @@ class SwitchRecord {
   void took(TaskId task, Method method, Nanoseconds time) noexcept;
   /// Holds what `on` of the arriving tasks wrote against the last values. Null: all within their limits.
   const VariablePart* find_too_large_step() noexcept;
+  // Of a slow switch, in which one task goes after the other.
+
+  /// Values of producers that leave are kept as they are.
+  void keep_last() noexcept { steps_.keep_last(receipt_->variables); }
+  /// The task, of this context, is about to go OFF.
+  void leaves(TaskId task) noexcept;
+  /// The task, of this context, went ON. The variable of it that moved too far; null: none did.
+  const VariablePart* arrives(TaskId task, Nanoseconds now) noexcept;
+  void reinitialised(TaskId task) noexcept;
+
   /// The change, at `at`: first cycles are looked for from here on.
   void changed(const SwitchPlan& plan, Nanoseconds at) noexcept;
   /// Leaving tasks of this context may have published once more, in jobs released before the change.
@@ -47,6 +57,7 @@ class SwitchRecord {
   void end(SwitchEnd end, Nanoseconds now) noexcept;
 
  private:
+  void follow_arrival(TaskId id, Nanoseconds at) noexcept;
   TaskPart& part_of(TaskId id) noexcept;
   std::uint64_t losses(TaskId id) const noexcept;
   bool has_cycled(TaskId id) const noexcept;

@@ -14,24 +14,6 @@ constexpr Nanoseconds kGrace = milliseconds(100);
 // How often what `safe_when` asks is looked at where no job ends meanwhile: nobody rings for a value.
 constexpr Nanoseconds kLookForSafety = milliseconds(1);
 
-// The first variable that the task reads and that never had a value; what an arriving task will write is not asked for.
-VariableId lacks_value(TaskSet& set, Task& task, std::span<const Handover> handovers) noexcept {
-  read_inputs(task);
-  const TaskMemory& memory = set.memory(task.id);
-  for (std::size_t i = 0; i < task.inputs.size(); ++i) {
-    const VariableId variable = memory.input_spec(i).variable;
-    const auto is_its = [&](const Handover& handover) { return handover.variable == variable; };
-    if (std::any_of(handovers.begin(), handovers.end(), is_its)) continue;
-    const chimera_port& port = *task.inputs[i].port;
-    if (((port.slot->valid >> port.bit) & 1u) == 0) return variable;
-  }
-  return {};
-}
-
-bool holds(TaskSet& set, const SafeCondition& asked) noexcept {
-  return !asked.is_there() || is_safe(asked, present_value(set, asked));
-}
-
 void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcept {
   for (const Task& each : set.tasks()) {
     const bool is_elsewhere = set.others() != nullptr && !set.is_mine(each.id);
@@ -56,12 +38,36 @@ bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t numbe
   return true;
 }
 
+// Tasks that have threads take their releases themselves.
+void release_before(const Switching::Parts& parts, Nanoseconds instant) noexcept {
+  if (parts.threads.run_beside_methods()) return;
+  const auto drop = [&parts](const DroppedRelease& dropped) { parts.misses.drop(dropped); };
+  parts.queue.release_due(instant - Nanoseconds{1}, drop);
+}
+
+// Of a context that is alone, behind plan `last`.
+SwitchOrder lone_order(TaskSet& set, std::uint16_t last, const TaskBits& target, std::uint8_t slow,
+                       Nanoseconds until) {
+  SwitchOrder order;
+  for (const Task& each : set.tasks())
+    if (each.state == State::kOn) order.on.add(each.id);
+  order.number = next_plan(last);
+  order.members = 1;
+  order.after = set_of(set.spec(), target);
+  order.target = target;
+  order.slow = slow;
+  order.constants = set.constants().in_force();
+  order.until = until;
+  return order;
+}
+
 }  // namespace
 
 Switching::Switching(const Parts& parts) noexcept
     : parts_(parts),
       gap_(parts.set.tasks(), parts.queue, parts.threads),
       changeover_(parts.set, parts.threads, parts.members, parts.tap),
+      slow_({parts.set, parts.threads, parts.settlement, parts.tap, parts.clock, gap_, record_}),
       record_(parts.set) {}
 
 void Switching::prepare(std::size_t n_switches, SwitchPeers* peers) {
@@ -72,8 +78,9 @@ void Switching::prepare(std::size_t n_switches, SwitchPeers* peers) {
     peers_ = peers;
     me_ = set.context();
   } else {
-    schedule_.prepare(set.spec(), set.setup_memory());
+    ways_.prepare(set.spec(), set.setup_memory());
   }
+  slow_.prepare();
   planner_.prepare(set.spec(), set.setup_memory());
   record_.prepare(std::max<std::size_t>(n_switches, 1));
   changeover_.prepare();
@@ -86,6 +93,8 @@ void Switching::begin(Nanoseconds origin) noexcept {
   const PlanWord plan = agreement().plan();
   seen_ = plan.number;
   if (seen_ == 0 || peers_ == &nobody_) return;
+  const auto last = agreement().order(plan, parts_.set.spec().sets.size(), parts_.set.tasks().size());
+  if (last) parts_.set.constants().put_in_force(plan.phase == SwitchPhase::kCommitted ? last->constants_after() : last->constants);
   record_.restart().number = seen_;
   record_.receipt().tasks = {};
   record_.receipt().variables = {};
@@ -107,7 +116,8 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   note_standing(parts_.set, standing_);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (phase_ == Phase::kNone) answer = planner_.plan(request.set, standing_, plan_);
-  if (answer) answer = schedule_.judge(standing_, tasks_of(parts_.set.spec(), request.set));
+  const ContextConstants& constants = parts_.set.constants();
+  const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants) : SwitchWay();
   if (answer.why != NoSwitch::kNothingToDo) ++n_asked_;
   SwitchReceipt* const added = phase_ == Phase::kNone ? &record_.add() : record_.add_beside();
   if (added == nullptr) return;
@@ -118,24 +128,17 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   receipt.by = request.by;
   receipt.before = planner_.set_in_force(standing_);
   if (answer.why != NoSwitch::kNothingToDo) receipt.number = n_asked_;
+  receipt.way = way;
   if (!answer) {
+    receipt.way.slow = 0;
     receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
     receipt.why = answer.why;
     receipt.task = answer.task;
-    receipt.takes = answer.takes;
     receipt.tasks = {};
     receipt.variables = {};
     return;
   }
-  SwitchOrder order;
-  for (const Task& each : parts_.set.tasks())
-    if (each.state == State::kOn) order.on.add(each.id);
-  order.number = next_plan(agreement().plan().number);
-  order.members = 1;
-  order.after = request.set;
-  order.target = tasks_of(parts_.set.spec(), request.set);
-  order.until = now + kPatience;
-  agreement().announce(order);
+  agreement().announce(lone_order(parts_.set, agreement().plan().number, tasks_of(parts_.set.spec(), request.set), way.slow, now + kPatience));
   due_ = now;
 }
 
@@ -155,6 +158,7 @@ void Switching::step(Nanoseconds edge) noexcept {
     else if (now >= at_) abort(NoSwitch::kLate, {}, {});
   }
   if (phase_ == Phase::kChanging) change(now);
+  if (phase_ == Phase::kSlow) go_slowly(now);
   if (phase_ == Phase::kAfter || phase_ == Phase::kUndoing) settle(parts_.clock.now());
 }
 
@@ -169,7 +173,15 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
     receipt.asked = now;
   }
   const bool is_member = order && ((order->members >> me_) & 1u) != 0;
-  if (plan.is_open() && is_member && (is_alone || make_plan(*order))) {
+  bool is_made = plan.is_open() && is_member;
+  if (is_made && !is_alone) {
+    for (const Task& each : parts_.set.tasks())
+      standing_[each.id.index] = {order->on.has(each.id) ? State::kOn : State::kOff, false};
+    is_made = static_cast<bool>(planner_.plan(order->target, standing_, plan_));
+    record_.receipt().before = is_made ? plan_.before : kNoSet;
+    record_.receipt().after = order->after;
+  }
+  if (is_made) {
     order_ = *order;
     record_.take_up(plan_);
     was_up_ = parts_.set.flag().is_up();
@@ -177,7 +189,8 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
     next_armed_ = n_off_ = 0;
     at_ = kNever;
     is_changed_ = false;
-    phase_ = Phase::kArming;
+    phase_ = order_.slow != 0 ? Phase::kSlow : Phase::kArming;
+    if (phase_ == Phase::kSlow) slow_.begin(agreement(), plan_, order_, *peers_, me_);
     return;
   }
   SwitchReceipt& receipt = record_.receipt();
@@ -189,15 +202,6 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
     peers_->ring();
   }
   peers_->tell_over(receipt);
-}
-
-bool Switching::make_plan(const SwitchOrder& order) noexcept {
-  for (const Task& each : parts_.set.tasks())
-    standing_[each.id.index] = {order.on.has(each.id) ? State::kOn : State::kOff, false};
-  const bool is_made = planner_.plan(order.target, standing_, plan_) && plan_.after == order.after;
-  record_.receipt().before = is_made ? plan_.before : kNoSet;
-  record_.receipt().after = order.after;
-  return is_made;
 }
 
 void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
@@ -217,6 +221,9 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
     if (!gap_.is_for(next, Method::kOn, now)) return wait(now);
     parts_.set.sources().read_ahead(next.id, plan_.handovers);
     if (lacks_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now);
+    const Followed followed = follow_constants(parts_.set, gap_, next, order_, now);
+    if (followed == Followed::kNoGap) return wait(now);
+    if (followed != Followed::kNothing) return reinitialised(next, followed);
     if (!arm(next, now)) return;
     now = parts_.clock.now();
     record_.receipt().armed = now;
@@ -282,9 +289,23 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   return false;
 }
 
+void Switching::reinitialised(Task& next, Followed followed) noexcept {
+  parts_.settlement.record_faults(next);
+  if (followed == Followed::kDone) {
+    record_.reinitialised(next.id);
+  } else {
+    abort(NoSwitch::kStepFailed, next.id, {});
+    record_.receipt().said.assign(next.faults.last.text);
+  }
+  due_ = wake_ = parts_.clock.now();
+}
+
 bool Switching::arm(Task& next, Nanoseconds now) noexcept {
+  ContextConstants& constants = parts_.set.constants();
   const Nanoseconds began = parts_.clock.now();
+  constants.put_in_force(order_.constants_after());
   const SignalReport report = parts_.set.life().arm(next.id, now);
+  constants.put_in_force(order_.constants);
   parts_.tap.record(TapKind::kSignal, now, next.id, static_cast<std::uint64_t>(Signal::kOn), report ? 1 : 0);
   parts_.settlement.record_faults(next);
   record_.took(next.id, Method::kOn, parts_.clock.now() - began);
@@ -297,16 +318,9 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
   return static_cast<bool>(report);
 }
 
-// Tasks that have threads take their releases themselves.
-void Switching::release_before(Nanoseconds instant) noexcept {
-  if (parts_.threads.run_beside_methods()) return;
-  const auto drop = [this](const DroppedRelease& dropped) { parts_.misses.drop(dropped); };
-  parts_.queue.release_due(instant - Nanoseconds{1}, drop);
-}
-
 // What was released before `now` is a job of the time before the change.
 void Switching::propose(Nanoseconds now) noexcept {
-  release_before(now);
+  release_before(parts_, now);
   const Nanoseconds unused = parts_.threads.latest_release() + Nanoseconds{1};
   const Nanoseconds at = agreement().round_up(std::max(now + order_.lead, unused));
   if (at == kNever) return abort(NoSwitch::kLate, {}, {});
@@ -326,9 +340,10 @@ void Switching::agree(Nanoseconds now) noexcept {
 
 void Switching::change(Nanoseconds now) noexcept {
   if (now < at_) return;
-  release_before(at_);
+  release_before(parts_, at_);
   if (!is_changed_) {
     is_changed_ = true;
+    parts_.set.constants().put_in_force(order_.constants_after());
     record_.changed(plan_, at_);
     changeover_.make(plan_, order_.target, at_);
   }
@@ -338,6 +353,19 @@ void Switching::change(Nanoseconds now) noexcept {
     wake_ = parts_.threads.next_look(now);
     return;
   }
+  phase_ = Phase::kAfter;
+  peers_->tell_adopted(order_.number);
+}
+
+void Switching::go_slowly(Nanoseconds now) noexcept {
+  if (!slow_.step(agreement(), now)) {
+    wake_ = std::max(std::min(slow_.wake(), parts_.threads.next_look(now)), now);
+    due_ = gap_.is_there() ? wake_ : now;
+    return;
+  }
+  now = parts_.clock.now();
+  if (slow_.end() == SwitchEnd::kAborted) return finish(SwitchEnd::kAborted, now);
+  record_.receipt().at = agreement().at(agreement().plan());
   phase_ = Phase::kAfter;
   peers_->tell_adopted(order_.number);
 }
@@ -400,7 +428,7 @@ bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
   return true;
 }
 
-void Switching::finish(SwitchEnd end, Nanoseconds now) noexcept {
+void Switching::finish(SwitchEnd end, Nanoseconds now, bool is_run_over) noexcept {
   record_.end(end, now);
   for (const TaskId id : plan_.arriving) {
     const bool reads = end != SwitchEnd::kDone && parts_.set.is_mine(id) && task(id).state != State::kNotCreated;
@@ -409,27 +437,43 @@ void Switching::finish(SwitchEnd end, Nanoseconds now) noexcept {
   phase_ = Phase::kNone;
   due_ = wake_ = kNever;
   peers_->tell_over(record_.receipt());
+  // Of a context that is alone: what found no gap for `on` is done under the flag.
+  SwitchReceipt& receipt = record_.receipt();
+  const bool is_tried_again = end == SwitchEnd::kAborted && peers_ == &nobody_ && receipt.why == NoSwitch::kNoGap;
+  if (!is_tried_again || receipt.way.slow != 0 || is_run_over) return;
+  note_standing(parts_.set, standing_);
+  if (!planner_.plan(order_.target, standing_, plan_)) return;
+  receipt.why = NoSwitch::kNone;
+  receipt.task = {};
+  receipt.way.slow = kSlowForGap;
+  agreement().announce(lone_order(parts_.set, order_.number, order_.target, kSlowForGap, now + kPatience));
+  due_ = now;
 }
 
 bool Switching::give_way(TaskId to) noexcept {
+  if (phase_ == Phase::kSlow) slow_.abort(agreement(), NoSwitch::kDisturbed, to, {});
   if (phase_ == Phase::kArming || phase_ == Phase::kAgreed) abort(NoSwitch::kDisturbed, to, {});
   if (phase_ == Phase::kUndoing && is_held_) {
     changeover_.release();
     is_held_ = false;
   }
-  return !is_held_;
+  return !is_held_ && phase_ != Phase::kSlow;
 }
 
 void Switching::end(Nanoseconds now) noexcept {
   if (phase_ == Phase::kNone) return;
   if (phase_ == Phase::kArming || phase_ == Phase::kAgreed) abort(NoSwitch::kRunEnded, {}, {});
+  if (phase_ == Phase::kSlow) {
+    slow_.cut(agreement());
+    return finish(slow_.end(), parts_.clock.now(), true);
+  }
   const bool was_committed = phase_ != Phase::kUndoing;
   if (was_committed && !is_changed_) change(at_);
   if (is_held_) changeover_.release();
   is_held_ = false;
   if (was_committed) (void)record_.has_seen_first_cycles(now);
   (void)turn_off_all(now, true);
-  finish(was_committed ? SwitchEnd::kDone : SwitchEnd::kAborted, parts_.clock.now());
+  finish(was_committed ? SwitchEnd::kDone : SwitchEnd::kAborted, parts_.clock.now(), true);
 }
 
 // The next step is worth while when jobs have ended, or at the next release where the processor is idle; where jobs

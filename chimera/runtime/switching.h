@@ -15,6 +15,8 @@
 //   after    when all contexts have changed: `off` of each leaving task, against the data flow; the first cycles are
 //            looked at for the receipt
 //
+// What cannot be done so goes the slow way: runtime/slow_switch.h.
+//
 // `on` and `off` run while the processor is idle (idle_gap.h), where jobs have threads of their own at the urgency of
 // the task (job_threads.h). Jobs take no part: each step is an act of an edge.
 // docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md, docs/decisions/0049-switch-in-one-context.md,
@@ -24,15 +26,17 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/runtime/arrival.h"
 #include "chimera/runtime/changeover.h"
 #include "chimera/runtime/context_tap.h"
 #include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/miss_policy.h"
 #include "chimera/runtime/settlement.h"
+#include "chimera/runtime/slow_switch.h"
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switch_record.h"
-#include "chimera/runtime/switch_schedule.h"
+#include "chimera/runtime/switch_way.h"
 
 namespace chimera {
 
@@ -83,31 +87,32 @@ class Switching {
   static constexpr Nanoseconds kPatience = seconds(10);
 
  private:
-  enum class Phase : std::uint8_t { kNone, kArming, kAgreed, kChanging, kAfter, kUndoing };
+  enum class Phase : std::uint8_t { kNone, kArming, kAgreed, kChanging, kAfter, kUndoing, kSlow };
 
   SwitchAgreement agreement() noexcept { return {peers_->page(), origin_}; }
   void take_up(const PlanWord& plan, Nanoseconds now) noexcept;
-  bool make_plan(const SwitchOrder& order) noexcept;
+  void go_slowly(Nanoseconds now) noexcept;
   void arm(Nanoseconds edge, Nanoseconds now) noexcept;
+  void reinitialised(Task& next, Followed followed) noexcept;
   bool arm(Task& next, Nanoseconds now) noexcept;
   bool may_go_on(Nanoseconds now) noexcept;
-  void release_before(Nanoseconds instant) noexcept;
   void propose(Nanoseconds now) noexcept;
   void agree(Nanoseconds now) noexcept;
   void change(Nanoseconds now) noexcept;
   void abort(NoSwitch why, TaskId of, VariableId variable) noexcept;
   void settle(Nanoseconds now) noexcept;
   bool turn_off_all(Nanoseconds now, bool at_once) noexcept;
-  void finish(SwitchEnd end, Nanoseconds now) noexcept;
+  void finish(SwitchEnd end, Nanoseconds now, bool is_run_over = false) noexcept;
   void wait(Nanoseconds now, Nanoseconds at_most = kNever) noexcept;
   Task& task(TaskId id) noexcept { return parts_.set.tasks()[id.index]; }
 
   Parts parts_;
   IdleGap gap_;
   Changeover changeover_;
+  SlowSwitch slow_;
   SwitchRecord record_;
   SwitchPlanner planner_;
-  SwitchSchedule schedule_;
+  SwitchWays ways_;
   NoSwitchPeers nobody_;
   SwitchPeers* peers_ = &nobody_;
   SwitchOrder order_;

@@ -128,6 +128,7 @@ SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
   }
   Progress& progress = progress_[id.index];
   progress = Progress{};
+  progress.is_moved = is_moving_;
   progress.report = {true, false, Refusal::kNone, signal, id, task.state, task.state};
   task.call.now_ns = now.count;
   task.call.illegal = set_.flag().is_up() ? 1u : 0u;
@@ -137,12 +138,33 @@ SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
     progress.report.is_deferred = true;
     return progress.report;
   }
+  if (signal == Signal::kOn && task.state == State::kOff && !follow_constants(task, now)) return progress.report;
   if (signal == Signal::kOn) {
     task.call.cycle = 0;
     task.call.dropped = 0;
     task.call.dt_ns = task.spec->period.count;
   }
   return advance(task, next(task.state, signal, false), now);
+}
+
+// Other constants may have come into force since the task was initialised: it is re-initialised before `on`.
+bool TaskLife::follow_constants(Task& task, Nanoseconds now) {
+  if (!set_.constants().has_choice() || !set_.constants().uses_changed(task.id)) return true;
+  const std::uint64_t faults = task.faults.count;
+  (void)advance(task, next(State::kOff, Signal::kReinit, false), now);
+  if (task.state == State::kOff && task.faults.count == faults) return true;
+  SignalReport& report = progress_[task.id.index].report;
+  report.is_accepted = false;
+  report.why = Refusal::kFault;
+  return false;
+}
+
+SignalReport TaskLife::move(TaskId id, Signal signal, Nanoseconds now) {
+  is_moving_ = true;
+  const SignalReport report = carry_out(id, signal, now);
+  is_moving_ = false;
+  set_.on_set_changed();
+  return report;
 }
 
 SignalReport TaskLife::arm(TaskId id, Nanoseconds now) {
@@ -229,7 +251,7 @@ Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanosec
   progress.has_new_constants = false;
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
   task.profile.execution[static_cast<int>(step.method)].add(progress.used + (read_clock(now) - began));
-  if (progress.has_new_constants) reinit_users(task.id, now);
+  if (progress.has_new_constants && !progress.is_moved) reinit_users(task.id, now);
   return step.next[static_cast<int>(answer)];
 }
 

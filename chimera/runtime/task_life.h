@@ -47,6 +47,9 @@ class TaskLife {
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now);
   /// Goes on with the signal of which the service thread has run a method; deferred again while there is more.
   SignalReport finish_slow(TaskId task, Nanoseconds now);
+  /// A step of a slow switch: the signal, whatever the tasks that are ON then come to, and without what else follows
+  /// from it: nobody is re-initialised, which is another step.
+  SignalReport move(TaskId task, Signal signal, Nanoseconds now);
   /// Runs `on` of a task that is OFF, beside whoever produces its variables: it takes over what stands, publishes into
   /// its own group, and stays OFF. When that went well it owes `off`; what it sent is not delivered. Nobody reads from
   /// the task yet, but for readers of a variable that nobody else ever produced.
@@ -67,6 +70,7 @@ class TaskLife {
     Step step = Step::kInit;
     Nanoseconds used;  // by the present step so far, transfers included
     bool has_new_constants = false;
+    bool is_moved = false;  ///< by move()
   };
 
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
@@ -77,6 +81,7 @@ class TaskLife {
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
   Answer after_ok(Task& task, const StepRule& step, Nanoseconds now);
   bool claims_groups_of(std::span<const TaskId> tasks) noexcept;
+  bool follow_constants(Task& task, Nanoseconds now);
   void reinit_users(TaskId of, Nanoseconds now);
   void take_over(Task& task, Nanoseconds now) noexcept;
   void tell_inherited(Task& task, std::uint32_t output, const chimera_slot& slot, Nanoseconds now) noexcept;
@@ -88,6 +93,7 @@ class TaskLife {
   std::span<bool> wanted_;        // the ON set that was asked for last
   std::uint64_t taken_over_valid_ = 0;
   bool is_arming_ = false;
+  bool is_moving_ = false;
 };
 
 }  // namespace chimera

@@ -45,6 +45,28 @@ void never_written(std::byte* at, const chimera_port_decl& decl, const PortSpec&
     }
 }
 
+Result<void> check_port(const TaskSpec& spec, const chimera_component& component, const PortSpec& port) {
+  const chimera_port_decl& decl = component.ports[port.declared];
+  if (decl.kind != port.kind) return misfit(spec, "another kind of port", decl.name);
+  if (port.instance >= decl.max_instances) return misfit(spec, "too many instances of port", decl.name);
+  if (decl.type != CHIMERA_ANY && decl.kind != CHIMERA_RESOURCE && decl.element_size != port.element_bytes)
+    return misfit(spec, "another element size at port", decl.name);
+  if (!is_variable(decl.kind) && !is_constant(decl.kind) && decl.kind != CHIMERA_RESOURCE)
+    return misfit(spec, "streams cannot be bound yet, port", decl.name);
+  return {};
+}
+
+// `name`: of the port.
+bool is_in_range(const ExtentSpec& extent, const char* name, const ConstantStore& store, FixedString<160>& why) {
+  const std::int64_t n = !extent.constant.is_valid() ? extent.max : store.integer(extent.constant, extent.max);
+  if (n >= 1 && n <= extent.max) return true;
+  const std::string_view constant = extent.constant.is_valid() ? store[extent.constant].spec->name : "";
+  Message text("extent ");
+  text << constant << " = " << n << " of port " << name;
+  why.assign((text << " is outside 1 to " << extent.max).view());
+  return false;
+}
+
 }  // namespace
 
 Result<TaskMemory> TaskMemory::create(const TaskSpec& spec, const chimera_component& component, SetupMemory& memory) {
@@ -77,23 +99,12 @@ Result<void> TaskMemory::plan() {
   std::size_t outputs = 0;
   for (const PortSpec& port : spec_->ports) {
     if (port.declared >= component_->n_ports) return misfit(*spec_, "it declares fewer ports", "");
-    if (auto checked = check_port(port); !checked) return checked;
+    if (auto checked = check_port(*spec_, *component_, port); !checked) return checked;
     if (port.kind != CHIMERA_OUT_VAR) continue;
     if (outputs == 64) return misfit(*spec_, "more than 64 out-vars, at port", component_->ports[port.declared].name);
     if (!port.value.empty()) initial_valid_ |= std::uint64_t{1} << outputs;
     ++outputs;
   }
-  return {};
-}
-
-Result<void> TaskMemory::check_port(const PortSpec& port) const {
-  const chimera_port_decl& decl = component_->ports[port.declared];
-  if (decl.kind != port.kind) return misfit(*spec_, "another kind of port", decl.name);
-  if (port.instance >= decl.max_instances) return misfit(*spec_, "too many instances of port", decl.name);
-  if (decl.type != CHIMERA_ANY && decl.kind != CHIMERA_RESOURCE && decl.element_size != port.element_bytes)
-    return misfit(*spec_, "another element size at port", decl.name);
-  if (!is_variable(decl.kind) && !is_constant(decl.kind) && decl.kind != CHIMERA_RESOURCE)
-    return misfit(*spec_, "streams cannot be bound yet, port", decl.name);
   return {};
 }
 
@@ -233,16 +244,26 @@ bool TaskMemory::read_constants(const ConstantStore& store, FixedString<160>& wh
   for (ConstantPort& constant : constants_) {
     if (constant.decl->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
     const Constant& found = store[constant.spec->constant];
-    if (found.is_known) {
-      std::memcpy(constant.local, found.value.data(),
-                  std::min<std::size_t>(found.value.size(), constant.spec->max_bytes()));
-    } else if (constant.spec->value.empty()) {
-      const std::string_view name = found.spec->name;
-      why.assign((Message("constant ") << name << " has no value: its producer was not initialised").view());
-      return false;
-    }
+    if (!found.is_known) continue;
+    std::memcpy(constant.local, found.value.data(),
+                std::min<std::size_t>(found.value.size(), constant.spec->max_bytes()));
   }
-  return fix_extents(store, why);
+  return would_take(store, why) && fix_extents(store, why);
+}
+
+bool TaskMemory::would_take(const ConstantStore& store, FixedString<160>& why) const noexcept {
+  for (const ConstantPort& constant : constants_) {
+    if (constant.decl->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
+    const Constant& found = store[constant.spec->constant];
+    if (found.is_known || !constant.spec->value.empty()) continue;
+    const std::string_view name = found.spec->name;
+    why.assign((Message("constant ") << name << " has no value: its producer was not initialised").view());
+    return false;
+  }
+  for (const PortSpec& port : spec_->ports)
+    for (const ExtentSpec& extent : port.extent)
+      if (!is_in_range(extent, component_->ports[port.declared].name, store, why)) return false;
+  return true;
 }
 
 bool TaskMemory::uses_changed(const ConstantStore& store) const noexcept {
@@ -253,14 +274,20 @@ bool TaskMemory::uses_changed(const ConstantStore& store) const noexcept {
     const std::size_t bytes = std::min<std::size_t>(found.value.size(), constant.spec->max_bytes());
     if (std::memcmp(constant.local, found.value.data(), bytes) != 0) return true;
   }
+  for (const PortSpec& port : spec_->ports)
+    for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
+      const ExtentSpec& extent = port.extent[d];
+      if (!extent.constant.is_valid()) continue;
+      if (store.integer(extent.constant, extent.max) != live(port)->extent[d]) return true;
+    }
   return false;
 }
 
-int TaskMemory::write_constants(ConstantStore& store) noexcept {
+int TaskMemory::write_constants(ConstantStore& store, TaskId task) noexcept {
   int changed = 0;
   for (const ConstantPort& constant : constants_) {
     if (constant.decl->kind != CHIMERA_OUT_CONST) continue;
-    changed += store.set(constant.spec->constant, {constant.local, constant.spec->max_bytes()}) ? 1 : 0;
+    changed += store.set_by(task, constant.spec->constant, {constant.local, constant.spec->max_bytes()}) ? 1 : 0;
   }
   return changed;
 }
@@ -271,15 +298,9 @@ bool TaskMemory::fix_extents(const ConstantStore& store, FixedString<160>& why) 
     to.count = 1;
     for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
       const ExtentSpec& extent = port.extent[d];
-      const std::int64_t n = !extent.constant.is_valid() ? extent.max : store.integer(extent.constant, extent.max);
-      if (n < 1 || n > extent.max) {
-        const std::string_view name = extent.constant.is_valid() ? store[extent.constant].spec->name : "";
-        Message text("extent ");
-        text << name << " = " << n << " of port " << component_->ports[port.declared].name;
-        why.assign((text << " is outside 1 to " << extent.max).view());
-        return false;
-      }
-      to.extent[d] = static_cast<std::uint32_t>(n);
+      if (!is_in_range(extent, component_->ports[port.declared].name, store, why)) return false;
+      to.extent[d] = static_cast<std::uint32_t>(
+          extent.constant.is_valid() ? store.integer(extent.constant, extent.max) : extent.max);
       to.count *= to.extent[d];
     }
   }

@@ -43,10 +43,12 @@ class TaskMemory {
 
   /// Copies constants in; false with `why` when one has no value. Sets extents that constants fix.
   bool read_constants(const ConstantStore& store, FixedString<160>& why) noexcept;
-  /// Copies out-consts to the store; calls are counted: the number of constants that changed.
-  int write_constants(ConstantStore& store) noexcept;
+  /// Copies out-consts to the store as those of the task; answers the number of constants that changed.
+  int write_constants(ConstantStore& store, TaskId task) noexcept;
   /// Fixes the extents of all ports from known constants; false with `why` when one is out of range.
   bool fix_extents(const ConstantStore& store, FixedString<160>& why) noexcept;
+  /// Could it be initialised with these constants? As read_constants(), and changes nothing.
+  bool would_take(const ConstantStore& store, FixedString<160>& why) const noexcept;
 
   /// The group that consumers may be bound to before the task was ever spawned: the never-written fill.
   GroupReader reader() const noexcept;
@@ -64,7 +66,8 @@ class TaskMemory {
   const chimera_port* output_port(std::size_t i) const noexcept { return is_constructed_ ? outputs_[i].port : nullptr; }
   /// What was specified for the port with this live half; nullptr: there is none. Context: any; wait-free; O(ports).
   const PortSpec* spec_of(const chimera_port* port) const noexcept;
-  /// True when a constant that the component was initialised with has another value by now.
+  /// True when a constant that the component was initialised with, or that is an extent of a port, has another value
+  /// by now. Requires: it was constructed.
   bool uses_changed(const ConstantStore& store) const noexcept;
   /// True when the staged value of output `i` is still the never-written fill.
   bool is_unwritten(const Task& task, std::size_t i) const noexcept;
@@ -72,7 +75,6 @@ class TaskMemory {
  private:
   Result<void> plan();
   void take_lists(SetupMemory& memory);
-  Result<void> check_port(const PortSpec& port) const;
   void wire(Task& task) noexcept;
   void make_fill();
   chimera_port* live(const PortSpec& port) const noexcept;

@@ -143,6 +143,7 @@ class Receipts(unittest.TestCase):
             plan = system.call("plan", configuration="quick")
             self.assertEqual(plan, {
                 "from": "gentle", "to": "quick", "end": "possible", "reason": None, "why": None, "remedy": None,
+                "way": "fast", "slow_because": [], "slow_why": None, "expected_ns": plan["expected_ns"],
                 "arrives": ["fast"], "leaves": ["slow"], "stays": plan["stays"],
                 "variables": [{"variable": "wanted", "from": "slow", "to": "fast"}]})
             self.assertEqual(set(plan["stays"]), {"reference", "here", "there"})

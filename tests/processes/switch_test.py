@@ -120,7 +120,7 @@ class Switch(unittest.TestCase):
             system.signal("spawn", "fast")
             self.assertEqual(system.call("switch", configuration="quick")["end"], "done")
 
-    def test_what_might_miss_a_deadline_is_refused(self):
+    def test_what_might_miss_a_deadline_goes_the_slow_way(self):
         text = TEXT.replace("constants: {k: 2}}", "constants: {k: 2}, budget: 8 ms}").replace("configurations:", """\
   late:
     {component: gain, rtpu: first, rate: 100 Hz, offset: 9 ms, budget: 8 ms, alias: {x: vref, y: wanted},
@@ -128,15 +128,17 @@ class Switch(unittest.TestCase):
 configurations:
   after: [reference, late, here, there]""")
         with System(text) as system:
-            with self.assertRaises(Refused) as refused:
-                system.call("switch", configuration="after")
-            self.assertEqual(refused.exception.data["kind"], "not-schedulable")
-            self.assertEqual(refused.exception.data["remedy"], "`chimera check FILE --modes` judges all transitions")
-            self.assertIn("the transition from 'gentle' to 'after' is not schedulable on CPU",
-                          str(refused.exception))
-            self.assertEqual(self.on(system), SETS["gentle"])
-            self.assertEqual(system.call("switch", configuration="quick")["end"], "done")
-            self.assertEqual(system.call("switch", configuration="after")["end"], "done")  # by way of another
+            foreseen = system.call("plan", configuration="after")
+            self.assertEqual((foreseen["way"], foreseen["slow_because"]), ("slow", ["not-schedulable"]))
+            self.assertGreater(foreseen["expected_ns"], 0)
+            done = system.call("switch", configuration="after")
+            self.assertEqual((done["end"], done["way"]), ("done", "slow"), done)
+            self.assertIn("the transition from 'gentle' to 'after' is not schedulable on CPU", done["slow_why"])
+            self.assertGreater(done["flag_ns"], 0)
+            self.assertEqual(self.on(system), {"here", "late", "reference", "there"})
+            self.assertFalse(system.call("status")["flag"]["up"])
+            done = system.call("switch", configuration="quick")  # there is room for both
+            self.assertEqual((done["end"], done["way"], done["flag_ns"]), ("done", "fast", 0))
 
     def test_whoever_dies_the_next_switch_works(self):
         """A real-time unit or the manager is killed at any moment of a switch."""

@@ -12,7 +12,7 @@ class ModeLines {
   explicit ModeLines(const Configuration& configuration) : configuration_(configuration) {}
 
   std::string edge(const ModeEdge& edge) const {
-    std::string text = set(edge.from) + " -> " + set(edge.to) + ": " + (edge.is_refused() ? "refused" : "fast") +
+    std::string text = set(edge.from) + " -> " + set(edge.to) + ": " + (edge.is_slow() ? "slow" : "fast") +
                        "; asked for by ";
     for (const ModeAsker& asker : edge.askers) text += asker_text(configuration_, asker) + ", ";
     text += "an operator\n";

@@ -165,7 +165,11 @@ std::string plan_text(const Json& answer) {
     const std::string remedy = text_of(answer, "remedy");
     return begin + " would be refused: " + text_of(answer, "why") + (remedy.empty() ? "" : "; " + remedy) + "\n";
   }
-  std::string text = begin + " would begin\n";
+  const bool is_slow = text_of(answer, "way") == "slow";
+  const std::string expected = duration_text(whole_of(answer, "expected_ns"));
+  std::string text = begin + " would begin, " +
+                     (is_slow ? "the slow way, for " + text_of(answer, "slow_why") : std::string("the fast way")) +
+                     "; it is expected to take " + expected + "\n";
   for (const char* move : {"arrives", "leaves", "stays"}) {
     std::string names;
     for (const std::string& task : texts_of(answer, move)) names += (names.empty() ? "" : ", ") + task;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "chimera/runtime/hosted/variables.h"
+#include "chimera/runtime/switch_plan.h"
 #include "chimera/schedule/utilisation.h"
 
 namespace chimera {
@@ -15,7 +16,7 @@ class SetMaker {
  public:
   SetMaker(const ApplicationSpec& spec, std::vector<bool> on, std::span<const TaskId> plus,
            std::span<const TaskId> minus)
-      : spec_(spec), variables_(spec), on_(std::move(on)), plus_(plus), minus_(minus) {}
+      : spec_(spec), variables_(spec), on_(std::move(on)), was_on_(on_), plus_(plus), minus_(minus) {}
 
   AskedSet make() {
     for (const TaskId task : plus_) {
@@ -28,6 +29,7 @@ class SetMaker {
     }
     if (asked_) judge_links();
     if (asked_) judge_loops();
+    if (asked_) judge_constants();
     if (asked_) judge_load();
     for (std::size_t t = 0; t < on_.size(); ++t)
       if (on_[t]) asked_.tasks.add(TaskId(t));
@@ -113,6 +115,22 @@ class SetMaker {
     return false;
   }
 
+  /// Which of several producers of a constant counts, a configuration says.
+  void judge_constants() {
+    TaskBits target;
+    for (std::size_t t = 0; t < on_.size(); ++t)
+      if (on_[t]) target.add(TaskId(t));
+    if (set_of(spec_, target) != kNoSet) return;
+    for (const ConstantSpec& constant : spec_.constants) {
+      if (constant.producers.size() < 2) continue;
+      for (const PortOf& producer : constant.producers)
+        if (on_[producer.task.index] != was_on_[producer.task.index])
+          return refuse("which of its producers gives constant " + std::string(constant.name) +
+                            ", only a configuration says, and these tasks are none",
+                        "`chimera switch` with the name of a configuration");
+    }
+  }
+
   void judge_load() {
     for (const RtpuSpec& one : spec_.rtpus) {
       double sum = 0;
@@ -129,6 +147,7 @@ class SetMaker {
   const ApplicationSpec& spec_;
   Variables variables_;
   std::vector<bool> on_;
+  const std::vector<bool> was_on_;
   std::span<const TaskId> plus_, minus_;
   AskedSet asked_;
 };

@@ -43,7 +43,13 @@ struct Circle {
   void cycle(Cycle) {}
 };
 
-constexpr TaskId kSensor{0u}, kPid{1u}, kSmooth{2u}, kFilter{3u}, kMotor{4u}, kSpare{5u}, kCircle{6u};
+struct Tool {
+  OutConst<double> mass{"mass", "kg"};
+  Out<double> held{"held", "1"};
+  void cycle(Cycle) {}
+};
+
+constexpr TaskId kSensor{0u}, kPid{1u}, kSmooth{2u}, kFilter{3u}, kMotor{4u}, kSpare{5u}, kCircle{6u}, kGripper{7u}, kWelder{8u};
 
 struct AskedSetTest : ::testing::Test {
   AskedSetTest() {
@@ -54,6 +60,8 @@ struct AskedSetTest : ::testing::Test {
     app.add("motor", component<Motor>("motor"));
     app.add("spare", component<Filter>("filter"));
     app.add("circle", component<Circle>("circle"));
+    app.add("gripper", component<Tool>("tool"));
+    app.add("welder", component<Tool>("tool"));
     for (TaskSpec& task : app.tasks) task.rtpu = RtpuId{0u};
     app.link(kSpare.index, 1, "z2");
     make();
@@ -117,6 +125,11 @@ TEST_F(AskedSetTest, WhatTakesMoreOfACpuThanCheckAllowsIsRefused) {
   make();
   EXPECT_EQ(ask({kSpare}),
             "the budgets would take 0.940 of CPU 0; expected at most 0.93; turn other tasks of that CPU OFF");
+}
+
+TEST_F(AskedSetTest, WhichProducerGivesAConstantOnlyAConfigurationSays) {
+  EXPECT_EQ(ask({kGripper}), "which of its producers gives constant mass, only a configuration says, and these tasks "
+                             "are none; `chimera switch` with the name of a configuration");
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ void VirtualControl::publish() noexcept {
   for (const Change& change : tasks_.changes().list())
     is_for_others |= change.kind == Change::Kind::kStatus && change.now != change.before;
   tasks_.changes().clear();
-  is_for_others |= peers_.show_raised(rtpu_, tasks_.flag().is_raised());
+  is_for_others |= peers_.show_raised(rtpu_, tasks_.flag().is_raised() || tasks_.flag().is_held());
   is_flag_known_up_ = tasks_.flag().is_up();
   if (is_for_others) peers_.show_change(rtpu_);
 }

@@ -23,7 +23,8 @@ VirtualSwitches::VirtualSwitches(VirtualPeers& peers, std::size_t n) : peers_(pe
   if (n == 0) return;
   CHIMERA_ASSERT(spec.tasks.size() <= kMaxSwitchedTasks && spec.rtpus.size() <= kMaxContexts);
   planner_.prepare(spec, memory_);
-  schedule_.prepare(spec, memory_);
+  ways_.prepare(spec, memory_);
+  constants_ = set_of_start(spec);
   receipts_.prepare(spec, n, memory_);
   standing_ = memory_.take<TaskStanding>(spec.tasks.size());
 }
@@ -54,14 +55,10 @@ Nanoseconds VirtualSwitches::lead() const noexcept {
 
 void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   finish(now);
-  SwitchOrder order;
-  for (std::size_t t = 0; t < standing_.size(); ++t) {
-    standing_[t] = {peers_.state(TaskId(t)), false};
-    if (standing_[t].state == State::kOn) order.on.add(TaskId(t));
-  }
+  for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = {peers_.state(TaskId(t)), false};
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (!is_under_way()) answer = planner_.plan(request.set, standing_, plan_);
-  if (answer) answer = schedule_.judge(standing_, tasks_of(peers_.spec(), request.set));
+  const SwitchWay way = answer ? judge_way() : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   if (is_nothing && request.cause != SwitchCause::kScript) return;
   if (!is_nothing) ++n_asked_;
@@ -73,25 +70,57 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   receipt.by = request.by;
   receipt.before = planner_.set_in_force(standing_);
   if (!is_nothing) receipt.number = n_asked_;
+  receipt.way = way;
   if (!answer) {
+    receipt.way.slow = 0;
     receipt.end = is_nothing ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
     receipt.why = answer.why;
     receipt.task = answer.task;
-    receipt.takes = answer.takes;
     receipt.tasks = {};
     receipt.variables = {};
     return;
   }
   present_ = &receipt;
+  order(request.set, receipt.way.slow, now);
+}
+
+SwitchWay VirtualSwitches::judge_way() noexcept {
+  for (std::uint32_t r = 0; r < members_.size(); ++r) {
+    if (((living() >> r) & 1u) == 0) continue;
+    ContextConstants& constants = peers_.tasks(RtpuId(r))->constants();
+    constants.read_foreign();
+    return ways_.judge(plan_, standing_, constants_, constants);
+  }
+  return {};
+}
+
+void VirtualSwitches::order(std::uint32_t set, std::uint8_t slow, Nanoseconds now) noexcept {
+  SwitchOrder order;
+  for (std::size_t t = 0; t < standing_.size(); ++t)
+    if (standing_[t].state == State::kOn) order.on.add(TaskId(t));
   n_tasks_ = n_variables_ = 0;
   order.number = next_plan(agreement().plan().number);
   order.members = living();
-  order.after = request.set;
-  order.target = tasks_of(peers_.spec(), request.set);
+  order.after = set;
+  order.target = tasks_of(peers_.spec(), set);
+  order.slow = slow;
+  order.constants = constants_;
   order.until = now + kPatience;
   order.lead = lead();
   agreement().announce(order);
   ring();
+}
+
+// What found no gap for `on` is done under the flag.
+bool VirtualSwitches::try_slowly(Nanoseconds now) noexcept {
+  if (present_->why != NoSwitch::kNoGap || present_->way.slow != 0) return false;
+  for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = {peers_.state(TaskId(t)), false};
+  if (!planner_.plan(present_->after, standing_, plan_)) return false;
+  present_->why = NoSwitch::kNone;
+  present_->task = {};
+  present_->way.slow = kSlowForGap;
+  order(present_->after, kSlowForGap, now);
+  return true;
 }
 
 void VirtualSwitches::Member::tell_adopted(std::uint16_t number) noexcept {
@@ -114,6 +143,10 @@ void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept 
     if (is_its(task.task)) present_->tasks[n_tasks_++] = task;
   for (const VariablePart& variable : part.variables)
     if (is_its(variable.handover.to.task)) present_->variables[n_variables_++] = variable;
+  for (const TaskId task : part.reinitialised)
+    if (is_its(task)) append(present_->reinitialised, task);
+  present_->flag = std::max(present_->flag, part.flag);
+  if (!present_->not_back.is_valid()) present_->not_back = part.not_back;
   present_->armed = later(present_->armed, part.armed);
   if (part.end == SwitchEnd::kDone) present_->at = part.at;
   if (part.why == NoSwitch::kNone || present_->why != NoSwitch::kNone) return;
@@ -136,6 +169,8 @@ void VirtualSwitches::finish(Nanoseconds now) noexcept {
   for (std::uint32_t r = 0; r < members_.size(); ++r)
     if (((living() >> r) & 1u) != 0 && !members_[r].is_over(plan.number)) return;
   const bool is_committed = plan.phase == SwitchPhase::kCommitted;
+  if (is_committed) constants_ = present_->after;
+  if (!is_committed && try_slowly(now)) return;
   present_->end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
   if (is_committed) present_->at = agreement().at(plan);
   if (is_committed) present_->why = NoSwitch::kNone;
@@ -147,7 +182,17 @@ void VirtualSwitches::finish(Nanoseconds now) noexcept {
   const auto begin = present_->tasks.begin();
   for (auto part = begin; part != present_->tasks.end(); ++part)  // std::stable_sort allocates
     std::rotate(std::upper_bound(begin, part, *part, is_before), part, part + 1);
+  sort_reinitialised();
   present_ = nullptr;
+}
+
+// As they were: in the order of initialisation over all units.
+void VirtualSwitches::sort_reinitialised() noexcept {
+  const std::span<TaskId> list = present_->reinitialised;
+  std::size_t n = 0;
+  for (const TaskId next : peers_.spec().init_order)
+    for (std::size_t i = n; i < list.size(); ++i)
+      if (list[i] == next) std::swap(list[n++], list[i]);
 }
 
 }  // namespace chimera

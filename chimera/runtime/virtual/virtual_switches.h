@@ -9,7 +9,7 @@
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
-#include "chimera/runtime/switch_schedule.h"
+#include "chimera/runtime/switch_way.h"
 #include "chimera/runtime/switch_wish.h"
 #include "chimera/runtime/virtual/virtual_peers.h"
 
@@ -44,6 +44,7 @@ class VirtualSwitches {
       return &all_.members_[context].progress_;
     }
     void ring() noexcept override { all_.ring(); }
+    void show() noexcept override { all_.peers_.show_change(RtpuId(me_)); }
     void tell_adopted(std::uint16_t number) noexcept override;
     void tell_over(const SwitchReceipt& receipt) noexcept override;
     void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds) noexcept override {
@@ -62,7 +63,11 @@ class VirtualSwitches {
   std::uint16_t living() const noexcept;
   Nanoseconds lead() const noexcept;
   void ring() noexcept;
+  void order(std::uint32_t set, std::uint8_t slow, Nanoseconds now) noexcept;
+  SwitchWay judge_way() noexcept;
+  bool try_slowly(Nanoseconds now) noexcept;
   void finish(Nanoseconds now) noexcept;
+  void sort_reinitialised() noexcept;
   void add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept;
 
   VirtualPeers& peers_;
@@ -70,12 +75,13 @@ class VirtualSwitches {
   SwitchPage page_;
   std::deque<Member> members_;  // by rtpu
   SwitchPlanner planner_;
-  SwitchSchedule schedule_;
+  SwitchWays ways_;
   SwitchPlan plan_;
   std::span<TaskStanding> standing_;  // by task, when a plan is judged
   SwitchReceipts receipts_;
   SwitchReceipt* present_ = nullptr;  // of the switch under way
   std::size_t n_tasks_ = 0, n_variables_ = 0;  // in it
+  std::uint32_t constants_ = kNoSet;           // the set whose constants are in force
   std::uint32_t n_asked_ = 0;
   SwitchRequest wish_;  // of the task that asked last: waits for the switch that is under way to end
   Nanoseconds origin_;

@@ -36,16 +36,55 @@ void refuse_two(Model& model, const VariableModel& variable) {
                     Model::say(port.at),
                 variable.name, "one producer", {}, "take it out here, or link the output elsewhere by alias");
   }
-  std::vector<PortRef> producers;  // a standby has the outputs of its task: rule_standby.cc speaks of them
-  for (const PortRef ref : variable.producers)
-    if (!model.tasks[ref.task].draft->standby_for) producers.push_back(ref);
-  if (producers.size() < 2) return;
-  const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
-  model.error("constant-two-producers", second.at,
-              "constant '" + variable.name + "' has two producers: " + model.say(first) + " at " +
-                  Model::say(first.at) + " and " + model.say(second) +
-                  "; every task is initialised, in whichever configuration it is",
-              variable.name, "one producer", {}, "link one of them elsewhere by alias");
+  for (const SetModel& set : model.sets) {
+    const std::vector<PortRef> producers = producers_of(model, variable, set);
+    if (producers.size() < 2) continue;
+    const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
+    model.error("constant-two-producers", second.at,
+                "constant '" + variable.name + "' has two producers in configuration '" + set.name +
+                    "': " + model.say(first) + " at " + Model::say(first.at) + " and " + model.say(second),
+                variable.name, "one producer", {}, "link one of them elsewhere by alias");
+    return;
+  }
+}
+
+/// A standby has the constants of its task, and its own are those of nobody but itself.
+bool has_several(const Model& model, const VariableModel& variable) {
+  std::size_t n = 0;
+  for (const PortRef ref : variable.producers) n += model.tasks[ref.task].draft->standby_for ? 0 : 1;
+  return n > 1;
+}
+
+/// "in-const 'mass' of task 'need'", or a port that has the constant for an extent; "": the task does not use it.
+std::string user_of(const Model& model, const TaskModel& task, const VariableModel& constant) {
+  for (const LinkedPort& port : task.ports) {
+    if (port.is(CHIMERA_IN_CONST) && port.source == ConstSource::kVariable && port.variable == constant.name)
+      return model.say(port);
+    for (const SolvedExtent& extent : port.extents)
+      if (extent.constant == constant.name) return "the extent of " + model.say(port);
+  }
+  return {};
+}
+
+/// Of several producers one is in each configuration that has a user.
+void require_one(Model& model, const VariableModel& variable) {
+  for (const SetModel& set : model.sets) {
+    if (!set.is_whole || model.draft.is_partial || !producers_of(model, variable, set).empty()) continue;
+    for (const std::size_t task : set.tasks) {
+      const std::string user = user_of(model, model.tasks[task], variable);
+      if (user.empty()) continue;
+      model.error("constant-unmet", model.tasks[task].draft->name.at,
+                  user + " has no producer in configuration '" + set.name + "'; constant '" + variable.name +
+                      "' is produced by tasks of other configurations",
+                  variable.name, "a producer of '" + variable.name + "'", {},
+                  "add task '" + model.tasks[variable.producers[0].task].name() + "' or another producer there");
+      break;
+    }
+  }
+}
+
+bool is_producer(const VariableModel& variable, std::size_t task) {
+  return std::ranges::any_of(variable.producers, [task](const PortRef from) { return from.task == task; });
 }
 
 /// A port whose extent a constant gives waits for that constant, whether or not its task has a port for it.
@@ -53,18 +92,21 @@ void add_extent_users(const Model& model, const LinkedPort& port, std::vector<st
   for (const SolvedExtent& extent : port.extents) {
     const auto constant = model.variable_index.find(extent.constant);
     if (constant == model.variable_index.end()) continue;
-    const std::vector<PortRef>& from = model.variables[constant->second].producers;
-    if (!from.empty() && from[0].task != port.task) users[from[0].task].push_back(port.task);
+    const VariableModel& variable = model.variables[constant->second];
+    if (is_producer(variable, port.task)) continue;
+    for (const PortRef from : variable.producers) users[from.task].push_back(port.task);
   }
 }
 
-/// users[a] has b when b needs a constant that a produces. Of several producers the first counts: they are refused, and
-/// a circle through the others would not be the reason.
+/// users[a] has b when b needs a constant that a produces, in whichever configuration: every task is initialised. Who
+/// produces a constant has its own, not that of the producer of another configuration.
 std::vector<std::vector<std::size_t>> users_of(const Model& model) {
   std::vector<std::vector<std::size_t>> users(model.tasks.size());
   for (const VariableModel& variable : model.variables) {
     if (!variable.is_constant || variable.producers.empty()) continue;
-    for (const PortRef to : variable.consumers) users[variable.producers[0].task].push_back(to.task);
+    for (const PortRef from : variable.producers)
+      for (const PortRef to : variable.consumers)
+        if (from.task == to.task || !is_producer(variable, to.task)) users[from.task].push_back(to.task);
   }
   for (const TaskModel& task : model.tasks)
     for (const LinkedPort& port : task.ports) add_extent_users(model, port, users);
@@ -111,6 +153,8 @@ void settle_constants(Model& model) {
 }
 
 void order_constants(Model& model) {
+  for (const VariableModel& variable : model.variables)
+    if (variable.is_constant && has_several(model, variable)) require_one(model, variable);
   const auto users = users_of(model);
   std::vector<std::size_t> waits(model.tasks.size(), 0);
   for (const auto& to : users)

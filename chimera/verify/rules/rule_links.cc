@@ -154,7 +154,7 @@ Members readers(const Model& model, const Members& on) {
 }
 
 void report_two(Model& model, const VariableModel& variable, const SetModel& set) {
-  const std::vector<PortRef> all = producers_in(variable, set), producers = without_standbys(model, all);
+  const std::vector<PortRef> all = producers_in(variable, set), producers = producers_of(model, variable, set);
   if (variable.given != nullptr)
     model.error("operator-produced", variable.given->name.at,
                 "operator variable '" + variable.name + "' is produced by task '" +
@@ -172,6 +172,10 @@ void report_two(Model& model, const VariableModel& variable, const SetModel& set
 }
 
 }  // namespace
+
+std::vector<PortRef> producers_of(const Model& model, const VariableModel& variable, const SetModel& set) {
+  return without_standbys(model, producers_in(variable, set));
+}
 
 void collect_variables(Model& model) {
   add_given(model, model.draft.constants, true);

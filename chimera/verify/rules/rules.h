@@ -24,13 +24,15 @@ void make_sets(Model& model);
 // rule_links.cc
 /// Makes Model::variables; no name stands for a state variable and a constant.
 void collect_variables(Model& model);
+/// Who produces the variable or constant in that configuration, without the standbys of tasks that do.
+std::vector<PortRef> producers_of(const Model& model, const VariableModel& variable, const SetModel& set);
 /// 1994 paper, equation 1: in each configuration no variable has two producers.
 void refuse_two_producers(Model& model);
 /// 1994 paper, equation 2: in each configuration every input has a producer.
 void refuse_unmet_inputs(Model& model);
 
 // rule_constants.cc
-/// Every in-const has one source.
+/// Every in-const has one source: of several producers of a constant just one is in each configuration that needs it.
 void settle_constants(Model& model);
 /// The producers of constants stand in no circle. Makes Model::init_order.
 void order_constants(Model& model);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Asks whether a task may go ON in a switch.
+#include "chimera/runtime/arrival.h"
+
+#include <algorithm>
+
+namespace chimera {
+
+VariableId lacks_value(TaskSet& set, Task& task, std::span<const Handover> handovers) noexcept {
+  read_inputs(task);
+  const TaskMemory& memory = set.memory(task.id);
+  for (std::size_t i = 0; i < task.inputs.size(); ++i) {
+    const VariableId variable = memory.input_spec(i).variable;
+    const auto is_its = [&](const Handover& handover) { return handover.variable == variable; };
+    if (std::any_of(handovers.begin(), handovers.end(), is_its)) continue;
+    const chimera_port& port = *task.inputs[i].port;
+    if (((port.slot->valid >> port.bit) & 1u) == 0) return variable;
+  }
+  return {};
+}
+
+bool holds(TaskSet& set, const SafeCondition& asked) noexcept {
+  return !asked.is_there() || is_safe(asked, present_value(set, asked));
+}
+
+Followed follow_constants(TaskSet& set, const IdleGap& gap, Task& task, const SwitchOrder& order,
+                          Nanoseconds now) noexcept {
+  ContextConstants& constants = set.constants();
+  if (!constants.has_choice()) return Followed::kNothing;
+  constants.read_foreign();
+  constants.put_in_force(order.constants_after());
+  const bool is_behind = constants.uses_changed(task.id);
+  const bool has_gap = !is_behind || gap.is_for(task, Method::kReinit, now);
+  const std::uint64_t faults = task.faults.count;
+  if (is_behind && has_gap) (void)set.life().move(task.id, Signal::kReinit, now);
+  constants.put_in_force(order.constants);
+  if (!has_gap) return Followed::kNoGap;
+  if (!is_behind) return Followed::kNothing;
+  return task.state == State::kOff && task.faults.count == faults ? Followed::kDone : Followed::kFailed;
+}
+
+}  // namespace chimera

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/slow_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "chimera/runtime/hosted/heap_memory.h"
+#include "chimera/runtime/switch_way.h"
+#include "chimera/runtime/testing/test_application.h"
+
+namespace chimera {
+namespace {
+
+struct Tool {
+  OutConst<double> mass{"mass", "kg"};
+  Out<double> grip{"grip", "1"};
+  void cycle(Cycle) {}
+};
+
+struct Arm {  // a device, which makes another constant of it
+  InConst<double> mass{"mass", "kg"};
+  In<double> grip{"grip", "1"};
+  OutConst<double> load{"load", "kg"};
+  Out<double> y{"y", "1"};
+  Resource link{"link"};
+  void cycle(Cycle) {}
+};
+
+struct Law {
+  InConst<double> load{"load", "kg"};
+  Out<double> u{"u", "1"};
+  void cycle(Cycle) {}
+};
+
+struct Clock {
+  Out<double> t{"t", "1"};
+  void cycle(Cycle) {}
+};
+
+constexpr TaskId kLight{0u}, kHeavy{1u}, kArm{2u}, kLaw{3u}, kClock{4u};
+
+/// Says of all values that they differ, or that none does.
+struct Made final : MadeConstants {
+  bool differ(ConstantId, std::uint32_t, std::uint32_t) const noexcept override { return are_others; }
+  bool are_others = true;
+};
+
+struct SlowPlanTest : ::testing::Test {
+  SlowPlanTest() {
+    app.add("light", testing::component<Tool>("tool"));
+    app.add("heavy", testing::component<Tool>("tool"));
+    app.add("arm", testing::component<Arm>("arm"), milliseconds(4));
+    app.add("law", testing::component<Law>("law"));
+    app.add("clock", testing::component<Clock>("clock"), milliseconds(50));
+    app.make({kLight, kArm, kLaw, kClock}, false);
+    app.spec.sets = sets;
+    planner.prepare(app.spec, heap);
+    slow.prepare(app.spec, heap);
+    ways.prepare(app.spec, heap);
+  }
+  const SwitchPlan& plan(std::uint32_t from, std::uint32_t to) {
+    standing.assign(5, {State::kOff, false});
+    for (const TaskId task : sets[from].order) standing[task.index].state = State::kOn;
+    EXPECT_TRUE(planner.plan(to, standing, made_plan));
+    return made_plan;
+  }
+  std::vector<SlowStep> steps(std::uint32_t from, std::uint32_t to) {
+    const auto list = slow.plan(plan(from, to), from);
+    return {list.begin(), list.end()};
+  }
+  SwitchWay way(std::uint32_t from, std::uint32_t to, std::uint32_t constants) {
+    const SwitchPlan& made_of_them = plan(from, to);
+    return ways.judge(made_of_them, standing, constants, made);
+  }
+
+  const std::vector<TaskId> light{kLight, kArm, kLaw, kClock}, heavy{kHeavy, kArm, kLaw}, bare{kClock},
+      other_law{kHeavy, kLaw};
+  const NamedSet sets[4] = {{"light", light}, {"heavy", heavy}, {"bare", bare}, {"law", other_law}};
+  testing::TestApplication app;
+  HeapMemory heap;
+  SwitchPlanner planner;
+  SlowPlanner slow;
+  SwitchWays ways;
+  SwitchPlan made_plan;
+  std::vector<TaskStanding> standing;
+  Made made;
+};
+
+TEST_F(SlowPlanTest, ChecksThenOffThenReinitInOrderThenOn) {
+  EXPECT_EQ(steps(0, 1), (std::vector<SlowStep>{{SlowAct::kCheck, kArm},
+                                                {SlowAct::kCheck, kLaw},
+                                                {SlowAct::kOff, kClock},
+                                                {SlowAct::kOff, kLight},
+                                                {SlowAct::kReinit, kArm},
+                                                {SlowAct::kReinit, kLaw},
+                                                {SlowAct::kOn, kHeavy}}));
+}
+
+TEST_F(SlowPlanTest, WhoArrivesIsReinitialisedToo) {
+  EXPECT_EQ(steps(2, 1), (std::vector<SlowStep>{{SlowAct::kCheck, kArm},
+                                                {SlowAct::kCheck, kLaw},
+                                                {SlowAct::kOff, kClock},
+                                                {SlowAct::kReinit, kArm},
+                                                {SlowAct::kReinit, kLaw},
+                                                {SlowAct::kOn, kHeavy},
+                                                {SlowAct::kOn, kArm},
+                                                {SlowAct::kOn, kLaw}}));
+}
+
+// Each pair of configurations, with values that differ and that are equal.
+TEST_F(SlowPlanTest, IsSlowExactlyWhereATaskThatStaysUsesWhatChanges) {
+  const auto found = [&](std::uint32_t from, std::uint32_t to) { return way(from, to, from).constant.task; };
+  for (std::uint32_t from = 0; from < 4; ++from)
+    for (std::uint32_t to = 0; to < 4; ++to) {
+      if (from == to) continue;
+      // From `law` on arm arrives, initialised with whatever, and makes what law uses, which stays.
+      const bool is_slow = (from == 0 && to == 1) || (from == 1 && to == 0) || (from == 3 && to < 2);
+      EXPECT_EQ(way(from, to, from).slow, is_slow ? kSlowForConstants : 0) << from << " to " << to;
+      EXPECT_EQ(found(from, to).is_valid(), is_slow);
+      made.are_others = false;
+      EXPECT_EQ(way(from, to, from).slow, 0) << from << " to " << to;
+      made.are_others = true;
+    }
+  EXPECT_EQ(way(0, 1, 0).constant.task, kArm);
+  EXPECT_EQ(app.spec.constants[way(0, 1, 0).constant.constant.index].name, "mass");
+}
+
+// After `bare` the constants of `light` or of `bare` are in force: arm was initialised with those of the first that
+// names it.
+TEST_F(SlowPlanTest, TheProducerOfTheSetInForceCountsElseThatOfTheFirstThatNamesTheUser) {
+  const ConstantId mass{0u};
+  EXPECT_EQ(producer_for(app.spec, mass, kArm, 0), 0u);
+  EXPECT_EQ(producer_for(app.spec, mass, kArm, 1), 1u);
+  EXPECT_EQ(producer_for(app.spec, mass, kArm, 2), 0u);
+  EXPECT_EQ(producer_for(app.spec, mass, kHeavy, 0), 1u);
+  EXPECT_EQ(producer_for(app.spec, mass, kClock, kNoSet), 0u);
+  EXPECT_EQ(set_of_start(app.spec), 0u);
+}
+
+TEST_F(SlowPlanTest, TheFlagIsUpForThePeriodOfTheSlowestDeviceThatIsOn) {
+  EXPECT_EQ(flag_lead(app.spec, bits_of(light)), milliseconds(4));
+  EXPECT_EQ(flag_lead(app.spec, bits_of(bare)), Nanoseconds{});
+}
+
+}  // namespace
+}  // namespace chimera
