@@ -131,9 +131,10 @@ std::optional<std::int64_t> Readings::constant(ConstantId id) const {
     return value.empty() ? std::nullopt : std::optional(static_cast<std::int64_t>(value[0]));
   };
   if (!constant.value.empty()) return whole(constant.value);
+  const bool is_chosen = std::ranges::any_of(constant.producers, [this](const PortOf& port) { return is_on(port); });
   for (const PortOf& producer : constant.producers) {
     const PeerSegment& segment = peers_.of(producer.task);
-    if (!segment.is_there()) continue;
+    if (!segment.is_there() || (is_chosen && !is_on(producer))) continue;  // of several the one that is ON counts
     const PeerLayout& layout = peers_.layout(peers_.spec().tasks[producer.task.index].rtpu);
     const GroupId group = layout.constants(producer.task);
     const VariablePlace& place = layout.variables(group)[producer.index];

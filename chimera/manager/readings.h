@@ -69,6 +69,7 @@ class Readings {
   };
   Form form_of(std::size_t variable, const Configuration& configuration, const Library& library) const;
   std::uint32_t extent(const ExtentSpec& extent) const;
+  bool is_on(const PortOf& port) const { return peers_.status(port.task).state == State::kOn; }
   std::optional<std::int64_t> constant(ConstantId id) const;
   VariableReading read(VariableId variable, bool with_value) const;
   bool read_output(const PortOf& port, chimera_slot& slot, std::vector<std::byte>* value) const;

@@ -12,8 +12,10 @@
 namespace chimera {
 namespace {
 
-struct Tool {
+struct Tool {  // has as many outputs as its own constant says
   OutConst<double> mass{"mass", "kg"};
+  OutConst<std::int32_t> n{"n", "1"};
+  Out<double[]> list{"list", "1", "[n<=4]"};
   Out<double> grip{"grip", "1"};
   void cycle(Cycle) {}
 };
@@ -53,6 +55,7 @@ struct SlowPlanTest : ::testing::Test {
     app.add("arm", testing::component<Arm>("arm"), milliseconds(4));
     app.add("law", testing::component<Law>("law"));
     app.add("clock", testing::component<Clock>("clock"), milliseconds(50));
+    for (const TaskId tool : {kLight, kHeavy}) app.extend(tool.index, 2, 4, "n");
     app.make({kLight, kArm, kLaw, kClock}, false);
     app.spec.sets = sets;
     planner.prepare(app.spec, heap);

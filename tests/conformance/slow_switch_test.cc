@@ -247,6 +247,38 @@ TEST_P(SlowSwitches, WhoDoesNotComeBackIsNamed) {
   EXPECT_TRUE(set_->flag().is_up()) << "nobody produces force";
 }
 
+TEST_P(SlowSwitches, ASignalToAMemberAndTheFlagTakeItBack) {
+  const ScriptAct off{milliseconds(11), ScriptAct::Kind::kSignal, Signal::kOff, kBystander};
+  auto receipts = go(milliseconds(40), {to(kWithHeavy, microseconds(9600)), off});  // the flag is up for the arm to act
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kDisturbed);
+  EXPECT_EQ(receipts[0].task, kBystander);
+  EXPECT_EQ(receipts[0].not_back, kBystander);
+  EXPECT_EQ(tools.story, (std::vector<std::string>{"on light"}));
+  EXPECT_FALSE(set_->flag().is_up());
+  tools = {};
+  const ScriptAct up{milliseconds(11), ScriptAct::Kind::kRaiseFlag, Signal::kOn, TaskId()};
+  receipts = go(milliseconds(40), {to(kWithHeavy, microseconds(9600)), up});
+  EXPECT_EQ(receipts[0].why, NoSwitch::kFlagRaised);
+  EXPECT_FALSE(receipts[0].not_back.is_valid());
+  EXPECT_TRUE(set_->flag().is_up());
+  EXPECT_TRUE(are_on(with_light_));
+}
+
+// Outside the configuration in force a task has the constants of the first one that names it.
+TEST_P(SlowSwitches, OnByHandReinitialisesWhoWasInitialisedWithOtherConstants) {
+  tools.heavy = 1;
+  tools.heavy_axes = 3;
+  const ScriptAct off{milliseconds(25), ScriptAct::Kind::kSignal, Signal::kOff, kScreen};
+  const ScriptAct on{milliseconds(45), ScriptAct::Kind::kSignal, Signal::kOn, kScreen};
+  const auto receipts =
+      go(milliseconds(60), {to(kWithHeavy, milliseconds(5)), off, to(kWithout, milliseconds(30)), on});
+  ASSERT_EQ(receipts[1].end, SwitchEnd::kDone) << static_cast<int>(receipts[1].why);
+  EXPECT_EQ(std::ranges::count(tools.story, "reinit screen"), 2);
+  EXPECT_EQ(*std::ranges::max_element(tools.axes), 3u);
+  EXPECT_EQ(tools.axes.back(), 2u);
+}
+
 TEST_P(SlowSwitches, ThereAndBackAThousandTimesLeavesNothing) {
   std::vector<ScriptAct> acts;
   Nanoseconds at = milliseconds(3);

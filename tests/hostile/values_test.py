@@ -108,8 +108,8 @@ class Values(unittest.TestCase):
             self.assertEqual(self.chimera("check", "FILE", text=stack)[0], 0 if right else 1, f"stack 256{gap}KiB")
 
     def test_a_constant_with_a_producer_in_each_of_two_configurations_is_legal(self):
-        for user in ("t_counter", "t_extent"):
-            text = TWO_MAKERS.replace("USER", user)
+        for user, operator in (("t_counter", ""), ("t_extent", "operator: {q: 1 rad}\n")):
+            text = TWO_MAKERS.replace("USER", user) + operator + "start: first\n"
             code, out, said = self.chimera("check", "FILE", text=text)
             self.assertEqual(code, 0, out + said)
             code, out, said = self.chimera("run", "FILE", "--virtual", "--for", "10 ms")

@@ -87,11 +87,11 @@ TEST(CheckModes, JudgesEachSwitchAndSaysWhoAsks) {
   EXPECT_EQ(output.code, kOk);
   EXPECT_EQ(output.err, "");
   EXPECT_EQ(output.out,
-            "heavy -> late: refused; asked for by an operator\n"
+            "heavy -> late: slow; asked for by an operator\n"
             "  CPU 1: not schedulable: a cycle of task 'a' may take 40 ms, its deadline is 10 ms\n"
             "heavy -> light: fast; asked for by on_miss of a, an operator\n"
             "  CPU 1: schedulable; what was released before has ended 8 ms after the change\n"
-            "late -> heavy: refused; asked for by an operator\n"
+            "late -> heavy: slow; asked for by an operator\n"
             "  CPU 1: not schedulable: a cycle of task 'a' may take 40 ms, its deadline is 10 ms\n"
             "late -> light: fast; asked for by an operator\n"
             "  CPU 1: schedulable; what was released before has ended 9 ms after the change\n"
@@ -102,10 +102,10 @@ TEST(CheckModes, JudgesEachSwitchAndSaysWhoAsks) {
             "unreachable except by an operator: late\n");
 }
 
-TEST(CheckModes, AReactionWhoseSwitchWouldBeRefusedIsAFault) {
+TEST(CheckModes, AReactionWhoseSwitchWouldBeSlowIsAFault) {
   const CommandResult output = modes_of(kModes, "{switch: late}", "{switch: light}");
   EXPECT_EQ(output.code, kRefused);
-  EXPECT_EQ(output.out.rfind("heavy -> late: refused; asked for by on_miss of a, an operator\n", 0), 0u) << output.out;
+  EXPECT_EQ(output.out.rfind("heavy -> late: slow; asked for by on_miss of a, an operator\n", 0), 0u) << output.out;
   EXPECT_NE(output.out.find("unreachable except by an operator: light\n"), std::string::npos) << output.out;
 }
 
@@ -143,7 +143,7 @@ TEST(CheckModes, AsJsonHasEveryKey) {
   const std::string begin =
       "{\"subsystem\":\"modes\",\"accepted\":true,\"configurations\":[{\"name\":\"heavy\",\"start\":true},"
       "{\"name\":\"late\",\"start\":false},{\"name\":\"light\",\"start\":false}],\"transitions\":["
-      "{\"from\":\"heavy\",\"to\":\"late\",\"asked_by\":[],\"legal\":true,\"way\":\"refused\",\"cpus\":[{\"cpu\":1,"
+      "{\"from\":\"heavy\",\"to\":\"late\",\"asked_by\":[],\"legal\":true,\"way\":\"slow\",\"cpus\":[{\"cpu\":1,"
       "\"schedulable\":\"no\",\"task\":\"a\",\"takes_ns\":40000000,\"settled_ns\":40000000,\"promised_before\":true}]},"
       "{\"from\":\"heavy\",\"to\":\"light\",\"asked_by\":[{\"cause\":\"on_miss\",\"task\":\"a\",\"constant\":null}],"
       "\"legal\":true,\"way\":\"fast\",\"cpus\":[{\"cpu\":1,\"schedulable\":\"yes\",\"task\":null,\"takes_ns\":null,"
