@@ -92,7 +92,7 @@ class Standby(unittest.TestCase):
             for _ in range(ROUNDS):
                 victims = []
                 while not victims:  # three deaths in 10 s and a unit is given up
-                    free = [who for who in ("first", "second", "manager") if time.monotonic() - last.get(who, 0) > 4]
+                    free = [who for who in ("first", "second", "manager") if time.monotonic() - last.get(who, 0) > 5.2]
                     victims = random.sample(free, min(len(free), random.choice((1, 2, 2))))
                     time.sleep(0.05)
                 pids, pause = system.pids(), random.choice((0, 0.0005, 0.002, 0.01))

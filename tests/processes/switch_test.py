@@ -181,7 +181,7 @@ class Rounds:
 
     def victims(self):
         while True:
-            free = [who for who in ("first", "second", "manager") if time.monotonic() - self.last.get(who, 0) > 4]
+            free = [who for who in ("first", "second", "manager") if time.monotonic() - self.last.get(who, 0) > 5.2]
             if free:
                 break
             time.sleep(0.05)
