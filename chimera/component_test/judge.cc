@@ -115,7 +115,8 @@ struct Judge {
     const Record& record = trial.counted.record();
     if (!record.is_traced) return not_judged("system calls", "this machine lets no process trace its child");
     std::string text;
-    for (const std::uint32_t m : {CHIMERA_CYCLE, CHIMERA_SYNC}) {
+    // A switch of configurations runs on and off beside the cycles of others.
+    for (const std::uint32_t m : {CHIMERA_CYCLE, CHIMERA_SYNC, CHIMERA_ON, CHIMERA_OFF}) {
       const MethodRecord& method = record.methods[m];
       if (method.system_calls == 0) continue;
       text += std::string(text.empty() ? "" : "; ") + kMethodNames[m] + ": at most " +
@@ -123,7 +124,7 @@ struct Judge {
               " in " + times(method.calls, "call", "calls") + ", the first " +
               system_call_name(method.first_system_call);
     }
-    if (text.empty()) return ok("system calls", "none in a cycle");
+    if (text.empty()) return ok("system calls", "none in a cycle, on and off");
     if (has_resources()) return ok("system calls", text + "; it uses a resource");
     fails("system calls", text + "; and the component has no resource port");
   }

@@ -146,14 +146,14 @@ start: run
   ASSERT_TRUE(fake.until_on("sensor"));
   ASSERT_TRUE(fake.until([&] { return fake.driver().world().logic.is_settled(); }));
   SwitchCoordinator& switches = fake.driver().switches();
-  const ForeseenSwitch foreseen = switches.foresee(1);
+  const ForeseenSwitch foreseen = switches.foresee(tasks_of(fake.spec(), 1));
   EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kDone);
   EXPECT_EQ(foreseen.receipt.way.slow, kSlowForDeadlines);
   EXPECT_EQ(control::slow_text(foreseen.receipt, fake.spec()),
             "the transition from 'run' to 'late' is not schedulable on CPU 3: a cycle of task 'sensor' may take 400 "
             "ms, its deadline is 100 ms");
   EXPECT_EQ(foreseen.expected, milliseconds(160)) << "off and on, which were never called: their budgets";
-  EXPECT_EQ(switches.foresee(2).receipt.way.slow, 0) << "like for like";
+  EXPECT_EQ(switches.foresee(tasks_of(fake.spec(), 2)).receipt.way.slow, 0) << "like for like";
   switches.ask({1, SwitchCause::kScript, {}}, kAnn, seconds(10), now(), [](const SwitchOutcome&) {});
   EXPECT_TRUE(switches.is_under_way());
   SwitchAgreement agreement(fake.driver().world().page.switching, {});

@@ -61,6 +61,19 @@ SwitchOrder lone_order(TaskSet& set, std::uint16_t last, const TaskBits& target,
   return order;
 }
 
+// A job that waits is replaced by the next release of its task, which has come in a context that is late by more than a
+// period. Replaced behind the change at `at`, a job of the time after it would have the bindings of before.
+void drop_replaced(const Switching::Parts& parts, Nanoseconds at, Nanoseconds now) noexcept {
+  if (parts.threads.run_beside_methods()) return;
+  const TaskClasses& classes = parts.queue.classes();
+  for (const Task& each : parts.set.tasks()) {
+    if (each.is_busy || !classes.is_active(each.id.index) || !parts.queue.has_waiting(each.id, at)) continue;
+    Job job;
+    const bool is_replaced = classes[classes.class_of(each.id.index)].next <= now;
+    if (is_replaced && parts.queue.remove(each.id, job)) parts.misses.drop({each.id, job.release, 1});
+  }
+}
+
 }  // namespace
 
 Switching::Switching(const Parts& parts) noexcept
@@ -341,6 +354,7 @@ void Switching::agree(Nanoseconds now) noexcept {
 void Switching::change(Nanoseconds now) noexcept {
   if (now < at_) return;
   release_before(parts_, at_);
+  drop_replaced(parts_, at_, now);
   if (!is_changed_) {
     is_changed_ = true;
     parts_.set.constants().put_in_force(order_.constants_after());

@@ -17,7 +17,7 @@ namespace {
 
 enum Misdeed : std::int32_t {
   kNone, kNaN, kOutOfRange, kNeverWritten, kAllocates, kFrees, kSystemCall, kForgetful, kUnforgiving, kSaysNo,
-  kPoisoned, kCrash, kHang, kOpen, kLeak, kThrows, kRefuses
+  kPoisoned, kCrash, kHang, kOpen, kLeak, kThrows, kRefuses, kCallsInOn
 };
 
 // Differs from one process to the next.
@@ -28,7 +28,7 @@ double present_number() {
 
 struct Misfit {
   In<double> x{"x", "1", doc = "Any number."};
-  InConst<std::int32_t> misdeed{"misdeed", "1", initial = 0, range(0, 16), doc = "What it does wrong."};
+  InConst<std::int32_t> misdeed{"misdeed", "1", initial = 0, range(0, 17), doc = "What it does wrong."};
   Out<double> y{"y", "1", range(-1e6, 1e6), doc = "x, as far as the misdeed lets it be."};
   Out<double> z{"z", "1", doc = "Written but for one misdeed."};
 
@@ -39,6 +39,7 @@ struct Misfit {
     return ok();
   }
   void on() {
+    if (*misdeed == kCallsInOn) ::syscall(SYS_getppid);
     faulty_ = false;
     sum_ = 0;
   }

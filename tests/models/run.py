@@ -1,7 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the models exhaustively with SPIN: the correct ones must have no error, every mutant must be caught.
-Prints states and seconds of each; exit 0 all as expected, 1 not, 77 when spin or a C compiler is missing."""
+"""Checks the models exhaustively with SPIN: the correct ones must have no error, every mutant must be caught. With
+--recorder the model of a switch must be able to make what real units have done (tests/switching), and must not be able
+to make the same with a change that breaks a rule. Prints states and seconds of each; exit 0 all as expected, 1 not, 77
+when spin or a C compiler is missing.
+
+usage: run.py [--recorder PROGRAM] [--only-recorded]"""
+import argparse
+import os
 import pathlib
 import re
 import resource
@@ -33,6 +39,11 @@ CASES = [
     ("switch", "TWO_PLANS"),
 ]
 
+# Of real units: runs of so many switches, which together have all these events.
+RECORDED, PLANS = 40, 3
+SEEN = {"prepared by the manager", "armed", "proposed", "agreed", "committed", "adopted", "over", "aborted",
+        "aborted by the manager", "died", "died by the manager", "filed by the manager"}
+
 
 def explore(model, mutant, folder):
     """(errors, states) of one exhaustive search; a mutant's search ends at its first error."""
@@ -48,13 +59,92 @@ def explore(model, mutant, folder):
     return int(errors[1]), int(states[1])
 
 
+def build_follower(folder):
+    """The model of a switch that follows a recorded run."""
+    run = {"cwd": folder, "check": True, "capture_output": True, "text": True}
+    subprocess.run(["spin", "-DRECORDED", f"-DPLANS={PLANS}", "-a", HERE / "switch.pml"], **run)
+    subprocess.run(["cc", "-O1", "-w", "-DSAFETY", "-DNOREDUCE", "-DCOLLAPSE", "-DMEMLIM=1024", "-o", "pan", "pan.c",
+                    HERE / "recorded_run.c"], **run)
+
+
+def can_make(events, folder):
+    """Whether the model has a run with exactly these events, in their order."""
+    path = pathlib.Path(folder) / "run"
+    path.write_text("\n".join(events) + "\n")
+    done = subprocess.run(["./pan", "-m100000", "-E"], cwd=folder, env=dict(os.environ, RECORDED_RUN=str(path)),
+                          capture_output=True, text=True)
+    output = done.stdout
+    if "errors: 1" in output and "assertion violated 0 " in output:
+        return True
+    if "errors: 0" not in output or "max search depth too small" in output or "out of memory" in output:
+        raise RuntimeError(f"the search for a recorded run did not end:\n{output}{done.stderr}")
+    return False
+
+
+def moved(events, what, before):
+    """The first event of that name from its place to before the last one of another name in front of it."""
+    at = next(i for i, event in enumerate(events) if event.startswith(what))
+    to = max(i for i in range(at) if events[i].startswith(before))
+    return events[:to] + [events[at]] + events[to:at] + events[at + 1:]
+
+
+# Runs that break a rule, made from one in which nobody died and a switch was committed.
+BROKEN = {
+    "committed before the last has agreed": lambda events: moved(events, "committed", "agreed"),
+    "proposed before all are armed": lambda events: moved(events, "proposed", "armed"),
+    "adopted before the commit": lambda events: moved(events, "adopted", "committed"),
+    "over before the last has adopted": lambda events: moved(events, "over", "adopted"),
+    "filed before the last is over": lambda events: moved(events, "filed", "over"),
+    "aborted after the commit": lambda events: [
+        line for event in events for line in ([event, "aborted 2"] if event.startswith("committed") else [event])],
+    "planned before the last is filed": lambda events: [event for event in events if not event.startswith("filed")]
+        + ["prepared 2"],
+    "one agrees twice": lambda events: [
+        line for event in events for line in ([event] * 2 if event.startswith("agreed") else [event])],
+}
+
+
+def judge_recorded(recorder):
+    """How many recorded runs are not judged as they should be."""
+    wrong, seen, sound = 0, set(), None
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    with tempfile.TemporaryDirectory() as folder:
+        build_follower(folder)
+        for seed in range(1, RECORDED + 1):
+            done = subprocess.run([recorder, "--record", "--seed", str(seed)], capture_output=True, text=True)
+            events = done.stdout.splitlines()
+            if done.returncode != 0 or not events or not can_make(events, folder):
+                wrong += 1
+                print(f"recorded run {seed}: NOT ACCEPTED {' | '.join(events)} {done.stderr}")
+                continue
+            seen.update(event.rsplit(" ", 1)[0] + (" by the manager" if event.endswith(" 2") else "")
+                        for event in events)
+            is_sound = not any(event.startswith(("died", "aborted")) for event in events)
+            if is_sound and sum(event.startswith("committed") for event in events) == PLANS:
+                sound = sound or events
+        for what in SEEN - seen:
+            wrong += 1
+            print(f"no recorded run has '{what}'")
+        for what, broken in BROKEN.items():
+            if sound is None or can_make(broken(sound), folder):
+                wrong += 1
+                print(f"recorded run with '{what}': NOT REJECTED")
+    seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    print(f"{RECORDED} runs of real units, {len(BROKEN)} of them broken: {wrong} judged wrongly {seconds:5.1f} s CPU")
+    return wrong
+
+
 def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--recorder", help="tests/switching/switching_stress of a tree")
+    parser.add_argument("--only-recorded", action="store_true")
+    arguments = parser.parse_args()
     missing = [tool for tool in ("spin", "cc") if not shutil.which(tool)]
     if missing:
         print(f"skipped: {', '.join(missing)} not installed")
         return 77
-    wrong = 0
-    for model, mutant in CASES:
+    wrong = judge_recorded(arguments.recorder) if arguments.recorder else 0
+    for model, mutant in [] if arguments.only_recorded else CASES:
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         with tempfile.TemporaryDirectory() as folder:
             errors, states = explore(model, mutant, folder)

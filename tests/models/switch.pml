@@ -21,7 +21,10 @@
  * Mutants: NO_AGREEMENT (the last to arm commits), LATE_GOES_ON (a release from T on does not abort a plan that is only
  * proposed), OFF_EARLY (`off` of the old producer before all have adopted), FREED_EARLY (its group is given away
  * before), NO_PROOF (the standby takes over from a task that is only silent), JOURNAL_LATE (journal after the plan),
- * ARMED_STAYS (an abort leaves the armed task), TWO_PLANS (the next plan before the one before is over). */
+ * ARMED_STAYS (an abort leaves the armed task), TWO_PLANS (the next plan before the one before is over).
+ *
+ * With RECORDED the model follows a run of real units (tests/switching/record_runs.cc): what EVENT names happens in the
+ * order of that run, or the search goes on elsewhere; it ends with an error when the model has made the whole run. */
 
 #define RTPUS 2
 #ifndef PLANS
@@ -34,6 +37,32 @@
 #define LEAD 1
 #define MANAGER RTPUS
 #define NOBODY 3
+
+/* Whether the run goes on with that event (recorded_run.c). Without RECORDED an event is nothing, and no state. */
+#define PREPARED 1
+#define ARMED 2
+#define PROPOSED 3
+#define AGREED 4
+#define COMMITTED 5
+#define ADOPTED 6
+#define OVER 7
+#define ABORTED 8
+#define DIED 9
+#define FILED 10
+#ifdef RECORDED
+c_decl { extern int is_next(int at, int event, int who); };
+byte n_events, event, event_of;
+bool has_strayed, is_whole;
+#define EVENT(what, who) \
+  event = what; event_of = who; \
+  c_code { now.has_strayed = !is_next(now.n_events, now.event, now.event_of); }; \
+  n_events++; event = 0; event_of = 0; \
+  c_code { now.is_whole = !now.has_strayed && is_next(now.n_events, 0, 0); };
+#define FOLLOWS provided (!has_strayed)
+#else
+#define EVENT(what, who)
+#define FOLLOWS
+#endif
 
 mtype = { idle, prepared, proposed, committed, aborted };
 mtype = { nothing, of_even, of_odd, of_off };
@@ -71,7 +100,7 @@ bool rtpu_may_die = true, manager_may_die = true;
 #define ALL_ADOPTED(n) ((!lives[0] || adopted[0] >= n) && (!lives[1] || adopted[1] >= n))
 #define ALL_OVER(n) ((!lives[0] || over[0] >= n) && (!lives[1] || over[1] >= n))
 #define IS(p) (phase == p && number == of_plan)
-#define CHANGE(before, after) if :: IS(before) -> phase = after :: else fi
+#define ABORT(before, who) if :: IS(before) -> EVENT(ABORTED, who) phase = aborted :: else fi
 
 /* Between two steps: goes on, is held up, or dies. */
 inline step(i) {
@@ -81,14 +110,15 @@ inline step(i) {
   fi;
   if
   :: skip
-  :: i == MANAGER && manager_may_die -> manager_may_die = false; goto dead
-  :: i < RTPUS && rtpu_may_die -> rtpu_may_die = false; lives[i % RTPUS] = false; goto dead
+  :: i == MANAGER && manager_may_die -> manager_may_die = false; EVENT(DIED, i) goto dead
+  :: i < RTPUS && rtpu_may_die -> rtpu_may_die = false; lives[i % RTPUS] = false; EVENT(DIED, i) goto dead
   fi
 }
 
 inline commit() {
   assert(!lives[0] || next[0] <= at);  /* nobody who lives has used a release from T on */
   assert(!lives[1] || next[1] <= at);
+  EVENT(COMMITTED, i)
   phase = committed;
   latest++;
   from = at
@@ -101,7 +131,7 @@ inline take_job(i) {
   if
   :: of_plan > adopted[i] && seen == proposed && next[i] >= t ->
 #ifndef LATE_GOES_ON
-     CHANGE(proposed, aborted);
+     ABORT(proposed, i);
 #endif
      seen = phase;
      step(i)
@@ -123,6 +153,7 @@ inline take_job(i) {
   if
   :: of_plan > adopted[i] && seen == committed && generation[i] == latest && next[i] > t ->
      step(i);
+     EVENT(ADOPTED, i)
      adopted[i] = of_plan
   :: else
   fi
@@ -137,16 +168,16 @@ inline arm(i) {
   fi;
   step(i);
   if
-  :: i + 1 < RTPUS -> if :: IS(prepared) -> turn = i + 1 :: else fi
+  :: i + 1 < RTPUS -> if :: IS(prepared) -> EVENT(ARMED, i) turn = i + 1 :: else fi
   :: else ->
      t = now + LEAD;
      step(i);                        /* may be held up before it writes T */
      if
-     :: IS(prepared) && t > TICKS -> phase = aborted  /* no release is left to change at */
+     :: IS(prepared) && t > TICKS -> EVENT(ABORTED, i) phase = aborted  /* no release is left to change at */
 #ifdef NO_AGREEMENT
      :: IS(prepared) && t <= TICKS -> at = t; commit()
 #else
-     :: IS(prepared) && t <= TICKS -> at = t; missing = RTPUS; phase = proposed
+     :: IS(prepared) && t <= TICKS -> EVENT(PROPOSED, i) at = t; missing = RTPUS; phase = proposed
 #endif
      :: else
      fi
@@ -158,10 +189,10 @@ inline agree(i) {
   seen = (now < t && next[i] <= t -> proposed : aborted);
   step(i);
   if
-  :: seen == aborted -> CHANGE(proposed, aborted)
+  :: seen == aborted -> ABORT(proposed, i)
   :: else ->
      t = RTPUS;
-     if :: IS(proposed) -> missing--; t = missing :: else fi;
+     if :: IS(proposed) -> EVENT(AGREED, i) missing--; t = missing :: else fi;
      step(i);
      if :: t == 0 && IS(proposed) -> commit() :: else fi
   fi
@@ -175,6 +206,7 @@ inline disarm(i) {
   if :: armed[i] -> armed[i] = false; group[(latest + 1) % 2] = of_off :: else fi;
   step(i);
 #endif
+  EVENT(OVER, i)
   adopted[i] = of_plan; over[i] = of_plan
 }
 
@@ -183,12 +215,13 @@ inline finish(i) {
   step(i);
   if :: latest > 0 && PRODUCER(latest - 1) == i -> group[(latest - 1) % 2] = of_off :: else fi;
   step(i);
+  EVENT(OVER, i)
   over[i] = of_plan
 }
 
 inline take_over() {
   of_plan = number;
-  if :: IS_OPEN -> phase = aborted :: else fi;
+  if :: IS_OPEN -> EVENT(ABORTED, 1) phase = aborted :: else fi;
   step(1);
   if
   :: phase != committed || number <= adopted[1] ->
@@ -198,7 +231,7 @@ inline take_over() {
   fi
 }
 
-proctype Rtpu(byte i) {
+proctype Rtpu(byte i) FOLLOWS {
   byte of_plan, t, agreed;
   mtype seen;
 again:
@@ -219,7 +252,7 @@ end:
               group[(latest - 1) % 2] != nothing -> group[(latest - 1) % 2] = nothing; goto again }
 #endif
   :: atomic { IS_OPEN && !lives[1 - i] -> of_plan = number; step(i);
-              if :: IS_OPEN && number == of_plan -> phase = aborted :: else fi; goto again }
+              if :: IS_OPEN && number == of_plan -> EVENT(ABORTED, i) phase = aborted :: else fi; goto again }
 #ifdef NO_PROOF
   :: atomic { i == 1 && generation[1] % 2 == 0 && !standby_on && !(phase == committed && number > adopted[1]) &&
               (!lives[0] || stalled == 0) -> take_over(); goto again }
@@ -232,13 +265,14 @@ dead:
   atomic { of_plan = 0; t = 0; seen = idle; agreed = 0 }
 }
 
-active proctype Manager() {
+active proctype Manager() FOLLOWS {
 dead:
   do
   :: atomic { number < journal && receipts < journal -> receipts = journal }  /* never announced: told so */
   :: atomic { number == journal && receipts < journal && IS_OPEN -> step(MANAGER);
-              if :: IS_OPEN -> phase = aborted :: else fi }  /* cancelled, late, or a member died */
+              if :: IS_OPEN -> EVENT(ABORTED, MANAGER) phase = aborted :: else fi }  /* cancelled, late, a death */
   :: atomic { number == journal && receipts < journal && !IS_OPEN && ALL_OVER(number) -> step(MANAGER);
+              EVENT(FILED, MANAGER)
               receipts = number }
 #ifdef TWO_PLANS
   :: atomic { journal < PLANS ->
@@ -250,6 +284,7 @@ dead:
      journal = number
 #else
      journal++; step(MANAGER);
+     EVENT(PREPARED, MANAGER)
      number = journal; phase = prepared; turn = 0; at = 0; made = number
 #endif
      }
@@ -258,7 +293,7 @@ dead:
 }
 
 /* Time goes on, and who was held up too. */
-active proctype World() {
+active proctype World() FOLLOWS {
 end:
   do
   :: atomic { now < TICKS -> now++ }
@@ -268,6 +303,9 @@ end:
 
 init {
   atomic { group[0] = of_even; run Rtpu(0); run Rtpu(1) };
+#ifdef RECORDED
+  is_whole -> assert(false);  /* the model has made the run */
+#endif
   timeout ->
   assert(!IS_OPEN);
   assert(receipts >= made);

@@ -20,7 +20,8 @@ CAMPAIGNS = {
     "exhaustion": ((("exhaustion_test.py", 0),), "failed calls"),
     "logging": ((("logging_test.py", 5),), None),
     "preemptive": ((("preemptive_test.py", 5),), "bad jobs"),
-    "switch": ((("switch_test.py", 10), ("slow_switch_test.py", 5)), None),
+    "switch": ((("switch_test.py", 40), ("slow_switch_test.py", 5)), "kills"),
+    "standby": ((("standby_test.py", 20),), "kills"),
     "receipts": ((("receipts_test.py", 30),), "receipts"),
     "numbers": ((("numbers_test.py", 50),), "restarts"),
 }

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A switch of configurations over real processes: all or nothing, one receipt each, whoever dies meanwhile. A bounded
 count here; more of them are the campaign `process_switch`. CHIMERA_ROUNDS: switches beside kills."""
+import mmap
 import os
+import pathlib
 import random
 import sys
 import threading
@@ -141,54 +143,129 @@ configurations:
             self.assertEqual((done["end"], done["way"], done["flag_ns"]), ("done", "fast", 0))
 
     def test_whoever_dies_the_next_switch_works(self):
-        """A real-time unit or the manager is killed at any moment of a switch."""
+        """A real-time unit, the manager, or two of them are killed at each phase of a switch."""
         random.seed(SEED)
         print(f"seed {SEED}", file=sys.stderr)
+        rounds = Rounds(self)
         with System(random.choice((TEXT, MIXED, PREEMPTIVE))) as system:
-            for _ in range(ROUNDS):
-                before = next(name for name, tasks in SETS.items() if tasks == self.on(system))
-                target = "quick" if before == "gentle" else "gentle"
-                who = random.choice(["first", "second", "manager"])
-                pid = system.pids()[who]
-                told = []
+            system.call("switch", configuration="quick")
+            page = PlanPage(system)
+            for number in range(ROUNDS):
+                rounds.go(system, page, PHASES[(number + SEED) % len(PHASES)])
+        print(", ".join(f"{n} {phase}" for phase, n in rounds.hit.items()), file=sys.stderr)
+        print(f"kills: {rounds.kills}", file=sys.stderr)
 
-                def ask(target=target, told=told):
-                    try:
-                        client = Client(system.socket, 30)
-                        told.append(client.call("switch", configuration=target))
-                        client.close()
-                    except (Refused, OSError, ConnectionError) as error:
-                        told.append(error)
 
-                asking = threading.Thread(target=ask)
-                asking.start()
-                time.sleep(random.random() * 0.02)
-                self.assertTrue(system.kill(pid))
-                asking.join(30)
-                self.assertFalse(asking.is_alive())
-                await_that(lambda who=who, pid=pid: system.pids().get(who) not in (None, pid), 20, f"a new {who}")
-                found = []
+class PlanPage:
+    """The words of the switch on the decision page, read while the units write them."""
 
-                def is_settled(found=found):
-                    tasks = self.on(system)
-                    found[:] = [name for name, its in SETS.items() if its == tasks]
-                    return found != []
-                await_that(is_settled, 20,
-                           f"a configuration (killed {who} in a switch to {target}, {told}); {self.on(system)}")
-                now = found[0]
-                if isinstance(told[0], dict) and who == "manager":
-                    self.assertEqual(now, target if told[0]["end"] != "aborted" else before)
-                time.sleep(4)  # three deaths in 10 s and a unit is given up
-                other = "quick" if now == "gentle" else "gentle"
+    def __init__(self, system):
+        self.words = self.at = None
+        keeper = pathlib.Path(f"/proc/{system.pids()['keeper']}/fd")
+        for link in keeper.iterdir():
+            if os.readlink(link).startswith("/memfd:chimera-decision"):
+                held = os.open(link, os.O_RDONLY)
+                self.words = mmap.mmap(held, os.fstat(held).st_size, prot=mmap.PROT_READ)
+                os.close(held)
+                break
+        number = 1  # that of the switch which was made
+        self.at = next(at for at in range(0, len(self.words) - 128, 64)
+                       if self.word(at) & 0x3ffff == 3 << 16 | number and self.word(at + 64) & 0xffff == number)
 
-                def works(other=other):
-                    try:
-                        return system.call("switch", configuration=other)["end"] in ("done", "nothing-to-do")
-                    except Refused:
-                        return False
-                await_that(works, 10, "the next switch")
-                self.assertEqual(self.on(system), SETS[other])
-                self.await_values(system, VALUE[other])
+    def word(self, at):
+        return int.from_bytes(self.words[at:at + 8], "little")
+
+    def plan(self):
+        """(number of the plan, its phase)"""
+        word = self.word(self.at)
+        return word & 0xffff, ("aborted", "prepared", "proposed", "committed")[word >> 16 & 3]
+
+    def await_phase(self, last, phase, limit=5):
+        """Until a plan after `last` has come so far, or further; without a pause."""
+        order, end = ("prepared", "proposed", "committed", "aborted"), time.monotonic() + limit
+        while time.monotonic() < end:
+            number, now = self.plan()
+            if number != last and order.index(now) >= order.index(phase):
+                return
+
+
+# When somebody is killed: in that phase, as much later as at most so many seconds.
+PHASES = (("prepared", 0), ("prepared", 0.008), ("proposed", 0), ("proposed", 0.001), ("committed", 0),
+          ("committed", 0.0015), ("committed", 0.004), ("committed", 0.02))
+
+
+class Rounds:
+    """Kills in the middle of switches. Who has died is let live a while: three deaths in 10 s and it is given up."""
+
+    def __init__(self, test):
+        self.test, self.kills, self.hit, self.last = test, 0, {}, {}
+
+    def victims(self):
+        while True:
+            free = [who for who in ("first", "second", "manager") if time.monotonic() - self.last.get(who, 0) > 5.2]
+            if free:
+                break
+            time.sleep(0.05)
+        chosen = random.sample(free, min(len(free), random.choice((1, 1, 1, 2))))
+        self.last.update({who: time.monotonic() for who in chosen})
+        return chosen
+
+    def go(self, system, page, phase):
+        test = self.test
+        before = next(name for name, tasks in SETS.items() if tasks == test.on(system))
+        target = "quick" if before == "gentle" else "gentle"
+        chosen = self.victims()
+        pids = {who: pid for who, pid in system.pids().items() if who in chosen}
+        last, told = page.plan()[0], []
+
+        def ask():
+            try:
+                client = Client(system.socket, 30)
+                told.append(client.call("switch", configuration=target))
+                client.close()
+            except (Refused, OSError, ConnectionError) as error:
+                told.append(error)
+
+        asking = threading.Thread(target=ask)
+        later = random.random() * phase[1]
+        asking.start()
+        page.await_phase(last, phase[0])
+        if later:
+            time.sleep(later)
+        hit = page.plan()[1] + (" and later" if later > 0.0015 else "")
+        for pid in pids.values():
+            test.assertTrue(system.kill(pid))
+        self.kills += len(pids)
+        self.hit[hit] = self.hit.get(hit, 0) + 1
+        asking.join(30)
+        test.assertFalse(asking.is_alive())
+        for who, pid in pids.items():
+            await_that(lambda who=who, pid=pid: system.pids().get(who) not in (None, pid), 20, f"a new {who}")
+        self.judge(system, f"killed {chosen}, {hit}, in a switch from {before} to {target}, {told}",
+                   None if "manager" not in chosen or len(chosen) > 1 else
+                   {"done": target, "aborted": before}.get(told[0]["end"] if isinstance(told[0], dict) else None))
+
+    def judge(self, system, what, expected):
+        """One of the configurations is in force, that of the answer if there was one, and the next switch works."""
+        test, found = self.test, []
+
+        def is_settled():
+            tasks = test.on(system)
+            found[:] = [name for name, its in SETS.items() if its == tasks]
+            return found != []
+        await_that(is_settled, 20, f"a configuration ({what})")
+        if expected is not None:
+            test.assertEqual(found[0], expected, what)
+        other = "quick" if found[0] == "gentle" else "gentle"
+
+        def works():
+            try:
+                return system.call("switch", configuration=other)["end"] in ("done", "nothing-to-do")
+            except Refused:
+                return False
+        await_that(works, 20, f"the next switch ({what})")
+        test.assertEqual(test.on(system), SETS[other], what)
+        test.await_values(system, VALUE[other])
 
 
 if __name__ == "__main__":

@@ -87,6 +87,9 @@ TEST_F(TestComponent, FindsSystemCalls) {
   EXPECT_EQ(found,
             "  fails       system calls  cycle: at most 1 in one call, 200 in 200 calls, the first system call 110; "
             "and the component has no resource port");
+  EXPECT_EQ(misdeed(17, "system calls"),
+            "  fails       system calls  on: at most 1 in one call, 1 in 1 call, the first system call 110; "
+            "and the component has no resource port");
 }
 
 TEST_F(TestComponent, FindsWhatDoesNotRepeat) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -31,6 +32,20 @@ class HandService final : public Service {
   std::deque<TaskId> asked, done;
 };
 
+/// What a method computes passes on the clock of its unit.
+class SteppedJobClock final : public JobClock {
+ public:
+  explicit SteppedJobClock(VirtualClock& clock) noexcept : clock_(clock) {}
+  Nanoseconds now() noexcept override { return clock_.now(); }
+  void spend(Nanoseconds time) noexcept override { clock_.advance(time); }
+
+ private:
+  VirtualClock& clock_;
+};
+
+/// What a test puts between a unit and its links in a switch.
+using BetweenLinks = std::function<std::shared_ptr<SwitchPeers>(std::uint32_t me, SwitchPeers& links)>;
+
 /// A segment of a peer, formatted, with its block.
 struct OwnSegment {
   OwnSegment(const ApplicationSpec& spec, std::uint32_t peer, std::uint32_t incarnation) {
@@ -48,7 +63,7 @@ struct OwnSegment {
 
 struct Unit {
   Unit(const ApplicationSpec& spec, std::span<const chimera_component* const> components, std::uint32_t me,
-       std::uint32_t incarnation, DecisionPage& decision, KeeperPage& keeper)
+       std::uint32_t incarnation, DecisionPage& decision, KeeperPage& keeper, const BetweenLinks& between = {})
       : bell(decision.bells[me].word), segment(spec, me, incarnation), peers(*MappedPeers::create(spec)),
         clock(decision_now), others(spec, me, segment.region.writable(), segment.block, decision, keeper, *peers) {
     const ContextPlace place{RtpuId(me), segment.region.writable().subspan(sizeof(SegmentHeader)),
@@ -59,11 +74,12 @@ struct Unit {
     EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message.c_str());
     tasks = *std::move(made);
     switching = std::make_unique<SwitchLinks>(*tasks, others, decision, me);
+    if (between) in_between = between(me, *switching);
     edge = std::make_unique<RtpuControl>(spec, *tasks, others, service, decision, me, seconds(1));
     RunOptions options;
     options.policy = spec.rtpus[me].policy;
     options.guest = edge.get();
-    options.switch_peers = switching.get();
+    options.switch_peers = in_between ? in_between.get() : switching.get();
     options.stop = &edge->unit_end().is_over();
     executive = std::make_unique<Executive>(*tasks, clock, job_clock, options);
     executive->start(keeper.origin);
@@ -92,11 +108,12 @@ struct Unit {
   OwnSegment segment;
   std::unique_ptr<MappedPeers> peers;
   VirtualClock clock;
-  ComputingClock job_clock{clock};
+  SteppedJobClock job_clock{clock};
   HandService service;
   PeerLinks others;
   std::unique_ptr<HeapTaskSet> tasks;
   std::unique_ptr<SwitchLinks> switching;
+  std::shared_ptr<SwitchPeers> in_between;
   std::unique_ptr<RtpuControl> edge;
   std::unique_ptr<Executive> executive;
 };
@@ -104,7 +121,8 @@ struct Unit {
 /// The application of `app` on as many units as it has rtpus.
 class Units {
  public:
-  explicit Units(TestApplication& application) : app(application) {
+  explicit Units(TestApplication& application, BetweenLinks between_links = {})
+      : app(application), between(std::move(between_links)) {
     n = static_cast<std::uint32_t>(app.spec.rtpus.size());
     keeper.n_rtpus = n;
     units.resize(n);
@@ -113,7 +131,7 @@ class Units {
   }
   void start(std::uint32_t u, std::uint32_t incarnation) {
     Unit::decision_now = now;
-    units[u] = std::make_unique<Unit>(app.spec, app.components, u, incarnation, decision, keeper);
+    units[u] = std::make_unique<Unit>(app.spec, app.components, u, incarnation, decision, keeper, between);
     for (std::uint32_t other = 0; other < n; ++other) {
       if (other == u || units[other] == nullptr) continue;
       show(u, other);
@@ -213,6 +231,7 @@ class Units {
   }
 
   TestApplication& app;
+  BetweenLinks between;
   std::uint32_t n = 0;
   DecisionPage decision;
   KeeperPage keeper;
