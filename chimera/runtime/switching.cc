@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
+#include "chimera/runtime/missing_value.h"
 
 namespace chimera {
 namespace {
@@ -20,20 +21,6 @@ TaskBits bits_of(std::span<const TaskId> tasks) noexcept {
   return bits;
 }
 
-// The first variable that the task reads and that never had a value; what an arriving task will write is not asked for.
-VariableId lacks_value(TaskSet& set, Task& task, std::span<const Handover> handovers) noexcept {
-  read_inputs(task);
-  const TaskMemory& memory = set.memory(task.id);
-  for (std::size_t i = 0; i < task.inputs.size(); ++i) {
-    const VariableId variable = memory.input_spec(i).variable;
-    const auto is_its = [&](const Handover& handover) { return handover.variable == variable; };
-    if (std::any_of(handovers.begin(), handovers.end(), is_its)) continue;
-    const chimera_port& port = *task.inputs[i].port;
-    if (((port.slot->valid >> port.bit) & 1u) == 0) return variable;
-  }
-  return {};
-}
-
 bool holds(TaskSet& set, const SafeCondition& asked) noexcept {
   return !asked.is_there() || is_safe(asked, present_value(set, asked));
 }
@@ -41,7 +28,7 @@ bool holds(TaskSet& set, const SafeCondition& asked) noexcept {
 void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcept {
   for (const Task& each : set.tasks()) {
     const bool is_elsewhere = set.others() != nullptr && !set.is_mine(each.id);
-    standing[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.state, each.in_service};
+    standing[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.shown_state(), each.in_service};
   }
 }
 
@@ -60,6 +47,21 @@ bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t numbe
     if (progress == nullptr || progress->adopted.load(std::memory_order_acquire) != number) return false;
   }
   return true;
+}
+
+// A hot standby that arrives is turned OFF first, and armed as any task. False: later.
+bool cool_down(const Switching::Parts& parts, const SwitchPlan& plan, Nanoseconds now) noexcept {
+  bool are_all = true;
+  for (const TaskId id : plan.arriving) {
+    Task& task = parts.set.tasks()[id.index];
+    if (!parts.set.is_mine(id) || !task.is_unread) continue;
+    are_all = are_all && parts.threads.claim(id);
+    if (!parts.threads.claim(id)) continue;
+    (void)parts.set.life().signal(id, Signal::kOff, now);
+    parts.set.standbys().let_cool(id, false);
+    parts.members.follow(task, now);
+  }
+  return are_all;
 }
 
 }  // namespace
@@ -135,7 +137,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   }
   SwitchOrder order;
   for (const Task& each : parts_.set.tasks())
-    if (each.state == State::kOn) order.on.add(each.id);
+    if (each.shown_state() == State::kOn) order.on.add(each.id);
   order.number = next_plan(agreement().plan().number);
   order.members = 1;
   order.after = request.set;
@@ -207,6 +209,7 @@ bool Switching::make_plan(const SwitchOrder& order) noexcept {
 
 void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   if (agreement().plan().phase == SwitchPhase::kProposed) return agree(now);
+  if (!cool_down(parts_, plan_, now)) return wait(now);
   if (!may_go_on(now)) return;
   const auto number = agreement().run(order_.number);
   const SwitchRun run = find_run(plan_, parts_.set.spec().tasks, number.value_or(UINT16_MAX));
@@ -221,7 +224,7 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
     Task& next = task(plan_.arriving[next_armed_]);
     if (!gap_.is_for(next, Method::kOn, now)) return wait(now);
     parts_.set.sources().read_ahead(next.id, plan_.handovers);
-    if (lacks_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now);
+    if (missing_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now);
     if (!arm(next, now)) return;
     now = parts_.clock.now();
     record_.receipt().armed = now;
@@ -282,7 +285,7 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   }
   Task& next = task(plan_.arriving[std::max(next_armed_, run.begin)]);
   parts_.set.sources().read_ahead(next.id, plan_.handovers);
-  const VariableId missing = lacks_value(parts_.set, next, plan_.handovers);
+  const VariableId missing = missing_value(parts_.set, next, plan_.handovers);
   abort(missing.is_valid() ? NoSwitch::kNoValue : NoSwitch::kNoGap, next.id, missing);
   return false;
 }
