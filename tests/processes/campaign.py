@@ -22,6 +22,9 @@ CAMPAIGNS = {
     "preemptive": ((("preemptive_test.py", 5),), "bad jobs"),
     "switch": ((("switch_test.py", 10),), None),
     "receipts": ((("receipts_test.py", 30),), "receipts"),
+    "clocks": ((("clocks_test.py", 300),), "jumps"),
+    "operators": ((("operators_test.py", 200),), "answers"),
+    "standby": ((("standby_test.py", 5),), None),
     "numbers": ((("numbers_test.py", 50),), "restarts"),
 }
 
