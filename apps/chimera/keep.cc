@@ -84,8 +84,11 @@ std::vector<std::string> face_of(const KeepRequest& request, const cli::RunPlan&
   return words;
 }
 
-bool has_device(const cli::RunPlan& plan) {
-  return std::ranges::any_of(plan.configuration.tasks(), &ConfiguredTask::is_hardware);
+/// Somebody is to act on the death, or the silence, of a unit.
+bool needs_guard(const cli::RunPlan& plan) {
+  const auto is_limit = [](const StandbySpec& standby) { return standby.stale_after.count > 0; };
+  return std::ranges::any_of(plan.configuration.tasks(), &ConfiguredTask::is_hardware) ||
+         std::ranges::any_of(plan.configuration.spec().standbys, is_limit);
 }
 
 /// "TASK:PERIODS" of each task that may not be silent for long.
@@ -121,7 +124,7 @@ Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
   const auto n_rtpus = static_cast<std::uint32_t>(plan.configuration.rtpus().size());
   Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"),
                            .manager_program = sibling("chimera-manager"),
-                           .guard_program = has_device(plan) ? sibling("chimera-guard") : "",
+                           .guard_program = needs_guard(plan) ? sibling("chimera-guard") : "",
                            .guard_limits = limits_of(plan),
                            .n_rtpus = n_rtpus,
                            .image = image->descriptor(),

@@ -31,7 +31,11 @@ class ReportWriter {
   ScheduleReport write() {
     for (const RtpuSpec& rtpu : configuration_.rtpus()) report_.dispatch.push_back(dispatch(rtpu));
     note_unknown();
-    for (std::size_t s = 0; s < configuration_.sets().size(); ++s) report_.sets.push_back(set(s));
+    for (std::size_t s = 0; s < configuration_.sets().size(); ++s) {
+      const ConfiguredSet& configured = configuration_.sets()[s];
+      report_.sets.push_back(set(configured.name, with_hot(configured.order), s == configuration_.start()));
+      for (const StandbySpec& pair : configuration_.spec().standbys) add_takeover(configured, pair);
+    }
     return std::move(report_);
   }
 
@@ -129,11 +133,29 @@ class ReportWriter {
     return made;
   }
 
-  SetSchedule set(std::size_t index) {
-    const ConfiguredSet& configured = configuration_.sets()[index];
-    SetSchedule made{.name = configured.name, .is_start = index == configuration_.start(), .cpus = {}, .paths = {}};
+  /// The tasks, and the hot standbys that cycle while one of them is ON.
+  std::vector<TaskId> with_hot(std::vector<TaskId> tasks) const {
+    const ApplicationSpec& spec = configuration_.spec();
+    for (const StandbySpec& each : spec.standbys)
+      if (each.hot && spec.is_kept_warm(each.standby, tasks)) tasks.push_back(each.standby);
+    return tasks;
+  }
+
+  /// The set with a standby in the place of its primary.
+  void add_takeover(const ConfiguredSet& configured, const StandbySpec& pair) {
+    std::vector<TaskId> tasks = configured.order;
+    if (std::ranges::count(tasks, pair.primary) == 0) return;
+    std::ranges::replace(tasks, pair.primary, pair.standby);
+    const auto names = configuration_.tasks();
+    report_.sets.push_back(set(configured.name + " with " + names[pair.standby.index].name + " for " +
+                                   names[pair.primary.index].name,
+                               with_hot(tasks), false));
+  }
+
+  SetSchedule set(const std::string& name, const std::vector<TaskId>& tasks, bool is_start) {
+    SetSchedule made{.name = name, .is_start = is_start, .cpus = {}, .paths = {}};
     SetWorks works{.tasks = {}, .works = {}, .uses = uses(), .outside = {}, .may_preempt = !options_.one_rtpu};
-    for (const TaskId id : configured.order) works.tasks.push_back(id.index);
+    for (const TaskId id : tasks) works.tasks.push_back(id.index);
     std::sort(works.tasks.begin(), works.tasks.end());  // ties go by the order of the description
     works.outside = outside(works.tasks);
     std::vector<ScheduleRow> rows;

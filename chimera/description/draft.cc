@@ -22,6 +22,7 @@ constexpr std::array<std::string_view, 3> kRestartKeys = {"restart", "within", "
 constexpr std::array<std::string_view, 2> kServerKinds = {"deferrable", "sporadic"};              // as ServerKind
 constexpr std::array<std::string_view, 2> kIsolations = {"shared", "process"};
 constexpr std::array<std::string_view, 1> kSwitchKeys = {"switch"};
+constexpr std::array<std::string_view, 2> kTruths = {"false", "true"};
 
 /// A map name -> anything, as pairs; keys have to be names.
 std::vector<NamedNode> read_named(const Node& node, const std::string& what, Report& report) {
@@ -118,6 +119,32 @@ void read_on_fault(const Node& node, const std::string& what, DraftTask& task, R
   if (!index) return;
   out.kind = static_cast<OnFault>(*index);
   task.on_fault = out;
+}
+
+void read_standby(const Node& node, const std::string& what, DraftTask& task, Report& report) {
+  DraftStandby out;
+  if (!node.is_map()) {
+    if (auto name = read_name(node, what, report)) task.standby_for = DraftStandby{*std::move(name), {}, {}};
+    return;
+  }
+  refuse_unknown_keys(node, kStandbyKeys, what, report);
+  const Node *name = node.find("task"), *stale = node.find("stale_after"), *hot = node.find("hot");
+  if (name == nullptr)
+    report.add({.rule = "key-missing",
+                .at = node.at,
+                .message = "'task' in " + what + " is missing",
+                .found = {},
+                .expected = "task",
+                .nearest = {},
+                .remedy = "write {task: NAME, stale_after: 20 ms, hot: true}"});
+  if (stale != nullptr) out.stale_after = read_duration(*stale, "'stale_after' in " + what, report);
+  if (hot != nullptr)
+    if (const auto truth = read_choice(*hot, kTruths, "'hot' in " + what, report))
+      out.hot = Located<bool>{truth->value == 1, truth->at};
+  auto word = name != nullptr ? read_name(*name, "'task' in " + what, report) : std::nullopt;
+  if (!word) return;
+  out.task = *std::move(word);
+  task.standby_for = std::move(out);
 }
 
 void read_alias(const Node& node, const std::string& what, DraftTask& task, Report& report) {
@@ -251,7 +278,7 @@ constexpr std::array<Read, kTaskKeys.size()> kReaders = {
     read_tolerate,
     read_server,
     read_time<&DraftTask::stale_after>,
-    [](const Node& n, const std::string& w, DraftTask& t, Report& r) { t.standby_for = read_name(n, w, r); },
+    read_standby,
     read_on_fault,
     read_map<&DraftTask::max_step>,
     [](const Node& n, const std::string& w, DraftTask& t, Report& r) {

@@ -76,6 +76,14 @@ struct DraftOnFault {
   DraftRestart restart;  ///< of kRestart
 };
 
+/// `NAME` or `{task: NAME, stale_after: T, hot: BOOL}`
+struct DraftStandby {
+  Word task;
+  std::optional<Located<Nanoseconds>> stale_after;
+  std::optional<Located<bool>> hot;
+  bool is_hot() const noexcept { return hot && hot->value; }
+};
+
 struct DraftTask {
   Word name;
   Word component;  ///< `at` is the name's when the key was left out
@@ -89,7 +97,7 @@ struct DraftTask {
   std::optional<DraftOnFault> on_fault;
   std::optional<DraftTolerate> tolerate;
   std::optional<DraftServer> server;
-  std::optional<Word> standby_for;
+  std::optional<DraftStandby> standby_for;
   std::optional<Located<std::uint64_t>> stack_bytes;
   std::optional<Located<bool>> own_process;
   bool is_partial = false;  ///< some key could not be read: say nothing about what the task lacks

@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 79> kRules = {
+inline constexpr std::array<std::string_view, 82> kRules = {
     // the text
     "file-unreadable",
     "text-size",
@@ -85,6 +85,8 @@ inline constexpr std::array<std::string_view, 79> kRules = {
     "standby-unknown",
     "standby-outputs",
     "standby-in-configuration",
+    "standby-stale",
+    "standby-hot",
     "server-periodic",
     "server-key",
     "safe-after",
@@ -97,6 +99,7 @@ inline constexpr std::array<std::string_view, 79> kRules = {
     // warnings
     "unused",
     "standby-same-rtpu",
+    "standby-resource",
     // what run does not have yet
     "not-built",
     // what run does not begin

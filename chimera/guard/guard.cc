@@ -36,6 +36,10 @@ Result<void> Guard::prepare(std::span<const SilenceLimit> limits) {
       return Error{ErrorCode::kBadInput, {"a limit of silence for a task that there is not"}, {}};
     silences_.emplace_back(limit.task, spec_.tasks[limit.task.index].period, limit.periods);
   }
+  for (const StandbySpec& each : spec_.standbys) {
+    if (each.stale_after.count > 0)
+      silences_.push_back(Silence::of(each, spec_.tasks[each.primary.index].period));
+  }
   return {};
 }
 
@@ -162,23 +166,37 @@ void Guard::finish(std::uint32_t index, bool is_at_once) noexcept {
         .at = written.at});
 }
 
-// SIGKILL is not yet the end: what there is to write is written when that is proved.
+bool Guard::is_there(std::uint32_t index) const noexcept {
+  return units_[index].process.fd >= 0 && units_[index].segment.is_there();
+}
+
+TaskStatus Guard::status(TaskId task) const noexcept {
+  const std::uint32_t index = spec_.tasks[task.index].rtpu.index;
+  return is_there(index) ? units_[index].segment.block().status(task) : TaskStatus{};
+}
+
+// SIGKILL is not yet the end: what there is to write is written, and a standby takes over, when that is proved. A
+// primary of which no standby can take over is left alone.
 void Guard::look_for_silence() noexcept {
   const Nanoseconds now = clock_.now();
   for (Silence& silence : silences_) {
     if (silence.due() > now) continue;
     const std::uint32_t index = spec_.tasks[silence.task().index].rtpu.index;
     const Unit& unit = units_[index];
-    const bool is_there = unit.process.fd >= 0 && unit.segment.is_there();
-    const TaskStatus status = is_there ? unit.segment.block().status(silence.task()) : TaskStatus{};
+    const TaskStatus shown = status(silence.task());
     chimera_slot slot{};
-    if (is_there) {
-      const GroupReader group = unit.segment.group(layouts_[index].outputs(silence.task(), status.incarnation));
+    if (is_there(index)) {
+      const GroupReader group = unit.segment.group(layouts_[index].outputs(silence.task(), shown.incarnation));
       if (!group.try_read_part(slot, 0, {})) slot = {};
     }
-    if (!silence.look(status.state == State::kOn, slot.sequence, now)) continue;
+    const bool has_successor = !silence.standby().is_valid() || status(silence.standby()).state == State::kOff;
+    if (!silence.look(shown.state == State::kOn && has_successor, slot.sequence, now)) continue;
     (void)signal_process(unit.process.fd, SIGKILL);
-    tell({.kind = Kind::kSilent, .index = index, .incarnation = unit.incarnation, .task = silence.task().index});
+    tell({.kind = Kind::kSilent,
+          .index = index,
+          .incarnation = unit.incarnation,
+          .task = silence.task().index,
+          .good = silence.standby().is_valid() ? 1u : 0u});
   }
 }
 

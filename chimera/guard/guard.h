@@ -10,7 +10,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/guard/safe_writes.h"
-#include "chimera/guard/silence.h"
+#include "chimera/runtime/silence.h"
 #include "chimera/platform/channel.h"
 #include "chimera/platform/linux_clock.h"
 #include "chimera/rtpu/guard_message.h"
@@ -29,7 +29,8 @@ struct SilenceLimit {
 /// Everything it works in is made at once: from then on nothing is asked of the heap. Single-threaded.
 class Guard {
  public:
-  /// `image` as the keeper made it; it outlives the guard. Refuses a limit of a task that there is not, and what the
+  /// `image` as the keeper made it; it outlives the guard. Units of primaries whose standbys say so are ended for their
+  /// silence, too, while such a standby can take over. Refuses a limit of a task that there is not, and what the
   /// layouts refuse. Context: setup.
   static Result<std::unique_ptr<Guard>> create(Channel keeper, const ApplicationImage& image,
                                                std::span<const SilenceLimit> limits);
@@ -60,6 +61,8 @@ class Guard {
   void bury(std::uint32_t index) noexcept;
   void finish(std::uint32_t index, bool is_at_once = false) noexcept;
   void look_for_silence() noexcept;
+  bool is_there(std::uint32_t index) const noexcept;
+  TaskStatus status(TaskId task) const noexcept;
   void tell(GuardMessage message) noexcept;
   bool is_needed() const noexcept;
 

@@ -47,14 +47,17 @@ struct Device {
 
 /// One incarnation of the unit: a process that does nothing, memory as a unit makes it, the unit's end of its line.
 struct Life {
-  Life(const ApplicationSpec& spec, std::uint32_t incarnation, int line) : link(line, 0, incarnation) {
-    const PeerLayout layout = *PeerLayout::of(spec, 0, heap);
+  Life(const ApplicationSpec& spec, std::uint32_t unit, std::uint32_t incarnation, int line)
+      : link(line, unit, incarnation) {
+    const PeerLayout layout = *PeerLayout::of(spec, unit, heap);
     const auto tasks = static_cast<std::uint32_t>(spec.tasks.size());
     memory = *MemoryRegion::create("unit", peer_segment_bytes(layout.table(), tasks));
     const auto table = SegmentOwner::format(memory.writable(), layout.table());
-    block = BlockOwner(memory.writable().data() + block_offset(layout.table()), 0, incarnation, tasks, 2);
-    for (std::size_t t = 0; t < spec.tasks.size(); ++t)
+    block = BlockOwner(memory.writable().data() + block_offset(layout.table()), unit, incarnation, tasks, 3);
+    for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
+      if (spec.tasks[t].rtpu != RtpuId(std::size_t{unit})) continue;
       outputs.push_back(table->writer(SegmentView::planned(layout.table(), layout.outputs(TaskId(t), 0), 0)));
+    }
     const char* const words[] = {"sleep", "60"};
     process = *Process::start("/bin/sleep", words, {});
   }
@@ -81,12 +84,21 @@ struct Life {
 
 struct GuardTest : ::testing::Test {
   GuardTest() {
+    app.rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kEdf}};
     app.add("first", testing::component<Driver>("first"), milliseconds(2)).rtpu = RtpuId(std::size_t{0});
     app.add("second", testing::component<Driver>("second"), milliseconds(2)).rtpu = RtpuId(std::size_t{0});
+    app.add("spare", testing::component<Driver>("second"), milliseconds(2)).rtpu = RtpuId(std::size_t{1});
     app.link(0, 0, "a");
     app.link(1, 0, "b");
-    const std::vector<ComponentPlace> places(2);
-    bytes = encode(app.make(), places, {});
+    app.link(2, 0, "b");
+    make_image();
+  }
+  /// `spare` takes over from `second` when that is silent for 40 ms.
+  void make_image(std::vector<StandbySpec> standbys = {}) {
+    ApplicationSpec spec = app.make();
+    spec.standbys = standbys;
+    const std::vector<ComponentPlace> places(3);
+    bytes = encode(spec, places, {});
     image.emplace(*ApplicationImage::decode(bytes));
   }
   void start(std::vector<SilenceLimit> limits = {}) {
@@ -95,17 +107,17 @@ struct GuardTest : ::testing::Test {
     guard = *Guard::create(std::move(ends->second), *image, limits);
   }
   /// The next incarnation of the unit; the guard has not been told anything yet but by the keeper.
-  std::unique_ptr<Life> begin() {
+  std::unique_ptr<Life> begin(std::uint32_t unit = 0) {
     auto ends = Channel::pair();
     const int line = ::fcntl(ends->second.descriptor(), F_DUPFD_CLOEXEC, 0);
-    auto life = std::make_unique<Life>(image->spec(), ++incarnation, line);
-    tell(GuardMessage::Kind::kUnit, life->process.pidfd());
-    tell(GuardMessage::Kind::kLine, ends->first.descriptor());
+    auto life = std::make_unique<Life>(image->spec(), unit, ++incarnation, line);
+    tell(GuardMessage::Kind::kUnit, unit, life->process.pidfd());
+    tell(GuardMessage::Kind::kLine, unit, ends->first.descriptor());
     life->link.show(life->memory.descriptor(), life->block);
     return life;
   }
-  void tell(GuardMessage::Kind kind, int passed) {
-    const GuardMessage message{.kind = kind, .index = 0, .incarnation = incarnation};
+  void tell(GuardMessage::Kind kind, std::uint32_t unit, int passed) {
+    const GuardMessage message{.kind = kind, .index = unit, .incarnation = incarnation};
     ASSERT_TRUE(keeper.send(bytes_of(message), passed));
   }
   bool step() { return guard->step(milliseconds(1)); }
@@ -264,9 +276,33 @@ TEST_F(GuardTest, EndsTheUnitOfATaskThatIsSilentForTooLong) {
   EXPECT_EQ(device.heard(), "stop");
 }
 
+TEST_F(GuardTest, EndsTheUnitOfAPrimaryWhoseOutputsAreTooOldWhileAStandbyCanTakeOver) {
+  make_image({{TaskId(std::size_t{1}), TaskId(std::size_t{2}), milliseconds(40), false}});
+  start();
+  const auto primary = begin(0), standby = begin(1);
+  primary->block.set_status(TaskId(std::size_t{1}), {State::kOn, false, 0});
+  const auto stays = [&](Nanoseconds for_so_long) {
+    LinuxClock clock;
+    for (const Nanoseconds end = clock.now() + for_so_long; clock.now() < end;) step();
+    ProcessEnd how;
+    return !primary->process.has_ended(how);
+  };
+  EXPECT_TRUE(stays(milliseconds(80))) << "nobody could take over";
+  standby->block.set_status(TaskId(std::size_t{2}), {State::kError, false, 0});
+  EXPECT_TRUE(stays(milliseconds(80)));
+  LinuxClock clock;
+  standby->block.set_status(TaskId(std::size_t{2}), {State::kOff, false, 0});
+  const Nanoseconds since = clock.now();
+  EXPECT_EQ(told(), std::to_string(static_cast<int>(GuardMessage::Kind::kSilent)) + " 1/0") << "for a standby";
+  EXPECT_GE(clock.now() - since, milliseconds(40));
+  EXPECT_EQ(last.task, 1u);
+  EXPECT_EQ(last.index, 0u);
+  EXPECT_EQ(told(), kWritten + "0/0");
+}
+
 TEST_F(GuardTest, ALimitForATaskThatThereIsNotIsRefused) {
   auto ends = Channel::pair();
-  const SilenceLimit wrong[] = {{TaskId(std::size_t{2}), 3}}, none[] = {{TaskId(std::size_t{0}), 0}};
+  const SilenceLimit wrong[] = {{TaskId(std::size_t{3}), 3}}, none[] = {{TaskId(std::size_t{0}), 0}};
   EXPECT_FALSE(Guard::create(Channel(), *image, wrong));
   EXPECT_FALSE(Guard::create(Channel(), *image, none));
 }

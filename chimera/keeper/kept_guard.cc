@@ -63,6 +63,7 @@ void KeptGuard::poll(std::vector<KeeperMessage>& news) {
     } else if (said.kind == GuardMessage::Kind::kSilent) {
       message.kind = KeeperMessage::Kind::kSilent;
       message.code = static_cast<std::int32_t>(said.task);
+      message.letter = said.good;
       news.push_back(message);
     }
   }

@@ -73,6 +73,8 @@ const char* event_kind(EventKind happening) noexcept {
       return "demoted";
     case EventKind::kNote:
       return "note";
+    case EventKind::kTakeover:
+      return "takeover";
     case EventKind::kStop:
       break;
   }
@@ -102,6 +104,10 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
     case EventKind::kGaveWay:
       return "demoted below all other threads: the tasks of its real-time unit used " + duration_of(post) +
              " lately, nearly all that the kernel leaves to real-time threads";
+    case EventKind::kTakeover:
+      if (post.from.index >= spec.tasks.size()) return "is ON in place of another task";
+      return "is ON in place of " + std::string(spec.tasks[post.from.index].name) + ", " + duration_of(post) +
+             " after its real-time unit found that one lost";
     case EventKind::kStop:
       break;
   }

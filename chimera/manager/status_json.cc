@@ -188,6 +188,8 @@ Json described_task(const ManagerState& world, const ConfiguredTask& task) {
           {"aperiodic", task.is_aperiodic},
           {"hardware", task.is_hardware},
           {"standby_for", task.standby_for},
+          {"stale_after_ns", task.stale_after.count},
+          {"hot", task.is_hot},
           {"ports", std::move(ports)}};
 }
 

@@ -24,7 +24,8 @@ struct GuardMessage {
     kFrame,    ///< unit -> guard, with a descriptor: frame `frame` of `task` goes there; without: nowhere any more
     kReady,    ///< guard -> keeper: it watches; `good` 1: with the rights that were asked for
     kWritten,  ///< guard -> keeper: unit `index` is dead; `good` of its frames were written, `bad` could not be
-    kSilent    ///< guard -> keeper: it ended unit `index`, because `task` had published nothing for too long
+    kSilent    ///< guard -> keeper: it ended unit `index`, because `task` had published nothing for too long; `good` 1:
+               ///< so that a standby takes over
   };
 
   Kind kind = Kind::kUnit;

@@ -194,6 +194,17 @@ void RtpuControl::gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexc
   post_event(EventKind::kGaveWay, task, static_cast<std::uint64_t>(used.count), now);
 }
 
+void RtpuControl::took_over(TaskId task, TaskId from, Nanoseconds after, Nanoseconds now) noexcept {
+  Post post;
+  post.at = now;
+  post.task = task;
+  post.from = from;
+  post.kind = PostKind::kEvent;
+  post.happening = EventKind::kTakeover;
+  post.detail = static_cast<std::uint64_t>(after.count);
+  this->post(post);
+}
+
 void RtpuControl::hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept {
   post_event(EventKind::kHang, job.task(), static_cast<std::uint64_t>(age.count), now);
   others_.keep_last_words(true, tasks_);

@@ -44,6 +44,7 @@ class RtpuControl final : public BoundaryListener {
   void show(const Task& task) noexcept override { others_.block().profile(task.id) = task.profile; }
   void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept override;
   void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
+  void took_over(TaskId task, TaskId from, Nanoseconds after, Nanoseconds now) noexcept override;
   void hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept override;
   /// Shows the others how the unit is before its first edge. Setup.
   void begin() noexcept;

@@ -25,7 +25,9 @@ struct Standby {
   Out<double> u{"u", "1", initial = 0.0};
   static inline bool fails = false;
   static inline double inherited = -1;
+  static inline int ons = 0;
   Outcome on(Cycle) {
+    ++ons;
     inherited = *u;
     return fails ? fault("no voltage") : ok();
   }
@@ -46,7 +48,10 @@ constexpr TaskId kPrimary{0u}, kUser{1u}, kSpare{2u}, kLast{3u};
 
 /// The primary, what reads it, and its two standbys, each in a unit of its own, as processes are.
 struct StandbyLinksTest : ::testing::Test {
-  StandbyLinksTest() {
+  StandbyLinksTest() { begin(); }
+  void begin() {
+    units.reset();
+    app = TestApplication();
     Primary::fails = Standby::fails = false;
     app.rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kEdf}, {"c", 2, Policy::kEdf}, {"d", 3, Policy::kEdf}};
     app.add("primary", testing::component<Primary>("primary")).rtpu = RtpuId(0u);
@@ -124,6 +129,24 @@ TEST_F(StandbyLinksTest, AnotherUnitWithTheClaimIsWaitedForUnlessItIsDead) {
   units->run(milliseconds(3));
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_FALSE(units->flag_is_up());
+}
+
+TEST_F(StandbyLinksTest, AHotOneCyclesUnreadAndIsReadWithoutAnotherOn) {
+  pairs[0].hot = true;
+  Standby::ons = 0;
+  begin();
+  EXPECT_EQ(Standby::ons, 1);
+  EXPECT_EQ(state(kSpare), State::kOff);
+  const double before = units->units[2]->output(kSpare);
+  EXPECT_GE(before, 4000) << "it cycles";
+  EXPECT_LT(units->units[1]->output(kUser), 1000) << "unread";
+  EXPECT_FALSE(units->flag_is_up());
+  units->die(0);
+  units->run(milliseconds(3));
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_EQ(Standby::ons, 1);
+  EXPECT_GE(units->units[1]->output(kUser), before + 2000);
+  EXPECT_EQ(User::illegal, 0);
 }
 
 TEST_F(StandbyLinksTest, AProcessThatEndsWithTheRunIsNotReplaced) {

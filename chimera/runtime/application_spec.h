@@ -63,7 +63,12 @@ struct RtpuSpec {
 struct StandbySpec {
   TaskId primary;  ///< of no standby a primary itself
   TaskId standby;  ///< of one primary
+  Nanoseconds stale_after{};  ///< above 0: a primary on another rtpu whose outputs are older is killed; kStalePeriods
+  bool hot = false;           ///< it cycles while the primary is ON, unread; without resources and out-consts
 };
+
+/// A primary that is killed because it is silent may miss at least so many of its periods.
+inline constexpr std::int64_t kStalePeriods = 2;
 
 /// What the reaction `restart` of a task does: TaskSpec::on_fault.
 struct RestartSpec {
@@ -119,6 +124,16 @@ struct ApplicationSpec {
       return task;
     };
     return a != b && primary_of(a) == primary_of(b);
+  }
+  /// `standby`, which is none of `on`, stands in for one of them: if it is hot, it cycles beside that one. Context:
+  /// any; wait-free.
+  bool is_kept_warm(TaskId standby, std::span<const TaskId> on) const noexcept {
+    bool is_there = false, has_mate = false;
+    for (const TaskId task : on) {
+      is_there = is_there || task == standby;
+      has_mate = has_mate || stand_in(task, standby);
+    }
+    return has_mate && !is_there;
   }
   /// A port of the task is linked to the constant, or has it for an extent. Context: any; wait-free.
   bool uses(TaskId user, ConstantId constant) const noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds a switch up before a task may go ON: an input without a value, what `safe_when` asks, other constants.
+// What holds a switch up before a task may go ON: what `safe_when` asks, other constants.
 #pragma once
 
 #include <span>
@@ -11,10 +11,6 @@
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
-
-/// The first variable that the task, which is OFF, reads and that never had a value; what an arriving task will write
-/// is not asked for. Invalid: there is none. Context: cycle boundary; no allocation.
-VariableId lacks_value(TaskSet& set, Task& task, std::span<const Handover> handovers) noexcept;
 
 /// True also where nothing is asked. Context: cycle boundary; no allocation.
 bool holds(TaskSet& set, const SafeCondition& asked) noexcept;

@@ -9,15 +9,14 @@ namespace chimera {
 
 void BoundarySignals::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
-  look_ahead();
+  look_ahead(kNever, kNever);
 }
 
-void BoundarySignals::look_ahead() noexcept {
+void BoundarySignals::look_ahead(Nanoseconds due, Nanoseconds wake) noexcept {
   const Nanoseconds at = script_.next_at();
   const Nanoseconds act = at == kNever ? kNever : origin_ + at;
-  const Nanoseconds standbys = set_.standbys().due();
-  next_act_ = std::min({act, standbys, switching_.due()});
-  next_wake_ = std::min({act, standbys, switching_.wake()});
+  next_act_ = std::min({act, due, switching_.due()});
+  next_wake_ = std::min({act, wake, switching_.wake()});
 }
 
 void BoundarySignals::act(Nanoseconds now) noexcept {
@@ -25,7 +24,6 @@ void BoundarySignals::act(Nanoseconds now) noexcept {
   (void)take_request(now);
   switching_.step(now);
   if (take_request(now)) switching_.step(now);
-  look_ahead();
 }
 
 // The last request stands, and is taken when no switch is under way; one that changes nothing is dropped.
@@ -81,9 +79,17 @@ void BoundarySignals::ring(Task& task, Nanoseconds now) noexcept {
 
 SignalReport BoundarySignals::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
   const bool was_illegal = set_.flag().is_up();
+  const bool was_unread = tasks.size() == 1 && set_.tasks()[tasks[0].index].is_unread;
   const SignalReport report = set_.life().signal(tasks, signal, now);
+  if (was_unread && signal == Signal::kOn && report)
+    tap_.record(TapKind::kState, now, tasks[0], static_cast<std::uint64_t>(State::kOn));
   record(report, was_illegal, now);
   return report;
+}
+
+void BoundarySignals::warm_up(TaskId task, Nanoseconds now) noexcept {
+  const bool was_illegal = set_.flag().is_up();
+  record(set_.life().warm_up(task, now), was_illegal, now);
 }
 
 SignalReport BoundarySignals::finish_slow(TaskId task, Nanoseconds now) noexcept {

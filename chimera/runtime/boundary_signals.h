@@ -44,8 +44,8 @@ class BoundarySignals {
   Nanoseconds next_act() const noexcept { return next_act_; }
   /// The next instant at which that is so although no job ends before. Context: cycle; wait-free.
   Nanoseconds next_wake() const noexcept { return next_wake_; }
-  /// A switch has come further, or a task failed: next_act() and next_wake() anew.
-  void look_ahead() noexcept;
+  /// All of an edge is done: next_act() and next_wake() anew; `due` and `wake` are those of Recovery.
+  void look_ahead(Nanoseconds due, Nanoseconds wake) noexcept;
   /// Carries out the acts of the script that are due, goes on with a switch that is under way, and begins the one that
   /// a task asked for last.
   void act(Nanoseconds now) noexcept;
@@ -58,6 +58,8 @@ class BoundarySignals {
   bool may_touch(TaskId task) noexcept { return threads_.claim(task); }
   /// As TaskLife::signal. Requires: may_touch() of all.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
+  /// As TaskLife::warm_up. Requires: may_touch().
+  void warm_up(TaskId task, Nanoseconds now) noexcept;
   /// As TaskLife::finish_slow.
   SignalReport finish_slow(TaskId task, Nanoseconds now) noexcept;
 

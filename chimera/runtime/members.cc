@@ -17,7 +17,7 @@ void Members::follow(Task& task, Nanoseconds now) noexcept {
   const bool on = task.state == State::kOn;
   if (on == record.is_on) return;
   record.is_on = on;
-  tap_.record(TapKind::kState, now, task.id, static_cast<std::uint64_t>(task.state));
+  tap_.record(TapKind::kState, now, task.id, static_cast<std::uint64_t>(task.shown_state()));
   task.profile.on_before = task.profile.on_by(now);
   task.profile.on_since = on ? now : kNever;
   if (on) join(task, now);

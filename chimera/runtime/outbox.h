@@ -38,8 +38,9 @@ enum class EventKind : std::uint8_t {
                ///< that the kernel lets real-time threads have
   kBlocked,    ///< the task missed its deadline with a job that waits in a system call, having used `detail` ns
   kNote,       ///< the task left a note; its text stands in the task's fault group
+  kTakeover,   ///< the task went ON in place of `from`, `detail` ns after this rtpu found that one lost
 };
-inline constexpr auto kLastHappening = EventKind::kNote;
+inline constexpr auto kLastHappening = EventKind::kTakeover;
 
 /// 64 bytes; what is not used is 0 (ids: invalid).
 struct Post {

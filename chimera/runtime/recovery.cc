@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/message.h"
+#include "chimera/runtime/missing_value.h"
 
 namespace chimera {
 namespace {
@@ -17,6 +18,13 @@ void count(std::uint16_t& counter) noexcept {
 
 void Recovery::prepare() {
   TaskSet& set = parts_.set;
+  const auto is_hot = [&](const StandbySpec& each) { return each.hot && set.is_mine(each.standby); };
+  const auto standbys = set.spec().standbys;
+  hot_ = set.setup_memory().take<TaskId>(
+      static_cast<std::size_t>(std::count_if(standbys.begin(), standbys.end(), is_hot)));
+  std::size_t n_hot = 0;
+  for (const StandbySpec& each : standbys)
+    if (is_hot(each)) hot_[n_hot++] = each.standby;
   const auto specs = set.spec().restarts;
   const auto is_mine = [&](const RestartSpec& spec) { return set.is_mine(spec.task); };
   restarts_ = set.setup_memory().take<Restart>(
@@ -40,6 +48,34 @@ void Recovery::act(Nanoseconds now) noexcept {
   for (std::size_t group = 0; group < standbys.n_groups(); ++group) is_done = take_over(group, now) && is_done;
   for (Restart& each : restarts_) is_done = restart(each, now) && is_done;
   if (is_done) parts_.set.sent().had_edge();
+  if (!hot_.empty()) keep_warm(now);
+}
+
+// Those that cannot cycle yet are looked at again, with the end of each job where that may make a gap.
+void Recovery::keep_warm(Nanoseconds now) noexcept {
+  TaskSet& set = parts_.set;
+  due_ = wake_ = kNever;
+  const auto look_again = [this](Nanoseconds at, Nanoseconds waking) {
+    due_ = std::min(due_, at);
+    wake_ = std::min(wake_, waking);
+  };
+  for (const TaskId id : hot_) {
+    Task& task = set.tasks()[id.index];
+    const bool wanted = set.standbys().keeps_warm(id);
+    if (wanted == task.is_unread || task.in_service || task.shown_state() != State::kOff) continue;
+    if (parts_.switching.is_under_way() || !parts_.signals.may_touch(id)) {
+      look_again(now, now + task.spec->period);
+    } else if (!wanted) {
+      (void)parts_.signals.signal({&id, 1}, Signal::kOff, now);
+    } else if (!gap_.is_for(task, Method::kOn, now)) {
+      const Nanoseconds next = std::max(parts_.threads.next_look(now), now + Nanoseconds{1});
+      look_again(gap_.is_there() ? next : now, next);
+    } else if (missing_value(set, task, {}).is_valid()) {
+      look_again(now + task.spec->period, now + task.spec->period);
+    } else {
+      parts_.signals.warm_up(id, now);
+    }
+  }
 }
 
 // A switch that is not committed gives way to it; the change of one that is comes first.
@@ -57,11 +93,14 @@ bool Recovery::take_over(std::size_t group, Nanoseconds now) noexcept {
     if (!may_touch(task)) return false;
     if (!set.life().would_be_legal({&id, 1})) return true;  // once an input has a producer again
     const TaskId failed = set.standbys().failed(group);
+    const Nanoseconds lost = set.standbys().lost_at(group);
     const SignalReport report = parts_.signals.signal({&id, 1}, Signal::kOn, now);
     if (report.why == Refusal::kIllegalSet) return true;  // another context turns one ON
     if (task.state == State::kOn) {
       count(task.profile.takeovers);
       note(task, "took over from ", failed);
+      const Nanoseconds by = set.methods().clock()->now();
+      if (parts_.guest != nullptr) parts_.guest->took_over(id, failed, by - lost, by);
       return true;
     }
     set.standbys().rule_out(id);

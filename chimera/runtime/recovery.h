@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Brings back what failed in one context, at edges and without anybody being asked: turns standbys ON in place of tasks
-// that failed here or elsewhere (runtime/standbys.h says which), and carries out the reaction `restart` of on_fault. A
+// that failed here or elsewhere (runtime/standbys.h says which), has hot standbys cycle beside them before,
+// and carries out the reaction `restart` of on_fault. A
 // task that failed and has a standby is replaced first; restarted, it is only cleared then, and stays OFF.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
 #include "chimera/runtime/boundary_signals.h"
+#include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/settlement.h"
 #include "chimera/runtime/switching.h"
 #include "chimera/runtime/task_set.h"
@@ -23,13 +26,21 @@ class Recovery {
     Settlement& settlement;
     Switching& switching;
     BoundarySignals& signals;
+    ReadyQueue& queue;
+    JobThreads& threads;
+    BoundaryListener* guest;  ///< null: nobody is told
   };
-  explicit Recovery(const Parts& parts) noexcept : parts_(parts) {}
+  explicit Recovery(const Parts& parts) noexcept
+      : parts_(parts), gap_(parts.set.tasks(), parts.queue, parts.threads) {}
   /// Context: setup.
   void prepare();
 
   /// Does what is due. Of no effect where no task has a standby or is restarted.
   void act(Nanoseconds now) noexcept;
+  /// From when on act() may have something to do although no state has changed; kNever: only then. Wait-free.
+  Nanoseconds due() const noexcept { return std::min(parts_.set.standbys().due(), due_); }
+  /// The next instant at which that is so although no job ends before. Wait-free.
+  Nanoseconds wake() const noexcept { return std::min(parts_.set.standbys().due(), wake_); }
 
  private:
   /// The reaction of one task.
@@ -39,6 +50,7 @@ class Recovery {
     bool is_answered = false;     // the task is in ERROR, and stays there
   };
 
+  void keep_warm(Nanoseconds now) noexcept;
   bool take_over(std::size_t group, Nanoseconds now) noexcept;
   bool restart(Restart& restart, Nanoseconds now) noexcept;
   void answer(Restart& restart, Task& task, Nanoseconds now) noexcept;
@@ -46,7 +58,10 @@ class Recovery {
   void note(Task& task, const char* what, TaskId of) noexcept;
 
   Parts parts_;
+  IdleGap gap_;
+  std::span<TaskId> hot_;  // of this context
   std::span<Restart> restarts_;
+  Nanoseconds due_ = kNever, wake_ = kNever;  // of hot standbys that cannot cycle yet
 };
 
 }  // namespace chimera

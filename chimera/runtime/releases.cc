@@ -48,7 +48,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
       settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
       switching_({set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
       signals_(set, options.script, tap_, settlement_, threads_, switching_, guest_),
-      recovery_({set, settlement_, switching_, signals_}) {
+      recovery_({set, settlement_, switching_, signals_, queue_, threads_, guest_}) {
   const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
@@ -88,7 +88,7 @@ void Releases::take_edge(Nanoseconds now) noexcept {
   }
   signals_.carry_out_pending(now);
   recovery_.act(now);
-  signals_.look_ahead();
+  signals_.look_ahead(recovery_.due(), recovery_.wake());
   members_.follow_all(now);
   settlement_.publish();
 }

@@ -13,8 +13,10 @@ void Settlement::settle_job(TaskId id, Nanoseconds now) noexcept {
 }
 
 void Settlement::settle_at_once(TaskId id, Nanoseconds now) noexcept {
-  const std::uint8_t left = parts_.records[id.index].left.fetch_and(JobRecord::kSettle, std::memory_order_relaxed);
-  const TaskSpec& spec = *parts_.set.tasks()[id.index].spec;
+  std::uint8_t left = parts_.records[id.index].left.fetch_and(JobRecord::kSettle, std::memory_order_relaxed);
+  const Task& task = parts_.set.tasks()[id.index];
+  if (task.is_unread) left &= JobRecord::kFindCause;  // nobody waits for what it does
+  const TaskSpec& spec = *task.spec;
   if (left & JobRecord::kRaiseFlag) raise_flag(id, State::kOn, now);
   if (left & JobRecord::kStop) stop(id);
   if (left & JobRecord::kSwitchForMiss) parts_.set.sent().request({spec.on_miss_set, SwitchCause::kMiss, id});
@@ -31,6 +33,7 @@ void Settlement::publish() noexcept {
 void Settlement::settle(Task& task, Nanoseconds now) noexcept {
   record_faults(task);
   if (task.is_tapped) parts_.tap.append_row(task);
+  if (task.is_unread) task.forget_sent();
   if (task.has_sent()) parts_.set.sent().deliver(task);
   if (task.state != State::kOn) {
     parts_.set.on_set_changed();

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/runtime/arrival.h"
+#include "chimera/runtime/missing_value.h"
 
 namespace chimera {
 namespace {
@@ -131,7 +132,7 @@ bool SlowSwitch::may_go_on(SwitchAgreement agreement, std::size_t done, Nanoseco
   if (is_next && !is_safe_ && asked.is_there()) return fails(NoSwitch::kNotSafe, {}, asked.variable);
   if (!is_next) return fails(NoSwitch::kNotReady, {});
   if (steps_[done].act != SlowAct::kOn) return fails(NoSwitch::kNotReady, steps_[done].task);
-  const VariableId missing = lacks_value(parts_.set, task(steps_[done].task), {});
+  const VariableId missing = missing_value(parts_.set, task(steps_[done].task), {});
   return fails(missing.is_valid() ? NoSwitch::kNoValue : NoSwitch::kNotReady, steps_[done].task, missing);
 }
 
@@ -307,7 +308,7 @@ SlowSwitch::Did SlowSwitch::turn_on(SwitchAgreement agreement, Task& task, Nanos
     wake_ = std::min(now + period, std::max(order_.until, now + Nanoseconds{1}));
     return Did::kWaits;
   };
-  if (lacks_value(set, task, {}).is_valid()) return wait_a_cycle();
+  if (missing_value(set, task, {}).is_valid()) return wait_a_cycle();
   if (waits_for_idle(now)) return Did::kWaits;
   if (waits_for_gap(task, Method::kOn, now)) return Did::kWaits;
   const Nanoseconds began = parts_.clock.now();

@@ -125,7 +125,7 @@ void SourceCopies::bind(Copy& copy, bool is_new) noexcept {
   const TaskId of = copy.of.task;
   const bool is_here = of.is_valid() && is_mine(of);
   const bool was_read = of.is_valid() && copy.was_bound && !is_new;
-  if (was_read && (is_here ? tasks_[of.index].state : others_->state(of)) != State::kOn) return;
+  if (was_read && (is_here ? tasks_[of.index].shown_state() : others_->state(of)) != State::kOn) return;
   const GroupReader reader = is_here ? memories_[of.index].reader() : reader_of(copy.of);
   if (!reader.is_bound()) return;
   copy.group.rebind(reader);

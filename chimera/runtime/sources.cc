@@ -5,6 +5,19 @@
 #include <algorithm>
 
 namespace chimera {
+namespace {
+
+// A standby cycles beside its primary, unread, if it is hot.
+PortOf first_producer(const ApplicationSpec& spec, const Variable& variable) noexcept {
+  const auto is_standby = [&](const PortOf& port) {
+    return std::any_of(spec.standbys.begin(), spec.standbys.end(),
+                       [&](const StandbySpec& each) { return each.standby == port.task; });
+  };
+  const auto found = std::find_if_not(variable.producers.begin(), variable.producers.end(), is_standby);
+  return found == variable.producers.end() ? variable.producers[0] : *found;
+}
+
+}  // namespace
 
 void Sources::prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<Task> tasks,
                       std::span<TaskMemory> memories, const PeerView* others, bool preemptive, SetupMemory& memory) {
@@ -24,7 +37,7 @@ void Sources::prepare(const ApplicationSpec& spec, const ContextTable& table, st
   for (std::size_t v = 0; v < sources_.size(); ++v) {
     const Variable& variable = spec.variables[v];
     if (variable.operator_index != UINT32_MAX) bind(VariableId(v), operator_source(variable));
-    else if (!variable.producers.empty()) bind(VariableId(v), copies_.source_from(variable.producers[0]));
+    else if (!variable.producers.empty()) bind(VariableId(v), copies_.source_from(first_producer(spec, variable)));
   }
   everybody_follows();
 }

@@ -11,6 +11,12 @@ void Standbys::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   is_covered_ = memory.take<bool>(spec.tasks.size());
   is_out_ = memory.take<bool>(spec.tasks.size());
   states_ = memory.take<State>(spec.tasks.size());
+  is_hot_ = memory.take<bool>(spec.tasks.size());
+  is_cool_ = memory.take<bool>(spec.tasks.size());
+  for (const StandbySpec& each : spec.standbys) {
+    is_hot_[each.standby.index] = each.hot;
+    has_hot_ = has_hot_ || each.hot;
+  }
   const auto is_first = [&](std::size_t i) {
     const auto before = spec.standbys.first(i);
     return std::none_of(before.begin(), before.end(),
@@ -57,6 +63,8 @@ void Standbys::gain(Group& group, TaskId on, Nanoseconds now) noexcept {
     std::move(group.taken_over + 1, group.taken_over + kMostTakeovers, group.taken_over);
     group.taken_over[kMostTakeovers - 1] = now;
   }
+  if (on != group.on)
+    for (const TaskId id : group.members) is_cool_[id.index] = false;
   group.on = on;
   group.is_lost = group.is_waiting = false;
   for (const TaskId id : group.members) is_out_[id.index] = false;
@@ -66,6 +74,7 @@ void Standbys::lose(Group& group, Nanoseconds now) noexcept {
   const TaskId by = next(group);
   const bool is_too_often = group.taken_over[0] > now - kWindow;
   group.is_lost = true;
+  group.lost_at = now;
   group.is_waiting = by.is_valid() && !is_too_often;
   group.until = group.is_waiting ? now + tasks_[by.index].period : now;
 }
@@ -124,6 +133,13 @@ void Standbys::add_covered(std::span<bool> on, std::span<const TaskId> beside) c
 bool Standbys::is_replaced(TaskId task) const noexcept {
   return std::any_of(groups_.begin(), groups_.end(), [&](const Group& group) {
     return !group.is_lost && group.on.is_valid() && group.on != task && has(group, task);
+  });
+}
+
+bool Standbys::keeps_warm(TaskId task) const noexcept {
+  if (!is_hot_[task.index] || is_cool_[task.index]) return false;
+  return std::any_of(groups_.begin(), groups_.end(), [&](const Group& group) {
+    return group.on.is_valid() && group.on != task && has(group, task);
   });
 }
 

@@ -40,6 +40,15 @@ class Standbys {
   /// When follow() comes to something else although no state has changed; kNever: never.
   Nanoseconds due() const noexcept { return due_; }
 
+  /// Some task is a hot standby.
+  bool has_hot() const noexcept { return has_hot_; }
+  /// The task is a hot standby, another one of its group is ON or was when it failed, and nobody has turned the task
+  /// OFF since that one went ON.
+  bool keeps_warm(TaskId task) const noexcept;
+  /// A hot standby was turned OFF by somebody: it stays so until another task of its group goes ON, or this takes it
+  /// back.
+  void let_cool(TaskId task, bool is_cool) noexcept { is_cool_[task.index] = is_cool; }
+
   /// The group that the task belongs to; n_groups(): none.
   std::size_t group_of(TaskId task) const noexcept;
   std::span<const TaskId> members(std::size_t group) const noexcept { return groups_[group].members; }
@@ -47,6 +56,8 @@ class Standbys {
   TaskId next(std::size_t group) const noexcept;
   /// The task of that group that failed. Requires: next(group) is valid.
   TaskId failed(std::size_t group) const noexcept { return groups_[group].on; }
+  /// When that was found. Requires: as failed().
+  Nanoseconds lost_at(std::size_t group) const noexcept { return groups_[group].lost_at; }
   /// It could not go ON: it is passed over until the group has a task that is ON again.
   void rule_out(TaskId task) noexcept { is_out_[task.index] = true; }
   /// The task stands in a group that waits for another one to take over from it.
@@ -62,7 +73,7 @@ class Standbys {
     TaskId on;                        // the member that was ON last; invalid: none, or it was turned OFF
     bool is_lost = false;             // it failed, and none is ON since
     bool is_waiting = false;          // and somebody may take over
-    Nanoseconds until;                // it is covered until then
+    Nanoseconds lost_at, until;       // it failed then, and is covered until then
     Nanoseconds taken_over[kMostTakeovers] = {Nanoseconds{INT64_MIN}, Nanoseconds{INT64_MIN}, Nanoseconds{INT64_MIN}};
   };
 
@@ -80,9 +91,11 @@ class Standbys {
   std::span<State> states_;      // by task, at the last follow()
   std::span<bool> is_covered_;   // by task
   std::span<bool> is_out_;       // by task
+  std::span<bool> is_hot_, is_cool_;  // by task
   Nanoseconds due_ = kNever;
   bool is_any_uncovered_ = false;
   bool is_any_waiting_ = false;
+  bool has_hot_ = false;
 };
 
 }  // namespace chimera

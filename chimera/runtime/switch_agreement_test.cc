@@ -164,6 +164,45 @@ TEST_F(SwitchAgreementTest, ASlowPlanCountsItsStepsForwardsAndBackAndCommitsAtOn
   EXPECT_FALSE(agreement.commit(8, kOrigin));
 }
 
+// Fault row 27, the stale plan after a restart: acts of plans before, any of them, between any two steps of the present
+// one, which is committed or aborted all the same.
+TEST_F(SwitchAgreementTest, AHundredThousandActsOfOlderPlansChangeNothing) {
+  std::mt19937 random(27);
+  int replays = 0;
+  std::uint16_t number = 60'000;  // so that the numbers begin again on the way
+  const auto replay = [&] {
+    const std::uint64_t plan = page.plan, turn = page.turn;
+    for (int i = 0; i < 20; ++i, ++replays) {
+      std::uint16_t old = number;
+      for (auto back = random() % 50 + 1; back > 0; --back)
+        old = old == 1 ? UINT16_MAX : static_cast<std::uint16_t>(old - 1);
+      switch (random() % 4) {
+        case 0: EXPECT_FALSE(agreement.hand_on(old, static_cast<std::uint16_t>(random() % 2))); break;
+        case 1: EXPECT_FALSE(agreement.propose(old, kOrigin + microseconds(1))); break;
+        case 2: EXPECT_FALSE(agreement.agree(old, static_cast<std::uint32_t>(random() % 2))); break;
+        default: EXPECT_FALSE(agreement.abort(old));
+      }
+    }
+    EXPECT_EQ(page.plan, plan);
+    EXPECT_EQ(page.turn, turn);
+  };
+  while (replays < 100'000) {
+    number = next_plan(number);
+    agreement.announce(some_order(number));
+    replay();
+    EXPECT_TRUE(agreement.hand_on(number, 0));
+    replay();
+    EXPECT_TRUE(agreement.propose(number, kOrigin + microseconds(5)));
+    replay();
+    const bool is_aborted = random() % 4 == 0;
+    EXPECT_FALSE(agreement.agree(number, 0));
+    replay();
+    EXPECT_TRUE(is_aborted ? agreement.abort(number) : agreement.agree(number, 1));
+    replay();
+    EXPECT_EQ(agreement.plan().phase, is_aborted ? SwitchPhase::kAborted : SwitchPhase::kCommitted);
+  }
+}
+
 TEST_F(SwitchAgreementTest, InstantsAreWholeMicrosecondsOfTheGrid) {
   EXPECT_EQ(agreement.round_up(kOrigin + microseconds(3)), kOrigin + microseconds(3));
   EXPECT_EQ(agreement.round_up(kOrigin + Nanoseconds{3001}), kOrigin + microseconds(4));

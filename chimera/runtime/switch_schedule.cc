@@ -51,6 +51,21 @@ void SwitchSchedule::consider(std::span<const TaskStanding> standing, const Task
     parts_[t] = was_on ? (is_on ? TransitionPart::kStays : TransitionPart::kLeaves)
                        : (is_on ? TransitionPart::kArrives : TransitionPart::kAbsent);
   }
+  for (const StandbySpec& each : spec_->standbys)
+    if (each.hot) consider_hot(each.standby);
+}
+
+// It cycles before when it, or one for which it stands in, is ON; and after alike.
+void SwitchSchedule::consider_hot(TaskId hot) noexcept {
+  bool is_before = false, is_after = false;
+  for (std::size_t t = 0; t < parts_.size(); ++t) {
+    if (TaskId(t) != hot && !spec_->stand_in(TaskId(t), hot)) continue;
+    const TransitionPart part = parts_[t];
+    is_before = is_before || part == TransitionPart::kLeaves || part == TransitionPart::kStays;
+    is_after = is_after || part == TransitionPart::kArrives || part == TransitionPart::kStays;
+  }
+  if (is_before) parts_[hot.index] = is_after ? TransitionPart::kStays : TransitionPart::kLeaves;
+  else if (is_after) parts_[hot.index] = TransitionPart::kArrives;
 }
 
 bool SwitchSchedule::is_first_of_cpu(RtpuId rtpu) const noexcept {

@@ -45,6 +45,7 @@ class SwitchSchedule {
   PlanAnswer judge(std::span<const TaskStanding> standing, const TaskBits& after) noexcept;
 
  private:
+  void consider_hot(TaskId hot) noexcept;
   void analyse(std::span<const TransitionPart> parts, CpuTransition& found) noexcept;
 
   const ApplicationSpec* spec_ = nullptr;

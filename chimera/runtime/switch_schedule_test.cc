@@ -81,6 +81,17 @@ TEST(SwitchSchedule, WhereNothingIsPromisedBeforeTheSwitchIsAllowed) {
   EXPECT_EQ(scene.judge(2, 0).takes, kNever);
 }
 
+TEST(SwitchSchedule, AHotStandbyCountsBesideItsPrimaryAndAfterIt) {
+  Scene scene({task(10, 4), task(10, 5), task(10, 5)}, {{kA}, {kA, kB}, {kC}});
+  EXPECT_TRUE(scene.judge(0, 1));
+  std::vector<StandbySpec> pair{{kA, kC, {}, true}};
+  scene.spec.standbys = pair;
+  EXPECT_EQ(scene.judge(0, 1).why, NoSwitch::kNotSchedulable) << "it goes on cycling beside both";
+  EXPECT_TRUE(scene.judge(0, 2)) << "it cycles before and after";
+  pair[0].hot = false;
+  EXPECT_TRUE(scene.judge(0, 1));
+}
+
 TEST(SwitchSchedule, TellsOfACpuWhatWasConsidered) {
   Scene scene({task(10, 4), task(10, 0), task(20, 2, 1)}, {{kA, kC}, {kB, kC}});
   scene.standing[0].state = scene.standing[2].state = State::kOn;

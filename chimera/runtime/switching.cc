@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
+#include "chimera/runtime/missing_value.h"
 
 namespace chimera {
 namespace {
@@ -17,7 +18,7 @@ constexpr Nanoseconds kLookForSafety = milliseconds(1);
 void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcept {
   for (const Task& each : set.tasks()) {
     const bool is_elsewhere = set.others() != nullptr && !set.is_mine(each.id);
-    standing[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.state, each.in_service};
+    standing[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.shown_state(), each.in_service};
   }
 }
 
@@ -50,7 +51,7 @@ SwitchOrder lone_order(TaskSet& set, std::uint16_t last, const TaskBits& target,
                        Nanoseconds until) {
   SwitchOrder order;
   for (const Task& each : set.tasks())
-    if (each.state == State::kOn) order.on.add(each.id);
+    if (each.shown_state() == State::kOn) order.on.add(each.id);
   order.number = next_plan(last);
   order.members = 1;
   order.after = set_of(set.spec(), target);
@@ -72,6 +73,21 @@ void drop_replaced(const Switching::Parts& parts, Nanoseconds at, Nanoseconds no
     const bool is_replaced = classes[classes.class_of(each.id.index)].next <= now;
     if (is_replaced && parts.queue.remove(each.id, job)) parts.misses.drop({each.id, job.release, 1});
   }
+}
+
+// A hot standby that arrives is turned OFF first, and armed as any task. False: later.
+bool cool_down(const Switching::Parts& parts, const SwitchPlan& plan, Nanoseconds now) noexcept {
+  bool are_all = true;
+  for (const TaskId id : plan.arriving) {
+    Task& task = parts.set.tasks()[id.index];
+    if (!parts.set.is_mine(id) || !task.is_unread) continue;
+    are_all = are_all && parts.threads.claim(id);
+    if (!parts.threads.claim(id)) continue;
+    (void)parts.set.life().signal(id, Signal::kOff, now);
+    parts.set.standbys().let_cool(id, false);
+    parts.members.follow(task, now);
+  }
+  return are_all;
 }
 
 }  // namespace
@@ -151,7 +167,9 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
     receipt.variables = {};
     return;
   }
-  agreement().announce(lone_order(parts_.set, agreement().plan().number, tasks_of(parts_.set.spec(), request.set), way.slow, now + kPatience));
+  const std::uint16_t last = agreement().plan().number;
+  agreement().announce(
+      lone_order(parts_.set, last, tasks_of(parts_.set.spec(), request.set), way.slow, now + kPatience));
   due_ = now;
 }
 
@@ -219,6 +237,7 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
 
 void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   if (agreement().plan().phase == SwitchPhase::kProposed) return agree(now);
+  if (!cool_down(parts_, plan_, now)) return wait(now);
   if (!may_go_on(now)) return;
   const auto number = agreement().run(order_.number);
   const SwitchRun run = find_run(plan_, parts_.set.spec().tasks, number.value_or(UINT16_MAX));
@@ -233,7 +252,7 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
     Task& next = task(plan_.arriving[next_armed_]);
     if (!gap_.is_for(next, Method::kOn, now)) return wait(now);
     parts_.set.sources().read_ahead(next.id, plan_.handovers);
-    if (lacks_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now);
+    if (missing_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now);
     const Followed followed = follow_constants(parts_.set, gap_, next, order_, now);
     if (followed == Followed::kNoGap) return wait(now);
     if (followed != Followed::kNothing) return reinitialised(next, followed);
@@ -297,7 +316,7 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   }
   Task& next = task(plan_.arriving[std::max(next_armed_, run.begin)]);
   parts_.set.sources().read_ahead(next.id, plan_.handovers);
-  const VariableId missing = lacks_value(parts_.set, next, plan_.handovers);
+  const VariableId missing = missing_value(parts_.set, next, plan_.handovers);
   abort(missing.is_valid() ? NoSwitch::kNoValue : NoSwitch::kNoGap, next.id, missing);
   return false;
 }

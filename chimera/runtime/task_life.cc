@@ -52,9 +52,9 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
   for (TaskId id : tasks) {
     const Task& task = set_.tasks()[id.index];
     report.task = id;
-    report.before = report.after = task.state;
-    const bool is_due = signal == Signal::kOff && task.owes_off;
-    if (is_due || next(task.state, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
+    report.before = report.after = task.shown_state();
+    const bool is_due = signal == Signal::kOff && (task.owes_off || task.is_unread);
+    if (is_due || next(report.before, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
     report.why = Refusal::kState;
     return report;
   }
@@ -69,6 +69,7 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
     return report;
   }
   for (TaskId id : tasks) {
+    if (signal == Signal::kOff) set_.standbys().let_cool(id, true);
     report = carry_out(id, signal, now);
     if (signal != Signal::kOn || report.after == State::kOn) continue;
     for (TaskId done : tasks) {  // one transaction: tasks that are ON already go OFF again
@@ -91,7 +92,7 @@ bool TaskLife::claims_groups_of(std::span<const TaskId> tasks) noexcept {
     const std::size_t group = standbys.group_of(id);
     if (group == standbys.n_groups()) continue;
     const auto is_on = [&](TaskId mate) {
-      const State state = set_.is_mine(mate) ? set_.tasks()[mate.index].state : set_.others()->state(mate);
+      const State state = set_.is_mine(mate) ? set_.tasks()[mate.index].shown_state() : set_.others()->state(mate);
       return mate != id && state == State::kOn;
     };
     const auto mates = standbys.members(group);
@@ -104,7 +105,7 @@ bool TaskLife::claims_groups_of(std::span<const TaskId> tasks) noexcept {
 
 bool TaskLife::would_be_legal(std::span<const TaskId> tasks) noexcept {
   for (const Task& task : set_.tasks())
-    wanted_[task.id.index] = (set_.is_mine(task.id) ? task.state : set_.others()->state(task.id)) == State::kOn;
+    wanted_[task.id.index] = (set_.is_mine(task.id) ? task.shown_state() : set_.others()->state(task.id)) == State::kOn;
   set_.standbys().add_covered(wanted_, tasks);
   for (TaskId id : tasks) wanted_[id.index] = true;
   if (is_legal_set(set_.spec().variables, wanted_)) return true;
@@ -127,6 +128,10 @@ SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
     if (signal == Signal::kOff || task.state != State::kOff) return settled;
   }
   Progress& progress = progress_[id.index];
+  if (task.is_unread && signal == Signal::kOn) return show(task);
+  if (task.is_unread && signal != Signal::kOff) (void)carry_out(id, Signal::kOff, now);
+  if (task.is_unread) task.forget_sent();
+  task.is_unread = false;
   progress = Progress{};
   progress.is_moved = is_moving_;
   progress.report = {true, false, Refusal::kNone, signal, id, task.state, task.state};
@@ -181,6 +186,27 @@ SignalReport TaskLife::arm(TaskId id, Nanoseconds now) {
     task.forget_sent();
   }
   return report;
+}
+
+SignalReport TaskLife::warm_up(TaskId id, Nanoseconds now) {
+  Task& task = set_.tasks()[id.index];
+  is_arming_ = true;
+  SignalReport report = carry_out(id, Signal::kOn, now);
+  is_arming_ = false;
+  task.forget_sent();
+  task.is_unread = task.state == State::kOn;
+  report.after = task.shown_state();
+  report.is_accepted = task.is_unread;
+  if (!report.is_accepted) report.why = Refusal::kFault;
+  set_.on_set_changed();
+  return report;
+}
+
+// Whoever reads its variables reads them from its group now.
+SignalReport TaskLife::show(Task& task) {
+  task.is_unread = false;
+  set_.sources().take_outputs_of(task);
+  return {true, false, Refusal::kNone, Signal::kOn, task.id, State::kOff, State::kOn};
 }
 
 SignalReport TaskLife::settle_off(TaskId id, Nanoseconds now) {

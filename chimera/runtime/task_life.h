@@ -54,6 +54,10 @@ class TaskLife {
   /// its own group, and stays OFF. When that went well it owes `off`; what it sent is not delivered. Nobody reads from
   /// the task yet, but for readers of a variable that nobody else ever produced.
   SignalReport arm(TaskId task, Nanoseconds now);
+  /// Runs `on` of a hot standby, which is OFF, beside the task that is ON: it takes over what stands, publishes into
+  /// its own group, and cycles from now on without being read. `on` as a signal then only lets it be read; any other
+  /// signal has `off` run first. What it sent is not delivered.
+  SignalReport warm_up(TaskId task, Nanoseconds now);
   /// Runs the `off` that a task owes. Requires: it does. Any other signal to the task has that done first.
   SignalReport settle_off(TaskId task, Nanoseconds now);
 
@@ -74,6 +78,7 @@ class TaskLife {
   };
 
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
+  SignalReport show(Task& task);
   SignalReport go_on_constructed(Task& task, Answer answer, Nanoseconds now);
   SignalReport advance(Task& task, Next at, Nanoseconds now);
   bool follow(Task& task, Next at, Nanoseconds now);

@@ -100,17 +100,18 @@ bool TaskSet::counts_as_on(TaskId task) const noexcept {
 
 void TaskSet::on_set_changed() noexcept {
   for (const Task& task : tasks_)
-    states_[task.id.index] = is_mine(task.id) ? task.state : place_.others->state(task.id);
+    states_[task.id.index] = is_mine(task.id) ? task.shown_state() : place_.others->state(task.id);
   if (standbys_.n_groups() > 0) {
     JobClock* const clock = methods_.clock();
     standbys_.follow(states_, clock == nullptr ? Nanoseconds{} : clock->now());
-    if (standbys_.is_any_waiting()) sent_.want_edge();
+    if (standbys_.is_any_waiting() || standbys_.has_hot()) sent_.want_edge();
   }
   for (const Task& task : tasks_) on_[task.id.index] = counts_as_on(task.id);
   flag_.follow(on_, standbys_.is_any_uncovered());
-  for (const Task& task : tasks_) {
+  for (Task& task : tasks_) {
     if (!is_mine(task.id)) continue;
-    const TaskStatus now{task.state, task.in_service, memories_[task.id.index].incarnation()};
+    if (task.state != State::kOn) task.is_unread = false;
+    const TaskStatus now{task.shown_state(), task.in_service, memories_[task.id.index].incarnation()};
     TaskStatus& listed = listed_[task.id.index];
     if (now != listed) changes_.add_status(task.id, listed, now);
     listed = now;

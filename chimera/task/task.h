@@ -70,6 +70,7 @@ struct alignas(64) Task {
   Method job_method = Method::kCycle;  ///< which its job is in, sync or error for a time; by atomic_ref, to be told
   bool has_news = false;   ///< a fault was recorded or a signal sent that nobody has looked at
   State state = State::kNotCreated;
+  bool is_unread = false;  ///< a hot standby: it cycles as a task does that is ON, and counts as OFF for all others
   std::span<Input> inputs;               ///< rebound at an edge when producers change
   std::span<LocalGroup* const> copies;   ///< of groups produced elsewhere, refreshed before the inputs are read
   GroupWriter group;
@@ -100,6 +101,8 @@ struct alignas(64) Task {
   bool owes_off = false;    ///< OFF, with `on` behind it and `off` before it: armed for a switch, or left by one
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
 
+  /// As others see it.
+  State shown_state() const noexcept { return is_unread && state == State::kOn ? State::kOff : state; }
   /// The last method sent signals, or asked for a configuration, and nobody has looked at that.
   bool has_sent() const noexcept { return !outbox.empty() || requested_set != kNoRequest; }
   void forget_sent() noexcept {

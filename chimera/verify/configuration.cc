@@ -69,7 +69,11 @@ ConfiguredTask configured(const TaskModel& task) {
   out.is_aperiodic = task.component->is_aperiodic();
   out.has_event_source = task.component->event_source;
   out.is_hardware = task.has_resource();
-  if (task.draft->standby_for) out.standby_for = task.draft->standby_for->text;
+  if (const auto& standby = task.draft->standby_for) {
+    out.standby_for = standby->task.text;
+    if (standby->stale_after) out.stale_after = standby->stale_after->value;
+    out.is_hot = standby->is_hot();
+  }
   for (const LinkedPort& port : task.ports) out.ports.push_back(configured(port));
   return out;
 }
@@ -140,9 +144,11 @@ void take_reactions(const Model& model, const DraftTask& draft, TaskSpec& spec) 
 /// In the order of the tasks.
 void take_standbys(const Model& model, std::vector<StandbySpec>& standbys) {
   for (std::size_t t = 0; t < model.tasks.size(); ++t) {
-    const auto& name = model.tasks[t].draft->standby_for;
-    const auto primary = name ? model.task_named(name->text) : std::nullopt;
-    if (primary) standbys.push_back({TaskId(*primary), TaskId(t)});
+    const auto& written = model.tasks[t].draft->standby_for;
+    const auto primary = written ? model.task_named(written->task.text) : std::nullopt;
+    if (!primary) continue;
+    const Nanoseconds stale_after = written->stale_after ? written->stale_after->value : Nanoseconds{};
+    standbys.push_back({TaskId(*primary), TaskId(t), stale_after, written->is_hot()});
   }
 }
 

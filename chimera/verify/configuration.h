@@ -40,6 +40,8 @@ struct ConfiguredTask {
   bool has_event_source = false;
   bool is_hardware = false;  ///< has a resource port
   std::string standby_for;   ///< empty: not a standby
+  Nanoseconds stale_after{};  ///< of a standby; 0: never
+  bool is_hot = false;        ///< of a standby
   std::vector<ConfiguredPort> ports;
 };
 

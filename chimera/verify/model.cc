@@ -25,6 +25,11 @@ std::optional<std::size_t> Model::task_named(std::string_view name) const {
   return std::nullopt;
 }
 
+std::optional<std::size_t> Model::primary_of(std::size_t standby) const {
+  const auto& written = tasks[standby].draft->standby_for;
+  return written ? task_named(written->task.text) : std::nullopt;
+}
+
 VariableModel* Model::variable(std::string_view name) {
   const auto found = variable_index.find(name);
   return found == variable_index.end() ? nullptr : &variables[found->second];

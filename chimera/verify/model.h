@@ -132,6 +132,8 @@ struct Model {
   LinkedPort& port(PortRef ref) { return tasks[ref.task].ports[ref.port]; }
   const LinkedPort& port(PortRef ref) const { return tasks[ref.task].ports[ref.port]; }
   std::optional<std::size_t> task_named(std::string_view name) const;
+  /// That the task stands in for; nothing: none, or one that there is not.
+  std::optional<std::size_t> primary_of(std::size_t standby) const;
   VariableModel* variable(std::string_view name);
   /// What the port is linked to; nullptr: nothing.
   VariableModel* variable(const LinkedPort& p) { return p.is_linked() ? variable(p.variable) : nullptr; }

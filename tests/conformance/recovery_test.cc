@@ -19,6 +19,8 @@ struct Scene {
   std::vector<double> u;         // that the reader read
   std::vector<bool> illegal;     // and whether the flag was up then
   std::vector<bool> valid;       // and whether that was valid
+  std::vector<std::int64_t> spare_cycles;  // instants
+  int ons_of_spare = 0, offs_of_spare = 0;
   std::int64_t inherited_ns = -1;
   double inherited = -1;
   int ons_of_first = 0;
@@ -42,6 +44,7 @@ struct First {
 struct Spare {
   Out<double> u{"u", "1", initial = 0.0};
   Outcome on(Cycle c) {
+    ++scene.ons_of_spare;
     scene.inherited = *u;
     scene.inherited_ns = u.inherited().count;
     return scene.on_of_spare ? scene.on_of_spare(c) : ok();
@@ -49,8 +52,10 @@ struct Spare {
   Outcome cycle(Cycle c) {
     const Outcome outcome = scene.cycle_of_spare ? scene.cycle_of_spare(c) : ok();
     *u = 100 + static_cast<double>(c.count());
+    scene.spare_cycles.push_back(c.now().count);
     return outcome;
   }
+  void off(Cycle) { ++scene.offs_of_spare; }
 };
 
 struct Reader {
@@ -211,6 +216,87 @@ TEST_P(RecoveryTest, ATakeoverAbortsASwitchThatIsNotCommittedAndLeavesACommitted
   EXPECT_EQ(state(kFirst), chimera::State::kError);
   EXPECT_EQ(state(kSpare) == chimera::State::kOn, !is_committed);
   EXPECT_EQ(state(kThird) == chimera::State::kOn, is_committed);
+  EXPECT_FALSE(was_up());
+}
+
+/// `spare` cycles beside `first`.
+void make_hot(std::vector<StandbySpec>& standbys) {
+  standbys = {{kFirst, kSpare, {}, true}, {kFirst, kThird}};
+}
+
+TEST_P(RecoveryTest, AHotStandbyCyclesUnreadAndIsReadFromTheTakeoverOn) {
+  make_hot(standbys_);
+  fail_first_in(5);
+  go(milliseconds(10));
+  EXPECT_EQ(state(kSpare), chimera::State::kOn);
+  EXPECT_FALSE(task(kSpare).is_unread);
+  EXPECT_EQ(scene.ons_of_spare, 1) << "no on at the takeover";
+  EXPECT_EQ(task(kSpare).profile.takeovers, 1u);
+  EXPECT_FALSE(was_up());
+  // It began in the gap behind the first cycles, and goes on from where it is: at 5 ms, in which `first` fails, what it
+  // published at 4 ms is read already.
+  EXPECT_EQ(scene.u, (std::vector<double>{1, 2, 3, 4, 5, 103, 104, 105, 106, 107}));
+}
+
+TEST_P(RecoveryTest, AHotStandbyIsOffForAllOthersAndWhatItSendsIsNotSent) {
+  make_hot(standbys_);
+  scene.cycle_of_spare = [](Cycle c) -> Outcome {
+    c.request("alone");
+    (void)c.signal(Signal::kOff, "reader");
+    return ok();
+  };
+  go(milliseconds(10));
+  EXPECT_EQ(task(kSpare).shown_state(), chimera::State::kOff);
+  EXPECT_TRUE(task(kSpare).is_unread);
+  EXPECT_GE(scene.spare_cycles.size(), 9u);
+  EXPECT_EQ(runner_->receipts().size(), 0u);
+  EXPECT_TRUE(set_->flag().is_on_set_legal());
+  EXPECT_EQ(scene.u.back(), 10) << "nobody reads it";
+  EXPECT_FALSE(was_up());
+}
+
+TEST_P(RecoveryTest, AHotStandbyRestsWhileNobodyOfItsGroupIsOn) {
+  make_hot(standbys_);
+  go(milliseconds(12), {signal(milliseconds(3), Signal::kOff, kFirst), signal(milliseconds(8), Signal::kOn, kFirst)});
+  EXPECT_EQ(scene.ons_of_spare, 2);
+  EXPECT_EQ(scene.offs_of_spare, 1);
+  EXPECT_TRUE(task(kSpare).is_unread);
+  for (const std::int64_t at : scene.spare_cycles) EXPECT_TRUE(at < 5'000'000 || at >= 8'000'000) << at;
+}
+
+TEST_P(RecoveryTest, AHotStandbyThatIsTurnedOffStaysSo) {
+  make_hot(standbys_);
+  go(milliseconds(12), {signal(milliseconds(4), Signal::kOff, kSpare), signal(milliseconds(8), Signal::kKill, kSpare)});
+  EXPECT_EQ(state(kSpare), chimera::State::kNotCreated);
+  EXPECT_EQ(scene.ons_of_spare, 1);
+  EXPECT_EQ(scene.offs_of_spare, 1);
+  EXPECT_EQ(scene.u.back(), 12);
+}
+
+TEST_P(RecoveryTest, AHotStandbyThatFailsUnreadMakesPlaceForTheNext) {
+  make_hot(standbys_);
+  fail_first_in(5);
+  scene.cycle_of_spare = [n = 0](Cycle) mutable -> Outcome { return ++n == 3 ? fault("no voltage") : ok(); };
+  go(milliseconds(10));
+  EXPECT_EQ(state(kSpare), chimera::State::kError);
+  EXPECT_FALSE(task(kSpare).is_unread);
+  EXPECT_EQ(state(kThird), chimera::State::kOn);
+  EXPECT_FALSE(was_up());
+}
+
+TEST_P(RecoveryTest, ASwitchToAHotStandbyArmsItAnew) {
+  make_hot(standbys_);
+  alone_ = {kSpare, kReader};
+  scene.cycle_of_first = [](Cycle c) -> Outcome {
+    if (c.count() == 4) c.request("alone");
+    return ok();
+  };
+  go(milliseconds(14));
+  ASSERT_EQ(runner_->receipts().size(), 1u);
+  EXPECT_EQ(runner_->receipts()[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(state(kSpare), chimera::State::kOn);
+  EXPECT_FALSE(task(kSpare).is_unread);
+  EXPECT_EQ(scene.ons_of_spare, 2);
   EXPECT_FALSE(was_up());
 }
 

@@ -3,6 +3,7 @@
 are the campaign `process_standby`. CHIMERA_ROUNDS: kills at random."""
 import os
 import random
+import signal
 import sys
 import time
 import unittest
@@ -82,6 +83,54 @@ class Standby(unittest.TestCase):
             await_that(lambda: system.state("user") == "ON", 10, "the reader is back")
             self.await_seen(system, 2)
             system.await_state("spare", "OFF")
+
+    def test_a_hot_one_cycles_unread(self):
+        with System(TEXT.replace("standby_for: main", "standby_for: {task: main, hot: true}")) as system:
+            self.await_seen(system, 2)
+            await_that(lambda: system.task("spare")["cycles"] > 10, 5, "its cycles")
+            self.assertEqual(system.state("spare"), "OFF")
+            self.assertEqual(system.call("status")["configuration"], "run")
+            started = system.call("status")["started_ns"]
+            self.take_over(system, "manager", "first")
+            self.assertEqual(self.flags(system, started), [])
+            system.await_state("main", "OFF")
+            receipt = system.call("switch", configuration="run")
+            self.assertEqual((receipt["end"], receipt["reason"]), ("done", None))
+            self.await_seen(system, 2)
+            cycles = system.task("spare")["cycles"]
+            await_that(lambda: system.task("spare")["cycles"] > cycles + 5, 5, "its cycles beside the one that is back")
+            self.assertEqual(system.state("spare"), "OFF")
+
+    def test_a_primary_that_is_silent_is_killed_before_it_is_replaced(self):
+        """Its process is stopped; when it resumes in time nothing happens, when it would later it is dead."""
+        random.seed(SEED)
+        print(f"seed {SEED}", file=sys.stderr)
+        text = TEXT.replace("standby_for: main", "standby_for: {task: main, stale_after: 200 ms}")
+        with System(text) as system:
+            self.await_seen(system, 2)
+            for rounds in range(ROUNDS):
+                pid, since = system.pids()["first"], system.call("events", since=0)["last"]
+                self.assertTrue(system.kill(pid, signal.SIGSTOP))
+                time.sleep(random.random() * 0.08)
+                self.assertTrue(system.kill(pid, signal.SIGCONT))
+                time.sleep(0.1)
+                self.assertEqual((system.state("main"), system.state("spare")), ("ON", "OFF"))
+                stopped = time.monotonic()
+                self.assertTrue(system.kill(pid, signal.SIGSTOP))
+                system.await_state("spare", "ON")
+                self.assertGreater(time.monotonic() - stopped, 0.18)
+                self.assertFalse(system.kill(pid, signal.SIGCONT), "it is dead")
+                self.await_seen(system, 3)
+                told = [event["text"] for event in system.events(since + 1) if event["kind"] == "safe"]
+                self.assertIn("published nothing for as long as `stale_after` of its standby says: its real-time unit "
+                              "is ended", told)
+                system.await_state("main", "OFF")  # of its successor
+                await_that(lambda: system.state("reference") == "ON", 10, "the reference")
+                self.assertEqual(system.call("get", variables=["seen"])["values"]["seen"]["value"], 3)
+                self.assertEqual(system.call("switch", configuration="run")["end"], "done")
+                self.await_seen(system, 2)
+                time.sleep(4 if rounds + 1 < ROUNDS else 0)  # three deaths in 10 s and a unit is given up
+        print(f"stops: {2 * ROUNDS}", file=sys.stderr)
 
     def test_whoever_dies_one_of_them_is_on(self):
         """One or two of all are killed, the second at any moment of the take-over from the first."""

@@ -20,11 +20,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<std::string_view, 32> kKinds = {
+constexpr std::array<std::string_view, 33> kKinds = {
     "started",         "state", "fault", "refused", "signal",  "flag", "rtpu-ended", "rtpu-restarted", "rtpu-given-up",
     "manager-started", "miss",  "blame", "hang",    "demoted", "note", "overrun",    "stale",          "lost",
     "command",         "set",   "stop",  "ending",  "closed", "not-off",
-    "memory",          "rights", "face-died", "output-lost", "switch", "bump", "drill", "safe"};
+    "memory",          "rights", "face-died", "output-lost", "switch", "bump", "drill", "safe",
+    "takeover"};
 
 /// One incident is told at several ends: who was late, what held it up, how many in all.
 constexpr std::array<std::string_view, 3> kOfAMiss = {"miss", "blame", "overrun"};

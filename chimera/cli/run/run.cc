@@ -132,16 +132,15 @@ Result<void> LocalTarget::start() {
   return {};
 }
 
-// Of the rtpus that the script had die.
+// Of the rtpus that the script had die, or that a standby had killed because their tasks were silent.
 std::vector<UnitFate> LocalTarget::fates() {
   std::vector<UnitFate> fates;
-  std::vector<bool> is_told(application_.spec().rtpus.size());
-  for (const ScriptAct& act : plan_.acts) {
-    if (act.kind != ScriptAct::Kind::kDie || is_told[act.rtpu.index]) continue;
-    if (!application_.peers()->is_dead(act.rtpu)) continue;  // the run ended before
-    is_told[act.rtpu.index] = true;
-    fates.push_back({.name = std::string(application_.spec().rtpus[act.rtpu.index].name), .died = act.at});
-  }
+  const VirtualPeers* const peers = application_.peers();
+  for (std::size_t r = 0; peers != nullptr && r < application_.spec().rtpus.size(); ++r)
+    if (peers->is_dead(RtpuId(r)))
+      fates.push_back({.name = std::string(application_.spec().rtpus[r].name),
+                       .died = peers->died(RtpuId(r)) - loop_->origin()});
+  std::ranges::stable_sort(fates, {}, [](const UnitFate& fate) { return fate.died.count; });
   return fates;
 }
 

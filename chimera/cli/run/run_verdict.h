@@ -18,7 +18,7 @@ struct UnitFate {
   Nanoseconds restarted = kNever;  ///< since the start of the run, the last time; kNever: not known
   bool is_given_up = false;        ///< dead, and nobody starts it again
   std::string bad_end = {};        ///< how it ended although all was to be turned off in order; "": in order
-  Nanoseconds died = kNever;       ///< since the start, as the script of a run in virtual time wanted; kNever: not
+  Nanoseconds died = kNever;       ///< since the start, in virtual time, where nobody restarts it; kNever: not
 };
 
 /// A task of which `off` or `kill` failed or was never run. Plain value.

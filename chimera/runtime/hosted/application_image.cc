@@ -43,7 +43,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 7;
+constexpr std::uint32_t kVersion = 8;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -238,6 +238,8 @@ void recovery_fields(Archive& archive, ApplicationImage::Parts& parts, Applicati
   archive.list(spec.standbys, parts.standbys, kMostStandbys, "too many standbys", [&](auto& standby) {
     archive.number(standby.primary);
     archive.number(standby.standby);
+    archive.number(standby.stale_after);
+    archive.choice(standby.hot, true);
     is_task(standby.primary);
     is_task(standby.standby);
   });
@@ -349,6 +351,17 @@ void judge_recovery(const ApplicationImage::Parts& parts, ImageReader& reader) {
   }
   reader.require(std::ranges::none_of(primaries, [&](std::uint32_t id) { return standbys.contains(id); }),
                  "a standby of a standby");
+  for (const StandbySpec& each : parts.standbys) {
+    const TaskSpec &primary = parts.tasks[each.primary.index], &standby = parts.tasks[each.standby.index];
+    const auto keeps_back = [](const PortSpec& port) {
+      return port.kind == CHIMERA_RESOURCE || port.kind == CHIMERA_OUT_CONST;
+    };
+    reader.require(!each.hot || (!standby.aperiodic && std::ranges::none_of(standby.ports, keeps_back)),
+                   "a hot standby that others would notice");
+    const bool fits = !primary.aperiodic && primary.rtpu != standby.rtpu &&
+                      each.stale_after.count / kStalePeriods >= primary.period.count;
+    reader.require(each.stale_after.count == 0 || fits, "a primary that cannot be killed for its silence");
+  }
   std::set<std::uint32_t> judged;
   for (const StaleSpec& each : parts.stale)
     reader.require(judged.insert(each.task.index).second, "two limits of age for a task");

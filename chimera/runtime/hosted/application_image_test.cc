@@ -40,6 +40,8 @@ struct Sample {
     more_ports[5].variable = kKi;
     spare_ports[0].kind = CHIMERA_OUT_VAR;
     spare_ports[0].variable = kX;
+    spare_ports[1].kind = CHIMERA_IN_VAR;
+    spare_ports[1].variable = kKp;
     tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
                 .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
                 .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kSwitch,
@@ -69,7 +71,7 @@ struct Sample {
   static constexpr ConstantId kN{0u}, kM{1u};
 
   RtpuSpec rtpus[2] = {{"spare", 3, Policy::kMuf}, {"servo", 1, Policy::kRm}};
-  PortSpec ports[2], more_ports[6], spare_ports[1];
+  PortSpec ports[2], more_ports[6], spare_ports[2];
   TaskSpec tasks[3];
   Variable variables[3];
   ConstantSpec constants[2];
@@ -78,7 +80,7 @@ struct Sample {
   TaskId init_order[3] = {TaskId{1u}, TaskId{0u}, TaskId{2u}}, start[1] = {TaskId{1u}};
   TaskId on_order[3] = {TaskId{2u}, TaskId{1u}, TaskId{0u}}, end_order[3] = {TaskId{0u}, TaskId{1u}, TaskId{2u}};
   TaskId other[2] = {TaskId{0u}, TaskId{1u}};
-  StandbySpec standbys[1] = {{TaskId{0u}, TaskId{2u}}};
+  StandbySpec standbys[1] = {{TaskId{0u}, TaskId{2u}, {}, true}};
   RestartSpec restarts[1] = {{TaskId{2u}, 4, seconds(10), OnFault::kSwitch}};
   StaleSpec stale[1] = {{TaskId{1u}, milliseconds(3)}};
   NamedSet sets[2] = {{"both", other, {kX, 7, Relation::kAtLeast, -2.5}}, {"alone", start}};
@@ -141,6 +143,11 @@ TEST(ApplicationImage, ADifferenceInAnySpecIsSeen) {  // so that the test above 
   Sample i;
   i.stale[0].after = seconds(1);
   EXPECT_EQ(first_difference(i.spec, Sample().spec), "stale[0].after");
+  Sample j, k;
+  j.standbys[0].hot = false;
+  EXPECT_EQ(first_difference(j.spec, Sample().spec), "standbys[0].hot");
+  k.standbys[0].stale_after = seconds(1);
+  EXPECT_EQ(first_difference(k.spec, Sample().spec), "standbys[0].stale_after");
 }
 
 TEST(ApplicationImage, StrangersAreRefusedByName) {
@@ -151,8 +158,8 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   bytes[0] = std::byte{'X'};
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
-  bytes[kVersionAt] = std::byte{8};
-  EXPECT_EQ(refusal(bytes), "image version 8, this program reads 7");
+  bytes[kVersionAt] = std::byte{9};
+  EXPECT_EQ(refusal(bytes), "image version 9, this program reads 8");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +
@@ -246,6 +253,49 @@ TEST(ApplicationImage, AStandbyThatCannotStandInIsRefused) {
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.standbys[0].standby = TaskId{0u}; }), "a standby of a standby"));
   const StandbySpec twice[2] = {{TaskId{0u}, TaskId{2u}}, {TaskId{0u}, TaskId{2u}}};
   EXPECT_TRUE(says(refusal_of([&](Sample& s) { s.spec.standbys = twice; }), "a standby of two tasks"));
+}
+
+/// The primary is released by a clock, every 10 ns, and may be killed for its silence.
+void make_stale(Sample& s) {
+  s.tasks[0].aperiodic = false;
+  s.tasks[0].server = {};
+  s.standbys[0].stale_after = Nanoseconds{20};
+}
+
+TEST(ApplicationImage, ALimitOfTheSilenceOfAPrimaryComesBackOrIsRefused) {
+  const char* never = "a primary that cannot be killed for its silence";
+  Sample sample;
+  make_stale(sample);
+  const auto bytes = encode(sample.spec, sample.places, sample.settings);
+  const auto image = ApplicationImage::decode(bytes);
+  ASSERT_TRUE(image) << image.error().message.c_str();
+  EXPECT_EQ(first_difference(image->spec(), sample.spec), "");
+  const auto refused = [&](auto change) {
+    return refusal_of([&](Sample& s) {
+      make_stale(s);
+      change(s);
+    });
+  };
+  EXPECT_TRUE(says(refused([](Sample& s) { s.standbys[0].stale_after = Nanoseconds{19}; }), never));
+  EXPECT_TRUE(says(refused([](Sample& s) { s.standbys[0].stale_after = Nanoseconds{-1}; }), never));
+  EXPECT_TRUE(says(refused([](Sample& s) { s.tasks[2].rtpu = RtpuId{1u}; }), never)) << "the standby dies with it";
+  EXPECT_TRUE(says(refused([](Sample& s) { s.tasks[0].aperiodic = true; }), never));
+}
+
+TEST(ApplicationImage, AHotStandbyThatOthersWouldNoticeIsRefused) {
+  const char* noticed = "a hot standby that others would notice";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) {
+    s.spare_ports[1].kind = CHIMERA_RESOURCE;
+    s.spare_ports[1].variable = {};
+    s.spare_ports[1].element_bytes = 0;
+    s.spare_ports[1].type = CHIMERA_STRING;
+  }), noticed));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) {
+    s.spare_ports[1].kind = CHIMERA_OUT_CONST;
+    s.spare_ports[1].variable = {};
+    s.spare_ports[1].constant = Sample::kM;
+  }), noticed));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[2].aperiodic = true; }), noticed));
 }
 
 TEST(ApplicationImage, ARestartThatCannotBeDoneIsRefused) {

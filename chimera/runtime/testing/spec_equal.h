@@ -146,6 +146,8 @@ inline std::string first_difference(const ApplicationSpec& a, const ApplicationS
   d.list(a.standbys, b.standbys, "standbys", [&](const StandbySpec& p, const StandbySpec& q) {
     d.compare(p.primary, q.primary, "primary");
     d.compare(p.standby, q.standby, "standby");
+    d.compare(p.stale_after, q.stale_after, "stale_after");
+    d.compare(p.hot, q.hot, "hot");
   });
   d.list(a.restarts, b.restarts, "restarts", [&](const RestartSpec& p, const RestartSpec& q) {
     d.compare(p.task, q.task, "task");

@@ -36,7 +36,7 @@ void VirtualPeers::join(RtpuId rtpu, TaskSet& tasks) {
 State VirtualPeers::state(TaskId task) const noexcept {
   const Peer& peer = peer_of(task);
   if (peer.tasks == nullptr) return State::kNotCreated;
-  const State state = peer.tasks->tasks()[task.index].state;
+  const State state = peer.tasks->tasks()[task.index].shown_state();
   return peer.is_dead && state != State::kNotCreated ? State::kError : state;
 }
 
@@ -119,8 +119,9 @@ bool VirtualPeers::is_flag_up() const noexcept {
   });
 }
 
-void VirtualPeers::die(RtpuId rtpu) noexcept {
+void VirtualPeers::die(RtpuId rtpu, Nanoseconds now) noexcept {
   peers_[rtpu.index].is_dead = true;
+  peers_[rtpu.index].died = now;
   show_change(rtpu);
 }
 

@@ -68,8 +68,10 @@ class VirtualPeers final : public PeerView {
   void set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept;
 
   /// The rtpu is dead: its tasks that were created are in ERROR, what it published stands.
-  void die(RtpuId rtpu) noexcept;
+  void die(RtpuId rtpu, Nanoseconds now) noexcept;
   bool is_dead(RtpuId rtpu) const noexcept { return peers_[rtpu.index].is_dead; }
+  /// When it died. Requires: it did.
+  Nanoseconds died(RtpuId rtpu) const noexcept { return peers_[rtpu.index].died; }
   /// Null: no task is on that rtpu.
   TaskSet* tasks(RtpuId rtpu) const noexcept { return peers_[rtpu.index].tasks; }
   const ApplicationSpec& spec() const noexcept { return spec_; }
@@ -80,6 +82,7 @@ class VirtualPeers final : public PeerView {
   struct Peer {
     TaskSet* tasks = nullptr;
     bool is_dead = false;
+    Nanoseconds died;
     std::atomic<std::uint32_t> bell{0};    // relaxed, pairs with nothing: one thread rings and listens
     std::atomic<std::uint32_t> raised{0};  // relaxed, pairs with nothing: one thread writes and reads
     std::vector<VirtualPost> posts;        // room for kMostPosts

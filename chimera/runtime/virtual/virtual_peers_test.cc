@@ -59,7 +59,7 @@ TEST_F(VirtualPeersTest, StatesAndGroupsAreThoseOfTheContextAsItIs) {
   std::memcpy(&n, peers->constants(kMaker).published() + 1, sizeof n);
   EXPECT_EQ(n, 3);
   EXPECT_EQ(peers->outputs(kMaker).published(), sets[1]->memory(kMaker).reader().published());
-  peers->die(kOfMaker);
+  peers->die(kOfMaker, {});
   EXPECT_EQ(peers->state(kMaker), State::kError);
   EXPECT_EQ(peers->state(kTaker), State::kOn);
 }
@@ -80,7 +80,7 @@ TEST_F(VirtualPeersTest, PassesSignalsOnInOrderAsFarAsThereIsRoom) {
   for (std::size_t i = 0; i < VirtualPeers::kMostPosts; ++i)
     EXPECT_TRUE(peers->post(Signal::kOff, kTaker, kMaker, false));
   EXPECT_FALSE(peers->post(Signal::kOff, kTaker, kMaker, false));
-  peers->die(kOfMaker);
+  peers->die(kOfMaker, {});
   EXPECT_FALSE(peers->post(Signal::kOff, kMaker, kTaker, false)) << "nobody is there";
 }
 

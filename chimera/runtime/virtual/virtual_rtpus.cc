@@ -19,6 +19,13 @@ constexpr std::size_t kMostRefused = 1024;
 // Tasks of several units may send each other signals for ever: after so many passes releases have their turn.
 constexpr int kMostEdges = 16;
 
+std::vector<Silence> silences_of(const ApplicationSpec& spec) {
+  std::vector<Silence> silences;
+  for (const StandbySpec& each : spec.standbys)
+    if (each.stale_after.count > 0) silences.push_back(Silence::of(each, spec.tasks[each.primary.index].period));
+  return silences;
+}
+
 }  // namespace
 
 /// One rtpu.
@@ -73,6 +80,7 @@ VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const
     if (peers.tasks(RtpuId(r)) != nullptr)
       units_.push_back(std::make_unique<Unit>(peers, RtpuId(r), switches, options, how));
   }
+  silences_ = silences_of(peers.spec());
   of_dead_.reserve(kMostRefused);
 }
 
@@ -154,6 +162,7 @@ RunEnd VirtualRtpus::run_to(Nanoseconds duration) noexcept {
     if (now_ >= until) return RunEnd::kTime;
     stop_units();
     take_acts();
+    if (!silences_.empty()) look_for_silence();
     take_edges();
     switches_.look(now_);
     if (begin_jobs()) continue;
@@ -231,12 +240,23 @@ void VirtualRtpus::die(RtpuId rtpu) noexcept {
   unit.processor->cut(now_);
   unit.is_dead = true;
   unit.acts_now = false;
-  peers_.die(rtpu);
+  peers_.die(rtpu, now_);
   for (Task& task : unit.tasks.tasks()) {
     if (!unit.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
     unit.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
     task.profile.on_before = task.profile.on_by(now_);
     task.profile.on_since = kNever;
+  }
+}
+
+void VirtualRtpus::look_for_silence() noexcept {
+  for (Silence& silence : silences_) {
+    if (silence.due() > now_) continue;
+    const TaskId primary = silence.task();
+    const bool is_on = peers_.state(primary) == State::kOn && peers_.state(silence.standby()) == State::kOff;
+    const GroupReader group = peers_.outputs(primary);
+    const std::uint64_t published = group.is_bound() ? group.published()->sequence : 0;
+    if (silence.look(is_on, published, now_)) die(peers_.spec().tasks[primary.index].rtpu);
   }
 }
 
@@ -276,6 +296,8 @@ Nanoseconds VirtualRtpus::next_event() noexcept {
   Nanoseconds next = at == kNever ? kNever : origin_ + at;
   for (const auto& unit : units_)
     if (!unit->is_dead) next = std::min(next, unit->next);
+  for (const Silence& silence : silences_)
+    if (!peers_.is_dead(peers_.spec().tasks[silence.task().index].rtpu)) next = std::min(next, silence.due());
   return next;
 }
 

@@ -3,15 +3,16 @@
 // processor. docs/formats/virtual-time.md has the rules.
 //
 // Order of things at one instant, over all units: ends of jobs with their publications, the script (deaths first),
-// edges with their signals, releases, starts of jobs with their inputs; each in the order of the units. A job reads at
-// its start what others have published by then, and publishes at its end. What comes of it at that instant follows in
-// another round of these.
+// deaths of units whose primary tasks are silent for too long (silence.h), edges with their signals, releases, starts
+// of jobs with their inputs; each in the order of the units. A job reads at its start what others have published by
+// then, and publishes at its end. What comes of it at that instant follows in another round of these.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "chimera/runtime/silence.h"
 #include "chimera/runtime/virtual/stepped_processor.h"
 #include "chimera/runtime/virtual/virtual_control.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
@@ -61,6 +62,7 @@ class VirtualRtpus {
   void act(const ScriptAct& act, Unit*& last) noexcept;
   void lower_flag(const ScriptAct& act) noexcept;
   void die(RtpuId rtpu) noexcept;
+  void look_for_silence() noexcept;
   void stop_units() noexcept;
   void take_edges() noexcept;
   bool take_edge(Unit& unit) noexcept;
@@ -74,6 +76,7 @@ class VirtualRtpus {
   Script script_;
   VirtualSwitches switches_;
   std::vector<std::unique_ptr<Unit>> units_;  // with tasks, in the order of the rtpus
+  std::vector<Silence> silences_;             // for the sake of standbys
   std::vector<RefusedSignal> of_dead_;        // signals for tasks of dead rtpus
   Nanoseconds now_, origin_;
 };

@@ -15,8 +15,9 @@ namespace {
 /// What the components of a run do, and what they saw. One run at a time.
 struct Scene {
   std::vector<double> u;
-  std::int64_t fails_at = -1;  // of the primary
+  std::int64_t fails_at = -1, hangs_at = -1;  // of the primary
   bool on_of_spare_fails = false;
+  int ons_of_spare = 0;
   std::vector<std::int64_t> illegal;  // cycles that saw the flag up
 };
 Scene scene;
@@ -25,6 +26,7 @@ struct Primary {
   Out<double> u{"u", "1", initial = 0.0};
   Outcome cycle(Cycle c) {
     *u = static_cast<double>(c.count()) + 1;
+    if (c.now().count == scene.hangs_at) c.spend(seconds(1));
     return c.now().count == scene.fails_at ? fault("no current") : ok();
   }
 };
@@ -32,7 +34,10 @@ struct Primary {
 struct Standby {
   In<double> x{"x", "1"};  // from the rtpu of the primary
   Out<double> u{"u", "1", initial = 0.0};
-  Outcome on(Cycle) { return scene.on_of_spare_fails ? fault("no voltage") : ok(); }
+  Outcome on(Cycle) {
+    ++scene.ons_of_spare;
+    return scene.on_of_spare_fails ? fault("no voltage") : ok();
+  }
   void cycle(Cycle) { *u = *u + 100; }
 };
 
@@ -153,6 +158,37 @@ TEST_P(VirtualStandbysTest, TakeOverAlsoWhereWhatTheyReadFailedWithThePrimary) {
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
   EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "nobody produces x";
+}
+
+TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThenReplaced) {
+  pairs[0].stale_after = milliseconds(3);
+  scene.hangs_at = milliseconds(4).count;
+  go(milliseconds(11));
+  EXPECT_EQ(state(kPrimary), State::kError);
+  ASSERT_TRUE(peers->is_dead(RtpuId(0u)));
+  EXPECT_EQ(peers->died(RtpuId(0u)) - run->origin(), milliseconds(7));
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
+  // Published last at 3 ms, with the cycle released then: that is older than 3 ms with the look at 7 ms, which kills.
+  EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 4, 4, 4, 104, 204, 304}));
+}
+
+TEST_P(VirtualStandbysTest, APrimaryThatIsSilentIsLeftAloneWhileNobodyCouldTakeOver) {
+  pairs = {{kPrimary, kSpare, milliseconds(3), false}};
+  scene.hangs_at = milliseconds(4).count;
+  go(milliseconds(11), {death_at(microseconds(500), 2)});
+  EXPECT_EQ(state(kPrimary), State::kOn);
+  EXPECT_FALSE(peers->is_dead(RtpuId(0u)));
+}
+
+TEST_P(VirtualStandbysTest, AHotOneIsReadFromTheDeathOnWhereItIs) {
+  pairs[0].hot = true;
+  go(milliseconds(8), {death_at(microseconds(3500), 0)});
+  EXPECT_EQ(state(kSpare), State::kOn);
+  EXPECT_EQ(scene.ons_of_spare, 1);
+  EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
+  // It began beside the primary at 0 ms, after u was 0, and adds 100 in each cycle.
+  EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 400, 500, 600, 700}));
 }
 
 TEST_P(VirtualStandbysTest, ARunRepeatsExactly) {

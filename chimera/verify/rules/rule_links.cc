@@ -116,7 +116,7 @@ void report_unmet(Model& model, const LinkedPort& port, const VariableModel& var
 /// Without the standbys of tasks that are producers too: rule_standby.cc speaks of a task and its own standby.
 std::vector<PortRef> without_standbys(const Model& model, const std::vector<PortRef>& producers) {
   const auto stands_in_for = [&](const TaskModel& standby, const TaskModel& primary) {
-    return standby.draft->standby_for && standby.draft->standby_for->text == primary.name();
+    return standby.draft->standby_for && standby.draft->standby_for->task.text == primary.name();
   };
   std::vector<PortRef> left;
   for (const PortRef ref : producers) {
@@ -147,7 +147,7 @@ Members readers(const Model& model, const Members& on) {
   Members tasks = on;
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const auto& primary = model.tasks[t].draft->standby_for;
-    const auto index = primary ? model.task_named(primary->text) : std::nullopt;
+    const auto index = primary ? model.task_named(primary->task.text) : std::nullopt;
     if (index && on[*index]) tasks[t] = true;
   }
   return tasks;

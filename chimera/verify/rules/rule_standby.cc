@@ -23,7 +23,7 @@ std::string text(const std::set<std::string>& names) {
 
 /// The task that `standby` stands in for; nullopt, with a fault, when there is none such.
 std::optional<std::size_t> primary_of(Model& model, std::size_t standby) {
-  const Word& name = *model.tasks[standby].draft->standby_for;
+  const Word& name = model.tasks[standby].draft->standby_for->task;
   const std::string who = "'standby_for' of task '" + model.tasks[standby].name() + "'";
   const auto primary = model.task_named(name.text);
   if (primary && *primary != standby && !model.tasks[*primary].draft->standby_for) return primary;
@@ -44,7 +44,7 @@ const TaskModel* produced_elsewhere(const Model& model, const VariableModel& var
   for (const PortRef ref : variable.producers) {
     const auto& stands_in_for = model.tasks[ref.task].draft->standby_for;
     const bool is_of_group =
-        ref.task == primary || (stands_in_for && stands_in_for->text == model.tasks[primary].name());
+        ref.task == primary || (stands_in_for && stands_in_for->task.text == model.tasks[primary].name());
     if (!is_of_group) return &model.tasks[ref.task];
   }
   return nullptr;
@@ -72,10 +72,65 @@ void check_outputs(Model& model, std::size_t standby, std::size_t primary, Place
   }
 }
 
+/// Why nobody could kill the primary for its silence alone; and what to do.
+std::pair<std::string, std::string> why_not_stale(const Model& model, const TaskModel& task, const TaskModel& other) {
+  const Nanoseconds after = task.draft->standby_for->stale_after->value;
+  const std::string rtpu = model.rtpus[task.rtpu].name.text;
+  if (task.rtpu == other.rtpu)
+    return {"it is on rtpu '" + rtpu + "' as '" + other.name() + "' is, and would be killed with it",
+            "put one of them on another rtpu"};
+  if (other.draft->server || (other.component != nullptr && other.component->is_aperiodic()))
+    return {"'" + other.name() + "' is released by events, and is silent while there are none",
+            "take 'stale_after' out"};
+  if (!other.period || after.count / kStalePeriods >= other.period->count) return {};
+  return {"it is " + say(after) + ", and the period of '" + other.name() + "' is " + say(*other.period) +
+              ": between two cycles that are in time up to two periods may pass",
+          "write at least " + say(Nanoseconds{kStalePeriods * other.period->count})};
+}
+
+void check_stale(Model& model, const TaskModel& task, const TaskModel& other) {
+  const auto& after = task.draft->standby_for->stale_after;
+  if (!after) return;
+  const auto [why, remedy] = why_not_stale(model, task, other);
+  if (!why.empty())
+    model.error("standby-stale", after->at, "'stale_after' of standby '" + task.name() + "': " + why, say(after->value),
+                {}, {}, remedy);
+}
+
+/// A hot standby cycles beside its primary: nobody may notice.
+void check_hot(Model& model, const TaskModel& task) {
+  const DraftStandby& written = *task.draft->standby_for;
+  if (!written.is_hot() || task.component == nullptr) return;
+  const auto refuse = [&](const std::string& why) {
+    model.error("standby-hot", written.hot->at, "task '" + task.name() + "' cannot be a hot standby: " + why, "true",
+                "false", {}, "take 'hot' out: it is then initialised, and turned ON when it takes over");
+  };
+  if (task.draft->server || task.component->is_aperiodic()) refuse("it is released by events");
+  for (const LinkedPort& port : task.ports) {
+    if (port.is(CHIMERA_RESOURCE)) refuse("resource '" + port.name + "' would be used by it beside its primary");
+    if (port.is(CHIMERA_OUT_CONST)) refuse("it produces the constant '" + port.name + "'");
+  }
+}
+
+/// Both are initialised from the start on.
+void check_resources(Model& model, const TaskModel& task, const TaskModel& other) {
+  for (const LinkedPort& port : task.ports)
+    for (const LinkedPort& its : other.ports)
+      if (port.is(CHIMERA_RESOURCE) && its.is(CHIMERA_RESOURCE) && port.own != nullptr && its.own != nullptr &&
+          port.own->text == its.own->text)
+        model.warn("standby-resource", port.own->at,
+                   "standby '" + task.name() + "' and '" + other.name() + "' have the resource '" + port.own->text +
+                       "' both: 'init' of each of them opens it, and the takeover does not wait for the other one to "
+                       "close it",
+                   "give the standby a device of its own, unless this one takes two users");
+}
+
 void check(Model& model, std::size_t standby, std::size_t primary) {
   const TaskModel &task = model.tasks[standby], &other = model.tasks[primary];
-  const Place at = task.draft->standby_for->at;
+  const Place at = task.draft->standby_for->task.at;
   check_outputs(model, standby, primary, at);
+  check_stale(model, task, other);
+  check_hot(model, task);
   for (const SetModel& set : model.sets)
     if (set.has(standby) && set.has(primary))
       model.error(
@@ -83,6 +138,7 @@ void check(Model& model, std::size_t standby, std::size_t primary) {
           "configuration '" + set.name + "' names task '" + other.name() + "' and its standby '" + task.name() + "'",
           task.name(), "one of the two", {},
           "take '" + task.name() + "' out: it goes ON when '" + other.name() + "' fails");
+  check_resources(model, task, other);
   if (task.rtpu == other.rtpu)
     model.warn("standby-same-rtpu", at,
                "task '" + task.name() + "' and the task it stands in for, '" + other.name() + "', are both on rtpu '" +

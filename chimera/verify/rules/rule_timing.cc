@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rules on rates, deadlines, budgets, offsets and servers.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -8,9 +9,7 @@
 #include "chimera/schedule/utilisation.h"
 
 namespace chimera {
-namespace {
 
-/// "1.5 ms": a duration as people write it, in the largest unit that gives a number of at least 1.
 std::string say(Nanoseconds t) {
   constexpr struct {
     std::int64_t ns;
@@ -24,6 +23,8 @@ std::string say(Nanoseconds t) {
   }
   return "0 ns";
 }
+
+namespace {
 
 void read_rate(Model& model, TaskModel& task) {
   const DraftTask& draft = *task.draft;
@@ -133,9 +134,42 @@ double load(const TaskModel& task) {
 /// Work that finds no time is gone at its deadline, by the task's own word.
 bool gives_way(const TaskModel& task) { return task.draft->on_miss && task.draft->on_miss->kind == OnMiss::kAbort; }
 
-void warn_of_overload(Model& model, const SetModel& set, const TaskModel& task, std::uint32_t cpu, const char* sum) {
+/// Tasks that cycle together.
+struct Together {
+  std::string name;  ///< "configuration 'run'"
+  std::vector<std::size_t> tasks;
+};
+
+/// The tasks, and the hot standbys that cycle while one of them is ON.
+std::vector<std::size_t> with_hot(const Model& model, const std::vector<std::size_t>& tasks) {
+  std::vector<std::size_t> all = tasks;
+  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
+    const auto primary = model.primary_of(t);
+    if (!primary || !model.tasks[t].draft->standby_for->is_hot() || std::ranges::count(tasks, t) > 0) continue;
+    const auto stands_in = [&](std::size_t on) { return model.primary_of(on).value_or(on) == *primary; };
+    if (std::ranges::any_of(tasks, stands_in)) all.push_back(t);
+  }
+  return all;
+}
+
+/// The set, and with each standby in the place of its primary.
+std::vector<Together> all_together(const Model& model, const SetModel& set) {
+  const std::string name = "configuration '" + set.name + "'";
+  std::vector<Together> all{{name, with_hot(model, set.tasks)}};
+  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
+    const auto primary = model.primary_of(t);
+    if (!primary || !set.has(*primary) || set.has(t)) continue;
+    std::vector<std::size_t> tasks = set.tasks;
+    std::ranges::replace(tasks, *primary, t);
+    all.push_back({name + " with '" + model.tasks[t].name() + "' for '" + model.tasks[*primary].name() + "'",
+                   with_hot(model, tasks)});
+  }
+  return all;
+}
+
+void warn_of_overload(Model& model, const Together& set, const TaskModel& task, std::uint32_t cpu, const char* sum) {
   model.warn("utilisation", place_of_time(task),
-             "the budgets of configuration '" + set.name + "' take " + sum + " of CPU " + std::to_string(cpu) +
+             "the budgets of " + set.name + " take " + sum + " of CPU " + std::to_string(cpu) +
                  ", more than 0.93: every task says 'on_miss: abort', so what finds no time ends at its deadline",
              "run it in virtual time");
 }
@@ -157,7 +191,8 @@ std::string what_fits(const TaskModel& task, double load) {
   return "budget: " + say(time) + " or rate: " + room + " Hz";
 }
 
-void limit(Model& model, const SetModel& set, std::uint32_t cpu) {
+/// False: they take too much of it.
+bool limit(Model& model, const Together& set, std::uint32_t cpu) {
   double sum = 0;
   bool all_give_way = true;
   std::size_t heaviest = model.tasks.size();
@@ -168,19 +203,21 @@ void limit(Model& model, const SetModel& set, std::uint32_t cpu) {
     all_give_way = all_give_way && gives_way(task);
     if (heaviest == model.tasks.size() || load(task) > load(model.tasks[heaviest])) heaviest = index;
   }
-  if (!is_beyond(sum)) return;
+  if (!is_beyond(sum)) return true;
   const TaskModel& task = model.tasks[heaviest];
   char found[64];
   std::snprintf(found, sizeof found, "%.3f", sum);
-  if (all_give_way) return warn_of_overload(model, set, task, cpu, found);
+  if (all_give_way) warn_of_overload(model, set, task, cpu, found);
+  if (all_give_way) return false;
   const double fits = kMaxUtilisation - (sum - load(task));
-  const std::string message = "the budgets of configuration '" + set.name + "' take " + found + " of CPU " +
+  const std::string message = "the budgets of " + set.name + " take " + found + " of CPU " +
                               std::to_string(cpu) + "; expected at most 0.93";
   const std::string remedy = fits > 0
                                  ? "task '" + task.name() + "' takes most: it would fit with " + what_fits(task, fits)
                                  : "move tasks to another CPU, or lower their rates";
-  if (model.overload == Overload::kTold) return model.warn("utilisation", place_of_time(task), message, remedy);
-  model.error("utilisation", place_of_time(task), message, found, "at most 0.93", {}, remedy);
+  if (model.overload == Overload::kTold) model.warn("utilisation", place_of_time(task), message, remedy);
+  else model.error("utilisation", place_of_time(task), message, found, "at most 0.93", {}, remedy);
+  return false;
 }
 
 }  // namespace
@@ -194,10 +231,13 @@ void limit_utilisation(Model& model) {
     for (std::size_t i = 0; i < model.rtpus.size(); ++i) {
       bool is_first = true;
       for (std::size_t j = 0; j < i; ++j) is_first = is_first && model.rtpus[j].cpu.value != model.rtpus[i].cpu.value;
-      if (is_first) limit(model, set, model.rtpus[i].cpu.value);
+      if (!is_first) continue;
+      // What is too much without a standby is told once.
+      for (const Together& together : all_together(model, set))
+        if (!limit(model, together, model.rtpus[i].cpu.value)) break;
     }
   model.utilisation.assign(model.rtpus.size(), 0);
-  for (const std::size_t index : model.sets[model.start].tasks)
+  for (const std::size_t index : with_hot(model, model.sets[model.start].tasks))
     model.utilisation[model.tasks[index].rtpu] += load(model.tasks[index]);
 }
 

@@ -70,9 +70,12 @@ void check_order_of_constants(Model& model);
 void order_sets(Model& model);
 
 // rule_timing.cc
+/// "1.5 ms": a duration as people write it, in the largest unit that gives a number of at least 1.
+std::string say(Nanoseconds t);
 /// Rates, deadlines, offsets, budgets and minimum times fit each other; servers stand on aperiodic components.
 void check_times(Model& model);
-/// The budgets of a configuration take at most kMaxUtilisation of each CPU.
+/// The budgets of a configuration take at most kMaxUtilisation of each CPU, also with a standby in the place of its
+/// primary, and those of hot standbys beside their primaries.
 void limit_utilisation(Model& model);
 
 // rule_rtpus.cc

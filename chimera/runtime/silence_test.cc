@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/guard/silence.h"
+#include "chimera/runtime/silence.h"
 
 #include <gtest/gtest.h>
 
@@ -51,6 +51,18 @@ TEST_F(SilenceTest, ALookThatComesLateCountsForNothing) {
   }
   now = silence.due();
   EXPECT_TRUE(silence.look(true, 5, now));
+}
+
+TEST_F(SilenceTest, OfAPrimaryIsReachedWhenWhatItPublishedIsTooOld) {
+  for (const auto& [after_ms, periods] : {std::pair{20, 2}, std::pair{21, 3}, std::pair{30, 3}}) {
+    const StandbySpec standby{TaskId(std::size_t{4}), TaskId(std::size_t{5}), milliseconds(after_ms)};
+    Silence made = Silence::of(standby, milliseconds(10));
+    EXPECT_EQ(made.task(), TaskId(std::size_t{4}));
+    EXPECT_EQ(made.standby(), TaskId(std::size_t{5}));
+    EXPECT_FALSE(made.look(true, 1, made.due()));
+    for (int i = 1; i < periods; ++i) EXPECT_FALSE(made.look(true, 1, made.due()));
+    EXPECT_TRUE(made.look(true, 1, made.due())) << after_ms;
+  }
 }
 
 }  // namespace

@@ -2,20 +2,32 @@
 // Tasks that may not be silent for long: counts the periods in which one that is ON publishes nothing.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
-#include "chimera/base/ids.h"
 #include "chimera/base/time.h"
+#include "chimera/runtime/application_spec.h"
 
 namespace chimera {
 
-/// `safe_after` of one task. A look that comes more than half a period late counts for nothing: whoever looks was held
-/// up, so the task may have been. Context: any; wait-free.
+/// `safe_after` of one task, or the `stale_after` of a standby of it. A look that comes more than half a period late
+/// counts for nothing: whoever looks was held up, so the task may have been. Context: any; wait-free.
 class Silence {
  public:
   Silence(TaskId task, Nanoseconds period, std::uint32_t most) noexcept : task_(task), period_(period), most_(most) {}
 
+  /// For the sake of a standby that takes over when its primary is dead: as many periods, each `period` long, as it
+  /// takes until what the primary published is older than `stale_after`. Requires: that is above 0.
+  static Silence of(const StandbySpec& standby, Nanoseconds period) noexcept {
+    const std::int64_t most = (standby.stale_after.count - 1) / period.count + 1;
+    Silence made(standby.primary, period, static_cast<std::uint32_t>(std::min<std::int64_t>(most, UINT32_MAX)));
+    made.standby_ = standby.standby;
+    return made;
+  }
+
   TaskId task() const noexcept { return task_; }
+  /// Invalid: it is counted for the sake of devices.
+  TaskId standby() const noexcept { return standby_; }
   Nanoseconds due() const noexcept { return due_; }
   /// What its unit shows at `now`: whether the task is ON, and how often it has published. True when it has been silent
   /// for too long; then the count begins anew.
@@ -34,7 +46,7 @@ class Silence {
   }
 
  private:
-  TaskId task_;
+  TaskId task_, standby_;
   Nanoseconds period_, due_{};
   std::uint64_t published_ = 0;
   std::uint32_t most_, silent_ = 0;
