@@ -38,6 +38,8 @@ TEST_F(GuardNews, ATaskThatWasSilentAndHowTheGuardIs) {
   const auto law = static_cast<std::int32_t>(fake.task("law").index);
   EXPECT_EQ(told({.kind = Kind::kSilent, .index = 1, .code = law}),
             "law: published nothing for as long as `safe_after` says: its real-time unit is ended\n");
+  EXPECT_EQ(told({.kind = Kind::kSilent, .index = 1, .code = law, .letter = 1}),
+            "law: published nothing for as long as `stale_after` of its standby says: its real-time unit is ended\n");
   EXPECT_EQ(told({.kind = Kind::kGuardState, .code = KeeperMessage::kGuardIsSlow}),
             "the guard has no real-time rights: it writes safe frames, and nothing bounds when\n");
   EXPECT_EQ(told({.kind = Kind::kGuardState, .code = KeeperMessage::kGuardIsDead}),

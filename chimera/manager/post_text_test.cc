@@ -56,6 +56,12 @@ TEST_F(PostText, AJobThatWaitsHangsOrIsDemotedSaysItsTime) {
             "kernel leaves to real-time threads");
 }
 
+TEST_F(PostText, ATakeoverSaysFromWhomAndHowSoon) {
+  EXPECT_EQ(text(EventKind::kTakeover, kLaw, kLog, microseconds(37)),
+            "is ON in place of log, 37 us after its real-time unit found that one lost");
+  EXPECT_EQ(text(EventKind::kTakeover, kLaw, TaskId{}, microseconds(37)), "is ON in place of another task");
+}
+
 TEST_F(PostText, ARefusedListSaysThatAnotherTaskWasRefused) {
   EXPECT_EQ(text(EventKind::kRefused, kLaw, kLog, {}), "on sent by log: another task of the list was refused");
 }

@@ -391,6 +391,7 @@ void Switching::change(Nanoseconds now) noexcept {
 }
 
 void Switching::go_slowly(Nanoseconds now) noexcept {
+  if (!cool_down(parts_, plan_, now)) return wait(now);
   if (!slow_.step(agreement(), now)) {
     wake_ = std::max(std::min(slow_.wake(), parts_.threads.next_look(now)), now);
     due_ = gap_.is_there() ? wake_ : now;

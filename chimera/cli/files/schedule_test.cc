@@ -98,6 +98,27 @@ nlohmann::json analysed(const std::string& text) {
   return nlohmann::json::parse(schedule({file.path(), "", "", "", true}, test_place()).out);
 }
 
+TEST(Schedule, AStandbyIsAnalysedInThePlaceOfItsPrimaryAndAHotOneBesideItToo) {
+  const auto loads = [](const char* hot) {
+    const std::string text =
+        "subsystem: pair\n"
+        "rtpus: {fast: {cpu: 0}, spare: {cpu: 1}}\n"
+        "tasks:\n"
+        "  a: {component: t_counter, rate: 100 Hz, budget: 2 ms, rtpu: fast}\n"
+        "  b: {component: t_counter, rate: 100 Hz, budget: 3 ms, rtpu: spare, standby_for: {task: a, hot: " +
+        std::string(hot) + "}}\nconfigurations: {run: [a]}\n";
+    std::string all;
+    for (const nlohmann::json& set : analysed(text)["sets"]) {
+      all += set["name"].get<std::string>() + ":";
+      for (const nlohmann::json& cpu : set["cpus"]) all += " " + cpu["cpu"].dump() + " " + cpu["utilisation"].dump();
+      all += "; ";
+    }
+    return all;
+  };
+  EXPECT_EQ(loads("false"), "run: 0 0.2; run with b for a: 1 0.3; ");
+  EXPECT_EQ(loads("true"), "run: 0 0.2 1 0.3; run with b for a: 1 0.3; ");
+}
+
 /// CPU 0 as the analysis sees it after the change.
 nlohmann::json changed(const std::string& rtpus, std::vector<Line> lines, const nlohmann::json& remedy) {
   std::string all = rtpus;
