@@ -29,6 +29,9 @@ class CutLinks final : public SwitchPeers {
   void ring() noexcept override {
     tell([this] { links_.ring(); });
   }
+  void show() noexcept override {
+    tell([this] { links_.show(); });
+  }
   void tell_adopted(std::uint16_t number) noexcept override {
     tell([this, number] { links_.tell_adopted(number); });
   }
