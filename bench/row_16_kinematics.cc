@@ -2,7 +2,7 @@
 // Row 16: forward kinematics and Jacobian of a Puma 560 from its Denavit-Hartenberg rows, beside the closed form and
 // beside Orocos KDL in the same run; then one cycle of each kinematics component, beside the bare law it is made of.
 // Components: gfwdkin ginvkin pfwdkin pinvkin fwdkin_jacobian damped_least_squares singularity_monitor
-// Components: computed_torque time_integrator ctraj cinterp pose_monitor tracking_monitor
+// Components: computed_torque time_integrator ctraj cinterp pose_monitor tracking_monitor tool
 #include <cmath>
 #include <cstdio>
 
@@ -166,6 +166,14 @@ std::vector<ComponentCase> other_cases() {
            for (std::size_t i = 0; i < 6; ++i) x[i] += kBent[i] * 1e-3;
            bench::keep(x);
          }
+       }},
+      {"tool", "an empty loop",
+       [](ArmRig& rig) {
+         rig.set("pose", library::kIdentityPose);
+         rig.set("mass", 1.5);
+       },
+       [](std::uint64_t n) {
+         for (; n > 0; --n) bench::keep(n);
        }},
       {"ctraj", "3 std::sin",
        [](ArmRig& rig) {

@@ -26,4 +26,20 @@ Followed follow_constants(TaskSet& set, const IdleGap& gap, Task& task, const Sw
   return task.state == State::kOff && task.faults.count == faults ? Followed::kDone : Followed::kFailed;
 }
 
+bool cool_down(TaskSet& set, JobThreads& threads, Members& members, const SwitchPlan& plan, Nanoseconds now) noexcept {
+  bool are_all = true;
+  for (const TaskId id : plan.arriving) {
+    Task& task = set.tasks()[id.index];
+    if (!set.is_mine(id) || !task.is_unread) continue;
+    if (!threads.claim(id)) {
+      are_all = false;
+      continue;
+    }
+    (void)set.life().signal(id, Signal::kOff, now);
+    set.standbys().let_cool(id, false);
+    members.follow(task, now);
+  }
+  return are_all;
+}
+
 }  // namespace chimera

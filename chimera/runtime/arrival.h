@@ -5,6 +5,8 @@
 #include <span>
 
 #include "chimera/runtime/idle_gap.h"
+#include "chimera/runtime/job_threads.h"
+#include "chimera/runtime/members.h"
 #include "chimera/runtime/safe_condition.h"
 #include "chimera/runtime/switch_page.h"
 #include "chimera/runtime/switch_plan.h"
@@ -22,5 +24,9 @@ enum class Followed : std::uint8_t { kNothing, kNoGap, kDone, kFailed };
 /// Re-initialises the task in a gap where that is so. Context: cycle boundary; as long as its `reinit` takes.
 Followed follow_constants(TaskSet& set, const IdleGap& gap, Task& task, const SwitchOrder& order,
                           Nanoseconds now) noexcept;
+
+/// Hot standbys of this context that arrive are turned OFF first, and armed as any task. False: one has a job under
+/// way; later. Context: cycle boundary; as long as `off` takes.
+bool cool_down(TaskSet& set, JobThreads& threads, Members& members, const SwitchPlan& plan, Nanoseconds now) noexcept;
 
 }  // namespace chimera

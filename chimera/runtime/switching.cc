@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
+#include "chimera/runtime/change_releases.h"
 #include "chimera/runtime/missing_value.h"
 
 namespace chimera {
@@ -39,13 +40,6 @@ bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t numbe
   return true;
 }
 
-// Tasks that have threads take their releases themselves.
-void release_before(const Switching::Parts& parts, Nanoseconds instant) noexcept {
-  if (parts.threads.run_beside_methods()) return;
-  const auto drop = [&parts](const DroppedRelease& dropped) { parts.misses.drop(dropped); };
-  parts.queue.release_due(instant - Nanoseconds{1}, drop);
-}
-
 // Of a context that is alone, behind plan `last`.
 SwitchOrder lone_order(TaskSet& set, std::uint16_t last, const TaskBits& target, std::uint8_t slow,
                        Nanoseconds until) {
@@ -60,34 +54,6 @@ SwitchOrder lone_order(TaskSet& set, std::uint16_t last, const TaskBits& target,
   order.constants = set.constants().in_force();
   order.until = until;
   return order;
-}
-
-// A job that waits is replaced by the next release of its task, which has come in a context that is late by more than a
-// period. Replaced behind the change at `at`, a job of the time after it would have the bindings of before.
-void drop_replaced(const Switching::Parts& parts, Nanoseconds at, Nanoseconds now) noexcept {
-  if (parts.threads.run_beside_methods()) return;
-  const TaskClasses& classes = parts.queue.classes();
-  for (const Task& each : parts.set.tasks()) {
-    if (each.is_busy || !classes.is_active(each.id.index) || !parts.queue.has_waiting(each.id, at)) continue;
-    Job job;
-    const bool is_replaced = classes[classes.class_of(each.id.index)].next <= now;
-    if (is_replaced && parts.queue.remove(each.id, job)) parts.misses.drop({each.id, job.release, 1});
-  }
-}
-
-// A hot standby that arrives is turned OFF first, and armed as any task. False: later.
-bool cool_down(const Switching::Parts& parts, const SwitchPlan& plan, Nanoseconds now) noexcept {
-  bool are_all = true;
-  for (const TaskId id : plan.arriving) {
-    Task& task = parts.set.tasks()[id.index];
-    if (!parts.set.is_mine(id) || !task.is_unread) continue;
-    are_all = are_all && parts.threads.claim(id);
-    if (!parts.threads.claim(id)) continue;
-    (void)parts.set.life().signal(id, Signal::kOff, now);
-    parts.set.standbys().let_cool(id, false);
-    parts.members.follow(task, now);
-  }
-  return are_all;
 }
 
 }  // namespace
@@ -123,7 +89,8 @@ void Switching::begin(Nanoseconds origin) noexcept {
   seen_ = plan.number;
   if (seen_ == 0 || peers_ == &nobody_) return;
   const auto last = agreement().order(plan, parts_.set.spec().sets.size(), parts_.set.tasks().size());
-  if (last) parts_.set.constants().put_in_force(plan.phase == SwitchPhase::kCommitted ? last->constants_after() : last->constants);
+  const bool is_after = plan.phase == SwitchPhase::kCommitted;
+  if (last) parts_.set.constants().put_in_force(is_after ? last->constants_after() : last->constants);
   record_.restart().number = seen_;
   record_.receipt().tasks = {};
   record_.receipt().variables = {};
@@ -237,7 +204,7 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
 
 void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   if (agreement().plan().phase == SwitchPhase::kProposed) return agree(now);
-  if (!cool_down(parts_, plan_, now)) return wait(now);
+  if (!cool_down(parts_.set, parts_.threads, parts_.members, plan_, now)) return wait(now);
   if (!may_go_on(now)) return;
   const auto number = agreement().run(order_.number);
   const SwitchRun run = find_run(plan_, parts_.set.spec().tasks, number.value_or(UINT16_MAX));
@@ -352,7 +319,7 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
 
 // What was released before `now` is a job of the time before the change.
 void Switching::propose(Nanoseconds now) noexcept {
-  release_before(parts_, now);
+  release_before(parts_.queue, parts_.threads, parts_.misses, now);
   const Nanoseconds unused = parts_.threads.latest_release() + Nanoseconds{1};
   const Nanoseconds at = agreement().round_up(std::max(now + order_.lead, unused));
   if (at == kNever) return abort(NoSwitch::kLate, {}, {});
@@ -372,8 +339,7 @@ void Switching::agree(Nanoseconds now) noexcept {
 
 void Switching::change(Nanoseconds now) noexcept {
   if (now < at_) return;
-  release_before(parts_, at_);
-  drop_replaced(parts_, at_, now);
+  change_releases(parts_.set, parts_.queue, parts_.threads, parts_.misses, at_, now);
   if (!is_changed_) {
     is_changed_ = true;
     parts_.set.constants().put_in_force(order_.constants_after());
@@ -391,7 +357,7 @@ void Switching::change(Nanoseconds now) noexcept {
 }
 
 void Switching::go_slowly(Nanoseconds now) noexcept {
-  if (!cool_down(parts_, plan_, now)) return wait(now);
+  if (!cool_down(parts_.set, parts_.threads, parts_.members, plan_, now)) return wait(now);
   if (!slow_.step(agreement(), now)) {
     wake_ = std::max(std::min(slow_.wake(), parts_.threads.next_look(now)), now);
     due_ = gap_.is_there() ? wake_ : now;

@@ -49,7 +49,8 @@ struct Tool {
   void cycle(Cycle) {}
 };
 
-constexpr TaskId kSensor{0u}, kPid{1u}, kSmooth{2u}, kFilter{3u}, kMotor{4u}, kSpare{5u}, kCircle{6u}, kGripper{7u}, kWelder{8u};
+constexpr TaskId kSensor{0u}, kPid{1u}, kSmooth{2u}, kFilter{3u}, kMotor{4u}, kSpare{5u}, kCircle{6u},
+    kGripper{7u}, kWelder{8u};
 
 struct AskedSetTest : ::testing::Test {
   AskedSetTest() {
