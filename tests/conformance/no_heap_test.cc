@@ -26,6 +26,7 @@ std::atomic<std::size_t> n_allocations = 0;  // of this program; tests run one a
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   std::abort();
 }
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return operator new(size); }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
   ++n_allocations;
   const auto a = static_cast<std::size_t>(alignment);
