@@ -71,6 +71,8 @@ int RestartPolicy::recent(RtpuId rtpu) const noexcept {
 void RestartPolicy::restart(const RtpuDown& down, const std::vector<std::uint32_t>& goals) {
   for (std::size_t t = 0; t < goals.size(); ++t)
     if (is_of(TaskId(t), down.rtpu)) goals_.set(TaskId(t), goals[t]);
+  for (std::size_t t = 0; t < goals.size(); ++t)
+    if ((goals[t] & kGoalOn) != 0) leave_off_for(TaskId(t));
   auto& instants = state_.observed.restarts(down.rtpu);
   *std::min_element(instants.begin(), instants.end()) = state_.now;
   state_.emit(RememberRestart{down.rtpu, instants});
@@ -82,6 +84,12 @@ void RestartPolicy::restart(const RtpuDown& down, const std::vector<std::uint32_
            state_.name(down.rtpu) + " is restarted, " + std::to_string(recent(down.rtpu)) + " of at most " +
                std::to_string(kRestartIntensity) + " times in " +
                std::to_string(kRestartWindow / seconds(1)) + " s");
+}
+
+// Its process died after that of the others of its group: it had taken over, and they do not come back ON beside it.
+void RestartPolicy::leave_off_for(TaskId task) {
+  for (std::size_t t = 0; t < state_.spec.tasks.size(); ++t)
+    if (state_.spec.stand_in(task, TaskId(t))) goals_.clear(TaskId(t), kGoalOn);
 }
 
 void RestartPolicy::give_up(const RtpuDown& down) {

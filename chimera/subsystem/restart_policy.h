@@ -30,6 +30,7 @@ class RestartPolicy {
   bool is_of(TaskId task, RtpuId rtpu) const noexcept { return state_.observed.rtpu(task) == rtpu; }
   std::uint32_t goal_after(TaskId task) const;
   void restart(const RtpuDown& down, const std::vector<std::uint32_t>& goals);
+  void leave_off_for(TaskId task);
   void give_up(const RtpuDown& down);
   int recent(RtpuId rtpu) const noexcept;
 

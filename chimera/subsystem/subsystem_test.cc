@@ -233,6 +233,23 @@ TEST_F(SubsystemTest, ATaskInWhosePlaceItsStandbyIsOnComesBackOff) {
   EXPECT_EQ(report(kArm, State::kOn), "goal arm 0\nstarted: arm is ON\n");
 }
 
+// Both units die one after the other: who took over comes back ON, alone.
+TEST_F(SubsystemTest, OfTwoThatStandInForEachOtherTheOneThatDiedLastComesBackOn) {
+  const StandbySpec pair[] = {{kPid, kReserve}};
+  spec.standbys = pair;
+  die(kServo);
+  seen(kReserve, State::kOn);  // by itself
+  EXPECT_EQ(die(kSpare),
+            "rtpu-ended: spare ended by signal 11 (SIGSEGV) in pid.cycle\n"
+            "goal traj 3\ngoal reserve 3\ngoal pid 1\nrestart spare\nstart spare\nhandled spare 1\n"
+            "rtpu-restarted: spare is restarted, 1 of at most 3 times in 10 s\n");
+  step(RtpuUp{kServo, 2});
+  step(RtpuUp{kSpare, 2});
+  for (TaskId task : {kArm, kTraj, kPid}) report(task, State::kOff);
+  EXPECT_EQ(report(kReserve, State::kOff), "goal reserve 2\nsend servo: on arm\n");
+  EXPECT_EQ(report(kArm, State::kOn), "send spare: on traj reserve\n");
+}
+
 TEST_F(SubsystemTest, ATaskWhoseStandbyDidNotComeIsTurnedOnAgain) {
   const StandbySpec pair[] = {{kPid, kReserve}};
   spec.standbys = pair;

@@ -158,8 +158,11 @@ class Standby(unittest.TestCase):
             on = [name for name in ("main", "spare") if states[name] == "ON"]
             self.assertLess(len(on), 2, what)
             return len(on) == 1 and states["user"] == states["reference"] == "ON"
-        await_that(one_is_on, 20, f"one of them to be ON ({what}): "
-                   f"{[(t['task'], t['state']) for t in system.call('status')['tasks']]}")
+        try:
+            await_that(one_is_on, 20, f"one of them to be ON ({what})")
+        except AssertionError as error:
+            states = [(task["task"], task["state"]) for task in system.call("status")["tasks"]]
+            raise AssertionError(f"{error}: {states}") from None
         self.await_seen(system, 2 if system.state("main") == "ON" else 3)
 
 
