@@ -62,8 +62,10 @@ DEFECTS = (
      "  if (has_old_job_[consumer.index]) return;\n", ""),
     ("a thread takes a release before the change that comes after it", "preemptive/edge_access.cc",
      "job.release_end = std::min(end_, from);", "job.release_end = end_, (void)from;"),
-    ("what was released before the change is released after it", "switching.cc",
-     "  parts_.queue.release_due(instant - Nanoseconds{1}, drop);", "  (void)instant, (void)drop;"),
+    ("what was released before the change is released after it", "change_releases.cc",
+     "  queue.release_due(instant - Nanoseconds{1}, [&misses](const DroppedRelease& dropped) { misses.drop(dropped); "
+     "});",
+     "  (void)instant, (void)queue, (void)misses;"),
     ("signals that come while a task is armed wait for the change", "switching.cc",
      "  if (armed != kNever && armed > edge) {", "  if (false && armed > edge) {"),
     ("signals of a task that is armed go out at once", "task_life.cc", "if (!is_arming_) set_.sent()", "set_.sent()"),

@@ -8,7 +8,7 @@ namespace {
 
 TEST(TransitionProof, WhatIsPromisedOfRandomTransitionsHoldsAtEveryInstantOfTheChange) {
   TransitionTallies tallies{};
-  for (std::uint32_t seed = 1; seed <= 2000; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 1000; ++seed) {
     const std::string wrong = judge_transition(seed, tallies);
     ASSERT_EQ(wrong, "");
   }
@@ -18,9 +18,9 @@ TEST(TransitionProof, WhatIsPromisedOfRandomTransitionsHoldsAtEveryInstantOfTheC
   for (std::size_t kind = 0; kind < tallies.size(); ++kind) {
     const TransitionTally& tally = tallies[kind];
     EXPECT_GE(100 * tally.promised, kLeastShares[kind] * tally.promised_alone) << kKindNames[kind];
-    EXPECT_GT(tally.transitions - tally.never_missed, 100u) << kKindNames[kind];
+    EXPECT_GT(tally.transitions - tally.never_missed, 50u) << kKindNames[kind];
   }
-  for (const std::size_t kind : {0u, 1u, 3u}) EXPECT_GT(tallies[kind].like_for_like, 40u) << kKindNames[kind];
+  for (const std::size_t kind : {0u, 1u, 3u}) EXPECT_GT(tallies[kind].like_for_like, 20u) << kKindNames[kind];
 }
 
 }  // namespace

@@ -108,7 +108,8 @@ TEST(Schedule, AStandbyIsAnalysedInThePlaceOfItsPrimaryAndAHotOneBesideItToo) {
         "  b: {component: t_counter, rate: 100 Hz, budget: 3 ms, rtpu: spare, standby_for: {task: a, hot: " +
         std::string(hot) + "}}\nconfigurations: {run: [a]}\n";
     std::string all;
-    for (const nlohmann::json& set : analysed(text)["sets"]) {
+    const nlohmann::json report = analysed(text);
+    for (const nlohmann::json& set : report["sets"]) {
       all += set["name"].get<std::string>() + ":";
       for (const nlohmann::json& cpu : set["cpus"]) all += " " + cpu["cpu"].dump() + " " + cpu["utilisation"].dump();
       all += "; ";
