@@ -13,7 +13,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("--corpus", type=pathlib.Path, required=True)
-    parser.add_argument("--seconds", type=int, default=10)
+    parser.add_argument("--seconds", type=int, default=8)
     parser.add_argument("--planted", action="store_true", help="the target has a planted defect: finding it is success")
     return parser.parse_args()
 
