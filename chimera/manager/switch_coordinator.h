@@ -90,7 +90,7 @@ class SwitchCoordinator {
   SwitchAgreement agreement() const noexcept { return {world_.page.switching, world_.keeper.origin}; }
   void take_over();
   bool is_over(std::uint16_t number, std::uint16_t members) const noexcept;
-  /// Can it be, and do all deadlines hold over it?
+  /// Can it be? Leaves the plan in `plan_` and the way that it would go in `way_`.
   PlanAnswer judge(const TaskBits& target);
   void assess(const TaskBits& target, SwitchOutcome& outcome);
   /// Of the plan that was judged last.
