@@ -37,6 +37,7 @@ def row(port):
     name = f"`{port['name']}{'*' if repeated else ''}`"
     kind = port["kind"] + (", safety" if port.get("safety") else "")
     kind += ", safe state" if port.get("safe_state") and port["kind"] != "resource" else ""
+    kind += ", shared" if port.get("shared") else ""
     if repeated:
         kind += f", up to {port['max_instances']}"
     if port["kind"] == "resource":

@@ -215,6 +215,12 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
                           : time_text(takes) + ", its deadline is " + time_text(task.deadline));
 }
 
+std::string absent_text(const SwitchWay& way, const ApplicationSpec& spec) {
+  if (!way.absent.is_valid()) return "an arriving task has the resource of another one";
+  const std::string text = "task " + quoted(spec.tasks[way.absent.index].name) + " is NOT-CREATED";
+  return way.rival.is_valid() ? text + ": task " + quoted(spec.tasks[way.rival.index].name) + " has its resource" : text;
+}
+
 /// Behind a line of the text, of a slow switch.
 std::string rolled_back(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   if (receipt.way.slow == 0 || receipt.end != SwitchEnd::kAborted || receipt.flag == Nanoseconds{}) return "";
@@ -248,6 +254,8 @@ std::vector<std::string> slow_words(const SwitchWay& way) {
   if ((way.slow & kSlowForConstants) != 0) words.emplace_back("constants");
   if ((way.slow & kSlowForGap) != 0) words.emplace_back("no-gap");
   if ((way.slow & kSlowForDeadlines) != 0) words.emplace_back("not-schedulable");
+  if ((way.slow & kSlowForResource) != 0) words.emplace_back("resource");
+  if ((way.slow & kSlowForDevice) != 0) words.emplace_back("not-ready");
   return words;
 }
 
@@ -260,6 +268,8 @@ std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec)
         quoted(spec.tasks[way.constant.task.index].name) + ", which stays, changes");
   if ((way.slow & kSlowForGap) != 0) add("on of an arriving task fits no gap");
   if ((way.slow & kSlowForDeadlines) != 0) add(not_schedulable(receipt, spec));
+  if ((way.slow & kSlowForResource) != 0) add(absent_text(way, spec));
+  if ((way.slow & kSlowForDevice) != 0) add("on of an arriving task was not ready at once");
   return text;
 }
 

@@ -86,7 +86,7 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
   told.receipt.end = SwitchEnd::kDone;
   told.receipt.at = seconds(3) + milliseconds(12);
   told.receipt.flag = milliseconds(11);
-  told.receipt.way = {kSlowForDeadlines, {}, {NoSwitch::kNotSchedulable, kTorque, kNever}};
+  told.receipt.way = {kSlowForDeadlines, {}, {NoSwitch::kNotSchedulable, kTorque, kNever}, {}, {}};
   const std::string slow = begin + "slowly, for the transition from 'pid' to 'torque' is not schedulable on CPU 1: "
                                    "a cycle of task 'torque' may ";
   const std::string after = ", after 12.000 ms, 11 ms under the flag: 1 task arrives, 1 leaves, 1 cycle lost\n";
@@ -108,7 +108,7 @@ TEST(ReceiptText, OfASlowOneSaysWhyHowLongAndWhatWasReinitialised) {
   mass.name = "mass";
   told.spec.constants = {&mass, 1};
   told.be_done();
-  told.receipt.way = {kSlowForConstants, {kPid, ConstantId(0u)}, {}};
+  told.receipt.way = {kSlowForConstants, {kPid, ConstantId(0u)}, {}, {}, {}};
   told.receipt.flag = microseconds(1400);
   TaskId again[] = {kPid, kTorque};
   told.receipt.reinitialised = again;

@@ -99,7 +99,7 @@ inline constexpr std::array<std::string_view, 82> kRules = {
     // warnings
     "unused",
     "standby-same-rtpu",
-    "standby-resource",
+    "resource-twice",
     // what run does not have yet
     "not-built",
     // what run does not begin

@@ -170,6 +170,14 @@ TEST(DeclarationRules, RefusesSafetyOnAnythingButAFloatingOutput) {
   EXPECT_EQ(sample.refusal(), "component tderiv: port dx: a safety port is float32 or float64, declared is int64");
 }
 
+TEST(DeclarationRules, SharedIsAResource) {
+  Sample sample;
+  sample.ports[1].flags = CHIMERA_PORT_SHARED;
+  EXPECT_EQ(sample.refusal(), "component tderiv: port dx: shared is for resources, this is an out-var");
+  sample.ports[1].flags = CHIMERA_PORT_SHARED << 1;
+  EXPECT_EQ(sample.refusal(), "component tderiv: port dx: unknown flags");
+}
+
 TEST(DeclarationRules, TheSafeStateIsOneBoolOrAResource) {
   const char* const refused =
       "component tderiv: port dx: the safe state: expected an out-var of one bool, or a resource that never moves";

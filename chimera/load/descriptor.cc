@@ -40,6 +40,7 @@ std::string range_text(const PortDescriptor& port) {
   for (const std::string& word : port.one_of) range += (&word == &port.one_of.front() ? ", one of " : " ") + word;
   if (port.names_configuration) range += ", a configuration";
   if (port.safe_state) range += ", the safe state";
+  if (port.shared) range += ", shared";
   return range;
 }
 

@@ -49,6 +49,7 @@ struct PortDescriptor {
   std::vector<std::string> one_of{};  ///< in-const of text: the words it may be; empty: any
   bool names_configuration = false;   ///< in-const of text: a configuration of the description, or empty
   bool safe_state = false;            ///< out-var of bool: the device is as the flag asks; resource: it never moves
+  bool shared = false;                ///< resource: several tasks may have it open at one time
   std::vector<Extent> extents{};      ///< `shape`, parsed
   std::vector<FieldDescriptor> fields{};
   std::vector<std::byte> initial{};    ///< whole elements, padding zero: none, 1 (for all) or max_count()

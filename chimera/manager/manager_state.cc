@@ -34,6 +34,7 @@ ManagerState::ManagerState(Bundle given, Peers mapped, OwnSegment segment, Decis
       log(own.block().memory().events),
       rtpus(peers.n_rtpus()),
       tap_users(peers.n_tasks()) {
+  rivals.prepare(peers.spec(), memory);
   if (bundle.is_idle()) return;
   configuration = verify(bundle).configuration;
   if (configuration)

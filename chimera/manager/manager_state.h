@@ -12,7 +12,9 @@
 #include "chimera/manager/own_segment.h"
 #include "chimera/manager/peers.h"
 #include "chimera/manager/readings.h"
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/pages.h"
+#include "chimera/runtime/rivals.h"
 #include "chimera/subsystem/subsystem.h"
 
 namespace chimera::manager {
@@ -45,6 +47,8 @@ struct ManagerState {
   DecisionPage& page;
   const KeeperPage& keeper;
   subsystem::Subsystem logic;
+  HeapMemory memory;  ///< behind the rivals
+  Rivals rivals;
   EventLog log;
   std::optional<Readings> readings;  ///< none: idle
   std::vector<RtpuRecord> rtpus;

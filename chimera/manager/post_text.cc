@@ -18,6 +18,8 @@ std::string refusal(const Post& post, const std::string& fault) {
     case Refusal::kIllegalSet:
       return "an input would have no running producer, or two";
     case Refusal::kFault: return fault;
+    case Refusal::kNotYet: return "it is not ready yet";
+    case Refusal::kRival: return "another task that is created has its resource";
     case Refusal::kNone: break;
   }
   return "another task of the list was refused";

@@ -79,7 +79,8 @@ bool is_cause(const BegunSwitch& begun, const ApplicationSpec& spec) {
 bool is_way(const SwitchWay& way, const ApplicationSpec& spec) {
   const auto is_task = [&](TaskId task) { return !task.is_valid() || task.index < spec.tasks.size(); };
   const ConstantUsers::Found& found = way.constant;
-  return way.slow <= kSlowReasons && is_task(found.task) && is_task(way.deadline.task) &&
+  return way.slow <= kSlowReasons && is_task(found.task) && is_task(way.deadline.task) && is_task(way.absent) &&
+         is_task(way.rival) &&
          (!found.task.is_valid() || found.constant.index < spec.constants.size());
 }
 
@@ -89,6 +90,13 @@ std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
 }
 
 }  // namespace
+
+// One of those tasks has a resource of `task`.
+static bool has_rival_in(const ManagerState& world, TaskId task, const TaskBits& tasks) {
+  for (std::size_t t = 0; t < world.spec().tasks.size(); ++t)
+    if (tasks.has(TaskId(t)) && world.rivals.are(task, TaskId(t))) return true;
+  return false;
+}
 
 TaskStatus last_status(const ManagerState& world, TaskId task) {
   TaskStatus status = world.peers.status(task);
@@ -103,6 +111,7 @@ TaskStatus last_status(const ManagerState& world, TaskId task) {
   if (plan.phase != SwitchPhase::kCommitted) {  // of a slow one it may have done a part
     if (order->slow != 0 && status.state <= State::kOn)
       status.state = order->on.has(task) ? State::kOn : std::min(status.state, State::kOff);
+    if (order->slow != 0 && has_rival_in(world, task, order->on)) status.state = State::kNotCreated;
     return status;
   }
   const bool is_after = order->target.has(task);
@@ -283,8 +292,9 @@ Nanoseconds SwitchCoordinator::expected() {
     for (const TaskId task : plan_.arriving) sum = sum + method_time(task, Method::kOn);
     return sum + lead();
   }
-  const Method methods[] = {Method::kCycle, Method::kOff, Method::kReinit, Method::kOn};  // by SlowAct
-  for (const SlowStep& step : slow_.plan(plan_, constants_in_force()))
+  const Method methods[] = {Method::kCycle, Method::kOff, Method::kKill, Method::kInit, Method::kReinit, Method::kOn};
+  static_assert(std::size(methods) == static_cast<std::size_t>(SlowAct::kOn) + 1);
+  for (const SlowStep& step : slow_.plan(plan_, constants_in_force(), way_.slow))
     if (step.act != SlowAct::kCheck) sum = sum + method_time(step.task, methods[static_cast<int>(step.act)]);
   const TaskBits on = make_order(target_of(plan_), way_.slow, {}).on;
   return (way_.slow & kSlowForConstants) != 0 ? sum + flag_lead(world_.spec(), on) : sum;
@@ -344,14 +354,14 @@ Nanoseconds SwitchCoordinator::next_due() const noexcept {
 /// Of one that was only late, and that nobody has cancelled: it has more time then.
 bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds now) {
   BegunSwitch& begun = present_->begun;
-  const bool had_no_gap = receipt.why == NoSwitch::kNoGap && begun.order.slow == 0;  // it goes the slow way
+  const std::uint8_t slow = begun.order.slow == 0 ? reason_to_go_slowly(receipt.why) : 0;
   const bool was_late = receipt.why == NoSwitch::kLate && now < begun.order.until;
   const bool is_cancelled = begun.cancelled_by.role != control::Role::kNone;
-  if ((!was_late && !had_no_gap) || is_cancelled || world_.is_ending()) return false;
+  if ((!was_late && slow == 0) || is_cancelled || world_.is_ending()) return false;
   if (begun.tries >= kMostTries || !judge(begun.order.target)) return false;
   ++begun.tries;
-  if (had_no_gap) begun.way.slow = kSlowForGap;
-  const Nanoseconds until = had_no_gap ? now + (begun.order.until - begun.asked) : begun.order.until;
+  if (slow != 0) begun.way.slow = slow;
+  const Nanoseconds until = slow != 0 ? now + (begun.order.until - begun.asked) : begun.order.until;
   begun.order = make_order(begun.order.target, begun.way.slow, until);
   for (std::uint32_t i = 1; i < begun.tries; ++i) begun.order.lead = begun.order.lead * kMoreTime;
   journal_.change(begun);

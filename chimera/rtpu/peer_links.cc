@@ -48,6 +48,15 @@ State PeerLinks::state(TaskId task) const noexcept {
   return status.in_service && status.state == State::kOn ? State::kOff : status.state;
 }
 
+bool PeerLinks::lives(TaskId task) const noexcept { return at(spec_->tasks[task.index].rtpu.index) != nullptr; }
+
+bool PeerLinks::is_held(TaskId task) const noexcept {
+  const PeerSegment* const there = at(spec_->tasks[task.index].rtpu.index);
+  if (there == nullptr) return false;
+  const TaskStatus status = there->block().status(task);
+  return status.state != State::kNotCreated || status.in_service;
+}
+
 GroupReader PeerLinks::group(std::uint32_t peer, GroupId id) const noexcept {
   const PeerSegment* mapped = peers_->at(peer);
   return mapped == nullptr ? GroupReader() : mapped->group(id);

@@ -32,6 +32,8 @@ class PeerLinks final : public PeerView {
   bool keeps_last_words() const noexcept { return keeps_last_words_; }
 
   State state(TaskId task) const noexcept override;
+  bool lives(TaskId task) const noexcept override;
+  bool is_held(TaskId task) const noexcept override;
   GroupReader outputs(TaskId task) const noexcept override;
   GroupReader constants(TaskId task) const noexcept override;
   GroupReader operator_variable(std::size_t index) const noexcept override;

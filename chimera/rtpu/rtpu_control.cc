@@ -91,6 +91,7 @@ void RtpuControl::take_slow(BoundarySignals& signals, Nanoseconds now) noexcept 
 bool RtpuControl::refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept {
   const auto is_illegal = [this](const Post& post) {
     const Task& task = tasks_.tasks()[post.task.index];
+    if (task.is_half_on && post.signal == Signal::kOff) return false;
     return next(task.state, post.signal, task.spec->aperiodic).kind == Next::Kind::kImpossible;
   };
   const auto culprit = std::find_if(step.begin(), step.end(), is_illegal);
@@ -124,7 +125,8 @@ void RtpuControl::turn_on(std::span<const Post> step, BoundarySignals& signals, 
   for (const Post& post : step) {
     const State after = tasks_.tasks()[post.task.index].state;
     const Refusal why = post.task == done.task ? done.why : Refusal::kNone;
-    report(post, State::kOff, after, why, done.is_accepted && after == State::kOn, now);
+    const bool goes_on = done.is_accepted || done.why == Refusal::kNotYet;  // else all of them are OFF again
+    report(post, State::kOff, after, why, goes_on && after == State::kOn, now);
   }
 }
 

@@ -159,6 +159,7 @@ State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end
       if (body.is_partial) ++task.profile.partial;
       publish_cycle(task, time, end);
       return State::kOn;
+    case Answer::kNotYet:  // of no cycle
     case Answer::kFault:
       break;
   }

@@ -37,7 +37,7 @@ bool to_post(const unsigned char (&bytes)[sizeof(Post)], Post& post) noexcept {
   Post read;
   std::memcpy(static_cast<void*>(&read), bytes, sizeof read);
   if (static_cast<std::uint32_t>(read.signal) >= CHIMERA_SIGNALS || read.kind > PostKind::kEvent ||
-      read.happening > kLastHappening || read.why > static_cast<std::uint8_t>(Refusal::kFault) ||
+      read.happening > kLastHappening || read.why > static_cast<std::uint8_t>(kLastRefusal) ||
       read.before > State::kError || read.after > State::kError) {
     return false;
   }

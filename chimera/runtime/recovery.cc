@@ -83,14 +83,52 @@ bool Recovery::may_touch(Task& task) noexcept {
   return !task.in_service && parts_.switching.give_way(task.id) && parts_.signals.may_touch(task.id);
 }
 
+// The task that failed, of this context, closes the resource that the next one opens. False: later.
+bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) noexcept {
+  TaskSet& set = parts_.set;
+  const TaskId failed = set.standbys().failed(group);
+  if (!set.is_mine(failed) || !set.rivals().are(failed, to)) return true;
+  Task& task = set.tasks()[failed.index];
+  if (task.in_service || task.state != State::kError) return true;
+  if (!may_touch(task)) return false;
+  note(task, "is killed: its resource goes to ", to);
+  (void)parts_.signals.signal({&failed, 1}, Signal::kKill, now);
+  return true;
+}
+
+// False: it is not OFF, and the end of `init` or of a rival is told; or it is ruled out.
+bool Recovery::create(Task& task, Nanoseconds now) noexcept {
+  TaskSet& set = parts_.set;
+  if (task.state != State::kNotCreated) return true;
+  if (set.life().find_rival(task.id).is_valid()) return false;
+  if (created_ != task.id) {
+    const SignalReport report = parts_.signals.signal({&task.id, 1}, Signal::kSpawn, now);
+    if (report.why == Refusal::kRival) return false;  // another context is about to create one
+    created_ = task.id;
+    if (report.is_deferred) return false;
+    if (task.state == State::kOff) return true;
+  }
+  created_ = {};
+  set.standbys().rule_out(task.id);
+  set.on_set_changed();
+  return false;
+}
+
 // False: later.
 bool Recovery::take_over(std::size_t group, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   for (;;) {
     const TaskId id = set.standbys().next(group);
-    if (!id.is_valid() || !set.is_mine(id)) return true;
+    if (!id.is_valid()) return true;
+    if (!give_up_resource(group, id, now)) return false;
+    if (!set.is_mine(id) || set.tasks()[id.index].in_service) return true;
     Task& task = set.tasks()[id.index];
     if (!may_touch(task)) return false;
+    if (!create(task, now)) {
+      if (set.standbys().next(group) == id) return true;
+      continue;
+    }
+    created_ = {};
     if (!set.life().would_be_legal({&id, 1})) return true;  // once an input has a producer again
     const TaskId failed = set.standbys().failed(group);
     const Nanoseconds lost = set.standbys().lost_at(group);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Brings back what failed in one context, at edges and without anybody being asked: turns standbys ON in place of tasks
 // that failed here or elsewhere (runtime/standbys.h says which), has hot standbys cycle beside them before,
-// and carries out the reaction `restart` of on_fault. A
+// and carries out the reaction `restart` of on_fault. A standby with a resource of the task that failed is created for
+// it, when that one is killed, or its process is dead. A
 // task that failed and has a standby is replaced first; restarted, it is only cleared then, and stays OFF.
 #pragma once
 
@@ -52,6 +53,8 @@ class Recovery {
 
   void keep_warm(Nanoseconds now) noexcept;
   bool take_over(std::size_t group, Nanoseconds now) noexcept;
+  bool give_up_resource(std::size_t group, TaskId to, Nanoseconds now) noexcept;
+  bool create(Task& task, Nanoseconds now) noexcept;
   bool restart(Restart& restart, Nanoseconds now) noexcept;
   void answer(Restart& restart, Task& task, Nanoseconds now) noexcept;
   bool may_touch(Task& task) noexcept;
@@ -60,6 +63,7 @@ class Recovery {
   Parts parts_;
   IdleGap gap_;
   std::span<TaskId> hot_;  // of this context
+  TaskId created_;         // for a takeover; its `init` may be under way
   std::span<Restart> restarts_;
   Nanoseconds due_ = kNever, wake_ = kNever;  // of hot standbys that cannot cycle yet
 };

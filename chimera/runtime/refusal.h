@@ -10,7 +10,10 @@ enum class Refusal : std::uint8_t {
   kNone,
   kState,       ///< not legal in the state of the task
   kIllegalSet,  ///< the tasks that would be ON would have two producers of a variable, or none
-  kFault        ///< `on` or the constructor said no; the text is in the task's fault record
+  kFault,       ///< `on` or the constructor said no; the text is in the task's fault record
+  kNotYet,      ///< `on` answered not yet: it is to be asked again; the task is OFF
+  kRival        ///< of spawn: another task that is created has its resource (runtime/rivals.h)
 };
+inline constexpr Refusal kLastRefusal = Refusal::kRival;
 
 }  // namespace chimera

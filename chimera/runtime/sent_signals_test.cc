@@ -19,6 +19,8 @@ struct Plain {
 
 /// The other processes: takes posts while it has room.
 struct Elsewhere final : PeerView {
+  bool lives(TaskId) const noexcept override { return true; }
+  bool is_held(TaskId task) const noexcept override { return state(task) != State::kNotCreated; }
   State state(TaskId) const noexcept override { return State::kOn; }
   GroupReader outputs(TaskId) const noexcept override { return {}; }
   GroupReader constants(TaskId) const noexcept override { return {}; }

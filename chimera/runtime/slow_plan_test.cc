@@ -69,7 +69,7 @@ struct SlowPlanTest : ::testing::Test {
     return made_plan;
   }
   std::vector<SlowStep> steps(std::uint32_t from, std::uint32_t to) {
-    const auto list = slow.plan(plan(from, to), from);
+    const auto list = slow.plan(plan(from, to), from, 0);
     return {list.begin(), list.end()};
   }
   SwitchWay way(std::uint32_t from, std::uint32_t to, std::uint32_t constants) {

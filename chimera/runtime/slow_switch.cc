@@ -26,20 +26,24 @@ Nanoseconds longest_period(const TaskSet& set) noexcept {
 
 }  // namespace
 
-void SlowSwitch::prepare() { planner_.prepare(parts_.set.spec(), parts_.set.setup_memory()); }
+void SlowSwitch::prepare() {
+  planner_.prepare(parts_.set.spec(), parts_.set.setup_memory());
+  created_.prepare(parts_.set.tasks().size(), parts_.set.setup_memory());
+}
 
 void SlowSwitch::begin(SwitchAgreement agreement, const SwitchPlan& plan, const SwitchOrder& order,
                        SwitchPeers& peers, std::uint32_t me) noexcept {
   plan_ = &plan;
   order_ = order;
   peers_ = &peers;
-  steps_ = planner_.plan(plan, order.constants);
+  steps_ = planner_.plan(plan, order.constants, order.slow);
+  created_.begin();
   const auto is_check = [](const SlowStep& step) { return step.act == SlowAct::kCheck; };
   n_checks_ = static_cast<std::size_t>(std::count_if(steps_.begin(), steps_.end(), is_check));
   const auto is_reinit = [](const SlowStep& step) { return step.act == SlowAct::kReinit; };
   first_reinit_ = static_cast<std::size_t>(std::find_if(steps_.begin(), steps_.end(), is_reinit) - steps_.begin());
   end_of_reinits_ = first_reinit_ + static_cast<std::size_t>(std::count_if(steps_.begin(), steps_.end(), is_reinit));
-  held_since_ = waits_since_ = wake_ = kNever;
+  held_since_ = waits_since_ = back_until_ = wake_ = kNever;
   was_raised_ = parts_.set.flag().is_raised();
   is_safe_ = was_idle_ = false;
   (void)agreement.agree(order.number, me);  // nobody commits before all have
@@ -91,11 +95,12 @@ bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
     if (is_back) {
       const std::size_t step = undone_with(done);
       if (!is_mine(step) && !is_of_dead(step)) return false;
-      if (is_mine(step) && undo(steps_[step], now) == Did::kWaits) return false;
+      if (is_mine(step) && undo(steps_[step], now) == StepEnd::kWaits) return false;
       pass_on(done - 1, TurnWord::kBack);
     } else if (plan.phase == SwitchPhase::kAborted) {
-      if (!turns_round(done)) return false;
-      pass_on(done > first_reinit_ ? std::max(done, end_of_reinits_) : done, TurnWord::kBack);
+      std::size_t left = done;
+      if (!turns_round(done) || !leave(done, left, now)) return false;
+      pass_on(left > first_reinit_ ? std::max(left, end_of_reinits_) : left, TurnWord::kBack);
     } else if (!may_go_on(agreement, done, now)) {
       continue;
     } else if (done == steps_.size()) {
@@ -104,9 +109,9 @@ bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
       if (at == kNever) abort(agreement, NoSwitch::kLate, {}, {});
       else if (agreement.commit(order_.number, at)) peers_->ring();
     } else if (is_mine(done)) {
-      const Did did = carry_out(agreement, steps_[done], now);
-      if (did == Did::kWaits) return false;
-      if (did == Did::kDone) pass_on(done + 1, 0);
+      const StepEnd end = carry_out(agreement, steps_[done], now);
+      if (end == StepEnd::kWaits) return false;
+      if (end == StepEnd::kDone) pass_on(done + 1, 0);
     } else {
       wake_ = order_.until + kGrace;
       return false;
@@ -136,14 +141,19 @@ bool SlowSwitch::may_go_on(SwitchAgreement agreement, std::size_t done, Nanoseco
   return fails(missing.is_valid() ? NoSwitch::kNoValue : NoSwitch::kNotReady, steps_[done].task, missing);
 }
 
-State SlowSwitch::expected(TaskId id, std::size_t done) const noexcept {
-  State state = order_.on.has(id) ? State::kOn : State::kOff;
-  for (std::size_t i = 0; i < done; ++i) {
-    if (steps_[i].task != id) continue;
-    if (steps_[i].act == SlowAct::kOff) state = State::kOff;
-    if (steps_[i].act == SlowAct::kOn) state = State::kOn;
+// A task that is to be spawned may be there already, by somebody else.
+bool SlowSwitch::is_as_left(const Task& task, std::size_t done) const noexcept {
+  State state = order_.on.has(task.id) ? State::kOn : State::kOff;
+  bool is_to_come = false;
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    if (steps_[i].task != task.id) continue;
+    if (i >= done) is_to_come = is_to_come || steps_[i].act == SlowAct::kSpawn;
+    else if (steps_[i].act == SlowAct::kOff || steps_[i].act == SlowAct::kSpawn) state = State::kOff;
+    else if (steps_[i].act == SlowAct::kKill) state = State::kNotCreated;
+    else if (steps_[i].act == SlowAct::kOn) state = State::kOn;
   }
-  return state;
+  if (created_.is_under_way(task.id)) return true;
+  return !task.in_service && (task.state == state || (is_to_come && task.state == State::kNotCreated));
 }
 
 TaskId SlowSwitch::find_disturbed(std::size_t done) const noexcept {
@@ -151,7 +161,7 @@ TaskId SlowSwitch::find_disturbed(std::size_t done) const noexcept {
     for (const TaskId id : ids) {
       if (!parts_.set.is_mine(id)) continue;
       const Task& each = parts_.set.tasks()[id.index];
-      if (each.state != expected(id, done) || each.in_service) return id;
+      if (!is_as_left(each, done)) return id;
     }
   return {};
 }
@@ -226,44 +236,87 @@ bool SlowSwitch::waits_for_gap(const Task& task, Method method, Nanoseconds now)
   return false;
 }
 
-SlowSwitch::Did SlowSwitch::carry_out(SwitchAgreement agreement, const SlowStep& step, Nanoseconds now) noexcept {
+StepEnd SlowSwitch::carry_out(SwitchAgreement agreement, const SlowStep& step, Nanoseconds now) noexcept {
   Task& each = task(step.task);
   TaskSet& set = parts_.set;
   const SafeCondition& asked = asked_of(set.spec(), order_.after);
   if (!is_safe_ && !set.flag().is_held() && !holds(set, asked)) {
     wake_ = std::min(order_.until, now + kLookForSafety);
-    return Did::kWaits;
+    return StepEnd::kWaits;
   }
   is_safe_ = true;
-  if (step.act == SlowAct::kCheck) {
-    FixedString<160> why;
-    set.constants().read_foreign();
-    set.constants().put_in_force(order_.constants_after());
-    const bool is_fit = set.constants().would_take(step.task, why);
-    set.constants().put_in_force(order_.constants);
-    if (is_fit) return Did::kDone;
-    abort(agreement, NoSwitch::kBadConstant, step.task, {});
-    parts_.record.receipt().said = why;
-    return Did::kFailed;
-  }
+  if (step.act == SlowAct::kCheck) return check(agreement, each);
   hold_flag(now);
   const Nanoseconds lead = (order_.slow & kSlowForConstants) != 0 ? flag_lead(set.spec(), order_.on) : Nanoseconds{};
   if (now < held_since_ + lead) {
     wake_ = held_since_ + lead;
-    return Did::kWaits;
+    return StepEnd::kWaits;
   }
-  if (!parts_.threads.claim(step.task)) return Did::kWaits;  // the end of its job asks for an edge
-  if (step.act == SlowAct::kReinit) return reinit(agreement, each, now);
-  if (step.act == SlowAct::kOn) return turn_on(agreement, each, now);
-  if (waits_for_gap(each, Method::kOff, now)) return Did::kWaits;
-  parts_.record.leaves(step.task);
+  if (created_.is_under_way(step.task) && each.in_service) return StepEnd::kWaits;  // its end asks for an edge
+  if (!parts_.threads.claim(step.task)) return StepEnd::kWaits;                    // so does the end of its job
+  switch (step.act) {
+    case SlowAct::kOff: return turn_off(agreement, each, now);
+    case SlowAct::kKill: return create(agreement, each, Signal::kKill, now);
+    case SlowAct::kSpawn: return create(agreement, each, Signal::kSpawn, now);
+    case SlowAct::kReinit: return reinit(agreement, each, now);
+    default: return turn_on(agreement, each, now);
+  }
+}
+
+// Says so on the page, with the text of the last fault of the task.
+StepEnd SlowSwitch::fail(SwitchAgreement agreement, NoSwitch why, const Task& task) noexcept {
+  abort(agreement, why, task.id, {});
+  parts_.record.receipt().said.assign(task.faults.last.text);
+  return StepEnd::kFailed;
+}
+
+StepEnd SlowSwitch::check(SwitchAgreement agreement, const Task& task) noexcept {
+  FixedString<160> why;
+  ContextConstants& constants = parts_.set.constants();
+  constants.read_foreign();
+  constants.put_in_force(order_.constants_after());
+  const bool is_fit = constants.would_take(task.id, why);
+  constants.put_in_force(order_.constants);
+  if (is_fit) return StepEnd::kDone;
+  abort(agreement, NoSwitch::kBadConstant, task.id, {});
+  parts_.record.receipt().said = why;
+  return StepEnd::kFailed;
+}
+
+StepEnd SlowSwitch::turn_off(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept {
+  if (waits_for_gap(task, Method::kOff, now)) return StepEnd::kWaits;
+  parts_.record.leaves(task.id);
   const Nanoseconds began = parts_.clock.now();
-  (void)move(each, Signal::kOff, now);
-  parts_.record.took(step.task, Method::kOff, parts_.clock.now() - began);
-  if (each.state == State::kOff) return Did::kDone;
-  abort(agreement, NoSwitch::kStepFailed, step.task, {});
-  parts_.record.receipt().said.assign(each.faults.last.text);
-  return Did::kFailed;
+  (void)move(task, Signal::kOff, now);
+  parts_.record.took(task.id, Method::kOff, parts_.clock.now() - began);
+  return task.state == State::kOff ? StepEnd::kDone : fail(agreement, NoSwitch::kStepFailed, task);
+}
+
+// Spawns it, or kills it. What a task makes at init counts by the configuration after.
+StepEnd SlowSwitch::create(SwitchAgreement agreement, Task& task, Signal signal, Nanoseconds now) noexcept {
+  const Method method = signal == Signal::kSpawn ? Method::kInit : Method::kKill;
+  const bool is_here = !created_.is_under_way(task.id) && !parts_.set.slow().takes(method);
+  if (is_here && waits_for_gap(task, method, now)) return StepEnd::kWaits;
+  parts_.set.constants().put_in_force(order_.constants_after());
+  const StepEnd end =
+      created_.carry_out(task, signal, [&](Task& each, Signal which) { (void)move(each, which, now); });
+  if (end == StepEnd::kFailed) return fail(agreement, NoSwitch::kStepFailed, task);
+  return end;
+}
+
+// The switch is aborted at a step of this context that may be under way: `left` steps are to be undone. False: later.
+bool SlowSwitch::leave(std::size_t done, std::size_t& left, Nanoseconds now) noexcept {
+  if (done >= steps_.size() || !is_mine(done)) return true;
+  Task& each = task(steps_[done].task);
+  if (steps_[done].act == SlowAct::kOn && each.is_half_on) {
+    if (!parts_.threads.claim(each.id)) return false;
+    (void)move(each, Signal::kOff, now);
+  }
+  if (steps_[done].act != SlowAct::kKill && steps_[done].act != SlowAct::kSpawn) return true;
+  const Signal signal = steps_[done].act == SlowAct::kKill ? Signal::kKill : Signal::kSpawn;
+  const StepEnd end = created_.cut(each, signal);
+  if (end == StepEnd::kDone) left = done + 1;
+  return end != StepEnd::kWaits;
 }
 
 // No job of who leaves is left that could delay one, directly or by others: the processor of this context is idle once.
@@ -279,66 +332,78 @@ bool SlowSwitch::waits_for_idle(Nanoseconds now) noexcept {
 }
 
 // Who is initialised with what is in force by now is left as it is.
-SlowSwitch::Did SlowSwitch::reinit(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept {
+StepEnd SlowSwitch::reinit(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept {
   ContextConstants& constants = parts_.set.constants();
   constants.read_foreign();
   constants.put_in_force(order_.constants_after());
-  if (!constants.uses_changed(task.id)) return Did::kDone;
-  if (waits_for_gap(task, Method::kReinit, now)) return Did::kWaits;
+  if (!constants.uses_changed(task.id)) return StepEnd::kDone;
+  if (waits_for_gap(task, Method::kReinit, now)) return StepEnd::kWaits;
   const State before = task.state;
   const std::uint64_t faults = task.faults.count;
   (void)move(task, Signal::kReinit, now);
   if (task.state == before && task.faults.count == faults) {
     parts_.record.reinitialised(task.id);
-    return Did::kDone;
+    return StepEnd::kDone;
   }
-  abort(agreement, NoSwitch::kStepFailed, task.id, {});
-  parts_.record.receipt().said.assign(task.faults.last.text);
+  (void)fail(agreement, NoSwitch::kStepFailed, task);
   constants.put_in_force(order_.constants);
   if (task.state == before) (void)move(task, Signal::kReinit, now);
-  return Did::kFailed;
+  return StepEnd::kFailed;
 }
 
-SlowSwitch::Did SlowSwitch::turn_on(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept {
+// Until the next period of the task, or the deadline.
+StepEnd SlowSwitch::wait_a_cycle(const Task& task, Nanoseconds now) noexcept {
+  const Nanoseconds period = task.spec->aperiodic ? milliseconds(1) : task.spec->period;
+  wake_ = now < order_.until ? std::min(now + period, order_.until) : now + period;
+  return StepEnd::kWaits;
+}
+
+StepEnd SlowSwitch::turn_on(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   set.constants().put_in_force(order_.constants_after());
   set.sources().follow_others();
-  const auto wait_a_cycle = [&] {
-    const Nanoseconds period = task.spec->aperiodic ? milliseconds(1) : task.spec->period;
-    wake_ = std::min(now + period, std::max(order_.until, now + Nanoseconds{1}));
-    return Did::kWaits;
-  };
-  if (missing_value(set, task, {}).is_valid()) return wait_a_cycle();
-  if (waits_for_idle(now)) return Did::kWaits;
-  if (waits_for_gap(task, Method::kOn, now)) return Did::kWaits;
+  if (missing_value(set, task, {}).is_valid()) return wait_a_cycle(task, now);
+  if (waits_for_idle(now)) return StepEnd::kWaits;
+  if (waits_for_gap(task, Method::kOn, now)) return StepEnd::kWaits;
   const Nanoseconds began = parts_.clock.now();
-  (void)move(task, Signal::kOn, now);
+  const SignalReport report = move(task, Signal::kOn, now);
   parts_.record.took(task.id, Method::kOn, parts_.clock.now() - began);
-  if (task.state != State::kOn) {
-    abort(agreement, NoSwitch::kOnFailed, task.id, {});
-    parts_.record.receipt().said.assign(task.faults.last.text);
-    return Did::kFailed;
-  }
+  if (report.why == Refusal::kNotYet) return wait_a_cycle(task, now);
+  if (task.state != State::kOn) return fail(agreement, NoSwitch::kOnFailed, task);
   parts_.record.receipt().armed = parts_.clock.now();
   const VariablePart* const beyond = parts_.record.arrives(task.id, parts_.clock.now());
   if (beyond != nullptr) abort(agreement, NoSwitch::kStepTooLarge, task.id, beyond->handover.variable);
-  return Did::kDone;  // what is done is undone as all others
+  return StepEnd::kDone;  // what is done is undone as all others
+}
+
+// A device that needs some time on the way back has it, for as long as a switch has by default.
+StepEnd SlowSwitch::turn_on_again(Task& task, Nanoseconds now) noexcept {
+  const SignalReport report = move(task, Signal::kOn, now);
+  if (report.why != Refusal::kNotYet) return StepEnd::kDone;
+  if (back_until_ == kNever) back_until_ = now + TaskLife::kPatience;
+  if (now < back_until_) return wait_a_cycle(task, now);
+  (void)move(task, Signal::kOff, now);
+  return StepEnd::kDone;
 }
 
 // What cannot be undone, because a signal or an error came between, is left as it is.
-SlowSwitch::Did SlowSwitch::undo(const SlowStep& step, Nanoseconds now) noexcept {
+StepEnd SlowSwitch::undo(const SlowStep& step, Nanoseconds now) noexcept {
   Task& each = task(step.task);
   ContextConstants& constants = parts_.set.constants();
-  if (each.in_service || !parts_.threads.claim(step.task)) return Did::kWaits;
+  if (each.in_service || !parts_.threads.claim(step.task)) return StepEnd::kWaits;
   constants.read_foreign();
   constants.put_in_force(order_.constants);
   parts_.set.sources().follow_others();
   if (step.act == SlowAct::kOn && each.state == State::kOn) (void)move(each, Signal::kOff, now);
-  if (step.act == SlowAct::kOff && each.state == State::kOff) (void)move(each, Signal::kOn, now);
+  if (step.act == SlowAct::kOff && each.state == State::kOff) return turn_on_again(each, now);
+  if (step.act == SlowAct::kKill || step.act == SlowAct::kSpawn) {
+    const Signal done = step.act == SlowAct::kKill ? Signal::kKill : Signal::kSpawn;
+    return created_.undo(each, done, [&](Task& one, Signal which) { (void)move(one, which, now); });
+  }
   const bool is_there = each.state == State::kOff || each.state == State::kOn;
-  if (step.act != SlowAct::kReinit || !is_there || !constants.uses_changed(step.task)) return Did::kDone;
+  if (step.act != SlowAct::kReinit || !is_there || !constants.uses_changed(step.task)) return StepEnd::kDone;
   (void)move(each, Signal::kReinit, now);
-  return Did::kDone;
+  return StepEnd::kDone;
 }
 
 }  // namespace chimera

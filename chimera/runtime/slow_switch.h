@@ -9,6 +9,7 @@
 #include <span>
 
 #include "chimera/runtime/context_tap.h"
+#include "chimera/runtime/creation_steps.h"
 #include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/settlement.h"
 #include "chimera/runtime/slow_plan.h"
@@ -50,21 +51,26 @@ class SlowSwitch {
   void cut(SwitchAgreement agreement) noexcept;
 
  private:
-  enum class Did : std::uint8_t { kDone, kWaits, kFailed };
-
   std::size_t undone_with(std::size_t left) const noexcept;
   bool is_mine(std::size_t step) const noexcept { return parts_.set.is_mine(steps_[step].task); }
   bool is_of_dead(std::size_t step) const noexcept;
   bool turns_round(std::size_t done) const noexcept;
   bool may_go_on(SwitchAgreement agreement, std::size_t done, Nanoseconds now) noexcept;
   TaskId find_disturbed(std::size_t done) const noexcept;
-  State expected(TaskId task, std::size_t done) const noexcept;
+  bool is_as_left(const Task& task, std::size_t done) const noexcept;
+  bool leave(std::size_t done, std::size_t& left, Nanoseconds now) noexcept;
   void hold_flag(Nanoseconds now) noexcept;
   void conclude(SwitchEnd end, Nanoseconds now) noexcept;
-  Did carry_out(SwitchAgreement agreement, const SlowStep& step, Nanoseconds now) noexcept;
-  Did turn_on(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept;
-  Did reinit(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept;
-  Did undo(const SlowStep& step, Nanoseconds now) noexcept;
+  StepEnd carry_out(SwitchAgreement agreement, const SlowStep& step, Nanoseconds now) noexcept;
+  StepEnd check(SwitchAgreement agreement, const Task& task) noexcept;
+  StepEnd turn_off(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept;
+  StepEnd create(SwitchAgreement agreement, Task& task, Signal signal, Nanoseconds now) noexcept;
+  StepEnd turn_on(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept;
+  StepEnd reinit(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept;
+  StepEnd fail(SwitchAgreement agreement, NoSwitch why, const Task& task) noexcept;
+  StepEnd wait_a_cycle(const Task& task, Nanoseconds now) noexcept;
+  StepEnd turn_on_again(Task& task, Nanoseconds now) noexcept;
+  StepEnd undo(const SlowStep& step, Nanoseconds now) noexcept;
   SignalReport move(Task& task, Signal signal, Nanoseconds now) noexcept;
   bool waits_for_idle(Nanoseconds now) noexcept;
   bool waits_for_gap(const Task& task, Method method, Nanoseconds now) noexcept;
@@ -72,6 +78,7 @@ class SlowSwitch {
 
   Parts parts_;
   SlowPlanner planner_;
+  CreationSteps created_;
   SwitchPeers* peers_ = nullptr;
   const SwitchPlan* plan_ = nullptr;
   SwitchOrder order_;
@@ -81,6 +88,7 @@ class SlowSwitch {
   Nanoseconds wake_ = kNever;
   Nanoseconds held_since_ = kNever;  // the flag, by this context
   Nanoseconds waits_since_ = kNever; // for a gap
+  Nanoseconds back_until_ = kNever;  // for a device on the way back
   SwitchEnd end_ = SwitchEnd::kAborted;
   bool was_raised_ = false;  // the flag, by somebody of this context, when it began
   bool was_idle_ = false;    // the processor, since who leaves is OFF

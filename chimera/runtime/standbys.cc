@@ -6,8 +6,9 @@
 
 namespace chimera {
 
-void Standbys::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
+void Standbys::prepare(const ApplicationSpec& spec, const Rivals& rivals, SetupMemory& memory) {
   tasks_ = spec.tasks;
+  rivals_ = &rivals;
   is_covered_ = memory.take<bool>(spec.tasks.size());
   is_out_ = memory.take<bool>(spec.tasks.size());
   states_ = memory.take<State>(spec.tasks.size());
@@ -37,7 +38,8 @@ void Standbys::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   }
 }
 
-void Standbys::follow(std::span<const State> states, Nanoseconds now) noexcept {
+void Standbys::follow(std::span<const State> states, std::uint32_t living, Nanoseconds now) noexcept {
+  living_ = living;
   std::copy(states.begin(), states.end(), states_.begin());
   for (Group& group : groups_) follow(group, now);
   sum_up(now);
@@ -106,7 +108,13 @@ TaskId Standbys::next(std::size_t group) const noexcept {
 }
 
 TaskId Standbys::next(const Group& group) const noexcept {
-  const auto can = [&](TaskId id) { return id != group.on && state(id) == State::kOff && !is_out_[id.index]; };
+  const auto is_creatable = [&](TaskId id) {
+    const std::uint32_t context = tasks_[id.index].rtpu.index % 32;
+    return state(id) == State::kNotCreated && rivals_->are(id, group.on) && (living_ >> context & 1u) != 0;
+  };
+  const auto can = [&](TaskId id) {
+    return id != group.on && (state(id) == State::kOff || is_creatable(id)) && !is_out_[id.index];
+  };
   const auto found = std::find_if(group.members.begin(), group.members.end(), can);
   return found == group.members.end() ? TaskId() : *found;
 }

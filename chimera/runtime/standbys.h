@@ -10,6 +10,7 @@
 
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/rivals.h"
 #include "chimera/runtime/switch_page.h"
 #include "chimera/task/state_machine.h"
 
@@ -22,15 +23,15 @@ class Standbys {
   static constexpr std::size_t kMostTakeovers = 3;
   static constexpr Nanoseconds kWindow = seconds(10);
 
-  /// The spec outlives this. Context: setup.
-  void prepare(const ApplicationSpec& spec, SetupMemory& memory);
+  /// The spec and the rivals outlive this. Context: setup.
+  void prepare(const ApplicationSpec& spec, const Rivals& rivals, SetupMemory& memory);
   std::size_t n_groups() const noexcept { return groups_.size(); }
 
-  /// `states[t]` is that of task t, over all contexts, at `now`.
-  void follow(std::span<const State> states, Nanoseconds now) noexcept;
+  /// `states[t]` is that of task t, over all contexts, at `now`; `living` are the contexts whose processes live.
+  void follow(std::span<const State> states, std::uint32_t living, Nanoseconds now) noexcept;
   /// A switch leads to `target`: a group of which no task is in it is given up.
   void follow_switch(const TaskBits& target) noexcept;
-  /// The task has failed, and a standby that is OFF may be ON within one period of its own: until then the task counts
+  /// The task has failed, and a standby that is OFF, or NOT-CREATED as long as the task has its resource, may be ON within one period of its own: until then the task counts
   /// as ON where the illegal-configuration flag is judged.
   bool is_covered(TaskId task) const noexcept { return is_covered_[task.index]; }
   /// Some group lost the task that was ON, which is in ERROR yet, and nobody took over in time.
@@ -86,12 +87,14 @@ class Standbys {
   State state(TaskId task) const noexcept { return states_[task.index]; }
 
   std::span<const TaskSpec> tasks_;
+  const Rivals* rivals_ = nullptr;
   std::span<Group> groups_;
   std::span<TaskId> members_;
   std::span<State> states_;      // by task, at the last follow()
   std::span<bool> is_covered_;   // by task
   std::span<bool> is_out_;       // by task
   std::span<bool> is_hot_, is_cool_;  // by task
+  std::uint32_t living_ = 0;
   Nanoseconds due_ = kNever;
   bool is_any_uncovered_ = false;
   bool is_any_waiting_ = false;

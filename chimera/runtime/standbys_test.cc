@@ -20,11 +20,12 @@ class StandbysTest : public ::testing::Test {
     tasks_[kSecond.index].period = milliseconds(4);
     spec_.tasks = tasks_;
     spec_.standbys = pairs_;
-    standbys_.prepare(spec_, memory_);
+    rivals_.prepare(spec_, memory_);
+    standbys_.prepare(spec_, rivals_, memory_);
   }
   void at(std::int64_t ms) {
     now_ = milliseconds(ms);
-    standbys_.follow(states_, now_);
+    standbys_.follow(states_, living_, now_);
   }
   void set(TaskId task, State state) { states_[task.index] = state; }
   void fail(TaskId task, std::int64_t ms) {
@@ -43,7 +44,9 @@ class StandbysTest : public ::testing::Test {
   StandbySpec pairs_[2] = {{kPrimary, kSecond}, {kPrimary, kFirst}};
   ApplicationSpec spec_;
   HeapMemory memory_;
+  Rivals rivals_;
   Standbys standbys_;
+  std::uint32_t living_ = 1;
   std::vector<State> states_{State::kOn, State::kOn, State::kOff, State::kOff};
   Nanoseconds now_;
 };

@@ -77,8 +77,10 @@ enum SlowReason : std::uint8_t {
   kSlowForConstants = 1,  ///< a task that stays ON is initialised with a constant that becomes another one
   kSlowForGap = 2,        ///< `on` of an arriving task fits no gap
   kSlowForDeadlines = 4,  ///< a task might miss a deadline if leaving and arriving tasks met
+  kSlowForResource = 8,   ///< an arriving task is NOT-CREATED, because another one has its resource
+  kSlowForDevice = 16,    ///< `on` of an arriving task answered not yet
 };
-inline constexpr std::uint8_t kSlowReasons = 7;
+inline constexpr std::uint8_t kSlowReasons = 31;
 
 /// What is to be switched. From it, and from the application, every context makes one and the same SwitchPlan.
 struct SwitchOrder {

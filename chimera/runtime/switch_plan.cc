@@ -57,6 +57,7 @@ Nanoseconds lead_of(const SwitchPlan& plan, std::span<const TaskSpec> tasks, Nan
 
 void SwitchPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   spec_ = &spec;
+  rivals_.prepare(spec, memory);
   in_target_ = memory.take<bool>(spec.tasks.size());
   arriving_ = memory.take<TaskId>(spec.tasks.size());
   leaving_ = memory.take<TaskId>(spec.tasks.size());
@@ -101,7 +102,8 @@ PlanAnswer SwitchPlanner::plan_for(std::span<const TaskId> order, std::span<cons
   for (const TaskId id : order) {
     const TaskStanding& now = standing[id.index];
     if (now.state == State::kError) return {NoSwitch::kInError, id};
-    if (now.state == State::kNotCreated || now.in_service) return {NoSwitch::kNotCreated, id};
+    const bool is_absent = now.state == State::kNotCreated && !rivals_.may_be_absent(id);
+    if (is_absent || now.in_service) return {NoSwitch::kNotCreated, id};
     in_target_[id.index] = true;
     if (is_on(now)) staying_[staying++] = id;
     else arriving_[arriving++] = id;

@@ -9,6 +9,7 @@
 
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/rivals.h"
 #include "chimera/runtime/switch_page.h"
 #include "chimera/task/state_machine.h"
 
@@ -54,7 +55,7 @@ enum class NoSwitch : std::uint8_t {
   kUnknownSet,   ///< the target is none of the sets
   kNothingToDo,  ///< exactly the tasks of the target are ON
   kInError,      ///< `task`, of the target, is in ERROR: to be cleared first
-  kNotCreated,   ///< `task`, of the target, is NOT-CREATED, or `init` or `kill` of it is under way
+  kNotCreated,   ///< `task`, of the target, is NOT-CREATED and not only for a rival, or its `init` or `kill` runs
   kUnderWay,     ///< another switch is
   kNotSchedulable,  ///< `task` might miss a deadline if leaving and arriving tasks met: it is slow for that
 
@@ -72,7 +73,7 @@ enum class NoSwitch : std::uint8_t {
   kCancelled,     ///< who asked for it took it back
   kBadConstant,   ///< `task` cannot be initialised with the constants after it
   kStepFailed,    ///< a method of `task` did, in a slow switch
-  kNotReady,      ///< `task` was not ready within the deadline, in a slow switch
+  kNotReady,      ///< `task` was not ready within the deadline, in a slow switch; in a fast one not at once
 };
 
 /// What became of a request for a plan.
@@ -121,6 +122,7 @@ class SwitchPlanner {
   std::span<const Handover> list_handovers(std::span<const TaskStanding> standing) noexcept;
 
   const ApplicationSpec* spec_ = nullptr;
+  Rivals rivals_;
   std::span<bool> in_target_;  // by task
   std::span<TaskId> arriving_, leaving_, staying_;
   std::span<TaskId> target_;  // of a set without a name, in data-flow order

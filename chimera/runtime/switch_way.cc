@@ -5,6 +5,8 @@
 namespace chimera {
 
 void SwitchWays::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
+  spec_ = &spec;
+  rivals_.prepare(spec, memory);
   schedule_.prepare(spec, memory);
   users_.prepare(spec, memory);
 }
@@ -16,6 +18,12 @@ SwitchWay SwitchWays::judge(const SwitchPlan& plan, std::span<const TaskStanding
   if (!way.deadline) way.slow |= kSlowForDeadlines;
   way.constant = users_.find_staying(plan, constants, made);
   if (way.constant.task.is_valid()) way.slow |= kSlowForConstants;
+  for (const TaskId task : plan.arriving)
+    if (standing[task.index].state == State::kNotCreated && !way.absent.is_valid()) way.absent = task;
+  if (!way.absent.is_valid()) return way;
+  way.slow |= kSlowForResource;
+  for (std::size_t t = 0; t < spec_->tasks.size(); ++t)
+    if (rivals_.are(way.absent, TaskId(t)) && standing[t].state != State::kNotCreated) way.rival = TaskId(t);
   return way;
 }
 

@@ -8,6 +8,7 @@
 
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/constant_choice.h"
+#include "chimera/runtime/rivals.h"
 #include "chimera/runtime/switch_page.h"
 #include "chimera/runtime/switch_schedule.h"
 
@@ -18,7 +19,14 @@ struct SwitchWay {
   std::uint8_t slow = 0;          ///< SlowReason; 0: fast
   ConstantUsers::Found constant;  ///< of kSlowForConstants: who stays ON, and what becomes another one for it
   PlanAnswer deadline;            ///< of kSlowForDeadlines: as SwitchSchedule::judge()
+  TaskId absent;                  ///< of kSlowForResource: the first task of the plan that is NOT-CREATED
+  TaskId rival;                   ///< and who has its resource; invalid: it waits for a constant of such a task
 };
+
+/// Why a fast switch that ended so is made the slow way next; 0: it is not. Context: any.
+constexpr std::uint8_t reason_to_go_slowly(NoSwitch why) noexcept {
+  return why == NoSwitch::kNoGap ? kSlowForGap : why == NoSwitch::kNotReady ? kSlowForDevice : 0;
+}
 
 /// Context of everything not marked: setup, or an edge of virtual time; no allocation.
 class SwitchWays {
@@ -30,6 +38,8 @@ class SwitchWays {
                   const MadeConstants& made) noexcept;
 
  private:
+  const ApplicationSpec* spec_ = nullptr;
+  Rivals rivals_;
   SwitchSchedule schedule_;
   ConstantUsers users_;
 };

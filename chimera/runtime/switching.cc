@@ -310,6 +310,11 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
   record_.took(next.id, Method::kOn, parts_.clock.now() - began);
   if (report) {
     ++next_armed_;
+  } else if (report.why == Refusal::kNotYet) {  // what it has begun is ended with the `off` of those that are armed
+    next.is_half_on = false;
+    next.owes_off = true;
+    ++next_armed_;
+    abort(NoSwitch::kNotReady, next.id, {});
   } else {
     abort(NoSwitch::kOnFailed, next.id, {});
     record_.receipt().said.assign(next.faults.last.text);
@@ -437,16 +442,16 @@ void Switching::finish(SwitchEnd end, Nanoseconds now, bool is_run_over) noexcep
   phase_ = Phase::kNone;
   due_ = wake_ = kNever;
   peers_->tell_over(record_.receipt());
-  // Of a context that is alone: what found no gap for `on` is done under the flag.
+  // Of a context that is alone: what found no gap for `on`, or a device that is not ready, is done under the flag.
   SwitchReceipt& receipt = record_.receipt();
-  const bool is_tried_again = end == SwitchEnd::kAborted && peers_ == &nobody_ && receipt.why == NoSwitch::kNoGap;
-  if (!is_tried_again || receipt.way.slow != 0 || is_run_over) return;
+  const std::uint8_t slow = end == SwitchEnd::kAborted ? reason_to_go_slowly(receipt.why) : 0;
+  if (slow == 0 || peers_ != &nobody_ || receipt.way.slow != 0 || is_run_over) return;
   note_standing(parts_.set, standing_);
   if (!planner_.plan(order_.target, standing_, plan_)) return;
   receipt.why = NoSwitch::kNone;
   receipt.task = {};
-  receipt.way.slow = kSlowForGap;
-  agreement().announce(lone_order(parts_.set, order_.number, order_.target, kSlowForGap, now + kPatience));
+  receipt.way.slow = slow;
+  agreement().announce(lone_order(parts_.set, order_.number, order_.target, slow, now + kPatience));
   due_ = now;
 }
 

@@ -25,13 +25,25 @@ void TaskLife::prepare(std::size_t n_tasks, SetupMemory& memory) {
 SignalReport TaskLife::start(Nanoseconds now) {
   const ApplicationSpec& spec = set_.spec();
   for (TaskId id : spec.init_order) {
+    Task& task = set_.tasks()[id.index];
+    if (task.state != State::kNotCreated || !set_.rivals().is_created_at_start(id)) continue;
     SignalReport report = carry_out(id, Signal::kSpawn, now);
-    if (set_.tasks()[id.index].state == State::kOff) continue;
+    if (task.state == State::kOff) continue;
     report.is_accepted = false;
     report.why = Refusal::kFault;
     return report;
   }
-  return signal(spec.start, Signal::kOn, now);
+  std::size_t n_on = 0;  // when it was asked before
+  while (n_on < spec.start.size() && set_.tasks()[spec.start[n_on].index].state == State::kOn) ++n_on;
+  return signal(spec.start.subspan(n_on), Signal::kOn, now);
+}
+
+void TaskLife::turn_off_started(Nanoseconds now) {
+  const auto start = set_.spec().start;
+  for (std::size_t i = start.size(); i-- > 0;) {
+    const Task& task = set_.tasks()[start[i].index];
+    if (task.state == State::kOn || task.is_half_on) carry_out(start[i], Signal::kOff, now);
+  }
 }
 
 void TaskLife::shut_down(Nanoseconds now) {
@@ -53,25 +65,18 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
     const Task& task = set_.tasks()[id.index];
     report.task = id;
     report.before = report.after = task.shown_state();
-    const bool is_due = signal == Signal::kOff && (task.owes_off || task.is_unread);
+    const bool is_due = signal == Signal::kOff && (task.owes_off || task.is_half_on || task.is_unread);
     if (is_due || next(report.before, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
     report.why = Refusal::kState;
     return report;
   }
-  // Where there is a manager, it alone turns tasks ON, and has judged the whole set.
-  const bool is_judged = set_.others() != nullptr && set_.others()->has_manager();
-  if (signal == Signal::kOn && !is_judged && !would_be_legal(tasks)) {
-    report.why = Refusal::kIllegalSet;
-    return report;
-  }
-  if (signal == Signal::kOn && !claims_groups_of(tasks)) {
-    report.why = Refusal::kIllegalSet;
-    return report;
-  }
+  report.why = judge(tasks, signal);
+  if (report.why != Refusal::kNone) return report;
   for (TaskId id : tasks) {
     if (signal == Signal::kOff) set_.standbys().let_cool(id, true);
     report = carry_out(id, signal, now);
     if (signal != Signal::kOn || report.after == State::kOn) continue;
+    if (report.why == Refusal::kNotYet) break;
     for (TaskId done : tasks) {  // one transaction: tasks that are ON already go OFF again
       if (done == id) break;
       carry_out(done, Signal::kOff, now);
@@ -82,6 +87,30 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
   }
   set_.on_set_changed();
   return report;
+}
+
+Refusal TaskLife::judge(std::span<const TaskId> tasks, Signal signal) noexcept {
+  if (signal == Signal::kSpawn) {
+    for (const TaskId id : tasks)
+      if (find_rival(id).is_valid() || !claims_groups_of({&id, 1})) return Refusal::kRival;
+    return Refusal::kNone;
+  }
+  if (signal != Signal::kOn) return Refusal::kNone;
+  // Where there is a manager, it alone turns tasks ON, and has judged the whole set.
+  const bool is_judged = set_.others() != nullptr && set_.others()->has_manager();
+  if (!is_judged && !would_be_legal(tasks)) return Refusal::kIllegalSet;
+  return claims_groups_of(tasks) ? Refusal::kNone : Refusal::kIllegalSet;
+}
+
+TaskId TaskLife::find_rival(TaskId task) const noexcept {
+  if (!set_.rivals().is_any()) return {};
+  for (const Task& each : set_.tasks()) {
+    if (!set_.rivals().are(task, each.id)) continue;
+    const bool is_mine = set_.is_mine(each.id);
+    const bool is_held = is_mine ? each.state != State::kNotCreated || each.in_service : set_.others()->is_held(each.id);
+    if (is_held) return each.id;
+  }
+  return {};
 }
 
 // Tasks that stand in for each other may be turned ON by several contexts: the one that has the claim looks once more.
@@ -123,7 +152,7 @@ bool TaskLife::would_be_legal(std::span<const TaskId> tasks) noexcept {
 
 SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
   Task& task = set_.tasks()[id.index];
-  if (task.owes_off) {
+  if (task.owes_off || (task.is_half_on && signal != Signal::kOn)) {
     const SignalReport settled = settle_off(id, now);
     if (signal == Signal::kOff || task.state != State::kOff) return settled;
   }
@@ -182,7 +211,7 @@ SignalReport TaskLife::arm(TaskId id, Nanoseconds now) {
     report.after = task.state = State::kOff;
   } else {
     report.is_accepted = false;
-    report.why = Refusal::kFault;
+    if (report.why != Refusal::kNotYet) report.why = Refusal::kFault;
     task.forget_sent();
   }
   return report;
@@ -211,7 +240,7 @@ SignalReport TaskLife::show(Task& task) {
 
 SignalReport TaskLife::settle_off(TaskId id, Nanoseconds now) {
   Task& task = set_.tasks()[id.index];
-  task.owes_off = false;
+  task.owes_off = task.is_half_on = false;
   task.state = State::kOn;  // as `off` finds it
   return carry_out(id, Signal::kOff, now);
 }
@@ -278,6 +307,11 @@ Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanosec
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
   task.profile.execution[static_cast<int>(step.method)].add(progress.used + (read_clock(now) - began));
   if (progress.has_new_constants && !progress.is_moved) reinit_users(task.id, now);
+  if (step.step == Step::kOn) task.is_half_on = answer == Answer::kNotYet;
+  if (answer == Answer::kNotYet) {
+    progress.report.is_accepted = false;
+    progress.report.why = Refusal::kNotYet;
+  }
   return step.next[static_cast<int>(answer)];
 }
 

@@ -35,15 +35,28 @@ class TaskLife {
   /// For as many tasks as the set has. Context: setup.
   void prepare(std::size_t n_tasks, SetupMemory& memory);
 
-  /// Spawns all tasks in the order of their constants and turns the start set ON as one transaction. Reports the first
-  /// task that said no; whatever was spawned stays as it is. In words: refusal_text.h.
+  /// Spawns the tasks that are created at the start (Rivals), in the order of their constants, and turns the start set
+  /// ON as one transaction. Reports the first task that said no; whatever was spawned stays as it is. In words:
+  /// refusal_text.h.
   SignalReport start(Nanoseconds now);
+  /// The same, and asks tasks whose `on` answers not yet again, for at most kPatience. `wait` returns the time at about
+  /// the instant that it is given.
+  template <class Wait>
+  SignalReport start(Nanoseconds now, Wait wait) {
+    SignalReport report = start(now);
+    for (const Nanoseconds until = now + kPatience; report.why == Refusal::kNotYet && now < until;)
+      report = start(now = wait(now + kAskAgain));
+    if (!report) turn_off_started(now);
+    return report;
+  }
+  static constexpr Nanoseconds kPatience = seconds(10), kAskAgain = milliseconds(1);
   /// off (reverse of the start order), then kill, for every task that is there.
   void shut_down(Nanoseconds now);
   /// Carries out one signal and all that follows from it (re-initialisation of users of a changed constant, the
   /// illegal-configuration flag). Nothing changes when it is refused.
   SignalReport signal(TaskId task, Signal signal, Nanoseconds now) { return this->signal({&task, 1}, signal, now); }
-  /// Turns tasks ON (or OFF) as one transaction: refused as a whole when the set would be illegal.
+  /// Turns tasks ON (or OFF) as one transaction: refused as a whole when the set would be illegal. Where `on` of one
+  /// answers not yet, those before it are ON, those behind it were not asked: to be asked again for the rest.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now);
   /// Goes on with the signal of which the service thread has run a method; deferred again while there is more.
   SignalReport finish_slow(TaskId task, Nanoseconds now);
@@ -64,6 +77,8 @@ class TaskLife {
   /// No task would lack a producer and no variable would have two, if `tasks` were ON besides those that are, over all
   /// contexts. A task that waits for its standby counts as ON, but beside that standby.
   bool would_be_legal(std::span<const TaskId> tasks) noexcept;
+  /// A task that is created, in whatever context, and has a resource of `task`; invalid: none.
+  TaskId find_rival(TaskId task) const noexcept;
   /// The set that the last call of signal() with `on` would have turned ON: wanted()[t] says whether task t is in it.
   std::span<const bool> wanted() const noexcept { return wanted_; }
 
@@ -78,6 +93,8 @@ class TaskLife {
   };
 
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
+  Refusal judge(std::span<const TaskId> tasks, Signal signal) noexcept;
+  void turn_off_started(Nanoseconds now);
   SignalReport show(Task& task);
   SignalReport go_on_constructed(Task& task, Answer answer, Nanoseconds now);
   SignalReport advance(Task& task, Next at, Nanoseconds now);

@@ -53,6 +53,7 @@ bool CommandQueue::refuse_or_wait(Command& command) {
     if (verdict == Verdict::kIllegal)
       fail(command, part.task,
            state_.illegal(command.signal, part.task, state_for(command.signal, part.task), tasks_of(command)));
+    if (verdict == Verdict::kRival) fail(command, part.task, state_.rivalry(part.task, state_.find_rival(part.task)));
     if (verdict == Verdict::kNoAnswer) fail(command, part.task, state_.no_answer(part.task));
     waits = waits || verdict == Verdict::kWait;
   }
@@ -106,6 +107,7 @@ CommandQueue::Verdict CommandQueue::judge(const Command& command, const Part& pa
   if (is_spawned_meanwhile(command, part)) return Verdict::kGo;
   if (command.signal == Signal::kSpawn && state_.observed.is_lost(part.task)) return Verdict::kGo;
   if (!is_legal(state_.observed.state(part.task), command.signal)) return Verdict::kIllegal;
+  if (command.signal == Signal::kSpawn && state_.find_rival(part.task).is_valid()) return Verdict::kRival;
   return due == kNever || is_revival(command, part.task) ? Verdict::kGo : Verdict::kWait;
 }
 

@@ -55,7 +55,7 @@ class CommandQueue {
     TaskId failed_at;
     SignalRefusal refusal;  // kNone: nothing went wrong so far
   };
-  enum class Verdict : std::uint8_t { kGo, kWait, kIllegal, kNoAnswer };
+  enum class Verdict : std::uint8_t { kGo, kWait, kIllegal, kRival, kNoAnswer };
 
   static bool takes_down(Signal signal) noexcept { return signal == Signal::kOff || signal == Signal::kKill; }
   static std::vector<TaskId> tasks_of(const Command& command);

@@ -53,7 +53,25 @@ bool Goals::advance(TaskId task) {
   if (!has(task, kGoalSpawn)) return false;
   if (state_.observed.is_created(task)) return clear(task, kGoalSpawn);
   if (state_.is_busy(task) || !has_constants(task)) return false;
+  if (const TaskId rival = state_.find_rival(task); rival.is_valid()) return wait_for(task, rival);
+  goals_[task.index].waits_since = kNever;
   goals_[task.index].command = state_.send(Signal::kSpawn, {&task, 1});
+  return true;
+}
+
+// A task that stands in for it has its resource: it has taken over. Any other one may be about to be killed.
+bool Goals::wait_for(TaskId task, TaskId rival) {
+  Nanoseconds& since = goals_[task.index].waits_since;
+  if (state_.spec.stand_in(task, rival)) {
+    state_.observed.forget(task);
+    state_.log("note", task, state_.observed.rtpu(task),
+               state_.name(task) + " stays NOT-CREATED: " + state_.name(rival) + " has its resource");
+    return clear(task, kGoalSpawn | kGoalOn);
+  }
+  if (since == kNever) since = state_.now;
+  if (state_.now < since + kStartLimit) return false;
+  since = kNever;
+  fail(task, state_.rivalry(task, rival));
   return true;
 }
 
@@ -81,6 +99,8 @@ Nanoseconds Goals::next_due() const noexcept {
   Nanoseconds next = kNever;
   for (std::size_t t = 0; t < goals_.size(); ++t) {
     const TaskId task(t);
+    if (goals_[t].waits_since != kNever && has(task, kGoalSpawn))
+      next = std::min(next, goals_[t].waits_since + kStartLimit);
     if (!is_pursued(task) || state_.observed.life_of(task) == RtpuLife::kUp) continue;
     next = std::min(next, state_.observed.since(state_.observed.rtpu(task)) + kStartLimit);
   }

@@ -12,6 +12,8 @@ namespace chimera::subsystem {
 inline constexpr std::uint32_t kGoalGone = 4;
 /// An rtpu that was asked for and does not serve within this time is not waited for any longer.
 inline constexpr Nanoseconds kStartLimit = seconds(10);
+/// A task whose `on` answers not yet is asked again for so long.
+inline constexpr Nanoseconds kReadyLimit = seconds(10);
 
 /// Context: setup.
 class Goals {
@@ -46,8 +48,10 @@ class Goals {
     std::uint32_t bits = 0;
     std::uint64_t command = 0;  ///< of its spawn
     SignalRefusal failure;
+    Nanoseconds waits_since = kNever;  ///< for a rival to be killed
   };
   bool advance(TaskId task);
+  bool wait_for(TaskId task, TaskId rival);
   bool has_constants(TaskId task) const noexcept;
 
   SubsystemState& state_;

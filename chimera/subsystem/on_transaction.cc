@@ -41,9 +41,11 @@ void OnTransaction::begin(OnRequest request) {
       already_.push_back(task);
       continue;
     }
-    members_.push_back({task, before, before == State::kOn ? Stage::kOn : Stage::kOpen, false, 0});
+    members_.push_back({task, before, before == State::kOn ? Stage::kOn : Stage::kOpen, false, false, 0});
   }
   is_under_way_ = true;
+  until_ = state_.now + kReadyLimit;
+  again_at_ = kNever;
   is_final_ = is_rolling_back_ = false;
   refusal_ = {};
   if (SignalRefusal why = state_.judge_on(request_.tasks); why.is_refused())
@@ -58,6 +60,8 @@ bool OnTransaction::is_waiting() const noexcept {
 
 bool OnTransaction::advance() {
   if (!is_under_way_ || is_waiting()) return false;
+  if (again_at_ != kNever && state_.now < again_at_ && !refusal_.is_refused()) return false;
+  again_at_ = kNever;
   if (!refusal_.is_refused()) send_next();
   else if (!is_rolling_back_) roll_back();
   if (!is_waiting()) finish();
@@ -85,12 +89,31 @@ void OnTransaction::send_next() {
 void OnTransaction::on_result(const SignalResult& result) {
   Member* member = find(result.task);
   if (member == nullptr || member->command != result.command || member->stage != Stage::kSent) return;
+  if (is_asked_again(result)) {
+    member->stage = Stage::kOpen;
+    return;
+  }
   // After a failed `on` it may be ON for all we know: it is turned OFF with the rest.
   member->stage = is_rolling_back_ || member->is_withdrawn ? Stage::kOver : Stage::kOn;
   if (!is_rolling_back_ && !result.is_done())
     fail(result.task, result.refusal.behind(state_.name(result.task) + ": "),
          result.refusal.kind != RefusalKind::kEnded);
   on_task_seen(result.task);
+}
+
+// Of a list the tasks behind one that is not ready were not asked.
+bool OnTransaction::is_asked_again(const SignalResult& result) {
+  Member* const member = find(result.task);
+  const bool is_not_ready = result.refusal.kind == RefusalKind::kNotYet;
+  const bool is_behind = result.refusal.kind == RefusalKind::kOther && result.command == not_ready_;
+  member->is_half_on = is_not_ready;
+  if (is_rolling_back_ || refusal_.is_refused() || member->is_withdrawn || state_.now >= until_) return false;
+  if (!is_not_ready && !is_behind) return false;
+  if (is_not_ready) {
+    not_ready_ = result.command;
+    again_at_ = state_.now + std::max(state_.spec.tasks[result.task.index].period, milliseconds(1));
+  }
+  return true;
 }
 
 void OnTransaction::on_task_seen(TaskId task) {
@@ -107,7 +130,7 @@ bool OnTransaction::withdraw(TaskId task, Signal signal) {
   fail(task, {RefusalKind::kOvertaken, state_.name(task) + ": " + signal_name(signal) + " was asked for meanwhile", {}},
        !request_.is_goals);
   member->is_withdrawn = true;
-  if (member->stage != Stage::kSent) member->stage = Stage::kOver;
+  if (member->stage != Stage::kSent && !member->is_half_on) member->stage = Stage::kOver;
   return true;
 }
 
@@ -131,7 +154,8 @@ void OnTransaction::roll_back() {
   is_rolling_back_ = true;
   for (auto m = members_.rbegin(); m != members_.rend(); ++m) {
     const bool is_there = state_.observed.life_of(m->task) == RtpuLife::kUp;
-    if (m->stage != Stage::kOn || !is_there || !state_.may_be_on(m->task)) {
+    const bool is_on = m->stage == Stage::kOn && state_.may_be_on(m->task);
+    if (m->stage == Stage::kOver || !is_there || !(is_on || m->is_half_on)) {
       m->stage = Stage::kOver;
       continue;
     }

@@ -6,6 +6,8 @@
 // over, so that the next manager goes on with it.
 //
 //   stage of a member:  kOpen --`on` sent--> kSent --reported--> kOn   (it may be ON: rolled back after a failure)
+//                           ^              |
+//                           +--- not yet --+   asked again after a period, for 10 s; whoever stands behind it in the list, too
 //                                                     roll-back: kOn --`off` sent--> kSent --reported--> kOver
 #pragma once
 
@@ -45,6 +47,8 @@ class OnTransaction {
 
   /// Sends what is due, ends when all is over. False: nothing changed.
   bool advance();
+  /// When it has something to do though nobody reports; kNever: not.
+  Nanoseconds next_due() const noexcept { return is_under_way_ ? again_at_ : kNever; }
 
   /// Answers a request that did not become a transaction, naming one of its tasks.
   void refuse(const OnRequest& request, TaskId task, const SignalRefusal& why);
@@ -56,9 +60,11 @@ class OnTransaction {
     State before = State::kOff;
     Stage stage = Stage::kOpen;
     bool is_withdrawn = false;  // another command turns it OFF
+    bool is_half_on = false;    // its `on` answered not yet: `off` is owed
     std::uint64_t command = 0;
   };
   Member* find(TaskId task) noexcept;
+  bool is_asked_again(const SignalResult& result);
   TaskId first_wrong(const OnRequest& request) const;
   void fail(TaskId task, SignalRefusal why, bool is_final);
   void send_next();
@@ -75,6 +81,9 @@ class OnTransaction {
   bool is_under_way_ = false;
   bool is_final_ = false;  // the goals are given up with it
   bool is_rolling_back_ = false;
+  Nanoseconds until_;               // so long tasks that are not ready yet are asked again
+  Nanoseconds again_at_ = kNever;   // when they are
+  std::uint64_t not_ready_ = 0;     // the command of which a task answered so last
   TaskId failed_at_;
   SignalRefusal refusal_;  // kNone: nothing went wrong so far
 };

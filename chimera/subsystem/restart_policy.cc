@@ -89,7 +89,8 @@ void RestartPolicy::restart(const RtpuDown& down, const std::vector<std::uint32_
 // Its process died after that of the others of its group: it had taken over, and they do not come back ON beside it.
 void RestartPolicy::leave_off_for(TaskId task) {
   for (std::size_t t = 0; t < state_.spec.tasks.size(); ++t)
-    if (state_.spec.stand_in(task, TaskId(t))) goals_.clear(TaskId(t), kGoalOn);
+    if (state_.spec.stand_in(task, TaskId(t)))
+      goals_.clear(TaskId(t), state_.rivals.are(task, TaskId(t)) ? kGoalSpawn | kGoalOn : kGoalOn);
 }
 
 void RestartPolicy::give_up(const RtpuDown& down) {

@@ -7,7 +7,8 @@
 namespace chimera::subsystem {
 
 const char* refusal_kind_name(RefusalKind kind) noexcept {
-  constexpr const char* kNames[] = {"", "state", "set", "fault", "ended", "no-answer", "overtaken", "other"};
+  constexpr const char* kNames[] = {"",         "state",     "set",       "fault",     "ended",
+                                    "resource", "not-ready", "no-answer", "overtaken", "other"};
   return kNames[static_cast<unsigned>(kind)];
 }
 

@@ -14,6 +14,8 @@ enum class RefusalKind : std::uint8_t {
   kSet,        ///< the tasks that would be ON are no legal set
   kFault,      ///< a method failed, or a task left ON by itself
   kEnded,      ///< the process of the task ended
+  kResource,   ///< another task that is created has the resource of the task
+  kNotYet,     ///< `on` answered that the device is not ready yet
   kNoAnswer,   ///< the real-time unit of the task does not report
   kOvertaken,  ///< another signal for the task was asked for meanwhile
   kOther,      ///< the real-time unit named no reason: the refusal of another task of the list has it

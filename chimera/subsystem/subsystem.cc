@@ -66,6 +66,7 @@ void Subsystem::Parts::on_event(const Begun& begun) {
   if (begun.started) return;
   state.observed.begin_empty();
   for (TaskId task : state.spec.init_order) {
+    if (!state.rivals.is_created_at_start(task)) continue;
     const bool starts = std::ranges::find(state.spec.start, task) != state.spec.start.end();
     goals.set(task, starts ? kGoalSpawn | kGoalOn : kGoalSpawn);
   }
@@ -108,6 +109,8 @@ SignalRefusal Subsystem::Parts::refusal_of(const Reported& report) const {
     case Refusal::kState: return state.illegal(report.signal, report.task, report.before, {&report.task, 1});
     case Refusal::kIllegalSet: return {RefusalKind::kSet, report.text, {}};
     case Refusal::kFault: return {RefusalKind::kFault, report.text.empty() ? "a method failed" : report.text, {}};
+    case Refusal::kNotYet: return {RefusalKind::kNotYet, "on: it is not ready yet", {}};
+    case Refusal::kRival: return {RefusalKind::kResource, "another task that is created has its resource", {}};
     case Refusal::kNone: break;
   }
   return {RefusalKind::kOther, report.text, {}};
@@ -158,7 +161,7 @@ void Subsystem::step(const Event& event, Nanoseconds now, std::vector<Action>& a
 Nanoseconds Subsystem::next_due() const noexcept {
   const Nanoseconds next = std::min(parts_->state.pending.next_due(), parts_->goals.next_due());
   if (!parts_->state.is_complete) return next;
-  return std::min({next, parts_->commands.next_due(), parts_->on_queue.next_due()});
+  return std::min({next, parts_->commands.next_due(), parts_->on_queue.next_due(), parts_->transaction.next_due()});
 }
 
 State Subsystem::state(TaskId task) const noexcept { return parts_->state.observed.state(task); }

@@ -51,7 +51,9 @@ Nanoseconds PendingSignals::next_due() const noexcept {
 }
 
 SubsystemState::SubsystemState(const ApplicationSpec& application)
-    : spec(application), variables(application), observed(application), pending(application.tasks.size()) {}
+    : spec(application), variables(application), observed(application), pending(application.tasks.size()) {
+  rivals.prepare(spec, memory);
+}
 
 void SubsystemState::log(const char* kind, TaskId task, RtpuId rtpu, std::string text) const {
   emit(LogEvent{kind, task, rtpu, std::move(text)});
@@ -92,7 +94,32 @@ SignalRefusal SubsystemState::judge_on(std::span<const TaskId> tasks) const {
   return {RefusalKind::kSet, variables.fault(on, spec.tasks), variables.remedy(on, spec.tasks)};
 }
 
+TaskId SubsystemState::find_rival(TaskId task) const {
+  for (const TaskId rival : spec.on_order) {
+    const RtpuLife life = observed.life_of(rival);
+    if (!rivals.are(task, rival) || (life != RtpuLife::kUp && life != RtpuLife::kUnknown)) continue;
+    const bool is_held = observed.is_created(rival) || observed.status(rival).in_service;
+    if (is_held || pending.is_possible(rival, Signal::kSpawn)) return rival;
+  }
+  return {};
+}
+
+SignalRefusal SubsystemState::rivalry(TaskId task, TaskId rival) const {
+  std::string commands = "`chimera kill " + name(rival) + "`, then `chimera spawn " + name(task) + "`";
+  for (const NamedSet& set : spec.sets)
+    if (std::find(set.order.begin(), set.order.end(), task) != set.order.end()) {
+      commands = "`chimera switch " + std::string(set.name) + "`";
+      break;
+    }
+  return {RefusalKind::kResource,
+          name(task) + " has the resource '" + std::string(rivals.resource(task, rival)) + "' of " + name(rival) +
+              ", which is " + state_name(observed.state(rival)),
+          typed(commands)};
+}
+
 SignalRefusal SubsystemState::illegal(Signal signal, TaskId task, State state, std::span<const TaskId> tasks) const {
+  if (const TaskId rival = find_rival(task); state == State::kNotCreated && rival.is_valid())
+    return rivalry(task, rival);
   return {RefusalKind::kState,
           name(task) + " is in state " + state_name(state) + ", where " + signal_name(signal) + " is not legal",
           typed(remedy(*this, signal, tasks))};

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/variables.h"
+#include "chimera/runtime/rivals.h"
 #include "chimera/subsystem/observed_state.h"
 #include "chimera/subsystem/subsystem.h"
 
@@ -67,6 +69,8 @@ struct SubsystemState {
 
   const ApplicationSpec& spec;
   const Variables variables;
+  HeapMemory memory;  ///< behind the rivals
+  Rivals rivals;
   ObservedState observed;
   PendingSignals pending;
   bool is_complete = false;                ///< InventoryComplete has come
@@ -93,6 +97,11 @@ struct SubsystemState {
   bool is_busy(TaskId task) const;
   /// Is a spawn pending, or does init or kill run?
   bool is_spawning(TaskId task) const;
+
+  /// A task that has a resource of `task` and is, or may be, created; invalid: none.
+  TaskId find_rival(TaskId task) const;
+  /// "hand has the resource '/dev/tool' of gripper, which is ON", "type `chimera switch assembly`".
+  SignalRefusal rivalry(TaskId task, TaskId rival) const;
 
   /// Why the tasks that would be ON with `tasks` are no legal set; kNone when they are.
   SignalRefusal judge_on(std::span<const TaskId> tasks) const;

@@ -77,7 +77,9 @@ enum {
   CHIMERA_FAULT = 1,   /* failed; text in call->fault; error(): not recovered; clear(): still there */
   CHIMERA_NO_EVENT = 2,/* sync() only: nothing pending, no cycle follows */
   CHIMERA_ABORTED = 3, /* cycle() only: gave up in time, publishes nothing */
-  CHIMERA_PARTIAL = 4  /* cycle() only: gave up in time, what it has put out is of use and is published */
+  CHIMERA_PARTIAL = 4, /* cycle() only: gave up in time, what it has put out is of use and is published */
+  CHIMERA_NOT_YET = 5  /* on() only: the device is on its way and needs no other answer; the task stays OFF, publishes
+                          nothing, and on() is asked again */
 };
 
 enum {
@@ -87,6 +89,7 @@ enum {
   CHIMERA_PORT_CONFIGURATION = 1u << 4, /* in-const of text: names a configuration of the description, or is empty */
   CHIMERA_PORT_SAFE_STATE = 1u << 5, /* out-var of bool: true while the device is in the state that the
                                         illegal-configuration flag asks for; resource: nothing of it ever moves */
+  CHIMERA_PORT_SHARED = 1u << 6, /* resource: several tasks may have it open at one time */
   CHIMERA_PORT_HAS_INITIAL = 1u << 3  /* out-var: value at spawn; in-const: default when nobody produces it */
 };
 

@@ -14,8 +14,8 @@
 //   CHIMERA_COMPONENT(TimeDerivative, "tderiv", "Time derivative of one signal.")
 //
 // Methods, all but cycle optional, each with (Cycle) or ():
-//   init reinit on cycle off kill   return nothing, or an Outcome: ok(), fault("text", code); cycle also aborted(),
-//                                   partial()
+//   init reinit on cycle off kill   return nothing, or an Outcome: ok(), fault("text", code); on also not_yet(), cycle
+//                                   also aborted(), partial()
 //   sync                            returns bool (an event was taken), or an Outcome with no_event()
 //   error clear                     return bool (recovered; the cause is gone), or an Outcome
 // Beside them void background(), for what may wait: called every 10 ms or so by a thread without real-time rights,
@@ -71,6 +71,8 @@ inline std::int32_t judge(Method method, const Outcome& outcome, chimera_fault* 
     return note_fault(fault, 0, "only cycle may answer partial()");
   if (outcome.status() == CHIMERA_NO_EVENT && method != Method::kSync)
     return note_fault(fault, 0, "only sync may answer no_event()");
+  if (outcome.status() == CHIMERA_NOT_YET && method != Method::kOn)
+    return note_fault(fault, 0, "only on may answer not_yet()");
   if (outcome.status() == CHIMERA_FAULT) return note_fault(fault, outcome.code(), outcome.text().data());
   return outcome.status();
 }

@@ -82,7 +82,7 @@ class Cycle {
   const chimera_call* call_;
 };
 
-/// How a method ended. Made by ok(), fault(), aborted(), partial(), no_event().
+/// How a method ended. Made by ok(), fault(), aborted(), partial(), no_event(), not_yet().
 class [[nodiscard]] Outcome {
  public:
   std::int32_t status() const noexcept { return status_; }
@@ -97,6 +97,7 @@ class [[nodiscard]] Outcome {
   friend Outcome aborted() noexcept;
   friend Outcome partial() noexcept;
   friend Outcome no_event() noexcept;
+  friend Outcome not_yet() noexcept;
 
   std::int32_t status_;
   std::int32_t code_;
@@ -126,5 +127,9 @@ inline Outcome partial() noexcept { return Outcome(CHIMERA_PARTIAL); }
 
 /// sync() only: nothing is pending, no cycle follows. Context: cycle; wait-free.
 inline Outcome no_event() noexcept { return Outcome(CHIMERA_NO_EVENT); }
+
+/// on() only: the device has been told and is on its way, such as a drive that changes its mode of operation. The task
+/// stays OFF and on() is asked again, for as long as whoever turns it ON waits. Context: edge; wait-free.
+inline Outcome not_yet() noexcept { return Outcome(CHIMERA_NOT_YET); }
 
 }  // namespace chimera

@@ -132,6 +132,8 @@ constexpr bool check_option() {
                 "configuration goes with an in-const of text: it is checked before anything runs");
   static_assert(!std::is_same_v<Option, SafeStateIs> || Kind == CHIMERA_OUT_VAR || Kind == CHIMERA_RESOURCE,
                 "safe_state goes with an out-var of bool, or with a resource that never moves");
+  static_assert(!std::is_same_v<Option, SharedIs> || Kind == CHIMERA_RESOURCE,
+                "shared goes with a resource that several tasks may have open at one time");
   static_assert(!std::is_same_v<Option, RangeIs> || Kind != CHIMERA_RESOURCE, "a resource has no range");
   return true;
 }
@@ -197,6 +199,10 @@ void apply_option(chimera_port_decl& port, Collector& to, const SafeStateIs&) {
   if (port.kind != CHIMERA_RESOURCE && element_type<E>() != CHIMERA_BOOL)
     to.refuse(port.name, "is a safe_state and no bool");
   port.flags |= CHIMERA_PORT_SAFE_STATE;
+}
+template <class E>
+void apply_option(chimera_port_decl& port, Collector&, const SharedIs&) {
+  port.flags |= CHIMERA_PORT_SHARED;
 }
 template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const SafetyIs&) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The named extras of a port and of a component: `initial = 0.0`, `range(-1, 1)`, `safety`, `frame = "base"`,
-// `doc = "..."`, `type = "T"`, `at_least = "low"`, `one_of = "sine square"`, `configuration`, `safe_state`;
+// `doc = "..."`, `type = "T"`, `at_least = "low"`, `one_of = "sine square"`, `configuration`, `safe_state`,
+// `shared`;
 // `rate = 1000.0`, `source = "..."`.
 #pragma once
 
@@ -73,6 +74,7 @@ struct RangeIs : OptionBase {
 struct SafetyIs : OptionBase {};
 struct ConfigurationIs : OptionBase {};
 struct SafeStateIs : OptionBase {};
+struct SharedIs : OptionBase {};
 struct FrameIs : OptionBase {
   explicit constexpr FrameIs(const char* t) : text(t) {}
   const char* text;
@@ -140,6 +142,7 @@ inline constexpr AtLeastName at_least{};  ///< in-const: the in-const that no el
 inline constexpr OneOfName one_of{};      ///< in-const of text: the words it may be, with spaces between them
 inline constexpr ConfigurationIs configuration{};  ///< in-const of text: names a configuration, or is empty
 inline constexpr SafeStateIs safe_state{};  ///< bool out-var: the device is as the flag asks; resource: it never moves
+inline constexpr SharedIs shared{};  ///< resource: several tasks may have it open at one time
 inline constexpr RateName rate{};         ///< CHIMERA_COMPONENT: default rate in Hz
 inline constexpr SourceName source{};     ///< CHIMERA_COMPONENT: the paper or book behind it
 

@@ -19,8 +19,8 @@
  * One module per source file. Methods: tballInit Reinit On Cycle Sync Off Kill Error Clear, each int f(tballLocal_t*);
  * only Cycle must be written; Term is another name of Kill. PBO_MODULE declares them all, so a method of another type
  * does not compile, and a function that is not static and no method of ours is an error of the build.
- * They return PBO_OK, PBO_FAULT("text"), Sync also PBO_NO_EVENT, Cycle also PBO_ABORTED and PBO_PARTIAL; anything else
- * is a fault.
+ * They return PBO_OK, PBO_FAULT("text"), On also PBO_NOT_YET, Sync also PBO_NO_EVENT, Cycle also PBO_ABORTED and
+ * PBO_PARTIAL; anything else is a fault.
  *
  * With Sync the component is aperiodic: one cycle for each event. Events are rings of its task's doorbell
  * (PBO_RING("task") in another one), and where int tballEventSource(tballLocal_t*) is written, with Sync, also that the
@@ -49,7 +49,7 @@
 #include "chimera/task/registry.h"
 
 enum { PBO_OK = CHIMERA_OK, PBO_ERROR = CHIMERA_FAULT, PBO_NO_EVENT = CHIMERA_NO_EVENT, PBO_ABORTED = CHIMERA_ABORTED,
-       PBO_PARTIAL = CHIMERA_PARTIAL };
+       PBO_PARTIAL = CHIMERA_PARTIAL, PBO_NOT_YET = CHIMERA_NOT_YET };
 
 /* For `return (int)local` of the papers. */
 #define PBO_LOCAL(local) ((local) != NULL ? PBO_OK : PBO_ERROR)
@@ -76,6 +76,7 @@ typedef struct pboPort_t {
   int safety;
   int configuration;
   int safe_state;
+  int shared;
 } pboPort_t;
 
 /* Options of a port. */
@@ -87,6 +88,7 @@ typedef struct pboPort_t {
 #define PBO_ONE_OF(words) .one_of = words /* in_const of text: "the words it may be", with spaces between them */
 #define PBO_CONFIGURATION .configuration = 1 /* in_const of text: names a configuration, or is empty */
 #define PBO_SAFE_STATE .safe_state = 1 /* out_var of bool: the device is as the flag asks; resource: it never moves */
+#define PBO_SHARED .shared = 1 /* resource: several tasks may have it open at one time */
 #define PBO_INITIAL(type, ...) \
   .initial = (const PBO_TYPE_##type[]){__VA_ARGS__}, .initial_bytes = sizeof((const PBO_TYPE_##type[]){__VA_ARGS__})
 
@@ -200,6 +202,7 @@ static inline int pboFault(const chimera_call* call, const char* text) {
 static inline int32_t pboJudge(uint32_t method, int status, const chimera_call* call) {
   if (status == PBO_OK) return status;
   if (status == PBO_NO_EVENT && method == CHIMERA_SYNC) return status;
+  if (status == PBO_NOT_YET && method == CHIMERA_ON) return status;
   if ((status == PBO_ABORTED || status == PBO_PARTIAL) && method == CHIMERA_CYCLE) return status;
   call->fault->code = status;
   if (call->fault->text[0] == '\0') pboFault(call, "the method returned neither PBO_OK nor a fault with a text");
@@ -226,6 +229,7 @@ static inline void pboDeclarePort(chimera_port_decl* to, const pboPort_t* from) 
   to->flags = (from->safety ? (uint32_t)CHIMERA_PORT_SAFETY : 0u) |
               (from->configuration ? (uint32_t)CHIMERA_PORT_CONFIGURATION : 0u) |
               (from->safe_state ? (uint32_t)CHIMERA_PORT_SAFE_STATE : 0u) |
+              (from->shared ? (uint32_t)CHIMERA_PORT_SHARED : 0u) |
               (from->has_range ? (uint32_t)CHIMERA_PORT_HAS_RANGE : 0u) |
               (from->initial != NULL ? (uint32_t)CHIMERA_PORT_HAS_INITIAL : 0u);
 }

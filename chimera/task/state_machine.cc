@@ -11,21 +11,21 @@ constexpr Next to(State state) { return {Next::Kind::kState, Step::kInit, state}
 
 constexpr State kNot = State::kNotCreated, kOff = State::kOff, kOn = State::kOn, kErr = State::kError;
 
-// Answers in the order of Answer: ok, fault, no event, aborted.
+// Answers in the order of Answer: ok, fault, no event, aborted, not yet.
 constexpr StepRule kRules[kSteps] = {
-    {Step::kInit, Method::kInit, kReadConst, kWriteConst, {to(kOff), to(Step::kKillAfterInit), kNo, kNo}},
-    {Step::kKillAfterInit, Method::kKill, kNoTransfer, kNoTransfer, {to(kNot), to(kNot), kNo, kNo}},
-    {Step::kOn, Method::kOn, kReadIn | kReadOut, kWriteOut, {to(kOn), to(Step::kErrorToOff), kNo, kNo}},
-    {Step::kSync, Method::kSync, kNoTransfer, kNoTransfer, {to(Step::kCycle), to(Step::kErrorToOn), to(kOn), kNo}},
-    {Step::kCycle, Method::kCycle, kReadIn, kWriteOut, {to(kOn), to(Step::kErrorToOn), kNo, to(kOn)}},
-    {Step::kOff, Method::kOff, kReadIn, kWriteOut, {to(kOff), to(Step::kErrorToOff), kNo, kNo}},
-    {Step::kOffThenKill, Method::kOff, kReadIn, kWriteOut, {to(Step::kKill), to(Step::kKill), kNo, kNo}},
-    {Step::kKill, Method::kKill, kNoTransfer, kNoTransfer, {to(kNot), to(kNot), kNo, kNo}},
-    {Step::kReinitInOff, Method::kReinit, kReadConst, kWriteConst, {to(kOff), to(Step::kErrorToOff), kNo, kNo}},
-    {Step::kReinitInOn, Method::kReinit, kReadConst, kWriteConst, {to(kOn), to(Step::kErrorToOn), kNo, kNo}},
-    {Step::kClear, Method::kClear, kReadIn, kWriteOut, {to(kOff), to(kErr), kNo, kNo}},
-    {Step::kErrorToOff, Method::kError, kReadIn, kWriteOut, {to(kOff), to(kErr), kNo, kNo}},
-    {Step::kErrorToOn, Method::kError, kReadIn, kWriteOut, {to(kOn), to(kErr), kNo, kNo}},
+    {Step::kInit, Method::kInit, kReadConst, kWriteConst, {to(kOff), to(Step::kKillAfterInit), kNo, kNo, kNo}},
+    {Step::kKillAfterInit, Method::kKill, kNoTransfer, kNoTransfer, {to(kNot), to(kNot), kNo, kNo, kNo}},
+    {Step::kOn, Method::kOn, kReadIn | kReadOut, kWriteOut, {to(kOn), to(Step::kErrorToOff), kNo, kNo, to(kOff)}},
+    {Step::kSync, Method::kSync, kNoTransfer, kNoTransfer, {to(Step::kCycle), to(Step::kErrorToOn), to(kOn), kNo, kNo}},
+    {Step::kCycle, Method::kCycle, kReadIn, kWriteOut, {to(kOn), to(Step::kErrorToOn), kNo, to(kOn), kNo}},
+    {Step::kOff, Method::kOff, kReadIn, kWriteOut, {to(kOff), to(Step::kErrorToOff), kNo, kNo, kNo}},
+    {Step::kOffThenKill, Method::kOff, kReadIn, kWriteOut, {to(Step::kKill), to(Step::kKill), kNo, kNo, kNo}},
+    {Step::kKill, Method::kKill, kNoTransfer, kNoTransfer, {to(kNot), to(kNot), kNo, kNo, kNo}},
+    {Step::kReinitInOff, Method::kReinit, kReadConst, kWriteConst, {to(kOff), to(Step::kErrorToOff), kNo, kNo, kNo}},
+    {Step::kReinitInOn, Method::kReinit, kReadConst, kWriteConst, {to(kOn), to(Step::kErrorToOn), kNo, kNo, kNo}},
+    {Step::kClear, Method::kClear, kReadIn, kWriteOut, {to(kOff), to(kErr), kNo, kNo, kNo}},
+    {Step::kErrorToOff, Method::kError, kReadIn, kWriteOut, {to(kOff), to(kErr), kNo, kNo, kNo}},
+    {Step::kErrorToOn, Method::kError, kReadIn, kWriteOut, {to(kOn), to(kErr), kNo, kNo, kNo}},
 };
 
 constexpr bool rules_stand_in_order() {
@@ -57,6 +57,7 @@ Answer answer_of(Method method, std::int32_t value) noexcept {
   if (value == CHIMERA_OK) return Answer::kOk;
   if (value == CHIMERA_NO_EVENT && method == Method::kSync) return Answer::kNoEvent;
   if (value == CHIMERA_ABORTED && method == Method::kCycle) return Answer::kAborted;
+  if (value == CHIMERA_NOT_YET && method == Method::kOn) return Answer::kNotYet;
   return Answer::kFault;
 }
 

@@ -16,9 +16,9 @@ enum class State : std::uint8_t { kNotCreated, kOff, kOn, kError };
 inline constexpr int kStates = 4;
 
 enum class Answer : std::uint8_t {
-  kOk = CHIMERA_OK, kFault = CHIMERA_FAULT, kNoEvent = CHIMERA_NO_EVENT, kAborted = CHIMERA_ABORTED
+  kOk = CHIMERA_OK, kFault = CHIMERA_FAULT, kNoEvent = CHIMERA_NO_EVENT, kAborted = CHIMERA_ABORTED, kNotYet = 4
 };
-inline constexpr int kAnswers = 4;
+inline constexpr int kAnswers = 5;
 
 /// What is copied around a method. In the papers' notation: `>x` global to local, `x>` local to global.
 enum Transfer : std::uint8_t {

@@ -30,6 +30,7 @@ NOT-CREATED reinit  refused
 NOT-CREATED wakeup  NOT-CREATED
 OFF spawn  refused
 OFF on  >iv>ov|on=ok|ov>  ON
+OFF on  >iv>ov|on=not-yet|-  OFF
 OFF on  >iv>ov|on=fault|- >iv|error=ok|ov>  OFF
 OFF on  >iv>ov|on=fault|- >iv|error=fault|-  ERROR
 OFF off    refused
@@ -81,6 +82,7 @@ const char* text(Answer answer) {
     case Answer::kFault: return "fault";
     case Answer::kNoEvent: return "no-event";
     case Answer::kAborted: return "aborted";
+    case Answer::kNotYet: return "not-yet";
   }
   return "?";
 }
@@ -166,6 +168,9 @@ TEST(StateMachine, TakesAnAnswerThatIsNotOneForAFault) {
   EXPECT_EQ(answer_of(Method::kCycle, CHIMERA_OK), Answer::kOk);
   EXPECT_EQ(answer_of(Method::kCycle, CHIMERA_ABORTED), Answer::kAborted);
   EXPECT_EQ(answer_of(Method::kCycle, CHIMERA_NO_EVENT), Answer::kFault);
+  EXPECT_EQ(answer_of(Method::kOn, CHIMERA_NOT_YET), Answer::kNotYet);
+  EXPECT_EQ(answer_of(Method::kCycle, CHIMERA_NOT_YET), Answer::kFault);
+  EXPECT_EQ(answer_of(Method::kInit, CHIMERA_NOT_YET), Answer::kFault);
   EXPECT_EQ(answer_of(Method::kSync, CHIMERA_NO_EVENT), Answer::kNoEvent);
   EXPECT_EQ(answer_of(Method::kSync, CHIMERA_ABORTED), Answer::kFault);
   EXPECT_EQ(answer_of(Method::kOn, 77), Answer::kFault);

@@ -99,6 +99,7 @@ struct alignas(64) Task {
   std::uint8_t requests_refused = 0;  ///< for configurations, since the start of the run; 255: or more
   bool is_error_told = false;  ///< its reaction on_fault has acted since it went to ERROR
   bool owes_off = false;    ///< OFF, with `on` behind it and `off` before it: armed for a switch, or left by one
+  bool is_half_on = false;  ///< OFF, `on` answered not yet: `off` is owed unless `on` goes on
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
 
   /// As others see it.

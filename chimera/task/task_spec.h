@@ -44,6 +44,7 @@ struct PortSpec {
   std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};
   /// out-var: how far a switch of configurations may move each of the max elements, above 0; empty: as far as it likes.
   std::span<const std::byte> max_step;
+  bool shared = false;  ///< resource: several tasks may have it open at one time
 
   std::uint32_t max_count() const noexcept { return extent[0].max * extent[1].max; }
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }

@@ -271,6 +271,7 @@ class SpecMaker {
       spec.value = keep(parts_, bytes_of(port.own->text));
     }
     spec.safety = port.declared->safety;
+    spec.shared = port.declared->shared;
     spec.has_range = port.declared->has_range;
     spec.min = port.declared->min;
     spec.max = port.declared->max;

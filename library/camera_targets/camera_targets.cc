@@ -23,7 +23,8 @@ struct CameraTargets : library::CameraPorts {
   InConst<double[3]> phase{"phase", "rad", initial = 0.0, doc = "Along each axis."};
   InConst<double> noise{"noise", "1", initial = 0.0, range(0, 20),
                         doc = "Pixels: each number of a feature is off by at most this."};
-  Resource link{"link", safe_state, doc = "Where features go: udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
+  Resource link{"link", safe_state, shared,
+                doc = "Where features go: udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
 
   void init() {
     reinit();

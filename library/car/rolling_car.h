@@ -20,7 +20,7 @@ struct RollingCar {
   InConst<double> mass{"mass", "kg", initial = 1600.0, range(500, 40000), doc = "With load."};
   InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Of the tyre under load."};
   InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "At init."};
-  Resource road{"road", doc = "Script of metres:grade, straight lines between; \"0:0\" is level."};
+  Resource road{"road", shared, doc = "Script of metres:grade, straight lines between; \"0:0\" is level."};
 
   Outcome init() {
     if (!(*start_speed >= 0 && *start_speed <= 60)) return fault("start_speed is 0 to 60 m/s");

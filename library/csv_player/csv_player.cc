@@ -18,7 +18,7 @@ struct CsvPlayer {
   InConst<bool>       is_interpolated{"is_interpolated", "1", initial = false,
                                       doc = "Straight lines between the rows; else a row holds until the next."};
   Out<bool>           done{"done", "1", initial = false, doc = "The last row has been played; it stands."};
-  Resource            file{"file", safe_state,
+  Resource            file{"file", safe_state, shared,
                                 doc = "What csv_log wrote, or any CSV whose first column is the time in s."};
 
   void init() {

@@ -71,7 +71,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
 struct RobotFace : RobotBody {
   InConst<Text<64>> tip{"tip", "1", initial = "",
                         doc = "Body or site that is the tool; empty: the link behind the most joints."};
-  Resource model{"model", doc = "MJCF or URDF file."};
+  Resource model{"model", shared, doc = "MJCF or URDF file."};
 
   void init(Cycle c) {
     start([this] { return arm_.load(model.c_str(), tip->c_str()); });

@@ -25,7 +25,7 @@ struct PumaTorque : library::PumaBody {
   OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits."};
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
                              doc = "What the drives can give, either way; more is cut."};
-  Resource model{"model", doc = "MJCF file; puma560.xml without a directory is built in."};
+  Resource model{"model", shared, doc = "MJCF file; puma560.xml without a directory is built in."};
 
   void init() {
     load();

@@ -19,7 +19,7 @@ struct Rmms : library::RobotBody {
                             doc = "Angular frequency at which an error of a joint decays."};
   InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1.5, range(0.01, 10),
                               doc = "The fastest that the drives move a joint."};
-  Resource store{"store", doc = "Module store: the file that stands for the EPROMs in the arm."};
+  Resource store{"store", shared, doc = "Module store: the file that stands for the EPROMs in the arm."};
 
   void init() {
     set_drives();

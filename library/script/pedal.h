@@ -11,7 +11,7 @@ namespace chimera::library {
 struct Pedal {
   Out<double> force;
   InConst<double> full_force;
-  Resource pedal{"pedal", safe_state,
+  Resource pedal{"pedal", safe_state, shared,
                  doc = "Script of seconds:travel, 0 to 1, straight lines between; \"0:0\" is never touched."};
 
   Outcome init() {

@@ -22,7 +22,7 @@ struct UrdfModel {
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
                              doc = "Torques (the file's effort); 1e6 for no limit."};
   InConst<Text<64>> tip{"tip", "1", initial = "", doc = "Link that is the tool; empty: behind the most joints."};
-  Resource model{"model", safe_state, doc = "URDF file."};
+  Resource model{"model", safe_state, shared, doc = "URDF file."};
 
   void init() { read(); }
   void reinit() { read(); }

@@ -26,7 +26,7 @@ struct VisualServoInterface : library::CameraPorts {
   InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Of the orientation of xd."};
   InConst<double> timeout{"timeout", "s", initial = 0.3, range(0.001, 60),
                           doc = "After so long without a feature xd stands still."};
-  Resource link{"link", safe_state,
+  Resource link{"link", safe_state, shared,
                 doc = "Where features come from: udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
 
   void init() {

@@ -17,7 +17,7 @@ struct Ends {
   InConst<Text<16>> where{"where", initial = "", doc = "the method that ends badly; empty: none"};
   InConst<Text<16>> how{"how", initial = "throw",
                                           doc = "throw fault segv abort kill exit loop sleep late (late: after 30 s)"};
-  Resource armed{"armed", doc = "the file whose existence lets it happen"};
+  Resource armed{"armed", shared, doc = "the file whose existence lets it happen"};
   Out<std::int64_t> n{"n", "1", initial = 0, doc = "cycles of this incarnation"};
 
   Outcome init() { return act("init"); }

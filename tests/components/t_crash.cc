@@ -26,7 +26,7 @@ struct Crash {
                         doc =
                             "segv abort bus fpe ill stack exit kill hang block doze linger sleep vanish nan "
                             "scribble unplug"};
-  Resource armed{"armed", doc = "the file whose existence lets it happen"};
+  Resource armed{"armed", shared, doc = "the file whose existence lets it happen"};
   Out<double> y{"y", "1", initial = 0.0, safety};
 
   void init() { act("init"); }

@@ -21,7 +21,7 @@ struct Misdeed {
                             "unlocked: the rights of its thread; close; timer: closes those in init; spin"};
   InConst<std::int64_t> number{"number", "1", initial = -1, doc = "the one descriptor to close; -1: all above 2"};
   InConst<std::int64_t> for_ns{"for_ns", "ns", initial = 20'000'000, doc = "how long each spin takes"};
-  Resource armed{"armed", doc = "the file whose existence lets it happen"};
+  Resource armed{"armed", shared, doc = "the file whose existence lets it happen"};
   Out<double> y{"y", "1", initial = 0.0};
 
   void init() {

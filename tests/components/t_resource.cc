@@ -7,7 +7,7 @@
 using namespace chimera;
 
 struct ResourceReader {
-  Resource file{"file", doc = "a file that begins with a number"};
+  Resource file{"file", shared, doc = "a file that begins with a number"};
   Out<double> number{"number", "1", initial = 0.0, doc = "the number"};
   Out<Text<64>> name{"name", initial = "", doc = "what the resource says"};
 

@@ -47,6 +47,7 @@ std::string remarks(const PortDescriptor& port) {
   for (const std::string& word : port.one_of) words += (words.empty() ? "one of " : " ") + word;
   if (!words.empty()) add(words);
   if (port.names_configuration) add("names a configuration");
+  if (port.shared) add("shared");
   if (port.safe_state) add(port.kind == CHIMERA_RESOURCE ? "never moves" : "safe state");
   if (port.safety) add("safety");
   if (port.repeated) add("repeated, at most " + std::to_string(port.max_instances));

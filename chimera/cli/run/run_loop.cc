@@ -30,6 +30,8 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
   const bool is_ring = refused.signal == Signal::kWakeup;
   if (is_ring && !task.spec->server) why = "it has no server";
   if (refused.why == Refusal::kIllegalSet) why = "the tasks that would be ON are not a legal set";
+  if (refused.why == Refusal::kNotYet) why = "it is not ready yet; ask again";
+  if (refused.why == Refusal::kRival) why = "another task that is created has its resource";
   char at[32];
   std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
   const std::string signal = is_ring ? "ring" : signal_name(refused.signal);

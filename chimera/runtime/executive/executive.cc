@@ -23,7 +23,10 @@ Executive::Executive(TaskSet& set, Clock& clock, JobClock& job_clock, const RunO
     : set_(set), clock_(clock), releases_(set, job_clock, options) {}
 
 SignalReport Executive::start() {
-  const SignalReport started = set_.life().start(clock_.now());
+  const SignalReport started = set_.life().start(clock_.now(), [this](Nanoseconds at) {
+    clock_.wait_until(at);
+    return clock_.now();
+  });
   if (started) releases_.begin(clock_.now());
   return started;
 }

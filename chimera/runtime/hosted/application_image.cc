@@ -43,7 +43,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 8;
+constexpr std::uint32_t kVersion = 9;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -123,6 +123,7 @@ void port_fields(Archive& archive, Port& port, const Counts& counts) {
   archive.require(port.max_step.empty() ||
                       (port.kind == CHIMERA_OUT_VAR && port.max_step.size() == port.max_bytes()),
                   "a largest step that does not fill an output");
+  archive.choice(port.shared, true);
 }
 
 // Its producers are the out-consts that carry its id.

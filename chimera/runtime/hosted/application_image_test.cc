@@ -24,9 +24,9 @@ struct Sample {
   Sample() {
     ports[0] = {3, CHIMERA_OUT_VAR, 2, kX, {}, "rad", 8, {{1, kN}, {2, kM}}, true, -1.5, 2.5, true, CHIMERA_INT64,
                 bytes_of("0123456789abcdef"), {1, 2},
-                bytes_of("ABCDEFGHIJKLMNOP")};
+                bytes_of("ABCDEFGHIJKLMNOP"), false};
     ports[1] = {4, CHIMERA_RESOURCE, 0, {}, {}, "", 0, {}, false, 0, 0, false, CHIMERA_STRING, bytes_of("arm.xml"), {},
-                {}};
+                {}, true};
     more_ports[0].kind = CHIMERA_IN_VAR;
     more_ports[0].variable = kKp;
     more_ports[1].kind = CHIMERA_OUT_CONST;
@@ -148,6 +148,9 @@ TEST(ApplicationImage, ADifferenceInAnySpecIsSeen) {  // so that the test above 
   EXPECT_EQ(first_difference(j.spec, Sample().spec), "standbys[0].hot");
   k.standbys[0].stale_after = seconds(1);
   EXPECT_EQ(first_difference(k.spec, Sample().spec), "standbys[0].stale_after");
+  Sample l;
+  l.ports[1].shared = false;
+  EXPECT_EQ(first_difference(l.spec, Sample().spec), "tasks[0].ports[1].shared");
 }
 
 TEST(ApplicationImage, StrangersAreRefusedByName) {
@@ -158,8 +161,8 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   bytes[0] = std::byte{'X'};
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
-  bytes[kVersionAt] = std::byte{9};
-  EXPECT_EQ(refusal(bytes), "image version 9, this program reads 8");
+  bytes[kVersionAt] = std::byte{10};
+  EXPECT_EQ(refusal(bytes), "image version 10, this program reads 9");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +

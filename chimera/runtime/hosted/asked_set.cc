@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/variables.h"
+#include "chimera/runtime/rivals.h"
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/schedule/utilisation.h"
 
@@ -16,7 +18,9 @@ class SetMaker {
  public:
   SetMaker(const ApplicationSpec& spec, std::vector<bool> on, std::span<const TaskId> plus,
            std::span<const TaskId> minus)
-      : spec_(spec), variables_(spec), on_(std::move(on)), was_on_(on_), plus_(plus), minus_(minus) {}
+      : spec_(spec), variables_(spec), on_(std::move(on)), was_on_(on_), plus_(plus), minus_(minus) {
+    rivals_.prepare(spec, memory_);
+  }
 
   AskedSet make() {
     for (const TaskId task : plus_) {
@@ -30,6 +34,7 @@ class SetMaker {
     if (asked_) judge_links();
     if (asked_) judge_loops();
     if (asked_) judge_constants();
+    if (asked_) judge_resources();
     if (asked_) judge_load();
     for (std::size_t t = 0; t < on_.size(); ++t)
       if (on_[t]) asked_.tasks.add(TaskId(t));
@@ -45,7 +50,7 @@ class SetMaker {
     asked_.remedy = std::move(remedy);
   }
 
-  /// Whoever produces what an asked task produces goes OFF, unless it was asked for, too.
+  /// Whoever produces what an asked task produces, or has its resource, goes OFF, unless it was asked for, too.
   void displace() {
     for (const Variable& variable : spec_.variables) {
       const auto is_asked = [this](const PortOf& p) { return has(plus_, p.task); };
@@ -53,6 +58,9 @@ class SetMaker {
       for (const PortOf& producer : variable.producers)
         if (!is_asked(producer)) on_[producer.task.index] = false;
     }
+    for (const TaskId task : plus_)
+      for (std::size_t t = 0; t < on_.size(); ++t)
+        if (rivals_.are(task, TaskId(t)) && !has(plus_, TaskId(t))) on_[t] = false;
   }
 
   /// Adds the only producer of a variable that has none; false: nothing is missing, or it cannot be mended.
@@ -131,6 +139,15 @@ class SetMaker {
     }
   }
 
+  void judge_resources() {
+    for (std::size_t a = 0; a < on_.size(); ++a)
+      for (std::size_t b = a + 1; b < on_.size(); ++b)
+        if (on_[a] && on_[b] && rivals_.are(TaskId(a), TaskId(b)))
+          return refuse("tasks " + name(TaskId(a)) + " and " + name(TaskId(b)) + " open the same resource '" +
+                            std::string(rivals_.resource(TaskId(a), TaskId(b))) + "'",
+                        "one of the two with `--off`");
+  }
+
   void judge_load() {
     for (const RtpuSpec& one : spec_.rtpus) {
       double sum = 0;
@@ -146,6 +163,8 @@ class SetMaker {
 
   const ApplicationSpec& spec_;
   Variables variables_;
+  HeapMemory memory_;
+  Rivals rivals_;
   std::vector<bool> on_;
   const std::vector<bool> was_on_;
   std::span<const TaskId> plus_, minus_;

@@ -15,6 +15,11 @@ std::string refusal_text(TaskSet& set, const SignalReport& report) {
   const Task& task = set.tasks()[report.task.index];
   const std::string what = signal_name(report.signal);
   if (report.why == Refusal::kFault) return what + ": " + std::string(task.spec->name) + ": " + task.faults.last.text;
+  const std::string name(task.spec->name);
+  if (report.why == Refusal::kNotYet) return what + ": " + name + " is not ready yet";
+  if (const TaskId rival = set.life().find_rival(report.task); report.why == Refusal::kRival && rival.is_valid())
+    return name + " has the resource '" + std::string(set.rivals().resource(report.task, rival)) + "' of " +
+           std::string(set.spec().tasks[rival.index].name) + ", which is created";
   return what + " is not legal for " + std::string(task.spec->name) + " in state " + state_name(report.before);
 }
 

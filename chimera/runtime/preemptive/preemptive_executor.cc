@@ -60,7 +60,11 @@ PreemptiveExecutor::~PreemptiveExecutor() {
 }
 
 Result<void> PreemptiveExecutor::start() {
-  Result<void> started = start_result(set_, set_.life().start(clock_.now()));
+  const auto wait = [this](Nanoseconds at) {
+    clock_.sleep(at - clock_.now());
+    return clock_.now();
+  };
+  Result<void> started = start_result(set_, set_.life().start(clock_.now(), wait));
   if (started) start(clock_.now());
   return started;
 }

@@ -59,7 +59,11 @@ VirtualExecutor::VirtualExecutor(TaskSet& set, const RunOptions& options, const 
 
 Result<void> VirtualExecutor::start() {
   clock_.set(now_);
-  Result<void> started = start_result(set_, set_.life().start(now_));
+  const auto wait = [this](Nanoseconds at) {
+    clock_.set(std::max(at, clock_.now()));
+    return clock_.now();
+  };
+  Result<void> started = start_result(set_, set_.life().start(now_, wait));
   now_ = clock_.now();
   if (started) releases_.begin(now_);
   return started;

@@ -37,6 +37,8 @@ class VirtualPeers final : public PeerView {
   void join(RtpuId rtpu, TaskSet& tasks);
 
   State state(TaskId task) const noexcept override;
+  bool lives(TaskId task) const noexcept override { return !peer_of(task).is_dead; }
+  bool is_held(TaskId task) const noexcept override { return lives(task) && state(task) != State::kNotCreated; }
   GroupReader outputs(TaskId task) const noexcept override;
   GroupReader constants(TaskId task) const noexcept override;
   GroupReader operator_variable(std::size_t index) const noexcept override;

@@ -122,6 +122,7 @@ SignalReport VirtualRtpus::signal(TaskId task, Signal signal) {
 
 Result<void> VirtualRtpus::spawn_all() {
   for (const TaskId id : peers_.spec().init_order) {
+    if (!unit_of(id).tasks.rivals().is_created_at_start(id)) continue;
     const SignalReport report = signal(id, Signal::kSpawn);
     if (unit_of(id).tasks.tasks()[id.index].state == State::kOff) continue;
     SignalReport refused = report;
@@ -140,13 +141,17 @@ Result<void> VirtualRtpus::turn_on_all() {
     return Error{ErrorCode::kRefused, {Variables(spec).explain(wanted, spec.tasks)}, {spec.name}};
   for (const TaskId id : spec.start) {
     SignalReport report = signal(id, Signal::kOn);
+    for (const Nanoseconds until = now_ + TaskLife::kPatience; report.why == Refusal::kNotYet && now_ < until;) {
+      now_ = now_ + TaskLife::kAskAgain;
+      report = signal(id, Signal::kOn);
+    }
     if (report.is_accepted && report.after == State::kOn) continue;
     for (const TaskId done : spec.start) {  // one transaction: tasks that are ON already go OFF again
       if (done == id) break;
       (void)signal(done, Signal::kOff);
     }
     report.is_accepted = false;
-    report.why = Refusal::kFault;
+    if (report.why != Refusal::kNotYet) report.why = Refusal::kFault;
     return start_result(unit_of(id).tasks, report);
   }
   return {};

@@ -111,15 +111,16 @@ void VirtualSwitches::order(std::uint32_t set, std::uint8_t slow, Nanoseconds no
   ring();
 }
 
-// What found no gap for `on` is done under the flag.
+// What found no gap for `on`, or a device that is not ready, is done under the flag.
 bool VirtualSwitches::try_slowly(Nanoseconds now) noexcept {
-  if (present_->why != NoSwitch::kNoGap || present_->way.slow != 0) return false;
+  const std::uint8_t slow = reason_to_go_slowly(present_->why);
+  if (slow == 0 || present_->way.slow != 0) return false;
   for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = {peers_.state(TaskId(t)), false};
   if (!planner_.plan(present_->after, standing_, plan_)) return false;
   present_->why = NoSwitch::kNone;
   present_->task = {};
-  present_->way.slow = kSlowForGap;
-  order(present_->after, kSlowForGap, now);
+  present_->way.slow = slow;
+  order(present_->after, slow, now);
   return true;
 }
 

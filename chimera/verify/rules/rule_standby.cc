@@ -112,19 +112,6 @@ void check_hot(Model& model, const TaskModel& task) {
   }
 }
 
-/// Both are initialised from the start on.
-void check_resources(Model& model, const TaskModel& task, const TaskModel& other) {
-  for (const LinkedPort& port : task.ports)
-    for (const LinkedPort& its : other.ports)
-      if (port.is(CHIMERA_RESOURCE) && its.is(CHIMERA_RESOURCE) && port.own != nullptr && its.own != nullptr &&
-          port.own->text == its.own->text)
-        model.warn("standby-resource", port.own->at,
-                   "standby '" + task.name() + "' and '" + other.name() + "' have the resource '" + port.own->text +
-                       "' both: 'init' of each of them opens it, and the takeover does not wait for the other one to "
-                       "close it",
-                   "give the standby a device of its own, unless this one takes two users");
-}
-
 void check(Model& model, std::size_t standby, std::size_t primary) {
   const TaskModel &task = model.tasks[standby], &other = model.tasks[primary];
   const Place at = task.draft->standby_for->task.at;
@@ -138,7 +125,6 @@ void check(Model& model, std::size_t standby, std::size_t primary) {
           "configuration '" + set.name + "' names task '" + other.name() + "' and its standby '" + task.name() + "'",
           task.name(), "one of the two", {},
           "take '" + task.name() + "' out: it goes ON when '" + other.name() + "' fails");
-  check_resources(model, task, other);
   if (task.rtpu == other.rtpu)
     model.warn("standby-same-rtpu", at,
                "task '" + task.name() + "' and the task it stands in for, '" + other.name() + "', are both on rtpu '" +

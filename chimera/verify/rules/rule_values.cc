@@ -52,6 +52,28 @@ void check_resources(Model& model, const TaskModel& task) {
   }
 }
 
+const LinkedPort* same_resource(const LinkedPort& port, const TaskModel& other) {
+  for (const LinkedPort& its : other.ports)
+    if (its.is(CHIMERA_RESOURCE) && !its.declared->shared && its.own != nullptr && its.own->text == port.own->text)
+      return &its;
+  return nullptr;
+}
+
+/// Tasks that are never ON together take turns with a resource (runtime/rivals.h); these open it beside each other.
+void check_users(Model& model, std::size_t a, std::size_t b) {
+  const auto names_both = [&](const SetModel& set) { return set.has(a) && set.has(b); };
+  const auto set = std::ranges::find_if(model.sets, names_both);
+  if (set == model.sets.end()) return;
+  for (const LinkedPort& port : model.tasks[a].ports) {
+    if (!port.is(CHIMERA_RESOURCE) || port.declared->shared || port.own == nullptr || !port.own->is_scalar()) continue;
+    if (const LinkedPort* its = same_resource(port, model.tasks[b]))
+      model.warn("resource-twice", its->own->at,
+                 "tasks '" + model.tasks[a].name() + "' and '" + model.tasks[b].name() + "' of configuration '" +
+                     set->name + "' both open the resource '" + port.own->text + "'",
+                 "give each a device of its own; where it takes several users, declare the port `shared`");
+  }
+}
+
 }  // namespace
 
 void check_values(Model& model) {
@@ -68,6 +90,9 @@ void check_values(Model& model) {
     check_steps(model, task);
     check_resources(model, task);
   }
+  for (std::size_t a = 0; a < model.tasks.size(); ++a)
+    for (std::size_t b = a + 1; b < model.tasks.size(); ++b)
+      if (model.tasks[a].has_resource() && model.tasks[b].has_resource()) check_users(model, a, b);
 }
 
 }  // namespace chimera
