@@ -43,6 +43,7 @@ CASES = [
     ("slow_switch", "ABORT_BLIND"),
     ("slow_switch", "LEFT_OUT_BLIND"),
     ("slow_switch", "LEFT_OUT_EARLY"),
+    ("slow_switch", "LEFT_OUT_NEVER"),
     ("slow_switch", "TURNED_BY_ANY"),
     ("slow_switch", "TURNED_SHORT"),
     ("slow_switch", "FLAG_OF_ONE"),

@@ -20,10 +20,10 @@
  *   a successor        is told of no plan that is open, and is over from its start: as if it were still dead.
  *
  * Mutants: COMMITS_ALONE (not all have agreed), COMMIT_BLIND, ABORT_BLIND and LEFT_OUT_BLIND (a store, no compare-and-
- * swap), LEFT_OUT_EARLY (steps of one who is only slow), TURNED_BY_ANY (while a method may be under way), TURNED_SHORT
- * (among the `reinit` only so many are undone as were done), FLAG_OF_ONE (who takes the first step has it for all),
- * FLAG_DOWN_EARLY (at the abort), BACK_FORWARDS (undone in the order of doing), REINIT_BACKWARDS (the users before the
- * makers), SPAWN_FIRST (before `kill`), KILL_UNDONE_FIRST (before `spawn` is undone), AGAIN_EARLY (the next try before
+ * swap), LEFT_OUT_EARLY (steps of one who is only slow), LEFT_OUT_NEVER, TURNED_BY_ANY (while a method may be under
+ * way), TURNED_SHORT (among the `reinit` only so many are undone as were done), FLAG_OF_ONE (who takes the first step
+ * has it for all), FLAG_DOWN_EARLY (at the abort), BACK_FORWARDS (undone in the order of doing), REINIT_BACKWARDS (the
+ * users before the makers), SPAWN_FIRST (before `kill`), KILL_UNDONE_FIRST (before `spawn` is undone), AGAIN_EARLY (the next try before
  * all are over), DEATH_READ (as what a dead one comes back is read from a plan that is still open), BACK_EARLY (it comes
  * back before the others are over). */
 
@@ -71,7 +71,7 @@ bool flag[3];                        /* held by that context */
 
 byte did;                            /* what the tasks are: a bit for each step */
 byte busy = NOBODY;                  /* whose method is under way */
-byte deaths = DEATHS;
+byte deaths;                         /* that may still come */
 bool closed[3], after[3], came[3];   /* of who died: the manager knows, as what it comes back, it has */
 
 #define IS_DONE(s) ((did & BIT(s)) != 0)
@@ -96,7 +96,9 @@ bool closed[3], after[3], came[3];   /* of who died: the manager knows, as what 
 #endif
 #ifdef KILL_UNDONE_FIRST
 #undef UNDONE
-#define UNDONE(n) ((n) - 1 >= KILL_L && (n) - 1 <= REINIT_U -> (((n) - 2) ^ 1) + 1 : (n) - 1)  /* 3 and 4, 5 and 6 */
+#define UNDONE(n) ((n) > KILL_L && (n) <= ON_S -> KILL_L + SPAWN_R + 1 + 4 * ((n) > REINIT_P) - (n) : (n) - 1)
+#undef LEFT
+#define LEFT(n) ((n) == SPAWN_R || (n) == REINIT_U -> 1 + (n) : (n))
 #undef MAY_BE_VAIN
 #define MAY_BE_VAIN(s) true
 #endif
@@ -109,8 +111,10 @@ bool closed[3], after[3], came[3];   /* of who died: the manager knows, as what 
 #define LEFT(n) (n)
 #endif
 
-#ifdef LEFT_OUT_EARLY
+#if defined(LEFT_OUT_EARLY)
 #define IS_LEFT_OUT(s) true
+#elif defined(LEFT_OUT_NEVER)
+#define IS_LEFT_OUT(s) false
 #else
 #define IS_LEFT_OUT(s) IS_OVER(OWNER(s))
 #endif
@@ -296,7 +300,10 @@ end:
 }
 
 init {
-  atomic { run Context(0); run Context(1); run Context(2) };
+  atomic {
+    select(deaths: 0 .. DEATHS);
+    run Context(0); run Context(1); run Context(2)
+  };
   timeout ->
   assert(ALL_OVER && phase != prepared);
   assert(did == (phase == committed -> OF_0 | OF_1 : 0));
