@@ -4,7 +4,7 @@
  * arrives and P that stays; context 2 takes part without a step. R produces what L produced, S what N did. L and R need
  * one resource, which a task has from `spawn` to `kill`. P makes a constant that U is initialised with. The manager
  * announces the switch, again when it was aborted (TRIES times together), may cancel it, and brings back who died.
- * DEATHS contexts may die between any two steps and within a method. A method may fail. The manager may be away.
+ * Up to DEATHS contexts die, between any two steps or within a method. A method may fail. The manager may be away.
  *
  * Claims: it ends on one side, on which all tasks are then, with those of who came back; never do two tasks produce a
  * variable or have the resource; while what is ON of those that live is of neither side, one of them holds the flag;
@@ -23,9 +23,9 @@
  * swap), LEFT_OUT_EARLY (steps of one who is only slow), LEFT_OUT_NEVER, TURNED_BY_ANY (while a method may be under
  * way), TURNED_SHORT (among the `reinit` only so many are undone as were done), FLAG_OF_ONE (who takes the first step
  * has it for all), FLAG_DOWN_EARLY (at the abort), BACK_FORWARDS (undone in the order of doing), REINIT_BACKWARDS (the
- * users before the makers), SPAWN_FIRST (before `kill`), KILL_UNDONE_FIRST (before `spawn` is undone), AGAIN_EARLY (the next try before
- * all are over), DEATH_READ (as what a dead one comes back is read from a plan that is still open), BACK_EARLY (it comes
- * back before the others are over). */
+ * users before the makers), SPAWN_FIRST (before `kill`), KILL_UNDONE_FIRST (before `spawn` is undone), AGAIN_EARLY (the
+ * next try before all are over), DEATH_READ (the manager reads as what a dead one comes back while the plan is open),
+ * BACK_EARLY (it comes back before the others are over). */
 
 #ifndef DEATHS
 #define DEATHS 3
