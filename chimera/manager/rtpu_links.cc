@@ -28,6 +28,17 @@ bool RtpuLinks::is_current(RtpuId rtpu) const noexcept {
   return segment.is_there() && segment.incarnation() == world_.rtpus[rtpu.index].incarnation;
 }
 
+// A unit that serves has something to do yet for the last switch: what comes back now might meet what it has to undo.
+bool RtpuLinks::is_switch_open_beside(RtpuId rtpu) const noexcept {
+  const std::uint16_t number = PlanWord::of(world_.page.switching.plan.load(std::memory_order_acquire)).number;
+  for (std::uint32_t r = 0; number != 0 && r < links_.size(); ++r) {
+    if (r == rtpu.index || !world_.rtpus[r].is_alive || !world_.rtpus[r].is_up || !is_current(RtpuId(r))) continue;
+    const SwitchProgress& progress = world_.peers[RtpuId(r)].block().head().switching;
+    if (progress.over.load(std::memory_order_acquire) != number) return true;  // SwitchProgress
+  }
+  return false;
+}
+
 void RtpuLinks::started(const KeeperMessage& message) {
   if (message.index >= links_.size()) return;
   RtpuRecord& rtpu = record(RtpuId(message.index));
@@ -72,6 +83,8 @@ void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
   const bool left_words = is_current(rtpu);
   if (left_words) {
     take_posts(rtpu, events);
+    abort_open_plan_of(world_, rtpu);
+    links_[rtpu.index].has_died = true;
     for (const TaskId task : links_[rtpu.index].tasks) {
       seen_[task.index] = world_.peers.status(task);
       events.push_back(subsystem::TaskSeen{task, last_status(world_, task)});
@@ -113,12 +126,14 @@ void RtpuLinks::look(Events& events) {
     RtpuRecord& record = this->record(rtpu);
     if (!record.is_alive || !is_current(rtpu)) continue;
     const PeerPhase phase = world_.peers[rtpu].block().head().phase.load(std::memory_order_acquire);
-    const bool rises = !record.is_up && phase == PeerPhase::kServing && links_[r].outbox.is_followed();
+    const bool waits = links_[r].has_died && is_switch_open_beside(rtpu);
+    const bool rises = !record.is_up && phase == PeerPhase::kServing && links_[r].outbox.is_followed() && !waits;
     take_posts(rtpu, events);
     if (record.is_up || rises)
       for (const TaskId task : links_[r].tasks) see(task, events, rises);
     if (!rises) continue;
     record.is_up = true;
+    links_[r].has_died = false;
     events.push_back(subsystem::RtpuUp{rtpu, record.incarnation});
   }
 }

@@ -49,10 +49,12 @@ class RtpuLinks {
     Outbox outbox;
     std::vector<TaskId> tasks;
     std::uint64_t lost = 0;
+    bool has_died = false;  ///< an incarnation that this manager knew; until the next one is up
   };
 
   RtpuRecord& record(RtpuId rtpu) noexcept { return world_.rtpus[rtpu.index]; }
   bool is_current(RtpuId rtpu) const noexcept;
+  bool is_switch_open_beside(RtpuId rtpu) const noexcept;
   bool has_room(RtpuId rtpu, std::size_t posts) const noexcept;
   void take_posts(RtpuId rtpu, Events& events);
   void take(const Post& post, RtpuId rtpu, Events& events);

@@ -120,6 +120,15 @@ TaskStatus last_status(const ManagerState& world, TaskId task) {
   return status;
 }
 
+void abort_open_plan_of(ManagerState& world, RtpuId rtpu) {
+  SwitchAgreement agreement(world.page.switching, world.keeper.origin);
+  const PlanWord plan = agreement.plan();
+  if (!plan.is_open()) return;
+  const auto order = agreement.order(plan, world.spec().sets.size(), world.spec().tasks.size());
+  const bool is_member = order && ((order->members >> rtpu.index) & 1u) != 0;
+  if (is_member && agreement.abort(plan.number)) world.announce();
+}
+
 SwitchCoordinator::SwitchCoordinator(ManagerState& world, ReceiptArchive& archive)
     : world_(world),
       archive_(archive),

@@ -46,6 +46,9 @@ struct ForeseenSwitch {
 /// The status word of a task of a unit that is dead, as it would be had the unit lived to make a change that was
 /// committed without it: what comes back is the set after the switch. Context: setup.
 TaskStatus last_status(const ManagerState& world, TaskId task);
+/// Of a unit that is dead, before last_status(): an open plan in which it took part is aborted, else it might be
+/// committed after its last states were read. Context: setup; lock-free.
+void abort_open_plan_of(ManagerState& world, RtpuId rtpu);
 
 /// Context: setup; never blocks. One request at a time.
 class SwitchCoordinator {
