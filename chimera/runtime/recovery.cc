@@ -44,6 +44,7 @@ void Recovery::act(Nanoseconds now) noexcept {
   Standbys& standbys = parts_.set.standbys();
   if (restarts_.empty() && standbys.n_groups() == 0) return;
   if (standbys.due() <= now) parts_.set.on_set_changed();
+  due_ = wake_ = kNever;
   bool is_done = true;
   for (std::size_t group = 0; group < standbys.n_groups(); ++group) is_done = take_over(group, now) && is_done;
   for (Restart& each : restarts_) is_done = restart(each, now) && is_done;
@@ -51,14 +52,14 @@ void Recovery::act(Nanoseconds now) noexcept {
   if (!hot_.empty()) keep_warm(now);
 }
 
+void Recovery::look_again(Nanoseconds at, Nanoseconds waking) noexcept {
+  due_ = std::min(due_, at);
+  wake_ = std::min(wake_, waking);
+}
+
 // Those that cannot cycle yet are looked at again, with the end of each job where that may make a gap.
 void Recovery::keep_warm(Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
-  due_ = wake_ = kNever;
-  const auto look_again = [this](Nanoseconds at, Nanoseconds waking) {
-    due_ = std::min(due_, at);
-    wake_ = std::min(wake_, waking);
-  };
   for (const TaskId id : hot_) {
     Task& task = set.tasks()[id.index];
     const bool wanted = set.standbys().keeps_warm(id);
@@ -129,11 +130,21 @@ bool Recovery::take_over(std::size_t group, Nanoseconds now) noexcept {
       continue;
     }
     created_ = {};
+    if (task.is_half_on && now < again_at_) {
+      look_again(again_at_, again_at_);
+      return true;
+    }
     if (!set.life().would_be_legal({&id, 1})) return true;  // once an input has a producer again
     const TaskId failed = set.standbys().failed(group);
     const Nanoseconds lost = set.standbys().lost_at(group);
     const SignalReport report = parts_.signals.signal({&id, 1}, Signal::kOn, now);
     if (report.why == Refusal::kIllegalSet) return true;  // another context turns one ON
+    if (report.why == Refusal::kNotYet && now < lost + TaskLife::kPatience) {
+      again_at_ = now + std::max(task.spec->period, TaskLife::kAskAgain);
+      look_again(again_at_, again_at_);
+      return true;
+    }
+    if (task.is_half_on) (void)parts_.signals.signal({&id, 1}, Signal::kOff, now);
     if (task.state == State::kOn) {
       count(task.profile.takeovers);
       note(task, "took over from ", failed);

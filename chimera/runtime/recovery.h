@@ -52,6 +52,7 @@ class Recovery {
   };
 
   void keep_warm(Nanoseconds now) noexcept;
+  void look_again(Nanoseconds at, Nanoseconds waking) noexcept;
   bool take_over(std::size_t group, Nanoseconds now) noexcept;
   bool give_up_resource(std::size_t group, TaskId to, Nanoseconds now) noexcept;
   bool create(Task& task, Nanoseconds now) noexcept;
@@ -64,8 +65,9 @@ class Recovery {
   IdleGap gap_;
   std::span<TaskId> hot_;  // of this context
   TaskId created_;         // for a takeover; its `init` may be under way
+  Nanoseconds again_at_;   // a standby whose device is not ready is asked then
   std::span<Restart> restarts_;
-  Nanoseconds due_ = kNever, wake_ = kNever;  // of hot standbys that cannot cycle yet
+  Nanoseconds due_ = kNever, wake_ = kNever;  // of standbys that cannot cycle, or go ON, yet
 };
 
 }  // namespace chimera

@@ -17,6 +17,7 @@ struct Tool {  // has as many outputs as its own constant says
   OutConst<std::int32_t> n{"n", "1"};
   Out<double[]> list{"list", "1", "[n<=4]"};
   Out<double> grip{"grip", "1"};
+  Resource port{"port"};
   void cycle(Cycle) {}
 };
 
@@ -68,8 +69,8 @@ struct SlowPlanTest : ::testing::Test {
     EXPECT_TRUE(planner.plan(to, standing, made_plan));
     return made_plan;
   }
-  std::vector<SlowStep> steps(std::uint32_t from, std::uint32_t to) {
-    const auto list = slow.plan(plan(from, to), from, 0);
+  std::vector<SlowStep> steps(std::uint32_t from, std::uint32_t to, std::uint8_t because = kSlowForConstants) {
+    const auto list = slow.plan(plan(from, to), from, because);
     return {list.begin(), list.end()};
   }
   SwitchWay way(std::uint32_t from, std::uint32_t to, std::uint32_t constants) {
@@ -109,6 +110,35 @@ TEST_F(SlowPlanTest, WhoArrivesIsReinitialisedToo) {
                                                 {SlowAct::kOn, kHeavy},
                                                 {SlowAct::kOn, kArm},
                                                 {SlowAct::kOn, kLaw}}));
+}
+
+// Whatever uses what a tool makes may be absent, so nothing can be checked before the tool is there.
+TEST_F(SlowPlanTest, ToolsWithOneDeviceTakeTurnsWithIt) {
+  const std::vector<std::byte> tty = testing::bytes_of("tty0");
+  for (const TaskId tool : {kLight, kHeavy}) app.port(tool.index, 4).value = tty;
+  SlowPlanner again;
+  SwitchPlanner planner_again;
+  again.prepare(app.spec, heap);
+  const auto list = again.plan(plan(0, 1), 0, kSlowForResource);
+  EXPECT_EQ((std::vector<SlowStep>{list.begin(), list.end()}), (std::vector<SlowStep>{{SlowAct::kOff, kClock},
+                                                                                    {SlowAct::kOff, kLight},
+                                                                                    {SlowAct::kKill, kLight},
+                                                                                    {SlowAct::kSpawn, kHeavy},
+                                                                                    {SlowAct::kReinit, kArm},
+                                                                                    {SlowAct::kReinit, kLaw},
+                                                                                    {SlowAct::kOn, kHeavy}}));
+  const auto plain = again.plan(plan(0, 1), 0, kSlowForConstants);
+  EXPECT_EQ(plain.size(), 7u) << "two checks, two off, two reinit, one on";
+  planner_again.prepare(app.spec, heap);
+  standing[kHeavy.index].state = State::kNotCreated;
+  EXPECT_TRUE(planner_again.plan(1, standing, made_plan));
+  EXPECT_EQ(planner.plan(1, standing, made_plan).why, NoSwitch::kNotCreated) << "without rivals it was killed by hand";
+  SwitchWays ways_again;
+  ways_again.prepare(app.spec, heap);
+  const SwitchWay found = ways_again.judge(made_plan, standing, 0, made);
+  EXPECT_EQ(found.slow, kSlowForResource | kSlowForConstants);
+  EXPECT_EQ(found.absent, kHeavy);
+  EXPECT_EQ(found.rival, kLight);
 }
 
 // Each pair of configurations, with values that differ and that are equal.

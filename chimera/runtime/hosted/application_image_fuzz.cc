@@ -15,7 +15,7 @@ using namespace chimera;
 /// The bytes behind a header that is right: otherwise the hash would refuse nearly everything.
 std::vector<std::byte> with_header(const std::uint8_t* bytes, std::size_t size) {
   const std::uint64_t magic = 0x31474d49'4d494843, total = size + 32;
-  const std::uint32_t version = 8, header_bytes = 32;
+  const std::uint32_t version = 9, header_bytes = 32;
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
   std::vector<std::byte> image(total);

@@ -82,6 +82,24 @@ class TestWorld {
     for (TaskId task : {kArm, kTraj, kPid, kReserve}) report(task, State::kOff);
     for (TaskId task : {kArm, kTraj, kPid}) report(task, State::kOn);
   }
+  /// From now on pid and reserve open the same device; nothing has begun.
+  void make_rivals() {
+    for (const TaskId task : {kPid, kReserve}) {
+      PortSpec port;
+      port.kind = CHIMERA_RESOURCE;
+      port.value = device_;
+      ports_[task.index].push_back(port);
+      tasks_[task.index].ports = ports_[task.index];
+      tasks_[task.index].is_hardware = true;
+    }
+    spec.sets = sets_;
+    subsystem = std::make_unique<Subsystem>(spec);
+  }
+  /// And reserve stands in for pid.
+  void make_standby() {
+    spec.standbys = standbys_;
+    make_rivals();
+  }
   /// The manager dies and another one finds what is there.
   std::string rebirth() {
     subsystem = std::make_unique<Subsystem>(spec);
@@ -152,6 +170,10 @@ class TestWorld {
     return out.str() + "\n";
   }
 
+  const std::byte device_[4] = {std::byte{'t'}, std::byte{'t'}, std::byte{'y'}, std::byte{'0'}};
+  StandbySpec standbys_[1] = {{kPid, kReserve}};
+  std::vector<TaskId> by_pid_{kArm, kTraj, kPid}, by_reserve_{kArm, kReserve};
+  NamedSet sets_[2] = {{"run", by_pid_}, {"careful", by_reserve_}};
   std::vector<RtpuSpec> rtpus_{{"servo", 0, Policy::kEdf}, {"spare", 1, Policy::kEdf}};
   std::vector<TaskSpec> tasks_;
   std::vector<std::vector<PortSpec>> ports_;

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two tasks on two rtpus that open one device, in virtual time: never both have it, also when an rtpu dies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "chimera/runtime/hosted/heap_task_set.h"
+#include "chimera/runtime/testing/test_application.h"
+#include "chimera/runtime/virtual/virtual_rtpus.h"
+
+namespace chimera {
+namespace {
+
+/// The device, which a process that dies closes. One run at a time.
+struct Device {
+  bool is_open[2] = {};
+  Nanoseconds death = kNever;  // of the rtpu of the hand
+  int doubles = 0;             // so often one opened it while another had it
+  int not_ready = 0;
+  int ons = 0;  // of the drill
+
+  bool has_other(int me, Nanoseconds now) const { return is_open[1 - me] && !(me == 1 && now >= death); }
+};
+Device device;
+
+template <int kMe>
+struct Tool {
+  Out<double> force{"force", "N", initial = 0.0};
+  Resource port{"port"};
+  Outcome init(Cycle c) {
+    device.doubles += device.has_other(kMe, c.now()) ? 1 : 0;
+    device.is_open[kMe] = true;
+    c.spend(microseconds(300));
+    return ok();
+  }
+  Outcome on(Cycle) {
+    device.ons += kMe;
+    return kMe == 1 && device.not_ready-- > 0 ? not_yet() : ok();
+  }
+  void cycle(Cycle) { *force = kMe + 1; }
+  void kill(Cycle c) {
+    c.spend(microseconds(200));
+    device.is_open[kMe] = false;
+  }
+};
+
+struct Arm {
+  In<double> force{"force", "N"};
+  Out<double> u{"u", "N", initial = 0.0};
+  void cycle(Cycle) { *u = *force; }
+};
+
+constexpr TaskId kHand{0u}, kDrill{1u}, kArm{2u};
+
+ScriptAct act_at(Nanoseconds at, ScriptAct::Kind kind, std::uint32_t set = 0) {
+  ScriptAct act;
+  act.at = at;
+  act.kind = kind;
+  act.set = set;
+  act.rtpu = RtpuId(0u);  // of the hand
+  return act;
+}
+
+struct VirtualRivals : ::testing::TestWithParam<bool> {
+  std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts) {
+    run.reset();
+    sets.clear();
+    device = {};
+    device.not_ready = 2;
+    for (const ScriptAct& act : acts)
+      if (act.kind == ScriptAct::Kind::kDie) device.death = act.at;
+    acts_ = std::move(acts);
+    app = std::make_unique<testing::TestApplication>();
+    app->rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
+    app->add("hand", testing::component<Tool<0>>("hand")).rtpu = RtpuId(0u);
+    app->add("drill", testing::component<Tool<1>>("drill")).rtpu = RtpuId(1u);
+    app->add("arm", testing::component<Arm>("arm")).rtpu = RtpuId(1u);
+    for (const TaskId tool : {kHand, kDrill}) app->port(tool.index, 1).value = tty;
+    app->make(hand, false);
+    app->spec.sets = named;
+    app->spec.standbys = standbys;
+    peers = *VirtualPeers::create(app->spec);
+    for (std::uint32_t r = 0; r < 2; ++r) {
+      ContextPlace place;
+      place.rtpu = RtpuId(r);
+      place.others = peers.get();
+      sets.push_back(*HeapTaskSet::create(app->spec, app->components, place));
+      peers->join(RtpuId(r), *sets.back());
+    }
+    RunOptions options;
+    options.script = Script(acts_);
+    VirtualOptions how;
+    how.preemptive = GetParam();
+    run = std::make_unique<VirtualRtpus>(*peers, options, how);
+    EXPECT_TRUE(run->start());
+    device.death = device.death == kNever ? kNever : run->origin() + device.death;
+    EXPECT_EQ(run->run(duration), RunEnd::kTime);
+    return run->receipts().all();
+  }
+  State state(TaskId task) const { return sets[task == kHand ? 0 : 1]->tasks()[task.index].state; }
+
+  const std::vector<std::byte> tty = testing::bytes_of("tty0");
+  std::vector<TaskId> hand{kHand, kArm}, drill{kDrill, kArm};
+  NamedSet named[2] = {{"hand", hand}, {"drill", drill}};
+  std::vector<StandbySpec> standbys;
+  std::vector<ScriptAct> acts_;
+  std::unique_ptr<testing::TestApplication> app;
+  std::unique_ptr<VirtualPeers> peers;
+  std::vector<std::unique_ptr<HeapTaskSet>> sets;
+  std::unique_ptr<VirtualRtpus> run;
+};
+
+INSTANTIATE_TEST_SUITE_P(All, VirtualRivals, ::testing::Bool(),
+                         [](const auto& one) { return one.param ? "Preemptive" : "Executive"; });
+
+TEST_P(VirtualRivals, TheyTakeTurnsOverTwoRtpus) {
+  std::vector<ScriptAct> acts;
+  for (std::uint32_t i = 0; i < 20; ++i)
+    acts.push_back(act_at(milliseconds(5) + Nanoseconds{25'137'000 * i}, ScriptAct::Kind::kSwitch, 1 - i % 2));
+  const auto receipts = go(milliseconds(600), acts);
+  ASSERT_EQ(receipts.size(), 20u);
+  for (const SwitchReceipt& receipt : receipts) {
+    EXPECT_EQ(receipt.end, SwitchEnd::kDone) << receipt.number << ": " << static_cast<int>(receipt.why);
+    EXPECT_EQ(receipt.way.slow, kSlowForResource);
+  }
+  EXPECT_EQ(state(kHand), State::kOn);
+  EXPECT_EQ(state(kDrill), State::kNotCreated);
+  EXPECT_EQ(device.doubles, 0);
+}
+
+// The rtpu of the hand dies at 60 instants from before the switch to after it.
+TEST_P(VirtualRivals, ADeathAtAnyInstantLeavesOneUserAtMost) {
+  int done = 0, aborted = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Nanoseconds death = milliseconds(4) + Nanoseconds{151'000 * i};
+    const auto receipts = go(milliseconds(60), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1),
+                                                act_at(death, ScriptAct::Kind::kDie)});
+    EXPECT_EQ(device.doubles, 0) << i;
+    for (const SwitchReceipt& receipt : receipts) {
+      done += receipt.end == SwitchEnd::kDone ? 1 : 0;
+      aborted += receipt.end == SwitchEnd::kAborted ? 1 : 0;
+      EXPECT_EQ(state(kDrill), receipt.end == SwitchEnd::kDone ? State::kOn : State::kNotCreated) << i;
+    }
+  }
+  EXPECT_GT(done, 5);
+  EXPECT_GT(aborted, 5);
+}
+
+TEST_P(VirtualRivals, AStandbyOpensItWhenTheProcessIsDead) {
+  standbys = {{kHand, kDrill}};
+  go(milliseconds(60), {act_at(milliseconds(10), ScriptAct::Kind::kDie)});
+  EXPECT_EQ(state(kDrill), State::kOn);
+  EXPECT_EQ(sets[1]->tasks()[kDrill.index].profile.takeovers, 1u);
+  EXPECT_EQ(device.doubles, 0);
+  EXPECT_TRUE(device.is_open[1]);
+  EXPECT_EQ(device.ons, 3) << "it was asked again, each millisecond";
+  EXPECT_TRUE(sets[1]->flag().is_up() == false);
+}
+
+}  // namespace
+}  // namespace chimera
