@@ -57,6 +57,13 @@ bool PeerLinks::is_held(TaskId task) const noexcept {
   return status.state != State::kNotCreated || status.in_service;
 }
 
+bool PeerLinks::has_seen(TaskId reader, TaskId) const noexcept {
+  const PeerSegment* const there = at(spec_->tasks[reader.index].rtpu.index);
+  if (there == nullptr) return true;
+  const std::uint32_t seen = there->block().head().seen_changes.load(std::memory_order_acquire);
+  return static_cast<std::int32_t>(seen - last_shown_) >= 0;
+}
+
 GroupReader PeerLinks::group(std::uint32_t peer, GroupId id) const noexcept {
   const PeerSegment* mapped = peers_->at(peer);
   return mapped == nullptr ? GroupReader() : mapped->group(id);
@@ -165,7 +172,7 @@ void PeerLinks::publish_fault(const Task& task) noexcept {
 }
 
 void PeerLinks::ring_all() noexcept {
-  decision_->changes.fetch_add(1, std::memory_order_release);  // pairs with changes(): the words above are seen
+  last_shown_ = 1 + decision_->changes.fetch_add(1, std::memory_order_release);  // pairs with changes(): the words above are seen
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer)
     if (peer != me_) ring(peer);
 }

@@ -34,6 +34,7 @@ class PeerLinks final : public PeerView {
   State state(TaskId task) const noexcept override;
   bool lives(TaskId task) const noexcept override;
   bool is_held(TaskId task) const noexcept override;
+  bool has_seen(TaskId reader, TaskId shown) const noexcept override;
   GroupReader outputs(TaskId task) const noexcept override;
   GroupReader constants(TaskId task) const noexcept override;
   GroupReader operator_variable(std::size_t index) const noexcept override;
@@ -80,6 +81,7 @@ class PeerLinks final : public PeerView {
   std::span<std::byte> segment_;
   BlockOwner block_;
   DecisionPage* decision_;
+  std::uint32_t last_shown_ = 0;  // the count of changes with the last of this context
   const KeeperPage* keeper_;
   MappedPeers* peers_;
   bool keeps_last_words_ = false;

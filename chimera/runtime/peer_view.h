@@ -21,6 +21,9 @@ class PeerView {
   /// A task of another context is created in a process that lives, or `init` or `kill` of it is under way there.
   /// Context: cycle boundary; wait-free.
   virtual bool is_held(TaskId task) const noexcept = 0;
+  /// The process of `reader` has looked at all that the one of `shown`, of this context, has shown, or is dead. Context:
+  /// cycle boundary; wait-free.
+  virtual bool has_seen(TaskId reader, TaskId shown) const noexcept = 0;
   /// Groups of a task of another context in its present incarnation, and of the operator. Not bound when that
   /// process has not shown its segment yet. Context: cycle boundary; wait-free.
   virtual GroupReader outputs(TaskId task) const noexcept = 0;

@@ -10,6 +10,9 @@
 namespace chimera {
 namespace {
 
+// How often it is looked whether another context has seen that a task failed: nobody rings for that.
+constexpr Nanoseconds kLookForSeen = microseconds(200);
+
 void count(std::uint16_t& counter) noexcept {
   if (counter < UINT16_MAX) ++counter;
 }
@@ -91,7 +94,16 @@ bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) n
   if (!set.is_mine(failed) || !set.rivals().are(failed, to)) return true;
   Task& task = set.tasks()[failed.index];
   if (task.in_service || task.state != State::kError) return true;
+  if (!set.is_mine(to)) {  // killed first, it would look as if somebody had killed it
+    const bool is_shown = closes_ == failed;  // at the end of the last edge
+    closes_ = failed;
+    if (!is_shown || !set.others()->has_seen(to, failed)) {
+      look_again(now + kLookForSeen, now + kLookForSeen);
+      return true;
+    }
+  }
   if (!may_touch(task)) return false;
+  closes_ = {};
   note(task, "is killed: its resource goes to ", to);
   (void)parts_.signals.signal({&failed, 1}, Signal::kKill, now);
   return true;

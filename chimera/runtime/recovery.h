@@ -64,6 +64,7 @@ class Recovery {
   Parts parts_;
   IdleGap gap_;
   std::span<TaskId> hot_;  // of this context
+  TaskId closes_;          // for a takeover elsewhere: its ERROR is to be seen there before it is killed
   TaskId created_;         // for a takeover; its `init` may be under way
   Nanoseconds again_at_;   // a standby whose device is not ready is asked then
   std::span<Restart> restarts_;

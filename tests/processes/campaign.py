@@ -20,12 +20,11 @@ CAMPAIGNS = {
     "exhaustion": ((("exhaustion_test.py", 0),), "failed calls"),
     "logging": ((("logging_test.py", 5),), None),
     "preemptive": ((("preemptive_test.py", 5),), "bad jobs"),
-    "switch": ((("switch_test.py", 40), ("slow_switch_test.py", 5)), "kills"),
+    "switch": ((("switch_test.py", 40), ("slow_switch_test.py", 5), ("resource_test.py", 5)), "kills"),
     "standby": ((("standby_test.py", 20),), "kills"),
     "receipts": ((("receipts_test.py", 30),), "receipts"),
     "clocks": ((("clocks_test.py", 300),), "jumps"),
     "operators": ((("operators_test.py", 200),), "answers"),
-    "standby": ((("standby_test.py", 5),), None),
     "numbers": ((("numbers_test.py", 50),), "restarts"),
 }
 

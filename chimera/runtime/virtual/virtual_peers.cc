@@ -89,6 +89,7 @@ bool VirtualPeers::take(RtpuId rtpu, VirtualPost& post) noexcept {
 
 void VirtualPeers::show_change(RtpuId by) noexcept {
   ++changes_;
+  if (by.is_valid()) peers_[by.index].shown = changes_;
   for (std::size_t r = 0; r < peers_.size(); ++r)
     if (RtpuId(r) != by) ring(RtpuId(r));
 }

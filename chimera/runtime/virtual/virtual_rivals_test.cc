@@ -19,6 +19,7 @@ struct Device {
   int doubles = 0;             // so often one opened it while another had it
   int not_ready = 0;
   int ons = 0;  // of the drill
+  std::uint64_t fails_at = UINT64_MAX;  // the cycle of the hand
 
   bool has_other(int me, Nanoseconds now) const { return is_open[1 - me] && !(me == 1 && now >= death); }
 };
@@ -38,7 +39,10 @@ struct Tool {
     device.ons += kMe;
     return kMe == 1 && device.not_ready-- > 0 ? not_yet() : ok();
   }
-  void cycle(Cycle) { *force = kMe + 1; }
+  Outcome cycle(Cycle c) {
+    *force = kMe + 1;
+    return kMe == 0 && c.count() == device.fails_at ? fault("no current") : ok();
+  }
   void kill(Cycle c) {
     c.spend(microseconds(200));
     device.is_open[kMe] = false;
@@ -66,7 +70,9 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts) {
     run.reset();
     sets.clear();
+    const std::uint64_t fails_at = device.fails_at;
     device = {};
+    device.fails_at = fails_at;
     device.not_ready = 2;
     for (const ScriptAct& act : acts)
       if (act.kind == ScriptAct::Kind::kDie) device.death = act.at;
@@ -156,6 +162,17 @@ TEST_P(VirtualRivals, AStandbyOpensItWhenTheProcessIsDead) {
   EXPECT_TRUE(device.is_open[1]);
   EXPECT_EQ(device.ons, 3) << "it was asked again, each millisecond";
   EXPECT_TRUE(sets[1]->flag().is_up() == false);
+}
+
+// The primary closes it when the other rtpu has seen that it is in ERROR: else that would look like `kill`.
+TEST_P(VirtualRivals, AStandbyOpensItWhenThePrimaryHasClosedIt) {
+  standbys = {{kHand, kDrill}};
+  device.fails_at = 20;
+  go(milliseconds(60), {});
+  EXPECT_EQ(state(kHand), State::kNotCreated);
+  EXPECT_EQ(state(kDrill), State::kOn);
+  EXPECT_EQ(device.doubles, 0);
+  device.fails_at = UINT64_MAX;
 }
 
 }  // namespace
