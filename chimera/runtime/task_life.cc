@@ -92,7 +92,7 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
 Refusal TaskLife::judge(std::span<const TaskId> tasks, Signal signal) noexcept {
   if (signal == Signal::kSpawn) {
     for (const TaskId id : tasks)
-      if (find_rival(id).is_valid() || !claims_groups_of({&id, 1})) return Refusal::kRival;
+      if (find_rival(id).is_valid() || !claims_resource_of(id)) return Refusal::kRival;
     return Refusal::kNone;
   }
   if (signal != Signal::kOn) return Refusal::kNone;
@@ -100,6 +100,19 @@ Refusal TaskLife::judge(std::span<const TaskId> tasks, Signal signal) noexcept {
   const bool is_judged = set_.others() != nullptr && set_.others()->has_manager();
   if (!is_judged && !would_be_legal(tasks)) return Refusal::kIllegalSet;
   return claims_groups_of(tasks) ? Refusal::kNone : Refusal::kIllegalSet;
+}
+
+// A primary and its standby with one resource may be created by two contexts at a time.
+bool TaskLife::claims_resource_of(TaskId task) noexcept {
+  const Standbys& standbys = set_.standbys();
+  const std::size_t group = set_.rivals().is_any() ? standbys.group_of(task) : standbys.n_groups();
+  if (group == standbys.n_groups() || set_.others() == nullptr) return true;
+  const auto mates = standbys.members(group);
+  const auto is_rival = [&](TaskId mate) { return set_.rivals().are(task, mate); };
+  if (std::none_of(mates.begin(), mates.end(), is_rival)) return true;
+  if (set_.others()->claim(group) && !find_rival(task).is_valid()) return true;
+  set_.changes().add_flag();  // so that something is shown, which ends the claim
+  return false;
 }
 
 TaskId TaskLife::find_rival(TaskId task) const noexcept {

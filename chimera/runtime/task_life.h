@@ -95,6 +95,7 @@ class TaskLife {
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
   Refusal judge(std::span<const TaskId> tasks, Signal signal) noexcept;
   void turn_off_started(Nanoseconds now);
+  bool claims_resource_of(TaskId task) noexcept;
   SignalReport show(Task& task);
   SignalReport go_on_constructed(Task& task, Answer answer, Nanoseconds now);
   SignalReport advance(Task& task, Next at, Nanoseconds now);
