@@ -5,61 +5,28 @@
 #include <algorithm>
 #include <vector>
 
-#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/tool_scene.h"
-#include "chimera/runtime/virtual/virtual_rtpus.h"
+#include "chimera/runtime/testing/virtual_units.h"
 
 namespace chimera {
 namespace {
 
 using namespace testing::tool_scene;
-
-ScriptAct act_at(Nanoseconds at, ScriptAct::Kind kind, std::uint32_t set = 0) {
-  ScriptAct act;
-  act.at = at;
-  act.kind = kind;
-  act.set = set;
-  act.rtpu = RtpuId(1u);
-  return act;
-}
+using testing::act_at;
+using testing::VirtualUnits;
 
 struct VirtualSlowSwitches : ::testing::TestWithParam<bool> {
   /// A run of so long with these acts; its receipts.
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts) {
-    run.reset();
-    sets.clear();
-    acts_ = std::move(acts);
-    app = testing::tool_scene::application(1);
-    peers = *VirtualPeers::create(app->spec);
-    for (std::uint32_t r = 0; r < 2; ++r) {
-      ContextPlace place;
-      place.rtpu = RtpuId(r);
-      place.others = peers.get();
-      sets.push_back(*HeapTaskSet::create(app->spec, app->components, place));
-      peers->join(RtpuId(r), *sets.back());
-    }
-    RunOptions options;
-    options.script = Script(acts_);
-    VirtualOptions how;
-    how.preemptive = GetParam();
-    run = std::make_unique<VirtualRtpus>(*peers, options, how);
-    EXPECT_TRUE(run->start());
-    EXPECT_EQ(run->run(duration), RunEnd::kTime);
-    return run->receipts().all();
-  }
-  bool are_on(const std::vector<TaskId>& set) const {
-    for (std::uint32_t t = 0; t <= kLaw.index; ++t)
-      if ((peers->state(TaskId(t)) == State::kOn) != (std::ranges::find(set, TaskId(t)) != set.end())) return false;
-    return true;
+    units.reset();
+    units = std::make_unique<VirtualUnits>(application(1), std::move(acts), GetParam());
+    units->run(duration);
+    return units->receipts();
   }
   void SetUp() override { shop = {}; }
-  void TearDown() override { run.reset(); }
+  void TearDown() override { units.reset(); }
 
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app;
-  std::unique_ptr<VirtualPeers> peers;
-  std::vector<std::unique_ptr<HeapTaskSet>> sets;
-  std::unique_ptr<VirtualRtpus> run;
+  std::unique_ptr<VirtualUnits> units;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualSlowSwitches, ::testing::Bool(),
@@ -81,8 +48,8 @@ TEST_P(VirtualSlowSwitches, UsersOnBothRtpusAreReinitialisedInOrder) {
   EXPECT_GE(shop.illegal + shop.illegal_of_law, 2);
   EXPECT_EQ(*std::ranges::max_element(shop.weighed), 3);
   EXPECT_EQ(shop.weighed.back(), 1);
-  EXPECT_TRUE(are_on(kSets[kWithLight]));
-  EXPECT_FALSE(peers->is_flag_up());
+  EXPECT_TRUE(units->are_on(kSets[kWithLight]));
+  EXPECT_FALSE(units->peers().is_flag_up());
 }
 
 TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
@@ -95,9 +62,9 @@ TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
   EXPECT_EQ(shop.story, (std::vector<std::string>{"on light", "off light", "reinit arm", "reinit law", "on heavy",
                                                   "reinit arm", "reinit law", "on light"}));
   EXPECT_EQ(shop.weighed.back(), 1);
-  EXPECT_TRUE(are_on(kSets[kWithLight]));
+  EXPECT_TRUE(units->are_on(kSets[kWithLight]));
   EXPECT_FALSE(receipts[0].not_back.is_valid());
-  EXPECT_FALSE(peers->is_flag_up());
+  EXPECT_FALSE(units->peers().is_flag_up());
 }
 
 // The second rtpu dies at each tenth of a millisecond of the switch: what lives ends with the constants of one side.
@@ -105,14 +72,14 @@ TEST_P(VirtualSlowSwitches, WhoeverDiesWhoLivesComesToOneSide) {
   for (std::int64_t us = 0; us < 5000; us += 100) {
     shop = {};
     const auto receipts = go(milliseconds(20), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1),
-                                                act_at(microseconds(5001 + us), ScriptAct::Kind::kDie)});
+                                                act_at(microseconds(5001 + us), ScriptAct::Kind::kDie, 1)});
     const bool is_done = receipts[0].end == SwitchEnd::kDone;
     ASSERT_TRUE(is_done || receipts[0].end == SwitchEnd::kAborted) << us;
     EXPECT_TRUE(is_done || receipts[0].why == NoSwitch::kMemberDied) << us;
     EXPECT_EQ(shop.weighed.back(), is_done ? 3 : 1) << us;
-    EXPECT_EQ(peers->state(kArm), State::kOn);
-    EXPECT_TRUE(peers->is_flag_up()) << "nobody produces grip";
-    EXPECT_FALSE(sets[0]->flag().is_held());
+    EXPECT_EQ(units->state(kArm), State::kOn);
+    EXPECT_TRUE(units->peers().is_flag_up()) << "nobody produces grip";
+    EXPECT_FALSE(units->set(0).flag().is_held());
   }
 }
 
