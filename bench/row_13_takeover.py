@@ -8,6 +8,7 @@ turn with it: nobody stands in; the manager starts the unit again, or a client t
 the other task ON. Another task of the standby's unit must lose no cycle by a death: counted beside as long a time in
 which nobody dies."""
 import json
+import math
 import os
 import pathlib
 import signal
@@ -116,7 +117,7 @@ def once(main, spare, strike, who):
 
 
 def percentile(values, share):
-    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
+    return sorted(values)[math.ceil(share * len(values)) - 1]
 
 
 def told(times):

@@ -97,6 +97,26 @@ TEST(ModeReport, ConstantOfAnotherTaskMayMakeASwitchSlow) {
   EXPECT_TRUE(report.warnings.empty());
 }
 
+TEST(ModeReport, NamesConstantsAndTakeoversAsJson) {
+  const auto json_of = [](const Configuration& made) { return mode_json(made, mode_report(made, library())); };
+  const std::string tools = json_of(verified(kTools));
+  EXPECT_NE(tools.find(R"("from":"a","to":"b","asked_by":[],"legal":true,"way":"slow-unless-same","cpus":[)"),
+            std::string::npos) << tools;
+  EXPECT_NE(tools.find(R"("constants":[{"constant":"mass","before":"light","after":"heavy","tasks":["arm"]}],)"
+                       R"("initialised_anew":["arm","user"]})"),
+            std::string::npos) << tools;
+  const std::string spared = json_of(verified(
+      "tasks:\n"
+      "  main: {component: source}\n"
+      "  spare: {component: source, standby_for: main}\n"
+      "configurations: {run: [main]}\n"
+      "start: run\n"));
+  EXPECT_NE(spared.find(R"("takeovers":[{"name":"run with spare for main","configuration":"run","primary":"main",)"
+                        R"("standby":"spare"}])"),
+            std::string::npos) << spared;
+  EXPECT_NE(spared.find(R"("way":"takeover")"), std::string::npos);
+}
+
 TEST(ModeReport, SameProducerKeepsItsConstant) {
   const ModeReport report = mode_report(verified(kTools), library());
   EXPECT_EQ(edge(report, "a", "c").way(), ModeWay::kFast);
