@@ -84,7 +84,7 @@ TEST_F(EdgeNoHeap, SignalsChangesAndFaultsAllocateNothing) {
   EXPECT_EQ(run(milliseconds(50)), 0u);
   EXPECT_EQ(units_->units[0]->tasks->tasks()[kGiver.index].faults.count, 1u);
   for (int i = 0; i < 10; ++i) {
-    units_->send(i % 2 == 0 ? Signal::kOff : Signal::kOn, {kTaker}, static_cast<std::uint64_t>(i + 1));
+    units_->send(i % 2 == 0 ? Signal::kOff : Signal::kOn, {kTaker}, static_cast<std::uint64_t>(i) + 1);
     EXPECT_EQ(run(milliseconds(2)), 0u);
     EXPECT_EQ(taker(), i % 2 == 0 ? State::kOff : State::kOn);
   }

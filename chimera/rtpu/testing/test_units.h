@@ -216,7 +216,7 @@ class Units {
     return true;
   }
   const SwitchPart& part(std::uint32_t u) const { return units[u]->segment.block.switch_part(); }
-  void bring_up(std::vector<TaskId> tasks) {
+  void bring_up(const std::vector<TaskId>& tasks) {
     for (const TaskId task : tasks) {
       send(Signal::kSpawn, {task});
       run(milliseconds(1));
