@@ -76,8 +76,10 @@ FileCommand check_row() {
                                 {.name = "--modes",
                                  .help = "judge the switches between its configurations instead",
                                  .manual = "Judges the switch from each configuration to each other instead: who asks "
-                                           "for it without a person, and whether every deadline holds over it. Exit "
-                                           "code 1 also when a switch that a reaction asks for would be refused.",
+                                           "for it without a person, whether every deadline holds over it, and which "
+                                           "constants may become others under a task that stays. Takeovers by "
+                                           "standbys are judged too. Exit code 1 also when a switch that a reaction "
+                                           "asks for would lose a deadline.",
                                  .excludes = "--graph"}},
                     .json = "the report as one JSON object",
                     .example = "chimera check examples/01_puma_pid/puma_pid.yaml --graph svg > puma.svg",

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds who asks for which configuration, and judges the switch from each configuration to each other.
+// Finds who asks for which configuration, and judges the switch from each configuration, also with a standby in the
+// place of its primary, to each other.
 #include "chimera/analysis/mode_report.h"
 
 #include <algorithm>
 #include <optional>
 
+#include "chimera/runtime/constant_choice.h"
 #include "chimera/runtime/hosted/heap_memory.h"
+#include "chimera/runtime/switch_plan.h"
 
 namespace chimera {
 namespace {
@@ -21,21 +24,44 @@ class ModeWriter {
   ModeWriter(const Configuration& configuration, const Library& library)
       : configuration_(configuration), library_(library), standing_(configuration.tasks().size()) {
     schedule_.prepare(configuration.spec(), memory_);
+    planner_.prepare(configuration.spec(), memory_);
+    users_.prepare(configuration.spec(), memory_);
   }
 
   ModeReport write() {
     for (std::size_t t = 0; t < configuration_.tasks().size(); ++t) find_wishes(t);
+    find_nodes();
     const std::size_t n = configuration_.sets().size();
-    for (std::size_t from = 0; from < n; ++from)
+    for (std::size_t from = 0; from < report_.nodes.size(); ++from) {
+      if (from >= n) report_.edges.push_back(takeover(from));
       for (std::size_t to = 0; to < n; ++to)
-        if (from != to) report_.edges.push_back(edge(from, to));
+        if (from != to) report_.edges.push_back(change(from, to));
+    }
     for (std::size_t set = 0; set < n; ++set)
       if (set != configuration_.start() && !is_asked_for(set)) report_.by_operator.push_back(set);
     for (const ModeWish& wish : wishes_) warn(wish);
+    for (const ModeEdge& edge : report_.edges)
+      if (edge.way() == ModeWay::kSlowUnlessSame) warn(edge);
     return std::move(report_);
   }
 
  private:
+  void find_nodes() {
+    const auto sets = configuration_.sets();
+    const auto name = [&](TaskId task) { return configuration_.tasks()[task.index].name; };
+    for (std::size_t s = 0; s < sets.size(); ++s)
+      report_.nodes.push_back({.name = sets[s].name, .set = s, .primary = {}, .standby = {}, .tasks = sets[s].order});
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      for (const StandbySpec& pair : configuration_.spec().standbys) {
+        if (!has(s, pair.primary.index)) continue;
+        ModeNode made{.name = sets[s].name + " with " + name(pair.standby) + " for " + name(pair.primary),
+                      .set = s, .primary = pair.primary, .standby = pair.standby, .tasks = sets[s].order};
+        std::ranges::replace(made.tasks, pair.primary, pair.standby);
+        report_.nodes.push_back(std::move(made));
+      }
+    }
+  }
+
   void find_wishes(std::size_t task) {
     const DraftTask& draft = configuration_.draft().tasks[task];
     const auto add = [&](const Word& name, ModeCause cause) {
@@ -72,30 +98,80 @@ class ModeWriter {
     return static_cast<std::size_t>(found - sets.begin());
   }
 
-  bool has(std::size_t set, std::size_t task) const {
-    return std::ranges::find(configuration_.sets()[set].order, TaskId(task)) != configuration_.sets()[set].order.end();
+  bool has(std::size_t node, std::size_t task) const {
+    return std::ranges::count(report_.nodes[node].tasks, TaskId(task)) != 0;
   }
   bool is_asked_for(std::size_t set) const {
     return std::ranges::any_of(report_.edges,
                                [&](const ModeEdge& edge) { return edge.to == set && !edge.askers.empty(); });
   }
 
-  ModeEdge edge(std::size_t from, std::size_t to) {
-    ModeEdge made{.from = from, .to = to, .askers = {}, .cpus = {}};
+  ModeEdge takeover(std::size_t to) {
+    ModeEdge made;
+    made.from = report_.nodes[to].set;
+    made.to = to;
+    made.is_takeover = true;
+    judge_deadlines(made);
+    return made;
+  }
+
+  ModeEdge change(std::size_t from, std::size_t to) {
+    ModeEdge made;
+    made.from = from;
+    made.to = to;
     for (const ModeWish& wish : wishes_)
       if (wish.set == to && has(from, wish.asker.task)) made.askers.push_back(wish.asker);
+    judge_deadlines(made);
+    find_constants(made);
+    return made;
+  }
+
+  void judge_deadlines(ModeEdge& edge) {
     TaskBits after;
     for (std::size_t t = 0; t < standing_.size(); ++t) {
-      standing_[t].state = has(from, t) ? State::kOn : State::kOff;
-      if (has(to, t)) after.add(TaskId(t));
+      standing_[t].state = has(edge.from, t) ? State::kOn : State::kOff;
+      if (has(edge.to, t)) after.add(TaskId(t));
     }
     schedule_.consider(standing_, after);
     for (std::size_t r = 0; r < configuration_.rtpus().size(); ++r) {
       if (!schedule_.is_first_of_cpu(RtpuId(r))) continue;
       const CpuTransition cpu = schedule_.on_cpu_of(RtpuId(r));
-      if (cpu.is_moved) made.cpus.push_back(cpu);
+      if (cpu.is_moved) edge.cpus.push_back(cpu);
+    }
+  }
+
+  /// Requires: judge_deadlines() of it has just been asked for.
+  void find_constants(ModeEdge& edge) {
+    const auto in_force = static_cast<std::uint32_t>(report_.nodes[edge.from].set);
+    SwitchPlan plan;
+    if (!planner_.plan(static_cast<std::uint32_t>(edge.to), standing_, plan)) return;
+    for (const TaskId user : users_.find(plan, in_force, nullptr))
+      if (std::ranges::count(plan.staying, user) != 0) edge.anew.push_back(user.index);
+    if (edge.anew.empty()) return;
+    for (std::uint32_t c = 0; c < configuration_.spec().constants.size(); ++c) {
+      ModeConstant made = constant(ConstantId(c), plan, in_force);
+      if (!made.users.empty()) edge.constants.push_back(std::move(made));
+    }
+  }
+
+  /// Without those that a task makes which stays: they follow from others.
+  ModeConstant constant(ConstantId id, const SwitchPlan& plan, std::uint32_t in_force) {
+    ModeConstant made{.name = std::string(configuration_.spec().constants[id.index].name),
+                      .before = 0, .after = 0, .users = {}};
+    for (const TaskId user : plan.staying) {
+      if (!users_.is_another(id, user, plan, in_force, nullptr)) continue;
+      const std::size_t before = maker(id, user, in_force), after = maker(id, user, plan.after);
+      if (before == after) continue;
+      made.before = before;
+      made.after = after;
+      made.users.push_back(user.index);
     }
     return made;
+  }
+
+  std::size_t maker(ConstantId constant, TaskId user, std::uint32_t set) const {
+    const ApplicationSpec& spec = configuration_.spec();
+    return spec.constants[constant.index].producers[producer_for(spec, constant, user, set)].task.index;
   }
 
   /// Of a task that fails and is to go on in the set that its failure leads to.
@@ -112,10 +188,25 @@ class ModeWriter {
                                            : "it goes on there as it is"));
   }
 
+  /// Of reactions that would raise the flag when they are needed, if the values differ.
+  void warn(const ModeEdge& edge) {
+    std::string names;
+    for (const ModeConstant& each : edge.constants) names += (names.empty() ? "'" : ", '") + each.name + "'";
+    for (const ModeAsker& asker : edge.askers) {
+      if (!asker.is_reaction()) continue;
+      report_.warnings.push_back(asker_text(configuration_, asker) + " asks for configuration '" +
+                                 report_.nodes[edge.to].name + "': from '" + report_.nodes[edge.from].name +
+                                 "' that is slow, under the flag, unless the values are the same of " +
+                                 (edge.constants.size() == 1 ? "constant " : "constants ") + names);
+    }
+  }
+
   const Configuration& configuration_;
   const Library& library_;
   HeapMemory memory_;
   SwitchSchedule schedule_;
+  SwitchPlanner planner_;
+  ConstantUsers users_;
   std::vector<TaskStanding> standing_;
   std::vector<ModeWish> wishes_;
   ModeReport report_;
@@ -123,8 +214,11 @@ class ModeWriter {
 
 }  // namespace
 
-bool ModeEdge::is_slow() const noexcept {
-  return std::ranges::any_of(cpus, [](const CpuTransition& cpu) { return cpu.is_lost() && cpu.was_promised; });
+ModeWay ModeEdge::way() const noexcept {
+  const auto is_broken = [](const CpuTransition& cpu) { return cpu.is_lost() && cpu.was_promised; };
+  if (is_takeover) return ModeWay::kTakeover;
+  if (std::ranges::any_of(cpus, is_broken)) return ModeWay::kSlow;
+  return anew.empty() ? ModeWay::kFast : ModeWay::kSlowUnlessSame;
 }
 
 bool ModeEdge::has_reaction() const noexcept { return std::ranges::any_of(askers, &ModeAsker::is_reaction); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The configurations of a description as nodes, the switches between them as edges: who asks for each without a
-// person, and whether the deadlines hold over it (runtime/switch_schedule.h).
+// The configurations of a description as nodes, also with a standby in the place of its primary, and the switches
+// and takeovers between them as edges: who asks for each without a person, whether the deadlines hold over it
+// (runtime/switch_schedule.h), and whether a constant may become another one (runtime/constant_choice.h).
 #pragma once
 
 #include <cstddef>
@@ -25,21 +26,44 @@ struct ModeAsker {
   bool is_reaction() const noexcept { return cause != ModeCause::kConstant; }
 };
 
-/// A switch from sets()[from] to sets()[to]. An operator may ask for each.
+/// A constant of tasks that stay, which another task makes after a switch than before. Only `init` makes the values.
+struct ModeConstant {
+  std::string name;
+  std::size_t before = 0, after = 0;  ///< who makes it, in Configuration::tasks()
+  std::vector<std::size_t> users;     ///< those that stay
+};
+
+/// What may be ON: a configuration, or one with a standby in the place of its primary.
+struct ModeNode {
+  std::string name;           ///< "run", "run with spare for main"
+  std::size_t set = 0;        ///< in Configuration::sets()
+  TaskId primary, standby;    ///< invalid: it is the configuration itself
+  std::vector<TaskId> tasks;
+};
+
+/// While the tasks cycle; under the flag unless the values of constants are the same; under the flag; no switch: a
+/// standby goes ON when its primary fails.
+enum class ModeWay : std::uint8_t { kFast, kSlowUnlessSame, kSlow, kTakeover };
+
+/// From nodes[from] to nodes[to]. An operator may ask for each switch.
 struct ModeEdge {
   std::size_t from = 0, to = 0;
-  std::vector<ModeAsker> askers;    ///< in the order of tasks
-  std::vector<CpuTransition> cpus;  ///< on which a task arrives or leaves
+  bool is_takeover = false;
+  std::vector<ModeAsker> askers;        ///< of a switch, in the order of tasks
+  std::vector<CpuTransition> cpus;      ///< on which a task arrives or leaves
+  std::vector<ModeConstant> constants;  ///< of a switch
+  std::vector<std::size_t> anew;        ///< tasks that stay and are initialised anew if the values of constants differ
 
-  /// It goes the slow way, under the flag: a promise that holds before would not hold if both were there. Constants,
-  /// which only `init` makes, are not looked at.
-  bool is_slow() const noexcept;
+  /// kSlow: a promise that holds before would not hold if both were there.
+  ModeWay way() const noexcept;
+  bool is_slow() const noexcept { return way() == ModeWay::kSlow; }
   bool has_reaction() const noexcept;
 };
 
 struct ModeReport {
-  std::vector<ModeEdge> edges;              ///< from each configuration to each other, in order
-  std::vector<std::size_t> by_operator;     ///< configurations that are not the start and that nobody else asks for
+  std::vector<ModeNode> nodes;           ///< the configurations in order, then those with a standby
+  std::vector<ModeEdge> edges;           ///< from each configuration to each other; then each takeover and what follows
+  std::vector<std::size_t> by_operator;  ///< configurations that are not the start and that nobody else asks for
   std::vector<std::string> warnings;
 
   /// No switch that a reaction asks for is slow.

@@ -22,6 +22,7 @@ std::size_t n_allocations = 0;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   std::abort();
 }
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return operator new(size); }
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
@@ -83,7 +84,7 @@ TEST_F(EdgeNoHeap, SignalsChangesAndFaultsAllocateNothing) {
   EXPECT_EQ(run(milliseconds(50)), 0u);
   EXPECT_EQ(units_->units[0]->tasks->tasks()[kGiver.index].faults.count, 1u);
   for (int i = 0; i < 10; ++i) {
-    units_->send(i % 2 == 0 ? Signal::kOff : Signal::kOn, {kTaker}, static_cast<std::uint64_t>(i + 1));
+    units_->send(i % 2 == 0 ? Signal::kOff : Signal::kOn, {kTaker}, static_cast<std::uint64_t>(i) + 1);
     EXPECT_EQ(run(milliseconds(2)), 0u);
     EXPECT_EQ(taker(), i % 2 == 0 ? State::kOff : State::kOn);
   }

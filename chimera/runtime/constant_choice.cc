@@ -53,24 +53,29 @@ void ConstantUsers::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   is_user_ = memory.take<bool>(spec.tasks.size());
 }
 
-// The first constant of the task that is another one, or may be: of producers that are re-initialised nobody knows what
-// they will make, and of who arrives, what it was initialised with last.
-ConstantId ConstantUsers::changed(TaskId user, const SwitchPlan& plan, std::uint32_t before,
-                                  const MadeConstants* made) noexcept {
-  for (std::size_t c = 0; c < spec_->constants.size(); ++c) {
-    const ConstantId constant(c);
-    const std::span<const PortOf> producers = spec_->constants[c].producers;
-    if (producers.empty() || !spec_->uses(user, constant)) continue;
-    const std::uint32_t from = producer_for(*spec_, constant, user, before);
-    const std::uint32_t to = producer_for(*spec_, constant, user, plan.after == kNoSet ? before : plan.after);
-    if (producers[to].task == user) continue;  // its own
-    if (is_user_[producers[to].task.index]) return constant;
-    const bool arrives = has(plan.arriving, user);
-    for (std::uint32_t k = 0; k < producers.size(); ++k) {
-      const bool was_its = arrives ? k != to : k == from && from != to;
-      if (was_its && (made == nullptr || made->differ(constant, k, to))) return constant;
-    }
+// It is another one, or may be: of producers that are re-initialised nobody knows what they will make, and of who
+// arrives, what it was initialised with last.
+bool ConstantUsers::is_another(ConstantId constant, TaskId user, const SwitchPlan& plan, std::uint32_t before,
+                               const MadeConstants* made) const noexcept {
+  const std::span<const PortOf> producers = spec_->constants[constant.index].producers;
+  if (producers.empty() || !spec_->uses(user, constant)) return false;
+  const std::uint32_t from = producer_for(*spec_, constant, user, before);
+  const std::uint32_t to = producer_for(*spec_, constant, user, plan.after == kNoSet ? before : plan.after);
+  if (producers[to].task == user) return false;  // its own
+  if (is_user_[producers[to].task.index]) return true;
+  const bool arrives = has(plan.arriving, user);
+  for (std::uint32_t k = 0; k < producers.size(); ++k) {
+    const bool was_its = arrives ? k != to : k == from && from != to;
+    if (was_its && (made == nullptr || made->differ(constant, k, to))) return true;
   }
+  return false;
+}
+
+// The first constant of the task that is another one.
+ConstantId ConstantUsers::changed(TaskId user, const SwitchPlan& plan, std::uint32_t before,
+                                  const MadeConstants* made) const noexcept {
+  for (std::size_t c = 0; c < spec_->constants.size(); ++c)
+    if (is_another(ConstantId(c), user, plan, before, made)) return ConstantId(c);
   return {};
 }
 

@@ -50,9 +50,13 @@ class ConstantUsers {
     ConstantId constant;
   };
   Found find_staying(const SwitchPlan& plan, std::uint32_t before, const MadeConstants& made) noexcept;
+  /// The constant may be another one for `user`, which find() of the same arguments has just been asked for.
+  bool is_another(ConstantId constant, TaskId user, const SwitchPlan& plan, std::uint32_t before,
+                  const MadeConstants* made) const noexcept;
 
  private:
-  ConstantId changed(TaskId user, const SwitchPlan& plan, std::uint32_t before, const MadeConstants* made) noexcept;
+  ConstantId changed(TaskId user, const SwitchPlan& plan, std::uint32_t before,
+                     const MadeConstants* made) const noexcept;
 
   const ApplicationSpec* spec_ = nullptr;
   std::span<TaskId> users_;   // as many as there are tasks; empty: no constant has several producers

@@ -36,6 +36,8 @@ def outputs(source):
     yield "sweep", 0, ["sweep", source / "examples/02_cruise_control/cruise_control.yaml", "--over",
                        "car.start_speed = 80, 90 km/h", "--for", "20 ms", "--measure", "vz", "--expect", "vz >= 0 m/s"]
     yield "modes", 0, ["check", source / "examples/17_switch/switch.yaml", "--modes"]
+    yield "modes", 0, ["check", source / "examples/18_tool_changer/tool_changer.yaml", "--modes"]
+    yield "modes", 0, ["check", source / "examples/19_standby/standby.yaml", "--modes"]
     yield "modes", 0, ["check", examples[0], "--modes"]
     yield "check", 1, ["check", faulty[0], "--modes"]
     yield "schedule", 0, ["schedule", examples[0]]

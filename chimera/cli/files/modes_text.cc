@@ -9,20 +9,42 @@ namespace {
 
 class ModeLines {
  public:
-  explicit ModeLines(const Configuration& configuration) : configuration_(configuration) {}
+  ModeLines(const Configuration& configuration, const ModeReport& report)
+      : configuration_(configuration), report_(report) {}
 
   std::string edge(const ModeEdge& edge) const {
-    std::string text = set(edge.from) + " -> " + set(edge.to) + ": " + (edge.is_slow() ? "slow" : "fast") +
-                       "; asked for by ";
-    for (const ModeAsker& asker : edge.askers) text += asker_text(configuration_, asker) + ", ";
-    text += "an operator\n";
+    std::string text = node(edge.from) + " -> " + node(edge.to) + ": " + head(edge) + "\n";
     for (const CpuTransition& one : edge.cpus) text += "  CPU " + std::to_string(one.cpu) + ": " + cpu(one) + "\n";
+    for (const ModeConstant& one : edge.constants) text += "  constant '" + one.name + "' " + constant(one) + "\n";
+    if (!edge.anew.empty()) text += "  may be initialised anew: " + names(edge.anew) + "\n";
     return text;
   }
 
-  const std::string& set(std::size_t index) const { return configuration_.sets()[index].name; }
+  const std::string& node(std::size_t index) const { return report_.nodes[index].name; }
 
  private:
+  std::string head(const ModeEdge& edge) const {
+    if (edge.is_takeover) return "takeover, when " + name(report_.nodes[edge.to].primary.index) + " fails";
+    const ModeWay way = edge.way();
+    std::string text = way == ModeWay::kFast   ? "fast"
+                       : way == ModeWay::kSlow ? "slow"
+                                               : "slow, unless the constants keep their values";
+    text += "; asked for by ";
+    for (const ModeAsker& asker : edge.askers) text += asker_text(configuration_, asker) + ", ";
+    return text + "an operator";
+  }
+
+  std::string constant(const ModeConstant& constant) const {
+    return "of " + names(constant.users) + (constant.users.size() == 1 ? ", which stays" : ", which stay") +
+           ": made by " + name(constant.before) + " before, by " + name(constant.after) + " after";
+  }
+
+  std::string names(const std::vector<std::size_t>& tasks) const {
+    std::string text;
+    for (const std::size_t task : tasks) text += (text.empty() ? "" : ", ") + name(task);
+    return text;
+  }
+
   std::string cpu(const CpuTransition& cpu) const {
     const std::string settled =
         cpu.settled == kNever || cpu.settled == Nanoseconds{}  // nobody was there before
@@ -43,24 +65,24 @@ class ModeLines {
   static std::string before(const CpuTransition& cpu) {
     return cpu.was_promised ? "" : "; neither is the configuration before, so nothing is lost";
   }
-  std::string task(const CpuTransition& cpu) const {
-    return "'" + configuration_.tasks()[cpu.task.index].name + "'";
-  }
+  std::string task(const CpuTransition& cpu) const { return "'" + name(cpu.task.index) + "'"; }
+  const std::string& name(std::size_t task) const { return configuration_.tasks()[task].name; }
 
   const Configuration& configuration_;
+  const ModeReport& report_;
 };
 
 }  // namespace
 
 std::string modes_text(const Configuration& configuration, const ModeReport& report) {
-  const ModeLines lines(configuration);
+  const ModeLines lines(configuration, report);
   std::string text;
   for (const ModeEdge& edge : report.edges) text += lines.edge(edge);
   if (report.edges.empty())
     return configuration.subsystem() + " has one configuration: there is nothing to switch to\n";
   if (report.by_operator.empty()) return text;
   text += "unreachable except by an operator:";
-  for (const std::size_t set : report.by_operator) text += " " + lines.set(set);
+  for (const std::size_t set : report.by_operator) text += " " + lines.node(set);
   return text + "\n";
 }
 

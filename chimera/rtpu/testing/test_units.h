@@ -180,8 +180,9 @@ class Units {
     }
     Doorbell(decision.bells[u].word).ring();
   }
-  /// As the manager would: the number of the plan.
-  std::uint16_t switch_to(std::uint32_t set, Nanoseconds lead = microseconds(300), Nanoseconds wait = seconds(1)) {
+  /// As the manager would: the number of the plan. `slow`: SwitchOrder::slow.
+  std::uint16_t switch_to(std::uint32_t set, Nanoseconds lead = microseconds(300), Nanoseconds wait = seconds(1),
+                          std::uint8_t slow = 0) {
     SwitchAgreement agreement(decision.switching, keeper.origin);
     SwitchOrder order;
     order.number = next_plan(agreement.plan().number);
@@ -189,6 +190,8 @@ class Units {
       if (keeper.alive[u] != 0) order.members = static_cast<std::uint16_t>(order.members | 1u << u);
     order.after = set;
     order.target = tasks_of(app.spec, set);
+    order.slow = slow;
+    order.constants = constants_in_force();
     order.until = now + wait;
     order.lead = lead;
     for (const TaskSpec& task : app.tasks) {
@@ -199,13 +202,21 @@ class Units {
     change();
     return order.number;
   }
+  /// As the manager knows it: by the last order.
+  std::uint32_t constants_in_force() {
+    SwitchAgreement agreement(decision.switching, keeper.origin);
+    const PlanWord plan = agreement.plan();
+    const auto last = agreement.order(plan, app.spec.sets.size(), app.spec.tasks.size());
+    if (!last) return set_of_start(app.spec);
+    return plan.phase == SwitchPhase::kCommitted ? last->constants_after() : last->constants;
+  }
   bool is_over(std::uint16_t number) const {
     for (std::uint32_t u = 0; u < n; ++u)
       if (keeper.alive[u] != 0 && units[u]->segment.block.head().switching.over != number) return false;
     return true;
   }
   const SwitchPart& part(std::uint32_t u) const { return units[u]->segment.block.switch_part(); }
-  void bring_up(std::vector<TaskId> tasks) {
+  void bring_up(const std::vector<TaskId>& tasks) {
     for (const TaskId task : tasks) {
       send(Signal::kSpawn, {task});
       run(milliseconds(1));

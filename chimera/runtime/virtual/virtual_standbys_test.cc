@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <vector>
 
-#include "chimera/runtime/hosted/heap_task_set.h"
-#include "chimera/runtime/testing/test_application.h"
-#include "chimera/runtime/virtual/virtual_rtpus.h"
+#include "chimera/runtime/testing/virtual_units.h"
 
 namespace chimera {
 namespace {
+
+using testing::VirtualUnits;
 
 /// What the components of a run do, and what they saw. One run at a time.
 struct Scene {
@@ -59,20 +59,14 @@ struct User {
 constexpr TaskId kPrimary{0u}, kUser{1u}, kSpare{2u}, kLast{3u}, kSource{4u};
 
 ScriptAct death_at(Nanoseconds at, std::uint32_t rtpu) {
-  ScriptAct act;
-  act.at = at;
-  act.kind = ScriptAct::Kind::kDie;
-  act.rtpu = RtpuId(rtpu);
-  return act;
+  return testing::act_at(at, ScriptAct::Kind::kDie, rtpu);
 }
 
 /// The primary, what reads it, and its two standbys, each on an rtpu of its own.
 struct VirtualStandbysTest : ::testing::TestWithParam<bool> {
   void go(Nanoseconds duration, std::vector<ScriptAct> acts = {}) {
-    run.reset();
-    sets.clear();
-    acts_ = std::move(acts);
-    app = std::make_unique<testing::TestApplication>();
+    units.reset();
+    auto app = std::make_unique<testing::TestApplication>();
     app->rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kEdf}, {"c", 2, Policy::kEdf}, {"d", 3, Policy::kEdf}};
     app->add("primary", testing::component<Primary>("primary")).rtpu = RtpuId(0u);
     app->add("user", testing::component<User>("user")).rtpu = RtpuId(1u);
@@ -81,33 +75,16 @@ struct VirtualStandbysTest : ::testing::TestWithParam<bool> {
     app->add("source", testing::component<Source>("source")).rtpu = RtpuId(source_rtpu);
     app->make({kSource, kPrimary, kUser}, false);
     app->spec.standbys = pairs;
-    peers = *VirtualPeers::create(app->spec);
-    for (std::uint32_t r = 0; r < 4; ++r) {
-      ContextPlace place;
-      place.rtpu = RtpuId(r);
-      place.others = peers.get();
-      sets.push_back(*HeapTaskSet::create(app->spec, app->components, place));
-      peers->join(RtpuId(r), *sets.back());
-    }
-    RunOptions options;
-    options.script = Script(acts_);
-    VirtualOptions how;
-    how.preemptive = GetParam();
-    run = std::make_unique<VirtualRtpus>(*peers, options, how);
-    EXPECT_TRUE(run->start());
-    EXPECT_EQ(run->run(duration), RunEnd::kTime);
+    units = std::make_unique<VirtualUnits>(std::move(app), std::move(acts), GetParam());
+    units->run(duration);
   }
-  State state(TaskId task) const { return peers->state(task); }
+  State state(TaskId task) const { return units->state(task); }
   void SetUp() override { scene = {}; }
-  void TearDown() override { run.reset(); }
+  void TearDown() override { units.reset(); }
 
   std::uint32_t source_rtpu = 1;
   std::vector<StandbySpec> pairs{{kPrimary, kSpare}, {kPrimary, kLast}};
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app;
-  std::unique_ptr<VirtualPeers> peers;
-  std::vector<std::unique_ptr<HeapTaskSet>> sets;
-  std::unique_ptr<VirtualRtpus> run;
+  std::unique_ptr<VirtualUnits> units;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualStandbysTest, ::testing::Bool(),
@@ -165,8 +142,8 @@ TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThe
   scene.hangs_at = milliseconds(4).count;
   go(milliseconds(11));
   EXPECT_EQ(state(kPrimary), State::kError);
-  ASSERT_TRUE(peers->is_dead(RtpuId(0u)));
-  EXPECT_EQ(peers->died(RtpuId(0u)) - run->origin(), milliseconds(7));
+  ASSERT_TRUE(units->peers().is_dead(RtpuId(0u)));
+  EXPECT_EQ(units->peers().died(RtpuId(0u)) - units->rtpus().origin(), milliseconds(7));
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
   // Published last at 3 ms, with the cycle released then: that is older than 3 ms with the look at 7 ms, which kills.
@@ -178,7 +155,7 @@ TEST_P(VirtualStandbysTest, APrimaryThatIsSilentIsLeftAloneWhileNobodyCouldTakeO
   scene.hangs_at = milliseconds(4).count;
   go(milliseconds(11), {death_at(microseconds(500), 2)});
   EXPECT_EQ(state(kPrimary), State::kOn);
-  EXPECT_FALSE(peers->is_dead(RtpuId(0u)));
+  EXPECT_FALSE(units->peers().is_dead(RtpuId(0u)));
 }
 
 TEST_P(VirtualStandbysTest, AHotOneIsReadFromTheDeathOnWhereItIs) {

@@ -8,67 +8,29 @@
 #include <random>
 #include <vector>
 
-#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/switch_scene.h"
-#include "chimera/runtime/virtual/virtual_rtpus.h"
+#include "chimera/runtime/testing/virtual_units.h"
 
 namespace chimera {
 namespace {
 
 using namespace testing::switch_scene;
-
-ScriptAct act_at(Nanoseconds at, ScriptAct::Kind kind, std::uint32_t set = 0) {
-  ScriptAct act;
-  act.at = at;
-  act.kind = kind;
-  act.set = set;
-  return act;
-}
+using testing::act_at;
+using testing::VirtualUnits;
 
 struct VirtualSwitchesTest : ::testing::TestWithParam<bool> {
   /// A run of so long with these acts; its receipts.
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts = {}) {
-    run.reset();
-    sets.clear();
-    acts_ = std::move(acts);
-    app = application(limit, false);
-    peers = *VirtualPeers::create(app->spec);
-    for (std::uint32_t r = 0; r < 2; ++r) {
-      ContextPlace place;
-      place.rtpu = RtpuId(r);
-      place.others = peers.get();
-      sets.push_back(*HeapTaskSet::create(app->spec, app->components, place));
-      peers->join(RtpuId(r), *sets.back());
-    }
-    RunOptions options;
-    options.script = Script(acts_);
-    VirtualOptions how;
-    how.preemptive = GetParam();
-    run = std::make_unique<VirtualRtpus>(*peers, options, how);
-    EXPECT_TRUE(run->start());
-    EXPECT_EQ(run->run(duration), RunEnd::kTime);
-    return run->receipts().all();
-  }
-  bool are_on(const std::vector<TaskId>& set) const {
-    for (std::uint32_t t = 0; t <= kThree.index; ++t)
-      if ((peers->state(TaskId(t)) == State::kOn) != (std::ranges::find(set, TaskId(t)) != set.end())) return false;
-    return true;
-  }
-  std::uint64_t lost() const {
-    std::uint64_t n = 0;
-    for (const auto& set : sets)
-      for (const Task& task : set->tasks()) n += task.profile.dropped + task.profile.missed;
-    return n;
+    units.reset();
+    units = std::make_unique<VirtualUnits>(application(limit, false), std::move(acts), GetParam());
+    units->run(duration);
+    return units->receipts();
   }
   void SetUp() override { scene = {}; }
-  void TearDown() override { run.reset(); }
+  void TearDown() override { units.reset(); }
 
   double limit = 0;
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app;
-  std::unique_ptr<VirtualPeers> peers;
-  std::vector<std::unique_ptr<HeapTaskSet>> sets;
-  std::unique_ptr<VirtualRtpus> run;
+  std::unique_ptr<VirtualUnits> units;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualSwitchesTest, ::testing::Bool(),
@@ -84,9 +46,9 @@ TEST_P(VirtualSwitchesTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_EQ(receipts[0].tasks.size(), 6u);
   EXPECT_EQ(receipts[0].variables.size(), 2u);
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off one"}));
-  EXPECT_TRUE(are_on(kSets[kObserved]));
+  EXPECT_TRUE(units->are_on(kSets[kObserved]));
   EXPECT_EQ(scene.illegal, 0);
-  EXPECT_EQ(lost(), 0u);
+  EXPECT_EQ(units->lost(), 0u);
 }
 
 TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfTenThousandSwitches) {
@@ -111,8 +73,8 @@ TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfTenThousandSwitches) {
     ASSERT_EQ(receipt.end, SwitchEnd::kDone) << n << " for " << static_cast<int>(receipt.why);
     for (const TaskPart& part : receipt.tasks) ASSERT_EQ(part.lost, 0u) << n;
   }
-  EXPECT_TRUE(are_on(kSets[present]));
-  EXPECT_EQ(lost(), 0u);
+  EXPECT_TRUE(units->are_on(kSets[present]));
+  EXPECT_EQ(units->lost(), 0u);
   EXPECT_EQ(scene.illegal, 0);
   EXPECT_TRUE(plant == scene.plant);
   EXPECT_TRUE(beacon == scene.beacon);
@@ -137,8 +99,8 @@ TEST_P(VirtualSwitchesTest, ATaskOfEitherRtpuAsks) {
   EXPECT_LE(receipts[0].asked, milliseconds(6));
   EXPECT_EQ(receipts[1].by, kPlant);
   EXPECT_EQ(receipts[1].before, kObserved);
-  EXPECT_TRUE(are_on(kSets[kBeside]));
-  EXPECT_EQ(lost(), 0u);
+  EXPECT_TRUE(units->are_on(kSets[kBeside]));
+  EXPECT_EQ(units->lost(), 0u);
   EXPECT_EQ(scene.illegal, 0);
 }
 
@@ -153,7 +115,7 @@ TEST_P(VirtualSwitchesTest, OfTheWishesThatComeMeanwhileTheLastIsTakenNext) {
   ScriptAct first = act_at(microseconds(5950), ScriptAct::Kind::kSwitch, kObserved);
   const auto receipts = go(milliseconds(30), {first});
   ASSERT_EQ(receipts.size(), 1u) << "the wish of the second rtpu, for what is under way, takes that of the first back";
-  EXPECT_TRUE(are_on(kSets[kObserved]));
+  EXPECT_TRUE(units->are_on(kSets[kObserved]));
 }
 
 // One that chatters in each cycle, of which the receipts that there is room for are kept.
@@ -162,9 +124,9 @@ TEST_P(VirtualSwitchesTest, WhoAsksAllTheTimeFillsNothing) {
   scene.in_plant = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
   const auto receipts = go(seconds(1));
   EXPECT_EQ(receipts.size(), 16u);
-  EXPECT_GT(run->receipts().left_out(), 50u);
+  EXPECT_GT(units->rtpus().receipts().left_out(), 50u);
   for (const SwitchReceipt& receipt : receipts.first(15)) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
-  EXPECT_EQ(lost(), 0u);
+  EXPECT_EQ(units->lost(), 0u);
 }
 
 TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
@@ -174,7 +136,7 @@ TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
   };
   const auto receipts = go(milliseconds(30));
   EXPECT_EQ(receipts.size(), 0u);
-  EXPECT_EQ(sets[1]->tasks()[kReader.index].requests_refused, 1);
+  EXPECT_EQ(units->set(1).tasks()[kReader.index].requests_refused, 1);
 }
 
 TEST_P(VirtualSwitchesTest, WhatFailsOnOneRtpuIsUndoneOnTheOther) {
@@ -184,18 +146,16 @@ TEST_P(VirtualSwitchesTest, WhatFailsOnOneRtpuIsUndoneOnTheOther) {
   EXPECT_EQ(receipts[0].why, NoSwitch::kOnFailed);
   EXPECT_EQ(receipts[0].task, kTwo);
   EXPECT_EQ(receipts[0].said.view(), "no current");
-  EXPECT_TRUE(are_on(kSets[kDirect]));
+  EXPECT_TRUE(units->are_on(kSets[kDirect]));
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off observer"}));
 }
 
 TEST_P(VirtualSwitchesTest, ADeathBeforeTheChangeAborts) {
-  ScriptAct death = act_at(microseconds(5600), ScriptAct::Kind::kDie);
-  death.rtpu = RtpuId(1u);
-  const auto receipts =
-      go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kBeside), death});
+  const auto receipts = go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kBeside),
+                                              act_at(microseconds(5600), ScriptAct::Kind::kDie, 1)});
   EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
   EXPECT_EQ(receipts[0].why, NoSwitch::kMemberDied);
-  EXPECT_EQ(peers->state(kThree), State::kOff);
+  EXPECT_EQ(units->state(kThree), State::kOff);
 }
 
 TEST_P(VirtualSwitchesTest, OneAtATime) {

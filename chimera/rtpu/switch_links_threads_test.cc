@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slow switches over two real-time units, each of which cycles in a thread of its own while time really passes: also
+// under the thread sanitizer. The thread of the test is the manager.
+#include "chimera/rtpu/switch_links.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "chimera/rtpu/testing/test_units.h"
+#include "chimera/runtime/testing/tool_scene.h"
+
+namespace chimera {
+namespace {
+
+using namespace testing::tool_scene;
+using testing::Units;
+
+/// Lets the units cycle. The clock of each is stepped to the time that has passed, by its own thread.
+class CyclingUnits {
+ public:
+  explicit CyclingUnits(Units& units) : units_(units), origin_(units.now) {
+    for (std::uint32_t u = 0; u < units.n; ++u) threads_.emplace_back([this, u] { cycle(u); });
+  }
+  ~CyclingUnits() {
+    ends_ = true;
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  /// The manager's time is that of now.
+  void follow() { units_.now = now(); }
+  template <class Condition>
+  bool await(Condition condition) const {
+    const Nanoseconds end = now() + seconds(30);
+    while (!condition() && now() < end) std::this_thread::sleep_for(kLook);
+    return condition();
+  }
+
+ private:
+  static constexpr std::chrono::microseconds kLook{20};
+
+  Nanoseconds now() const {
+    const auto passed = std::chrono::steady_clock::now() - began_;
+    return origin_ + Nanoseconds{std::chrono::duration_cast<std::chrono::nanoseconds>(passed).count()};
+  }
+  void cycle(std::uint32_t u) {
+    for (; !ends_; std::this_thread::sleep_for(kLook))
+      (void)units_.units[u]->executive->run(now() - units_.keeper.origin);
+  }
+
+  Units& units_;
+  const Nanoseconds origin_;
+  const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  std::atomic<bool> ends_{false};
+  std::vector<std::thread> threads_;
+};
+
+struct SwitchLinksThreads : ::testing::Test {
+  SwitchLinksThreads() {
+    shop = {};
+    units.run(milliseconds(1));
+    for (const TaskId task : {kLight, kHeavy, kArm, kLaw}) {
+      units.send(Signal::kSpawn, {task});
+      units.run(milliseconds(1));
+    }
+    for (const TaskId task : kSets[kWithLight]) units.send(Signal::kOn, {task});
+    units.run(milliseconds(10));
+    EXPECT_TRUE(are_on(kWithLight));
+    EXPECT_FALSE(units.flag_is_up());
+    shop = {};
+  }
+  State state(TaskId task) const { return units.units[app->tasks[task.index].rtpu.index]->state(task); }
+  bool are_on(std::uint32_t set) const {
+    const auto& tasks = kSets[set];
+    return std::ranges::all_of(std::vector{kLight, kHeavy, kArm, kLaw}, [&](TaskId task) {
+      return (state(task) == State::kOn) == (std::ranges::count(tasks, task) != 0);
+    });
+  }
+  /// Both tools produce `grip`: when one of them is to go ON, the other one is not shown as ON.
+  void watch_producers() {
+    shop.in_step = [this](const std::string& what) {
+      EXPECT_TRUE(what != "on heavy" || state(kLight) != State::kOn);
+      EXPECT_TRUE(what != "on light" || state(kHeavy) != State::kOn);
+      EXPECT_TRUE(units.flag_is_up()) << what;
+    };
+  }
+  void expect_done(std::uint32_t to) {
+    const std::string tool = to == kWithHeavy ? "heavy" : "light", other = to == kWithHeavy ? "light" : "heavy";
+    EXPECT_EQ(shop.story, (std::vector<std::string>{"off " + other, "reinit arm", "reinit law", "on " + tool}));
+    for (std::uint32_t u = 0; u < 2; ++u) {
+      EXPECT_EQ(units.part(u).end, SwitchEnd::kDone) << static_cast<int>(units.part(u).why);
+      EXPECT_EQ(units.part(u).n_reinitialised, 1u);
+    }
+    EXPECT_EQ(units.part(0).at, units.part(1).at);
+    EXPECT_EQ(units.part(0).reinitialised[0], kArm);
+    EXPECT_EQ(units.part(1).reinitialised[0], kLaw);
+    EXPECT_GE(units.part(0).flag, milliseconds(1)) << "the arm has acted on it";
+  }
+  /// `on` of the tool of `to` failed, which is in ERROR, and the other one is back.
+  void expect_taken_back(std::uint32_t to) {
+    const std::string tool = to == kWithHeavy ? "heavy" : "light", other = to == kWithHeavy ? "light" : "heavy";
+    EXPECT_EQ(shop.story, (std::vector<std::string>{"off " + other, "reinit arm", "reinit law", "on " + tool,
+                                                    "reinit arm", "reinit law", "on " + other}));
+    const std::uint32_t owner = to == kWithHeavy ? 1 : 0;
+    EXPECT_EQ(units.part(owner).why, NoSwitch::kOnFailed);
+    EXPECT_EQ(units.part(owner).task, to == kWithHeavy ? kHeavy : kLight);
+    EXPECT_STREQ(units.part(owner).said, "no");
+    EXPECT_EQ(units.part(1 - owner).why, NoSwitch::kNone);
+    for (std::uint32_t u = 0; u < 2; ++u) {
+      EXPECT_EQ(units.part(u).end, SwitchEnd::kAborted);
+      EXPECT_FALSE(units.part(u).not_back.is_valid());
+    }
+    EXPECT_EQ(state(to == kWithHeavy ? kHeavy : kLight), State::kError);
+  }
+  void clear(TaskId task, const CyclingUnits& cycling) {
+    units.send(Signal::kClear, {task});
+    ASSERT_TRUE(cycling.await([&] { return state(task) == State::kOff; }));
+  }
+
+  std::unique_ptr<testing::TestApplication> app = testing::tool_scene::application(0);
+  Units units{*app};
+};
+
+TEST_F(SwitchLinksThreads, SlowSwitchesThereAndBackLeaveOneProducerAndNoFlag) {
+  constexpr int kSwitches = 300;
+  std::uint32_t in_force = kWithLight;
+  {
+    CyclingUnits cycling(units);
+    watch_producers();
+    for (int i = 0; i < kSwitches && !HasFailure(); ++i) {
+      const std::uint32_t to = in_force == kWithLight ? kWithHeavy : kWithLight;
+      const bool fails = i % 9 == 4;
+      shop.story.clear();
+      shop.fails = !fails ? "" : to == kWithHeavy ? "on heavy" : "on light";
+      cycling.follow();
+      const std::uint16_t number = units.switch_to(to, microseconds(300), seconds(20), kSlowForConstants);
+      ASSERT_TRUE(cycling.await([&] { return units.is_over(number); })) << i;
+      fails ? expect_taken_back(to) : expect_done(to);
+      if (!fails) in_force = to;
+      else clear(to == kWithHeavy ? kHeavy : kLight, cycling);
+      EXPECT_TRUE(are_on(in_force)) << i;
+      EXPECT_FALSE(units.flag_is_up()) << i;
+      EXPECT_EQ(units.part(0).number, number);
+    }
+  }
+  EXPECT_EQ(shop.weighed.back(), in_force == kWithHeavy ? 3 : 1);
+  EXPECT_GT(std::ranges::count(shop.weighed, 1.0), 0);
+  EXPECT_GT(std::ranges::count(shop.weighed, 3.0), 0);
+  EXPECT_GT(shop.illegal, kSwitches / 2) << "the arm has seen the flag";
+}
+
+}  // namespace
+}  // namespace chimera
