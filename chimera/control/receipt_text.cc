@@ -218,7 +218,8 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
 std::string absent_text(const SwitchWay& way, const ApplicationSpec& spec) {
   if (!way.absent.is_valid()) return "an arriving task has the resource of another one";
   const std::string text = "task " + quoted(spec.tasks[way.absent.index].name) + " is NOT-CREATED";
-  return way.rival.is_valid() ? text + ": task " + quoted(spec.tasks[way.rival.index].name) + " has its resource" : text;
+  if (!way.rival.is_valid()) return text;
+  return text + ": task " + quoted(spec.tasks[way.rival.index].name) + " has its resource";
 }
 
 /// Behind a line of the text, of a slow switch.

@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::uint32_t kFlagIllegalSet = 1, kFlagRaised = 2;
 
+GroupReader group_of(const PeerSegment* mapped, GroupId id) noexcept {
+  return mapped == nullptr ? GroupReader() : mapped->group(id);
+}
+
 }  // namespace
 
 PeerLinks::PeerLinks(const ApplicationSpec& spec, std::uint32_t me, std::span<std::byte> segment, BlockOwner block,
@@ -48,41 +52,29 @@ State PeerLinks::state(TaskId task) const noexcept {
   return status.in_service && status.state == State::kOn ? State::kOff : status.state;
 }
 
-bool PeerLinks::lives(TaskId task) const noexcept { return at(spec_->tasks[task.index].rtpu.index) != nullptr; }
-
-bool PeerLinks::is_held(TaskId task) const noexcept {
+PeerPresence PeerLinks::presence(TaskId task) const noexcept {
   const PeerSegment* const there = at(spec_->tasks[task.index].rtpu.index);
-  if (there == nullptr) return false;
+  if (there == nullptr) return {};
   const TaskStatus status = there->block().status(task);
-  return status.state != State::kNotCreated || status.in_service;
-}
-
-bool PeerLinks::has_seen(TaskId reader, TaskId) const noexcept {
-  const PeerSegment* const there = at(spec_->tasks[reader.index].rtpu.index);
-  if (there == nullptr) return true;
   const std::uint32_t seen = there->block().head().seen_changes.load(std::memory_order_acquire);
-  return static_cast<std::int32_t>(seen - last_shown_) >= 0;
-}
-
-GroupReader PeerLinks::group(std::uint32_t peer, GroupId id) const noexcept {
-  const PeerSegment* mapped = peers_->at(peer);
-  return mapped == nullptr ? GroupReader() : mapped->group(id);
+  return {true, status.state != State::kNotCreated || status.in_service,
+          static_cast<std::int32_t>(seen - last_shown_) >= 0};
 }
 
 GroupReader PeerLinks::outputs(TaskId task) const noexcept {
   const std::uint32_t peer = spec_->tasks[task.index].rtpu.index;
   const PeerSegment* mapped = peers_->at(peer);
   if (mapped == nullptr) return {};
-  return group(peer, peers_->layout(peer).outputs(task, mapped->block().status(task).incarnation));
+  return mapped->group(peers_->layout(peer).outputs(task, mapped->block().status(task).incarnation));
 }
 
 GroupReader PeerLinks::constants(TaskId task) const noexcept {
   const std::uint32_t peer = spec_->tasks[task.index].rtpu.index;
-  return group(peer, peers_->layout(peer).constants(task));
+  return group_of(peers_->at(peer), peers_->layout(peer).constants(task));
 }
 
 GroupReader PeerLinks::operator_variable(std::size_t index) const noexcept {
-  return group(manager(), peers_->layout(manager()).operator_group(index));
+  return group_of(peers_->at(manager()), peers_->layout(manager()).operator_group(index));
 }
 
 bool PeerLinks::post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept {
@@ -172,7 +164,8 @@ void PeerLinks::publish_fault(const Task& task) noexcept {
 }
 
 void PeerLinks::ring_all() noexcept {
-  last_shown_ = 1 + decision_->changes.fetch_add(1, std::memory_order_release);  // pairs with changes(): the words above are seen
+  // Release pairs with changes(): the words above are seen.
+  last_shown_ = 1 + decision_->changes.fetch_add(1, std::memory_order_release);
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer)
     if (peer != me_) ring(peer);
 }

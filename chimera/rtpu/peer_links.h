@@ -32,9 +32,7 @@ class PeerLinks final : public PeerView {
   bool keeps_last_words() const noexcept { return keeps_last_words_; }
 
   State state(TaskId task) const noexcept override;
-  bool lives(TaskId task) const noexcept override;
-  bool is_held(TaskId task) const noexcept override;
-  bool has_seen(TaskId reader, TaskId shown) const noexcept override;
+  PeerPresence presence(TaskId task) const noexcept override;
   GroupReader outputs(TaskId task) const noexcept override;
   GroupReader constants(TaskId task) const noexcept override;
   GroupReader operator_variable(std::size_t index) const noexcept override;
@@ -69,7 +67,6 @@ class PeerLinks final : public PeerView {
   const BlockOwner& block() const noexcept { return block_; }
 
  private:
-  GroupReader group(std::uint32_t peer, GroupId id) const noexcept;
   void let_go_unread(const Sources& sources) noexcept;
   bool publish_status(const Task& task, TaskStatus before, TaskStatus now) noexcept;
   bool publish_flag(const IllegalFlag& flag) noexcept;

@@ -29,9 +29,7 @@ constexpr TaskId kMaker{0u}, kUser{1u};
 
 /// The other process: shows the constants of the maker.
 struct Elsewhere final : PeerView {
-  bool lives(TaskId) const noexcept override { return true; }
-  bool has_seen(TaskId, TaskId) const noexcept override { return true; }
-  bool is_held(TaskId task) const noexcept override { return state(task) != State::kNotCreated; }
+  PeerPresence presence(TaskId) const noexcept override { return {true, true, true}; }
   State state(TaskId) const noexcept override { return State::kOn; }
   GroupReader outputs(TaskId) const noexcept override { return {}; }
   GroupReader constants(TaskId) const noexcept override {

@@ -10,20 +10,21 @@
 
 namespace chimera {
 
+/// Plain value.
+struct PeerPresence {
+  bool lives = false;     ///< its process does
+  bool is_held = false;   ///< it is created in a process that lives, or `init` or `kill` of it is under way there
+  bool has_seen = true;   ///< its process has looked at all that this context has shown, or is dead
+};
+
 /// Asked by the thread of the context, at edges; an answer is good until the next edge. What this context changes is
 /// not told here: runtime/changes.h.
 class PeerView {
  public:
   /// State of a task of another context; ERROR when its process is dead. Context: cycle boundary; wait-free.
   virtual State state(TaskId task) const noexcept = 0;
-  /// The process of a task of another context lives. Context: cycle boundary; wait-free.
-  virtual bool lives(TaskId task) const noexcept = 0;
-  /// A task of another context is created in a process that lives, or `init` or `kill` of it is under way there.
-  /// Context: cycle boundary; wait-free.
-  virtual bool is_held(TaskId task) const noexcept = 0;
-  /// The process of `reader` has looked at all that the one of `shown`, of this context, has shown, or is dead. Context:
-  /// cycle boundary; wait-free.
-  virtual bool has_seen(TaskId reader, TaskId shown) const noexcept = 0;
+  /// How that task of another context is there. Context: cycle boundary; wait-free.
+  virtual PeerPresence presence(TaskId task) const noexcept = 0;
   /// Groups of a task of another context in its present incarnation, and of the operator. Not bound when that
   /// process has not shown its segment yet. Context: cycle boundary; wait-free.
   virtual GroupReader outputs(TaskId task) const noexcept = 0;
@@ -33,7 +34,8 @@ class PeerView {
   /// reinit because a constant changed. False when there is no room. Context: cycle boundary; wait-free.
   virtual bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept = 0;
   /// From now on until this context has shown what it changed, no other context turns a task of that group of standbys
-  /// (standbys.h) ON, or creates one for that. False: another one is about to, or the run ends. Context: cycle boundary; wait-free.
+  /// (standbys.h) ON, or creates one for that. False: another one is about to, or the run ends. Context: cycle
+  /// boundary; wait-free.
   virtual bool claim(std::size_t /*group*/) noexcept { return true; }
   /// A manager judges which tasks would be ON before it turns tasks ON; false: each context judges that over all
   /// contexts when it takes the signal. Context: cycle boundary; wait-free.

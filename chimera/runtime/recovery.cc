@@ -91,13 +91,13 @@ bool Recovery::may_touch(Task& task) noexcept {
 bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   const TaskId failed = set.standbys().failed(group);
-  if (!set.is_mine(failed) || !set.rivals().are(failed, to)) return true;
+  if (!set.is_mine(failed) || !set.life().judge().rivals().are(failed, to)) return true;
   Task& task = set.tasks()[failed.index];
   if (task.in_service || task.state != State::kError) return true;
   if (!set.is_mine(to)) {  // killed first, it would look as if somebody had killed it
     const bool is_shown = closes_ == failed;  // at the end of the last edge
     closes_ = failed;
-    if (!is_shown || !set.others()->has_seen(to, failed)) {
+    if (!is_shown || !set.others()->presence(to).has_seen) {
       look_again(now + kLookForSeen, now + kLookForSeen);
       return true;
     }
@@ -113,7 +113,7 @@ bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) n
 bool Recovery::create(Task& task, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   if (task.state != State::kNotCreated) return true;
-  if (set.life().find_rival(task.id).is_valid()) return false;
+  if (set.life().judge().find_rival(task.id).is_valid()) return false;
   if (created_ != task.id) {
     const SignalReport report = parts_.signals.signal({&task.id, 1}, Signal::kSpawn, now);
     if (report.why == Refusal::kRival) return false;  // another context is about to create one
@@ -146,7 +146,7 @@ bool Recovery::take_over(std::size_t group, Nanoseconds now) noexcept {
       look_again(again_at_, again_at_);
       return true;
     }
-    if (!set.life().would_be_legal({&id, 1})) return true;  // once an input has a producer again
+    if (!set.life().judge().would_be_legal({&id, 1})) return true;  // once an input has a producer again
     const TaskId failed = set.standbys().failed(group);
     const Nanoseconds lost = set.standbys().lost_at(group);
     const SignalReport report = parts_.signals.signal({&id, 1}, Signal::kOn, now);
@@ -185,7 +185,7 @@ void Recovery::answer(Restart& each, Task& task, Nanoseconds now) noexcept {
   const TaskId id = task.id;
   const bool is_replaced = set.standbys().is_replaced(id);
   const bool is_too_often = each.done.front() > now - each.spec->within;
-  if (!is_too_often && (is_replaced || set.life().would_be_legal({&id, 1}))) {
+  if (!is_too_often && (is_replaced || set.life().judge().would_be_legal({&id, 1}))) {
     std::move(each.done.begin() + 1, each.done.end(), each.done.begin());
     each.done.back() = now;
     count(task.profile.restarts);

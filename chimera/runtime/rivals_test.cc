@@ -37,6 +37,8 @@ struct RivalsTest : ::testing::Test {
     for (const TaskId tool : {kOne, kTwo, kThree}) app.port(tool.index, 1).value = tty;
   }
   void make() {
+    sets[0].order = with_one;
+    sets[1].order = with_two;
     app.make(with_one, false);
     app.spec.sets = sets;
     rivals.prepare(app.spec, memory);
@@ -48,7 +50,7 @@ struct RivalsTest : ::testing::Test {
   }
   const std::vector<std::byte> tty = testing::bytes_of("tty0"), other = testing::bytes_of("tty1");
   std::vector<TaskId> with_one{kOne}, with_two{kTwo, kUser, kLast};
-  NamedSet sets[2] = {{"one", with_one}, {"two", with_two}};
+  NamedSet sets[2] = {{"one", {}}, {"two", {}}};
   testing::TestApplication app;
   HeapMemory memory;
   Rivals rivals;

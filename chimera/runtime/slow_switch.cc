@@ -12,23 +12,13 @@ namespace {
 
 // How long after the deadline a context aborts that another one is to abort first, which knows why.
 constexpr Nanoseconds kGrace = milliseconds(100);
-// A gap is waited for no longer than this: the flag is up meanwhile.
-constexpr Nanoseconds kLongestWait = milliseconds(100);
 constexpr Nanoseconds kLookForSafety = milliseconds(1);
-
-Nanoseconds longest_period(const TaskSet& set) noexcept {
-  Nanoseconds longest = milliseconds(1);
-  for (const Task& task : set.tasks())
-    if (set.is_mine(task.id) && task.state == State::kOn && !task.spec->aperiodic)
-      longest = std::max(longest, task.spec->period);
-  return longest;
-}
 
 }  // namespace
 
 void SlowSwitch::prepare() {
   planner_.prepare(parts_.set.spec(), parts_.set.setup_memory());
-  created_.prepare(parts_.set.tasks().size(), parts_.set.setup_memory());
+  here_.prepare();
 }
 
 void SlowSwitch::begin(SwitchAgreement agreement, const SwitchPlan& plan, const SwitchOrder& order,
@@ -37,15 +27,15 @@ void SlowSwitch::begin(SwitchAgreement agreement, const SwitchPlan& plan, const 
   order_ = order;
   peers_ = &peers;
   steps_ = planner_.plan(plan, order.constants, order.slow);
-  created_.begin();
+  here_.begin(order_);
   const auto is_check = [](const SlowStep& step) { return step.act == SlowAct::kCheck; };
   n_checks_ = static_cast<std::size_t>(std::count_if(steps_.begin(), steps_.end(), is_check));
   const auto is_reinit = [](const SlowStep& step) { return step.act == SlowAct::kReinit; };
   first_reinit_ = static_cast<std::size_t>(std::find_if(steps_.begin(), steps_.end(), is_reinit) - steps_.begin());
   end_of_reinits_ = first_reinit_ + static_cast<std::size_t>(std::count_if(steps_.begin(), steps_.end(), is_reinit));
-  held_since_ = waits_since_ = back_until_ = wake_ = kNever;
+  held_since_ = wake_ = kNever;
   was_raised_ = parts_.set.flag().is_raised();
-  is_safe_ = was_idle_ = false;
+  is_safe_ = false;
   (void)agreement.agree(order.number, me);  // nobody commits before all have
   peers.ring();
 }
@@ -95,7 +85,10 @@ bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
     if (is_back) {
       const std::size_t step = undone_with(done);
       if (!is_mine(step) && !is_of_dead(step)) return false;
-      if (is_mine(step) && undo(steps_[step], now) == StepEnd::kWaits) return false;
+      if (is_mine(step) && here_.undo(steps_[step], now) == StepEnd::kWaits) {
+        wake_ = here_.wake();
+        return false;
+      }
       pass_on(done - 1, TurnWord::kBack);
     } else if (plan.phase == SwitchPhase::kAborted) {
       std::size_t left = done;
@@ -137,7 +130,8 @@ bool SlowSwitch::may_go_on(SwitchAgreement agreement, std::size_t done, Nanoseco
   if (is_next && !is_safe_ && asked.is_there()) return fails(NoSwitch::kNotSafe, {}, asked.variable);
   if (!is_next) return fails(NoSwitch::kNotReady, {});
   if (steps_[done].act != SlowAct::kOn) return fails(NoSwitch::kNotReady, steps_[done].task);
-  const VariableId missing = missing_value(parts_.set, task(steps_[done].task), {});
+  Task& next = parts_.set.tasks()[steps_[done].task.index];
+  const VariableId missing = missing_value(parts_.set, next, {});
   return fails(missing.is_valid() ? NoSwitch::kNoValue : NoSwitch::kNotReady, steps_[done].task, missing);
 }
 
@@ -152,7 +146,7 @@ bool SlowSwitch::is_as_left(const Task& task, std::size_t done) const noexcept {
     else if (steps_[i].act == SlowAct::kKill) state = State::kNotCreated;
     else if (steps_[i].act == SlowAct::kOn) state = State::kOn;
   }
-  if (created_.is_under_way(task.id)) return true;
+  if (here_.is_under_way(task.id)) return true;
   return !task.in_service && (task.state == state || (is_to_come && task.state == State::kNotCreated));
 }
 
@@ -216,28 +210,7 @@ void SlowSwitch::cut(SwitchAgreement agreement) noexcept {
   conclude(is_done ? SwitchEnd::kDone : SwitchEnd::kAborted, parts_.clock.now());
 }
 
-SignalReport SlowSwitch::move(Task& task, Signal signal, Nanoseconds now) noexcept {
-  const SignalReport report = parts_.set.life().move(task.id, signal, now);
-  parts_.tap.record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(signal), report ? 1 : 0);
-  parts_.settlement.record_faults(task);
-  return report;
-}
-
-// The flag is up: a gap is taken where one comes soon.
-bool SlowSwitch::waits_for_gap(const Task& task, Method method, Nanoseconds now) noexcept {
-  if (waits_since_ == kNever) waits_since_ = now;
-  const Nanoseconds at_most = std::min(longest_period(parts_.set), kLongestWait);
-  const bool is_vain = (order_.slow & kSlowForGap) != 0 && method == Method::kOn;
-  if (!is_vain && now < waits_since_ + at_most && !parts_.gap.is_for(task, method, now)) {
-    wake_ = std::min(waits_since_ + at_most, std::max(parts_.threads.next_look(now), now));
-    return true;
-  }
-  waits_since_ = kNever;
-  return false;
-}
-
 StepEnd SlowSwitch::carry_out(SwitchAgreement agreement, const SlowStep& step, Nanoseconds now) noexcept {
-  Task& each = task(step.task);
   TaskSet& set = parts_.set;
   const SafeCondition& asked = asked_of(set.spec(), order_.after);
   if (!is_safe_ && !set.flag().is_held() && !holds(set, asked)) {
@@ -245,165 +218,28 @@ StepEnd SlowSwitch::carry_out(SwitchAgreement agreement, const SlowStep& step, N
     return StepEnd::kWaits;
   }
   is_safe_ = true;
-  if (step.act == SlowAct::kCheck) return check(agreement, each);
-  hold_flag(now);
-  const Nanoseconds lead = (order_.slow & kSlowForConstants) != 0 ? flag_lead(set.spec(), order_.on) : Nanoseconds{};
-  if (now < held_since_ + lead) {
+  if (step.act != SlowAct::kCheck) hold_flag(now);
+  const bool waits = step.act != SlowAct::kCheck && (order_.slow & kSlowForConstants) != 0;
+  const Nanoseconds lead = waits ? flag_lead(set.spec(), order_.on) : Nanoseconds{};
+  if (waits && now < held_since_ + lead) {
     wake_ = held_since_ + lead;
     return StepEnd::kWaits;
   }
-  if (created_.is_under_way(step.task) && each.in_service) return StepEnd::kWaits;  // its end asks for an edge
-  if (!parts_.threads.claim(step.task)) return StepEnd::kWaits;                    // so does the end of its job
-  switch (step.act) {
-    case SlowAct::kOff: return turn_off(agreement, each, now);
-    case SlowAct::kKill: return create(agreement, each, Signal::kKill, now);
-    case SlowAct::kSpawn: return create(agreement, each, Signal::kSpawn, now);
-    case SlowAct::kReinit: return reinit(agreement, each, now);
-    default: return turn_on(agreement, each, now);
-  }
-}
-
-// Says so on the page, with the text of the last fault of the task.
-StepEnd SlowSwitch::fail(SwitchAgreement agreement, NoSwitch why, const Task& task) noexcept {
-  abort(agreement, why, task.id, {});
-  parts_.record.receipt().said.assign(task.faults.last.text);
-  return StepEnd::kFailed;
-}
-
-StepEnd SlowSwitch::check(SwitchAgreement agreement, const Task& task) noexcept {
-  FixedString<160> why;
-  ContextConstants& constants = parts_.set.constants();
-  constants.read_foreign();
-  constants.put_in_force(order_.constants_after());
-  const bool is_fit = constants.would_take(task.id, why);
-  constants.put_in_force(order_.constants);
-  if (is_fit) return StepEnd::kDone;
-  abort(agreement, NoSwitch::kBadConstant, task.id, {});
-  parts_.record.receipt().said = why;
-  return StepEnd::kFailed;
-}
-
-StepEnd SlowSwitch::turn_off(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept {
-  if (waits_for_gap(task, Method::kOff, now)) return StepEnd::kWaits;
-  parts_.record.leaves(task.id);
-  const Nanoseconds began = parts_.clock.now();
-  (void)move(task, Signal::kOff, now);
-  parts_.record.took(task.id, Method::kOff, parts_.clock.now() - began);
-  return task.state == State::kOff ? StepEnd::kDone : fail(agreement, NoSwitch::kStepFailed, task);
-}
-
-// Spawns it, or kills it. What a task makes at init counts by the configuration after.
-StepEnd SlowSwitch::create(SwitchAgreement agreement, Task& task, Signal signal, Nanoseconds now) noexcept {
-  const Method method = signal == Signal::kSpawn ? Method::kInit : Method::kKill;
-  const bool is_here = !created_.is_under_way(task.id) && !parts_.set.slow().takes(method);
-  if (is_here && waits_for_gap(task, method, now)) return StepEnd::kWaits;
-  parts_.set.constants().put_in_force(order_.constants_after());
-  const StepEnd end =
-      created_.carry_out(task, signal, [&](Task& each, Signal which) { (void)move(each, which, now); });
-  if (end == StepEnd::kFailed) return fail(agreement, NoSwitch::kStepFailed, task);
+  const StepEnd end = here_.carry_out(step, now);
+  wake_ = here_.wake();
+  const StepFailure& failure = here_.failure();
+  if (end == StepEnd::kWaits || failure.why == NoSwitch::kNone) return end;
+  abort(agreement, failure.why, failure.task, failure.variable);
+  parts_.record.receipt().said = failure.said;
   return end;
 }
 
 // The switch is aborted at a step of this context that may be under way: `left` steps are to be undone. False: later.
 bool SlowSwitch::leave(std::size_t done, std::size_t& left, Nanoseconds now) noexcept {
   if (done >= steps_.size() || !is_mine(done)) return true;
-  Task& each = task(steps_[done].task);
-  if (steps_[done].act == SlowAct::kOn && each.is_half_on) {
-    if (!parts_.threads.claim(each.id)) return false;
-    (void)move(each, Signal::kOff, now);
-  }
-  if (steps_[done].act != SlowAct::kKill && steps_[done].act != SlowAct::kSpawn) return true;
-  const Signal signal = steps_[done].act == SlowAct::kKill ? Signal::kKill : Signal::kSpawn;
-  const StepEnd end = created_.cut(each, signal);
+  const StepEnd end = here_.leave(steps_[done], now);
   if (end == StepEnd::kDone) left = done + 1;
   return end != StepEnd::kWaits;
-}
-
-// No job of who leaves is left that could delay one, directly or by others: the processor of this context is idle once.
-bool SlowSwitch::waits_for_idle(Nanoseconds now) noexcept {
-  if ((order_.slow & kSlowForDeadlines) == 0 || was_idle_) return false;
-  for (const Task& each : parts_.set.tasks()) {
-    if (!parts_.set.is_mine(each.id) || !parts_.threads.has_job_before(each.id, now)) continue;
-    parts_.threads.await_job(each.id);
-    return true;
-  }
-  was_idle_ = true;
-  return false;
-}
-
-// Who is initialised with what is in force by now is left as it is.
-StepEnd SlowSwitch::reinit(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept {
-  ContextConstants& constants = parts_.set.constants();
-  constants.read_foreign();
-  constants.put_in_force(order_.constants_after());
-  if (!constants.uses_changed(task.id)) return StepEnd::kDone;
-  if (waits_for_gap(task, Method::kReinit, now)) return StepEnd::kWaits;
-  const State before = task.state;
-  const std::uint64_t faults = task.faults.count;
-  (void)move(task, Signal::kReinit, now);
-  if (task.state == before && task.faults.count == faults) {
-    parts_.record.reinitialised(task.id);
-    return StepEnd::kDone;
-  }
-  (void)fail(agreement, NoSwitch::kStepFailed, task);
-  constants.put_in_force(order_.constants);
-  if (task.state == before) (void)move(task, Signal::kReinit, now);
-  return StepEnd::kFailed;
-}
-
-// Until the next period of the task, or the deadline.
-StepEnd SlowSwitch::wait_a_cycle(const Task& task, Nanoseconds now) noexcept {
-  const Nanoseconds period = task.spec->aperiodic ? milliseconds(1) : task.spec->period;
-  wake_ = now < order_.until ? std::min(now + period, order_.until) : now + period;
-  return StepEnd::kWaits;
-}
-
-StepEnd SlowSwitch::turn_on(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept {
-  TaskSet& set = parts_.set;
-  set.constants().put_in_force(order_.constants_after());
-  set.sources().follow_others();
-  if (missing_value(set, task, {}).is_valid()) return wait_a_cycle(task, now);
-  if (waits_for_idle(now)) return StepEnd::kWaits;
-  if (waits_for_gap(task, Method::kOn, now)) return StepEnd::kWaits;
-  const Nanoseconds began = parts_.clock.now();
-  const SignalReport report = move(task, Signal::kOn, now);
-  parts_.record.took(task.id, Method::kOn, parts_.clock.now() - began);
-  if (report.why == Refusal::kNotYet) return wait_a_cycle(task, now);
-  if (task.state != State::kOn) return fail(agreement, NoSwitch::kOnFailed, task);
-  parts_.record.receipt().armed = parts_.clock.now();
-  const VariablePart* const beyond = parts_.record.arrives(task.id, parts_.clock.now());
-  if (beyond != nullptr) abort(agreement, NoSwitch::kStepTooLarge, task.id, beyond->handover.variable);
-  return StepEnd::kDone;  // what is done is undone as all others
-}
-
-// A device that needs some time on the way back has it, for as long as a switch has by default.
-StepEnd SlowSwitch::turn_on_again(Task& task, Nanoseconds now) noexcept {
-  const SignalReport report = move(task, Signal::kOn, now);
-  if (report.why != Refusal::kNotYet) return StepEnd::kDone;
-  if (back_until_ == kNever) back_until_ = now + TaskLife::kPatience;
-  if (now < back_until_) return wait_a_cycle(task, now);
-  (void)move(task, Signal::kOff, now);
-  return StepEnd::kDone;
-}
-
-// What cannot be undone, because a signal or an error came between, is left as it is.
-StepEnd SlowSwitch::undo(const SlowStep& step, Nanoseconds now) noexcept {
-  Task& each = task(step.task);
-  ContextConstants& constants = parts_.set.constants();
-  if (each.in_service || !parts_.threads.claim(step.task)) return StepEnd::kWaits;
-  constants.read_foreign();
-  constants.put_in_force(order_.constants);
-  parts_.set.sources().follow_others();
-  if (step.act == SlowAct::kOn && each.state == State::kOn) (void)move(each, Signal::kOff, now);
-  if (step.act == SlowAct::kOff && each.state == State::kOff) return turn_on_again(each, now);
-  if (step.act == SlowAct::kKill || step.act == SlowAct::kSpawn) {
-    const Signal done = step.act == SlowAct::kKill ? Signal::kKill : Signal::kSpawn;
-    return created_.undo(each, done, [&](Task& one, Signal which) { (void)move(one, which, now); });
-  }
-  const bool is_there = each.state == State::kOff || each.state == State::kOn;
-  if (step.act != SlowAct::kReinit || !is_there || !constants.uses_changed(step.task)) return StepEnd::kDone;
-  (void)move(each, Signal::kReinit, now);
-  return StepEnd::kDone;
 }
 
 }  // namespace chimera

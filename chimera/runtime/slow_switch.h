@@ -8,11 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/creation_steps.h"
-#include "chimera/runtime/idle_gap.h"
-#include "chimera/runtime/settlement.h"
-#include "chimera/runtime/slow_plan.h"
+#include "chimera/runtime/slow_steps.h"
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switch_record.h"
@@ -23,17 +19,9 @@ namespace chimera {
 /// theirs.
 class SlowSwitch {
  public:
+  using Parts = SlowSteps::Parts;
   /// All of it outlives this.
-  struct Parts {
-    TaskSet& set;
-    JobThreads& threads;
-    Settlement& settlement;
-    ContextTap& tap;
-    JobClock& clock;
-    IdleGap& gap;
-    SwitchRecord& record;
-  };
-  explicit SlowSwitch(const Parts& parts) noexcept : parts_(parts) {}
+  explicit SlowSwitch(const Parts& parts) noexcept : parts_(parts), here_(parts) {}
   /// Context: setup.
   void prepare();
 
@@ -62,23 +50,10 @@ class SlowSwitch {
   void hold_flag(Nanoseconds now) noexcept;
   void conclude(SwitchEnd end, Nanoseconds now) noexcept;
   StepEnd carry_out(SwitchAgreement agreement, const SlowStep& step, Nanoseconds now) noexcept;
-  StepEnd check(SwitchAgreement agreement, const Task& task) noexcept;
-  StepEnd turn_off(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept;
-  StepEnd create(SwitchAgreement agreement, Task& task, Signal signal, Nanoseconds now) noexcept;
-  StepEnd turn_on(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept;
-  StepEnd reinit(SwitchAgreement agreement, Task& task, Nanoseconds now) noexcept;
-  StepEnd fail(SwitchAgreement agreement, NoSwitch why, const Task& task) noexcept;
-  StepEnd wait_a_cycle(const Task& task, Nanoseconds now) noexcept;
-  StepEnd turn_on_again(Task& task, Nanoseconds now) noexcept;
-  StepEnd undo(const SlowStep& step, Nanoseconds now) noexcept;
-  SignalReport move(Task& task, Signal signal, Nanoseconds now) noexcept;
-  bool waits_for_idle(Nanoseconds now) noexcept;
-  bool waits_for_gap(const Task& task, Method method, Nanoseconds now) noexcept;
-  Task& task(TaskId id) noexcept { return parts_.set.tasks()[id.index]; }
 
   Parts parts_;
   SlowPlanner planner_;
-  CreationSteps created_;
+  SlowSteps here_;
   SwitchPeers* peers_ = nullptr;
   const SwitchPlan* plan_ = nullptr;
   SwitchOrder order_;
@@ -87,11 +62,8 @@ class SlowSwitch {
   std::size_t first_reinit_ = 0, end_of_reinits_ = 0;  // in steps_
   Nanoseconds wake_ = kNever;
   Nanoseconds held_since_ = kNever;  // the flag, by this context
-  Nanoseconds waits_since_ = kNever; // for a gap
-  Nanoseconds back_until_ = kNever;  // for a device on the way back
   SwitchEnd end_ = SwitchEnd::kAborted;
   bool was_raised_ = false;  // the flag, by somebody of this context, when it began
-  bool was_idle_ = false;    // the processor, since who leaves is OFF
   bool is_safe_ = false;     // what `safe_when` asks held
 };
 

@@ -31,8 +31,8 @@ class Standbys {
   void follow(std::span<const State> states, std::uint32_t living, Nanoseconds now) noexcept;
   /// A switch leads to `target`: a group of which no task is in it is given up.
   void follow_switch(const TaskBits& target) noexcept;
-  /// The task has failed, and a standby that is OFF, or NOT-CREATED as long as the task has its resource, may be ON within one period of its own: until then the task counts
-  /// as ON where the illegal-configuration flag is judged.
+  /// The task has failed, and a standby that is OFF, or NOT-CREATED for its resource, may be ON within one period of
+  /// its own: until then the task counts as ON where the illegal-configuration flag is judged.
   bool is_covered(TaskId task) const noexcept { return is_covered_[task.index]; }
   /// Some group lost the task that was ON, which is in ERROR yet, and nobody took over in time.
   bool is_any_uncovered() const noexcept { return is_any_uncovered_; }

@@ -9,6 +9,7 @@
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/job_clock.h"
 #include "chimera/runtime/refusal.h"
+#include "chimera/runtime/signal_judge.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -31,9 +32,9 @@ struct SignalReport {
 /// Acts on the tasks that a TaskSet holds. Context of everything not marked: edge; as long as the methods take.
 class TaskLife {
  public:
-  explicit TaskLife(TaskSet& set) noexcept : set_(set) {}
-  /// For as many tasks as the set has. Context: setup.
-  void prepare(std::size_t n_tasks, SetupMemory& memory);
+  explicit TaskLife(TaskSet& set) noexcept : set_(set), judge_(set) {}
+  /// The spec is that of the set, and outlives this. Context: setup.
+  void prepare(const ApplicationSpec& spec, SetupMemory& memory);
 
   /// Spawns the tasks that are created at the start (Rivals), in the order of their constants, and turns the start set
   /// ON as one transaction. Reports the first task that said no; whatever was spawned stays as it is. In words:
@@ -74,13 +75,8 @@ class TaskLife {
   /// Runs the `off` that a task owes. Requires: it does. Any other signal to the task has that done first.
   SignalReport settle_off(TaskId task, Nanoseconds now);
 
-  /// No task would lack a producer and no variable would have two, if `tasks` were ON besides those that are, over all
-  /// contexts. A task that waits for its standby counts as ON, but beside that standby.
-  bool would_be_legal(std::span<const TaskId> tasks) noexcept;
-  /// A task that is created, in whatever context, and has a resource of `task`; invalid: none.
-  TaskId find_rival(TaskId task) const noexcept;
-  /// The set that the last call of signal() with `on` would have turned ON: wanted()[t] says whether task t is in it.
-  std::span<const bool> wanted() const noexcept { return wanted_; }
+  /// Whether signals may be carried out.
+  SignalJudge& judge() noexcept { return judge_; }
 
  private:
   /// The signal that a task is carrying out.
@@ -93,9 +89,7 @@ class TaskLife {
   };
 
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
-  Refusal judge(std::span<const TaskId> tasks, Signal signal) noexcept;
   void turn_off_started(Nanoseconds now);
-  bool claims_resource_of(TaskId task) noexcept;
   SignalReport show(Task& task);
   SignalReport go_on_constructed(Task& task, Answer answer, Nanoseconds now);
   SignalReport advance(Task& task, Next at, Nanoseconds now);
@@ -103,7 +97,6 @@ class TaskLife {
   Next conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began);
   bool before_step(Task& task, const StepRule& step, Nanoseconds now);
   Answer after_ok(Task& task, const StepRule& step, Nanoseconds now);
-  bool claims_groups_of(std::span<const TaskId> tasks) noexcept;
   bool follow_constants(Task& task, Nanoseconds now);
   void reinit_users(TaskId of, Nanoseconds now);
   void take_over(Task& task, Nanoseconds now) noexcept;
@@ -112,8 +105,8 @@ class TaskLife {
   Nanoseconds read_clock(Nanoseconds otherwise) const noexcept;
 
   TaskSet& set_;
+  SignalJudge judge_;
   std::span<Progress> progress_;  // by task
-  std::span<bool> wanted_;        // the ON set that was asked for last
   std::uint64_t taken_over_valid_ = 0;
   bool is_arming_ = false;
   bool is_moving_ = false;

@@ -75,9 +75,8 @@ void TaskSet::prepare_parts() {
   slow_.prepare(tasks_, hosts_, methods_, place_.service, *place_.serving, memory_);
   sent_.prepare(tasks_, memories_, place_.others);
   flag_.prepare(spec_.variables, tasks_, memory_);
-  rivals_.prepare(spec_, memory_);
-  standbys_.prepare(spec_, rivals_, memory_);
-  life_.prepare(tasks_.size(), memory_);
+  life_.prepare(spec_, memory_);
+  standbys_.prepare(spec_, life_.judge().rivals(), memory_);
   if (place_.others != nullptr) changes_.prepare(tasks_.size(), memory_);
   constants_.prepare(spec_, table_, memories_, place_.others, memory_);
   for (const StaleSpec& stale : spec_.stale)
@@ -99,20 +98,12 @@ bool TaskSet::counts_as_on(TaskId task) const noexcept {
   return target_->has(task) && (state == State::kOn || state == State::kOff);
 }
 
-// The contexts whose processes live, this one among them.
-std::uint32_t TaskSet::living() const noexcept {
-  std::uint32_t contexts = 0;
-  for (const Task& task : tasks_)
-    if (is_mine(task.id) || place_.others->lives(task.id)) contexts |= 1u << (task.spec->rtpu.index % 32);
-  return contexts;
-}
-
 void TaskSet::on_set_changed() noexcept {
   for (const Task& task : tasks_)
     states_[task.id.index] = is_mine(task.id) ? task.shown_state() : place_.others->state(task.id);
   if (standbys_.n_groups() > 0) {
     JobClock* const clock = methods_.clock();
-    standbys_.follow(states_, living(), clock == nullptr ? Nanoseconds{} : clock->now());
+    standbys_.follow(states_, life_.judge().living(), clock == nullptr ? Nanoseconds{} : clock->now());
     if (standbys_.is_any_waiting() || standbys_.has_hot()) sent_.want_edge();
   }
   for (const Task& task : tasks_) on_[task.id.index] = counts_as_on(task.id);

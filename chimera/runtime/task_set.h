@@ -12,7 +12,6 @@
 #include "chimera/runtime/context_place.h"
 #include "chimera/runtime/context_table.h"
 #include "chimera/runtime/illegal_flag.h"
-#include "chimera/runtime/rivals.h"
 #include "chimera/runtime/sent_signals.h"
 #include "chimera/runtime/slow_methods.h"
 #include "chimera/runtime/sources.h"
@@ -49,8 +48,6 @@ class TaskSet {
   IllegalFlag& flag() noexcept { return flag_; }
   /// Which task stands in for which, and who is to take over.
   Standbys& standbys() noexcept { return standbys_; }
-  /// Which tasks cannot be created at one time.
-  const Rivals& rivals() const noexcept { return rivals_; }
   /// How methods are called.
   TaskMethods& methods() noexcept { return methods_; }
   /// What the service thread runs.
@@ -93,7 +90,6 @@ class TaskSet {
 
  private:
   bool counts_as_on(TaskId task) const noexcept;
-  std::uint32_t living() const noexcept;
   Result<void> plan_memories(std::span<const chimera_component* const> components);
   void prepare_parts();
   void prepare_task(std::size_t t, const chimera_component* component);
@@ -111,7 +107,6 @@ class TaskSet {
   SlowMethods slow_;
   SentSignals sent_;
   IllegalFlag flag_;
-  Rivals rivals_;
   Standbys standbys_;
   Changes changes_;
   TaskLife life_{*this};

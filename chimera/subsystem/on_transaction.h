@@ -7,7 +7,7 @@
 //
 //   stage of a member:  kOpen --`on` sent--> kSent --reported--> kOn   (it may be ON: rolled back after a failure)
 //                           ^              |
-//                           +--- not yet --+   asked again after a period, for 10 s; whoever stands behind it in the list, too
+//                           +--- not yet --+   asked again after a period; so are those behind it in its list
 //                                                     roll-back: kOn --`off` sent--> kSent --reported--> kOver
 #pragma once
 

@@ -262,9 +262,10 @@ TEST_P(SameResource, SpawnByHandIsRefusedWhileTheOtherOneIsThere) {
   };
   go(milliseconds(20), {signal(milliseconds(2), Signal::kSpawn, kDrill)});
   EXPECT_EQ(state(kDrill), chimera::State::kNotCreated);
-  EXPECT_EQ(set_->life().find_rival(kDrill), kHand);
+  EXPECT_EQ(set_->life().judge().find_rival(kDrill), kHand);
   device = {};
-  go(milliseconds(20), {signal(milliseconds(2), Signal::kKill, kHand), signal(milliseconds(3), Signal::kSpawn, kDrill)});
+  go(milliseconds(20),
+     {signal(milliseconds(2), Signal::kKill, kHand), signal(milliseconds(3), Signal::kSpawn, kDrill)});
   EXPECT_EQ(states(), (Story{"NOT-CREATED", "OFF", "ON"}));
 }
 

@@ -120,9 +120,7 @@ TEST(Servers, WhatWaitsWhenTheTaskGoesOffIsForgotten) {
 
 /// Another rtpu that has no room for a post.
 struct Deaf final : PeerView {
-  bool lives(TaskId) const noexcept override { return true; }
-  bool has_seen(TaskId, TaskId) const noexcept override { return true; }
-  bool is_held(TaskId task) const noexcept override { return state(task) != chimera::State::kNotCreated; }
+  PeerPresence presence(TaskId) const noexcept override { return {true, true, true}; }
   chimera::State state(TaskId) const noexcept override { return chimera::State::kOn; }
   GroupReader outputs(TaskId) const noexcept override { return {}; }
   GroupReader constants(TaskId) const noexcept override { return {}; }

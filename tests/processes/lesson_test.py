@@ -129,7 +129,10 @@ class SafeMachine(Typed):
             return self.shoot({"-KILL": 9, "-STOP": 19}[command.split()[1]])
         if "drill" in command:
             self.await_turning()
+        before = self.machine.rtpu("servo")["incarnation"]
         self.type(self.drive if "--subsystem drive" in command else self.machine, command)
+        if "--kill" in command:
+            self.await_restart(self.machine, "servo", before)
         if command == "chimera end --subsystem drive":
             await_that(lambda: self.machine.call("status")["flag"]["up"], 20, "the flag, after three restarts")
 

@@ -9,7 +9,8 @@
 
 namespace chimera::simulated {
 
-Process::Process(ManagerState& world, RtpuId id) : world_(world), id_(id), words_(world.n_tasks()) {}
+Process::Process(ManagerState& world, RtpuId id)
+    : world_(world), id_(id), words_(world.n_tasks()), half_on_(world.n_tasks()) {}
 
 void Process::later(Nanoseconds from, Nanoseconds to, std::function<void()> what) {
   at(world_.now() + world_.chance.between(from, to), std::move(what));
@@ -45,6 +46,7 @@ void Process::start(std::uint32_t incarnation) {
   service_.clear();
   notes_.clear();
   for (TaskStatus& word : words_) word = {State::kNotCreated, false, incarnation};
+  half_on_.assign(words_.size(), false);
   later(milliseconds(1), milliseconds(20), [this] { serve(); });
 }
 
@@ -168,6 +170,7 @@ void Process::begin() {
     world_.tally.count_signal(state, mine.signal, aperiodic);
     world_.note("takes", static_cast<int>(mine.signal), task.index, static_cast<int>(state));
     work_.before.push_back(state);
+    if (is_half_on(task) && mine.signal == Signal::kOff) continue;
     if (wrong == n && next(state, mine.signal, aperiodic).kind == Next::Kind::kImpossible) wrong = i;
   }
   if (wrong == n) return next_task();
@@ -183,6 +186,7 @@ void Process::next_task() {
   if (work_.index == work_.letter.tasks.size()) return finish();
   const TaskId task = work_.letter.tasks[work_.index];
   const bool aperiodic = world_.plan.spec.tasks[task.index].aperiodic;
+  if (is_half_on(task) && work_.letter.signal == Signal::kOff) return walk(task, Step::kOff);
   const Next at = next(word(task).state, work_.letter.signal, aperiodic);
   if (at.kind != Next::Kind::kStep) {  // a wakeup that is ignored
     ++work_.index;
@@ -201,6 +205,8 @@ void Process::walk(TaskId task, Step step) {
   later(microseconds(10), microseconds(300), [this, task, step] {
     if (passes(Point::kBeforeStep, "death before a step")) return;
     const Answer answer = draw(step);
+    if (step == Step::kOn || step == Step::kOff) half_on_[task.index] = answer == Answer::kNotYet;
+    if (answer == Answer::kNotYet) work_.is_not_ready = true;
     const Next at = rule(step).next[static_cast<int>(answer)];
     if (at.kind == Next::Kind::kState) publish(task, at.state, false);
     if (passes(Point::kAfterStep, "death after a step")) return;
@@ -220,6 +226,7 @@ void Process::walked(TaskId, State state) {
   } else if (work_.letter.signal == Signal::kOn && state != State::kOn) {
     work_.has_failed = true;
     work_.failed = work_.index;
+    if (work_.is_not_ready) return finish();
     for (std::size_t i = 0; i < work_.index; ++i) work_.undo.push_back(i);
   } else {
     ++work_.index;
@@ -235,8 +242,9 @@ void Process::finish() {
     if (work_.in_service[i]) continue;
     const TaskId task = work_.letter.tasks[i];
     const bool at_fault = work_.has_failed && work_.failed == i;
-    report(work_.letter, task, !work_.has_failed, at_fault ? Refusal::kFault : Refusal::kNone, work_.before[i],
-           word(task).state);
+    const bool is_done = !work_.has_failed || (work_.is_not_ready && i < work_.failed);
+    const Refusal why = !at_fault ? Refusal::kNone : work_.is_not_ready ? Refusal::kNotYet : Refusal::kFault;
+    report(work_.letter, task, is_done, why, work_.before[i], word(task).state);
   }
   if (work_.letter.command != 0 && passes(Point::kAfterReport, "death after a report")) return;
   end_work();

@@ -54,6 +54,7 @@ class Process {
   std::uint32_t incarnation() const noexcept { return incarnation_; }
   /// As its segment says, also after its death.
   TaskStatus word(TaskId task) const { return words_[task.index]; }
+  bool is_half_on(TaskId task) const { return half_on_[task.index] && word(task).state == State::kOff; }
   State state(TaskId task) const { return is_alive_ ? word(task).state : State::kNotCreated; }
   bool has_flag() const noexcept { return flag_; }
   std::uint32_t seen_changes() const noexcept { return seen_changes_; }
@@ -68,6 +69,7 @@ class Process {
     std::vector<bool> in_service;
     std::vector<std::size_t> undo;
     bool has_failed = false;
+    bool is_not_ready = false;  // failed because `on` answered not yet: those before it stay ON
     std::size_t failed = 0;
   };
   struct Errand {
@@ -111,6 +113,7 @@ class Process {
   Work work_;
   std::deque<Errand> service_;
   std::vector<TaskStatus> words_;
+  std::vector<bool> half_on_;  // by task: its `on` answered not yet last
   std::vector<Note> notes_;
   bool flag_ = false;
   bool look_is_due_ = false;

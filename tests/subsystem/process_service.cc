@@ -45,7 +45,7 @@ Answer Process::draw(Step step) {
   switch (step) {
     case Step::kInit: may(4, Answer::kFault); break;
     case Step::kKillAfterInit: may(30, Answer::kFault); break;
-    case Step::kOn: may(5, Answer::kFault); break;
+    case Step::kOn: may(5, Answer::kFault), may(5, Answer::kNotYet); break;
     case Step::kSync: may(10, Answer::kFault), may(30, Answer::kNoEvent); break;
     case Step::kCycle: may(15, Answer::kFault), may(15, Answer::kAborted); break;
     case Step::kErrorToOff:

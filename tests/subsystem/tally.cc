@@ -7,7 +7,7 @@ namespace {
 constexpr const char* kStepNames[kSteps] = {"init",   "kill-after-init", "on",           "sync",  "cycle",
                                             "off",    "off-then-kill",   "kill",         "reinit-in-off",
                                             "reinit-in-on", "clear",     "error-to-off", "error-to-on"};
-constexpr const char* kAnswerNames[kAnswers] = {"ok", "fault", "no-event", "aborted"};
+constexpr const char* kAnswerNames[kAnswers] = {"ok", "fault", "no-event", "aborted", "not-yet"};
 
 std::string signal_key(State state, Signal signal, bool aperiodic) {
   return std::string("signal ") + state_name(state) + " " + signal_name(signal) + (aperiodic ? " aperiodic" : "");

@@ -137,7 +137,7 @@ std::vector<UnitFate> LocalTarget::fates() {
   std::vector<UnitFate> fates;
   const VirtualPeers* const peers = application_.peers();
   for (std::size_t r = 0; peers != nullptr && r < application_.spec().rtpus.size(); ++r)
-    if (peers->is_dead(RtpuId(r)))
+    if (peers->died(RtpuId(r)) != kNever)
       fates.push_back({.name = std::string(application_.spec().rtpus[r].name),
                        .died = peers->died(RtpuId(r)) - loop_->origin()});
   std::ranges::stable_sort(fates, {}, [](const UnitFate& fate) { return fate.died.count; });

@@ -9,7 +9,7 @@ namespace chimera {
 std::string refusal_text(TaskSet& set, const SignalReport& report) {
   if (report.is_accepted) return {};
   if (report.why == Refusal::kIllegalSet) {
-    const auto wanted = set.life().wanted();
+    const auto wanted = set.life().judge().wanted();
     return Variables(set.spec()).explain({wanted.begin(), wanted.end()}, set.spec().tasks);
   }
   const Task& task = set.tasks()[report.task.index];
@@ -17,8 +17,9 @@ std::string refusal_text(TaskSet& set, const SignalReport& report) {
   if (report.why == Refusal::kFault) return what + ": " + std::string(task.spec->name) + ": " + task.faults.last.text;
   const std::string name(task.spec->name);
   if (report.why == Refusal::kNotYet) return what + ": " + name + " is not ready yet";
-  if (const TaskId rival = set.life().find_rival(report.task); report.why == Refusal::kRival && rival.is_valid())
-    return name + " has the resource '" + std::string(set.rivals().resource(report.task, rival)) + "' of " +
+  const SignalJudge& judge = set.life().judge();
+  if (const TaskId rival = judge.find_rival(report.task); report.why == Refusal::kRival && rival.is_valid())
+    return name + " has the resource '" + std::string(judge.rivals().resource(report.task, rival)) + "' of " +
            std::string(set.spec().tasks[rival.index].name) + ", which is created";
   return what + " is not legal for " + std::string(task.spec->name) + " in state " + state_name(report.before);
 }

@@ -34,8 +34,8 @@ void VirtualControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
 }
 
 void VirtualControl::follow(Nanoseconds now) noexcept {
-  peers_.followed(rtpu_);
-  if (std::exchange(followed_, peers_.changes()) == peers_.changes()) return;
+  const std::uint64_t changes = peers_.look(rtpu_);
+  if (std::exchange(followed_, changes) == changes) return;
   peers_.watch_flags(rtpu_, tasks_.flag());  // somebody may have died
   tasks_.sources().follow_others();
   tasks_.on_set_changed();

@@ -44,7 +44,7 @@ class VirtualControl final : public BoundaryListener {
   TaskSet& tasks_;
   ContextTap* tap_ = nullptr;
   std::vector<ScriptAct> acts_;  // to be carried out by the next edge
-  std::uint64_t followed_ = 0;   // VirtualPeers::changes(), then
+  std::uint64_t followed_ = 0;   // VirtualPeers::look(), then
   bool stops_all_ = false;
   bool is_flag_known_up_ = false;  // as it was recorded, or published, last
 };

@@ -40,6 +40,11 @@ State VirtualPeers::state(TaskId task) const noexcept {
   return peer.is_dead && state != State::kNotCreated ? State::kError : state;
 }
 
+PeerPresence VirtualPeers::presence(TaskId task) const noexcept {
+  const Peer& peer = peer_of(task);
+  return {!peer.is_dead, !peer.is_dead && state(task) != State::kNotCreated, peer.is_dead || peer.looked == changes_};
+}
+
 GroupReader VirtualPeers::outputs(TaskId task) const noexcept {
   const Peer& peer = peer_of(task);
   return peer.tasks == nullptr ? GroupReader() : peer.tasks->memory(task).reader();
@@ -89,7 +94,6 @@ bool VirtualPeers::take(RtpuId rtpu, VirtualPost& post) noexcept {
 
 void VirtualPeers::show_change(RtpuId by) noexcept {
   ++changes_;
-  if (by.is_valid()) peers_[by.index].shown = changes_;
   for (std::size_t r = 0; r < peers_.size(); ++r)
     if (RtpuId(r) != by) ring(RtpuId(r));
 }

@@ -37,11 +37,7 @@ class VirtualPeers final : public PeerView {
   void join(RtpuId rtpu, TaskSet& tasks);
 
   State state(TaskId task) const noexcept override;
-  bool lives(TaskId task) const noexcept override { return !peer_of(task).is_dead; }
-  bool is_held(TaskId task) const noexcept override { return lives(task) && state(task) != State::kNotCreated; }
-  bool has_seen(TaskId reader, TaskId shown) const noexcept override {
-    return peer_of(reader).is_dead || peer_of(reader).followed >= peer_of(shown).shown;
-  }
+  PeerPresence presence(TaskId task) const noexcept override;
   GroupReader outputs(TaskId task) const noexcept override;
   GroupReader constants(TaskId task) const noexcept override;
   GroupReader operator_variable(std::size_t index) const noexcept override;
@@ -56,10 +52,8 @@ class VirtualPeers final : public PeerView {
   void ring(RtpuId rtpu) noexcept { peers_[rtpu.index].bell.fetch_add(1, std::memory_order_relaxed); }
   /// States of tasks of that rtpu, or its part of the flag, changed: all others are rung.
   void show_change(RtpuId by) noexcept;
-  /// That rtpu has read the states of all others as they are now.
-  void followed(RtpuId by) noexcept { peers_[by.index].followed = changes_; }
-  /// Changes since the start.
-  std::uint64_t changes() const noexcept { return changes_; }
+  /// That rtpu looks at the states of all others. The changes since the start.
+  std::uint64_t look(RtpuId by) noexcept { return peers_[by.index].looked = changes_; }
   /// The next signal for the rtpu; false: there is none.
   bool take(RtpuId rtpu, VirtualPost& post) noexcept;
 
@@ -76,8 +70,7 @@ class VirtualPeers final : public PeerView {
 
   /// The rtpu is dead: its tasks that were created are in ERROR, what it published stands.
   void die(RtpuId rtpu, Nanoseconds now) noexcept;
-  bool is_dead(RtpuId rtpu) const noexcept { return peers_[rtpu.index].is_dead; }
-  /// When it died. Requires: it did.
+  /// When it died; kNever: it lives.
   Nanoseconds died(RtpuId rtpu) const noexcept { return peers_[rtpu.index].died; }
   /// Null: no task is on that rtpu.
   TaskSet* tasks(RtpuId rtpu) const noexcept { return peers_[rtpu.index].tasks; }
@@ -89,8 +82,8 @@ class VirtualPeers final : public PeerView {
   struct Peer {
     TaskSet* tasks = nullptr;
     bool is_dead = false;
-    Nanoseconds died;
-    std::uint64_t shown = 0, followed = 0;  // changes_, when it changed something last, and when it looked last
+    Nanoseconds died = kNever;
+    std::uint64_t looked = 0;  // changes_, when it did last
     std::atomic<std::uint32_t> bell{0};    // relaxed, pairs with nothing: one thread rings and listens
     std::atomic<std::uint32_t> raised{0};  // relaxed, pairs with nothing: one thread writes and reads
     std::vector<VirtualPost> posts;        // room for kMostPosts

@@ -122,7 +122,7 @@ SignalReport VirtualRtpus::signal(TaskId task, Signal signal) {
 
 Result<void> VirtualRtpus::spawn_all() {
   for (const TaskId id : peers_.spec().init_order) {
-    if (!unit_of(id).tasks.rivals().is_created_at_start(id)) continue;
+    if (!unit_of(id).tasks.life().judge().rivals().is_created_at_start(id)) continue;
     const SignalReport report = signal(id, Signal::kSpawn);
     if (unit_of(id).tasks.tasks()[id.index].state == State::kOff) continue;
     SignalReport refused = report;
@@ -302,7 +302,7 @@ Nanoseconds VirtualRtpus::next_event() noexcept {
   for (const auto& unit : units_)
     if (!unit->is_dead) next = std::min(next, unit->next);
   for (const Silence& silence : silences_)
-    if (!peers_.is_dead(peers_.spec().tasks[silence.task().index].rtpu)) next = std::min(next, silence.due());
+    if (peers_.presence(silence.task()).lives) next = std::min(next, silence.due());
   return next;
 }
 

@@ -142,7 +142,7 @@ TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThe
   scene.hangs_at = milliseconds(4).count;
   go(milliseconds(11));
   EXPECT_EQ(state(kPrimary), State::kError);
-  ASSERT_TRUE(units->peers().is_dead(RtpuId(0u)));
+  ASSERT_NE(units->peers().died(RtpuId(0u)), kNever);
   EXPECT_EQ(units->peers().died(RtpuId(0u)) - units->rtpus().origin(), milliseconds(7));
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
@@ -155,7 +155,7 @@ TEST_P(VirtualStandbysTest, APrimaryThatIsSilentIsLeftAloneWhileNobodyCouldTakeO
   scene.hangs_at = milliseconds(4).count;
   go(milliseconds(11), {death_at(microseconds(500), 2)});
   EXPECT_EQ(state(kPrimary), State::kOn);
-  EXPECT_FALSE(units->peers().is_dead(RtpuId(0u)));
+  EXPECT_EQ(units->peers().died(RtpuId(0u)), kNever);
 }
 
 TEST_P(VirtualStandbysTest, AHotOneIsReadFromTheDeathOnWhereItIs) {

@@ -32,7 +32,7 @@ VirtualSwitches::VirtualSwitches(VirtualPeers& peers, std::size_t n) : peers_(pe
 std::uint16_t VirtualSwitches::living() const noexcept {
   std::uint32_t living = 0;
   for (std::uint32_t r = 0; r < members_.size(); ++r)
-    if (peers_.tasks(RtpuId(r)) != nullptr && !peers_.is_dead(RtpuId(r))) living |= 1u << r;
+    if (peers_.tasks(RtpuId(r)) != nullptr && peers_.died(RtpuId(r)) == kNever) living |= 1u << r;
   return static_cast<std::uint16_t>(living);
 }
 
