@@ -76,6 +76,7 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
     device.not_ready = 2;
     for (const ScriptAct& act : acts)
       if (act.kind == ScriptAct::Kind::kDie) device.death = act.at;
+    std::ranges::stable_sort(acts, {}, &ScriptAct::at);
     acts_ = std::move(acts);
     app = std::make_unique<testing::TestApplication>();
     app->rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
