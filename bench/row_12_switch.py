@@ -13,6 +13,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "tests" / "processes"))
+from percentile import percentile  # noqa: E402
 from system import System  # noqa: E402
 
 SWITCHES, RESTARTS, WINDOWS, SECONDS, EACH = 200, 20, 20, 0.5, 25
@@ -43,10 +44,6 @@ operator: {q_ref: [0 rad, 1.4 rad, -1.4 rad, 0 rad, 0 rad, 0 rad]}
 configurations: {all: [probe], both: [probe, large]}
 start: all
 """.replace("MODEL", str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "library/puma_torque/puma560.xml"))
-
-
-def percentile(values, share):
-    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
 def switches():

@@ -14,6 +14,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "tests" / "processes"))
+from percentile import percentile  # noqa: E402
 from system import System, await_that  # noqa: E402
 
 GOAL_US = 200
@@ -69,10 +70,6 @@ def once(system, with_memory_holder):
         system.signal("on", "victim")
     system.await_state("victim", "ON")
     return (ended["at_ns"] - began) / 1e3
-
-
-def percentile(values, share):
-    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
 def lost(system):

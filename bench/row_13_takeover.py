@@ -8,7 +8,6 @@ turn with it: nobody stands in; the manager starts the unit again, or a client t
 the other task ON. Another task of the standby's unit must lose no cycle by a death: counted beside as long a time in
 which nobody dies."""
 import json
-import math
 import os
 import pathlib
 import signal
@@ -17,6 +16,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "tests" / "processes"))
+from percentile import percentile  # noqa: E402
 from system import System, await_that  # noqa: E402
 
 PERIOD_US = 1000
@@ -114,10 +114,6 @@ def once(main, spare, strike, who):
         with_it = lost_in_window(system, take_over)
         assert system.state(who) == "ON"
         return *took, with_it, without
-
-
-def percentile(values, share):
-    return sorted(values)[math.ceil(share * len(values)) - 1]
 
 
 def told(times):

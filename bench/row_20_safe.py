@@ -15,6 +15,7 @@ import time
 import tty
 
 sys.path.insert(0, str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "tests" / "processes"))
+from percentile import percentile  # noqa: E402
 from system import System, await_that  # noqa: E402
 
 GOAL_US = 1000
@@ -87,10 +88,6 @@ def once(system, line):
         system.signal("on", "drive")
     system.await_state("drive", "ON")
     return took
-
-
-def percentile(values, share):
-    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
 def p50_p99(times):

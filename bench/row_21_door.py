@@ -13,6 +13,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "tests" / "hostile"))
 from costly import LARGE_VALUES, Load, worst, worst_of_values  # noqa: E402
+from percentile import percentile  # noqa: E402
 from system import TWO_UNITS, System, await_that  # noqa: E402
 
 GOAL_MS = 100
@@ -27,10 +28,6 @@ def window(system, found):
             system.call(method, **parameters(n))
             found[what].append((time.monotonic_ns() - began) / 1e6)
             time.sleep(0.025)
-
-
-def percentile(values, share):
-    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
 def measure(description, asked, answers, name):

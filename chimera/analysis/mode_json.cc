@@ -44,6 +44,12 @@ Json json_of(const Configuration& configuration, const ModeConstant& constant) {
           {"tasks", names_json(configuration, constant.users)}};
 }
 
+Json json_of(const Configuration& configuration, const ModeResource& resource) {
+  return {{"resource", resource.text},
+          {"before", configuration.tasks()[resource.before].name},
+          {"after", configuration.tasks()[resource.after].name}};
+}
+
 Json json_of(const Configuration& configuration, const ModeNode& node) {
   return {{"name", node.name},
           {"configuration", configuration.sets()[node.set].name},
@@ -52,13 +58,15 @@ Json json_of(const Configuration& configuration, const ModeNode& node) {
 }
 
 Json json_of(const Configuration& configuration, const ModeReport& report, const ModeEdge& edge) {
-  Json askers = Json::array(), cpus = Json::array(), constants = Json::array();
+  Json askers = Json::array(), cpus = Json::array(), constants = Json::array(),
+       resources = Json::array();
   for (const ModeAsker& asker : edge.askers)
     askers.push_back({{"cause", cause_word(asker.cause)},
                       {"task", configuration.tasks()[asker.task].name},
                       {"constant", asker.constant.empty() ? Json() : Json(asker.constant)}});
   for (const CpuTransition& cpu : edge.cpus) cpus.push_back(json_of(configuration, cpu));
   for (const ModeConstant& constant : edge.constants) constants.push_back(json_of(configuration, constant));
+  for (const ModeResource& resource : edge.resources) resources.push_back(json_of(configuration, resource));
   return {{"from", report.nodes[edge.from].name},
           {"to", report.nodes[edge.to].name},
           {"asked_by", std::move(askers)},
@@ -66,6 +74,7 @@ Json json_of(const Configuration& configuration, const ModeReport& report, const
           {"way", way_word(edge.way())},
           {"cpus", std::move(cpus)},
           {"constants", std::move(constants)},
+          {"resources", std::move(resources)},
           {"initialised_anew", names_json(configuration, edge.anew)}};
 }
 

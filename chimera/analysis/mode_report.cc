@@ -26,6 +26,7 @@ class ModeWriter {
     schedule_.prepare(configuration.spec(), memory_);
     planner_.prepare(configuration.spec(), memory_);
     users_.prepare(configuration.spec(), memory_);
+    rivals_.prepare(configuration.spec(), memory_);
   }
 
   ModeReport write() {
@@ -41,7 +42,7 @@ class ModeWriter {
       if (set != configuration_.start() && !is_asked_for(set)) report_.by_operator.push_back(set);
     for (const ModeWish& wish : wishes_) warn(wish);
     for (const ModeEdge& edge : report_.edges)
-      if (edge.way() == ModeWay::kSlowUnlessSame) warn(edge);
+      if (edge.way() == ModeWay::kSlowUnlessSame || !edge.resources.empty()) warn(edge);
     return std::move(report_);
   }
 
@@ -123,6 +124,7 @@ class ModeWriter {
       if (wish.set == to && has(from, wish.asker.task)) made.askers.push_back(wish.asker);
     judge_deadlines(made);
     find_constants(made);
+    find_resources(made);
     return made;
   }
 
@@ -152,6 +154,13 @@ class ModeWriter {
       ModeConstant made = constant(ConstantId(c), plan, in_force);
       if (!made.users.empty()) edge.constants.push_back(std::move(made));
     }
+  }
+
+  void find_resources(ModeEdge& edge) {
+    for (const TaskId after : report_.nodes[edge.to].tasks)
+      for (const TaskId before : report_.nodes[edge.from].tasks)
+        if (rivals_.are(before, after))
+          edge.resources.push_back({std::string(rivals_.resource(before, after)), before.index, after.index});
   }
 
   /// Without those that a task makes which stays: they follow from others.
@@ -192,12 +201,15 @@ class ModeWriter {
   void warn(const ModeEdge& edge) {
     std::string names;
     for (const ModeConstant& each : edge.constants) names += (names.empty() ? "'" : ", '") + each.name + "'";
+    const std::string unless = "unless the values are the same of " +
+                               std::string(edge.constants.size() == 1 ? "constant " : "constants ") + names;
+    const std::string why = edge.resources.empty() ? unless : "because resource '" + edge.resources[0].text +
+                                                                  "' changes hands";
     for (const ModeAsker& asker : edge.askers) {
       if (!asker.is_reaction()) continue;
       report_.warnings.push_back(asker_text(configuration_, asker) + " asks for configuration '" +
                                  report_.nodes[edge.to].name + "': from '" + report_.nodes[edge.from].name +
-                                 "' that is slow, under the flag, unless the values are the same of " +
-                                 (edge.constants.size() == 1 ? "constant " : "constants ") + names);
+                                 "' that is slow, under the flag, " + why);
     }
   }
 
@@ -207,6 +219,7 @@ class ModeWriter {
   SwitchSchedule schedule_;
   SwitchPlanner planner_;
   ConstantUsers users_;
+  Rivals rivals_;
   std::vector<TaskStanding> standing_;
   std::vector<ModeWish> wishes_;
   ModeReport report_;
@@ -215,16 +228,20 @@ class ModeWriter {
 }  // namespace
 
 ModeWay ModeEdge::way() const noexcept {
-  const auto is_broken = [](const CpuTransition& cpu) { return cpu.is_lost() && cpu.was_promised; };
   if (is_takeover) return ModeWay::kTakeover;
-  if (std::ranges::any_of(cpus, is_broken)) return ModeWay::kSlow;
+  if (breaks_promise() || !resources.empty()) return ModeWay::kSlow;
   return anew.empty() ? ModeWay::kFast : ModeWay::kSlowUnlessSame;
+}
+
+bool ModeEdge::breaks_promise() const noexcept {
+  return !is_takeover &&
+         std::ranges::any_of(cpus, [](const CpuTransition& cpu) { return cpu.is_lost() && cpu.was_promised; });
 }
 
 bool ModeEdge::has_reaction() const noexcept { return std::ranges::any_of(askers, &ModeAsker::is_reaction); }
 
 bool ModeReport::is_accepted() const noexcept {
-  return std::ranges::none_of(edges, [](const ModeEdge& edge) { return edge.is_slow() && edge.has_reaction(); });
+  return std::ranges::none_of(edges, [](const ModeEdge& edge) { return edge.breaks_promise() && edge.has_reaction(); });
 }
 
 ModeReport mode_report(const Configuration& configuration, const Library& library) {

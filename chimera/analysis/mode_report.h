@@ -33,6 +33,12 @@ struct ModeConstant {
   std::vector<std::size_t> users;     ///< those that stay
 };
 
+/// A resource that changes hands: runtime/rivals.h.
+struct ModeResource {
+  std::string text;
+  std::size_t before = 0, after = 0;  ///< who has it, in Configuration::tasks()
+};
+
 /// What may be ON: a configuration, or one with a standby in the place of its primary.
 struct ModeNode {
   std::string name;           ///< "run", "run with spare for main"
@@ -52,11 +58,13 @@ struct ModeEdge {
   std::vector<ModeAsker> askers;        ///< of a switch, in the order of tasks
   std::vector<CpuTransition> cpus;      ///< on which a task arrives or leaves
   std::vector<ModeConstant> constants;  ///< of a switch
+  std::vector<ModeResource> resources;  ///< of a switch
   std::vector<std::size_t> anew;        ///< tasks that stay and are initialised anew if the values of constants differ
 
-  /// kSlow: a promise that holds before would not hold if both were there.
+  /// kSlow: a promise that holds before would not hold if both were there, or a resource changes hands.
   ModeWay way() const noexcept;
-  bool is_slow() const noexcept { return way() == ModeWay::kSlow; }
+  /// A promise that holds before would not hold if both were there.
+  bool breaks_promise() const noexcept;
   bool has_reaction() const noexcept;
 };
 
@@ -66,7 +74,7 @@ struct ModeReport {
   std::vector<std::size_t> by_operator;  ///< configurations that are not the start and that nobody else asks for
   std::vector<std::string> warnings;
 
-  /// No switch that a reaction asks for is slow.
+  /// No switch that a reaction asks for is slow because of a deadline.
   bool is_accepted() const noexcept;
 };
 

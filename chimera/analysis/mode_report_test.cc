@@ -23,6 +23,13 @@ PortDescriptor whole(std::string name, std::uint32_t kind) {
   return out;
 }
 
+PortDescriptor device(std::string name) {
+  PortDescriptor out = port(std::move(name), CHIMERA_RESOURCE);
+  out.type = CHIMERA_STRING;
+  out.element_size = 256;
+  return out;
+}
+
 Descriptor component(std::string name, std::vector<PortDescriptor> ports) {
   Descriptor made;
   made.name = std::move(name);
@@ -41,7 +48,9 @@ const Library& library() {
        component("user", {port("length", CHIMERA_IN_CONST)}),
        component("sized_tool", {whole("n", CHIMERA_OUT_CONST), port("u", CHIMERA_OUT_VAR, "[n<=4]")}),
        component("sized_user", {port("u", CHIMERA_IN_VAR, "[m<=4]")}),
-       component("source", {port("y", CHIMERA_OUT_VAR)}), component("sink", {port("y", CHIMERA_IN_VAR)})},
+       component("source", {port("y", CHIMERA_OUT_VAR)}),
+       component("device", {device("tty"), port("y", CHIMERA_OUT_VAR)}),
+       component("sink", {port("y", CHIMERA_IN_VAR)})},
       our_units());
   return kLibrary;
 }
@@ -92,7 +101,7 @@ TEST(ModeReport, ConstantOfAnotherTaskMayMakeASwitchSlow) {
   EXPECT_EQ(text(made, there.constants[0]), "mass: light, heavy; arm");
   EXPECT_EQ(anew(made, there), "arm user");  // the user follows from the arm
   EXPECT_EQ(text(made, edge(report, "b", "a").constants.at(0)), "mass: heavy, light; arm");
-  EXPECT_FALSE(there.is_slow());
+  EXPECT_FALSE(there.breaks_promise());
   EXPECT_TRUE(report.is_accepted());
   EXPECT_TRUE(report.warnings.empty());
 }
@@ -103,7 +112,7 @@ TEST(ModeReport, NamesConstantsAndTakeoversAsJson) {
   EXPECT_NE(tools.find(R"("from":"a","to":"b","asked_by":[],"legal":true,"way":"slow-unless-same","cpus":[)"),
             std::string::npos) << tools;
   EXPECT_NE(tools.find(R"("constants":[{"constant":"mass","before":"light","after":"heavy","tasks":["arm"]}],)"
-                       R"("initialised_anew":["arm","user"]})"),
+                       R"("resources":[],"initialised_anew":["arm","user"]})"),
             std::string::npos) << tools;
   const std::string spared = json_of(verified(
       "tasks:\n"
@@ -219,6 +228,26 @@ TEST(ModeReport, TakeoverThatMayMissIsNoRefusal) {
   EXPECT_EQ(takeover.cpus.at(1).guarantee, Guarantee::kNo);
   EXPECT_EQ(takeover.way(), ModeWay::kTakeover);
   EXPECT_TRUE(report.is_accepted());
+}
+
+TEST(ModeReport, AResourceThatChangesHandsIsSlowAndWarnedOf) {
+  const Configuration made = verified(
+      "tasks:\n  one: {component: device, resources: {tty: a}, on_fault: {switch: second}}\n"
+      "  two: {component: device, resources: {tty: a}}\n"
+      "  other: {component: device, resources: {tty: b}}\n  user: {component: sink}\n"
+      "configurations: {first: [one, user], second: [two, user], third: [other, user]}\n");
+  const ModeReport report = mode_report(made, library());
+  const ModeEdge& there = edge(report, "first", "second");
+  EXPECT_EQ(there.way(), ModeWay::kSlow);
+  ASSERT_EQ(there.resources.size(), 1u);
+  EXPECT_EQ(there.resources[0].text, "a");
+  EXPECT_EQ(made.tasks()[there.resources[0].before].name, "one");
+  EXPECT_EQ(made.tasks()[there.resources[0].after].name, "two");
+  EXPECT_EQ(edge(report, "first", "third").way(), ModeWay::kFast);
+  EXPECT_TRUE(report.is_accepted()) << "no deadline is at stake";
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_EQ(report.warnings[0], "on_fault of one asks for configuration 'second': from 'first' that is slow, under the "
+                                "flag, because resource 'a' changes hands");
 }
 
 }  // namespace

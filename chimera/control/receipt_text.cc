@@ -169,7 +169,8 @@ std::string json_of(const TaskPart& part, const ApplicationSpec& spec) {
   const auto time = [](Nanoseconds ns) { return ns < Nanoseconds{} ? std::nullopt : std::optional(ns); };
   return "{\"task\": " + json_string(std::string(spec.tasks[part.task.index].name)) + ", \"move\": \"" +
          word(part.move) + "\", \"on_ns\": " + json_ns(time(part.on)) + ", \"off_ns\": " + json_ns(time(part.off)) +
-         ", \"lost\": " + std::to_string(part.lost) + "}";
+         ", \"lost\": " + std::to_string(part.lost) + ", \"delay_ns\": " + json_ns(time(part.delay)) +
+         ", \"delay_before_ns\": " + json_ns(time(part.delay_before)) + "}";
 }
 
 std::string json_of(const VariablePart& part, const ApplicationSpec& spec) {
@@ -180,7 +181,8 @@ std::string json_of(const VariablePart& part, const ApplicationSpec& spec) {
          json_name(has_from, has_from ? spec.tasks[h.from.task.index].name : "") + ", \"to\": " +
          json_string(std::string(spec.tasks[h.to.task.index].name)) + ", \"step_of_on\": " +
          json_number(part.step_of_on.is_known, part.step_of_on.size) + ", \"step\": " +
-         json_number(step.is_known, step.size) + ", \"unit\": " + json_string(unit_of(part, spec)) +
+         json_number(step.is_known, step.size) + ", \"usual_step\": " +
+         json_number(part.usual.is_known, part.usual.size) + ", \"unit\": " + json_string(unit_of(part, spec)) +
          ", \"limit\": " + json_number(step.limit > 0, step.limit) +
          ", \"beyond\": " + (step.is_beyond ? "true" : "false") + "}";
 }

@@ -29,8 +29,8 @@ struct Told {
     receipt.before = 0;
     receipt.after = 1;
     receipt.asked = seconds(3);
-    parts[0] = {kTorque, TaskMove::kArrives, microseconds(30), Nanoseconds{-1}, 0};
-    parts[1] = {kPid, TaskMove::kLeaves, Nanoseconds{-1}, microseconds(20), 1};
+    parts[0] = {kTorque, TaskMove::kArrives, microseconds(30), Nanoseconds{-1}, 0, microseconds(4), Nanoseconds{-1}};
+    parts[1] = {kPid, TaskMove::kLeaves, Nanoseconds{-1}, microseconds(20), 1, Nanoseconds{-1}, microseconds(7)};
     receipt.tasks = parts;
     moved.handover = {kTau, {kPid, 0}, {kTorque, 0}};
     receipt.variables = {&moved, 1};
@@ -90,7 +90,7 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
   const std::string slow = begin + "slowly, for the transition from 'pid' to 'torque' is not schedulable on CPU 1: "
                                    "a cycle of task 'torque' may ";
   const std::string after = ", after 12.000 ms, 11 ms under the flag: 1 task arrives, 1 leaves, 1 cycle lost\n";
-  told.moved = {told.moved.handover, {}, {}};
+  told.moved = {told.moved.handover, {}, {}, {}};
   EXPECT_EQ(told.text(), slow + "take longer than its deadline of 1 ms" + after);
   told.receipt.way.deadline.takes = microseconds(1200);
   EXPECT_EQ(told.text(), slow + "take 1.2 ms, its deadline is 1 ms" + after);
@@ -197,6 +197,7 @@ TEST(ReceiptText, AsJsonHasEveryKey) {
   Told told;
   told.be_done();
   told.moved.step_of_on = {0.25, 5, true, false};
+  told.moved.usual = {0.125, 0, true, false};
   EXPECT_EQ(told.json(),
             "{\"number\": 3, \"origin_ns\": null, \"from\": \"pid\", \"to\": \"torque\", \"way\": \"fast\", "
             "\"slow_because\": [], \"slow_why\": null, \"flag_ns\": 0, \"reinitialised\": [], \"not_back\": null, "
@@ -205,10 +206,12 @@ TEST(ReceiptText, AsJsonHasEveryKey) {
             "\"at_ns\": 2001500000, \"ended_ns\": 2002000000, "
             "\"took_ns\": {\"arming\": 1500000, \"agreeing\": 0, \"ending\": 500000}, "
             "\"tasks\": [{\"task\": \"torque\", "
-            "\"move\": \"arrives\", \"on_ns\": 30000, \"off_ns\": null, \"lost\": 0}, {\"task\": \"pid\", "
-            "\"move\": \"leaves\", \"on_ns\": null, \"off_ns\": 20000, \"lost\": 1}], \"variables\": "
+            "\"move\": \"arrives\", \"on_ns\": 30000, \"off_ns\": null, \"lost\": 0, \"delay_ns\": 4000, "
+            "\"delay_before_ns\": null}, {\"task\": \"pid\", "
+            "\"move\": \"leaves\", \"on_ns\": null, \"off_ns\": 20000, \"lost\": 1, \"delay_ns\": null, "
+            "\"delay_before_ns\": 7000}], \"variables\": "
             "[{\"variable\": \"tau\", \"from\": \"pid\", \"to\": \"torque\", \"step_of_on\": 0.25, \"step\": 0.25, "
-            "\"unit\": \"N.m\", \"limit\": 5, \"beyond\": false}]}");
+            "\"usual_step\": 0.125, \"unit\": \"N.m\", \"limit\": 5, \"beyond\": false}]}");
   told.receipt.before = kNoSet;
   told.receipt.end = SwitchEnd::kAborted;
   told.receipt.why = NoSwitch::kRunEnded;

@@ -135,6 +135,8 @@ void Drill::look(Nanoseconds now) {
   DrillOutcome& outcome = present_->outcome;
   if (!world_.is_ending() && goes_on(now)) return;
   outcome.flag_for = now - present_->raised;
+  for (const DrillPart& part : outcome.tasks)  // seen after this turn of the manager had begun
+    if (part.verdict == DrillVerdict::kSafe) outcome.flag_for = std::max(outcome.flag_for, part.after);
   show_flag(false);
   const Present over = std::move(*present_);
   present_.reset();

@@ -22,10 +22,13 @@ void HandoverSteps::prepare() {
   SetupMemory& memory = set_.setup_memory();
   has_last_ = memory.take<bool>(spec.variables.size());
   last_ = memory.take<std::span<std::byte>>(spec.variables.size());
+  watched_ = memory.take<std::span<std::byte>>(spec.variables.size());
+  watched_sequence_ = memory.take<std::uint64_t>(spec.variables.size());
   for (std::size_t v = 0; v < spec.variables.size(); ++v) {
     std::uint32_t most = 0;
     for (const PortOf& producer : spec.variables[v].producers) most = std::max(most, bytes_of(spec, producer));
     last_[v] = memory.take_bytes(most, alignof(double));
+    watched_[v] = memory.take_bytes(most, alignof(double));
   }
 }
 
@@ -52,15 +55,53 @@ void HandoverSteps::keep(const Handover& handover, const chimera_slot* slot, std
   std::memcpy(last.data(), reinterpret_cast<const std::byte*>(slot + 1) + offset, bytes_of(set_.spec(), handover.from));
 }
 
+void HandoverSteps::begin_watch() noexcept {
+  std::fill(watched_sequence_.begin(), watched_sequence_.end(), std::uint64_t{0});
+}
+
+void HandoverSteps::keep_watched(const Handover& handover) noexcept {
+  const std::size_t v = handover.variable.index;
+  if (watched_sequence_[v] == 0) return;
+  std::memcpy(last_[v].data(), watched_[v].data(), bytes_of(set_.spec(), handover.from));
+  has_last_[v] = true;
+}
+
+// The step of `off` is none of its cycles.
+void HandoverSteps::watch(std::span<VariablePart> variables) noexcept {
+  for (VariablePart& part : variables) {
+    const Handover& handover = part.handover;
+    const TaskId from = handover.from.task;
+    if (!set_.is_mine(handover.to.task) || !from.is_valid()) continue;
+    const bool is_on = (set_.is_mine(from) ? set_.tasks()[from.index].state : set_.others()->state(from)) == State::kOn;
+    const Source& source = set_.sources().source(handover.variable);
+    const chimera_slot* const slot = set_.sources().latest(handover.variable);
+    std::uint64_t& seen = watched_sequence_[handover.variable.index];
+    if (!is_on || slot == nullptr || ((slot->valid >> source.bit) & 1u) == 0 || slot->sequence == seen) continue;
+    const std::byte* const value = reinterpret_cast<const std::byte*>(slot + 1) + source.offset;
+    const std::span<std::byte> before = watched_[handover.variable.index];
+    const ValueStep step = this->step(handover, before.data(), value);
+    if (seen != 0 && slot->sequence == seen + 1 && step.is_known && !(step.size <= part.usual.size)) part.usual = step;
+    if (seen != 0 && slot->sequence == seen + 1 && step.is_known) part.usual.is_known = true;
+    seen = slot->sequence;
+    std::memcpy(before.data(), value, bytes_of(set_.spec(), handover.from));
+  }
+}
+
+ValueStep HandoverSteps::step(const Handover& handover, const std::byte* from, const std::byte* to) const noexcept {
+  const Task& producer = set_.tasks()[handover.to.task.index];
+  const TaskMemory& memory = set_.memory(producer.id);
+  const chimera_port* const port = memory.output_port(handover.to.index);
+  if (port == nullptr) return {};  // it is not created yet
+  const PortSpec& spec = *memory.output_spec(handover.to.index);
+  return step_between(spec, producer.component->ports[spec.declared], port->count, from, to);
+}
+
 ValueStep HandoverSteps::step_to(const Handover& handover) noexcept {
   const Task& producer = set_.tasks()[handover.to.task.index];
   const chimera_slot* slot = producer.group.published();
   if (!has_last_[handover.variable.index] || ((slot->valid >> handover.to.index) & 1u) == 0) return {};
-  const TaskMemory& memory = set_.memory(producer.id);
-  const PortSpec& spec = *memory.output_spec(handover.to.index);
-  const auto* values = reinterpret_cast<const std::byte*>(slot + 1) + memory.output_offset(handover.to.index);
-  return step_between(spec, producer.component->ports[spec.declared], memory.output_port(handover.to.index)->count,
-                      last_[handover.variable.index].data(), values);
+  const std::uint32_t offset = set_.memory(producer.id).output_offset(handover.to.index);
+  return step(handover, last_[handover.variable.index].data(), reinterpret_cast<const std::byte*>(slot + 1) + offset);
 }
 
 }  // namespace chimera

@@ -22,16 +22,27 @@ class HandoverSteps {
   void keep_last(std::span<const VariablePart> variables) noexcept;
   /// The same of the one variable, of a producer of this context that has gone.
   void keep_last_of(const Handover& handover) noexcept;
+  /// Compares what the present producers before published last with what they had at the last call: a step between two
+  /// publications in a row that is larger than `usual` takes its place. Of variables that go to a task of this
+  /// context.
+  void watch(std::span<VariablePart> variables) noexcept;
+  /// Of a producer of another context that has gone: what watch() saw of it last while it was ON.
+  void keep_watched(const Handover& handover) noexcept;
+  /// Forgets what watch() has seen.
+  void begin_watch() noexcept;
   /// From the value that was kept to the latest one of the producer after, a task of this context. Not known when one
   /// of the two is not there.
   ValueStep step_to(const Handover& handover) noexcept;
 
  private:
+  ValueStep step(const Handover& handover, const std::byte* from, const std::byte* to) const noexcept;
   void keep(const Handover& handover, const chimera_slot* slot, std::uint32_t offset, std::uint32_t bit) noexcept;
 
   TaskSet& set_;
   std::span<std::span<std::byte>> last_;  // by variable
   std::span<bool> has_last_;              // by variable
+  std::span<std::span<std::byte>> watched_;     // by variable
+  std::span<std::uint64_t> watched_sequence_;  // by variable: of the publication that is in watched_; 0: none
 };
 
 }  // namespace chimera

@@ -34,6 +34,8 @@ struct TaskPart {
   Nanoseconds on{-1};
   Nanoseconds off{-1};
   std::uint64_t lost = 0;  ///< releases of its grid within the switch, while it was ON, without a completed cycle
+  Nanoseconds delay{-1};         ///< longest start delay of its cycles within the switch (start_delays.h); -1: no cycle
+  Nanoseconds delay_before{-1};  ///< the longest of the run before it; -1: it had no cycle
 };
 
 /// One variable that got another producer.
@@ -41,6 +43,7 @@ struct VariablePart {
   Handover handover;
   ValueStep step_of_on;    ///< from the last value of the producer before to what `on` of the one after wrote
   ValueStep step_of_cycle; ///< to what the first cycle of the one after wrote
+  ValueStep usual;         ///< the largest between two publications in a row of the producer before, until the change
 };
 
 /// The end of a switch.

@@ -12,6 +12,7 @@ void SwitchRecord::prepare(std::size_t n_receipts) {
   before_ = set_.setup_memory().take<std::uint64_t>(spec.tasks.size());
   cycles_ = set_.setup_memory().take<std::uint64_t>(spec.tasks.size());
   steps_.prepare();
+  delays_.prepare(spec.tasks.size(), set_.setup_memory());
 }
 
 SwitchReceipt* SwitchRecord::add_beside() noexcept {
@@ -31,7 +32,12 @@ void SwitchRecord::take_up(const SwitchPlan& plan) noexcept {
   receipt_->reinitialised = receipt_->reinitialised.first(0);
   const auto list = [&](std::span<const TaskId> ids, TaskMove move) {
     for (const TaskId id : ids) {
-      receipt_->tasks.data()[n++] = {id, move, Nanoseconds{-1}, Nanoseconds{-1}, 0};
+      TaskPart& part = receipt_->tasks.data()[n++];
+      part = {};
+      part.task = id;
+      part.move = move;
+      if (set_.tasks()[id.index].is_busy) delays_.begin_later(id);
+      else part.delay_before = delays_.begin(set_.tasks()[id.index]);
       before_[id.index] = losses(id);
     }
   };
@@ -40,7 +46,17 @@ void SwitchRecord::take_up(const SwitchPlan& plan) noexcept {
   list(plan.staying, TaskMove::kStays);
   receipt_->tasks = {receipt_->tasks.data(), n};
   receipt_->variables = {receipt_->variables.data(), plan.handovers.size()};
-  for (std::size_t h = 0; h < plan.handovers.size(); ++h) receipt_->variables[h] = {plan.handovers[h], {}, {}};
+  for (std::size_t h = 0; h < plan.handovers.size(); ++h) receipt_->variables[h] = {plan.handovers[h], {}, {}, {}};
+  steps_.begin_watch();
+}
+
+// A task with a job under way is looked at when that has ended.
+void SwitchRecord::watch() noexcept {
+  for (TaskPart& part : receipt_->tasks) {
+    const Task& task = set_.tasks()[part.task.index];
+    if (set_.is_mine(part.task) && !task.is_busy) part.delay = std::max(part.delay, delays_.look(task));
+  }
+  if (receipt_->at == kNever) steps_.watch(receipt_->variables);
 }
 
 void SwitchRecord::took(TaskId task, Method method, Nanoseconds time) noexcept {
@@ -69,6 +85,8 @@ const VariablePart* SwitchRecord::arrives(TaskId id, Nanoseconds now) noexcept {
   const VariablePart* found = nullptr;
   for (VariablePart& part : receipt_->variables) {
     if (part.handover.to.task != id) continue;
+    const TaskId from = part.handover.from.task;
+    if (from.is_valid() && !set_.is_mine(from)) steps_.keep_watched(part.handover);
     part.step_of_on = steps_.step_to(part.handover);
     if (part.step_of_on.is_beyond && found == nullptr) found = &part;
   }
@@ -135,6 +153,7 @@ bool SwitchRecord::has_seen_first_cycles(Nanoseconds now) noexcept {
 }
 
 void SwitchRecord::end(SwitchEnd end, Nanoseconds now) noexcept {
+  watch();
   receipt_->end = end;
   receipt_->ended = now;
   const bool was_committed = end == SwitchEnd::kDone;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "chimera/runtime/handover_steps.h"
+#include "chimera/runtime/start_delays.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/switch_receipt.h"
 #include "chimera/runtime/task_set.h"
@@ -31,6 +32,8 @@ class SwitchRecord {
 
   /// Lists the tasks and variables of the plan: losses count from here.
   void take_up(const SwitchPlan& plan) noexcept;
+  /// Follows the start delays of the tasks and, until the change, the steps of the variables: at each edge meanwhile.
+  void watch() noexcept;
   void took(TaskId task, Method method, Nanoseconds time) noexcept;
   /// Holds what `on` of the arriving tasks wrote against the last values. Null: all within their limits.
   const VariablePart* find_too_large_step() noexcept;
@@ -65,6 +68,7 @@ class SwitchRecord {
 
   TaskSet& set_;
   HandoverSteps steps_;
+  StartDelays delays_;
   SwitchReceipts receipts_;
   SwitchReceipt* receipt_ = nullptr;
   std::span<std::uint64_t> before_;  // by task: losses() when its part of the switch began

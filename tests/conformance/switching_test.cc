@@ -283,6 +283,21 @@ TEST_P(Switches, AStepOfTheFirstCycleBeyondTheLimitIsTold) {
   EXPECT_EQ(u->step_of_cycle.limit, 0.5);
 }
 
+// One cycle of the beacon takes 1.4 ms within the switch: whoever else is ON starts late, and the receipt says so.
+TEST_P(Switches, TheReceiptHasTheLongestDelayOfAStart) {
+  scene.long_beacon_at = microseconds(5700);
+  scene.long_beacon = microseconds(1400);
+  const auto receipts = go(milliseconds(40), {to(kObserved, microseconds(5600))});
+  ASSERT_EQ(receipts[0].end, SwitchEnd::kDone) << static_cast<int>(receipts[0].why);
+  Nanoseconds longest, before;
+  for (const TaskPart& part : receipts[0].tasks) {
+    longest = std::max(longest, part.delay);
+    before = std::max(before, part.delay_before);
+  }
+  EXPECT_GE(longest, microseconds(300));
+  EXPECT_LE(before, microseconds(200));
+}
+
 TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
   scene.on_takes = microseconds(600);
   const auto receipts = go(milliseconds(20), {to(kDirect, milliseconds(2)), to(kObserved, microseconds(5600)),

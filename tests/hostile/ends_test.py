@@ -127,7 +127,7 @@ class Ends(unittest.TestCase):
 
     def test_a_run_of_stated_length_and_an_off_in_the_middle_of_one(self):
         with System(application([("executive", "off", "throw"), ("executive", "off", "segv")]),
-                    ["--for", "1 s"]) as system:
+                    ["--for", "2.5 s"]) as system:
             system.arm()
             system.signal("off", "t0")  # its error says that it has recovered
             with self.assertRaises(Refused):

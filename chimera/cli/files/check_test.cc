@@ -145,10 +145,11 @@ TEST(CheckModes, AsJsonHasEveryKey) {
       "{\"name\":\"late\",\"start\":false},{\"name\":\"light\",\"start\":false}],\"takeovers\":[],\"transitions\":["
       "{\"from\":\"heavy\",\"to\":\"late\",\"asked_by\":[],\"legal\":true,\"way\":\"slow\",\"cpus\":[{\"cpu\":1,"
       "\"schedulable\":\"no\",\"task\":\"a\",\"takes_ns\":40000000,\"settled_ns\":40000000,\"promised_before\":true}],"
-      "\"constants\":[],\"initialised_anew\":[]},"
+      "\"constants\":[],\"resources\":[],\"initialised_anew\":[]},"
       "{\"from\":\"heavy\",\"to\":\"light\",\"asked_by\":[{\"cause\":\"on_miss\",\"task\":\"a\",\"constant\":null}],"
       "\"legal\":true,\"way\":\"fast\",\"cpus\":[{\"cpu\":1,\"schedulable\":\"yes\",\"task\":null,\"takes_ns\":null,"
-      "\"settled_ns\":8000000,\"promised_before\":true}],\"constants\":[],\"initialised_anew\":[]},";
+      "\"settled_ns\":8000000,\"promised_before\":true}],\"constants\":[],\"resources\":[],"
+      "\"initialised_anew\":[]},";
   EXPECT_EQ(output.out.substr(0, begin.size()), begin);
   const std::string end = "],\"by_operator_only\":[\"late\"],\"warnings\":[]}\n";
   EXPECT_EQ(output.out.substr(output.out.size() - end.size()), end);

@@ -16,6 +16,8 @@ class ModeLines {
     std::string text = node(edge.from) + " -> " + node(edge.to) + ": " + head(edge) + "\n";
     for (const CpuTransition& one : edge.cpus) text += "  CPU " + std::to_string(one.cpu) + ": " + cpu(one) + "\n";
     for (const ModeConstant& one : edge.constants) text += "  constant '" + one.name + "' " + constant(one) + "\n";
+    for (const ModeResource& one : edge.resources)
+      text += "  resource '" + one.text + "' of " + name(one.before) + " before, of " + name(one.after) + " after\n";
     if (!edge.anew.empty()) text += "  may be initialised anew: " + names(edge.anew) + "\n";
     return text;
   }

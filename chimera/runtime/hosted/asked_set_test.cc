@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,14 @@ struct Tool {
   void cycle(Cycle) {}
 };
 
+struct Valve {
+  Out<double> flow{"flow", "1"};
+  Resource port{"port"};
+  void cycle(Cycle) {}
+};
+
 constexpr TaskId kSensor{0u}, kPid{1u}, kSmooth{2u}, kFilter{3u}, kMotor{4u}, kSpare{5u}, kCircle{6u},
-    kGripper{7u}, kWelder{8u};
+    kGripper{7u}, kWelder{8u}, kWater{9u}, kAir{10u};
 
 struct AskedSetTest : ::testing::Test {
   AskedSetTest() {
@@ -63,6 +70,10 @@ struct AskedSetTest : ::testing::Test {
     app.add("circle", component<Circle>("circle"));
     app.add("gripper", component<Tool>("tool"));
     app.add("welder", component<Tool>("tool"));
+    app.add("water", component<Valve>("valve"));
+    app.add("air", component<Valve>("valve"));
+    app.link(kAir.index, 0, "flow_of_air");
+    for (const TaskId valve : {kWater, kAir}) app.port(valve.index, 1).value = tty;
     for (TaskSpec& task : app.tasks) task.rtpu = RtpuId{0u};
     app.link(kSpare.index, 1, "z2");
     make();
@@ -71,7 +82,7 @@ struct AskedSetTest : ::testing::Test {
   /// "sensor pid motor", or why not.
   std::string ask(std::vector<TaskId> plus, std::vector<TaskId> minus = {}) {
     std::vector<bool> on(app.spec.tasks.size());
-    for (const TaskId task : {kSensor, kPid, kMotor}) on[task.index] = true;
+    for (const TaskId task : are_on) on[task.index] = true;
     const AskedSet asked = asked_set(app.spec, on, plus, minus);
     if (!asked) return asked.why + (asked.remedy.empty() ? "" : "; " + asked.remedy);
     std::string names;
@@ -79,8 +90,17 @@ struct AskedSetTest : ::testing::Test {
       if (asked.tasks.has(TaskId(t))) names += (names.empty() ? "" : " ") + std::string(app.spec.tasks[t].name);
     return names;
   }
+  std::vector<TaskId> are_on{kSensor, kPid, kMotor};
+  const std::array<std::byte, 4> tty{std::byte{'t'}, std::byte{'t'}, std::byte{'y'}, std::byte{'0'}};
   TestApplication app;
 };
+
+TEST_F(AskedSetTest, WhoHasTheSameResourceGivesWay) {
+  are_on.push_back(kWater);
+  EXPECT_EQ(ask({kAir}), "sensor pid motor air");
+  EXPECT_EQ(ask({kAir, kWater}), "tasks 'water' and 'air' open the same resource 'tty0'; one of the two with `--off`");
+  EXPECT_EQ(ask({}, {kWater}), "sensor pid motor");
+}
 
 TEST_F(AskedSetTest, WhoProducesTheSameGivesWayAndTheOnlyProducerComesAlong) {
   app.link(kCircle.index, 1, "nothing_else");

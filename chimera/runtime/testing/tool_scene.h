@@ -19,6 +19,7 @@ struct Shop {
   std::vector<std::string> story;            // steps
   std::string fails;                         // the step that answers with a fault: "on heavy"
   std::function<void(const std::string&)> in_step;
+  double ramp = 0;                           // what light adds to its grip in each cycle
   std::vector<double> weighed;               // by the cycles of the arm
   int illegal = 0, illegal_of_law = 0;       // cycles that saw the flag up, of the arm, of the law
 };
@@ -35,7 +36,7 @@ struct Light {
   Out<double> grip{"grip", "1", initial = 0.0};
   void init(Cycle) { *mass = 1; }
   Outcome on(Cycle) { return tell("on light"); }
-  void cycle(Cycle) { *grip = 1; }
+  void cycle(Cycle c) { *grip = 1 + shop.ramp * static_cast<double>(c.count()); }
   Outcome off(Cycle) { return tell("off light"); }
 };
 

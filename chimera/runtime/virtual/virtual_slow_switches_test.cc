@@ -52,6 +52,19 @@ TEST_P(VirtualSlowSwitches, UsersOnBothRtpusAreReinitialisedInOrder) {
   EXPECT_FALSE(units->peers().is_flag_up());
 }
 
+// Light cycles on after the flag is up, until the arm has acted on it: its last cycle counts.
+TEST_P(VirtualSlowSwitches, TheStepFromATaskOfAnotherRtpuIsFromItsLastCycle) {
+  shop.ramp = 1;
+  units = std::make_unique<VirtualUnits>(
+      application(0), std::vector<ScriptAct>{act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1)}, GetParam());
+  units->run(milliseconds(40));
+  const SwitchReceipt& receipt = units->receipts()[0];
+  ASSERT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
+  ASSERT_EQ(receipt.variables.size(), 1u);
+  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "heavy takes over what light wrote last";
+  EXPECT_EQ(receipt.variables[0].usual.size, 1);
+}
+
 TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
   shop.fails = "on heavy";
   const auto receipts = go(milliseconds(40), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1)});
