@@ -195,7 +195,8 @@ PlanAnswer SwitchCoordinator::judge(const TaskBits& target) {
     const RtpuRecord& rtpu = world_.rtpus[world_.spec().tasks[t].rtpu.index];
     const State state = world_.state(task);
     const bool is_dead = !rtpu.is_alive && state != State::kNotCreated;
-    standing_[t] = {is_dead ? State::kError : state, world_.peers.status(task).in_service};
+    const bool is_away = !rtpu.is_alive || world_.peers.status(task).in_service;  // nothing can be done with it now
+    standing_[t] = {is_dead ? State::kError : state, is_away};
   }
   const PlanAnswer answer = planner_.plan(target, standing_, plan_);
   way_ = answer ? ways_.judge(plan_, standing_, constants_in_force(), ShownConstants(world_)) : SwitchWay();

@@ -82,7 +82,7 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
     app->rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
     app->add("hand", testing::component<Tool<0>>("hand")).rtpu = RtpuId(0u);
     app->add("drill", testing::component<Tool<1>>("drill")).rtpu = RtpuId(1u);
-    app->add("arm", testing::component<Arm>("arm")).rtpu = RtpuId(1u);
+    app->add("arm", testing::component<Arm>("arm")).rtpu = RtpuId(rtpu_of_arm);
     for (const TaskId tool : {kHand, kDrill}) app->port(tool.index, 1).value = tty;
     app->make(hand, false);
     app->spec.sets = named;
@@ -107,6 +107,7 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
   }
   State state(TaskId task) const { return sets[task == kHand ? 0 : 1]->tasks()[task.index].state; }
 
+  std::uint32_t rtpu_of_arm = 1;
   const std::vector<std::byte> tty = testing::bytes_of("tty0");
   std::vector<TaskId> hand{kHand, kArm}, drill{kDrill, kArm};
   NamedSet named[2] = {{"hand", hand}, {"drill", drill}};
@@ -152,6 +153,18 @@ TEST_P(VirtualRivals, ADeathAtAnyInstantLeavesOneUserAtMost) {
   }
   EXPECT_GT(done, 5);
   EXPECT_GT(aborted, 5);
+}
+
+TEST_P(VirtualRivals, ATaskThatIsNotThereInADeadRtpuIsRefusedAtOnce) {
+  rtpu_of_arm = 0;
+  ScriptAct die = act_at(milliseconds(5), ScriptAct::Kind::kDie);
+  die.rtpu = RtpuId(1u);
+  const auto receipts = go(milliseconds(60), {die, act_at(milliseconds(10), ScriptAct::Kind::kSwitch, 1)});
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kRefused);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kNotCreated);
+  EXPECT_EQ(receipts[0].task, kDrill);
+  EXPECT_EQ(state(kHand), State::kOn);
 }
 
 TEST_P(VirtualRivals, AStandbyOpensItWhenTheProcessIsDead) {

@@ -55,7 +55,7 @@ Nanoseconds VirtualSwitches::lead() const noexcept {
 
 void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   finish(now);
-  for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = {peers_.state(TaskId(t)), false};
+  for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = standing_of(TaskId(t));
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (!is_under_way()) answer = planner_.plan(request.set, standing_, plan_);
   const SwitchWay way = answer ? judge_way() : SwitchWay();
@@ -111,11 +111,15 @@ void VirtualSwitches::order(std::uint32_t set, std::uint8_t slow, Nanoseconds no
   ring();
 }
 
+TaskStanding VirtualSwitches::standing_of(TaskId task) const noexcept {
+  return {peers_.state(task), !peers_.presence(task).lives};
+}
+
 // What found no gap for `on`, or a device that is not ready, is done under the flag.
 bool VirtualSwitches::try_slowly(Nanoseconds now) noexcept {
   const std::uint8_t slow = reason_to_go_slowly(present_->why);
   if (slow == 0 || present_->way.slow != 0) return false;
-  for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = {peers_.state(TaskId(t)), false};
+  for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = standing_of(TaskId(t));
   if (!planner_.plan(present_->after, standing_, plan_)) return false;
   present_->why = NoSwitch::kNone;
   present_->task = {};

@@ -65,6 +65,7 @@ class VirtualSwitches {
   void ring() noexcept;
   void order(std::uint32_t set, std::uint8_t slow, Nanoseconds now) noexcept;
   SwitchWay judge_way() noexcept;
+  TaskStanding standing_of(TaskId task) const noexcept;
   bool try_slowly(Nanoseconds now) noexcept;
   void finish(Nanoseconds now) noexcept;
   void sort_reinitialised() noexcept;
