@@ -5,23 +5,24 @@
 #include <algorithm>
 #include <vector>
 
-#include "chimera/runtime/hosted/heap_task_set.h"
-#include "chimera/runtime/testing/test_application.h"
-#include "chimera/runtime/virtual/virtual_rtpus.h"
+#include "chimera/runtime/testing/virtual_units.h"
 
 namespace chimera {
 namespace {
 
+using testing::act_at;
+using testing::VirtualUnits;
+
 /// The device, which a process that dies closes. One run at a time.
 struct Device {
   bool is_open[2] = {};
-  Nanoseconds death = kNever;  // of the rtpu of the hand
+  const VirtualPeers* peers = nullptr;
   int doubles = 0;             // so often one opened it while another had it
   int not_ready = 0;
   int ons = 0;  // of the drill
   std::uint64_t fails_at = UINT64_MAX;  // the cycle of the hand
 
-  bool has_other(int me, Nanoseconds now) const { return is_open[1 - me] && !(me == 1 && now >= death); }
+  bool has_other(int me) const { return is_open[1 - me] && peers->presence(TaskId(std::size_t(1 - me))).lives; }
 };
 Device device;
 
@@ -30,7 +31,7 @@ struct Tool {
   Out<double> force{"force", "N", initial = 0.0};
   Resource port{"port"};
   Outcome init(Cycle c) {
-    device.doubles += device.has_other(kMe, c.now()) ? 1 : 0;
+    device.doubles += device.has_other(kMe) ? 1 : 0;
     device.is_open[kMe] = true;
     c.spend(microseconds(300));
     return ok();
@@ -57,66 +58,40 @@ struct Arm {
 
 constexpr TaskId kHand{0u}, kDrill{1u}, kArm{2u};
 
-ScriptAct act_at(Nanoseconds at, ScriptAct::Kind kind, std::uint32_t set = 0) {
-  ScriptAct act;
-  act.at = at;
-  act.kind = kind;
-  act.set = set;
-  act.rtpu = RtpuId(0u);  // of the hand
-  return act;
-}
+constexpr std::uint32_t kOfHand = 0, kOfDrill = 1, kWithHand = 0, kWithDrill = 1;
 
 struct VirtualRivals : ::testing::TestWithParam<bool> {
+  /// A run of so long with these acts; its receipts.
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts) {
-    run.reset();
-    sets.clear();
     const std::uint64_t fails_at = device.fails_at;
     device = {};
     device.fails_at = fails_at;
     device.not_ready = 2;
-    for (const ScriptAct& act : acts)
-      if (act.kind == ScriptAct::Kind::kDie) device.death = act.at;
     std::ranges::stable_sort(acts, {}, &ScriptAct::at);
-    acts_ = std::move(acts);
-    app = std::make_unique<testing::TestApplication>();
+    auto app = std::make_unique<testing::TestApplication>();
     app->rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
-    app->add("hand", testing::component<Tool<0>>("hand")).rtpu = RtpuId(0u);
-    app->add("drill", testing::component<Tool<1>>("drill")).rtpu = RtpuId(1u);
+    app->add("hand", testing::component<Tool<0>>("hand")).rtpu = RtpuId(kOfHand);
+    app->add("drill", testing::component<Tool<1>>("drill")).rtpu = RtpuId(kOfDrill);
     app->add("arm", testing::component<Arm>("arm")).rtpu = RtpuId(rtpu_of_arm);
     for (const TaskId tool : {kHand, kDrill}) app->port(tool.index, 1).value = tty;
     app->make(hand, false);
     app->spec.sets = named;
     app->spec.standbys = standbys;
-    peers = *VirtualPeers::create(app->spec);
-    for (std::uint32_t r = 0; r < 2; ++r) {
-      ContextPlace place;
-      place.rtpu = RtpuId(r);
-      place.others = peers.get();
-      sets.push_back(*HeapTaskSet::create(app->spec, app->components, place));
-      peers->join(RtpuId(r), *sets.back());
-    }
-    RunOptions options;
-    options.script = Script(acts_);
-    VirtualOptions how;
-    how.preemptive = GetParam();
-    run = std::make_unique<VirtualRtpus>(*peers, options, how);
-    EXPECT_TRUE(run->start());
-    device.death = device.death == kNever ? kNever : run->origin() + device.death;
-    EXPECT_EQ(run->run(duration), RunEnd::kTime);
-    return run->receipts().all();
+    units.reset();
+    units = std::make_unique<VirtualUnits>(std::move(app), std::move(acts), GetParam());
+    device.peers = &units->peers();
+    units->run(duration);
+    return units->receipts();
   }
-  State state(TaskId task) const { return sets[task == kHand ? 0 : 1]->tasks()[task.index].state; }
+  State state(TaskId task) const { return units->state(task); }
+  void TearDown() override { units.reset(); }
 
-  std::uint32_t rtpu_of_arm = 1;
+  std::uint32_t rtpu_of_arm = kOfDrill;
   const std::vector<std::byte> tty = testing::bytes_of("tty0");
   std::vector<TaskId> hand{kHand, kArm}, drill{kDrill, kArm};
   NamedSet named[2] = {{"hand", hand}, {"drill", drill}};
   std::vector<StandbySpec> standbys;
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app;
-  std::unique_ptr<VirtualPeers> peers;
-  std::vector<std::unique_ptr<HeapTaskSet>> sets;
-  std::unique_ptr<VirtualRtpus> run;
+  std::unique_ptr<VirtualUnits> units;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualRivals, ::testing::Bool(),
@@ -125,7 +100,8 @@ INSTANTIATE_TEST_SUITE_P(All, VirtualRivals, ::testing::Bool(),
 TEST_P(VirtualRivals, TheyTakeTurnsOverTwoRtpus) {
   std::vector<ScriptAct> acts;
   for (std::uint32_t i = 0; i < 20; ++i)
-    acts.push_back(act_at(milliseconds(5) + Nanoseconds{25'137'000 * i}, ScriptAct::Kind::kSwitch, 1 - i % 2));
+    acts.push_back(act_at(milliseconds(5) + Nanoseconds{25'137'000 * i}, ScriptAct::Kind::kSwitch,
+                          i % 2 == 0 ? kWithDrill : kWithHand));
   const auto receipts = go(milliseconds(600), acts);
   ASSERT_EQ(receipts.size(), 20u);
   for (const SwitchReceipt& receipt : receipts) {
@@ -142,8 +118,8 @@ TEST_P(VirtualRivals, ADeathAtAnyInstantLeavesOneUserAtMost) {
   int done = 0, aborted = 0;
   for (int i = 0; i < 60; ++i) {
     const Nanoseconds death = milliseconds(4) + Nanoseconds{151'000 * i};
-    const auto receipts = go(milliseconds(60), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1),
-                                                act_at(death, ScriptAct::Kind::kDie)});
+    const auto receipts = go(milliseconds(60), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, kWithDrill),
+                                                act_at(death, ScriptAct::Kind::kDie, kOfHand)});
     EXPECT_EQ(device.doubles, 0) << i;
     for (const SwitchReceipt& receipt : receipts) {
       done += receipt.end == SwitchEnd::kDone ? 1 : 0;
@@ -156,10 +132,9 @@ TEST_P(VirtualRivals, ADeathAtAnyInstantLeavesOneUserAtMost) {
 }
 
 TEST_P(VirtualRivals, ATaskThatIsNotThereInADeadRtpuIsRefusedAtOnce) {
-  rtpu_of_arm = 0;
-  ScriptAct die = act_at(milliseconds(5), ScriptAct::Kind::kDie);
-  die.rtpu = RtpuId(1u);
-  const auto receipts = go(milliseconds(60), {die, act_at(milliseconds(10), ScriptAct::Kind::kSwitch, 1)});
+  rtpu_of_arm = kOfHand;
+  const auto receipts = go(milliseconds(60), {act_at(milliseconds(5), ScriptAct::Kind::kDie, kOfDrill),
+                                              act_at(milliseconds(10), ScriptAct::Kind::kSwitch, kWithDrill)});
   ASSERT_EQ(receipts.size(), 1u);
   EXPECT_EQ(receipts[0].end, SwitchEnd::kRefused);
   EXPECT_EQ(receipts[0].why, NoSwitch::kNotCreated);
@@ -169,13 +144,13 @@ TEST_P(VirtualRivals, ATaskThatIsNotThereInADeadRtpuIsRefusedAtOnce) {
 
 TEST_P(VirtualRivals, AStandbyOpensItWhenTheProcessIsDead) {
   standbys = {{kHand, kDrill}};
-  go(milliseconds(60), {act_at(milliseconds(10), ScriptAct::Kind::kDie)});
+  go(milliseconds(60), {act_at(milliseconds(10), ScriptAct::Kind::kDie, kOfHand)});
   EXPECT_EQ(state(kDrill), State::kOn);
-  EXPECT_EQ(sets[1]->tasks()[kDrill.index].profile.takeovers, 1u);
+  EXPECT_EQ(units->set(kOfDrill).tasks()[kDrill.index].profile.takeovers, 1u);
   EXPECT_EQ(device.doubles, 0);
   EXPECT_TRUE(device.is_open[1]);
   EXPECT_EQ(device.ons, 3) << "it was asked again, each millisecond";
-  EXPECT_TRUE(sets[1]->flag().is_up() == false);
+  EXPECT_FALSE(units->peers().is_flag_up());
 }
 
 // The primary closes it when the other rtpu has seen that it is in ERROR: else that would look like `kill`.
