@@ -4,11 +4,10 @@ standby, whoever dies. CHIMERA_ROUNDS: switches and takeovers beside kills."""
 import os
 import random
 import sys
-import threading
 import time
 import unittest
 
-from system import Client, Refused, System, UNITS, await_that
+from system import Refused, System, UNITS, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
 SEED = int(os.environ.get("CHIMERA_SEED", str(random.SystemRandom().randrange(1 << 32))))
@@ -92,23 +91,7 @@ class Resource(unittest.TestCase):
             for _ in range(ROUNDS):
                 target = "with_drill" if now == "with_hand" else "with_hand"
                 who = random.choice(["first", "second", "manager"])
-                pid = system.pids()[who]
-
-                def ask(target=target):
-                    try:
-                        client = Client(system.socket, 30)
-                        client.call("switch", configuration=target)
-                        client.close()
-                    except (Refused, OSError, ConnectionError):
-                        pass
-
-                asking = threading.Thread(target=ask)
-                asking.start()
-                time.sleep(random.random() * 0.06)
-                self.assertTrue(system.kill(pid))
-                asking.join(30)
-                self.assertFalse(asking.is_alive())
-                await_that(lambda who=who, pid=pid: system.pids().get(who) not in (None, pid), 20, f"a new {who}")
+                system.kill_in_a_switch(who, target, random.random() * 0.06)
                 await_that(lambda: self.states(system) in STATES.values() and system.state("user") == "ON", 20,
                            f"one of them (killed {who} in a switch to {target}); {self.states(system)}")
                 now = next(name for name, states in STATES.items() if states == self.states(system))

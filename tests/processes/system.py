@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import tempfile
+import threading
 import time
 
 BUILD = pathlib.Path(os.environ["CHIMERA_BUILD"]).resolve()
@@ -272,6 +273,26 @@ class System:
 
     def kill(self, pid, how=9):  # SIGKILL
         return kill(pid, self.marker, how)
+
+    def kill_in_a_switch(self, who, target, after):
+        """Asks for a switch to `target`, kills `who` so many seconds later, and waits for its successor."""
+        pid = self.pids()[who]
+
+        def ask():
+            try:
+                client = Client(self.socket, 30)
+                client.call("switch", configuration=target)
+                client.close()
+            except (Refused, OSError):
+                pass
+
+        asking = threading.Thread(target=ask)
+        asking.start()
+        time.sleep(after)
+        assert self.kill(pid), who
+        asking.join(30)
+        assert not asking.is_alive(), "the switch was not answered"
+        await_that(lambda: self.pids().get(who) not in (None, pid), 20, f"a new {who}")
 
     def left_over(self):
         return processes_of(self.marker)
