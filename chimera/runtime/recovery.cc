@@ -28,6 +28,7 @@ void Recovery::prepare() {
   std::size_t n_hot = 0;
   for (const StandbySpec& each : standbys)
     if (is_hot(each)) hot_[n_hot++] = each.standby;
+  takeovers_ = set.setup_memory().take<Takeover>(set.standbys().n_groups());
   const auto specs = set.spec().restarts;
   const auto is_mine = [&](const RestartSpec& spec) { return set.is_mine(spec.task); };
   restarts_ = set.setup_memory().take<Restart>(
@@ -95,33 +96,62 @@ bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) n
   Task& task = set.tasks()[failed.index];
   if (task.in_service || task.state != State::kError) return true;
   if (!set.is_mine(to)) {  // killed first, it would look as if somebody had killed it
-    const bool is_shown = closes_ == failed;  // at the end of the last edge
-    closes_ = failed;
+    TaskId& closes = takeovers_[group].closes;
+    const bool is_shown = closes == failed;  // at the end of the last edge
+    closes = failed;
     if (!is_shown || !set.others()->presence(to).has_seen) {
       look_again(now + kLookForSeen, now + kLookForSeen);
       return true;
     }
   }
   if (!may_touch(task)) return false;
-  closes_ = {};
+  takeovers_[group].closes = {};
   note(task, "is killed: its resource goes to ", to);
   (void)parts_.signals.signal({&failed, 1}, Signal::kKill, now);
   return true;
 }
 
 // False: it is not OFF, and the end of `init` or of a rival is told; or it is ruled out.
-bool Recovery::create(Task& task, Nanoseconds now) noexcept {
+bool Recovery::create(std::size_t group, Task& task, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
+  TaskId& created = takeovers_[group].created;
   if (task.state != State::kNotCreated) return true;
   if (set.life().judge().find_rival(task.id).is_valid()) return false;
-  if (created_ != task.id) {
+  if (created != task.id) {
     const SignalReport report = parts_.signals.signal({&task.id, 1}, Signal::kSpawn, now);
     if (report.why == Refusal::kRival) return false;  // another context is about to create one
-    created_ = task.id;
+    created = task.id;
     if (report.is_deferred) return false;
     if (task.state == State::kOff) return true;
   }
-  created_ = {};
+  created = {};
+  set.standbys().rule_out(task.id);
+  set.on_set_changed();
+  return false;
+}
+
+// True: it is ON, or later, or not here; else it is ruled out.
+bool Recovery::turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept {
+  TaskSet& set = parts_.set;
+  Nanoseconds& again_at = takeovers_[group].again_at;
+  if (task.is_half_on && now < again_at) return look_again(again_at, again_at), true;
+  if (!set.life().judge().would_be_legal({&task.id, 1})) return true;  // once an input has a producer again
+  const TaskId failed = set.standbys().failed(group);
+  const Nanoseconds lost = set.standbys().lost_at(group);
+  const SignalReport report = parts_.signals.signal({&task.id, 1}, Signal::kOn, now);
+  if (report.why == Refusal::kIllegalSet) return true;  // another context turns one ON
+  if (report.why == Refusal::kNotYet && now < lost + TaskLife::kPatience) {
+    again_at = now + std::max(task.spec->period, TaskLife::kAskAgain);
+    return look_again(again_at, again_at), true;
+  }
+  if (task.is_half_on) (void)parts_.signals.signal({&task.id, 1}, Signal::kOff, now);
+  if (task.state == State::kOn) {
+    count(task.profile.takeovers);
+    note(task, "took over from ", failed);
+    const Nanoseconds by = set.methods().clock()->now();
+    if (parts_.guest != nullptr) parts_.guest->took_over(task.id, failed, by - lost, by);
+    return true;
+  }
   set.standbys().rule_out(task.id);
   set.on_set_changed();
   return false;
@@ -137,35 +167,12 @@ bool Recovery::take_over(std::size_t group, Nanoseconds now) noexcept {
     if (!set.is_mine(id) || set.tasks()[id.index].in_service) return true;
     Task& task = set.tasks()[id.index];
     if (!may_touch(task)) return false;
-    if (!create(task, now)) {
+    if (!create(group, task, now)) {
       if (set.standbys().next(group) == id) return true;
       continue;
     }
-    created_ = {};
-    if (task.is_half_on && now < again_at_) {
-      look_again(again_at_, again_at_);
-      return true;
-    }
-    if (!set.life().judge().would_be_legal({&id, 1})) return true;  // once an input has a producer again
-    const TaskId failed = set.standbys().failed(group);
-    const Nanoseconds lost = set.standbys().lost_at(group);
-    const SignalReport report = parts_.signals.signal({&id, 1}, Signal::kOn, now);
-    if (report.why == Refusal::kIllegalSet) return true;  // another context turns one ON
-    if (report.why == Refusal::kNotYet && now < lost + TaskLife::kPatience) {
-      again_at_ = now + std::max(task.spec->period, TaskLife::kAskAgain);
-      look_again(again_at_, again_at_);
-      return true;
-    }
-    if (task.is_half_on) (void)parts_.signals.signal({&id, 1}, Signal::kOff, now);
-    if (task.state == State::kOn) {
-      count(task.profile.takeovers);
-      note(task, "took over from ", failed);
-      const Nanoseconds by = set.methods().clock()->now();
-      if (parts_.guest != nullptr) parts_.guest->took_over(id, failed, by - lost, by);
-      return true;
-    }
-    set.standbys().rule_out(id);
-    set.on_set_changed();
+    takeovers_[group].created = {};
+    if (turn_on(group, task, now)) return true;
   }
 }
 

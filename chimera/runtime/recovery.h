@@ -51,11 +51,19 @@ class Recovery {
     bool is_answered = false;     // the task is in ERROR, and stays there
   };
 
+  /// What is under way in one group.
+  struct Takeover {
+    TaskId closes;         // its ERROR is to be seen in another context before it is killed here
+    TaskId created;        // here; its `init` may be under way
+    Nanoseconds again_at;  // a standby whose device is not ready is asked then
+  };
+
   void keep_warm(Nanoseconds now) noexcept;
   void look_again(Nanoseconds at, Nanoseconds waking) noexcept;
   bool take_over(std::size_t group, Nanoseconds now) noexcept;
   bool give_up_resource(std::size_t group, TaskId to, Nanoseconds now) noexcept;
-  bool create(Task& task, Nanoseconds now) noexcept;
+  bool create(std::size_t group, Task& task, Nanoseconds now) noexcept;
+  bool turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept;
   bool restart(Restart& restart, Nanoseconds now) noexcept;
   void answer(Restart& restart, Task& task, Nanoseconds now) noexcept;
   bool may_touch(Task& task) noexcept;
@@ -64,9 +72,7 @@ class Recovery {
   Parts parts_;
   IdleGap gap_;
   std::span<TaskId> hot_;  // of this context
-  TaskId closes_;          // for a takeover elsewhere: its ERROR is to be seen there before it is killed
-  TaskId created_;         // for a takeover; its `init` may be under way
-  Nanoseconds again_at_;   // a standby whose device is not ready is asked then
+  std::span<Takeover> takeovers_;  // by group
   std::span<Restart> restarts_;
   Nanoseconds due_ = kNever, wake_ = kNever;  // of standbys that cannot cycle, or go ON, yet
 };

@@ -15,14 +15,17 @@ using testing::VirtualUnits;
 
 /// The device, which a process that dies closes. One run at a time.
 struct Device {
-  bool is_open[2] = {};
+  bool is_open[4] = {};  // of the hand, the drill, and the same of a second device
   const VirtualPeers* peers = nullptr;
   int doubles = 0;             // so often one opened it while another had it
   int not_ready = 0;
   int ons = 0;  // of the drill
   std::uint64_t fails_at = UINT64_MAX;  // the cycle of the hand
 
-  bool has_other(int me) const { return is_open[1 - me] && peers->presence(TaskId(std::size_t(1 - me))).lives; }
+  bool has_other(int me) const {
+    const int other = me ^ 1;
+    return is_open[other] && peers->presence(TaskId(std::size_t(other < 2 ? other : other + 1))).lives;
+  }
 };
 Device device;
 
@@ -42,7 +45,7 @@ struct Tool {
   }
   Outcome cycle(Cycle c) {
     *force = kMe + 1;
-    return kMe == 0 && c.count() == device.fails_at ? fault("no current") : ok();
+    return kMe % 2 == 0 && c.count() == device.fails_at ? fault("no current") : ok();
   }
   void kill(Cycle c) {
     c.spend(microseconds(200));
@@ -56,7 +59,7 @@ struct Arm {
   void cycle(Cycle) { *u = *force; }
 };
 
-constexpr TaskId kHand{0u}, kDrill{1u}, kArm{2u};
+constexpr TaskId kHand{0u}, kDrill{1u}, kArm{2u}, kSecondHand{3u}, kSecondDrill{4u};
 
 constexpr std::uint32_t kOfHand = 0, kOfDrill = 1, kWithHand = 0, kWithDrill = 1;
 
@@ -74,6 +77,14 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
     app->add("drill", testing::component<Tool<1>>("drill")).rtpu = RtpuId(kOfDrill);
     app->add("arm", testing::component<Arm>("arm")).rtpu = RtpuId(rtpu_of_arm);
     for (const TaskId tool : {kHand, kDrill}) app->port(tool.index, 1).value = tty;
+    if (has_second) {
+      app->add("second_hand", testing::component<Tool<2>>("second_hand")).rtpu = RtpuId(kOfHand);
+      app->add("second_drill", testing::component<Tool<3>>("second_drill")).rtpu = RtpuId(kOfDrill);
+      for (const TaskId tool : {kSecondHand, kSecondDrill}) {
+        app->port(tool.index, 1).value = second_tty;
+        app->link(tool.index, 0, "second_force");
+      }
+    }
     app->make(hand, false);
     app->spec.sets = named;
     app->spec.standbys = standbys;
@@ -87,7 +98,8 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
   void TearDown() override { units.reset(); }
 
   std::uint32_t rtpu_of_arm = kOfDrill;
-  const std::vector<std::byte> tty = testing::bytes_of("tty0");
+  bool has_second = false;
+  const std::vector<std::byte> tty = testing::bytes_of("tty0"), second_tty = testing::bytes_of("tty1");
   std::vector<TaskId> hand{kHand, kArm}, drill{kDrill, kArm};
   NamedSet named[2] = {{"hand", hand}, {"drill", drill}};
   std::vector<StandbySpec> standbys;
@@ -162,6 +174,22 @@ TEST_P(VirtualRivals, AStandbyOpensItWhenThePrimaryHasClosedIt) {
   EXPECT_EQ(state(kDrill), State::kOn);
   EXPECT_EQ(device.doubles, 0);
   device.fails_at = UINT64_MAX;
+}
+
+// Both wait until the other rtpu has seen them in ERROR, each for itself.
+TEST_P(VirtualRivals, TwoPrimariesMayFailAtOnce) {
+  has_second = true;
+  hand.push_back(kSecondHand);
+  named[kWithHand].order = hand;
+  standbys = {{kHand, kDrill}, {kSecondHand, kSecondDrill}};
+  device.fails_at = 20;
+  go(milliseconds(60), {});
+  device.fails_at = UINT64_MAX;
+  EXPECT_EQ(state(kHand), State::kNotCreated);
+  EXPECT_EQ(state(kSecondHand), State::kNotCreated);
+  EXPECT_EQ(state(kDrill), State::kOn);
+  EXPECT_EQ(state(kSecondDrill), State::kOn);
+  EXPECT_EQ(device.doubles, 0);
 }
 
 }  // namespace
