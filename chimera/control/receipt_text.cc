@@ -36,6 +36,11 @@ const char* word(SwitchEnd end) {
   return "?";
 }
 
+/// "switch 3", "takeover 4".
+std::string what(const SwitchReceipt& receipt) {
+  return (receipt.cause == SwitchCause::kStandby ? "takeover " : "switch ") + std::to_string(receipt.number);
+}
+
 const char* word(TaskMove move) {
   switch (move) {
     case TaskMove::kArrives: return "arrives";
@@ -80,6 +85,10 @@ std::string json_asked_by(const SwitchReceipt& receipt, const ApplicationSpec& s
   if (receipt.cause == SwitchCause::kScript) return "{\"script\": \"--at\"}";
   const std::string task = "\"task\": " + json_string(std::string(spec.tasks[receipt.by.index].name)) + "}";
   if (receipt.cause == SwitchCause::kRequest) return "{" + task;
+  if (receipt.cause == SwitchCause::kStandby)
+    return "{\"reaction\": \"standby_for\", \"lost\": " +
+           json_string(std::string(spec.tasks[receipt.in_place_of.index].name)) + ", \"by\": " +
+           (receipt.was_death ? "\"death\", " : "\"error\", ") + task;
   const std::string by = asked_by(SwitchRequest{receipt.after, receipt.cause, receipt.by}, spec);
   return "{\"reaction\": " + json_string(by.substr(0, by.find(' '))) + ", " + task;
 }
@@ -118,34 +127,52 @@ std::string names(std::span<const TaskId> tasks, const ApplicationSpec& spec) {
   return text;
 }
 
-std::string done_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+std::string after_text(const SwitchReceipt& receipt) {
   char took[40];
   std::snprintf(took, sizeof took, " after %.3f ms", to_seconds(receipt.at - receipt.asked) * 1e3);
-  const bool is_slow = receipt.way.slow != 0;
-  const std::string under = is_slow ? ", " + time_text(receipt.flag) + " under the flag" : "";
-  std::uint64_t lost = 0;
-  for (const TaskPart& part : receipt.tasks) lost += part.lost;
-  std::string text = took + under + ": " +
-                     counted(count(receipt, TaskMove::kArrives), "task arrives", "tasks arrive") + ", " +
-                     counted(count(receipt, TaskMove::kLeaves), "leaves", "leave") + ", " +
-                     counted(lost, "cycle lost", "cycles lost");
-  if (!receipt.reinitialised.empty()) text += "; " + names(receipt.reinitialised, spec) + " re-initialised";
+  return took;
+}
+
+std::string moves_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  std::string text;
   for (const VariablePart& part : receipt.variables)
     if (seen(part).is_known)
       text += "; " + std::string(spec.variables[part.handover.variable.index].name) + " moves by " +
               step_text(seen(part), unit_text(part, spec));
-  return text + "\n";
+  return text;
+}
+
+std::string done_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const bool is_slow = receipt.way.slow != 0;
+  const std::string under = is_slow ? ", " + time_text(receipt.flag) + " under the flag" : "";
+  std::uint64_t lost = 0;
+  for (const TaskPart& part : receipt.tasks) lost += part.lost;
+  std::string text = after_text(receipt) + under + ": " +
+                     counted(count(receipt, TaskMove::kArrives), "task arrives", "tasks arrive") + ", " +
+                     counted(count(receipt, TaskMove::kLeaves), "leaves", "leave") + ", " +
+                     counted(lost, "cycle lost", "cycles lost");
+  if (!receipt.reinitialised.empty()) text += "; " + names(receipt.reinitialised, spec) + " re-initialised";
+  return text + moves_text(receipt, spec) + "\n";
 }
 
 std::string bumps(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   std::string text;
-  for (const VariablePart& part : receipt.variables)
-    if (part.step_of_cycle.is_beyond)
-      text += "bump: after switch " + std::to_string(receipt.number) + " the first cycle of task " +
-              quoted(spec.tasks[part.handover.to.task.index].name) + " moved " +
-              quoted(spec.variables[part.handover.variable.index].name) + " by " +
-              step_text(part.step_of_cycle, unit_text(part, spec)) + "\n";
+  for (const std::string& line : bump_lines(receipt, spec)) text += line + "\n";
   return text;
+}
+
+std::string takeover_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin) {
+  const auto name = [&](TaskId task) { return quoted(spec.tasks[task.index].name); };
+  const std::string text = what(receipt) + " at " + at(receipt.asked, origin) + " by " + name(receipt.by) + " from " +
+                           name(receipt.in_place_of) +
+                           (receipt.was_death ? ", whose real-time unit died," : ", which is in ERROR,");
+  if (receipt.end != SwitchEnd::kDone) return text + " aborted: " + reason_text(receipt, spec) + "\n";
+  std::uint64_t lost = 0;
+  for (const TaskPart& part : receipt.tasks) lost += part.lost;
+  const std::string flag =
+      receipt.flag > Nanoseconds{} ? ", " + time_text(receipt.flag) + " under the flag" : std::string();
+  return text + after_text(receipt) + flag + ": " + counted(lost, "cycle lost", "cycles lost") +
+         moves_text(receipt, spec) + "\n" + bumps(receipt, spec);
 }
 
 std::string json_ns(std::optional<Nanoseconds> time) { return time ? std::to_string(time->count) : "null"; }
@@ -240,7 +267,8 @@ std::string json_way(const SwitchReceipt& receipt, const ApplicationSpec& spec) 
   for (const TaskId task : receipt.reinitialised)
     list += (list.empty() ? "" : ", ") + json_string(std::string(spec.tasks[task.index].name));
   const bool is_back = !receipt.not_back.is_valid();
-  return std::string("\"way\": \"") + (is_slow ? "slow" : "fast") + "\", \"slow_because\": [" + reasons +
+  const char* const way = receipt.cause == SwitchCause::kStandby ? "takeover" : is_slow ? "slow" : "fast";
+  return std::string("\"way\": \"") + way + "\", \"slow_because\": [" + reasons +
          "], \"slow_why\": " + json_name(is_slow, slow_text(receipt, spec)) + ", \"flag_ns\": " +
          std::to_string(receipt.flag.count) + ", \"reinitialised\": [" + list + "], \"not_back\": " +
          json_name(!is_back, is_back ? "" : spec.tasks[receipt.not_back.index].name);
@@ -284,6 +312,7 @@ std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec) 
     case SwitchCause::kMiss: return "on_miss of " + name;
     case SwitchCause::kOverrun: return "on_overrun of " + name;
     case SwitchCause::kFault: return "on_fault of " + name;
+    case SwitchCause::kStandby: return "standby_for of " + name;
   }
   return "?";
 }
@@ -357,7 +386,22 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
   }
 }
 
+std::vector<std::string> bump_lines(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  std::vector<std::string> lines;
+  const bool is_takeover = receipt.cause == SwitchCause::kStandby;  // whose `on` is not held against its limit before
+  for (const VariablePart& part : receipt.variables) {
+    const ValueStep& step = is_takeover ? seen(part) : part.step_of_cycle;
+    if (step.is_beyond)
+      lines.push_back("bump: after " + what(receipt) + " the first " + (part.step_of_cycle.is_known ? "cycle" : "value") +
+                      " of task " + quoted(spec.tasks[part.handover.to.task.index].name) + " moved " +
+                      quoted(spec.variables[part.handover.variable.index].name) + " by " +
+                      step_text(step, unit_text(part, spec)));
+  }
+  return lines;
+}
+
 std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin) {
+  if (receipt.cause == SwitchCause::kStandby) return takeover_text(receipt, spec, origin);
   const std::string to = set_text(receipt.after, spec);
   const std::string when = " at " + at(receipt.asked, origin);
   if (receipt.end == SwitchEnd::kNothingToDo) return "switch" + when + ": " + to + " is in force, nothing to do\n";
@@ -365,7 +409,7 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   const SwitchRequest request{receipt.after, receipt.cause, receipt.by};
   const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(request, spec) + " ";
   const bool is_slow = receipt.way.slow != 0 && receipt.end != SwitchEnd::kRefused;
-  std::string text = "switch " + std::to_string(receipt.number) + when + " " + by + from + "to " + to;
+  std::string text = what(receipt) + when + " " + by + from + "to " + to;
   if (is_slow) text += " slowly, for " + slow_text(receipt, spec) + ",";
   if (receipt.end == SwitchEnd::kDone) return text + done_text(receipt, spec) + bumps(receipt, spec);
   return text + " " + word(receipt.end) + ": " + reason_text(receipt, spec) + rolled_back(receipt, spec) + "\n";

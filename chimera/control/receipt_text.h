@@ -13,6 +13,9 @@ namespace chimera::control {
 /// Context: setup.
 std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin);
 
+/// The lines of such a text that are about a step beyond a limit: "bump: ...". Context: setup.
+std::vector<std::string> bump_lines(const SwitchReceipt& receipt, const ApplicationSpec& spec);
+
 /// What a manager knows of a switch beside its receipt. Plain value.
 struct ReceiptFrame {
   std::string asked_by = {};   ///< a role and a user, "operate:ann"; "": as the receipt says

@@ -172,6 +172,40 @@ TEST(ReceiptText, NamesTheTaskThatAsked) {
             std::string::npos);
 }
 
+TEST(ReceiptText, OfATakeoverSaysForWhomAndHowItWasLost) {
+  Told told;
+  told.be_done();
+  told.receipt.cause = SwitchCause::kStandby;
+  told.receipt.after = 0;
+  told.receipt.by = kTorque;
+  told.receipt.in_place_of = kPid;
+  told.moved.step_of_on = {7, 5, true, true};
+  told.parts[1].lost = 0;
+  EXPECT_EQ(told.text(),
+            "takeover 3 at 2.000 s by 'torque' from 'pid', which is in ERROR, after 1.500 ms: 0 cycles lost; tau moves "
+            "by 7 N.m, limit 5 N.m\n"
+            "bump: after takeover 3 the first value of task 'torque' moved 'tau' by 7 N.m, limit 5 N.m\n");
+  told.receipt.was_death = true;
+  told.receipt.flag = microseconds(500);
+  told.moved.step_of_cycle = {1, 5, true, false};
+  EXPECT_EQ(told.text(),
+            "takeover 3 at 2.000 s by 'torque' from 'pid', whose real-time unit died, after 1.500 ms, 500 us under the "
+            "flag: 0 cycles lost; tau moves by 1 N.m, limit 5 N.m\n");
+  const std::string json = told.json();
+  EXPECT_NE(json.find("\"from\": \"pid\", \"to\": \"pid\", \"way\": \"takeover\", "), std::string::npos) << json;
+  EXPECT_NE(json.find("\"asked_by\": {\"reaction\": \"standby_for\", \"lost\": \"pid\", \"by\": \"death\", \"task\": "
+                      "\"torque\"}, \"end\": \"done\""),
+            std::string::npos)
+      << json;
+  told.receipt.end = SwitchEnd::kAborted;
+  told.receipt.why = NoSwitch::kOnFailed;
+  told.receipt.task = kTorque;
+  told.receipt.said.assign("no voltage");
+  EXPECT_EQ(told.text(),
+            "takeover 3 at 2.000 s by 'torque' from 'pid', whose real-time unit died, aborted: on of task 'torque': no "
+            "voltage\n");
+}
+
 TEST(ReceiptText, OfAManagerHasWhoAskedTheWallClockAndTheTries) {
   Told told;
   told.be_done();

@@ -72,20 +72,28 @@ Marks marks_of(int file, const Elf64_Phdr& dynamic) noexcept {
   return marks;
 }
 
+/// The variable of each thread that the framework itself has in an object, which is used while ports are declared:
+/// task/declare_port.h.
+bool is_of_the_framework(int file, const Elf64_Phdr& tls) noexcept {
+  std::uint64_t words[2] = {};  // the mark, and a pointer
+  if (tls.p_memsz != sizeof words || tls.p_filesz != sizeof words) return false;
+  const auto bytes = std::as_writable_bytes(std::span(words));
+  return read_at(file, tls.p_offset, bytes) == sizeof words && words[0] == CHIMERA_THREAD_MARK;
+}
+
 /// What loads, and then is no real-time code: memory that a thread asks for at its first use of a variable, code that
 /// is written when it is loaded.
 Message unfit_for_real_time(int file, const Elf64_Ehdr& head) noexcept {
-  constexpr std::uint64_t kOfTheFramework = sizeof(void*);  // task/declare_port.h, used while ports are declared
-  std::uint64_t tls = 0;
+  bool has_tls = false;
   Marks marks;
   for (std::uint16_t i = 0; i < head.e_phnum; ++i) {
     const Elf64_Phdr segment = segment_of(file, head, i);
-    if (segment.p_type == PT_TLS) tls = segment.p_memsz;
+    if (segment.p_type == PT_TLS) has_tls = !is_of_the_framework(file, segment);
     if (segment.p_type == PT_DYNAMIC) marks = marks_of(file, segment);
   }
   if (marks.has_text_relocations)
     return Message("has text relocations, so its code is written when it is loaded: compile all of it with -fPIC");
-  if (tls > kOfTheFramework && !marks.has_static_tls)
+  if (has_tls && !marks.has_static_tls)
     return Message("has a thread_local variable, whose first use in a real-time thread asks the heap: make it a member "
                    "of the component, or give it __attribute__((tls_model(\"initial-exec\")))");
   return {};

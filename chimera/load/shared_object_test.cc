@@ -130,6 +130,15 @@ TEST(SharedObject, RefusesWhatMakesRealTimeThreadsWait) {
                                   "__attribute__((tls_model(\"initial-exec\")))");
   EXPECT_EQ(refusal(object("thread_local.so")), tls);
   EXPECT_EQ(inspection(object("thread_local.so")), tls);
+  std::string marked = contents(object("marked_tls.so"));
+  const std::uint64_t mark = CHIMERA_THREAD_MARK;
+  const std::size_t at = marked.find(std::string_view(reinterpret_cast<const char*>(&mark), sizeof mark));
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(inspection(object("marked_tls.so")),  // which is looked at beyond that
+            rebuild("marked_tls.so", "offers no components: it has no symbol " CHIMERA_COMPONENTS_SYMBOL));
+  marked[at] ^= 1;
+  const TemporaryFile other(marked);
+  EXPECT_NE(inspection(other.path()).find("has a thread_local variable"), std::string::npos);
   const std::string text = rebuild(
       "text_relocations.so",
       "has text relocations, so its code is written when it is loaded: compile all of it with -fPIC");

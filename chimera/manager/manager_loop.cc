@@ -120,6 +120,7 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   receipts_ = *std::move(receipts);
   switches_ = std::make_unique<SwitchCoordinator>(*world_, *receipts_);
   wishes_ = std::make_unique<SwitchWishes>(*world_, *switches_);
+  takeovers_ = std::make_unique<TakeoverReceipts>(*world_, *receipts_);
   drill_ = std::make_unique<Drill>(*world_, [this](RtpuId rtpu) { end_unit(rtpu); });
   begun_ = counters_due_ = now();
   say_hello();
@@ -157,6 +158,7 @@ void ManagerLoop::take(const KeeperMessage& message, int passed) {
   using Kind = KeeperMessage::Kind;
   Events events;
   if (message.kind == Kind::kPeer && passed >= 0 && message.index < world_->peers.n_rtpus()) {
+    if (is_ready_) takeovers_->look(now());  // of the incarnation before, whose words go
     fleet_->mapped(message, std::exchange(passed, -1));
   } else if (message.kind == Kind::kStarted) {
     fleet_->started(message);
@@ -260,6 +262,7 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
   if (is_ready_) {  // before that nobody knows which tasks are ON
     switches_->look(now());
     wishes_->look(now());
+    takeovers_->look(now());
   }
   receipts_->look(now());
   drill_->look(now());

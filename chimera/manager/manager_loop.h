@@ -14,6 +14,7 @@
 #include "chimera/manager/step_runner.h"
 #include "chimera/manager/switch_coordinator.h"
 #include "chimera/manager/switch_wishes.h"
+#include "chimera/manager/takeover_receipts.h"
 #include "chimera/manager/unit_health.h"
 #include "chimera/manager/unit_watch.h"
 #include "chimera/platform/channel.h"
@@ -93,6 +94,7 @@ class ManagerLoop {
   std::unique_ptr<ReceiptArchive> receipts_;
   std::unique_ptr<SwitchCoordinator> switches_;
   std::unique_ptr<SwitchWishes> wishes_;
+  std::unique_ptr<TakeoverReceipts> takeovers_;
   std::unique_ptr<Drill> drill_;
   std::unique_ptr<UnitWatch> watch_;
   std::uint64_t keeper_beats_ = 0;  // that were answered

@@ -53,6 +53,7 @@ void OwnSegment::take_over(const BlockView& left, const Peers& peers) noexcept {
   for (std::uint32_t r = 0; r < kMaxRtpus; ++r) {
     copy_word(to.handled[r], from.handled[r]);
     copy_word(to.wishes[r], from.wishes[r]);
+    copy_word(to.takeovers[r], from.takeovers[r]);
     copy_word(block_.progress(r).word, left.progress(r).word);
     for (std::size_t i = 0; i < 4; ++i) copy_word(to.restarts[r][i], from.restarts[r][i]);
   }

@@ -470,13 +470,11 @@ void SwitchCoordinator::file(std::shared_ptr<SwitchOutcome> outcome, const Begun
 }
 
 void SwitchCoordinator::tell(const SwitchOutcome& outcome, Nanoseconds now) {
-  std::string text = control::receipt_text(outcome.receipt, world_.spec(), world_.keeper.origin);
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = text.find('\n', begin);
-    const std::string line = text.substr(begin, end - begin);
-    world_.tell(line.starts_with("bump") ? "bump" : "switch", TaskId{}, RtpuId{}, line, now);
-    begin = end + 1;
-  }
+  const ApplicationSpec& spec = world_.spec();
+  const std::string text = control::receipt_text(outcome.receipt, spec, world_.keeper.origin);
+  world_.tell("switch", TaskId{}, RtpuId{}, text.substr(0, text.find('\n')), now);
+  for (const std::string& line : control::bump_lines(outcome.receipt, spec))
+    world_.tell("bump", TaskId{}, RtpuId{}, line, now);
 }
 
 }  // namespace chimera::manager

@@ -71,6 +71,13 @@ struct StandbyLinksTest : ::testing::Test {
     User::illegal = 0;
   }
   State state(TaskId task) const { return units->units[app.tasks[task.index].rtpu.index]->state(task); }
+  /// What the unit with the task told last of takeovers; `is_alive`: as of a process that lives.
+  Takeover told_by(TaskId task, std::uint32_t number, bool is_alive = true) const {
+    Takeover takeover;
+    const BlockView block = units->units[app.tasks[task.index].rtpu.index]->segment.block.view();
+    EXPECT_TRUE(block.takeovers().read(number, is_alive, takeover)) << number;
+    return takeover;
+  }
   std::uint64_t claim() const { return units->decision.claims[0].load(); }
 
   std::vector<StandbySpec> pairs{{kPrimary, kSpare}, {kPrimary, kLast}};
@@ -98,6 +105,15 @@ TEST_F(StandbyLinksTest, TakesOverFromAProcessThatDiesWithTheManager) {
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_GE(units->units[1]->output(kUser), 1000);
   EXPECT_EQ(User::illegal, 0);
+  const Takeover takeover = told_by(kSpare, 1);
+  EXPECT_EQ(takeover.from, kPrimary);
+  EXPECT_EQ(takeover.standby.task, kSpare);
+  EXPECT_TRUE(takeover.was_death);
+  EXPECT_EQ(takeover.end, SwitchEnd::kDone);
+  EXPECT_GE(takeover.at, takeover.lost);
+  EXPECT_GE(takeover.ended, takeover.at);
+  ASSERT_EQ(takeover.n_variables, 1u);
+  EXPECT_EQ(takeover.variables[0].step_of_cycle.size, 1000);
 }
 
 TEST_F(StandbyLinksTest, TheNextOneTakesOverWhenTheFirstIsDeadOrCannot) {
@@ -107,6 +123,18 @@ TEST_F(StandbyLinksTest, TheNextOneTakesOverWhenTheFirstIsDeadOrCannot) {
   units->run(milliseconds(5));
   EXPECT_EQ(state(kLast), State::kOn);
   EXPECT_EQ(User::illegal, 0);
+}
+
+TEST_F(StandbyLinksTest, ATakeoverThatItsUnitDiesInIsToldAsFarAsItCame) {
+  units->run(microseconds(500));  // between two releases
+  units->die(0);
+  while (state(kSpare) != State::kOn) units->run(microseconds(10));
+  Takeover takeover;
+  EXPECT_FALSE(units->units[2]->segment.block.view().takeovers().read(1, true, takeover)) << "it is not over";
+  takeover = told_by(kSpare, 1, false);
+  EXPECT_EQ(takeover.end, SwitchEnd::kDone);
+  EXPECT_EQ(takeover.ended, kNever);
+  EXPECT_NE(takeover.at, kNever);
 }
 
 TEST_F(StandbyLinksTest, OneWhoseOnFailsMakesPlace) {

@@ -32,6 +32,13 @@ void SwitchLinks::tell_over(const SwitchReceipt& receipt) noexcept {
   others_.ring_all();
 }
 
+// The manager's log and its receipts come after what they are about.
+void SwitchLinks::tell_takeover(const Takeover& takeover) noexcept {
+  others_.publish(tasks_);
+  others_.block().takeovers().put(takeover);
+  if (takeover.ended != kNever) others_.ring_all();
+}
+
 // States that it follows from are shown before it.
 void SwitchLinks::wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept {
   BlockHead& head = others_.block().head();

@@ -21,6 +21,7 @@ class SwitchLinks final : public SwitchPeers {
   void show() noexcept override { others_.publish(tasks_); }
   void tell_adopted(std::uint16_t number) noexcept override;
   void tell_over(const SwitchReceipt& receipt) noexcept override;
+  void tell_takeover(const Takeover& takeover) noexcept override;
   void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept override;
 
  private:

@@ -13,6 +13,11 @@ namespace {
 // How often it is looked whether another context has seen that a task failed: nobody rings for that.
 constexpr Nanoseconds kLookForSeen = microseconds(200);
 
+/// Of a task whose `on` was not ready.
+Nanoseconds ask_again_at(const Task& task, Nanoseconds now) noexcept {
+  return now + std::max(task.spec->period, TaskLife::kAskAgain);
+}
+
 void count(std::uint16_t& counter) noexcept {
   if (counter < UINT16_MAX) ++counter;
 }
@@ -23,12 +28,13 @@ void Recovery::prepare() {
   TaskSet& set = parts_.set;
   const auto is_hot = [&](const StandbySpec& each) { return each.hot && set.is_mine(each.standby); };
   const auto standbys = set.spec().standbys;
-  hot_ = set.setup_memory().take<TaskId>(
+  hot_ = set.setup_memory().take<HotStandby>(
       static_cast<std::size_t>(std::count_if(standbys.begin(), standbys.end(), is_hot)));
   std::size_t n_hot = 0;
   for (const StandbySpec& each : standbys)
-    if (is_hot(each)) hot_[n_hot++] = each.standby;
-  takeovers_ = set.setup_memory().take<Takeover>(set.standbys().n_groups());
+    if (is_hot(each)) hot_[n_hot++].task = each.standby;
+  record_.prepare();
+  takeovers_ = set.setup_memory().take<UnderWay>(set.standbys().n_groups());
   const auto specs = set.spec().restarts;
   const auto is_mine = [&](const RestartSpec& spec) { return set.is_mine(spec.task); };
   restarts_ = set.setup_memory().take<Restart>(
@@ -51,6 +57,8 @@ void Recovery::act(Nanoseconds now) noexcept {
   due_ = wake_ = kNever;
   bool is_done = true;
   for (std::size_t group = 0; group < standbys.n_groups(); ++group) is_done = take_over(group, now) && is_done;
+  record_.look(now, false);
+  if (record_.due() != kNever) look_again(now, record_.due());
   for (Restart& each : restarts_) is_done = restart(each, now) && is_done;
   if (is_done) parts_.set.sent().had_edge();
   if (!hot_.empty()) keep_warm(now);
@@ -61,25 +69,32 @@ void Recovery::look_again(Nanoseconds at, Nanoseconds waking) noexcept {
   wake_ = std::min(wake_, waking);
 }
 
-// Those that cannot cycle yet are looked at again, with the end of each job where that may make a gap.
 void Recovery::keep_warm(Nanoseconds now) noexcept {
+  for (HotStandby& each : hot_) keep_warm(each, now);
+}
+
+// One that cannot cycle yet is looked at again, with the end of each job where that may make a gap.
+void Recovery::keep_warm(HotStandby& standby, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
-  for (const TaskId id : hot_) {
-    Task& task = set.tasks()[id.index];
-    const bool wanted = set.standbys().keeps_warm(id);
-    if (wanted == task.is_unread || task.in_service || task.shown_state() != State::kOff) continue;
-    if (parts_.switching.is_under_way() || !parts_.signals.may_touch(id)) {
-      look_again(now, now + task.spec->period);
-    } else if (!wanted) {
-      (void)parts_.signals.signal({&id, 1}, Signal::kOff, now);
-    } else if (!gap_.is_for(task, Method::kOn, now)) {
-      const Nanoseconds next = std::max(parts_.threads.next_look(now), now + Nanoseconds{1});
-      look_again(gap_.is_there() ? next : now, next);
-    } else if (missing_value(set, task, {}).is_valid()) {
-      look_again(now + task.spec->period, now + task.spec->period);
-    } else {
-      parts_.signals.warm_up(id, now);
-    }
+  const TaskId id = standby.task;
+  Task& task = set.tasks()[id.index];
+  const bool wanted = set.standbys().keeps_warm(id);
+  if (wanted == task.is_unread || task.in_service || task.shown_state() != State::kOff) return;
+  if (parts_.switching.is_under_way() || !parts_.signals.may_touch(id)) {
+    look_again(now, now + task.spec->period);
+  } else if (!wanted) {
+    (void)parts_.signals.signal({&id, 1}, Signal::kOff, now);
+  } else if (now < standby.again_at) {
+    look_again(standby.again_at, standby.again_at);
+  } else if (!gap_.is_for(task, Method::kOn, now)) {
+    const Nanoseconds next = std::max(parts_.threads.next_look(now), now + Nanoseconds{1});
+    look_again(gap_.is_there() ? next : now, next);
+  } else if (missing_value(set, task, {}).is_valid()) {
+    look_again(now + task.spec->period, now + task.spec->period);
+  } else {
+    parts_.signals.warm_up(id, now);
+    standby.again_at = ask_again_at(task, now);
+    if (!task.is_unread && task.state == State::kOff) look_again(standby.again_at, standby.again_at);
   }
 }
 
@@ -125,9 +140,16 @@ bool Recovery::create(std::size_t group, Task& task, Nanoseconds now) noexcept {
     if (task.state == State::kOff) return true;
   }
   created = {};
-  set.standbys().rule_out(task.id);
-  set.on_set_changed();
+  rule_out(group, task, NoSwitch::kStepFailed, now);
   return false;
+}
+
+// The next one of the group is to take over.
+void Recovery::rule_out(std::size_t group, Task& task, NoSwitch why, Nanoseconds now) noexcept {
+  record_.begin(group, task.id);
+  record_.failed(group, why, now);
+  parts_.set.standbys().rule_out(task.id);
+  parts_.set.on_set_changed();
 }
 
 // True: it is ON, or later, or not here; else it is ruled out.
@@ -138,10 +160,13 @@ bool Recovery::turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept 
   if (!set.life().judge().would_be_legal({&task.id, 1})) return true;  // once an input has a producer again
   const TaskId failed = set.standbys().failed(group);
   const Nanoseconds lost = set.standbys().lost_at(group);
+  const bool was_hot = task.is_unread;
+  const Nanoseconds began = set.methods().clock()->now();
+  record_.begin(group, task.id);
   const SignalReport report = parts_.signals.signal({&task.id, 1}, Signal::kOn, now);
   if (report.why == Refusal::kIllegalSet) return true;  // another context turns one ON
   if (report.why == Refusal::kNotYet && now < lost + TaskLife::kPatience) {
-    again_at = now + std::max(task.spec->period, TaskLife::kAskAgain);
+    again_at = ask_again_at(task, now);
     return look_again(again_at, again_at), true;
   }
   if (task.is_half_on) (void)parts_.signals.signal({&task.id, 1}, Signal::kOff, now);
@@ -149,11 +174,12 @@ bool Recovery::turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept 
     count(task.profile.takeovers);
     note(task, "took over from ", failed);
     const Nanoseconds by = set.methods().clock()->now();
+    if (!was_hot) record_.took(group, by - began);
+    record_.done(group, by);
     if (parts_.guest != nullptr) parts_.guest->took_over(task.id, failed, by - lost, by);
     return true;
   }
-  set.standbys().rule_out(task.id);
-  set.on_set_changed();
+  rule_out(group, task, report.why == Refusal::kNotYet ? NoSwitch::kNotReady : NoSwitch::kOnFailed, now);
   return false;
 }
 

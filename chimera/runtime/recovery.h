@@ -14,6 +14,7 @@
 #include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/settlement.h"
 #include "chimera/runtime/switching.h"
+#include "chimera/runtime/takeover_record.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
@@ -32,12 +33,16 @@ class Recovery {
     BoundaryListener* guest;  ///< null: nobody is told
   };
   explicit Recovery(const Parts& parts) noexcept
-      : parts_(parts), gap_(parts.set.tasks(), parts.queue, parts.threads) {}
+      : parts_(parts),
+        gap_(parts.set.tasks(), parts.queue, parts.threads),
+        record_(parts.set, parts.threads, parts.switching) {}
   /// Context: setup.
   void prepare();
 
   /// Does what is due. Of no effect where no task has a standby or is restarted.
   void act(Nanoseconds now) noexcept;
+  /// The run is over: takeovers whose first cycle is waited for are told of.
+  void end(Nanoseconds now) noexcept { record_.look(now, true); }
   /// From when on act() may have something to do although no state has changed; kNever: only then. Wait-free.
   Nanoseconds due() const noexcept { return std::min(parts_.set.standbys().due(), due_); }
   /// The next instant at which that is so although no job ends before. Wait-free.
@@ -52,18 +57,26 @@ class Recovery {
   };
 
   /// What is under way in one group.
-  struct Takeover {
+  struct UnderWay {
     TaskId closes;         // its ERROR is to be seen in another context before it is killed here
     TaskId created;        // here; its `init` may be under way
     Nanoseconds again_at;  // a standby whose device is not ready is asked then
   };
 
+  /// One that cycles beside the task that is ON.
+  struct HotStandby {
+    TaskId task;
+    Nanoseconds again_at;  // its `on` was not ready: it is asked then
+  };
+
   void keep_warm(Nanoseconds now) noexcept;
+  void keep_warm(HotStandby& standby, Nanoseconds now) noexcept;
   void look_again(Nanoseconds at, Nanoseconds waking) noexcept;
   bool take_over(std::size_t group, Nanoseconds now) noexcept;
   bool give_up_resource(std::size_t group, TaskId to, Nanoseconds now) noexcept;
   bool create(std::size_t group, Task& task, Nanoseconds now) noexcept;
   bool turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept;
+  void rule_out(std::size_t group, Task& task, NoSwitch why, Nanoseconds now) noexcept;
   bool restart(Restart& restart, Nanoseconds now) noexcept;
   void answer(Restart& restart, Task& task, Nanoseconds now) noexcept;
   bool may_touch(Task& task) noexcept;
@@ -71,8 +84,9 @@ class Recovery {
 
   Parts parts_;
   IdleGap gap_;
-  std::span<TaskId> hot_;  // of this context
-  std::span<Takeover> takeovers_;  // by group
+  TakeoverRecord record_;
+  std::span<HotStandby> hot_;       // of this context
+  std::span<UnderWay> takeovers_;  // by group
   std::span<Restart> restarts_;
   Nanoseconds due_ = kNever, wake_ = kNever;  // of standbys that cannot cycle, or go ON, yet
 };

@@ -35,6 +35,10 @@ bool may_request(const ApplicationSpec& spec) noexcept {
   return spec.sets.size() > 1 || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
 }
 
+std::size_t kept_of_unscripted(const ApplicationSpec& spec) noexcept {
+  return may_request(spec) || !spec.standbys.empty() ? 16 : 0;
+}
+
 Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
       records_(set.setup_memory().take<JobRecord>(set.tasks().size())),
@@ -53,8 +57,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
   const bool takes_requests = (is_alone || options.switch_peers != nullptr) && may_request(set.spec());
-  const bool keeps_receipts = is_alone && takes_requests;
-  switching_.prepare(n_switches + (keeps_receipts ? kKeptOfRequests : 0), options.switch_peers);
+  switching_.prepare(n_switches + (is_alone ? kept_of_unscripted(set.spec()) : 0), options.switch_peers);
   if (takes_requests) set.sent().allow_requests();
   recovery_.prepare();
   for (Task& task : set.tasks()) {

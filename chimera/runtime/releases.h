@@ -32,8 +32,8 @@ namespace chimera {
 
 /// A task may ask for a configuration: there is another one, or a reaction leads to one.
 bool may_request(const ApplicationSpec& spec) noexcept;
-/// Of switches that tasks ask for; no more receipts of them are kept.
-inline constexpr std::size_t kKeptOfRequests = 16;
+/// So many receipts are kept of what no script asks for: switches that tasks ask for, and takeovers by standbys.
+std::size_t kept_of_unscripted(const ApplicationSpec& spec) noexcept;
 
 /// Owns the parts, which work in the memory that the set was built in. Context of everything not marked: cycle; no
 /// allocation, no system call.
@@ -77,6 +77,11 @@ class Releases {
   /// True while a task is ON or may yet be turned ON.
   bool anything_left() const noexcept {
     return members_.is_any_on() || set_.sent().has_pending() || signals_.next_act() != kNever || guest_ != nullptr;
+  }
+  /// The run is over: what is under way of switches and takeovers ends.
+  void end(Nanoseconds now) noexcept {
+    recovery_.end(now);
+    switching_.end(now);
   }
   bool stop_requested() const noexcept { return stop_->load(std::memory_order_relaxed); }
 

@@ -59,6 +59,8 @@ class Standbys {
   TaskId failed(std::size_t group) const noexcept { return groups_[group].on; }
   /// When that was found. Requires: as failed().
   Nanoseconds lost_at(std::size_t group) const noexcept { return groups_[group].lost_at; }
+  /// Until then the loss before was covered. Requires: the group lost a task once.
+  Nanoseconds covered_until(std::size_t group) const noexcept { return groups_[group].until; }
   /// It could not go ON: it is passed over until the group has a task that is ON again.
   void rule_out(TaskId task) noexcept { is_out_[task.index] = true; }
   /// The task stands in a group that waits for another one to take over from it.

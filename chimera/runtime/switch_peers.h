@@ -4,6 +4,7 @@
 
 #include "chimera/runtime/switch_page.h"
 #include "chimera/runtime/switch_receipt.h"
+#include "chimera/runtime/takeover.h"
 
 namespace chimera {
 
@@ -23,6 +24,8 @@ class SwitchPeers {
   virtual void tell_adopted(std::uint16_t number) noexcept = 0;
   /// Nothing is left to do for the plan: the part of this context in its receipt is shown, then the number.
   virtual void tell_over(const SwitchReceipt& receipt) noexcept = 0;
+  /// A standby of this context took over, or could not: told when it is ON, and anew when its first cycle was seen.
+  virtual void tell_takeover(const Takeover& takeover) noexcept = 0;
   /// A task of this context asks for a switch: whoever plans is to see it. `changes_nothing`: it is for what is in
   /// force, or is being switched to.
   virtual void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept = 0;
@@ -41,6 +44,7 @@ class NoSwitchPeers final : public SwitchPeers {
   void show() noexcept override {}
   void tell_adopted(std::uint16_t) noexcept override {}
   void tell_over(const SwitchReceipt&) noexcept override {}
+  void tell_takeover(const Takeover&) noexcept override {}
   void wish(const SwitchRequest&, bool, Nanoseconds) noexcept override {}
 
  private:

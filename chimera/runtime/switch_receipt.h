@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of one switch of configurations: who, when, how long, what was lost, how far each variable moved.
+// What became of one switch of configurations, or of one takeover by a standby (takeover.h): who, when, how long, what was lost, how far each variable moved.
 // docs/formats/receipt.md says what is printed of it.
 #pragma once
 
@@ -60,6 +60,8 @@ struct SwitchReceipt {
   std::uint32_t before = kNoSet, after = kNoSet;  ///< in ApplicationSpec::sets
   SwitchCause cause = SwitchCause::kScript;
   TaskId by;  ///< as SwitchRequest::by
+  TaskId in_place_of;      ///< of kStandby: the task that failed
+  bool was_death = false;  ///< of kStandby: its process died; else it is in ERROR
   SwitchEnd end = SwitchEnd::kRefused;
   NoSwitch why = NoSwitch::kNone;  ///< of an end that is not kDone
   TaskId task;                     ///< of `why`

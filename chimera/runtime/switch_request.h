@@ -15,6 +15,7 @@ enum class SwitchCause : std::uint8_t {
   kMiss,     ///< the reaction `on_miss` of the task `by`
   kOverrun,  ///< its reaction `on_overrun`
   kFault,    ///< its reaction `on_fault`
+  kStandby,  ///< nobody: `by` is a standby that takes over, which is no switch and has a receipt all the same
 };
 
 /// `set` is in ApplicationSpec::sets.

@@ -466,6 +466,16 @@ bool Switching::give_way(TaskId to) noexcept {
   return !is_held_ && phase_ != Phase::kSlow;
 }
 
+void Switching::took_over(const Takeover& takeover) noexcept {
+  if (peers_ != &nobody_) return peers_->tell_takeover(takeover);
+  if (takeover.ended == kNever) return;
+  ++n_asked_;
+  SwitchReceipt* const receipt = record_.add_beside();
+  if (receipt == nullptr) return;
+  receipt->number = n_asked_;
+  write_receipt(takeover, *receipt);
+}
+
 void Switching::end(Nanoseconds now) noexcept {
   if (phase_ == Phase::kNone) return;
   if (phase_ == Phase::kArming || phase_ == Phase::kAgreed) abort(NoSwitch::kRunEnded, {}, {});

@@ -73,6 +73,8 @@ class Switching {
   /// A task is to go ON in place of one that failed: a switch that is not committed is aborted. False: not now, the
   /// change is under way.
   bool give_way(TaskId to) noexcept;
+  /// Files the receipt of a takeover when that is over, as SwitchPeers::tell_takeover().
+  void took_over(const Takeover& takeover) noexcept;
   /// The run is over: what is not committed is aborted, what is committed is finished.
   void end(Nanoseconds now) noexcept;
 

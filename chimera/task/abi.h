@@ -271,6 +271,10 @@ typedef struct chimera_component {
 typedef const chimera_component* const* (*chimera_components_fn)(uint32_t abi_version, uint32_t* count);
 #define CHIMERA_COMPONENTS_SYMBOL "chimera_components"
 
+/* An object has no thread_local variables but one of the framework, two words long of which this is the first: others
+   may ask the heap when a thread first uses them. */
+#define CHIMERA_THREAD_MARK UINT64_C(0x454e4f4441455254)
+
 #ifdef __cplusplus
 }
 #endif

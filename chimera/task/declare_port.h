@@ -38,16 +38,22 @@ struct Declaration {
   alignas(16) std::byte memory[8192] = {};  ///< initial values, and names without their '*'
 };
 
+class Collector;
+struct CollectorOfThread {
+  std::uint64_t mark;
+  Collector* current;
+};
+
 /// Takes ports while it lives. Context: setup.
 class Collector {
  public:
   Collector(Declaration& to, const void* sample, std::size_t size) noexcept
-      : to_(to), sample_(static_cast<const std::byte*>(sample)), size_(size), outer_(current_) { current_ = this; }
-  ~Collector() { current_ = outer_; }
+      : to_(to), sample_(static_cast<const std::byte*>(sample)), size_(size), outer_(slot()) { slot() = this; }
+  ~Collector() { slot() = outer_; }
   Collector(const Collector&) = delete;
   Collector& operator=(const Collector&) = delete;
 
-  static Collector* current() noexcept { return current_; }
+  static Collector* current() noexcept { return slot(); }
 
   /// Adds a port whose live half lies at `live`; `instances` is null unless the port is repeated.
   void add(chimera_port_decl port, const void* live, const void* instances) noexcept {
@@ -97,10 +103,13 @@ class Collector {
   }
 
 #if __STDC_HOSTED__
-  // One per thread: another thread may construct an instance to run at the same time.
-  static inline thread_local Collector* current_ = nullptr;
+  // One per thread: another thread may construct an instance to run at the same time. The mark tells it from variables
+  // of the component where the object is judged.
+  static inline thread_local CollectorOfThread of_thread_{CHIMERA_THREAD_MARK, nullptr};
+  static Collector*& slot() noexcept { return of_thread_.current; }
 #else
   static inline Collector* current_ = nullptr;  // there is one thread
+  static Collector*& slot() noexcept { return current_; }
 #endif
 
   Declaration& to_;

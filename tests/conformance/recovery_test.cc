@@ -87,6 +87,7 @@ class RecoveryTest : public ::testing::TestWithParam<Kind> {
     if (!restarts_.empty()) app_->tasks[kFirst.index].on_fault = OnFault::kRestart;
     if (!restarts_.empty() && restarts_[0].then == OnFault::kSwitch) app_->tasks[kFirst.index].on_fault_set = kAlone;
     app_->make({kFirst, kReader}, false);
+    if (limit_ > 0) app_->port(kSpare.index, 0).max_step = std::as_bytes(std::span(&limit_, 1));
     app_->spec.standbys = standbys_;
     app_->spec.restarts = restarts_;
     app_->spec.stale = stale_;
@@ -114,6 +115,7 @@ class RecoveryTest : public ::testing::TestWithParam<Kind> {
   std::vector<TaskId> plain_{kFirst, kReader}, alone_{kThird, kReader};
   NamedSet sets_[2] = {{"plain", plain_}, {"alone", alone_}};
   RunEnd end_ = RunEnd::kTime;
+  double limit_ = 0;  // the max_step of u where the spare writes it; 0: none
   std::vector<ScriptAct> acts_;
   std::unique_ptr<testing::TestApplication> app_;
   std::unique_ptr<HeapTaskSet> set_;
@@ -139,6 +141,78 @@ TEST_P(RecoveryTest, AStandbyTakesOverWithinItsPeriodAndTheFlagStaysDown) {
   EXPECT_EQ(scene.u, (std::vector<double>{1, 2, 3, 4, 5, 5, 5, 100, 101, 102}));
   EXPECT_FALSE(was_up());
   EXPECT_FALSE(set_->flag().is_up());
+}
+
+TEST_P(RecoveryTest, ATakeoverHasAReceipt) {
+  limit_ = 50;
+  fail_first_in(5);
+  scene.on_of_spare = [](Cycle c) -> Outcome {
+    c.spend(microseconds(10));
+    return ok();
+  };
+  go(milliseconds(10));
+  ASSERT_EQ(runner_->receipts().size(), 1u);
+  const SwitchReceipt& receipt = runner_->receipts()[0];
+  EXPECT_EQ(receipt.number, 1u);
+  EXPECT_EQ(receipt.before, kPlain);
+  EXPECT_EQ(receipt.after, kPlain);
+  EXPECT_EQ(receipt.cause, SwitchCause::kStandby);
+  EXPECT_EQ(receipt.by, kSpare);
+  EXPECT_EQ(receipt.in_place_of, kFirst);
+  EXPECT_FALSE(receipt.was_death);
+  EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_EQ(receipt.flag, Nanoseconds{});
+  EXPECT_GE(receipt.at - receipt.asked, microseconds(10));
+  EXPECT_LE(receipt.at - receipt.asked, milliseconds(1));
+  EXPECT_GT(receipt.ended, receipt.at);
+  EXPECT_LE(receipt.ended - receipt.asked, milliseconds(2));
+  ASSERT_EQ(receipt.tasks.size(), 2u);
+  EXPECT_EQ(receipt.tasks[0].task, kSpare);
+  EXPECT_EQ(receipt.tasks[0].move, TaskMove::kArrives);
+  EXPECT_EQ(receipt.tasks[0].on, microseconds(10));
+  EXPECT_EQ(receipt.tasks[0].lost, 0u);
+  EXPECT_GE(receipt.tasks[0].delay, Nanoseconds{});
+  EXPECT_EQ(receipt.tasks[1].task, kFirst);
+  EXPECT_EQ(receipt.tasks[1].move, TaskMove::kLeaves);
+  ASSERT_EQ(receipt.variables.size(), 1u);
+  EXPECT_EQ(receipt.variables[0].handover.from.task, kFirst);
+  EXPECT_EQ(receipt.variables[0].handover.to.task, kSpare);
+  EXPECT_TRUE(receipt.variables[0].step_of_on.is_known);
+  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "it goes on from what stands";
+  EXPECT_EQ(receipt.variables[0].step_of_cycle.size, 95) << "from 5 to 100";
+  EXPECT_TRUE(receipt.variables[0].step_of_cycle.is_beyond);
+}
+
+TEST_P(RecoveryTest, AnAttemptThatFailsHasAReceiptAndSoHasOneThatTheEndCuts) {
+  fail_first_in(5);
+  scene.on_of_spare = [n = 0](Cycle) mutable -> Outcome { return n++ == 0 ? fault("no voltage") : ok(); };
+  go(milliseconds(5) + microseconds(100));
+  const bool is_begun = runner_->receipts().size() == 1;
+  EXPECT_TRUE(is_begun) << runner_->receipts().size();
+  runner_->shut_down();
+  ASSERT_EQ(runner_->receipts().size(), 2u);
+  const SwitchReceipt &failed = runner_->receipts()[0], &cut = runner_->receipts()[1];
+  EXPECT_EQ(failed.end, SwitchEnd::kAborted);
+  EXPECT_EQ(failed.why, NoSwitch::kOnFailed);
+  EXPECT_EQ(failed.task, kSpare);
+  EXPECT_EQ(failed.said.view(), "no voltage");
+  EXPECT_EQ(failed.at, kNever);
+  EXPECT_EQ(cut.number, 2u);
+  EXPECT_EQ(cut.by, kThird);
+  EXPECT_EQ(cut.in_place_of, kFirst);
+  EXPECT_EQ(cut.end, SwitchEnd::kDone);
+}
+
+TEST_P(RecoveryTest, ALateTakeoverSaysHowLongTheFlagWasUp) {
+  standbys_ = {{kFirst, kSpare}};
+  fail_first_in(5);
+  scene.on_of_spare = [n = 0](Cycle) mutable -> Outcome { return n++ < 3 ? not_yet() : ok(); };
+  go(milliseconds(14));
+  ASSERT_EQ(runner_->receipts().size(), 1u);
+  const SwitchReceipt& receipt = runner_->receipts()[0];
+  EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_GE(receipt.at - receipt.asked, milliseconds(3));
+  EXPECT_EQ(receipt.flag, receipt.at - receipt.asked - milliseconds(1));
 }
 
 TEST_P(RecoveryTest, OneThatCannotGoOnMakesPlaceForTheNext) {
@@ -208,9 +282,9 @@ TEST_P(RecoveryTest, ATakeoverAbortsASwitchThatIsNotCommittedAndLeavesACommitted
     return ok();
   };
   go(milliseconds(12));
-  ASSERT_EQ(runner_->receipts().size(), 1u);
   // Preemptive, the change comes before the job that fails, which was released before it.
   const bool is_committed = GetParam() == Kind::kPreemptive;
+  ASSERT_EQ(runner_->receipts().size(), is_committed ? 1u : 2u);  // the second is of the takeover
   EXPECT_EQ(runner_->receipts()[0].end, is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted);
   EXPECT_EQ(runner_->receipts()[0].why, is_committed ? NoSwitch::kNone : NoSwitch::kDisturbed);
   EXPECT_EQ(state(kFirst), chimera::State::kError);

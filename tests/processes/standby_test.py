@@ -35,6 +35,13 @@ class Standby(unittest.TestCase):
         return [event for event in system.events() if event["kind"] == "flag" and event["at_ns"] > since
                 and "up" in event["text"]]
 
+    def receipts(self, system, n):
+        """The receipts of this run, when there are so many."""
+        def filed():
+            return [each for each in system.call("receipts")["receipts"] if each["way"] == "takeover"]
+        await_that(lambda: len(filed()) >= n, 5, f"{n} receipts of takeovers")
+        return filed()
+
     def take_over(self, system, *who):
         pids = system.pids()
         for name in who:
@@ -51,6 +58,15 @@ class Standby(unittest.TestCase):
             system.await_state("main", "OFF")  # its process is restarted, and it stays OFF
             self.assertEqual(system.call("status")["configuration"], "run with spare for main")
             self.assertIn("took over from 'main'", str([e["text"] for e in system.events() if e["kind"] == "note"]))
+            receipt, = self.receipts(system, 1)
+            self.assertEqual(receipt["asked_by"],
+                             {"reaction": "standby_for", "lost": "main", "by": "death", "task": "spare"})
+            self.assertEqual([receipt[key] for key in ("number", "from", "to", "end", "flag_ns")],
+                             [1, "run", "run", "done", 0])
+            variable, = receipt["variables"]
+            self.assertEqual([variable[key] for key in ("variable", "from", "to", "step", "unit")],
+                             ["wanted", "main", "spare", 1, "m/s"])
+            self.assertEqual({task["task"]: task["lost"] for task in receipt["tasks"]}, {"spare": 0, "main": 0})
             with self.assertRaises(Refused):
                 system.signal("on", "main")
             receipt = system.call("switch", configuration="run")  # back, by a person
@@ -73,6 +89,8 @@ class Standby(unittest.TestCase):
             self.await_seen(system, 2)
             self.take_over(system, "manager", "first")
             system.await_state("main", "OFF")
+            receipt, = self.receipts(system, 1)  # by the next manager
+            self.assertEqual((receipt["number"], receipt["end"]), (1, "done"))
 
     def test_the_primary_stands_in_for_its_standby(self):
         with System(TEXT) as system:
@@ -81,6 +99,8 @@ class Standby(unittest.TestCase):
             self.assertTrue(system.kill(system.pids()["second"]))
             system.await_state("main", "ON")
             await_that(lambda: system.state("user") == "ON", 10, "the reader is back")
+            self.assertEqual([(each["number"], each["asked_by"]["task"]) for each in self.receipts(system, 2)],
+                             [(1, "spare"), (2, "main")])
             self.await_seen(system, 2)
             system.await_state("spare", "OFF")
 

@@ -38,6 +38,9 @@ class CutLinks final : public SwitchPeers {
   void tell_over(const SwitchReceipt& receipt) noexcept override {
     tell([this, &receipt] { links_.tell_over(receipt); });
   }
+  void tell_takeover(const Takeover& takeover) noexcept override {
+    tell([&] { links_.tell_takeover(takeover); });
+  }
   void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept override {
     tell([&] { links_.wish(request, changes_nothing, now); });
   }

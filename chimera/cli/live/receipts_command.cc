@@ -102,7 +102,8 @@ std::string receipts_text(const Json& answer) {
     table.add({number, asked_at(receipt), asked_by(receipt), from.empty() ? "-" : from, to.empty() ? "-" : to, end,
                at ? duration_text(*at - whole_of(receipt, "asked_ns")) : "-",
                end == "refused" ? "-" : std::to_string(lost), end == "done" ? moves(receipt) : ""});
-    if (end != "done") whys += "switch " + number + ": " + text_of(receipt, "why") + "\n";
+    const std::string what = text_of(receipt, "way") == "takeover" ? "takeover " : "switch ";
+    if (end != "done") whys += what + number + ": " + text_of(receipt, "why") + "\n";
   }
   std::string text = table.empty() ? "no receipts\n" : table.text();
   const std::int64_t unfiled = whole_of(answer, "unfiled");

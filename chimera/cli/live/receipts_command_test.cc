@@ -54,6 +54,24 @@ struct ReceiptsCommandTest : ::testing::Test {
   char place[40] = "/tmp/chimera_receipts_XXXXXX";
 };
 
+TEST_F(ReceiptsCommandTest, ATakeoverNamesTheStandby) {
+  Json takeover = receipt(1, "done"), aborted = receipt(2, "aborted");
+  for (Json* one : {&takeover, &aborted}) {
+    (*one)["way"] = "takeover";
+    (*one)["to"] = "gentle";
+    (*one)["asked_by"] = {{"reaction", "standby_for"}, {"lost", "fast"}, {"by", "error"}, {"task", "spare"}};
+  }
+  aborted["why"] = "on of task 'spare': no voltage";
+  const Json answer = {{"receipts", {takeover, aborted}}, {"unfiled", 0}, {"fault", nullptr}};
+  EXPECT_EQ(receipts_text(answer),
+            "number  asked                by                    from    to      end      change  lost  moves\n"
+            "     1  2023-11-14 22:13:20  standby_for of spare  gentle  gentle  done    12.5 ms     1  wanted 2 of 3 m/s, "
+            "gain 0.5 (beyond)\n"
+            "     2  2023-11-14 22:13:20  standby_for of spare  gentle  gentle  aborted       -     1\n"
+            "\n"
+            "takeover 2: on of task 'spare': no voltage\n");
+}
+
 TEST_F(ReceiptsCommandTest, AreATableWithUnitsAndAReasonForEachThatWasNotDone) {
   const Json answer = {{"receipts", {receipt(1, "done"), receipt(2, "refused")}}, {"unfiled", 0}, {"fault", nullptr}};
   EXPECT_EQ(receipts_text(answer),

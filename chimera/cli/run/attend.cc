@@ -98,6 +98,7 @@ class RemoteTarget final : public RunTarget {
   void act_next();
   void act(const TimedAct& timed);
   void switch_to(const TimedAct& timed);
+  void add_receipts(const Json& origin_ns, RunReport& report);
   std::vector<UnitFate> units_of(const Json& status) const;
   std::vector<TaskProfile> profiles(const Json& origin);
   std::optional<Json> await_end();
@@ -114,7 +115,7 @@ class RemoteTarget final : public RunTarget {
   TaskNames names_;
   std::vector<TimedAct> acts_;
   std::optional<RecordLine> records_;
-  std::string grants_, refused_, switches_, receipts_;
+  std::string grants_, refused_, switches_;
   FacePage own_page_;  // of one that has no predecessors
   FacePage& page_;
   const bool is_resumed_;         // a face that died had begun
@@ -262,8 +263,6 @@ void RemoteTarget::switch_to(const TimedAct& timed) {
     refused_ += "refused at " + since_start(clock_.now()) + ": " + answer.error().message.c_str() + "\n";
   } else if (answer->value("end", "") == "nothing-to-do") {
     switches_ += "switch at " + since_start(clock_.now()) + ": '" + name + "' is in force, nothing to do\n";
-  } else {
-    receipts_ += (receipts_.empty() ? "" : ", ") + answer->dump();
   }
 }
 
@@ -403,6 +402,19 @@ int RemoteTarget::refuse(const Error& error) {
   return output.code;
 }
 
+/// Of the run that began at `origin_ns`, whoever asked: switches and takeovers. The manager gives the last ones out.
+void RemoteTarget::add_receipts(const Json& origin_ns, RunReport& report) {
+  const auto answer = line_.ask("receipts", {{"last", 200}});
+  if (!answer) return;
+  std::uint64_t n = 0, n_filed = 0;
+  for (const Json& receipt : (*answer)["receipts"]) {
+    if (receipt["origin_ns"] != origin_ns) continue;
+    report.receipts += (n++ == 0 ? "" : ", ") + receipt.dump();
+    n_filed = std::max(n_filed, receipt["number"].get<std::uint64_t>());
+  }
+  report.receipts_left_out = n_filed - n;
+}
+
 void RemoteTarget::finish(RunReport& report) {
   const auto status = line_.ask("status", Json::object());
   if (status) report.profiles = profiles((*status)["origin_ns"]);
@@ -414,7 +426,7 @@ void RemoteTarget::finish(RunReport& report) {
   report.stopped_by = stopped_by_;
   report.refused = refused_;
   report.switches = switches_;
-  report.receipts = receipts_;
+  if (status) add_receipts((*status)["origin_ns"], report);
   if (records_) records_->finish(*sink_);
   judge_end(report, status ? *status : Json::object());
 }

@@ -41,7 +41,7 @@ class Executive {
   RunEnd run(Nanoseconds duration) noexcept;
   /// off and kill for every task. Context: setup.
   void shut_down() {
-    releases_.switching().end(clock_.now());
+    releases_.end(clock_.now());
     set_.life().shut_down(clock_.now());
   }
 

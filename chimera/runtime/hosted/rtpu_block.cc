@@ -36,7 +36,8 @@ constexpr std::uint64_t kProgressAt = after(kMemoryAt, sizeof(ManagerMemory));
 constexpr std::uint64_t kOutboxAt = after(kProgressAt, sizeof(PostProgress) * kMaxPeers);
 constexpr std::uint64_t kTapAt = after(kOutboxAt, sizeof(PostRing) * kMaxPeers);
 constexpr std::uint64_t kSwitchPartAt = after(kTapAt, sizeof(TapRing));
-constexpr std::uint64_t kJournalAt = after(kSwitchPartAt, sizeof(SwitchPart));
+constexpr std::uint64_t kTakeoversAt = after(kSwitchPartAt, sizeof(SwitchPart));
+constexpr std::uint64_t kJournalAt = after(kTakeoversAt, sizeof(TakeoverRing));
 constexpr std::uint64_t kStatusAt = after(kJournalAt, kJournalBytes);
 constexpr std::uint64_t wish_at(std::uint32_t n_tasks) noexcept {
   return after(kStatusAt, sizeof(std::uint64_t) * std::uint64_t{n_tasks});
@@ -117,6 +118,7 @@ const PostRing& BlockView::outbox(std::uint32_t peer) const noexcept {
 const TapRing& BlockView::tap() const noexcept { return part<TapRing>(bytes_, kTapAt); }
 const ManagerMemory& BlockView::memory() const noexcept { return part<ManagerMemory>(bytes_, kMemoryAt); }
 const SwitchPart& BlockView::switch_part() const noexcept { return part<SwitchPart>(bytes_, kSwitchPartAt); }
+const TakeoverRing& BlockView::takeovers() const noexcept { return part<TakeoverRing>(bytes_, kTakeoversAt); }
 std::span<const std::byte> BlockView::journal() const noexcept { return {bytes_ + kJournalAt, kJournalBytes}; }
 const SafeFrame& BlockView::safe_frame(TaskId task, std::uint32_t index) const noexcept {
   CHIMERA_ASSERT(task.index < n_tasks_ && index < kSafeFrames);
@@ -178,6 +180,7 @@ PostRing& BlockOwner::outbox(std::uint32_t peer) const noexcept {
 TapRing& BlockOwner::tap() const noexcept { return part<TapRing>(bytes_, kTapAt); }
 ManagerMemory& BlockOwner::memory() const noexcept { return part<ManagerMemory>(bytes_, kMemoryAt); }
 SwitchPart& BlockOwner::switch_part() const noexcept { return part<SwitchPart>(bytes_, kSwitchPartAt); }
+TakeoverRing& BlockOwner::takeovers() const noexcept { return part<TakeoverRing>(bytes_, kTakeoversAt); }
 std::span<std::byte> BlockOwner::journal() const noexcept { return {bytes_ + kJournalAt, kJournalBytes}; }
 
 }  // namespace chimera

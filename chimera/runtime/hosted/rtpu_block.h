@@ -17,6 +17,7 @@
 #include "chimera/runtime/hosted/pages.h"
 #include "chimera/runtime/switch_part.h"
 #include "chimera/runtime/switch_wish.h"
+#include "chimera/runtime/takeover.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/runtime/task_status.h"
 #include "chimera/table/segment.h"
@@ -68,6 +69,7 @@ struct ManagerMemory {
   /// The wish of each unit that was dealt with, as wish_dealt_with(); units that live read it, too: relaxed, pairs with
   /// nothing.
   std::atomic<std::uint64_t> wishes[kMaxRtpus];
+  std::atomic<std::uint64_t> takeovers[kMaxRtpus];  ///< incarnation, and number of the last one that has a receipt
 };
 
 /// The journal of switches, which only the manager's block has in use: chimera/manager/switch_journal.h has its form.
@@ -92,6 +94,7 @@ class BlockView {
   const TapRing& tap() const noexcept;
   const ManagerMemory& memory() const noexcept;
   const SwitchPart& switch_part() const noexcept;
+  const TakeoverRing& takeovers() const noexcept;
   std::span<const std::byte> journal() const noexcept;
   /// Of a task of a unit: what is written when the unit is dead.
   const SafeFrame& safe_frame(TaskId task, std::uint32_t index) const noexcept;
@@ -120,6 +123,7 @@ class BlockOwner {
   TapRing& tap() const noexcept;
   ManagerMemory& memory() const noexcept;
   SwitchPart& switch_part() const noexcept;
+  TakeoverRing& takeovers() const noexcept;
   std::span<std::byte> journal() const noexcept;
   std::span<SafeFrame, kSafeFrames> safe_frames(TaskId task) const noexcept;
   BlockView view() const noexcept { return BlockView(bytes_, n_tasks_); }

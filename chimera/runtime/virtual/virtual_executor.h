@@ -32,7 +32,7 @@ class VirtualExecutor {
   /// off and kill for every task. Context: setup.
   void shut_down() {
     clock_.set(now_);
-    releases_.switching().end(now_);
+    releases_.end(now_);
     set_.life().shut_down(now_);
   }
 

@@ -71,10 +71,9 @@ VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const
     : peers_(peers),
       stop_(options.stop != nullptr ? options.stop : &kNoStop),
       script_(options.script),
-      switches_(peers, options.script.count(ScriptAct::Kind::kSwitch) +
-                           (may_request(peers.spec()) ? kKeptOfRequests : 0)) {
+      switches_(peers, options.script.count(ScriptAct::Kind::kSwitch) + kept_of_unscripted(peers.spec())) {
   CHIMERA_ASSERT(how.quantum > Nanoseconds{} && options.guest == nullptr);
-  const bool has_switches = script_.count(ScriptAct::Kind::kSwitch) > 0 || may_request(peers.spec());
+  const bool has_switches = script_.count(ScriptAct::Kind::kSwitch) > 0 || kept_of_unscripted(peers.spec()) > 0;
   for (std::size_t r = 0; r < peers.spec().rtpus.size(); ++r) {
     SwitchPeers* const switches = has_switches ? &switches_.of(RtpuId(r)) : nullptr;
     if (peers.tasks(RtpuId(r)) != nullptr)
@@ -319,7 +318,7 @@ void VirtualRtpus::shut_down() {
   for (const auto& unit : units_) {
     if (unit->is_dead) continue;
     unit->clock.set(now_);
-    unit->releases.switching().end(now_);
+    unit->releases.end(now_);
   }
   switches_.look(now_);
   for (const auto& unit : units_)

@@ -99,6 +99,10 @@ TEST_P(VirtualStandbysTest, TakeOverFromATaskThatFailsElsewhere) {
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
   // It goes ON at the instant of the fault and is released at that instant too: it loses no cycle.
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
+  units->rtpus().shut_down();
+  ASSERT_EQ(units->receipts().size(), 1u);
+  EXPECT_EQ(units->receipts()[0].by, kSpare);
+  EXPECT_FALSE(units->receipts()[0].was_death);
 }
 
 TEST_P(VirtualStandbysTest, TakeOverFromARtpuThatDies) {
@@ -107,6 +111,16 @@ TEST_P(VirtualStandbysTest, TakeOverFromARtpuThatDies) {
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
+  ASSERT_EQ(units->receipts().size(), 1u);
+  const SwitchReceipt& receipt = units->receipts()[0];
+  EXPECT_EQ(receipt.by, kSpare);
+  EXPECT_EQ(receipt.in_place_of, kPrimary);
+  EXPECT_TRUE(receipt.was_death);
+  EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_EQ(receipt.at - units->rtpus().origin(), microseconds(3500)) << "as soon as it is seen";
+  ASSERT_EQ(receipt.variables.size(), 1u);
+  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0);
+  EXPECT_EQ(receipt.variables[0].step_of_cycle.size, 100);
 }
 
 TEST_P(VirtualStandbysTest, TheNextOneTakesOverWhenTheFirstIsDeadOrFails) {

@@ -162,6 +162,15 @@ void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept 
   present_->said = part.said;
 }
 
+void VirtualSwitches::file(const Takeover& takeover) noexcept {
+  if (takeover.ended == kNever) return;
+  ++n_asked_;
+  if (is_under_way() && !receipts_.has_room()) return receipts_.leave_out();  // the last place is that of the present
+  SwitchReceipt& receipt = receipts_.add();
+  receipt.number = n_asked_;
+  write_receipt(takeover, receipt);
+}
+
 void VirtualSwitches::look(Nanoseconds now) noexcept {
   finish(now);
   if (wish_ && is_under_way() && present_->after == wish_.set) wish_ = {};

@@ -47,6 +47,7 @@ class VirtualSwitches {
     void show() noexcept override { all_.peers_.show_change(RtpuId(me_)); }
     void tell_adopted(std::uint16_t number) noexcept override;
     void tell_over(const SwitchReceipt& receipt) noexcept override;
+    void tell_takeover(const Takeover& takeover) noexcept override { all_.file(takeover); }
     void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds) noexcept override {
       if (is_new_wish(request.set, changes_nothing, static_cast<bool>(all_.wish_), all_.wish_.set))
         all_.wish_ = request;
@@ -70,6 +71,7 @@ class VirtualSwitches {
   void finish(Nanoseconds now) noexcept;
   void sort_reinitialised() noexcept;
   void add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept;
+  void file(const Takeover& takeover) noexcept;
 
   VirtualPeers& peers_;
   HeapMemory memory_;

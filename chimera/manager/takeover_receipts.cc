@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads what units tell of takeovers, and makes receipts of it.
+#include "chimera/manager/takeover_receipts.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "chimera/control/receipt_text.h"
+
+namespace chimera::manager {
+namespace {
+
+using Json = nlohmann::json;
+
+// The number of the last takeover of that incarnation that was dealt with.
+std::uint32_t dealt_with(std::uint64_t word, std::uint32_t incarnation) {
+  return word >> 32 == incarnation ? static_cast<std::uint32_t>(word) : 0;
+}
+
+bool is_in_range(const VariablePart& part, const Takeover& takeover, const ApplicationSpec& spec) {
+  return part.handover.variable.index < spec.variables.size() && part.handover.from.task == takeover.from &&
+         part.handover.to.task == takeover.standby.task;
+}
+
+}  // namespace
+
+TakeoverReceipts::TakeoverReceipts(ManagerState& world, ReceiptArchive& archive)
+    : world_(world), archive_(archive), journal_(world.own.block().journal()) {
+  for (const SwitchJournal::Receipt& one : journal_.unfiled()) {
+    const Json receipt = Json::parse(one.text, nullptr, false);
+    if (receipt.is_discarded() || receipt.value("way", "") != "takeover") continue;
+    left_.push_back({receipt.value("asked_ns", std::int64_t{0}), receipt["asked_by"].value("task", "")});
+  }
+}
+
+void TakeoverReceipts::look(Nanoseconds now) {
+  if (world_.spec().standbys.empty()) return;
+  for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r)
+    if (world_.peers[RtpuId(r)].is_there()) look(RtpuId(r), now);
+}
+
+// A unit that is dead tells nothing more: what it had begun is filed as it is.
+void TakeoverReceipts::look(RtpuId rtpu, Nanoseconds now) {
+  const BlockView block = world_.peers[rtpu].block();
+  const std::uint32_t incarnation = block.head().incarnation;
+  const RtpuRecord& record = world_.rtpus[rtpu.index];
+  const bool is_alive = record.is_alive && record.incarnation == incarnation;
+  std::atomic<std::uint64_t>& word = world_.own.block().memory().takeovers[rtpu.index];  // its only writer is here
+  std::uint32_t number = dealt_with(word.load(std::memory_order_relaxed), incarnation) + 1;
+  if (const std::uint32_t oldest = block.takeovers().oldest(); number < oldest) {
+    world_.tell("note", TaskId{}, rtpu, "takeovers without a receipt: " + std::to_string(oldest - number), now);
+    number = oldest;
+  }
+  for (Takeover takeover; block.takeovers().read(number, is_alive, takeover); ++number) {
+    if (is_possible(takeover, rtpu, now)) file(takeover, now);
+    word.store(std::uint64_t{incarnation} << 32 | number, std::memory_order_relaxed);
+  }
+}
+
+// Of a unit that is dead it may be anything.
+bool TakeoverReceipts::is_possible(const Takeover& takeover, RtpuId rtpu, Nanoseconds now) const {
+  const ApplicationSpec& spec = world_.spec();
+  const TaskId task = takeover.standby.task;
+  const auto in_range = [&](const VariablePart& part) { return is_in_range(part, takeover, spec); };
+  const std::size_t n = std::min(takeover.n_variables, Takeover::kVariablesKept);
+  return (takeover.set < spec.sets.size() || takeover.set == kNoSet) && takeover.from.index < spec.tasks.size() &&
+         task.index < spec.tasks.size() && spec.tasks[task.index].rtpu == rtpu && spec.stand_in(task, takeover.from) &&
+         (takeover.end == SwitchEnd::kDone || takeover.end == SwitchEnd::kAborted) && takeover.lost <= now &&
+         takeover.lost >= Nanoseconds{} &&
+         std::all_of(takeover.variables.begin(), takeover.variables.begin() + static_cast<std::ptrdiff_t>(n), in_range);
+}
+
+void TakeoverReceipts::file(const Takeover& takeover, Nanoseconds now) {
+  const ApplicationSpec& spec = world_.spec();
+  const Key key{(takeover.lost - world_.keeper.origin).count, world_.name(takeover.standby.task)};
+  if (std::ranges::find(left_, key) != left_.end()) return;
+  TaskPart tasks[2];
+  VariablePart variables[Takeover::kVariablesKept];
+  SwitchReceipt receipt;
+  receipt.tasks = tasks;
+  receipt.variables = variables;
+  write_receipt(takeover, receipt);
+  if (receipt.ended == kNever) receipt.ended = std::max(takeover.lost, takeover.at == kNever ? now : takeover.at);
+  receipt.number = journal_.next();
+  for (const std::string& line : control::bump_lines(receipt, spec))
+    world_.tell("bump", TaskId{}, RtpuId{}, line, now);
+  archive_.add(receipt.number,
+               control::receipt_json(receipt, spec, world_.keeper.origin, {"", wall_ns(receipt.asked), 1}), now, [] {});
+}
+
+}  // namespace chimera::manager

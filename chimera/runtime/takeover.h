@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// What became of one takeover: a task was to go ON in place of one that failed, without anybody being asked. Plain data
+// in memory that outlives its context; whoever files receipts makes one of it. docs/formats/receipt.md.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+
+#include "chimera/runtime/switch_receipt.h"
+#include "chimera/table/shared_copy.h"
+
+namespace chimera {
+
+/// Instants are on the clock of the executor; kNever: not reached.
+struct Takeover {
+  static constexpr std::uint32_t kVariablesKept = 16, kSaid = 160;
+
+  std::uint32_t number = 0;        ///< of those of its context, from 1
+  std::uint32_t set = kNoSet;      ///< that was in force, in ApplicationSpec::sets, with standbys for their primaries
+  TaskId from;                     ///< the task that failed
+  bool was_death = false;          ///< its process died; else it is in ERROR
+  SwitchEnd end = SwitchEnd::kDone;  ///< kAborted: the standby could not go ON
+  NoSwitch why = NoSwitch::kNone;  ///< of kAborted
+  char said[kSaid + 1] = {};       ///< by the method that failed
+  Nanoseconds lost = kNever;       ///< its loss was found
+  Nanoseconds at = kNever;         ///< the standby was ON
+  Nanoseconds ended = kNever;      ///< its first cycle was seen, or none came; or it could not go ON
+  Nanoseconds flag;                ///< so long nobody stood in for the loss: the flag was up
+  TaskPart standby;
+  std::uint32_t n_variables = 0;   ///< handed over; only kVariablesKept of them are kept
+  std::array<VariablePart, kVariablesKept> variables;
+};
+
+/// As a receipt, in its lists, which hold as much: TaskParts for two tasks. Context: any; wait-free.
+inline void write_receipt(const Takeover& takeover, SwitchReceipt& receipt) noexcept {
+  receipt.before = receipt.after = takeover.set;
+  receipt.cause = SwitchCause::kStandby;
+  receipt.by = takeover.standby.task;
+  receipt.in_place_of = takeover.from;
+  receipt.was_death = takeover.was_death;
+  receipt.end = takeover.end;
+  receipt.why = takeover.why;
+  receipt.task = takeover.end == SwitchEnd::kDone ? TaskId() : takeover.standby.task;
+  receipt.said.assign({takeover.said, ::strnlen(takeover.said, Takeover::kSaid)});
+  receipt.asked = takeover.lost;
+  receipt.armed = receipt.at = takeover.at;
+  receipt.ended = takeover.ended;
+  receipt.flag = takeover.flag;
+  receipt.tasks = {receipt.tasks.data(), 2};
+  receipt.tasks[0] = takeover.standby;
+  receipt.tasks[1] = {};
+  receipt.tasks[1].task = takeover.from;
+  receipt.tasks[1].move = TaskMove::kLeaves;
+  receipt.variables = {receipt.variables.data(), std::min(takeover.n_variables, Takeover::kVariablesKept)};
+  std::copy_n(takeover.variables.begin(), receipt.variables.size(), receipt.variables.begin());
+}
+
+/// The last takeovers of one context. One writer; a reader is told when a place was written anew while it read.
+class TakeoverRing {
+ public:
+  static constexpr std::uint32_t kKept = 8;
+
+  /// Takeover `number` is the next one, or the last one told anew. Context: edge; wait-free.
+  void put(const Takeover& takeover) noexcept {
+    Place& place = places_[(takeover.number - 1) % kKept];
+    place.takeover = takeover;
+    const bool is_over = takeover.ended != kNever;
+    // SYNC: each release pairs with the acquire of the same word in read().
+    if (is_over) place.over.store(takeover.number, std::memory_order_release);
+    last_.store(takeover.number, std::memory_order_release);
+  }
+  /// The lowest number that is kept; those from there on can be read. Context: setup.
+  std::uint32_t oldest() const noexcept {
+    const std::uint32_t last = last_.load(std::memory_order_acquire);
+    return last <= kKept ? 1 : last - kKept + 1;
+  }
+  /// False: it has not begun, or is not over and its context lives, or another one was put in its place meanwhile.
+  /// Context: setup.
+  bool read(std::uint32_t number, bool is_alive, Takeover& to) const noexcept {
+    if (number < oldest() || number > last_.load(std::memory_order_acquire)) return false;
+    const Place& place = places_[(number - 1) % kKept];
+    if (is_alive && place.over.load(std::memory_order_acquire) != number) return false;
+    to = place.takeover;
+    shared_copy::acquire_fence();  // SYNC: the copy is not later than the load of oldest()
+    return number >= oldest() && to.number == number;
+  }
+
+ private:
+  struct Place {
+    std::atomic<std::uint32_t> over{0};  // number of the takeover in it that is over
+    Takeover takeover;
+  };
+  std::atomic<std::uint32_t> last_{0};
+  std::array<Place, kKept> places_;
+};
+
+}  // namespace chimera

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures takeovers.
+#include "chimera/runtime/takeover_record.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace chimera {
+namespace {
+
+std::uint64_t losses(Task& task) noexcept { return count_of(task.profile.dropped) + count_of(task.profile.aborted); }
+
+}  // namespace
+
+void TakeoverRecord::prepare() {
+  const auto is_mine = [this](const StandbySpec& each) { return set_.is_mine(each.standby) || set_.is_mine(each.primary); };
+  const auto standbys = set_.spec().standbys;
+  if (std::none_of(standbys.begin(), standbys.end(), is_mine)) return;
+  open_ = set_.setup_memory().take<Open>(set_.standbys().n_groups());
+  steps_.prepare();
+  delays_.prepare(set_.tasks().size(), set_.setup_memory());
+}
+
+// A standby that is ON counts as its primary, and so does the task that failed.
+std::uint32_t TakeoverRecord::set_in_force(TaskId failed) const noexcept {
+  const ApplicationSpec& spec = set_.spec();
+  TaskBits on;
+  std::size_t n_on = 0;
+  for (const Task& each : set_.tasks()) {
+    const bool is_elsewhere = set_.others() != nullptr && !set_.is_mine(each.id);
+    const State state = is_elsewhere ? set_.others()->state(each.id) : each.shown_state();
+    if (state != State::kOn && each.id != failed) continue;
+    on.add(each.id);
+    ++n_on;
+  }
+  const auto is_there = [&](TaskId id) {
+    if (on.has(id)) return true;
+    for (const Task& each : set_.tasks())
+      if (on.has(each.id) && spec.stand_in(id, each.id)) return true;
+    return false;
+  };
+  for (std::uint32_t s = 0; s < spec.sets.size(); ++s)
+    if (spec.sets[s].order.size() == n_on && std::all_of(spec.sets[s].order.begin(), spec.sets[s].order.end(), is_there))
+      return s;
+  return kNoSet;
+}
+
+void TakeoverRecord::list_handovers(Takeover& takeover) noexcept {
+  const auto variables = set_.spec().variables;
+  const auto find = [](const Variable& variable, TaskId task) -> const PortOf* {
+    for (const PortOf& producer : variable.producers)
+      if (producer.task == task) return &producer;
+    return nullptr;
+  };
+  takeover.n_variables = 0;
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    const PortOf* const from = find(variables[v], takeover.from);
+    const PortOf* const to = find(variables[v], takeover.standby.task);
+    if (from == nullptr || to == nullptr) continue;
+    if (takeover.n_variables < Takeover::kVariablesKept)
+      takeover.variables[takeover.n_variables] = {{VariableId(v), *from, *to}, {}, {}, {}};
+    ++takeover.n_variables;
+  }
+}
+
+void TakeoverRecord::begin(std::size_t group, TaskId standby) noexcept {
+  Open& open = open_[group];
+  Takeover& takeover = open.takeover;
+  const Standbys& standbys = set_.standbys();
+  const Nanoseconds lost = standbys.lost_at(group);
+  if (open.is_open && takeover.standby.task == standby && takeover.lost == lost) return;
+  if (open.is_open) close(group, NoSwitch::kDisturbed, lost);  // it failed before its first cycle was seen
+  takeover = {};
+  takeover.number = ++n_told_;
+  takeover.from = standbys.failed(group);
+  takeover.set = set_in_force(takeover.from);
+  takeover.was_death = !set_.is_mine(takeover.from) && !set_.others()->presence(takeover.from).lives;
+  takeover.lost = lost;
+  takeover.standby.task = standby;
+  takeover.standby.move = TaskMove::kArrives;
+  takeover.standby.delay_before = delays_.begin(task(standby));
+  list_handovers(takeover);
+  steps_.keep_last({takeover.variables.data(), std::min(takeover.n_variables, Takeover::kVariablesKept)});
+  open.is_open = true;
+  open.first_cycle_by = kNever;
+}
+
+void TakeoverRecord::done(std::size_t group, Nanoseconds now) noexcept {
+  Open& open = open_[group];
+  Takeover& takeover = open.takeover;
+  Task& standby = task(takeover.standby.task);
+  takeover.at = now;
+  const Nanoseconds covered = set_.standbys().covered_until(group);
+  takeover.flag = std::max(Nanoseconds{}, now - covered);
+  for (std::uint32_t v = 0; v < std::min(takeover.n_variables, Takeover::kVariablesKept); ++v)
+    takeover.variables[v].step_of_on = steps_.step_to(takeover.variables[v].handover);
+  open.cycles = standby.profile.cycles;
+  open.losses = losses(standby);
+  open.first_cycle_by = standby.spec->aperiodic ? now : now + standby.spec->period + standby.spec->deadline;
+  switching_.took_over(takeover);
+  look(now, false);
+}
+
+void TakeoverRecord::failed(std::size_t group, NoSwitch why, Nanoseconds now) noexcept {
+  Open& open = open_[group];
+  Takeover& takeover = open.takeover;
+  takeover.end = SwitchEnd::kAborted;
+  takeover.why = why;
+  const Task& standby = task(takeover.standby.task);
+  if (why == NoSwitch::kOnFailed || why == NoSwitch::kStepFailed)
+    std::strncpy(takeover.said, standby.faults.last.text, Takeover::kSaid);
+  takeover.ended = now;
+  open.is_open = false;
+  switching_.took_over(takeover);
+}
+
+void TakeoverRecord::look(Nanoseconds now, bool is_last) noexcept {
+  due_ = kNever;
+  for (std::size_t group = 0; group < open_.size(); ++group) {
+    const Open& open = open_[group];
+    if (!open.is_open) continue;
+    const Task& standby = task(open.takeover.standby.task);
+    const bool is_on = open.first_cycle_by != kNever;
+    const bool has_cycled = is_on && !standby.is_busy && standby.profile.cycles != open.cycles;
+    const bool has_gone = is_on ? standby.state != State::kOn : !set_.standbys().next(group).is_valid();
+    if (has_cycled || has_gone || now >= open.first_cycle_by || is_last) {
+      close(group, is_last ? NoSwitch::kRunEnded : NoSwitch::kDisturbed, now);
+    } else if (is_on) {
+      threads_.await_job(standby.id);
+      due_ = std::min(due_, open.first_cycle_by);
+    }
+  }
+}
+
+void TakeoverRecord::close(std::size_t group, NoSwitch why, Nanoseconds now) noexcept {
+  Open& open = open_[group];
+  open.first_cycle_by == kNever ? failed(group, why, now) : end(open, now);
+}
+
+void TakeoverRecord::end(Open& open, Nanoseconds now) noexcept {
+  Takeover& takeover = open.takeover;
+  Task& standby = task(takeover.standby.task);
+  if (!standby.is_busy) {
+    takeover.standby.delay = delays_.look(standby);
+    if (standby.profile.cycles != open.cycles)
+      for (std::uint32_t v = 0; v < std::min(takeover.n_variables, Takeover::kVariablesKept); ++v)
+        takeover.variables[v].step_of_cycle = steps_.step_to(takeover.variables[v].handover);
+  }
+  takeover.standby.lost = losses(standby) - open.losses;
+  takeover.ended = now;
+  open.is_open = false;
+  switching_.took_over(takeover);
+}
+
+}  // namespace chimera

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keeps the record of each takeover that is under way in one context: what `on` took, how far each variable moved, what
+// was lost until the first cycle.
+#pragma once
+
+#include <span>
+
+#include "chimera/runtime/handover_steps.h"
+#include "chimera/runtime/job_threads.h"
+#include "chimera/runtime/start_delays.h"
+#include "chimera/runtime/switching.h"
+#include "chimera/runtime/takeover.h"
+
+namespace chimera {
+
+/// Of standbys of its own context, one for each group at a time. Context of everything not marked: edge; no
+/// allocation.
+class TakeoverRecord {
+ public:
+  /// All of it outlives this.
+  TakeoverRecord(TaskSet& set, JobThreads& threads, Switching& switching) noexcept
+      : set_(set), threads_(threads), switching_(switching), steps_(set) {}
+  /// Context: setup.
+  void prepare();
+
+  /// The standby is about to go ON in place of the one that failed in its group: what that one published last is kept.
+  /// Of no effect while the record of the two is open.
+  void begin(std::size_t group, TaskId standby) noexcept;
+  /// Its `on` took so long.
+  void took(std::size_t group, Nanoseconds time) noexcept { open_[group].takeover.standby.on = time; }
+  /// It is ON: its first cycle is waited for.
+  void done(std::size_t group, Nanoseconds now) noexcept;
+  /// It cannot go ON.
+  void failed(std::size_t group, NoSwitch why, Nanoseconds now) noexcept;
+  /// Tells of those whose first cycle was seen, or has not come in time. With `is_last`: of all.
+  void look(Nanoseconds now, bool is_last) noexcept;
+  /// look() is worth while until then, with the end of each job; kNever: nothing is waited for. Wait-free.
+  Nanoseconds due() const noexcept { return due_; }
+
+ private:
+  struct Open {
+    Takeover takeover;
+    bool is_open = false;
+    std::uint64_t cycles = 0, losses = 0;  // when it went ON
+    Nanoseconds first_cycle_by = kNever;
+  };
+
+  std::uint32_t set_in_force(TaskId failed) const noexcept;
+  void list_handovers(Takeover& takeover) noexcept;
+  void end(Open& open, Nanoseconds now) noexcept;
+  void close(std::size_t group, NoSwitch why, Nanoseconds now) noexcept;
+  Task& task(TaskId id) noexcept { return set_.tasks()[id.index]; }
+
+  TaskSet& set_;
+  JobThreads& threads_;
+  Switching& switching_;
+  HandoverSteps steps_;
+  StartDelays delays_;
+  std::span<Open> open_;  // by group
+  std::uint32_t n_told_ = 0;
+  Nanoseconds due_ = kNever;
+};
+
+}  // namespace chimera

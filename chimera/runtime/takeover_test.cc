@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/runtime/takeover.h"
+
+#include <gtest/gtest.h>
+
+namespace chimera {
+namespace {
+
+Takeover takeover(std::uint32_t number, Nanoseconds ended) {
+  Takeover one;
+  one.number = number;
+  one.lost = milliseconds(number);
+  one.ended = ended;
+  return one;
+}
+
+TEST(TakeoverRing, GivesOutWhatIsOverOrOfADeadContext) {
+  TakeoverRing ring;
+  Takeover read;
+  EXPECT_FALSE(ring.read(1, false, read)) << "it has not begun";
+  ring.put(takeover(1, kNever));
+  EXPECT_FALSE(ring.read(1, true, read));
+  ASSERT_TRUE(ring.read(1, false, read));
+  EXPECT_EQ(read.ended, kNever);
+  ring.put(takeover(1, seconds(1)));
+  ASSERT_TRUE(ring.read(1, true, read));
+  EXPECT_EQ(read.ended, seconds(1));
+  EXPECT_FALSE(ring.read(2, false, read));
+}
+
+TEST(TakeoverRing, KeepsTheLastEight) {
+  TakeoverRing ring;
+  for (std::uint32_t n = 1; n <= 20; ++n) ring.put(takeover(n, seconds(1)));
+  EXPECT_EQ(ring.oldest(), 13u);
+  Takeover read;
+  EXPECT_FALSE(ring.read(12, true, read));
+  for (std::uint32_t n = 13; n <= 20; ++n) {
+    ASSERT_TRUE(ring.read(n, true, read));
+    EXPECT_EQ(read.number, n);
+    EXPECT_EQ(read.lost, milliseconds(n));
+  }
+}
+
+TEST(TakeoverRing, AnOpenOneBetweenOthersIsWaitedFor) {
+  TakeoverRing ring;
+  ring.put(takeover(1, kNever));
+  ring.put(takeover(2, seconds(1)));
+  Takeover read;
+  EXPECT_FALSE(ring.read(1, true, read));
+  EXPECT_TRUE(ring.read(2, true, read));
+}
+
+}  // namespace
+}  // namespace chimera
