@@ -391,11 +391,11 @@ std::vector<std::string> bump_lines(const SwitchReceipt& receipt, const Applicat
   const bool is_takeover = receipt.cause == SwitchCause::kStandby;  // whose `on` is not held against its limit before
   for (const VariablePart& part : receipt.variables) {
     const ValueStep& step = is_takeover ? seen(part) : part.step_of_cycle;
-    if (step.is_beyond)
-      lines.push_back("bump: after " + what(receipt) + " the first " + (part.step_of_cycle.is_known ? "cycle" : "value") +
-                      " of task " + quoted(spec.tasks[part.handover.to.task.index].name) + " moved " +
-                      quoted(spec.variables[part.handover.variable.index].name) + " by " +
-                      step_text(step, unit_text(part, spec)));
+    if (!step.is_beyond) continue;
+    const std::string task = quoted(spec.tasks[part.handover.to.task.index].name);
+    const std::string variable = quoted(spec.variables[part.handover.variable.index].name);
+    lines.push_back("bump: after " + what(receipt) + " the first " + (part.step_of_cycle.is_known ? "cycle" : "value") +
+                    " of task " + task + " moved " + variable + " by " + step_text(step, unit_text(part, spec)));
   }
   return lines;
 }

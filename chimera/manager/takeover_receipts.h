@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files a receipt of each takeover that real-time units made by themselves, maybe while no manager was there: once, also
-// when this manager dies between. docs/formats/receipt.md.
+// Files a receipt of each takeover that real-time units made by themselves, maybe while no manager was there: once,
+// whenever managers die. docs/formats/receipt.md.
 #pragma once
 
 #include <cstdint>

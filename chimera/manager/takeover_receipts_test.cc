@@ -73,7 +73,8 @@ TEST_F(TakeoverReceiptsTest, AStepBeyondItsLimitIsAnEvent) {
   one.n_variables = 1;
   const ApplicationSpec& spec = fake.spec();
   for (std::size_t v = 0; v < spec.variables.size(); ++v)
-    if (spec.variables[v].name == "y") one.variables[0].handover = {VariableId(v), {one.from, 0}, {one.standby.task, 0}};
+    if (spec.variables[v].name == "y")
+      one.variables[0].handover = {VariableId(v), {one.from, 0}, {one.standby.task, 0}};
   one.variables[0].step_of_cycle = {3, 1, true, true};
   tell(one);
   ASSERT_TRUE(until_kept(1));

@@ -24,7 +24,7 @@ void count(std::uint16_t& counter) noexcept {
 
 }  // namespace
 
-void Recovery::prepare() {
+void Recovery::prepare(SwitchPeers* peers) {
   TaskSet& set = parts_.set;
   const auto is_hot = [&](const StandbySpec& each) { return each.hot && set.is_mine(each.standby); };
   const auto standbys = set.spec().standbys;
@@ -33,7 +33,7 @@ void Recovery::prepare() {
   std::size_t n_hot = 0;
   for (const StandbySpec& each : standbys)
     if (is_hot(each)) hot_[n_hot++].task = each.standby;
-  record_.prepare();
+  record_.prepare(peers);
   takeovers_ = set.setup_memory().take<UnderWay>(set.standbys().n_groups());
   const auto specs = set.spec().restarts;
   const auto is_mine = [&](const RestartSpec& spec) { return set.is_mine(spec.task); };
@@ -106,7 +106,7 @@ bool Recovery::may_touch(Task& task) noexcept {
 // The task that failed, of this context, closes the resource that the next one opens. False: later.
 bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
-  const TaskId failed = set.standbys().failed(group);
+  const TaskId failed = set.standbys().loss(group).task;
   if (!set.is_mine(failed) || !set.life().judge().rivals().are(failed, to)) return true;
   Task& task = set.tasks()[failed.index];
   if (task.in_service || task.state != State::kError) return true;
@@ -158,25 +158,24 @@ bool Recovery::turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept 
   Nanoseconds& again_at = takeovers_[group].again_at;
   if (task.is_half_on && now < again_at) return look_again(again_at, again_at), true;
   if (!set.life().judge().would_be_legal({&task.id, 1})) return true;  // once an input has a producer again
-  const TaskId failed = set.standbys().failed(group);
-  const Nanoseconds lost = set.standbys().lost_at(group);
+  const Standbys::Loss loss = set.standbys().loss(group);
   const bool was_hot = task.is_unread;
   const Nanoseconds began = set.methods().clock()->now();
   record_.begin(group, task.id);
   const SignalReport report = parts_.signals.signal({&task.id, 1}, Signal::kOn, now);
   if (report.why == Refusal::kIllegalSet) return true;  // another context turns one ON
-  if (report.why == Refusal::kNotYet && now < lost + TaskLife::kPatience) {
+  if (report.why == Refusal::kNotYet && now < loss.at + TaskLife::kPatience) {
     again_at = ask_again_at(task, now);
     return look_again(again_at, again_at), true;
   }
   if (task.is_half_on) (void)parts_.signals.signal({&task.id, 1}, Signal::kOff, now);
   if (task.state == State::kOn) {
     count(task.profile.takeovers);
-    note(task, "took over from ", failed);
+    note(task, "took over from ", loss.task);
     const Nanoseconds by = set.methods().clock()->now();
     if (!was_hot) record_.took(group, by - began);
     record_.done(group, by);
-    if (parts_.guest != nullptr) parts_.guest->took_over(task.id, failed, by - lost, by);
+    if (parts_.guest != nullptr) parts_.guest->took_over(task.id, loss.task, by - loss.at, by);
     return true;
   }
   rule_out(group, task, report.why == Refusal::kNotYet ? NoSwitch::kNotReady : NoSwitch::kOnFailed, now);

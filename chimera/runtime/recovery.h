@@ -36,8 +36,8 @@ class Recovery {
       : parts_(parts),
         gap_(parts.set.tasks(), parts.queue, parts.threads),
         record_(parts.set, parts.threads, parts.switching) {}
-  /// Context: setup.
-  void prepare();
+  /// Takeovers are told to the peers, which outlive this; null: their receipts are kept here. Context: setup.
+  void prepare(SwitchPeers* peers);
 
   /// Does what is due. Of no effect where no task has a standby or is restarted.
   void act(Nanoseconds now) noexcept;

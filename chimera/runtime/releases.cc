@@ -59,7 +59,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   const bool takes_requests = (is_alone || options.switch_peers != nullptr) && may_request(set.spec());
   switching_.prepare(n_switches + (is_alone ? kept_of_unscripted(set.spec()) : 0), options.switch_peers);
   if (takes_requests) set.sent().allow_requests();
-  recovery_.prepare();
+  recovery_.prepare(options.switch_peers);
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
     const bool can = options.can_demote || !set.is_mine(task.id);

@@ -76,9 +76,8 @@ void Standbys::lose(Group& group, Nanoseconds now) noexcept {
   const TaskId by = next(group);
   const bool is_too_often = group.taken_over[0] > now - kWindow;
   group.is_lost = true;
-  group.lost_at = now;
   group.is_waiting = by.is_valid() && !is_too_often;
-  group.until = group.is_waiting ? now + tasks_[by.index].period : now;
+  group.loss = {group.on, now, group.is_waiting ? now + tasks_[by.index].period : now};
 }
 
 void Standbys::sum_up(Nanoseconds now) noexcept {
@@ -87,11 +86,11 @@ void Standbys::sum_up(Nanoseconds now) noexcept {
   for (const Group& group : groups_) {
     for (const TaskId id : group.members) is_covered_[id.index] = false;
     if (!group.is_lost) continue;
-    const bool is_covered = group.is_waiting && now < group.until;
+    const bool is_covered = group.is_waiting && now < group.loss.covered_until;
     is_covered_[group.on.index] = is_covered;
     is_any_uncovered_ = is_any_uncovered_ || !is_covered;
     is_any_waiting_ = is_any_waiting_ || group.is_waiting;
-    if (is_covered) due_ = std::min(due_, group.until);
+    if (is_covered) due_ = std::min(due_, group.loss.covered_until);
   }
 }
 

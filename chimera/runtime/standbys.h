@@ -55,12 +55,13 @@ class Standbys {
   std::span<const TaskId> members(std::size_t group) const noexcept { return groups_[group].members; }
   /// The task that is to go ON in place of the one that failed in group `group`; invalid: none is, or can be.
   TaskId next(std::size_t group) const noexcept;
-  /// The task of that group that failed. Requires: next(group) is valid.
-  TaskId failed(std::size_t group) const noexcept { return groups_[group].on; }
-  /// When that was found. Requires: as failed().
-  Nanoseconds lost_at(std::size_t group) const noexcept { return groups_[group].lost_at; }
-  /// Until then the loss before was covered. Requires: the group lost a task once.
-  Nanoseconds covered_until(std::size_t group) const noexcept { return groups_[group].until; }
+  /// One task that failed, and was ON before.
+  struct Loss {
+    TaskId task;
+    Nanoseconds at, covered_until;  ///< it was found then, and counts as ON until then
+  };
+  /// The last one of that group. Requires: next(group) was valid once.
+  const Loss& loss(std::size_t group) const noexcept { return groups_[group].loss; }
   /// It could not go ON: it is passed over until the group has a task that is ON again.
   void rule_out(TaskId task) noexcept { is_out_[task.index] = true; }
   /// The task stands in a group that waits for another one to take over from it.
@@ -76,7 +77,7 @@ class Standbys {
     TaskId on;                        // the member that was ON last; invalid: none, or it was turned OFF
     bool is_lost = false;             // it failed, and none is ON since
     bool is_waiting = false;          // and somebody may take over
-    Nanoseconds lost_at, until;       // it failed then, and is covered until then
+    Loss loss;
     Nanoseconds taken_over[kMostTakeovers] = {Nanoseconds{INT64_MIN}, Nanoseconds{INT64_MIN}, Nanoseconds{INT64_MIN}};
   };
 

@@ -69,7 +69,7 @@ TEST_F(StandbysTest, TheFirstOfTheDescriptionTakesOverAndCoversForOnePeriodOfIts
   at(1);
   fail(kPrimary, 2);
   EXPECT_EQ(standbys_.next(0), kSecond);
-  EXPECT_EQ(standbys_.failed(0), kPrimary);
+  EXPECT_EQ(standbys_.loss(0).task, kPrimary);
   EXPECT_TRUE(standbys_.is_covered(kPrimary));
   EXPECT_TRUE(standbys_.is_awaited(kPrimary));
   EXPECT_FALSE(standbys_.is_covered(kOther));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of one switch of configurations, or of one takeover by a standby (takeover.h): who, when, how long, what was lost, how far each variable moved.
-// docs/formats/receipt.md says what is printed of it.
+// What became of one switch of configurations, or of one takeover by a standby (runtime/takeover.h): who, when, how
+// long, what was lost, how far each variable moved. docs/formats/receipt.md says what is printed of it.
 #pragma once
 
 #include <cstdint>
@@ -106,6 +106,8 @@ class SwitchReceipts {
     return all_[at];
   }
   bool has_room() const noexcept { return n_ < all_.size(); }
+  /// Of the next switch or takeover of the run, kept or not: from 1.
+  std::uint32_t next_number() noexcept { return ++number_; }
   /// Forgets all that are kept. Context: cycle boundary.
   void clear() noexcept { n_ = 0; }
   /// One more that is not kept.
@@ -122,6 +124,7 @@ class SwitchReceipts {
   std::span<VariablePart> variables_;
   std::size_t n_ = 0, n_tasks_ = 0, n_variables_ = 0;
   std::uint64_t n_left_out_ = 0;
+  std::uint32_t number_ = 0;
 };
 
 }  // namespace chimera

@@ -28,7 +28,7 @@ class SwitchRecord {
   SwitchReceipt& restart() noexcept;
   SwitchReceipt& receipt() noexcept { return *receipt_; }
   const SwitchReceipt& receipt() const noexcept { return *receipt_; }
-  const SwitchReceipts& receipts() const noexcept { return receipts_; }
+  SwitchReceipts& receipts() noexcept { return receipts_; }
 
   /// Lists the tasks and variables of the plan: losses count from here.
   void take_up(const SwitchPlan& plan) noexcept;

@@ -114,7 +114,8 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   if (phase_ == Phase::kNone) answer = planner_.plan(request.set, standing_, plan_);
   const ContextConstants& constants = parts_.set.constants();
   const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants) : SwitchWay();
-  if (answer.why != NoSwitch::kNothingToDo) ++n_asked_;
+  const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
+  const std::uint32_t number = is_nothing ? 0 : receipts().next_number();
   SwitchReceipt* const added = phase_ == Phase::kNone ? &record_.add() : record_.add_beside();
   if (added == nullptr) return;
   SwitchReceipt& receipt = *added;
@@ -123,11 +124,11 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   receipt.cause = request.cause;
   receipt.by = request.by;
   receipt.before = planner_.set_in_force(standing_);
-  if (answer.why != NoSwitch::kNothingToDo) receipt.number = n_asked_;
+  receipt.number = number;
   receipt.way = way;
   if (!answer) {
     receipt.way.slow = 0;
-    receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
+    receipt.end = is_nothing ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
     receipt.why = answer.why;
     receipt.task = answer.task;
     receipt.tasks = {};
@@ -464,16 +465,6 @@ bool Switching::give_way(TaskId to) noexcept {
     is_held_ = false;
   }
   return !is_held_ && phase_ != Phase::kSlow;
-}
-
-void Switching::took_over(const Takeover& takeover) noexcept {
-  if (peers_ != &nobody_) return peers_->tell_takeover(takeover);
-  if (takeover.ended == kNever) return;
-  ++n_asked_;
-  SwitchReceipt* const receipt = record_.add_beside();
-  if (receipt == nullptr) return;
-  receipt->number = n_asked_;
-  write_receipt(takeover, *receipt);
 }
 
 void Switching::end(Nanoseconds now) noexcept {

@@ -73,8 +73,6 @@ class Switching {
   /// A task is to go ON in place of one that failed: a switch that is not committed is aborted. False: not now, the
   /// change is under way.
   bool give_way(TaskId to) noexcept;
-  /// Files the receipt of a takeover when that is over, as SwitchPeers::tell_takeover().
-  void took_over(const Takeover& takeover) noexcept;
   /// The run is over: what is not committed is aborted, what is committed is finished.
   void end(Nanoseconds now) noexcept;
 
@@ -83,7 +81,7 @@ class Switching {
   /// The next instant at which a step is worth while although no job ends before. Wait-free.
   Nanoseconds wake() const noexcept { return wake_; }
   /// Of those asked for here. Context: setup, between runs.
-  const SwitchReceipts& receipts() const noexcept { return record_.receipts(); }
+  SwitchReceipts& receipts() noexcept { return record_.receipts(); }
 
   /// How long a switch that is asked for here may take until the change.
   static constexpr Nanoseconds kPatience = seconds(10);
@@ -123,7 +121,6 @@ class Switching {
   Nanoseconds origin_, at_ = kNever;
   Nanoseconds due_ = kNever, wake_ = kNever;
   std::uint32_t me_ = 0;              // number of this context
-  std::uint32_t n_asked_ = 0;
   std::size_t next_armed_ = 0;        // arriving tasks before it are armed, here or elsewhere
   std::size_t n_off_ = 0;
   std::uint16_t seen_ = 0;            // number of the last plan that was taken up

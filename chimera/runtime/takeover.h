@@ -58,6 +58,16 @@ inline void write_receipt(const Takeover& takeover, SwitchReceipt& receipt) noex
   std::copy_n(takeover.variables.begin(), receipt.variables.size(), receipt.variables.begin());
 }
 
+/// Keeps a receipt of a takeover that is over, if there is room. Context: edge; wait-free.
+inline void keep_receipt(const Takeover& takeover, SwitchReceipts& receipts) noexcept {
+  if (takeover.ended == kNever) return;
+  const std::uint32_t number = receipts.next_number();
+  if (!receipts.has_room()) return receipts.leave_out();
+  SwitchReceipt& receipt = receipts.add();
+  receipt.number = number;
+  write_receipt(takeover, receipt);
+}
+
 /// The last takeovers of one context. One writer; a reader is told when a place was written anew while it read.
 class TakeoverRing {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures takeovers.
+// Measures takeovers by standbys of its own context, and tells of them.
 #include "chimera/runtime/takeover_record.h"
 
 #include <algorithm>
@@ -12,9 +12,12 @@ std::uint64_t losses(Task& task) noexcept { return count_of(task.profile.dropped
 
 }  // namespace
 
-void TakeoverRecord::prepare() {
-  const auto is_mine = [this](const StandbySpec& each) { return set_.is_mine(each.standby) || set_.is_mine(each.primary); };
+void TakeoverRecord::prepare(SwitchPeers* peers) {
+  peers_ = peers;
   const auto standbys = set_.spec().standbys;
+  const auto is_mine = [this](const StandbySpec& each) {
+    return set_.is_mine(each.standby) || set_.is_mine(each.primary);
+  };
   if (std::none_of(standbys.begin(), standbys.end(), is_mine)) return;
   open_ = set_.setup_memory().take<Open>(set_.standbys().n_groups());
   steps_.prepare();
@@ -39,9 +42,10 @@ std::uint32_t TakeoverRecord::set_in_force(TaskId failed) const noexcept {
       if (on.has(each.id) && spec.stand_in(id, each.id)) return true;
     return false;
   };
-  for (std::uint32_t s = 0; s < spec.sets.size(); ++s)
-    if (spec.sets[s].order.size() == n_on && std::all_of(spec.sets[s].order.begin(), spec.sets[s].order.end(), is_there))
-      return s;
+  for (std::uint32_t s = 0; s < spec.sets.size(); ++s) {
+    const std::span<const TaskId> order = spec.sets[s].order;
+    if (order.size() == n_on && std::all_of(order.begin(), order.end(), is_there)) return s;
+  }
   return kNoSet;
 }
 
@@ -66,16 +70,15 @@ void TakeoverRecord::list_handovers(Takeover& takeover) noexcept {
 void TakeoverRecord::begin(std::size_t group, TaskId standby) noexcept {
   Open& open = open_[group];
   Takeover& takeover = open.takeover;
-  const Standbys& standbys = set_.standbys();
-  const Nanoseconds lost = standbys.lost_at(group);
-  if (open.is_open && takeover.standby.task == standby && takeover.lost == lost) return;
-  if (open.is_open) close(group, NoSwitch::kDisturbed, lost);  // it failed before its first cycle was seen
+  const Standbys::Loss loss = set_.standbys().loss(group);
+  if (open.is_open && takeover.standby.task == standby && takeover.lost == loss.at) return;
+  if (open.is_open) close(group, NoSwitch::kDisturbed, loss.at);  // it failed before its first cycle was seen
   takeover = {};
   takeover.number = ++n_told_;
-  takeover.from = standbys.failed(group);
+  takeover.from = loss.task;
   takeover.set = set_in_force(takeover.from);
   takeover.was_death = !set_.is_mine(takeover.from) && !set_.others()->presence(takeover.from).lives;
-  takeover.lost = lost;
+  takeover.lost = loss.at;
   takeover.standby.task = standby;
   takeover.standby.move = TaskMove::kArrives;
   takeover.standby.delay_before = delays_.begin(task(standby));
@@ -90,14 +93,13 @@ void TakeoverRecord::done(std::size_t group, Nanoseconds now) noexcept {
   Takeover& takeover = open.takeover;
   Task& standby = task(takeover.standby.task);
   takeover.at = now;
-  const Nanoseconds covered = set_.standbys().covered_until(group);
-  takeover.flag = std::max(Nanoseconds{}, now - covered);
+  takeover.flag = std::max(Nanoseconds{}, now - set_.standbys().loss(group).covered_until);
   for (std::uint32_t v = 0; v < std::min(takeover.n_variables, Takeover::kVariablesKept); ++v)
     takeover.variables[v].step_of_on = steps_.step_to(takeover.variables[v].handover);
   open.cycles = standby.profile.cycles;
   open.losses = losses(standby);
   open.first_cycle_by = standby.spec->aperiodic ? now : now + standby.spec->period + standby.spec->deadline;
-  switching_.took_over(takeover);
+  tell(takeover);
   look(now, false);
 }
 
@@ -111,7 +113,7 @@ void TakeoverRecord::failed(std::size_t group, NoSwitch why, Nanoseconds now) no
     std::strncpy(takeover.said, standby.faults.last.text, Takeover::kSaid);
   takeover.ended = now;
   open.is_open = false;
-  switching_.took_over(takeover);
+  tell(takeover);
 }
 
 void TakeoverRecord::look(Nanoseconds now, bool is_last) noexcept {
@@ -137,6 +139,11 @@ void TakeoverRecord::close(std::size_t group, NoSwitch why, Nanoseconds now) noe
   open.first_cycle_by == kNever ? failed(group, why, now) : end(open, now);
 }
 
+void TakeoverRecord::tell(const Takeover& takeover) noexcept {
+  if (peers_ != nullptr) peers_->tell_takeover(takeover);
+  else keep_receipt(takeover, switching_.receipts());
+}
+
 void TakeoverRecord::end(Open& open, Nanoseconds now) noexcept {
   Takeover& takeover = open.takeover;
   Task& standby = task(takeover.standby.task);
@@ -149,7 +156,7 @@ void TakeoverRecord::end(Open& open, Nanoseconds now) noexcept {
   takeover.standby.lost = losses(standby) - open.losses;
   takeover.ended = now;
   open.is_open = false;
-  switching_.took_over(takeover);
+  tell(takeover);
 }
 
 }  // namespace chimera

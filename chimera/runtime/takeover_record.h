@@ -8,6 +8,7 @@
 #include "chimera/runtime/handover_steps.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/start_delays.h"
+#include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switching.h"
 #include "chimera/runtime/takeover.h"
 
@@ -20,8 +21,8 @@ class TakeoverRecord {
   /// All of it outlives this.
   TakeoverRecord(TaskSet& set, JobThreads& threads, Switching& switching) noexcept
       : set_(set), threads_(threads), switching_(switching), steps_(set) {}
-  /// Context: setup.
-  void prepare();
+  /// Tells the peers, which outlive this; null: keeps receipts beside those of switches. Context: setup.
+  void prepare(SwitchPeers* peers);
 
   /// The standby is about to go ON in place of the one that failed in its group: what that one published last is kept.
   /// Of no effect while the record of the two is open.
@@ -47,6 +48,7 @@ class TakeoverRecord {
 
   std::uint32_t set_in_force(TaskId failed) const noexcept;
   void list_handovers(Takeover& takeover) noexcept;
+  void tell(const Takeover& takeover) noexcept;
   void end(Open& open, Nanoseconds now) noexcept;
   void close(std::size_t group, NoSwitch why, Nanoseconds now) noexcept;
   Task& task(TaskId id) noexcept { return set_.tasks()[id.index]; }
@@ -54,6 +56,7 @@ class TakeoverRecord {
   TaskSet& set_;
   JobThreads& threads_;
   Switching& switching_;
+  SwitchPeers* peers_ = nullptr;
   HandoverSteps steps_;
   StartDelays delays_;
   std::span<Open> open_;  // by group

@@ -22,9 +22,12 @@ struct Ginvkin : library::DhPorts {
                           doc = "Lower joint limits; -1e6 for none."};
   InConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", initial = 1e6, at_least = "q_min", frame = "joint",
                           doc = "Upper joint limits; 1e6 for none."};
+  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1e6, range(0.01, 1e6),
+                              doc = "Of the fastest joint of q_ref, the others keep their share; 1e6 for none."};
 
   Outcome init() {
     read_chain();
+    if (!(*speed_limit > 0)) return fault("speed_limit must be above 0");
     for (std::size_t i = 0; i < q_min.size(); ++i) {
       if (!(q_min[i] <= q_max[i])) return fault("a joint limit is not a number, or q_min is above q_max");
       search_.limits.low[i] = q_min[i];
@@ -37,10 +40,11 @@ struct Ginvkin : library::DhPorts {
     cut();
     return outcome;
   }
-  // Bumpless: a command that is handed over goes on; the drives are still behind it. Else the arm is where it is.
+  // Bumpless: a command that is handed over goes on; the drives are still behind it. From beyond a joint limit it comes
+  // back no faster than it goes anywhere. Else the arm is where it is.
   Outcome on() {
-    const bool goes_on = q_ref.is_handed_over() && library::all_finite(q_ref);
-    for (std::size_t i = 0; !goes_on && i < q.size(); ++i) {
+    if (q_ref.is_handed_over() && library::all_finite(q_ref)) return ok();
+    for (std::size_t i = 0; i < q.size(); ++i) {
       if (!std::isfinite(q[i])) return fault("q is not finite: the search cannot begin there");
       q_ref[i] = q[i];
     }
@@ -54,11 +58,19 @@ struct Ginvkin : library::DhPorts {
     std::copy_n(q_ref.begin(), q_ref.size(), q_found.begin());
     *is_reachable = search_.solve(arm_, library::frame_of(*xr), {q_found.data(), q_ref.size()}, *tolerance);
     *residual = search_.residual();
-    std::copy_n(q_found.begin(), q_ref.size(), q_ref.begin());
+    move_to(q_found, *speed_limit * c.dt());
     return ok();
   }
 
  private:
+  /// All the way, or as far as the fastest joint may go.
+  void move_to(const std::array<double, library::kMostJoints>& goal, double farthest) {
+    double way = 0;
+    for (std::size_t i = 0; i < q_ref.size(); ++i) way = std::max(way, std::abs(goal[i] - q_ref[i]));
+    const bool is_far = way > farthest;
+    for (std::size_t i = 0; i < q_ref.size(); ++i)
+      q_ref[i] = is_far ? q_ref[i] + (goal[i] - q_ref[i]) * farthest / way : goal[i];
+  }
   void cut() {
     for (std::size_t i = 0; i < q_ref.size(); ++i) q_ref[i] = search_.limits.cut(i, q_ref[i]);
   }

@@ -35,6 +35,21 @@ TEST_F(GinvkinTest, FollowsAPathToWithinItsTolerance) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], goal[i], 1e-5);
 }
 
+TEST_F(GinvkinTest, SpeedLimitBoundsTheFastestJointAndTheOthersKeepTheirShare) {
+  rig.set("speed_limit", 0.5);
+  stand(kBent);
+  const Puma560::Vector offset{0.02, -0.01, 0.01, 0, 0.005, -0.02};
+  Puma560::Vector goal = kBent;
+  for (std::size_t i = 0; i < 6; ++i) goal[i] += offset[i];
+  want(Puma560::forward(goal));
+  ASSERT_TRUE(rig.cycle());  // of 1 ms
+  EXPECT_LT(rig.get<double>("residual"), 1e-6) << "of the search, not of where it is";
+  const Puma560::Vector first = rig.six("q_ref");
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(first[i] - kBent[i], offset[i] / 0.02 * 0.0005, 1e-8) << i;
+  for (int step = 1; step < 41; ++step) ASSERT_TRUE(rig.cycle());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], goal[i], 1e-7) << i;
+}
+
 TEST_F(GinvkinTest, OutOfReachItStretchesTowardsTheTargetAndComesBack) {
   Frame far = Puma560::forward(kBent);
   const Vec3 home = far.origin;

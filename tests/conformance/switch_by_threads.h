@@ -78,8 +78,8 @@ inline const std::vector<TaskId> kSets[] = {{kReader, kLoad, kOne}, {kReader, kL
 inline const NamedSet kNamedSets[] = {{"one", kSets[0]}, {"two", kSets[1]}};
 
 /// `n` switches, there and back, each after a random time between a half and one and a half of `pause`. The load
-/// computes half of the time; a switch is over when the job has ended in which it came.
-inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseconds pause) {
+/// drawn by `seed`. The load computes half of the time; a switch is over when the job has ended in which it came.
+inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseconds pause, unsigned seed = 1) {
   seen = {};
   seen.reader.reserve(static_cast<std::size_t>(n + 2) * static_cast<std::size_t>(pause * 2 / period + 2));
   load = period * 2;
@@ -95,7 +95,7 @@ inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseco
   ContextPlace context;
   context.preemptive = true;
   const auto set = *HeapTaskSet::create(app.spec, app.components, context);
-  std::mt19937 random(1);
+  std::mt19937 random(seed);
   std::uniform_int_distribution<std::int64_t> pauses(pause.count / 2, pause.count * 3 / 2);
   std::vector<ScriptAct> acts;
   Nanoseconds at;

@@ -64,10 +64,10 @@ TEST_F(ReceiptsCommandTest, ATakeoverNamesTheStandby) {
   aborted["why"] = "on of task 'spare': no voltage";
   const Json answer = {{"receipts", {takeover, aborted}}, {"unfiled", 0}, {"fault", nullptr}};
   EXPECT_EQ(receipts_text(answer),
-            "number  asked                by                    from    to      end      change  lost  moves\n"
-            "     1  2023-11-14 22:13:20  standby_for of spare  gentle  gentle  done    12.5 ms     1  wanted 2 of 3 m/s, "
-            "gain 0.5 (beyond)\n"
-            "     2  2023-11-14 22:13:20  standby_for of spare  gentle  gentle  aborted       -     1\n"
+            "number  asked                by                    from    to      end       change  lost  moves\n"
+            "     1  2023-11-14 22:13:20  standby_for of spare  gentle  gentle  done     12.5 ms     1  "
+            "wanted 2 of 3 m/s, gain 0.5 (beyond)\n"
+            "     2  2023-11-14 22:13:20  standby_for of spare  gentle  gentle  aborted        -     1\n"
             "\n"
             "takeover 2: on of task 'spare': no voltage\n");
 }

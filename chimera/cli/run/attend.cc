@@ -406,13 +406,13 @@ int RemoteTarget::refuse(const Error& error) {
 void RemoteTarget::add_receipts(const Json& origin_ns, RunReport& report) {
   const auto answer = line_.ask("receipts", {{"last", 200}});
   if (!answer) return;
-  std::uint64_t n = 0, n_filed = 0;
+  std::uint64_t n = 0, last = 0;
   for (const Json& receipt : (*answer)["receipts"]) {
     if (receipt["origin_ns"] != origin_ns) continue;
     report.receipts += (n++ == 0 ? "" : ", ") + receipt.dump();
-    n_filed = std::max(n_filed, receipt["number"].get<std::uint64_t>());
+    last = std::max(last, receipt["number"].get<std::uint64_t>());
   }
-  report.receipts_left_out = n_filed - n;
+  report.receipts_left_out = last - n;
 }
 
 void RemoteTarget::finish(RunReport& report) {

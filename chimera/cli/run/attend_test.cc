@@ -36,6 +36,7 @@ class MadeUp final : public control::ControlBackend {
     if (name == "events") return reply(RpcResponse::good(news(parameters["since"].get<std::uint64_t>())));
     if (name == "get") return reply(RpcResponse::good({{"values", values}}));
     if (name == "profile") return reply(RpcResponse::good({{"tasks", Json::array({profile()})}}));
+    if (name == "receipts") return reply(RpcResponse::good({{"receipts", receipts}}));
     if (name == "signal") return reply(RpcResponse::error(control::kRefused, "on is not legal for pid in state ON"));
     reply(RpcResponse::good(Json::object()));
   }
@@ -56,6 +57,7 @@ class MadeUp final : public control::ControlBackend {
   Json events = Json::array();
   Json values = Json::object();
   Json records = Json::array();  // a notification each
+  Json receipts = Json::array();
   std::string fault_at_end;      // of `kill`
   Json servo = {{"name", "servo"}, {"grant", "real time: all granted"}};
 
@@ -189,6 +191,16 @@ TEST_F(Attend, IsASuccessWhenEveryExpectationHolds) {
   EXPECT_EQ(told["variables"]["q"], (Json{{"unit", "rad"}, {"value", {1.5, -2.0}}}));
   EXPECT_EQ(told["tasks"][0]["cycles"], 100);
   EXPECT_EQ(told["expectations"][0]["holds"], true);
+}
+
+TEST_F(Attend, HasTheReceiptsOfItsRunWhoeverAsked) {
+  const auto receipt = [](int number, int origin) { return Json{{"number", number}, {"origin_ns", origin}}; };
+  backend_.receipts = {receipt(8, 4), receipt(3, 5), receipt(4, 5)};  // the first is of the run before
+  request_.run.json = true;
+  EXPECT_EQ(attend(), kOk);
+  const Json told = Json::parse(out_);
+  EXPECT_EQ(told["receipts"], (Json{receipt(3, 5), receipt(4, 5)}));
+  EXPECT_EQ(told["receipts_left_out"], 2) << "1 and 2 are not given out any more";
 }
 
 TEST_F(Attend, ANumberThatIsNoneSatisfiesNothing) {

@@ -61,7 +61,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   const SwitchWay way = answer ? judge_way() : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   if (is_nothing && request.cause != SwitchCause::kScript) return;
-  if (!is_nothing) ++n_asked_;
+  const std::uint32_t number = is_nothing ? 0 : receipts_.next_number();
   if (is_under_way() && !receipts_.has_room()) return receipts_.leave_out();  // the last place is that of the present
   SwitchReceipt& receipt = receipts_.add();
   receipt.asked = now;
@@ -69,7 +69,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   receipt.cause = request.cause;
   receipt.by = request.by;
   receipt.before = planner_.set_in_force(standing_);
-  if (!is_nothing) receipt.number = n_asked_;
+  receipt.number = number;
   receipt.way = way;
   if (!answer) {
     receipt.way.slow = 0;
@@ -160,15 +160,6 @@ void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept 
   present_->variable = part.variable;
   present_->value = part.value;
   present_->said = part.said;
-}
-
-void VirtualSwitches::file(const Takeover& takeover) noexcept {
-  if (takeover.ended == kNever) return;
-  ++n_asked_;
-  if (is_under_way() && !receipts_.has_room()) return receipts_.leave_out();  // the last place is that of the present
-  SwitchReceipt& receipt = receipts_.add();
-  receipt.number = n_asked_;
-  write_receipt(takeover, receipt);
 }
 
 void VirtualSwitches::look(Nanoseconds now) noexcept {

@@ -47,7 +47,7 @@ class VirtualSwitches {
     void show() noexcept override { all_.peers_.show_change(RtpuId(me_)); }
     void tell_adopted(std::uint16_t number) noexcept override;
     void tell_over(const SwitchReceipt& receipt) noexcept override;
-    void tell_takeover(const Takeover& takeover) noexcept override { all_.file(takeover); }
+    void tell_takeover(const Takeover& takeover) noexcept override { keep_receipt(takeover, all_.receipts_); }
     void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds) noexcept override {
       if (is_new_wish(request.set, changes_nothing, static_cast<bool>(all_.wish_), all_.wish_.set))
         all_.wish_ = request;
@@ -71,7 +71,6 @@ class VirtualSwitches {
   void finish(Nanoseconds now) noexcept;
   void sort_reinitialised() noexcept;
   void add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept;
-  void file(const Takeover& takeover) noexcept;
 
   VirtualPeers& peers_;
   HeapMemory memory_;
@@ -85,7 +84,6 @@ class VirtualSwitches {
   SwitchReceipt* present_ = nullptr;  // of the switch under way
   std::size_t n_tasks_ = 0, n_variables_ = 0;  // in it
   std::uint32_t constants_ = kNoSet;           // the set whose constants are in force
-  std::uint32_t n_asked_ = 0;
   SwitchRequest wish_;  // of the task that asked last: waits for the switch that is under way to end
   Nanoseconds origin_;
 };
