@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "chimera/control/receipt_json.h"
+
 namespace chimera::control {
 namespace {
 

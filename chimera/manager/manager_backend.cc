@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/text/nearest.h"
+#include "chimera/control/switch_reason.h"
 #include "chimera/manager/cause.h"
 #include "chimera/manager/command_text.h"
-#include "chimera/control/receipt_text.h"
 #include "chimera/manager/operator_acts.h"
 #include "chimera/manager/status_json.h"
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/text/json_text.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::manager {
 namespace {

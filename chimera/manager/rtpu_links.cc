@@ -32,9 +32,11 @@ bool RtpuLinks::is_current(RtpuId rtpu) const noexcept {
 bool RtpuLinks::is_switch_open_beside(RtpuId rtpu) const noexcept {
   const std::uint16_t number = PlanWord::of(world_.page.switching.plan.load(std::memory_order_acquire)).number;
   for (std::uint32_t r = 0; number != 0 && r < links_.size(); ++r) {
-    if (r == rtpu.index || !world_.rtpus[r].is_alive || !world_.rtpus[r].is_up || !is_current(RtpuId(r))) continue;
-    const SwitchProgress& progress = world_.peers[RtpuId(r)].block().head().switching;
-    if (progress.over.load(std::memory_order_acquire) != number) return true;  // SwitchProgress
+    if (r == rtpu.index || !world_.rtpus[r].is_alive || !is_current(RtpuId(r))) continue;
+    const BlockHead& head = world_.peers[RtpuId(r)].block().head();
+    const bool serves = world_.rtpus[r].is_up || head.phase.load(std::memory_order_acquire) == PeerPhase::kServing;
+    const SwitchProgress& progress = head.switching;
+    if (serves && progress.over.load(std::memory_order_acquire) != number) return true;  // SwitchProgress
   }
   return false;
 }
@@ -64,6 +66,9 @@ void RtpuLinks::mapped(const KeeperMessage& message, int descriptor) {
   const BlockOwner& own = world_.own.block();
   link.inbox = Inbox::resume(block.outbox(world_.own.peer()), own.progress(rtpu.index), message.incarnation);
   link.outbox = Outbox(own.outbox(rtpu.index), &block.progress(world_.own.peer()), world_.own.incarnation());
+  // One that was restarted may have died in the switch that is over, or being undone; a predecessor knew.
+  const bool is_open = PlanWord::of(world_.page.switching.plan.load(std::memory_order_acquire)).is_open();
+  if (own.head().incarnation > 1 && message.incarnation > 1 && !is_open) link.has_died = true;
   // A predecessor may have died before it told: better twice than never.
   link.lost = own.head().incarnation > 1 ? 0 : block.head().lost_posts.load();
   for (const TaskId task : link.tasks) {

@@ -49,7 +49,7 @@ class RtpuLinks {
     Outbox outbox;
     std::vector<TaskId> tasks;
     std::uint64_t lost = 0;
-    bool has_died = false;  ///< an incarnation that this manager knew; until the next one is up
+    bool has_died = false;  ///< an incarnation before, as far as this manager knows; until the next one is up
   };
 
   RtpuRecord& record(RtpuId rtpu) noexcept { return world_.rtpus[rtpu.index]; }

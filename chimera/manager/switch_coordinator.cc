@@ -6,7 +6,9 @@
 #include <ctime>
 #include <utility>
 
+#include "chimera/control/receipt_json.h"
 #include "chimera/control/receipt_text.h"
+#include "chimera/control/switch_reason.h"
 #include "chimera/runtime/idle_gap.h"
 
 namespace chimera::manager {

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "chimera/control/receipt_file.h"
-#include "chimera/control/receipt_text.h"
+#include "chimera/control/switch_reason.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 
 namespace chimera::manager {
@@ -442,40 +442,6 @@ TEST_F(SwitchCoordinatorTest, APlanIsNoLongerOpenWhenItIsDecidedAsWhatADeadUnitC
   EXPECT_EQ(got->receipt.end, SwitchEnd::kAborted);
   EXPECT_EQ(got->receipt.why, NoSwitch::kMemberDied);
   EXPECT_TRUE(fake.until_on("law"));
-}
-
-// Both make x. `left` went OFF for `right`, its unit died, and the other one has not undone yet.
-TEST(SwitchCoordinator, ADeadUnitComesBackWhenTheOthersAreOverWithTheSwitch) {
-  FakeSubsystem fake(R"(subsystem: fake
-rtpus: {servo: {cpu: 0, policy: edf}, spare: {cpu: 1, policy: edf}}
-tasks:
-  left:  {component: sensor, rtpu: servo, rate: 10 Hz}
-  right: {component: sensor, rtpu: spare, rate: 10 Hz}
-configurations: {a: [left], b: [right]}
-start: a
-)");
-  fake.start_manager();
-  const ManagerState& world = fake.driver().world();
-  const auto is_settled = [&] { return world.logic.is_settled(); };
-  ASSERT_TRUE(fake.until_on("left") && fake.until(is_settled));
-  ASSERT_TRUE(fake.until([&] { return world.state(fake.task("right")) == State::kOff; }));
-  fake.driver().switches().ask({1, SwitchCause::kScript, {}}, kAnn, seconds(10), now(), [](const SwitchOutcome&) {});
-  SwitchAgreement agreement(fake.decision_page().switching, fake.page().origin);
-  auto order = agreement.order(agreement.plan(), 2, 2);
-  ASSERT_TRUE(order);
-  order->slow = kSlowForGap;
-  agreement.announce(*order);
-  fake.rtpu(0).block().set_status(fake.task("left"), {State::kOff, false, 1});
-  fake.rtpu(1).block().set_status(fake.task("right"), {State::kOn, false, 1});
-  fake.kill_rtpu(0, SIGKILL);
-  ASSERT_TRUE(fake.until([&] { return world.rtpus[0].incarnation == 2 && world.rtpus[0].is_alive; }));
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(fake.step());
-  EXPECT_EQ(fake.told("refused"), "") << "two would make x";
-  EXPECT_FALSE(world.rtpus[0].is_up);
-  fake.rtpu(1).block().set_status(fake.task("right"), {State::kOff, false, 1});
-  for (const std::uint32_t r : {0u, 1u}) fake.rtpu(r).block().head().switching.over = order->number;
-  EXPECT_TRUE(fake.until_on("left"));
-  EXPECT_EQ(world.state(fake.task("right")), State::kOff);
 }
 
 TEST_F(SwitchCoordinatorTest, WithoutAnAnswerItIsAbortedBehindItsDeadline) {

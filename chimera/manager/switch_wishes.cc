@@ -2,7 +2,7 @@
 // Takes up what tasks ask for, one switch at a time.
 #include "chimera/manager/switch_wishes.h"
 
-#include "chimera/control/receipt_text.h"
+#include "chimera/control/switch_reason.h"
 
 namespace chimera::manager {
 namespace {

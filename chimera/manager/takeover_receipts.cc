@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "chimera/control/receipt_json.h"
 #include "chimera/control/receipt_text.h"
 
 namespace chimera::manager {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "chimera/control/receipt_text.h"
+#include "chimera/control/receipt_json.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 
 namespace chimera::manager {

@@ -13,13 +13,14 @@
 
 #include "chimera/cli/run/profile_report.h"
 #include "chimera/cli/run/progress.h"
-#include "chimera/control/receipt_text.h"
 #include "chimera/cli/run/run_loop.h"
 #include "chimera/cli/run/run_plan.h"
 #include "chimera/cli/run/run_report.h"
 #include "chimera/cli/run/run_session.h"
 #include "chimera/cli/run/under_way.h"
 #include "chimera/cli/run/watch_plot.h"
+#include "chimera/control/receipt_json.h"
+#include "chimera/control/receipt_text.h"
 #include "chimera/platform/terminal.h"
 #include "chimera/runtime/tap_ring.h"
 
