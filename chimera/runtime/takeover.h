@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 #include "chimera/runtime/switch_receipt.h"
 #include "chimera/table/shared_copy.h"
@@ -44,7 +44,8 @@ inline void write_receipt(const Takeover& takeover, SwitchReceipt& receipt) noex
   receipt.end = takeover.end;
   receipt.why = takeover.why;
   receipt.task = takeover.end == SwitchEnd::kDone ? TaskId() : takeover.standby.task;
-  receipt.said.assign({takeover.said, ::strnlen(takeover.said, Takeover::kSaid)});
+  const char* const end = std::find(takeover.said, takeover.said + Takeover::kSaid, '\0');
+  receipt.said.assign({takeover.said, static_cast<std::size_t>(end - takeover.said)});
   receipt.asked = takeover.lost;
   receipt.armed = receipt.at = takeover.at;
   receipt.ended = takeover.ended;
@@ -76,6 +77,9 @@ class TakeoverRing {
   /// Takeover `number` is the next one, or the last one told anew. Context: edge; wait-free.
   void put(const Takeover& takeover) noexcept {
     Place& place = places_[(takeover.number - 1) % kKept];
+    place.over.store(0, std::memory_order_relaxed);
+    // SYNC: pairs with the fence in read(): whoever copies a byte of this takeover sees that none is over here.
+    shared_copy::release_fence();
     place.takeover = takeover;
     const bool is_over = takeover.ended != kNever;
     // SYNC: each release pairs with the acquire of the same word in read().
@@ -94,8 +98,9 @@ class TakeoverRing {
     const Place& place = places_[(number - 1) % kKept];
     if (is_alive && place.over.load(std::memory_order_acquire) != number) return false;
     to = place.takeover;
-    shared_copy::acquire_fence();  // SYNC: the copy is not later than the load of oldest()
-    return number >= oldest() && to.number == number;
+    shared_copy::acquire_fence();  // SYNC: the copy is not later than the loads behind it
+    const bool was_over = place.over.load(std::memory_order_relaxed) == number;
+    return to.number == number && (was_over || !is_alive);
   }
 
  private:

@@ -3,7 +3,7 @@
 #include "chimera/runtime/takeover_record.h"
 
 #include <algorithm>
-#include <cstring>
+#include <string_view>
 
 namespace chimera {
 namespace {
@@ -108,9 +108,9 @@ void TakeoverRecord::failed(std::size_t group, NoSwitch why, Nanoseconds now) no
   Takeover& takeover = open.takeover;
   takeover.end = SwitchEnd::kAborted;
   takeover.why = why;
-  const Task& standby = task(takeover.standby.task);
+  const std::string_view said(task(takeover.standby.task).faults.last.text);
   if (why == NoSwitch::kOnFailed || why == NoSwitch::kStepFailed)
-    std::strncpy(takeover.said, standby.faults.last.text, Takeover::kSaid);
+    std::copy_n(said.begin(), std::min<std::size_t>(said.size(), Takeover::kSaid), takeover.said);
   takeover.ended = now;
   open.is_open = false;
   tell(takeover);
