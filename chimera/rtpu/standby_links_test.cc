@@ -191,5 +191,51 @@ TEST_F(StandbyLinksTest, ASecondOnOfTheGroupIsRefusedByTheUnitItself) {
   EXPECT_EQ(claim(), 0u);
 }
 
+/// Its `on` is not ready for a while.
+struct Slow {
+  Out<double> w{"w", "1", initial = 0.0};
+  static inline int asked = 0;
+  Outcome on(Cycle) { return ++asked < 4 ? not_yet() : ok(); }
+  void cycle(Cycle) { *w = *w + 1; }
+};
+struct Other {
+  Out<double> w{"w", "1", initial = 0.0};
+  void cycle(Cycle) { *w = 1; }
+};
+
+/// Two groups: what fails in the first unit is replaced in the second, in the first group later than in the other.
+TEST(StandbyLinks, TakeoversOfTwoGroupsAreToldInTheOrderInWhichTheyCameToSomething) {
+  constexpr TaskId kOther{0u}, kFirst{1u}, kSlow{2u}, kQuick{3u};
+  const std::vector<StandbySpec> two{{kOther, kSlow}, {kFirst, kQuick}};
+  TestApplication app;
+  Primary::fails = Standby::fails = false;
+  Slow::asked = 0;
+  app.rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kEdf}};
+  app.add("other", testing::component<Other>("other")).rtpu = RtpuId(0u);
+  app.add("first", testing::component<Primary>("primary")).rtpu = RtpuId(0u);
+  app.add("slow", testing::component<Slow>("slow")).rtpu = RtpuId(1u);
+  app.add("quick", testing::component<Standby>("standby")).rtpu = RtpuId(1u);
+  app.make({kOther, kFirst}, false);
+  app.spec.standbys = two;
+  Units units(app);
+  units.run(milliseconds(1));
+  for (const TaskId task : {kOther, kFirst, kSlow, kQuick}) units.send(Signal::kSpawn, {task});
+  units.run(milliseconds(2));
+  units.send(Signal::kOn, {kOther, kFirst});
+  units.run(milliseconds(3));
+  units.die(0);
+  units.run(milliseconds(2));
+  const TakeoverRing& ring = units.units[1]->segment.block.view().takeovers();
+  Takeover takeover;
+  ASSERT_TRUE(ring.read(1, true, takeover)) << "the other one is waited for";
+  EXPECT_EQ(takeover.standby.task, kQuick);
+  units.run(milliseconds(8));
+  EXPECT_EQ(Slow::asked, 4);
+  ASSERT_TRUE(ring.read(2, true, takeover));
+  EXPECT_EQ(takeover.standby.task, kSlow);
+  EXPECT_GE(takeover.at - takeover.lost, milliseconds(3));
+  EXPECT_TRUE(ring.read(1, true, takeover));
+}
+
 }  // namespace
 }  // namespace chimera

@@ -80,6 +80,16 @@ struct SwitchReceipt {
   std::span<TaskId> reinitialised;  ///< in this order
 };
 
+/// Nothing was begun: what was asked for is in force, or the answer says why not.
+inline void refuse(SwitchReceipt& receipt, const PlanAnswer& answer) noexcept {
+  receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
+  receipt.why = answer.why;
+  receipt.task = answer.task;
+  receipt.way.slow = 0;
+  receipt.tasks = {};
+  receipt.variables = {};
+}
+
 /// The receipts of a run. Where more are made than were planned for, the first and the last are kept.
 class SwitchReceipts {
  public:

@@ -126,15 +126,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   receipt.before = planner_.set_in_force(standing_);
   receipt.number = number;
   receipt.way = way;
-  if (!answer) {
-    receipt.way.slow = 0;
-    receipt.end = is_nothing ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
-    receipt.why = answer.why;
-    receipt.task = answer.task;
-    receipt.tasks = {};
-    receipt.variables = {};
-    return;
-  }
+  if (!answer) return refuse(receipt, answer);
   const std::uint16_t last = agreement().plan().number;
   agreement().announce(
       lone_order(parts_.set, last, tasks_of(parts_.set.spec(), request.set), way.slow, now + kPatience));

@@ -18,7 +18,7 @@ namespace chimera {
 struct Takeover {
   static constexpr std::uint32_t kVariablesKept = 16, kSaid = 160;
 
-  std::uint32_t number = 0;        ///< of those of its context, from 1
+  std::uint32_t number = 0;        ///< of those of its context, from 1 in the order in which they were told of
   std::uint32_t set = kNoSet;      ///< that was in force, in ApplicationSpec::sets, with standbys for their primaries
   TaskId from;                     ///< the task that failed
   bool was_death = false;          ///< its process died; else it is in ERROR
@@ -74,9 +74,9 @@ class TakeoverRing {
  public:
   static constexpr std::uint32_t kKept = 8;
 
-  /// Takeover `number` is the next one, or the last one told anew. Context: edge; wait-free.
+  /// Takeover `number` is the next one, or one of those that are kept, told anew. Context: edge; wait-free.
   void put(const Takeover& takeover) noexcept {
-    Place& place = places_[(takeover.number - 1) % kKept];
+    Place& place = places_[takeover.number % kPlaces];
     place.over.store(0, std::memory_order_relaxed);
     // SYNC: pairs with the fence in read(): whoever copies a byte of this takeover sees that none is over here.
     shared_copy::release_fence();
@@ -84,7 +84,8 @@ class TakeoverRing {
     const bool is_over = takeover.ended != kNever;
     // SYNC: each release pairs with the acquire of the same word in read().
     if (is_over) place.over.store(takeover.number, std::memory_order_release);
-    last_.store(takeover.number, std::memory_order_release);
+    const bool is_new = takeover.number > last_.load(std::memory_order_relaxed);
+    if (is_new) last_.store(takeover.number, std::memory_order_release);
   }
   /// The lowest number that is kept; those from there on can be read. Context: setup.
   std::uint32_t oldest() const noexcept {
@@ -95,7 +96,7 @@ class TakeoverRing {
   /// Context: setup.
   bool read(std::uint32_t number, bool is_alive, Takeover& to) const noexcept {
     if (number < oldest() || number > last_.load(std::memory_order_acquire)) return false;
-    const Place& place = places_[(number - 1) % kKept];
+    const Place& place = places_[number % kPlaces];
     if (is_alive && place.over.load(std::memory_order_acquire) != number) return false;
     to = place.takeover;
     shared_copy::acquire_fence();  // SYNC: the copy is not later than the loads behind it
@@ -108,8 +109,9 @@ class TakeoverRing {
     std::atomic<std::uint32_t> over{0};  // number of the takeover in it that is over
     Takeover takeover;
   };
+  static constexpr std::uint32_t kPlaces = kKept + 1;  // none that can be read is where the next one is written
   std::atomic<std::uint32_t> last_{0};
-  std::array<Place, kKept> places_;
+  std::array<Place, kPlaces> places_;
 };
 
 }  // namespace chimera

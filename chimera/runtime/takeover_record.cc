@@ -74,7 +74,6 @@ void TakeoverRecord::begin(std::size_t group, TaskId standby) noexcept {
   if (open.is_open && takeover.standby.task == standby && takeover.lost == loss.at) return;
   if (open.is_open) close(group, NoSwitch::kDisturbed, loss.at);  // it failed before its first cycle was seen
   takeover = {};
-  takeover.number = ++n_told_;
   takeover.from = loss.task;
   takeover.set = set_in_force(takeover.from);
   takeover.was_death = !set_.is_mine(takeover.from) && !set_.others()->presence(takeover.from).lives;
@@ -139,7 +138,8 @@ void TakeoverRecord::close(std::size_t group, NoSwitch why, Nanoseconds now) noe
   open.first_cycle_by == kNever ? failed(group, why, now) : end(open, now);
 }
 
-void TakeoverRecord::tell(const Takeover& takeover) noexcept {
+void TakeoverRecord::tell(Takeover& takeover) noexcept {
+  if (takeover.number == 0) takeover.number = ++n_told_;
   if (peers_ != nullptr) peers_->tell_takeover(takeover);
   else keep_receipt(takeover, switching_.receipts());
 }

@@ -48,7 +48,7 @@ class TakeoverRecord {
 
   std::uint32_t set_in_force(TaskId failed) const noexcept;
   void list_handovers(Takeover& takeover) noexcept;
-  void tell(const Takeover& takeover) noexcept;
+  void tell(Takeover& takeover) noexcept;
   void end(Open& open, Nanoseconds now) noexcept;
   void close(std::size_t group, NoSwitch why, Nanoseconds now) noexcept;
   Task& task(TaskId id) noexcept { return set_.tasks()[id.index]; }

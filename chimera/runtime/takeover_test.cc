@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 namespace chimera {
 namespace {
 
@@ -39,6 +41,27 @@ TEST(TakeoverRing, KeepsTheLastEight) {
     EXPECT_EQ(read.number, n);
     EXPECT_EQ(read.lost, milliseconds(n));
   }
+}
+
+TEST(TakeoverRing, TwoAtATimeMayBeOverInEitherOrder) {
+  TakeoverRing ring;
+  for (const std::uint32_t n : {1u, 2u}) ring.put(takeover(n, kNever));
+  for (const std::uint32_t n : {2u, 1u}) ring.put(takeover(n, seconds(1)));
+  Takeover read;
+  for (const std::uint32_t n : {1u, 2u}) EXPECT_TRUE(ring.read(n, true, read)) << n;
+}
+
+TEST(TakeoverRing, OneThatDiesWhileItWritesTheNextLeavesAllThatCanBeRead) {
+  TakeoverRing ring;
+  for (std::uint32_t n = 1; n <= 9; ++n) ring.put(takeover(n, seconds(1)));
+  const std::uint32_t oldest = ring.oldest();
+  std::uint32_t last;  // the word that is stored last stands first
+  std::memcpy(&last, static_cast<const void*>(&ring), sizeof last);
+  ASSERT_EQ(last, 9u);
+  ring.put(takeover(10, seconds(1)));
+  std::memcpy(static_cast<void*>(&ring), &last, sizeof last);
+  Takeover read;
+  for (std::uint32_t n = oldest; n <= 9; ++n) EXPECT_TRUE(ring.read(n, false, read)) << n;
 }
 
 TEST(TakeoverRing, AnOpenOneBetweenOthersIsWaitedFor) {

@@ -14,7 +14,8 @@ struct Ginvkin : library::DhPorts {
   Out<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                       doc = "Joint positions for xr, near the last ones."};
   Out<double> residual{"residual", "1", initial = 0.0,
-                       doc = "What is missing: the larger of metres and radians; large when xr is out of reach."};
+                       doc = "What is missing where the search ends: the larger of metres and radians; large "
+                             "when xr is out of reach."};
   Out<bool> is_reachable{"is_reachable", "1", initial = true,
                          doc = "The residual is within tolerance; false: xr is out of reach, or beyond a joint limit."};
   InConst<double> tolerance{"tolerance", "1", initial = 1e-6, range(1e-9, 0.1), doc = "Metres and radians."};

@@ -312,6 +312,19 @@ TEST_P(RecoveryTest, AHotStandbyCyclesUnreadAndIsReadFromTheTakeoverOn) {
   EXPECT_EQ(scene.u, (std::vector<double>{1, 2, 3, 4, 5, 103, 104, 105, 106, 107}));
 }
 
+TEST_P(RecoveryTest, AHotStandbyThatIsNotReadyIsAskedAgainAPeriodLater) {
+  make_hot(standbys_);
+  std::vector<std::int64_t> asked;
+  scene.on_of_spare = [&asked](Cycle c) -> Outcome {
+    asked.push_back(c.now().count);
+    return asked.size() < 4 ? not_yet() : ok();
+  };
+  go(milliseconds(10), {signal(microseconds(1400), Signal::kReinit, kThird)});  // one more edge
+  ASSERT_EQ(asked.size(), 4u);
+  for (std::size_t i = 1; i < asked.size(); ++i) EXPECT_GE(asked[i] - asked[i - 1], 1'000'000) << i;
+  EXPECT_TRUE(task(kSpare).is_unread);
+}
+
 TEST_P(RecoveryTest, AHotStandbyIsOffForAllOthersAndWhatItSendsIsNotSent) {
   make_hot(standbys_);
   scene.cycle_of_spare = [](Cycle c) -> Outcome {

@@ -71,15 +71,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   receipt.before = planner_.set_in_force(standing_);
   receipt.number = number;
   receipt.way = way;
-  if (!answer) {
-    receipt.way.slow = 0;
-    receipt.end = is_nothing ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
-    receipt.why = answer.why;
-    receipt.task = answer.task;
-    receipt.tasks = {};
-    receipt.variables = {};
-    return;
-  }
+  if (!answer) return refuse(receipt, answer);
   present_ = &receipt;
   order(request.set, receipt.way.slow, now);
 }
