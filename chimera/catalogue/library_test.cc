@@ -24,7 +24,7 @@ Descriptor component(const std::string& name, const std::string& unit = "m") {
 }
 
 /// Two folders under the test's own temporary one.
-struct Folders : testing::Test {
+struct Folders : ::testing::Test {
   std::string root = testing::TempDir() + "chimera_library_" + std::to_string(::getpid()) + "/";
   void SetUp() override {
     std::filesystem::create_directories(root + "one");

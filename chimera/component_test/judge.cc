@@ -125,8 +125,11 @@ struct Judge {
               system_call_name(method.first_system_call);
     }
     if (text.empty()) return ok("system calls", "none in a cycle, on and off");
-    if (has_resources()) return ok("system calls", text + "; it uses a resource");
-    fails("system calls", text + "; and the component has no resource port");
+    if (!has_resources()) return fails("system calls", text + "; and the component has no resource port");
+    const std::uint64_t of_cycle = record.methods[CHIMERA_CYCLE].most_system_calls;
+    if (record.methods[CHIMERA_ON].most_system_calls > std::max<std::uint64_t>(of_cycle, 1))
+      return fails("system calls", text + "; on runs beside the cycles of others: it makes no more than a cycle");
+    ok("system calls", text + "; it uses a resource");
   }
 
   void repeatable() {

@@ -105,7 +105,7 @@ std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& sp
   if (receipt.end == SwitchEnd::kNothingToDo) return {};
   const bool is_done = receipt.end == SwitchEnd::kDone;
   const bool has_before = receipt.before != kNoSet, has_wall = frame.wall_ns >= 0;
-  const std::uint32_t tries = receipt.end == SwitchEnd::kRefused ? 0 : frame.tries;
+  const std::uint32_t tries = receipt.end == SwitchEnd::kRefused ? 0 : receipt.tries;
   return "{\"number\": " + std::to_string(receipt.number) + ", \"origin_ns\": " +
          (has_wall ? std::to_string(origin.count) : "null") + ", \"from\": " +
          json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +

@@ -13,7 +13,6 @@ namespace chimera::control {
 struct ReceiptFrame {
   std::string asked_by = {};   ///< a role and a user, "operate:ann"; "": as the receipt says
   std::int64_t wall_ns = -1;   ///< nanoseconds since 1970 of the request; -1: virtual time
-  std::uint32_t tries = 1;     ///< plans that were announced for it
 };
 
 /// One JSON object, which begins with its number and the origin; "" for a request for what was in force.

@@ -81,14 +81,24 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
   told.moved.step_of_on = {9, 5, true, true};
   EXPECT_EQ(told.text(), begin + "aborted: on of task 'torque' would move 'tau' too far: by 9 N.m, limit 5 N.m\n");
   told.receipt.why = NoSwitch::kNoValue;
-  EXPECT_EQ(told.text(), begin + "aborted: task 'torque' waited 10 s for a value of 'tau'\n");
+  EXPECT_EQ(told.text(), begin + "aborted: task 'torque' had no value of 'tau'\n");
+  told.receipt.ended = told.receipt.asked + milliseconds(300) + microseconds(420);
+  EXPECT_EQ(told.text(), begin + "aborted: task 'torque' had no value of 'tau', for 300 ms\n");
+  told.receipt.why = NoSwitch::kNoGap;
+  told.receipt.ended = told.receipt.asked + seconds(10) + milliseconds(3);
+  EXPECT_EQ(told.text(), begin + "aborted: the processor was never idle for as long as on of task 'torque' takes, "
+                                 "for 10 s\n");
+  told.receipt.why = NoSwitch::kNoAnswer;
+  told.receipt.task = {};
+  EXPECT_EQ(told.text(), begin + "aborted: a real-time unit did not answer, for 10 s\n");
+  told.receipt.task = kTorque;
   told.receipt.end = SwitchEnd::kRefused;
   told.receipt.why = NoSwitch::kInError;
   EXPECT_EQ(told.text(), begin + "refused: task 'torque' is in ERROR: clear it first\n");
   told.receipt.end = SwitchEnd::kDone;
   told.receipt.at = seconds(3) + milliseconds(12);
   told.receipt.flag = milliseconds(11);
-  told.receipt.way = {kSlowForDeadlines, {}, {NoSwitch::kNotSchedulable, kTorque, kNever}, {}, {}};
+  told.receipt.way = {kSlowForDeadlines, {}, {NoSwitch::kNotSchedulable, kTorque, kNever}, {}, {}, {}, {}};
   const std::string slow = begin + "slowly, for the transition from 'pid' to 'torque' is not schedulable on CPU 1: "
                                    "a cycle of task 'torque' may ";
   const std::string after = ", after 12.000 ms, 11 ms under the flag: 1 task arrives, 1 leaves, 1 cycle lost\n";
@@ -110,7 +120,7 @@ TEST(ReceiptText, OfASlowOneSaysWhyHowLongAndWhatWasReinitialised) {
   mass.name = "mass";
   told.spec.constants = {&mass, 1};
   told.be_done();
-  told.receipt.way = {kSlowForConstants, {kPid, ConstantId(0u)}, {}, {}, {}};
+  told.receipt.way = {kSlowForConstants, {kPid, ConstantId(0u)}, {}, {}, {}, {}, {}};
   told.receipt.flag = microseconds(1400);
   TaskId again[] = {kPid, kTorque};
   told.receipt.reinitialised = again;
@@ -211,7 +221,8 @@ TEST(ReceiptText, OfATakeoverSaysForWhomAndHowItWasLost) {
 TEST(ReceiptText, OfAManagerHasWhoAskedTheWallClockAndTheTries) {
   Told told;
   told.be_done();
-  const std::string json = receipt_json(told.receipt, told.spec, seconds(1), {"operate:ann", 1'700'000'000, 2});
+  told.receipt.tries = 2;
+  const std::string json = receipt_json(told.receipt, told.spec, seconds(1), {"operate:ann", 1'700'000'000});
   EXPECT_TRUE(json.starts_with("{\"number\": 3, \"origin_ns\": 1000000000, \"from\": \"pid\", ")) << json;
   EXPECT_NE(json.find("\"asked_by\": {\"role\": \"operate\", \"user\": \"ann\"}, "), std::string::npos) << json;
   EXPECT_NE(json.find("\"tries\": 2, \"wall_ns\": 1700000000, \"asked_ns\": 2000000000, "), std::string::npos) << json;

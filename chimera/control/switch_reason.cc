@@ -37,6 +37,21 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
                           : time_text(takes) + ", its deadline is " + time_text(task.deadline));
 }
 
+/// ", for 10 s": to three digits, as it has the time of undoing in it.
+std::string waited_text(const SwitchReceipt& receipt) {
+  if (receipt.asked == kNever || receipt.ended == kNever || receipt.ended <= receipt.asked) return "";
+  const std::int64_t waited = (receipt.ended - receipt.asked).count;
+  std::int64_t unit = 1;
+  while (waited / unit >= 1000) unit *= 10;
+  return ", for " + time_text(Nanoseconds{(waited + unit / 2) / unit * unit});
+}
+
+std::string gapless_text(const SwitchWay& way, const ApplicationSpec& spec) {
+  if (!way.gapless.is_valid()) return "on of an arriving task fits no gap";
+  return "on of task " + quoted(spec.tasks[way.gapless.index].name) + " needs a gap of " + time_text(way.needed) +
+         ", and its real-time unit has none";
+}
+
 std::string absent_text(const SwitchWay& way, const ApplicationSpec& spec) {
   if (!way.absent.is_valid()) return "an arriving task has the resource of another one";
   const std::string text = "task " + quoted(spec.tasks[way.absent.index].name) + " is NOT-CREATED";
@@ -67,7 +82,7 @@ std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec)
   if ((way.slow & kSlowForConstants) != 0 && way.constant.task.is_valid())
     add("constant " + quoted(spec.constants[way.constant.constant.index].name) + " of task " +
         quoted(spec.tasks[way.constant.task.index].name) + ", which stays, changes");
-  if ((way.slow & kSlowForGap) != 0) add("on of an arriving task fits no gap");
+  if ((way.slow & kSlowForGap) != 0) add(gapless_text(way, spec));
   if ((way.slow & kSlowForDeadlines) != 0) add(not_schedulable(receipt, spec));
   if ((way.slow & kSlowForResource) != 0) add(absent_text(way, spec));
   if ((way.slow & kSlowForDevice) != 0) add("on of an arriving task was not ready at once");
@@ -111,6 +126,7 @@ const char* reason_word(NoSwitch why) noexcept {
     case NoSwitch::kBadConstant: return "bad-constant";
     case NoSwitch::kStepFailed: return "step-failed";
     case NoSwitch::kNotReady: return "not-ready";
+    case NoSwitch::kNoAnswer: return "no-answer";
   }
   return "?";
 }
@@ -132,9 +148,10 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
       return text;
     }
     case NoSwitch::kNoGap:
-      return task.empty() ? "the processor was never idle for 10 s"
-                          : "the processor was never idle for as long as on of task " + task + " takes, for 10 s";
-    case NoSwitch::kNoValue: return "task " + task + " waited 10 s for a value of " + variable;
+      return task.empty() ? "the processor was never idle" + waited_text(receipt)
+                          : "the processor was never idle for as long as on of task " + task + " takes" +
+                                waited_text(receipt);
+    case NoSwitch::kNoValue: return "task " + task + " had no value of " + variable + waited_text(receipt);
     case NoSwitch::kNotSafe: return unsafe_text(receipt, spec);
     case NoSwitch::kDisturbed: return "task " + task + " went to another state meanwhile";
     case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised meanwhile";
@@ -151,7 +168,8 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
              ": " + std::string(receipt.said.view());
     case NoSwitch::kStepFailed: return "a method of task " + task + " failed: " + std::string(receipt.said.view());
     case NoSwitch::kNotReady:
-      return task.empty() ? "a real-time unit was not ready for 10 s" : "task " + task + " was not ready for 10 s";
+      return (task.empty() ? "a real-time unit" : "task " + task) + " was not ready" + waited_text(receipt);
+    case NoSwitch::kNoAnswer: return "a real-time unit did not answer" + waited_text(receipt);
     default: return reason_word(receipt.why);
   }
 }

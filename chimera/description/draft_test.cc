@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-namespace chimera {
+namespace chimera::draft_test {
 namespace {
 
 ReadDescription read(std::string_view text) { return read_description(text, "demo.yaml"); }
@@ -110,4 +110,4 @@ TEST(Draft, ReadsNoMoreOfAFileThanTheLimit) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::draft_test

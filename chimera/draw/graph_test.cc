@@ -10,7 +10,7 @@
 
 #include "chimera/draw/layout.h"
 
-namespace chimera::draw {
+namespace chimera::draw::graph_test {
 namespace {
 
 using enum PortKind;
@@ -76,7 +76,7 @@ void expect_sound(const Graph& graph) {
 TEST(Graph, LinesCrossNoBoxAndShareNoTrack) { expect_sound(figure4()); }
 
 TEST(Graph, AnyGraphIsDrawnSoundly) {
-  for (unsigned seed = 1; seed <= 200 && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 1; seed <= 200 && !::testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     Graph graph{"random", {}, {"v0", "v1"}};
@@ -162,4 +162,4 @@ TEST(Text, DrawsInputsLeftAndOutputsRight) {
 }
 
 }  // namespace
-}  // namespace chimera::draw
+}  // namespace chimera::draw::graph_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace chimera::draw {
+namespace chimera::draw::plot_test {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -123,4 +123,4 @@ TEST(Plot, TextsCannotBreakTheDocument) {
 }
 
 }  // namespace
-}  // namespace chimera::draw
+}  // namespace chimera::draw::plot_test

@@ -12,7 +12,7 @@
 namespace chimera::manager {
 namespace {
 
-struct DrillTest : testing::Test {
+struct DrillTest : ::testing::Test {
   DrillTest() {
     fake.rtpu(0).filled_with = 0;
     fake.start_manager();

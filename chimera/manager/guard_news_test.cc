@@ -5,12 +5,12 @@
 
 #include "chimera/manager/testing/fake_subsystem.h"
 
-namespace chimera::manager {
+namespace chimera::manager::guard_news_test {
 namespace {
 
 using Kind = KeeperMessage::Kind;
 
-struct GuardNews : testing::Test {
+struct GuardNews : ::testing::Test {
   GuardNews() { fake.start_manager(); }
   std::string told(const KeeperMessage& message) {
     const std::string before = fake.told("safe");
@@ -53,4 +53,4 @@ TEST_F(GuardNews, WhatFitsNothingIsNotTold) {
 }
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::guard_news_test

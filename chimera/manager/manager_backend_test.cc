@@ -21,7 +21,7 @@ using control::Json;
 using control::Role;
 using subsystem::RefusalKind;
 
-class ManagerBackendTest : public testing::Test {
+class ManagerBackendTest : public ::testing::Test {
  protected:
   explicit ManagerBackendTest(const std::string& text = kFakeText) : fake_(text) {}
   void SetUp() override {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Nanoseconds kEvery = milliseconds(250);
 
-struct Method : testing::Test {
+struct Method : ::testing::Test {
   MethodWatch watch;
   Nanoseconds at = seconds(50);
   int news = 0;

@@ -50,7 +50,7 @@ operator: {kp: [1 N.m/rad, 2 N.m/rad], speed: 36 km/h, go: false, word: idle, m:
            pose: {x: 1 m, a: 2 rad}}
 )";
 
-class OperatorValues : public testing::Test {
+class OperatorValues : public ::testing::Test {
  protected:
   OperatorValues() : library_(library()), configuration_(make()) {
     const ApplicationSpec& spec = configuration_.spec();

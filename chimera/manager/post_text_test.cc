@@ -9,7 +9,7 @@ namespace {
 const TaskId kLaw(0u), kLog(1u);
 
 /// Two tasks, of which `law` has a budget of 300 us.
-struct PostText : testing::Test {
+struct PostText : ::testing::Test {
   PostText() {
     tasks[0].name = "law";
     tasks[0].budget = microseconds(300);

@@ -17,7 +17,7 @@ namespace {
 using control::Json;
 using control::RpcResponse;
 
-struct QuestionsTest : testing::Test {
+struct QuestionsTest : ::testing::Test {
   void SetUp() override {
     const std::string packed = encode(fake_bundle());
     bundle_ = *FrozenBytes::create("bundle", std::as_bytes(std::span(packed)));

@@ -14,7 +14,7 @@ using control::Json;
 using control::MethodId;
 using control::RpcResponse;
 
-class ReadMethodsTest : public testing::Test, public LoneState {
+class ReadMethodsTest : public ::testing::Test, public LoneState {
  protected:
   std::optional<RpcResponse> ask(MethodId method, const Json& parameters = Json::object()) {
     return reads_.answer(method, parameters, control::Role::kObserve);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/analysis/task_profile.h"
@@ -212,23 +213,6 @@ Json described_variable(const Configuration& configuration, const ConfiguredVari
           {"consumers", names(variable.consumers)}};
 }
 
-/// "run", "run with pid_spare for pid"; empty when other tasks are ON.
-std::string name_in_force(const ApplicationSpec& spec, const NamedSet& set, std::vector<bool> on) {
-  std::string name(set.name);
-  const char* joint = " with ";
-  for (const TaskId task : set.order) {
-    std::size_t by = task.index;
-    if (!on[by])
-      for (by = 0; by < on.size() && !(on[by] && spec.stand_in(task, TaskId(by)));) ++by;
-    if (by == on.size()) return "";
-    on[by] = false;
-    if (by == task.index) continue;
-    name += joint + std::string(spec.tasks[by].name) + " for " + std::string(spec.tasks[task.index].name);
-    joint = " and ";
-  }
-  return std::find(on.begin(), on.end(), true) == on.end() ? name : "";
-}
-
 }  // namespace
 
 Json flag_json(const ManagerState& world) {
@@ -252,11 +236,22 @@ std::string fault_text(const ManagerState& world, TaskId task) {
 
 std::string configuration_name(const ManagerState& world) {
   if (!world.configuration) return "";
-  std::vector<bool> on(world.spec().tasks.size());
+  const ApplicationSpec& spec = world.spec();
+  std::vector<bool> on(spec.tasks.size());  // states change while one looks
   for (std::size_t t = 0; t < on.size(); ++t) on[t] = world.state(TaskId(t)) == State::kOn;
-  for (const NamedSet& set : world.spec().sets)
-    if (const std::string name = name_in_force(world.spec(), set, on); !name.empty()) return name;
-  return "";
+  const auto is_on = [&](TaskId task) { return on[task.index]; };
+  const std::uint32_t set = set_in_force(spec, is_on);
+  if (set == kNoSet) return "";
+  std::string name(spec.sets[set].name);
+  const char* joint = " with ";
+  for (const TaskId task : spec.sets[set].order) {
+    if (is_on(task)) continue;
+    TaskId by(0u);
+    while (!(spec.stand_in(task, by) && is_on(by))) ++by.index;  // there is one: the set is in force
+    name += joint + world.name(by) + " for " + world.name(task);
+    joint = " and ";
+  }
+  return name;
 }
 
 Json status_json(const ManagerState& world, Nanoseconds at) {

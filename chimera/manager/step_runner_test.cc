@@ -13,7 +13,7 @@ using subsystem::CommandAnswer;
 using subsystem::kGoalOn;
 using subsystem::kGoalSpawn;
 
-class StepRunnerTest : public testing::Test, public LoneState {
+class StepRunnerTest : public ::testing::Test, public LoneState {
  protected:
   StepRunnerTest() : ends_(*Channel::pair()), fleet_(world()), runner_(world(), fleet_, ends_.first) {}
 

@@ -12,7 +12,7 @@ namespace {
 
 using control::Json;
 
-class SubscriptionFeedsTest : public testing::Test, public LoneState {
+class SubscriptionFeedsTest : public ::testing::Test, public LoneState {
  protected:
   void open(std::uint64_t subscription, const Json& parameters) {
     const control::RpcResponse answer = feeds_.open(subscription, parameters);

@@ -15,8 +15,6 @@ namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kGrace = milliseconds(500);  // within which the units abort by themselves
-constexpr int kMostTries = 3;                      // of a switch that was only too late
-constexpr std::int64_t kMoreTime = 8;              // each try leaves so many times as long until the change
 
 bool is_in_range(const TaskPart& part, const ApplicationSpec& spec, std::uint32_t rtpu) {
   return part.task.index < spec.tasks.size() && spec.tasks[part.task.index].rtpu.index == rtpu &&
@@ -40,6 +38,21 @@ std::string time_of_day(Nanoseconds at) {
   if (::localtime_r(&seconds_since, &broken_down) != nullptr) std::strftime(text, sizeof text, "%T", &broken_down);
   return text;
 }
+
+/// By how long `on` took, as their units show it.
+class ShownGaps final : public NeededGaps {
+ public:
+  explicit ShownGaps(const ManagerState& world) : world_(world) {}
+  Nanoseconds for_on(TaskId task) const noexcept override {
+    const TaskSpec& spec = world_.spec().tasks[task.index];
+    const PeerSegment& there = world_.peers.of(task);
+    const bool is_needed = there.is_there() && !world_.spec().rtpus[spec.rtpu.index].preemptive;
+    return is_needed ? IdleGap::needed(spec, there.block().profile(task), Method::kOn) : Nanoseconds{};
+  }
+
+ private:
+  const ManagerState& world_;
+};
 
 /// What producers made, as their units show it.
 class ShownConstants final : public MadeConstants {
@@ -81,8 +94,8 @@ bool is_cause(const BegunSwitch& begun, const ApplicationSpec& spec) {
 bool is_way(const SwitchWay& way, const ApplicationSpec& spec) {
   const auto is_task = [&](TaskId task) { return !task.is_valid() || task.index < spec.tasks.size(); };
   const ConstantUsers::Found& found = way.constant;
-  return way.slow <= kSlowReasons && is_task(found.task) && is_task(way.deadline.task) && is_task(way.absent) &&
-         is_task(way.rival) &&
+  return way.slow <= kSlowReasons && is_task(found.task) && is_task(way.deadline.task) && is_task(way.gapless) &&
+         is_task(way.absent) && is_task(way.rival) &&
          (!found.task.is_valid() || found.constant.index < spec.constants.size());
 }
 
@@ -201,7 +214,8 @@ PlanAnswer SwitchCoordinator::judge(const TaskBits& target) {
     standing_[t] = {is_dead ? State::kError : state, is_away};
   }
   const PlanAnswer answer = planner_.plan(target, standing_, plan_);
-  way_ = answer ? ways_.judge(plan_, standing_, constants_in_force(), ShownConstants(world_)) : SwitchWay();
+  way_ = answer ? ways_.judge(plan_, standing_, constants_in_force(), ShownConstants(world_), ShownGaps(world_))
+                : SwitchWay();
   return answer;
 }
 
@@ -360,7 +374,8 @@ bool SwitchCoordinator::cancel(Asker cancelled_by, Switched switched) {
 }
 
 Nanoseconds SwitchCoordinator::next_due() const noexcept {
-  return present_ ? present_->begun.order.until + kGrace : kNever;
+  const bool is_open = present_ && agreement().plan().is_open();  // when it is not, units ring
+  return is_open ? present_->begun.order.until + kGrace : kNever;
 }
 
 /// Of one that was only late, and that nobody has cancelled: it has more time then.
@@ -375,7 +390,7 @@ bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds
   if (slow != 0) begun.way.slow = slow;
   const Nanoseconds until = slow != 0 ? now + (begun.order.until - begun.asked) : begun.order.until;
   begun.order = make_order(begun.order.target, begun.way.slow, until);
-  for (std::uint32_t i = 1; i < begun.tries; ++i) begun.order.lead = begun.order.lead * kMoreTime;
+  begun.order.lead = lead_of_try(begun.order.lead, begun.tries);
   journal_.change(begun);
   announce(begun.order);
   return true;
@@ -412,7 +427,7 @@ void SwitchCoordinator::add_part(const SwitchPart& part, std::uint32_t rtpu, Nan
   for (std::uint32_t i = 0; i < std::min<std::size_t>(part.n_reinitialised, part.reinitialised.size()); ++i)
     if (is_its(part.reinitialised[i])) outcome.reinitialised.push_back(part.reinitialised[i]);
   if (is_possible(part.ended)) receipt.ended = later(receipt.ended, part.ended);
-  const bool says_more = receipt.why == NoSwitch::kNone || receipt.why == NoSwitch::kLate;
+  const bool says_more = receipt.why == NoSwitch::kNone || is_of_another(receipt.why);
   if (part.why != NoSwitch::kNone && says_more && receipt.end == SwitchEnd::kAborted) {
     receipt.why = part.why;
     if (part.task.index < spec.tasks.size()) receipt.task = part.task;
@@ -438,6 +453,7 @@ std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& ove
   receipt.cause = over.cause;
   receipt.by = over.by;
   receipt.way = over.way;
+  receipt.tries = over.tries;
   receipt.end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
   if (is_committed) receipt.at = agreement().at(word);
   for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r) {
@@ -465,7 +481,7 @@ std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& ove
 void SwitchCoordinator::file(std::shared_ptr<SwitchOutcome> outcome, const BegunSwitch& of, Nanoseconds now,
                              std::vector<Switched> switched) {
   outcome->json = control::receipt_json(outcome->receipt, world_.spec(), world_.keeper.origin,
-                                        {asker_text(of, world_.spec()), wall_ns(of.asked), of.tries});
+                                        {asker_text(of, world_.spec()), wall_ns(of.asked)});
   archive_.add(of.number, outcome->json, now, [outcome, switched = std::move(switched)] {
     for (const Switched& one : switched) one(*outcome);
   });

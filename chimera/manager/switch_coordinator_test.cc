@@ -250,13 +250,53 @@ TEST_F(SwitchCoordinatorTest, OneThatWasOnlyLateIsTriedThreeTimes) {
   EXPECT_EQ(agreement().plan().number, 3);
 }
 
-TEST_F(SwitchCoordinatorTest, AFailureCountsMoreThanLateness) {
+TEST_F(SwitchCoordinatorTest, OneThatFoundNoGapOrNoReadyDeviceIsMadeTheSlowWay) {
+  const std::pair<NoSwitch, std::uint8_t> ways[] = {{NoSwitch::kNoGap, kSlowForGap},
+                                                    {NoSwitch::kNotReady, kSlowForDevice}};
+  std::uint16_t number = 1;
+  for (const auto& [why, slow] : ways) {
+    ask(kRest);
+    for (const std::uint8_t expected : {std::uint8_t{0}, slow}) {
+      ASSERT_TRUE(fake.until([&] { return agreement().plan().number == number && agreement().plan().is_open(); }));
+      EXPECT_EQ(agreement().order(agreement().plan(), 2, 3)->slow, expected);
+      EXPECT_FALSE(got);
+      ASSERT_TRUE(agreement().abort(number++));
+      over(0, why);
+      over(1);
+    }
+    ASSERT_TRUE(until_answered());
+    EXPECT_EQ(got->receipt.why, why) << "the slow way was not open either";
+    EXPECT_EQ(got->receipt.way.slow, slow);
+    EXPECT_EQ(got->receipt.tries, 2u);
+  }
+}
+
+// The units ring: a manager that looked again and again from the deadline on would fill its CPU.
+TEST_F(SwitchCoordinatorTest, NothingIsDueWhenThePlanIsNoMoreOpen) {
+  EXPECT_EQ(coordinator().next_due(), kNever);
   ask(kRest);
-  ASSERT_TRUE(agreement().abort(1));
-  over(0, NoSwitch::kLate);
-  over(1, NoSwitch::kOnFailed);
+  EXPECT_GE(coordinator().next_due(), now() + seconds(9));
+  EXPECT_LE(coordinator().next_due(), now() + seconds(11));
+  commit();
+  EXPECT_EQ(coordinator().next_due(), kNever);
+  over(0);
+  over(1);
   ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.why, NoSwitch::kOnFailed);
+}
+
+TEST_F(SwitchCoordinatorTest, AFailureCountsMoreThanLatenessOrNoAnswer) {
+  std::uint16_t number = 0;
+  for (const auto& [first, second] : {std::pair{NoSwitch::kLate, NoSwitch::kOnFailed},
+                                      {NoSwitch::kNoAnswer, NoSwitch::kNotSafe},
+                                      {NoSwitch::kNoAnswer, NoSwitch::kNone}}) {
+    ask(kRest);
+    ASSERT_TRUE(agreement().abort(++number));
+    over(0, first);
+    over(1, second);
+    ASSERT_TRUE(until_answered());
+    EXPECT_EQ(got->receipt.why, second == NoSwitch::kNone ? first : second);
+    EXPECT_EQ(got->receipt.tries, 1u) << "nor is it a reason to go slowly";
+  }
 }
 
 TEST_F(SwitchCoordinatorTest, WhatIsCancelledIsNotTriedAgain) {

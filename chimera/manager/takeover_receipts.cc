@@ -86,7 +86,7 @@ void TakeoverReceipts::file(const Takeover& takeover, Nanoseconds now) {
   for (const std::string& line : control::bump_lines(receipt, spec))
     world_.tell("bump", TaskId{}, RtpuId{}, line, now);
   archive_.add(receipt.number,
-               control::receipt_json(receipt, spec, world_.keeper.origin, {"", wall_ns(receipt.asked), 1}), now, [] {});
+               control::receipt_json(receipt, spec, world_.keeper.origin, {"", wall_ns(receipt.asked)}), now, [] {});
 }
 
 }  // namespace chimera::manager

@@ -130,10 +130,10 @@ TEST_F(TakeoverReceiptsTest, OneThatAPredecessorKeptBeforeItDiedIsNotFiledTwice)
 }
 
 TEST_F(TakeoverReceiptsTest, OnesThatWereOverwrittenAreCounted) {
-  for (std::uint32_t n = 1; n <= 11; ++n) tell(takeover(n));
-  ASSERT_TRUE(until_kept(8));
+  for (std::uint32_t n = 1; n <= TakeoverRing::kKept + 3; ++n) tell(takeover(n));
+  ASSERT_TRUE(until_kept(TakeoverRing::kKept));
   EXPECT_EQ(fake.told("note"), "takeovers without a receipt: 3\n");
-  EXPECT_EQ(receipt(7)["number"], 8);
+  EXPECT_EQ(receipt(TakeoverRing::kKept - 1)["number"], TakeoverRing::kKept);
 }
 
 TEST_F(TakeoverReceiptsTest, WhatADeadUnitWroteAnywhereIsPassedOver) {

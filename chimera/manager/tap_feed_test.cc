@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-class TapFeedTest : public testing::Test {
+class TapFeedTest : public ::testing::Test {
  protected:
   void SetUp() override {
     fake_.start_manager();

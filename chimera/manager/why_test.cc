@@ -9,7 +9,7 @@ namespace chimera::manager {
 namespace {
 
 /// x of sensor -> q of filter -> tau of pid, kp of the operator -> tau; arm closes the loop: tau -> x.
-class WhyTest : public testing::Test {
+class WhyTest : public ::testing::Test {
  protected:
   WhyTest() {
     add("tau", "pid", {"q", "kp"});

@@ -29,7 +29,7 @@ TEST(Doorbell, ReachesTheInstantWhenNobodyRings) {
   EXPECT_GE(clock.now(), until);
 }
 
-class DoorbellOf : public testing::TestWithParam<Ringers> {};
+class DoorbellOf : public ::testing::TestWithParam<Ringers> {};
 
 TEST_P(DoorbellOf, NoWakeIsLostAndWhatWasWrittenBeforeIsSeen) {
   constexpr std::uint32_t kTurns = 20'000;
@@ -55,7 +55,7 @@ TEST_P(DoorbellOf, NoWakeIsLostAndWhatWasWrittenBeforeIsSeen) {
   EXPECT_EQ(wrong, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ringers, DoorbellOf, testing::Values(Ringers::kAnyProcess, Ringers::kThisProcess));
+INSTANTIATE_TEST_SUITE_P(Ringers, DoorbellOf, ::testing::Values(Ringers::kAnyProcess, Ringers::kThisProcess));
 
 }  // namespace
 }  // namespace chimera

@@ -16,7 +16,7 @@
 namespace chimera {
 namespace {
 
-class ASwitchWatch : public testing::Test {
+class ASwitchWatch : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!SwitchWatch::can_tell()) GTEST_SKIP() << "this system has no restartable sequences";

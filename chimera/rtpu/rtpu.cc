@@ -192,7 +192,7 @@ Result<void> Rtpu::make_tasks() {
                                  image_->settings().method_limit);
   edge_->hanging().set_supervisor(over_.descriptor());
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
-  switching_ = std::make_unique<SwitchLinks>(*tasks_, *others_, *decision_, start_.peer);
+  switching_ = std::make_unique<SwitchLinks>(*tasks_, *others_, *peers_, *decision_, start_.peer);
   const CyclingPlace cycling{spec,        start_.peer, image_->settings().priority, *tasks_, *edge_, *others_,
                            *switching_, writer_,     keeper_->origin,             bell(),  over_.descriptor()};
   cycling_ = std::make_unique<CyclingThread>(cycling);

@@ -6,7 +6,7 @@
 
 #include "chimera/rtpu/testing/test_units.h"
 
-namespace chimera {
+namespace chimera::standby_links_test {
 namespace {
 
 using testing::TestApplication;
@@ -238,4 +238,4 @@ TEST(StandbyLinks, TakeoversOfTwoGroupsAreToldInTheOrderInWhichTheyCameToSomethi
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::standby_links_test

@@ -39,16 +39,30 @@ void SwitchLinks::tell_takeover(const Takeover& takeover) noexcept {
   if (takeover.ended != kNever) others_.ring_all();
 }
 
+// What a dead manager has dealt with stays so: its successor takes the words over.
+bool SwitchLinks::was_dealt_with(const BlockHead& head, std::uint32_t unit, std::uint16_t wish) const noexcept {
+  const PeerSegment* const manager = mapped_.at(others_.manager());
+  if (manager == nullptr) return false;
+  const std::uint64_t dealt = manager->block().memory().wishes[unit].load(std::memory_order_relaxed);
+  return dealt == wish_dealt_with(head.incarnation, wish);
+}
+
+bool SwitchLinks::is_wish_open() const noexcept {
+  for (std::uint32_t unit = 0; unit < others_.manager(); ++unit) {
+    const PeerSegment* const there = unit == me_ ? nullptr : others_.at(unit);
+    if (unit != me_ && there == nullptr) continue;
+    const BlockHead& head = unit == me_ ? others_.block().head() : there->block().head();
+    const SwitchWish last = SwitchWish::of(head.wish.word.load(std::memory_order_acquire));  // SwitchWishWords
+    if (last.is_there() && !was_dealt_with(head, unit, last.number)) return true;
+  }
+  return false;
+}
+
 // States that it follows from are shown before it.
 void SwitchLinks::wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept {
   BlockHead& head = others_.block().head();
   const SwitchWish last = SwitchWish::of(head.wish.word.load(std::memory_order_relaxed));  // its only writer is here
-  const PeerSegment* manager = others_.at(others_.manager());
-  const std::uint64_t dealt = wish_dealt_with(head.incarnation, last.number);
-  const auto was_dealt_with = [&] {
-    return manager != nullptr && manager->block().memory().wishes[me_].load(std::memory_order_relaxed) == dealt;
-  };
-  const bool is_open = last.is_there() && !was_dealt_with();
+  const bool is_open = last.is_there() && !was_dealt_with(head, me_, last.number);
   if (!is_new_wish(request.set, changes_nothing, is_open, last.set)) return;
   others_.publish(tasks_);
   head.wish.at.store(now.count, std::memory_order_relaxed);

@@ -11,8 +11,9 @@ namespace chimera {
 /// Used by the thread that cycles only. Everything given outlives this.
 class SwitchLinks final : public SwitchPeers {
  public:
-  SwitchLinks(TaskSet& tasks, PeerLinks& others, DecisionPage& decision, std::uint32_t me) noexcept
-      : tasks_(tasks), others_(others), decision_(decision), me_(me) {}
+  SwitchLinks(TaskSet& tasks, PeerLinks& others, const MappedPeers& mapped, DecisionPage& decision,
+              std::uint32_t me) noexcept
+      : tasks_(tasks), others_(others), mapped_(mapped), decision_(decision), me_(me) {}
 
   SwitchPage& page() noexcept override { return decision_.switching; }
   std::uint16_t living() const noexcept override;
@@ -23,10 +24,13 @@ class SwitchLinks final : public SwitchPeers {
   void tell_over(const SwitchReceipt& receipt) noexcept override;
   void tell_takeover(const Takeover& takeover) noexcept override;
   void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept override;
+  bool is_wish_open() const noexcept override;
 
  private:
+  bool was_dealt_with(const BlockHead& head, std::uint32_t unit, std::uint16_t wish) const noexcept;
   TaskSet& tasks_;
   PeerLinks& others_;
+  const MappedPeers& mapped_;
   DecisionPage& decision_;
   std::uint32_t me_;
 };

@@ -109,6 +109,28 @@ TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
   EXPECT_EQ(wish().number, 3) << "what is under way, and in force later, is not asked for again";
 }
 
+TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTheLastOneIsDead) {
+  const auto number = [&] { return SwitchWish::of(units->units[1]->segment.block.head().wish.word.load()).number; };
+  std::string wanted = "observed";
+  scene.in_reader = [&](Cycle c) {
+    EXPECT_TRUE(wanted.empty() || c.request(wanted.c_str()));
+  };
+  units->run(milliseconds(1));
+  ASSERT_EQ(number(), 1);
+  wanted = "";
+  units->manager->block.memory().wishes[1] = wish_dealt_with(1, 1);
+  (void)units->switch_to(kObserved);
+  units->run(milliseconds(10));
+  (void)units->switch_to(kDirect);
+  units->run(milliseconds(10));
+  ASSERT_TRUE(are_on(kSets[kDirect]));
+  units->die(units->n);
+  wanted = "observed";
+  units->run(milliseconds(5));
+  EXPECT_EQ(number(), 2);
+  EXPECT_EQ(SwitchWish::of(units->units[1]->segment.block.head().wish.word.load()).set, kObserved);
+}
+
 TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {
   const Nanoseconds begin = units->now;
   std::mt19937 random(5);

@@ -35,7 +35,7 @@ bool BoundarySignals::take_request(Nanoseconds now) noexcept {
     return false;
   }
   if (switching_.leads_to(request_.set)) request_ = {};
-  if (!request_ || switching_.is_under_way()) return false;
+  if (!request_ || !switching_.is_free()) return false;
   switching_.ask(std::exchange(request_, {}), now);
   return true;
 }

@@ -7,7 +7,7 @@
 
 #include "chimera/runtime/testing/two_units.h"
 
-namespace chimera {
+namespace chimera::context_table_test {
 namespace {
 
 double number(const GroupReader& reader, std::uint32_t offset) {
@@ -67,4 +67,4 @@ TEST_F(ContextTableTest, LaysItsOwnGroupsInTheBytesThatItIsGiven) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::context_table_test

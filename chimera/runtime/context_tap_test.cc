@@ -10,14 +10,14 @@
 
 #include "chimera/runtime/hosted/heap_memory.h"
 
-namespace chimera {
+namespace chimera::context_tap_test {
 namespace {
 
 constexpr TaskId kFirst{0u}, kSecond{1u};
 constexpr std::uint32_t kPayload = 16;
 
 /// Two tasks that publish 16 bytes; tap of rtpu 3.
-class ContextTapTest : public testing::Test {
+class ContextTapTest : public ::testing::Test {
  protected:
   ContextTapTest() {
     for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -123,4 +123,4 @@ TEST_F(ContextTapTest, AppendsEveryPublicationOnceAndNumbersThem) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::context_tap_test

@@ -12,8 +12,18 @@
 
 namespace chimera {
 
+/// What is looked for before `on` of a task may run. Context: any; wait-free.
+class NeededGaps {
+ public:
+  /// So long; 0: it runs beside the jobs of others.
+  virtual Nanoseconds for_on(TaskId task) const noexcept = 0;
+
+ protected:
+  ~NeededGaps() = default;
+};
+
 /// Context: cycle boundary; wait-free.
-class IdleGap {
+class IdleGap final : public NeededGaps {
  public:
   /// A method that was never called is taken to need the budget of its task; without one, so long.
   static constexpr Nanoseconds kUnknownMethod = microseconds(100);
@@ -30,10 +40,16 @@ class IdleGap {
   /// It is, and the next release is so far away as the method took at most, and a fifth of that. O(tasks).
   bool is_for(const Task& task, Method method, Nanoseconds now) const noexcept {
     if (threads_.run_beside_methods()) return true;
-    const Spread& measured = task.profile.execution[static_cast<int>(method)];
-    const Nanoseconds guess = task.spec->budget > Nanoseconds{} ? task.spec->budget : kUnknownMethod;
-    const Nanoseconds need = measured.count == 0 ? guess : measured.max + Nanoseconds{measured.max.count / 5};
-    return is_there() && queue_.next_release() - now >= need;
+    return is_there() && queue_.next_release() - now >= needed(*task.spec, task.profile, method);
+  }
+  Nanoseconds for_on(TaskId task) const noexcept override {
+    const Task& of = tasks_[task.index];
+    return threads_.run_beside_methods() ? Nanoseconds{} : needed(*of.spec, of.profile, Method::kOn);
+  }
+  static Nanoseconds needed(const TaskSpec& task, const Profile& profile, Method method) noexcept {
+    const Spread& measured = profile.execution[static_cast<int>(method)];
+    const Nanoseconds guess = task.budget > Nanoseconds{} ? task.budget : kUnknownMethod;
+    return measured.count == 0 ? guess : measured.max + Nanoseconds{measured.max.count / 5};
   }
 
  private:

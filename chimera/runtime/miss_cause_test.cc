@@ -8,7 +8,7 @@
 
 #include "chimera/runtime/hosted/heap_memory.h"
 
-namespace chimera {
+namespace chimera::miss_cause_test {
 namespace {
 
 constexpr TaskId kFirst{0u}, kSecond{1u}, kThird{2u};
@@ -28,7 +28,7 @@ class JobsUnderWay final : public JobsInLoop {
 };
 
 /// Three tasks of 10 ms: the first and the second with a budget of 2 ms, the third with none.
-class MissCauseTest : public testing::Test {
+class MissCauseTest : public ::testing::Test {
  protected:
   MissCauseTest() {
     for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -191,4 +191,4 @@ TEST_F(MissCauseTest, WorksWithoutThreads) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::miss_cause_test

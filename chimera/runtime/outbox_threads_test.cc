@@ -28,7 +28,7 @@ bool is_whole(const Post& post) {
          post.more == (n % 2 == 1) && post.detail == ~n && post.reserved[1] == n * 3;
 }
 
-struct Outboxes : testing::Test {
+struct Outboxes : ::testing::Test {
   std::unique_ptr<PostRing> ring = std::make_unique<PostRing>();
   PostProgress progress;
   Post post;

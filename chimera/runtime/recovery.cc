@@ -80,7 +80,7 @@ void Recovery::keep_warm(HotStandby& standby, Nanoseconds now) noexcept {
   Task& task = set.tasks()[id.index];
   const bool wanted = set.standbys().keeps_warm(id);
   if (wanted == task.is_unread || task.in_service || task.shown_state() != State::kOff) return;
-  if (parts_.switching.is_under_way() || !parts_.signals.may_touch(id)) {
+  if (!parts_.switching.is_free() || !parts_.signals.may_touch(id)) {
     look_again(now, now + task.spec->period);
   } else if (!wanted) {
     (void)parts_.signals.signal({&id, 1}, Signal::kOff, now);
@@ -187,7 +187,10 @@ bool Recovery::take_over(std::size_t group, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   for (;;) {
     const TaskId id = set.standbys().next(group);
-    if (!id.is_valid()) return true;
+    if (!id.is_valid()) {
+      takeovers_[group] = {};  // of a loss that was made good, or given up
+      return true;
+    }
     if (!give_up_resource(group, id, now)) return false;
     if (!set.is_mine(id) || set.tasks()[id.index].in_service) return true;
     Task& task = set.tasks()[id.index];

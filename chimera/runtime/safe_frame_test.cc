@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-struct SafeFrameTest : testing::Test {
+struct SafeFrameTest : ::testing::Test {
   void put(const std::string& text) { frame.put(std::as_bytes(std::span(text))); }
   std::string last() {
     const auto bytes = frame.last_words();

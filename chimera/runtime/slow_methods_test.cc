@@ -10,7 +10,7 @@
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 
-namespace chimera {
+namespace chimera::slow_methods_test {
 namespace {
 
 std::atomic<std::uint32_t> serving{0}, at_edge{0};
@@ -124,4 +124,4 @@ TEST_F(SlowMethodsTest, ATaskThatIsBeingKilledIsOnNoMore) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::slow_methods_test

@@ -75,7 +75,7 @@ struct SlowPlanTest : ::testing::Test {
   }
   SwitchWay way(std::uint32_t from, std::uint32_t to, std::uint32_t constants) {
     const SwitchPlan& made_of_them = plan(from, to);
-    return ways.judge(made_of_them, standing, constants, made);
+    return ways.judge(made_of_them, standing, constants, made, gaps);
   }
 
   const std::vector<TaskId> light{kLight, kArm, kLaw, kClock}, heavy{kHeavy, kArm, kLaw}, bare{kClock},
@@ -89,6 +89,10 @@ struct SlowPlanTest : ::testing::Test {
   SwitchPlan made_plan;
   std::vector<TaskStanding> standing;
   Made made;
+  struct : NeededGaps {
+    Nanoseconds for_on(TaskId) const noexcept override { return all; }
+    Nanoseconds all;
+  } gaps;
 };
 
 TEST_F(SlowPlanTest, ChecksThenOffThenReinitInOrderThenOn) {
@@ -135,10 +139,31 @@ TEST_F(SlowPlanTest, ToolsWithOneDeviceTakeTurnsWithIt) {
   EXPECT_EQ(planner.plan(1, standing, made_plan).why, NoSwitch::kNotCreated) << "without rivals it was killed by hand";
   SwitchWays ways_again;
   ways_again.prepare(app.spec, heap);
-  const SwitchWay found = ways_again.judge(made_plan, standing, 0, made);
+  const SwitchWay found = ways_again.judge(made_plan, standing, 0, made, gaps);
   EXPECT_EQ(found.slow, kSlowForResource | kSlowForConstants);
   EXPECT_EQ(found.absent, kHeavy);
   EXPECT_EQ(found.rival, kLight);
+}
+
+TEST(SwitchWays, EachTryHasMoreTimeForWhatIsNotTheLongestJob) {
+  EXPECT_EQ(lead_of_try(microseconds(300), 1), microseconds(300));
+  EXPECT_EQ(lead_of_try(microseconds(300), 2), microseconds(2700));
+  EXPECT_EQ(lead_of_try(microseconds(300), 3), microseconds(19500));
+  EXPECT_EQ(lead_of_try(milliseconds(200), 3), milliseconds(264)) << "a job of 200 ms, once, is no reason for seconds";
+}
+
+// The law is released every 1 ms: no gap of its loop is longer.
+TEST_F(SlowPlanTest, AnOnThatFitsNoGapOfItsLoopIsKnownBefore) {
+  made.are_others = false;
+  EXPECT_EQ(way(0, 1, 0).slow, 0);
+  gaps.all = milliseconds(1);
+  EXPECT_EQ(way(0, 1, 0).slow, 0);
+  gaps.all = milliseconds(1) + Nanoseconds{1};
+  const SwitchWay found = way(0, 1, 0);
+  EXPECT_EQ(found.slow, kSlowForGap);
+  EXPECT_EQ(found.gapless, kHeavy);
+  EXPECT_EQ(found.needed, gaps.all);
+  EXPECT_EQ(way(2, 1, 2).slow, 0) << "only the clock is ON, every 50 ms";
 }
 
 // Each pair of configurations, with values that differ and that are equal.

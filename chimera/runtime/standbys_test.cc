@@ -7,7 +7,7 @@
 
 #include "chimera/runtime/hosted/heap_memory.h"
 
-namespace chimera {
+namespace chimera::standbys_test {
 namespace {
 
 constexpr TaskId kPrimary{0u}, kOther{1u}, kFirst{2u}, kSecond{3u};
@@ -156,4 +156,4 @@ TEST_F(StandbysTest, CoveredTasksCountBesideAllButTheirOwnGroup) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::standbys_test

@@ -29,6 +29,8 @@ class SwitchPeers {
   /// A task of this context asks for a switch: whoever plans is to see it. `changes_nothing`: it is for what is in
   /// force, or is being switched to.
   virtual void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept = 0;
+  /// A task or a reaction, of any context, has asked for a switch that waits for the present one to end.
+  virtual bool is_wish_open() const noexcept = 0;
 
  protected:
   ~SwitchPeers() = default;
@@ -46,6 +48,7 @@ class NoSwitchPeers final : public SwitchPeers {
   void tell_over(const SwitchReceipt&) noexcept override {}
   void tell_takeover(const Takeover&) noexcept override {}
   void wish(const SwitchRequest&, bool, Nanoseconds) noexcept override {}
+  bool is_wish_open() const noexcept override { return false; }
 
  private:
   SwitchPage page_;

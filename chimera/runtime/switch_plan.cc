@@ -66,16 +66,6 @@ void SwitchPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   handovers_ = memory.take<Handover>(spec.variables.size());
 }
 
-std::uint32_t SwitchPlanner::set_in_force(std::span<const TaskStanding> standing) const noexcept {
-  const auto n_on = std::count_if(standing.begin(), standing.end(), is_on);
-  for (std::uint32_t s = 0; s < spec_->sets.size(); ++s) {
-    const std::span<const TaskId> order = spec_->sets[s].order;
-    if (static_cast<std::size_t>(n_on) != order.size()) continue;
-    if (std::all_of(order.begin(), order.end(), [&](TaskId id) { return is_on(standing[id.index]); })) return s;
-  }
-  return kNoSet;
-}
-
 PlanAnswer SwitchPlanner::plan(std::uint32_t target, std::span<const TaskStanding> standing,
                                SwitchPlan& plan) noexcept {
   if (target >= spec_->sets.size()) return {NoSwitch::kUnknownSet, {}};

@@ -4,6 +4,7 @@
 // runtime/switching.h.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -74,7 +75,11 @@ enum class NoSwitch : std::uint8_t {
   kBadConstant,   ///< `task` cannot be initialised with the constants after it
   kStepFailed,    ///< a method of `task` did, in a slow switch
   kNotReady,      ///< `task` was not ready within the deadline, in a slow switch; in a fast one not at once
+  kNoAnswer,      ///< a real-time unit whose turn it was did not go on by the deadline, nor said why
 };
+
+/// One context says so of what held up another one, which may know more. Context: any.
+constexpr bool is_of_another(NoSwitch why) noexcept { return why == NoSwitch::kLate || why == NoSwitch::kNoAnswer; }
 
 /// What became of a request for a plan.
 struct PlanAnswer {
@@ -97,6 +102,28 @@ TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
 TaskBits target_of(const SwitchPlan& plan) noexcept;
 /// Which of the sets is exactly these tasks; kNoSet: none. Context: cycle boundary; O(sets * tasks).
 std::uint32_t set_of(const ApplicationSpec& spec, const TaskBits& tasks) noexcept;
+/// Which of the sets the tasks that are ON are, as `is_on(TaskId)` says: exactly its tasks; else one task for each of
+/// them, which is the task itself or stands in for it. kNoSet: none. Context: cycle boundary; O(sets * tasks^2).
+template <class IsOn>
+std::uint32_t set_in_force(const ApplicationSpec& spec, IsOn is_on) noexcept {
+  std::size_t n_on = 0;
+  for (std::size_t t = 0; t < spec.tasks.size(); ++t) n_on += is_on(TaskId(t)) ? 1 : 0;
+  const auto is_stood_in = [&](TaskId task) {
+    for (const StandbySpec& each : spec.standbys)
+      for (const TaskId by : {each.standby, each.primary})
+        if (spec.stand_in(task, by) && is_on(by)) return true;
+    return false;
+  };
+  std::uint32_t found = kNoSet;
+  for (std::uint32_t s = 0; s < spec.sets.size(); ++s) {
+    const std::span<const TaskId> order = spec.sets[s].order;
+    if (order.size() != n_on) continue;
+    if (std::all_of(order.begin(), order.end(), is_on)) return s;
+    const auto is_there = [&](TaskId task) { return is_on(task) || is_stood_in(task); };
+    if (found == kNoSet && std::all_of(order.begin(), order.end(), is_there)) found = s;
+  }
+  return found;
+}
 /// What must hold before that set may be switched to; of kNoSet nothing. Context: cycle boundary.
 const SafeCondition& asked_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
 
@@ -113,8 +140,10 @@ class SwitchPlanner {
   /// The same for any set of tasks: for one of the sets the plan above.
   PlanAnswer plan(const TaskBits& target, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
 
-  /// Which of the sets is exactly the tasks that are ON; kNoSet: none. Context: cycle boundary; O(sets * tasks).
-  std::uint32_t set_in_force(std::span<const TaskStanding> standing) const noexcept;
+  /// As the function of that name. Context: cycle boundary.
+  std::uint32_t set_in_force(std::span<const TaskStanding> standing) const noexcept {
+    return chimera::set_in_force(*spec_, [&](TaskId task) { return standing[task.index].state == State::kOn; });
+  }
 
  private:
   PlanAnswer plan_for(std::span<const TaskId> order, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;

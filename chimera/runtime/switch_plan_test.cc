@@ -173,6 +173,30 @@ TEST(SwitchPlan, AnyPlanCarriedOutMakesTheTarget) {
   }
 }
 
+TEST(SwitchPlan, AStandbyThatIsOnCountsAsItsPrimaryUnlessTheTasksAreExactlyAnotherSet) {
+  Planned p;
+  const StandbySpec standby[] = {{kOne, kTwo}};
+  p.app.spec.standbys = standby;
+  EXPECT_EQ(p.planner.set_in_force(p.standing), 0u);
+  p.turn_on({kPlant, kTwo});
+  EXPECT_EQ(p.planner.set_in_force(p.standing), 0u) << "first with two for one";
+  ASSERT_TRUE(p.make(0)) << "and yet there is something to do: a person brings the primary back";
+  EXPECT_EQ(p.plan.before, 0u);
+  EXPECT_EQ(listed(p.plan.arriving), std::vector<TaskId>{kOne});
+  EXPECT_EQ(listed(p.plan.leaving), std::vector<TaskId>{kTwo});
+  p.turn_on({kPlant, kObserver, kTwo});
+  EXPECT_EQ(p.planner.set_in_force(p.standing), 1u);
+  p.turn_on({kTwo});
+  EXPECT_EQ(p.planner.set_in_force(p.standing), kNoSet);
+  p.turn_on({kPlant, kOne, kTwo});
+  EXPECT_EQ(p.planner.set_in_force(p.standing), kNoSet) << "one more than there are";
+  const TaskId exact[] = {kPlant, kTwo};
+  const NamedSet sets[] = {{"first", p.first}, {"exactly", exact}};
+  p.app.spec.sets = sets;
+  p.turn_on({kPlant, kTwo});
+  EXPECT_EQ(p.planner.set_in_force(p.standing), 1u);
+}
+
 TEST(SwitchPlanner, PlansForAnySetOfTasks) {
   Planned planned;
   TaskBits target;

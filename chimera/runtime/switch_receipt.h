@@ -72,6 +72,7 @@ struct SwitchReceipt {
   Nanoseconds armed = kNever;   ///< `on` of the last arriving task had returned
   Nanoseconds at = kNever;      ///< the instant of the change
   SwitchWay way;                ///< that it went last
+  std::uint32_t tries = 1;      ///< plans that were announced for it
   Nanoseconds flag;             ///< so long the switch held the illegal-configuration flag up
   TaskId not_back;              ///< of kAborted: a task that was ON and did not come back
   Nanoseconds ended = kNever;   ///< `off` of the last leaving task had returned and the first cycles were seen

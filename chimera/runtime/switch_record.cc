@@ -105,8 +105,9 @@ void SwitchRecord::follow_arrival(TaskId id, Nanoseconds at) noexcept {
   before_[id.index] = losses(id);
   cycles_[id.index] = arriving.profile.cycles;
   if (first_cycles_by_ == kNever) first_cycles_by_ = at;
-  if (!arriving.spec->aperiodic)
-    first_cycles_by_ = std::max(first_cycles_by_, at + arriving.spec->period + arriving.spec->deadline);
+  if (arriving.spec->aperiodic) return;
+  const Nanoseconds within = std::min(arriving.spec->period + arriving.spec->deadline, kFirstCycleWithin);
+  first_cycles_by_ = std::max(first_cycles_by_, at + within);
 }
 
 void SwitchRecord::changed(const SwitchPlan& plan, Nanoseconds at) noexcept {

@@ -13,6 +13,9 @@
 
 namespace chimera {
 
+/// A first cycle that comes later than this after its task went ON is not waited for: who asked wants an answer.
+inline constexpr Nanoseconds kFirstCycleWithin = seconds(1);
+
 /// Of tasks of its own context. Context of everything not marked: cycle boundary; no allocation.
 class SwitchRecord {
  public:

@@ -3,11 +3,13 @@
 // (slow_switch.h). Asked once by whoever orders it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/constant_choice.h"
+#include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/rivals.h"
 #include "chimera/runtime/switch_page.h"
 #include "chimera/runtime/switch_schedule.h"
@@ -19,6 +21,8 @@ struct SwitchWay {
   std::uint8_t slow = 0;          ///< SlowReason; 0: fast
   ConstantUsers::Found constant;  ///< of kSlowForConstants: who stays ON, and what becomes another one for it
   PlanAnswer deadline;            ///< of kSlowForDeadlines: as SwitchSchedule::judge()
+  TaskId gapless;                 ///< of kSlowForGap: its `on` needs `needed`, and there is no such gap; invalid: none
+  Nanoseconds needed;             ///< was found by the deadline
   TaskId absent;                  ///< of kSlowForResource: the first task of the plan that is NOT-CREATED
   TaskId rival;                   ///< and who has its resource; invalid: it waits for a constant of such a task
 };
@@ -28,6 +32,19 @@ constexpr std::uint8_t reason_to_go_slowly(NoSwitch why) noexcept {
   return why == NoSwitch::kNoGap ? kSlowForGap : why == NoSwitch::kNotReady ? kSlowForDevice : 0;
 }
 
+/// A switch is tried so often, where it was only late or goes the slow way next.
+inline constexpr std::uint32_t kMostTries = 3;
+
+/// SwitchOrder::lead of that try, by the lead of the first. Its longest job is in it already: only what else held a
+/// context up is given more time, eight times as much with each try. Context: any.
+constexpr Nanoseconds lead_of_try(Nanoseconds first, std::uint32_t tries) noexcept {
+  constexpr std::int64_t kMoreTime = 8;
+  if (tries <= 1) return first;
+  Nanoseconds more = std::min(first, milliseconds(1));
+  for (std::uint32_t i = 1; i < tries; ++i) more = more * kMoreTime;
+  return first + more;
+}
+
 /// Context of everything not marked: setup, or an edge of virtual time; no allocation.
 class SwitchWays {
  public:
@@ -35,9 +52,12 @@ class SwitchWays {
   void prepare(const ApplicationSpec& spec, SetupMemory& memory);
   /// The way of a plan that was made from `standing`, while the constants of sets[constants] are in force.
   SwitchWay judge(const SwitchPlan& plan, std::span<const TaskStanding> standing, std::uint32_t constants,
-                  const MadeConstants& made) noexcept;
+                  const MadeConstants& made, const NeededGaps& gaps) noexcept;
 
  private:
+  void find_gapless(const SwitchPlan& plan, std::span<const TaskStanding> standing, const NeededGaps& gaps,
+                    SwitchWay& way) const noexcept;
+
   const ApplicationSpec* spec_ = nullptr;
   Rivals rivals_;
   SwitchSchedule schedule_;

@@ -13,8 +13,8 @@ namespace {
 
 // How long after the deadline a context aborts that another one is to abort first, which knows why.
 constexpr Nanoseconds kGrace = milliseconds(100);
-// How often what `safe_when` asks is looked at where no job ends meanwhile: nobody rings for a value.
-constexpr Nanoseconds kLookForSafety = milliseconds(1);
+// How often a value that is waited for is looked at where no job ends meanwhile: nobody rings for one.
+constexpr Nanoseconds kLookForValue = milliseconds(1);
 
 void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcept {
   for (const Task& each : set.tasks()) {
@@ -100,20 +100,19 @@ void Switching::begin(Nanoseconds origin) noexcept {
 }
 
 bool Switching::leads_to(std::uint32_t set) noexcept {
-  if (is_under_way()) return phase_ != Phase::kUndoing && plan_.after == set;
+  if (phase_ != Phase::kNone) return phase_ != Phase::kUndoing && plan_.after == set;
   note_standing(parts_.set, standing_);
   return planner_.set_in_force(standing_) == set;
 }
 
 void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   if (peers_ != &nobody_) return peers_->wish(request, leads_to(request.set), now);
-  const bool only_watches = phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
-  if (only_watches) finish(SwitchEnd::kDone, now);
+  if (phase_ != Phase::kNone && is_free()) finish(SwitchEnd::kDone, now);
   note_standing(parts_.set, standing_);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   if (phase_ == Phase::kNone) answer = planner_.plan(request.set, standing_, plan_);
   const ContextConstants& constants = parts_.set.constants();
-  const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants) : SwitchWay();
+  const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants, gap_) : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   const std::uint32_t number = is_nothing ? 0 : receipts().next_number();
   SwitchReceipt* const added = phase_ == Phase::kNone ? &record_.add() : record_.add_beside();
@@ -146,7 +145,9 @@ void Switching::step(Nanoseconds edge) noexcept {
   if (phase_ == Phase::kArming) arm(edge, now);
   if (phase_ == Phase::kAgreed) {
     due_ = wake_ = at_;
+    const Disturbance found = find_disturbance(parts_.set, plan_, next_armed_, before_, *peers_);
     if (agreement().plan().phase == SwitchPhase::kCommitted) phase_ = Phase::kChanging;
+    else if (found) abort(found.why, found.of, {});
     else if (now >= at_) abort(NoSwitch::kLate, {}, {});
   }
   if (phase_ == Phase::kChanging) change(now);
@@ -176,8 +177,7 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
   if (is_made) {
     order_ = *order;
     record_.take_up(plan_);
-    was_up_ = parts_.set.flag().is_up();
-    was_raised_ = parts_.set.flag().is_raised();
+    before_ = {order_.members, parts_.set.flag().is_up(), parts_.set.flag().is_raised()};
     next_armed_ = n_off_ = 0;
     at_ = kNever;
     is_changed_ = false;
@@ -208,12 +208,12 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   }
   // The context that arms first asks before it arms, the last to arm before it proposes.
   const SafeCondition& asked = asked_of(parts_.set.spec(), order_.after);
-  if (next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) return wait(now, kLookForSafety);
+  if (next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) return wait(now, kLookForValue);
   for (next_armed_ = std::max(next_armed_, run.begin); next_armed_ < run.end;) {
     Task& next = task(plan_.arriving[next_armed_]);
     if (!gap_.is_for(next, Method::kOn, now)) return wait(now);
     parts_.set.sources().read_ahead(next.id, plan_.handovers);
-    if (missing_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now);
+    if (missing_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now, kLookForValue);
     const Followed followed = follow_constants(parts_.set, gap_, next, order_, now);
     if (followed == Followed::kNoGap) return wait(now);
     if (followed != Followed::kNothing) return reinitialised(next, followed);
@@ -239,26 +239,9 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
 
 // Whoever takes part is as the plan found it, and there is still time; else the switch is aborted.
 bool Switching::may_go_on(Nanoseconds now) noexcept {
-  const TaskSet& set = parts_.set;
-  const auto moved = [&](TaskId id, bool is_well) {
-    if (!is_well) abort(NoSwitch::kDisturbed, id, {});
-    return !is_well;
-  };
-  for (std::size_t i = 0; i < plan_.arriving.size(); ++i) {
-    const Task& each = task(plan_.arriving[i]);
-    const bool is_off = each.state == State::kOff && !each.in_service;
-    if (set.is_mine(each.id) && moved(each.id, is_off && each.owes_off == (i < next_armed_))) return false;
-  }
-  for (const auto ids : {plan_.leaving, plan_.staying})
-    for (const TaskId id : ids)
-      if (set.is_mine(id) && moved(id, task(id).state == State::kOn)) return false;
-  const IllegalFlag& flag = parts_.set.flag();
-  if ((flag.is_up() && !was_up_) || (flag.is_raised() && !was_raised_)) {
-    abort(NoSwitch::kFlagRaised, flag.raised_by(), {});
-    return false;
-  }
-  if ((order_.members & ~peers_->living()) != 0) {
-    abort(NoSwitch::kMemberDied, {}, {});
+  TaskSet& set = parts_.set;
+  if (const auto found = find_disturbance(set, plan_, next_armed_, before_, *peers_)) {
+    abort(found.why, found.of, {});
     return false;
   }
   const auto number = agreement().run(order_.number);
@@ -270,9 +253,8 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
     abort(NoSwitch::kNotSafe, {}, asked.variable);
     return false;
   }
-  const bool has_next = is_mine && std::max(next_armed_, run.begin) < run.end;
-  if (!has_next) {
-    abort(NoSwitch::kNoGap, {}, {});
+  if (!is_mine || std::max(next_armed_, run.begin) >= run.end) {
+    abort(is_mine ? NoSwitch::kNoGap : NoSwitch::kNoAnswer, {}, {});
     return false;
   }
   Task& next = task(plan_.arriving[std::max(next_armed_, run.begin)]);
@@ -399,7 +381,7 @@ void Switching::settle(Nanoseconds now) noexcept {
   if (!turn_off_all(now, false)) return wait(now);
   now = parts_.clock.now();
   if (undoes) return finish(SwitchEnd::kAborted, now);
-  if (has_seen) return finish(SwitchEnd::kDone, now);
+  if (has_seen || peers_->is_wish_open()) return finish(SwitchEnd::kDone, now);
   record_.await_first_cycles(parts_.threads);
   due_ = now;
   wake_ = record_.first_cycles_by();
@@ -430,8 +412,8 @@ bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
 void Switching::finish(SwitchEnd end, Nanoseconds now, bool is_run_over) noexcept {
   record_.end(end, now);
   for (const TaskId id : plan_.arriving) {
-    const bool reads = end != SwitchEnd::kDone && parts_.set.is_mine(id) && task(id).state != State::kNotCreated;
-    if (reads) parts_.set.sources().read_ahead(id, {});
+    const bool is_off = parts_.set.is_mine(id) && task(id).state == State::kOff;
+    if (end != SwitchEnd::kDone && is_off) parts_.set.sources().read_ahead(id, {});
   }
   phase_ = Phase::kNone;
   due_ = wake_ = kNever;
@@ -445,6 +427,7 @@ void Switching::finish(SwitchEnd end, Nanoseconds now, bool is_run_over) noexcep
   receipt.why = NoSwitch::kNone;
   receipt.task = {};
   receipt.way.slow = slow;
+  ++receipt.tries;
   agreement().announce(lone_order(parts_.set, order_.number, order_.target, slow, now + kPatience));
   due_ = now;
 }

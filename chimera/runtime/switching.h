@@ -29,6 +29,7 @@
 #include "chimera/runtime/arrival.h"
 #include "chimera/runtime/changeover.h"
 #include "chimera/runtime/context_tap.h"
+#include "chimera/runtime/disturbance.h"
 #include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/miss_policy.h"
 #include "chimera/runtime/settlement.h"
@@ -65,7 +66,10 @@ class Switching {
   /// Makes a plan and begins to carry it out; what became of it is in receipts(). With peers: whoever plans for all is
   /// told. Requires: prepare() took memory.
   void ask(const SwitchRequest& request, Nanoseconds now) noexcept;
-  bool is_under_way() const noexcept { return phase_ != Phase::kNone; }
+  /// None is under way, or one of which only the first cycles of arriving tasks are looked at yet.
+  bool is_free() const noexcept {
+    return phase_ == Phase::kNone || (phase_ == Phase::kAfter && n_off_ == plan_.leaving.size());
+  }
   /// The set is in force, or is the one that is being switched to.
   bool leads_to(std::uint32_t set) noexcept;
   /// Goes on with the switch that is under way, or takes up one that others have planned. No effect without one.
@@ -117,6 +121,7 @@ class Switching {
   SwitchPeers* peers_ = &nobody_;
   SwitchOrder order_;
   SwitchPlan plan_;
+  UndisturbedState before_;
   std::span<TaskStanding> standing_;  // by task, when a plan is made
   Nanoseconds origin_, at_ = kNever;
   Nanoseconds due_ = kNever, wake_ = kNever;
@@ -125,8 +130,6 @@ class Switching {
   std::size_t n_off_ = 0;
   std::uint16_t seen_ = 0;            // number of the last plan that was taken up
   Phase phase_ = Phase::kNone;
-  bool was_up_ = false;               // the flag, when the plan was taken up
-  bool was_raised_ = false;           // the same, by somebody of this context
   bool is_held_ = false;              // changeover_ is between hold() and release()
   bool is_changed_ = false;           // changeover_ has made the change
 };

@@ -72,10 +72,12 @@ inline void keep_receipt(const Takeover& takeover, SwitchReceipts& receipts) noe
 /// The last takeovers of one context. One writer; a reader is told when a place was written anew while it read.
 class TakeoverRing {
  public:
-  static constexpr std::uint32_t kKept = 8;
+  static constexpr std::uint32_t kKept = 16;
 
-  /// Takeover `number` is the next one, or one of those that are kept, told anew. Context: edge; wait-free.
+  /// Takeover `number` is the next one, or one before it that is told anew: of no effect when that is kept no more.
+  /// Context: edge; wait-free.
   void put(const Takeover& takeover) noexcept {
+    if (takeover.number < oldest()) return;
     Place& place = places_[takeover.number % kPlaces];
     place.over.store(0, std::memory_order_relaxed);
     // SYNC: pairs with the fence in read(): whoever copies a byte of this takeover sees that none is over here.

@@ -24,29 +24,13 @@ void TakeoverRecord::prepare(SwitchPeers* peers) {
   delays_.prepare(set_.tasks().size(), set_.setup_memory());
 }
 
-// A standby that is ON counts as its primary, and so does the task that failed.
+// The task that failed counts as ON, too.
 std::uint32_t TakeoverRecord::set_in_force(TaskId failed) const noexcept {
-  const ApplicationSpec& spec = set_.spec();
-  TaskBits on;
-  std::size_t n_on = 0;
-  for (const Task& each : set_.tasks()) {
-    const bool is_elsewhere = set_.others() != nullptr && !set_.is_mine(each.id);
-    const State state = is_elsewhere ? set_.others()->state(each.id) : each.shown_state();
-    if (state != State::kOn && each.id != failed) continue;
-    on.add(each.id);
-    ++n_on;
-  }
-  const auto is_there = [&](TaskId id) {
-    if (on.has(id)) return true;
-    for (const Task& each : set_.tasks())
-      if (on.has(each.id) && spec.stand_in(id, each.id)) return true;
-    return false;
-  };
-  for (std::uint32_t s = 0; s < spec.sets.size(); ++s) {
-    const std::span<const TaskId> order = spec.sets[s].order;
-    if (order.size() == n_on && std::all_of(order.begin(), order.end(), is_there)) return s;
-  }
-  return kNoSet;
+  return chimera::set_in_force(set_.spec(), [&](TaskId id) {
+    const bool is_elsewhere = set_.others() != nullptr && !set_.is_mine(id);
+    const State state = is_elsewhere ? set_.others()->state(id) : set_.tasks()[id.index].shown_state();
+    return state == State::kOn || id == failed;
+  });
 }
 
 void TakeoverRecord::list_handovers(Takeover& takeover) noexcept {
@@ -97,7 +81,8 @@ void TakeoverRecord::done(std::size_t group, Nanoseconds now) noexcept {
     takeover.variables[v].step_of_on = steps_.step_to(takeover.variables[v].handover);
   open.cycles = standby.profile.cycles;
   open.losses = losses(standby);
-  open.first_cycle_by = standby.spec->aperiodic ? now : now + standby.spec->period + standby.spec->deadline;
+  const Nanoseconds within = std::min(standby.spec->period + standby.spec->deadline, kFirstCycleWithin);
+  open.first_cycle_by = standby.spec->aperiodic ? now : now + within;
   tell(takeover);
   look(now, false);
 }

@@ -30,13 +30,15 @@ TEST(TakeoverRing, GivesOutWhatIsOverOrOfADeadContext) {
   EXPECT_FALSE(ring.read(2, false, read));
 }
 
-TEST(TakeoverRing, KeepsTheLastEight) {
+constexpr std::uint32_t kKept = TakeoverRing::kKept;
+
+TEST(TakeoverRing, KeepsTheLast) {
   TakeoverRing ring;
-  for (std::uint32_t n = 1; n <= 20; ++n) ring.put(takeover(n, seconds(1)));
+  for (std::uint32_t n = 1; n <= kKept + 12; ++n) ring.put(takeover(n, seconds(1)));
   EXPECT_EQ(ring.oldest(), 13u);
   Takeover read;
   EXPECT_FALSE(ring.read(12, true, read));
-  for (std::uint32_t n = 13; n <= 20; ++n) {
+  for (std::uint32_t n = 13; n <= kKept + 12; ++n) {
     ASSERT_TRUE(ring.read(n, true, read));
     EXPECT_EQ(read.number, n);
     EXPECT_EQ(read.lost, milliseconds(n));
@@ -53,15 +55,25 @@ TEST(TakeoverRing, TwoAtATimeMayBeOverInEitherOrder) {
 
 TEST(TakeoverRing, OneThatDiesWhileItWritesTheNextLeavesAllThatCanBeRead) {
   TakeoverRing ring;
-  for (std::uint32_t n = 1; n <= 9; ++n) ring.put(takeover(n, seconds(1)));
+  for (std::uint32_t n = 1; n <= kKept + 1; ++n) ring.put(takeover(n, seconds(1)));
   const std::uint32_t oldest = ring.oldest();
   std::uint32_t last;  // the word that is stored last stands first
   std::memcpy(&last, static_cast<const void*>(&ring), sizeof last);
-  ASSERT_EQ(last, 9u);
-  ring.put(takeover(10, seconds(1)));
+  ASSERT_EQ(last, kKept + 1);
+  ring.put(takeover(kKept + 2, seconds(1)));
   std::memcpy(static_cast<void*>(&ring), &last, sizeof last);
   Takeover read;
-  for (std::uint32_t n = oldest; n <= 9; ++n) EXPECT_TRUE(ring.read(n, false, read)) << n;
+  for (std::uint32_t n = oldest; n <= kKept + 1; ++n) EXPECT_TRUE(ring.read(n, false, read)) << n;
+}
+
+// A takeover that is kept no more has no place to be told anew in: that is a younger one's.
+TEST(TakeoverRing, OneThatIsOverTooLateLeavesTheYoungerOnes) {
+  TakeoverRing ring;
+  for (std::uint32_t n = 1; n <= kKept + 2; ++n) ring.put(takeover(n, n == 1 ? kNever : seconds(1)));
+  ring.put(takeover(1, seconds(1)));
+  Takeover read;
+  EXPECT_FALSE(ring.read(1, true, read));
+  for (std::uint32_t n = 3; n <= kKept + 2; ++n) EXPECT_TRUE(ring.read(n, true, read)) << n;
 }
 
 TEST(TakeoverRing, AnOpenOneBetweenOthersIsWaitedFor) {

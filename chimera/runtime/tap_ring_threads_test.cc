@@ -27,7 +27,7 @@ bool is_whole(const TapRecord& r) {
   return r.b == ~r.at.count && r.a == number && r.task.index == ~number;
 }
 
-struct TapRings : testing::Test {
+struct TapRings : ::testing::Test {
   std::unique_ptr<TapRing> ring = std::make_unique<TapRing>();
 };
 

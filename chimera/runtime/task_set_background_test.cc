@@ -13,7 +13,7 @@
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 
-namespace chimera {
+namespace chimera::task_set_background_test {
 namespace {
 
 // What the one instance of a test did, in letters: i b(ackground) c k d(estroyed).
@@ -167,4 +167,4 @@ TEST_F(TaskSetBackground, AFaultInVirtualTimeIsOneOfItsCycle) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::task_set_background_test

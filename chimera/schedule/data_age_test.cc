@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace chimera {
+namespace chimera::data_age_test {
 namespace {
 
 Work work(std::int64_t period, std::int64_t time, std::int64_t offset = 0) {
@@ -80,4 +80,4 @@ TEST(DataAge, BoundsWhatIsSeenInRandomRuns) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::data_age_test

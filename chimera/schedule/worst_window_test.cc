@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace chimera {
+namespace chimera::worst_window_test {
 namespace {
 
 Work work(std::int64_t period, std::int64_t time, std::uint32_t criticality) {
@@ -49,4 +49,4 @@ TEST(WorstWindow, ShowsWhereNobodyRunsAndStopsWhenFull) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::worst_window_test

@@ -10,7 +10,7 @@
 
 #include "chimera/table/group.h"
 
-namespace chimera {
+namespace chimera::group_threads_test {
 namespace {
 
 constexpr std::uint32_t kWords = 64;
@@ -104,4 +104,4 @@ TEST(GroupThreads, HandOverFromThreadToThreadKeepsTheCountGrowing) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::group_threads_test

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace chimera {
+namespace chimera::local_group_threads_test {
 namespace {
 
 constexpr std::uint32_t kPayload = 1u << 20;  // long enough to copy that another thread gets in between
@@ -52,4 +52,4 @@ TEST(LocalGroupThreads, AnOvertakenReadKeepsThePreviousCopyAndCounts) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::local_group_threads_test

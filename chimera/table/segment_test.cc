@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kHeadroom = 1024;
 
-struct Fixture : testing::Test {
+struct Fixture : ::testing::Test {
   Fixture() {
     layout = TableLayout::plan(specs, 1u << 20, groups, variables).value();
     lines.resize(segment_bytes(layout, kHeadroom) / kCacheLine);

@@ -9,7 +9,7 @@
 
 #include "chimera/table/never_written.h"
 
-namespace chimera {
+namespace chimera::transfer_test {
 namespace {
 
 constexpr std::uint32_t kPayload = 16;
@@ -125,4 +125,4 @@ TEST(LocalGroup, AnyCounterReadsInsideTheGroup) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::transfer_test

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 fs::path test_object(const std::string& name) { return build_path("chimera/load/test_objects/" + name); }
 
 /// A folder with the descriptor of `counter`, and beside it what the test writes.
-class FaultyObjects : public testing::Test {
+class FaultyObjects : public ::testing::Test {
  protected:
   FaultyObjects() {
     const auto object = SharedObject::open(test_object("counter.so"));

@@ -10,7 +10,7 @@
 namespace chimera::library {
 namespace {
 
-struct AnyCar : testing::TestWithParam<const char*> {
+struct AnyCar : ::testing::TestWithParam<const char*> {
   CarRig rig{GetParam()};
 };
 
@@ -104,7 +104,7 @@ TEST_P(AnyCar, RefusesARoadThatIsNoScriptOrTooSteep) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, AnyCar, testing::Values("car", "electric_car"),
+INSTANTIATE_TEST_SUITE_P(Of, AnyCar, ::testing::Values("car", "electric_car"),
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace

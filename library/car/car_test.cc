@@ -8,7 +8,7 @@
 namespace chimera::library {
 namespace {
 
-struct CarTest : testing::Test {
+struct CarTest : ::testing::Test {
   CarRig rig{"car"};
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Pose kHere{{0.5, 0.1, 0.3}, {1, 0, 0, 0}};
 
-struct CinterpTest : testing::Test {
+struct CinterpTest : ::testing::Test {
   ArmRig rig{"cinterp"};
   void SetUp() override {
     rig.set("xm", kHere);

@@ -9,7 +9,7 @@
 namespace chimera {
 namespace {
 
-struct ComparatorTest : testing::Test {
+struct ComparatorTest : ::testing::Test {
   SignalRig rig{"comparator"};
 
   void give(const char* when, double width, double hysteresis) {

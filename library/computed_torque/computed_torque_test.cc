@@ -21,7 +21,7 @@ using library::PumaVector;
 constexpr PumaVector kNominal{0, M_PI / 4, -M_PI / 2, 0.1, M_PI / 4, 0};
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-struct ComputedTorqueTest : testing::Test {
+struct ComputedTorqueTest : ::testing::Test {
   Rig rig{"computed_torque"};
 
   void SetUp() override {

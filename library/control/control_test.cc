@@ -11,7 +11,7 @@ namespace {
 
 constexpr Nanoseconds kPeriod = milliseconds(20);
 
-struct ControlTest : testing::Test {
+struct ControlTest : ::testing::Test {
   double cycle(double vr, double vz) {
     rig.set("vr", vr);
     rig.set("vz", vz);

@@ -6,12 +6,12 @@
 
 #include "chimera/task/rig.h"
 
-namespace chimera {
+namespace chimera::control_pm_test {
 namespace {
 
 constexpr Nanoseconds kPeriod = milliseconds(20);
 
-struct ControlPmTest : testing::Test {
+struct ControlPmTest : ::testing::Test {
   /// Force of the engine less that of the brakes.
   double cycle(double vr, double vz) {
     rig.set("vr", vr);
@@ -92,4 +92,4 @@ TEST_F(ControlPmTest, RefusesConstantsOutsideTheirRange) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::control_pm_test

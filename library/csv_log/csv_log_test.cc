@@ -18,7 +18,7 @@
 namespace chimera {
 namespace {
 
-struct CsvLogTest : testing::Test {
+struct CsvLogTest : ::testing::Test {
   Rig rig{"csv_log"};
   std::string path = testing::TempDir() + "csv_log_" + std::to_string(::getpid()) + ".csv";
 

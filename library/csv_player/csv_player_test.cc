@@ -11,7 +11,7 @@
 namespace chimera {
 namespace {
 
-struct CsvPlayerTest : testing::Test {
+struct CsvPlayerTest : ::testing::Test {
   SignalRig rig{"csv_player", 2};
   std::string path = testing::TempDir() + "csv_player_" + std::to_string(::getpid()) + ".csv";
 

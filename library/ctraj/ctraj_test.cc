@@ -6,7 +6,7 @@
 namespace chimera::library {
 namespace {
 
-struct CtrajTest : testing::Test {
+struct CtrajTest : ::testing::Test {
   ArmRig rig{"ctraj"};
   void SetUp() override {
     rig.set("centre", Pose{{0.5, 0, 0.3}, {0.6, 0, 0.8, 0}});

@@ -6,7 +6,7 @@
 namespace chimera::library {
 namespace {
 
-struct DampedLeastSquaresTest : testing::Test {
+struct DampedLeastSquaresTest : ::testing::Test {
   ArmRig rig{"damped_least_squares"};
   Jacobian jacobian;
 

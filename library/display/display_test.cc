@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-struct DisplayTest : testing::Test {
+struct DisplayTest : ::testing::Test {
   SignalRig rig{"display", 2};
   void start(const char* title, std::int32_t digits) {
     rig.instances("in", 1);

@@ -8,7 +8,7 @@
 namespace chimera::library {
 namespace {
 
-struct ElectricCarTest : testing::Test {
+struct ElectricCarTest : ::testing::Test {
   CarRig rig{"electric_car"};
 };
 

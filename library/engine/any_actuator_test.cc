@@ -26,7 +26,7 @@ const Actuator kActuators[] = {
     {"motor", "fd", "fm", "force_max", -1, 50001, "force_max is 0 to 50000 N"},
 };
 
-struct AnyActuator : testing::TestWithParam<Actuator> {
+struct AnyActuator : ::testing::TestWithParam<Actuator> {
   double cycle(double force) {
     rig.set(GetParam().input, force);
     EXPECT_TRUE(rig.cycle());
@@ -66,7 +66,7 @@ TEST_P(AnyActuator, RefusesALimitOutsideItsRange) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, AnyActuator, testing::ValuesIn(kActuators),
+INSTANTIATE_TEST_SUITE_P(Of, AnyActuator, ::testing::ValuesIn(kActuators),
                          [](const auto& one) { return std::string(one.param.component); });
 
 }  // namespace

@@ -16,6 +16,9 @@ struct Engine {
 
   Outcome init() { return *full_gas >= 1 && *full_gas <= 1e5 ? ok() : fault("full_gas is 1 to 100000 N"); }
   Outcome reinit() { return init(); }
+  void on() {
+    if (gas.is_outdated()) *gas = 0;
+  }
   Outcome cycle(Cycle c) {
     if (!c.illegal() && !std::isfinite(*fde)) return fault("fde is not finite");
     *gas = c.illegal() ? 0 : std::clamp(*fde / *full_gas, 0.0, 1.0);

@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-struct EngineTest : testing::Test {
+struct EngineTest : ::testing::Test {
   double cycle(double force) {
     rig.set("fde", force);
     EXPECT_TRUE(rig.cycle());
@@ -27,6 +27,19 @@ TEST_F(EngineTest, ReinitTakesAnotherLimit) {
   rig.set("full_gas", 4000.0);
   ASSERT_TRUE(rig.reinit());
   EXPECT_DOUBLE_EQ(cycle(1000), 0.25);
+}
+
+TEST_F(EngineTest, GoesOnFromAPresentCommandAndNotFromAnOldOne) {
+  ASSERT_TRUE(rig.init());
+  rig.set("gas", 0.5);
+  rig.inherit("gas", milliseconds(20), milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("gas"), 0.5);
+  ASSERT_TRUE(rig.off());
+  rig.set("gas", 0.5);
+  rig.inherit("gas", milliseconds(500), milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("gas"), 0);
 }
 
 }  // namespace

@@ -75,6 +75,8 @@ struct FrameDevice {
     }
     return static_cast<std::size_t>(at - to) - 2;
   }
+  /// There is a device: it counts as silent from now on only.
+  void hears(Nanoseconds now) { heard_ = now; }
   /// For cycle, after what was sent: whether a whole frame with the idle command has gone out in it.
   void tell_idled(Cycle c, bool is_idle_out) { *idled = c.illegal() && (*idled || is_idle_out); }
   /// Takes the values of a good frame.

@@ -22,7 +22,7 @@ Bytes framed(const Bytes& payload) {
   return made;
 }
 
-struct FrameReaderTest : testing::Test {
+struct FrameReaderTest : ::testing::Test {
   FrameReader reader;
   std::vector<Bytes> got;
 

@@ -6,7 +6,7 @@
 namespace chimera::library {
 namespace {
 
-struct GfwdkinTest : testing::Test {
+struct GfwdkinTest : ::testing::Test {
   ArmRig rig{"gfwdkin"};
   void SetUp() override {
     rig.build_puma();

@@ -6,7 +6,7 @@
 namespace chimera::library {
 namespace {
 
-struct GinvkinTest : testing::Test {
+struct GinvkinTest : ::testing::Test {
   ArmRig rig{"ginvkin"};
   void SetUp() override {
     rig.build_puma();

@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-struct JoinPriorityTest : testing::Test {
+struct JoinPriorityTest : ::testing::Test {
   SignalRig rig{"join_priority", 2};
   void start(double max_age) {
     rig.instances("in", 3);

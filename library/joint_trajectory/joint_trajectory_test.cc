@@ -9,7 +9,7 @@
 namespace chimera {
 namespace {
 
-struct JointTrajectoryTest : testing::Test {
+struct JointTrajectoryTest : ::testing::Test {
   Rig rig{"joint_trajectory"};
   void give(double duration) {
     rig.set("ndof", std::int32_t{2});

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kAgreed = 1e-9;  // m and rad
 
-struct InverseAgainstKdl : testing::Test {
+struct InverseAgainstKdl : ::testing::Test {
   RandomArms random;
 
   // Others with `--gtest_shuffle --gtest_repeat=10`.
   void SetUp() override {
-    const unsigned seed = 2026 + static_cast<unsigned>(testing::UnitTest::GetInstance()->random_seed());
+    const unsigned seed = 2026 + static_cast<unsigned>(::testing::UnitTest::GetInstance()->random_seed());
     random.random.seed(seed);
     RecordProperty("seed", static_cast<int>(seed));
   }

@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-struct LowpassTest : testing::Test {
+struct LowpassTest : ::testing::Test {
   SignalRig rig{"lowpass"};
   void start(double cutoff, std::int32_t order, double x = 0) {
     rig.set("cutoff", cutoff);

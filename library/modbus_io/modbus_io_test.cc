@@ -104,7 +104,7 @@ class Device {
   pid_t process_ = -1;
 };
 
-struct ModbusIoTest : testing::Test {
+struct ModbusIoTest : ::testing::Test {
   Rig rig{"modbus_io"};
   Device device;
 

@@ -16,6 +16,9 @@ struct Motor {
 
   Outcome init() { return *force_max >= 0 && *force_max <= 50000 ? ok() : fault("force_max is 0 to 50000 N"); }
   Outcome reinit() { return init(); }
+  void on() {
+    if (fm.is_outdated()) *fm = 0;
+  }
   Outcome cycle(Cycle c) {
     if (!c.illegal() && !std::isfinite(*fd)) return fault("fd is not finite");
     *fm = c.illegal() ? 0 : std::clamp(*fd, -*force_max, *force_max);

@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-struct MotorTest : testing::Test {
+struct MotorTest : ::testing::Test {
   double cycle(double force) {
     rig.set("fd", force);
     EXPECT_TRUE(rig.cycle());
@@ -28,6 +28,19 @@ TEST_F(MotorTest, ReinitTakesAnotherLimit) {
   rig.set("force_max", 2000.0);
   ASSERT_TRUE(rig.reinit());
   EXPECT_EQ(cycle(-3000), -2000);
+}
+
+TEST_F(MotorTest, GoesOnFromAPresentCommandAndNotFromAnOldOne) {
+  ASSERT_TRUE(rig.init());
+  rig.set("fm", 3000.0);
+  rig.inherit("fm", milliseconds(20), milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("fm"), 3000.0);
+  ASSERT_TRUE(rig.off());
+  rig.set("fm", 3000.0);
+  rig.inherit("fm", milliseconds(500), milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("fm"), 0);
 }
 
 }  // namespace

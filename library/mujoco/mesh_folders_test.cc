@@ -10,7 +10,7 @@
 namespace chimera::library {
 namespace {
 
-struct MeshFoldersTest : testing::Test {
+struct MeshFoldersTest : ::testing::Test {
   PackageOfMeshes files;
   std::string why;
 

@@ -46,7 +46,7 @@ constexpr char kMjcf[] = R"(<mujoco model="nan">
   <actuator><motor joint="j" gear="@50" ctrllimited="true" ctrlrange="-2 @2"/></actuator>
   <custom><text name="t" data="nan"/><numeric name="n" data="1 @2"/></custom></mujoco>)";
 
-struct ModelNumbers : testing::Test {
+struct ModelNumbers : ::testing::Test {
   std::string path = testing::TempDir() + "numbers_" + std::to_string(::getpid()) + ".xml";
   ~ModelNumbers() override { ::unlink(path.c_str()); }
 

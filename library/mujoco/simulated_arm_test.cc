@@ -29,7 +29,7 @@ constexpr char kTwoLinks[] = R"(<mujoco><compiler angle="radian"/><worldbody>
   <actuator><motor joint="shoulder" gear="50" ctrllimited="true" ctrlrange="-2 2"/>
     <position joint="elbow" kp="1000" forcelimited="true" forcerange="-40 40"/></actuator></mujoco>)";
 
-struct SimulatedArmTest : testing::Test {
+struct SimulatedArmTest : ::testing::Test {
   std::string path = testing::TempDir() + "arm_" + std::to_string(::getpid()) + ".xml";
   SimulatedArm arm;
 

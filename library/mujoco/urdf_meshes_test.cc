@@ -35,7 +35,7 @@ std::vector<double> numbers_of(SimulatedArm& arm) {
   return all;
 }
 
-struct UrdfMeshesTest : testing::Test {
+struct UrdfMeshesTest : ::testing::Test {
   PackageOfMeshes files;
   const std::string kBase = "package://arm_description/meshes/upper.stl";
   const std::string kTool = "package://arm_description/meshes/tool.obj";

@@ -14,7 +14,7 @@ namespace chimera {
 namespace {
 
 // A robot of two joints that a user names; the same for the three interfaces.
-struct RobotTest : testing::Test {
+struct RobotTest : ::testing::Test {
   std::string path = testing::TempDir() + "robot_" + std::to_string(::getpid()) + ".xml";
   RobotTest() {
     std::ofstream(path) << R"(<mujoco><compiler angle="radian"/><worldbody>

@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-struct NotchTest : testing::Test {
+struct NotchTest : ::testing::Test {
   SignalRig rig{"notch"};
   void start(double center, double width, double x = 0) {
     rig.set("center", center);

@@ -9,7 +9,7 @@
 namespace chimera {
 namespace {
 
-struct PidTest : testing::Test {
+struct PidTest : ::testing::Test {
   Rig rig{"pid"};
 
   void give(double kp, double ki, double kd, double limit = 1e6) {

@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-struct PidJointTest : testing::Test {
+struct PidJointTest : ::testing::Test {
   Rig rig{"pid_joint"};
   void give() {
     rig.set("ndof", std::int32_t{2});

@@ -6,7 +6,7 @@
 namespace chimera::library {
 namespace {
 
-struct PinvkinTest : testing::Test {
+struct PinvkinTest : ::testing::Test {
   ArmRig rig{"pinvkin"};
   void SetUp() override {
     rig.give("q", kBent);

@@ -12,7 +12,7 @@ namespace {
 using library::Puma560;
 constexpr Puma560::Vector kStart{0, 1.5707963267948966, -1.5707963267948966, 0, 0, 0};
 
-struct PumaTest : testing::Test {
+struct PumaTest : ::testing::Test {
   Rig rig{"puma"};
   void start() {
     for (std::size_t i = 0; i < 6; ++i) {

@@ -26,7 +26,7 @@ constexpr PumaVector kQn{0, math::kPi / 4, -math::kPi, 0, math::kPi / 4, 0};
 
 const char* model_path() { return kPumaModel; }
 
-struct PumaArmTest : testing::Test {
+struct PumaArmTest : ::testing::Test {
   PumaArm arm;
   void load(PumaSettings settings = {}) {
     const Result<void> loaded = arm.load(model_path(), settings);

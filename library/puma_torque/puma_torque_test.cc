@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array<double, 6> kStretched{0, 0, -1.5707963267948966, 0, 0, 0};
 
-struct PumaTorqueTest : testing::Test {
+struct PumaTorqueTest : ::testing::Test {
   Rig rig{"puma_torque"};
   void give(const std::array<double, 6>& pose) {
     rig.resource("model", "puma560.xml");

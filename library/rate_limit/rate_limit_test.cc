@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-struct RateLimitTest : testing::Test {
+struct RateLimitTest : ::testing::Test {
   SignalRig rig{"rate_limit"};
   void start(double x) {
     rig.set("rise", 2.0);

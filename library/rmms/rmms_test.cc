@@ -16,7 +16,7 @@ namespace {
 
 std::string shipped(const std::string& file) { return source_path("library/rmms/" + file); }
 
-struct StoreTest : testing::Test {
+struct StoreTest : ::testing::Test {
   std::string path = testing::TempDir() + "modules_" + std::to_string(::getpid()) + ".store";
   ~StoreTest() override { ::unlink(path.c_str()); }
   std::string refusal(const std::string& text) {

@@ -14,7 +14,7 @@ struct NamedPedal {
   double full;  // N
 };
 
-struct PedalTest : testing::TestWithParam<NamedPedal> {};
+struct PedalTest : ::testing::TestWithParam<NamedPedal> {};
 
 TEST_P(PedalTest, FollowsItsScriptAndLetsGoWhenOff) {
   Rig rig(GetParam().component);
@@ -56,7 +56,7 @@ TEST_P(PedalTest, RefusesWhatNoPedalDoes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, PedalTest,
-                         testing::Values(NamedPedal{"accel", "fra", 2280}, NamedPedal{"brake", "frb", 12000}),
+                         ::testing::Values(NamedPedal{"accel", "fra", 2280}, NamedPedal{"brake", "frb", 12000}),
                          [](const auto& one) { return std::string(one.param.component); });
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-struct SelectTest : testing::Test {
+struct SelectTest : ::testing::Test {
   SignalRig rig{"select"};
   void start(std::uint32_t inputs) {
     rig.instances("in", inputs);

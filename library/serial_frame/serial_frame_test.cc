@@ -21,7 +21,7 @@ namespace {
 using namespace library;
 using Bytes = std::vector<std::uint8_t>;
 
-struct SerialFrameTest : testing::Test {
+struct SerialFrameTest : ::testing::Test {
   Rig rig{"serial_frame"};
   std::string path;
   int device = -1;  // the other end

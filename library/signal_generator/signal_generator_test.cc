@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-struct SignalGeneratorTest : testing::Test {
+struct SignalGeneratorTest : ::testing::Test {
   SignalRig rig{"signal_generator"};
   void give(const char* wave) {
     rig.set("wave", Text<16>(wave));

@@ -34,7 +34,7 @@ const Signal kSignals[] = {
        for (std::size_t k = 0; k < 2; ++k) r.set("at", k == 0 ? 0.0 : 6.0, k), r.set("value", k == 0 ? 1.0 : 0.0, k);
      }, 0.5, 0.5}};
 
-struct AnyShape : testing::TestWithParam<Signal> {
+struct AnyShape : ::testing::TestWithParam<Signal> {
   Rig rig{GetParam().component};
 
   void begin(std::uint32_t rows, std::uint32_t columns) {
@@ -78,7 +78,7 @@ TEST_P(AnyShape, TheLargestMatrixAndAScalar) {
   EXPECT_GE(scalar.get<double>("y"), GetParam().least);
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, AnyShape, testing::ValuesIn(kSignals),
+INSTANTIATE_TEST_SUITE_P(Signals, AnyShape, ::testing::ValuesIn(kSignals),
                          [](const auto& of) { return std::string(of.param.component); });
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(SingularValues, AreFoundWithinTheBoundAndAreSmallWhereThePumaIsSingular) {
   EXPECT_LT(most, SingularValues::kMostSweeps);
 }
 
-struct SingularityMonitorTest : testing::Test {
+struct SingularityMonitorTest : ::testing::Test {
   library::ArmRig rig{"singularity_monitor"};
   void SetUp() override { rig.set("ndof", std::int32_t{6}); }
   void stand(const Puma560::Vector& q) { rig.give_jacobian(of_puma(q), 6); }

@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-struct SplitPmOverrideTest : testing::Test {
+struct SplitPmOverrideTest : ::testing::Test {
   void expect(double fd, double fra, double frb, double fde, double fdw) {
     rig.set("fd", fd);
     rig.set("fra", fra);

@@ -79,12 +79,19 @@ void BallSource::start(Nanoseconds now) noexcept {
   next_ = 0;
   kept_ = 0;
   error_ = 0;
-  for (int i = 0; kind_ != Kind::kRecording && i < 17; ++i)  // an input device keeps a few hundred events at most
-    if (fill(sizeof buffer_) < static_cast<int>(sizeof buffer_)) break;
+  is_old_ = true;
+  if (kind_ != Kind::kRecording) forget();
+}
+
+// An input device keeps a few hundred events at most: some calls.
+void BallSource::forget() noexcept {
+  is_old_ = fill(sizeof buffer_) == static_cast<int>(sizeof buffer_);
+  kept_ = 0;
 }
 
 bool BallSource::collect(Ball& ball, std::int32_t full, Nanoseconds now) noexcept {
   if (kind_ == Kind::kRecording) return collect_recorded(ball, now), true;
+  if (is_old_) return forget(), true;
   const int got = fill(kind_ == Kind::kKeys ? kMostEvents : sizeof buffer_);
   if (got < 0) return false;
   if (kind_ == Kind::kKeys) take_keys(ball, static_cast<std::size_t>(got), full, now);

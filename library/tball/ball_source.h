@@ -26,8 +26,8 @@ class BallSource {
   /// A device that is gone is opened again; a recording needs nothing. Throws as open(). Context: cycle boundary; may
   /// block.
   void reopen();
-  /// What waits is forgotten: it is of a time nobody was there. A recording starts at its first event.
-  /// Context: cycle boundary; at most 17 reads.
+  /// What waits is forgotten, here and by the first calls of collect(): it is of a time nobody was there. A recording
+  /// starts at its first event. Context: cycle boundary; at most one read.
   void start(Nanoseconds now) noexcept;
   /// Gives the ball what has come, at most kMostEvents; false: the device is gone. Context: cycle; at most one read.
   bool collect(Ball& ball, std::int32_t full, Nanoseconds now) noexcept;
@@ -41,6 +41,7 @@ class BallSource {
 
   void open_device(bool is_fifo);
   void make_raw();
+  void forget() noexcept;
   /// Bytes now in buffer_, those of a cut event before them included; -1: the device is gone.
   int fill(std::size_t most) noexcept;
   void collect_recorded(Ball& ball, Nanoseconds now) noexcept;
@@ -55,6 +56,7 @@ class BallSource {
   termios mode_{};
   alignas(input_event) char buffer_[kMostEvents * sizeof(input_event)];
   std::size_t kept_ = 0;  // bytes of an event that was cut
+  bool is_old_ = false;   // what waits is of the time before start()
   std::vector<RecordedEvent> recording_;
   std::size_t next_ = 0;
   Nanoseconds origin_;

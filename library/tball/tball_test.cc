@@ -18,7 +18,7 @@
 namespace chimera {
 namespace {
 
-struct TballTest : testing::Test {
+struct TballTest : ::testing::Test {
   Rig rig{"tball"};
   std::string path = testing::TempDir() + "tball_" + std::to_string(::getpid());
   int pipe = -1;

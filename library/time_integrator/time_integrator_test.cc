@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-struct TimeIntegratorTest : testing::Test {
+struct TimeIntegratorTest : ::testing::Test {
   Rig rig{"time_integrator"};
   void start() {
     rig.extent("n", 2);

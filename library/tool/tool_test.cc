@@ -9,7 +9,7 @@
 namespace chimera {
 namespace {
 
-struct ToolTest : testing::Test {
+struct ToolTest : ::testing::Test {
   Rig rig{"tool"};
   Pose frame{{0.1, 0, 0.2}, {0.8, 0.6, 0, 0}};
   void SetUp() override {

@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-struct TrackingMonitorTest : testing::Test {
+struct TrackingMonitorTest : ::testing::Test {
   Rig rig{"tracking_monitor"};
   void start() {
     rig.set("ndof", std::int32_t{2});

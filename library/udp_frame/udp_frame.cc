@@ -9,7 +9,8 @@ using namespace chimera::library;
 
 namespace {
 
-constexpr int kMostDatagrams = 8;  // a cycle
+constexpr int kMostDatagrams = 8;   // a cycle
+constexpr int kMostForgotten = 64;  // the same, of those that came before `on`
 // How far ahead the number of the safe frame is of the last one that was sent, and when it moves on: a device that
 // drops what is old takes it, whatever was on the way.
 constexpr std::uint32_t kAhead = 1u << 30, kAnewAfter = 1u << 20;
@@ -29,15 +30,19 @@ struct UdpFrame : FrameDevice {
   }
   void on(Cycle c) {
     begin(c);
-    std::uint8_t forgotten[1];
-    for (int i = 0; i < 1000 && socket_.receive(forgotten) > 0;) ++i;
+    is_old_ = true;
+    forget(kMostDatagrams);
     has_number_ = false;
     put_safe_frame(c);
   }
   Outcome cycle(Cycle c) {
     if (lost() != nullptr) return fault(lost(), socket_.error());
     std::uint8_t bytes[kLongestFrame];
-    for (int i = 0; i < kMostDatagrams; ++i) {
+    if (is_old_) {
+      forget(kMostForgotten);
+      hears(c.now());
+    }
+    for (int i = 0; !is_old_ && i < kMostDatagrams; ++i) {
       const std::size_t size = socket_.receive(bytes);
       if (size == 0) break;
       take(bytes, size, c.now());
@@ -67,6 +72,11 @@ struct UdpFrame : FrameDevice {
     c.safe_frame(0, -1);
     socket_.open(std::string(device.text()), *local_port);
     c.safe_frame(0, socket_.descriptor());
+  }
+  // Of what came before `on`; a queue that was full is forgotten in some cycles.
+  void forget(int most) {
+    std::uint8_t bytes[1];
+    for (int i = 0; is_old_ && i < most; ++i) is_old_ = socket_.receive(bytes) > 0;
   }
   void put_safe_frame(Cycle c) {
     std::uint8_t bytes[kLongestFrame];
@@ -101,6 +111,7 @@ struct UdpFrame : FrameDevice {
   }
 
   UdpSocket socket_;
+  bool is_old_ = false;  // what has come is of the time before `on`
   bool has_number_ = false;
   std::uint32_t number_ = 0;  // of the last good datagram
   std::uint32_t sent_ = 0;

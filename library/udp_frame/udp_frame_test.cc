@@ -18,7 +18,7 @@ namespace {
 using namespace library;
 using Bytes = std::vector<std::uint8_t>;
 
-struct UdpFrameTest : testing::Test {
+struct UdpFrameTest : ::testing::Test {
   Rig rig{"udp_frame"};
   int device = -1;  // the other end
   std::string address;

@@ -19,7 +19,7 @@ namespace {
 
 std::string shipped_urdf(const std::string& file) { return source_path("library/urdf_model/" + file); }
 
-struct UrdfChainTest : testing::Test {
+struct UrdfChainTest : ::testing::Test {
   std::string path = testing::TempDir() + "chain_" + std::to_string(::getpid()) + ".urdf";
   ~UrdfChainTest() override { ::unlink(path.c_str()); }
   /// Reads two links and, between them, what `joint` says.

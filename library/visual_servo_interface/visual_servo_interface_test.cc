@@ -15,7 +15,7 @@ namespace {
 constexpr Pose kCamera{{2.0, 0, 0.5}, {0.5, 0.5, -0.5, -0.5}};
 constexpr Nanoseconds kStep = milliseconds(10);
 
-struct VisionTest : testing::Test {
+struct VisionTest : ::testing::Test {
   Rig camera{"camera_targets"}, servo{"visual_servo_interface"};
   std::string link = "unix:@vision_" + std::to_string(::getpid());
 

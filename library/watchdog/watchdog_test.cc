@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-struct WatchdogTest : testing::Test {
+struct WatchdogTest : ::testing::Test {
   SignalRig rig{"watchdog"};
   RigAnswer make(const char* action, const char* target = "") {
     rig.instances("in", 2);

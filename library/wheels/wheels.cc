@@ -18,6 +18,9 @@ struct Wheels {
     return *brake_limit >= 0 && *brake_limit <= 20000 ? ok() : fault("brake_limit is 0 to 20000 N");
   }
   Outcome reinit() { return init(); }
+  void on() {
+    if (fb.is_outdated()) *fb = 0;
+  }
   Outcome cycle(Cycle c) {
     if (!c.illegal() && !std::isfinite(*fdw)) return fault("fdw is not finite");
     *fb = c.illegal() ? 0 : std::clamp(*fdw, 0.0, *brake_limit);

@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-struct WheelsTest : testing::Test {
+struct WheelsTest : ::testing::Test {
   double cycle(double force) {
     rig.set("fdw", force);
     EXPECT_TRUE(rig.cycle());
@@ -27,6 +27,19 @@ TEST_F(WheelsTest, ReinitTakesAnotherLimit) {
   rig.set("brake_limit", 2000.0);
   ASSERT_TRUE(rig.reinit());
   EXPECT_EQ(cycle(3000), 2000);
+}
+
+TEST_F(WheelsTest, GoesOnFromAPresentCommandAndNotFromAnOldOne) {
+  ASSERT_TRUE(rig.init());
+  rig.set("fb", 4000.0);
+  rig.inherit("fb", milliseconds(20), milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("fb"), 4000.0);
+  ASSERT_TRUE(rig.off());
+  rig.set("fb", 4000.0);
+  rig.inherit("fb", milliseconds(500), milliseconds(20));
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("fb"), 0);
 }
 
 }  // namespace

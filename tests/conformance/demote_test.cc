@@ -9,7 +9,7 @@
 namespace chimera::toy {
 namespace {
 
-class Demote : public testing::Test {
+class Demote : public ::testing::Test {
  protected:
   Application app;
   std::unique_ptr<Runner> runner;

@@ -28,7 +28,7 @@ Schedule by_one_loop(Policy policy) {
   return schedule_of(listened.records(), executive.origin());
 }
 
-class ExecutiveSchedule : public testing::TestWithParam<Policy> {};
+class ExecutiveSchedule : public ::testing::TestWithParam<Policy> {};
 
 TEST_P(ExecutiveSchedule, IsThatOfVirtualTimeUnitByUnit) {
   const Schedule wanted = by_virtual_time(Kind::kVirtual, GetParam(), OnMiss::kContinue);
@@ -38,7 +38,7 @@ TEST_P(ExecutiveSchedule, IsThatOfVirtualTimeUnitByUnit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ExecutiveSchedule,
-                         testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf, Policy::kMufLaxity), name_of);
+                         ::testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf, Policy::kMufLaxity), name_of);
 
 }  // namespace
 }  // namespace chimera::toy

@@ -26,7 +26,7 @@ std::string story(const Application& app, const std::string& task) {
   return text;
 }
 
-class Executors : public testing::TestWithParam<Kind> {
+class Executors : public ::testing::TestWithParam<Kind> {
  protected:
   Application app;
   std::vector<ScriptAct> acts;
@@ -40,7 +40,7 @@ class Executors : public testing::TestWithParam<Kind> {
   const Profile& profile(const std::string& task) { return app.task(task).profile; }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Executors, testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
+INSTANTIATE_TEST_SUITE_P(All, Executors, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
 TEST_P(Executors, RunEveryTaskAtItsRateFromItsOffset) {

@@ -76,7 +76,7 @@ Seen run_bad(void (*takes_long)(), int n_others) {
   return run(app, "bad", deadline);
 }
 
-class LateSoon : public testing::TestWithParam<int> {
+class LateSoon : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override {
     if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: nothing is soon";
@@ -90,7 +90,7 @@ class LateSoon : public testing::TestWithParam<int> {
   static Nanoseconds gap() { return GetParam() == 0 ? microseconds(200) : microseconds(700); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Beside, LateSoon, testing::Values(0, 3),
+INSTANTIATE_TEST_SUITE_P(Beside, LateSoon, ::testing::Values(0, 3),
                          [](const auto& one) { return one.param == 0 ? std::string("Nobody") : "Others"; });
 
 TEST_P(LateSoon, AJobThatComputes) {

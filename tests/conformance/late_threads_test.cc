@@ -17,7 +17,7 @@ namespace chimera::toy {
 namespace {
 
 /// "late" stays in its second cycle until the test has seen what it waits for; "beside" looks at the flag.
-class Late : public testing::Test {
+class Late : public ::testing::Test {
  protected:
   Late() {
     spec = &app.add("late", milliseconds(100));

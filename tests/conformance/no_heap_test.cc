@@ -223,8 +223,8 @@ Counted count_by_threads() {
   });
 }
 
-class NoHeap : public testing::TestWithParam<Kind> {};
-INSTANTIATE_TEST_SUITE_P(All, NoHeap, testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
+class NoHeap : public ::testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(All, NoHeap, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
 TEST_P(NoHeap, TenThousandCyclesWithFaultsDropsAndActsAllocateNothing) {

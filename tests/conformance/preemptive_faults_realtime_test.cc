@@ -46,7 +46,7 @@ Seen run_once(const Bad& bad, Policy policy) {
   return seen;
 }
 
-class PreemptiveFaults : public testing::TestWithParam<Policy> {
+class PreemptiveFaults : public ::testing::TestWithParam<Policy> {
  protected:
   void SetUp() override {
     if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
@@ -120,7 +120,7 @@ TEST_P(PreemptiveFaults, RandomOverrunsNeverMakeABurst) {
   EXPECT_LE(seen->bad.cycles + seen->bad.dropped, 120u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Under, PreemptiveFaults, testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf), name_of);
+INSTANTIATE_TEST_SUITE_P(Under, PreemptiveFaults, ::testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf), name_of);
 
 TEST(PreemptiveMany, TwoHundredTasksOnOneProcessorMissNothing) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";

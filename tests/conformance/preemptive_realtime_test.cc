@@ -23,7 +23,7 @@ Schedule by_threads(Policy policy) {
   return schedule;
 }
 
-class PreemptiveSchedule : public testing::TestWithParam<Policy> {};
+class PreemptiveSchedule : public ::testing::TestWithParam<Policy> {};
 
 // Under least laxity a job changes places when what it has used, as the kernel counts it, is rounded to another quantum
 // than in virtual time, in every second to fourth run: one of sixteen must be exact, none may miss what is critical.
@@ -49,7 +49,7 @@ TEST_P(PreemptiveSchedule, IsThatOfVirtualTimeUnitByUnit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, PreemptiveSchedule,
-                         testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf, Policy::kMufLaxity), name_of);
+                         ::testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf, Policy::kMufLaxity), name_of);
 
 }  // namespace
 }  // namespace chimera::toy

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kCycles = 3;  // of a task at 20 ms, of which the second takes too long
 
-class Reactions : public testing::TestWithParam<Kind> {
+class Reactions : public ::testing::TestWithParam<Kind> {
  protected:
   Application app;
   std::unique_ptr<Runner> runner;
@@ -38,7 +38,7 @@ class Reactions : public testing::TestWithParam<Kind> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Reactions, testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
+INSTANTIATE_TEST_SUITE_P(All, Reactions, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
 TEST_P(Reactions, ContinuePublishesALateResult) {
@@ -188,7 +188,7 @@ class Minimum : public Reactions {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Minimum, testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
+INSTANTIATE_TEST_SUITE_P(All, Minimum, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
 TEST_P(Minimum, RefusedWithContinueRunsAllTheSame) {

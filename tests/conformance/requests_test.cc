@@ -10,7 +10,7 @@
 #include "chimera/runtime/testing/test_application.h"
 #include "tests/conformance/runner.h"
 
-namespace chimera::toy {
+namespace chimera::toy::requests_test {
 namespace {
 
 /// What the components of a run do. One run at a time.
@@ -319,4 +319,4 @@ TEST_P(Requests, BeyondTheReceiptsThatAreKeptAreCarriedOutAndCounted) {
 }
 
 }  // namespace
-}  // namespace chimera::toy
+}  // namespace chimera::toy::requests_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch waits until what its configuration asks by `safe_when` holds: on every executor of one context, and over
-// several rtpus in virtual time, where the value comes from the other rtpu.
+// A switch waits until what its configuration asks by `safe_when` holds, and until what an arriving task reads has a
+// value: on every executor of one context, and over several rtpus in virtual time, where the value comes from the other
+// rtpu.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +14,7 @@
 #include "chimera/runtime/virtual/virtual_rtpus.h"
 #include "tests/conformance/runner.h"
 
-namespace chimera::toy {
+namespace chimera::toy::safe_when_test {
 namespace {
 
 /// What the components of a run do. One run at a time.
@@ -21,6 +22,7 @@ struct Scene {
   std::function<double(std::uint64_t)> speed;  // by cycle
   std::function<void(Cycle)> on_of_hand;
   int cycles = 0;  // of plant
+  double late_at_on = 0;
 };
 Scene scene;
 
@@ -56,7 +58,20 @@ struct Third {
   void cycle(Cycle) { *third = 1; }
 };
 
-constexpr TaskId kPlant{0u}, kAuto{1u}, kHand{2u}, kThird{3u};
+struct Late {
+  Out<double> late{"late", "1"};
+  void cycle(Cycle) { *late = 3; }
+};
+
+struct Guest {
+  In<double> late{"late", "1"};
+  Out<double> u{"u", "1", initial = 0.0};
+  void on() { scene.late_at_on = *late; }
+  void cycle(Cycle) { *u = *late; }
+};
+
+constexpr TaskId kPlant{0u}, kAuto{1u}, kHand{2u}, kThird{3u}, kLate{4u}, kGuest{5u};
+constexpr std::uint32_t kToHand = 1, kToGuest = 2;
 
 struct Asked {
   const char* variable;
@@ -65,33 +80,39 @@ struct Asked {
   double limit;
 };
 
-/// The four tasks on two rtpus, of which one context may take all; 'hand' may be switched to when `asked` holds.
+/// The tasks on two rtpus, of which one context may take all; 'hand' may be switched to when `asked` holds, 'guest'
+/// when the task late has cycled, from its offset on.
 struct Application {
-  explicit Application(const Asked& asked) {
+  Application(const Asked& asked, Nanoseconds offset_of_late) {
     app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
     app.add("plant", testing::component<Plant>("plant")).budget = microseconds(20);
     app.add("auto", testing::component<Auto>("auto")).budget = microseconds(20);
     app.add("hand", testing::component<Hand>("hand")).budget = microseconds(20);
     app.add("third", testing::component<Third>("third")).budget = microseconds(20);
     app.tasks[kPlant.index].rtpu = app.tasks[kAuto.index].rtpu = RtpuId{0u};
-    app.tasks[kHand.index].rtpu = app.tasks[kThird.index].rtpu = RtpuId{1u};
+    TaskSpec& late = app.add("late", testing::component<Late>("late"), seconds(100));
+    late.budget = microseconds(20);
+    late.offset = offset_of_late;
+    late.rtpu = RtpuId{0u};
+    app.add("guest", testing::component<Guest>("guest")).budget = microseconds(20);
+    app.tasks[kHand.index].rtpu = app.tasks[kThird.index].rtpu = app.tasks[kGuest.index].rtpu = RtpuId{1u};
     app.port(kPlant.index, 2).extent[0].max = 3;
-    app.make({kPlant, kAuto}, false);
+    app.make({kPlant, kAuto, kLate}, false);
     const std::size_t variable = Variables(app.spec).find(asked.variable);
     EXPECT_LT(variable, app.spec.variables.size());
     sets[1].safe_when = {VariableId(variable), asked.element, asked.comparison, asked.limit};
     app.spec.sets = sets;
   }
   testing::TestApplication app;
-  TaskId automatic[2] = {kPlant, kAuto}, hand[2] = {kPlant, kHand};
-  NamedSet sets[2] = {{"automatic", automatic}, {"hand", hand}};
+  TaskId automatic[3] = {kPlant, kAuto, kLate}, hand[3] = {kPlant, kHand, kLate}, guest[3] = {kPlant, kLate, kGuest};
+  NamedSet sets[3] = {{"automatic", automatic}, {"hand", hand}, {"guest", guest}};
 };
 
-ScriptAct to_hand(Nanoseconds at) {
+ScriptAct switch_to(std::uint32_t set, Nanoseconds at) {
   ScriptAct act;
   act.at = at;
   act.kind = ScriptAct::Kind::kSwitch;
-  act.set = 1;
+  act.set = set;
   return act;
 }
 
@@ -109,9 +130,17 @@ class SafeWhen : public ::testing::TestWithParam<How> {
     scene.speed = [](std::uint64_t cycle) { return 10.0 - static_cast<double>(cycle); };
   }
   SwitchReceipt go(const Asked& asked, Nanoseconds duration, Nanoseconds at = microseconds(2500)) {
-    application_ = std::make_unique<Application>(asked);
+    application_ = std::make_unique<Application>(asked, milliseconds(6));
+    return go_to(kToHand, duration, at);
+  }
+  /// The task late has its first cycle at `first`.
+  SwitchReceipt go_to_guest(Nanoseconds first, Nanoseconds duration) {
+    application_ = std::make_unique<Application>(Asked{"speed", 0, Relation::kUnequal, 100}, first);
+    return go_to(kToGuest, duration, microseconds(2500));
+  }
+  SwitchReceipt go_to(std::uint32_t to, Nanoseconds duration, Nanoseconds at) {
     testing::TestApplication& app = application_->app;
-    const ScriptAct acts[] = {to_hand(at)};
+    const ScriptAct acts[] = {switch_to(to, at)};
     if (GetParam() >= How::kTwoRtpus) return go_on_two(app, acts, duration);
     auto set = *HeapTaskSet::create(app.spec, app.components);
     Runner runner(*set, static_cast<Kind>(GetParam()), Policy::kEdf, acts);
@@ -192,7 +221,26 @@ TEST_P(SafeWhen, WhatNeverHadAValueIsNotSafe) {
   EXPECT_EQ(cycles, 1);
 }
 
-// `on` takes 5 ms, within which the value becomes another.
+TEST_P(SafeWhen, AnInputWithoutAValueHoldsArmingUpUntilItHasOne) {
+  const SwitchReceipt receipt = go_to_guest(milliseconds(6), milliseconds(20));
+  EXPECT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
+  EXPECT_GE(receipt.armed, milliseconds(6));
+  EXPECT_LE(receipt.armed, milliseconds(7));
+  EXPECT_EQ(scene.late_at_on, 3);
+}
+
+TEST_P(SafeWhen, AnInputThatNeverHasAValueEndsTheSwitchByItsName) {
+  const SwitchReceipt receipt = go_to_guest(seconds(50), seconds(11));
+  EXPECT_EQ(receipt.end, SwitchEnd::kAborted);
+  EXPECT_EQ(receipt.why, NoSwitch::kNoValue);
+  EXPECT_EQ(receipt.task, kGuest);
+  EXPECT_EQ(receipt.variable.index, Variables(application_->app.spec).find("late"));
+  EXPECT_GE(receipt.ended, seconds(10));
+  EXPECT_LE(receipt.ended, seconds(10) + milliseconds(5));
+  EXPECT_EQ(scene.late_at_on, 0) << "its on was not called";
+}
+
+// `on` takes 5 ms, within which the value becomes another: on one context nobody cycles meanwhile.
 TEST_P(SafeWhen, ThatHoldsNoMoreWhenTheInstantWouldBeProposedTakesTheSwitchBack) {
   scene.on_of_hand = [](Cycle c) { c.spend(milliseconds(5)); };
   const SwitchReceipt receipt = go({"speed", 0, Relation::kMore, 5.5}, milliseconds(40));
@@ -200,4 +248,4 @@ TEST_P(SafeWhen, ThatHoldsNoMoreWhenTheInstantWouldBeProposedTakesTheSwitchBack)
 }
 
 }  // namespace
-}  // namespace chimera::toy
+}  // namespace chimera::toy::safe_when_test

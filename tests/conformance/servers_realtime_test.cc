@@ -29,7 +29,7 @@ std::string by_virtual_time(const Example& example) {
   return timeline(run.records(), {}, kUnit, "ABS", kExampleUnits);
 }
 
-class ServedSchedule : public testing::TestWithParam<std::size_t> {};
+class ServedSchedule : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(ServedSchedule, IsThatOfVirtualTimeUnitByUnit) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
@@ -56,7 +56,7 @@ TEST_P(ServedSchedule, IsThatOfVirtualTimeUnitByUnit) {
   EXPECT_EQ(got->counts.wrong_levels, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, ServedSchedule, testing::Range(std::size_t{0}, std::size(kExamples)));
+INSTANTIATE_TEST_SUITE_P(Of, ServedSchedule, ::testing::Range(std::size_t{0}, std::size(kExamples)));
 
 // Halted in the middle of the job, and let go on.
 TEST(ServedJob, LongerThanTheCapacityGoesOnWhenSomeIsBack) {
@@ -125,7 +125,7 @@ void expect_nobody_missed(const Storm& seen) {
   EXPECT_EQ(seen.counts.wrong_levels, 0u);
 }
 
-class ServedStorm : public testing::TestWithParam<std::tuple<Policy, ServerKind>> {};
+class ServedStorm : public ::testing::TestWithParam<std::tuple<Policy, ServerKind>> {};
 
 TEST(ServedCalm, IsWithoutMisses) {
   if (!may_be_realtime(kCeiling)) GTEST_SKIP() << "no real-time rights: levels cannot be judged";
@@ -148,8 +148,8 @@ TEST_P(ServedStorm, OfEventsCostsTheOthersNoDeadline) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ServedStorm,
-                         testing::Combine(testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf),
-                                          testing::Values(kDeferrable, kSporadic)));
+                         ::testing::Combine(::testing::Values(Policy::kRm, Policy::kEdf, Policy::kMuf),
+                                          ::testing::Values(kDeferrable, kSporadic)));
 
 }  // namespace
 }  // namespace chimera::toy

@@ -9,7 +9,7 @@
 namespace chimera::toy {
 namespace {
 
-class Share : public testing::Test {
+class Share : public ::testing::Test {
  protected:
   TaskSpec& add(const std::string& name, std::int64_t period_ms, std::int64_t spend_ms, std::int64_t budget_ms,
                 std::uint32_t criticality = 0) {

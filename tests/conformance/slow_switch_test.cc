@@ -10,7 +10,7 @@
 #include "chimera/runtime/testing/test_application.h"
 #include "tests/conformance/runner.h"
 
-namespace chimera::toy {
+namespace chimera::toy::slow_switch_test {
 namespace {
 
 /// What the components of a run do, and what they saw. One run at a time.
@@ -295,4 +295,4 @@ TEST_P(SlowSwitches, ThereAndBackAThousandTimesLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace chimera::toy
+}  // namespace chimera::toy::slow_switch_test

@@ -406,25 +406,45 @@ TEST_P(Switches, OverWhichATaskMightMissItsDeadlineGoesTheSlowWay) {
   EXPECT_EQ(runner_->run(milliseconds(60)), RunEnd::kTime);
   const SwitchReceipt& receipt = runner_->receipts()[0];
   ASSERT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
-  EXPECT_EQ(receipt.way.slow, kSlowForDeadlines);
+  EXPECT_EQ(receipt.way.slow, kSlowForDeadlines | kSlowForGap);
   EXPECT_TRUE(receipt.way.deadline.task.is_valid());
   EXPECT_EQ(receipt.before, kDirect);
   EXPECT_GT(receipt.flag, Nanoseconds{});
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "off one", "on observer", "on two"}));
 }
 
+// `on` is taken to need the budget: more than the shortest period is known before not to fit.
+TEST_P(Switches, AnOnThatFitsNoGapGoesTheSlowWayAtOnce) {
+  build();
+  acts_ = {to(kObserved, milliseconds(5))};
+  app_->tasks[kObserver.index].budget = milliseconds(2);
+  for (TaskSpec& task : app_->tasks) task.on_miss = OnMiss::kAbort;  // no deadline is judged
+  runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+  EXPECT_TRUE(runner_->start());
+  EXPECT_EQ(runner_->run(milliseconds(30)), RunEnd::kTime);
+  const SwitchReceipt& receipt = runner_->receipts()[0];
+  EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_EQ(receipt.way.slow, kSlowForGap);
+  EXPECT_EQ(receipt.way.gapless, kObserver);
+  EXPECT_EQ(receipt.way.needed, milliseconds(2));
+  EXPECT_EQ(receipt.tries, 1u);
+  EXPECT_LE(receipt.at - receipt.asked, milliseconds(3));
+}
+
 // Without a gap that `on` would fit in, it goes the slow way after 10 s.
 TEST_P(Switches, WithoutAGapItGoesTheSlowWayAfterTenSeconds) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
-  app_->tasks[kObserver.index].budget = milliseconds(2);
-  for (TaskSpec& task : app_->tasks) task.on_miss = OnMiss::kAbort;  // or it is refused: 2 ms of each ms
+  app_->tasks[kObserver.index].budget = microseconds(600);
+  app_->tasks[kBeacon.index].offset = microseconds(500);
+  for (TaskSpec& task : app_->tasks) task.on_miss = OnMiss::kAbort;  // no deadline is judged
   runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
   EXPECT_TRUE(runner_->start());
   EXPECT_EQ(runner_->run(seconds(11)), RunEnd::kTime);
   const SwitchReceipt& receipt = runner_->receipts()[0];
   EXPECT_EQ(receipt.end, SwitchEnd::kDone);
   EXPECT_EQ(receipt.way.slow, kSlowForGap);
+  EXPECT_EQ(receipt.tries, 2u);
   EXPECT_GE(receipt.at - receipt.asked, seconds(10));
   EXPECT_LE(receipt.flag, milliseconds(5));
   EXPECT_GT(receipt.flag, Nanoseconds{});

@@ -61,7 +61,7 @@ std::string missed(const std::vector<TapRecord>& records) {
   return text;
 }
 
-class Timelines : public testing::TestWithParam<bool> {};
+class Timelines : public ::testing::TestWithParam<bool> {};
 
 TEST_P(Timelines, ComeOutToTheLetterWithEveryMiss) {
   for (const Expected& expected : kExpected) {
@@ -77,7 +77,7 @@ TEST_P(Timelines, ComeOutToTheLetterWithEveryMiss) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(WorkFrom, Timelines, testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(WorkFrom, Timelines, ::testing::Bool(),
                          [](const auto& one) { return one.param ? "Budget" : "Spend"; });
 
 TEST(Timeline, ARunThatIsContinuedIsTheSameRun) {

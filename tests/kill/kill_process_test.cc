@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/kill/kill_trial.h"
+#include "tests/kill/stop_trial.h"
 
 namespace chimera {
 namespace {
@@ -19,6 +20,22 @@ TEST(KilledWriter, LeavesNeitherATornNorAnUnreadableGroup) {
 
 TEST(KilledWriter, ThatFillsThePublishedSlotIsNoticed) {
   const KillReport report = run_kill_trial({.kills = 20, .seconds = 60, .planted_defect = true});
+  EXPECT_EQ(report.failure, "");
+  EXPECT_GT(report.torn, 0u);
+}
+
+TEST(StoppedWriter, ThatWasReplacedAndGoesOnReachesNoReader) {
+  const StopReport report = run_stop_trial({.stops = 1000});
+  EXPECT_EQ(report.failure, "");
+  EXPECT_EQ(report.stops, 1000u);
+  EXPECT_GE(report.mid_write, 500u) << "otherwise little was shown";
+  EXPECT_GE(report.reads, 4000u);
+  EXPECT_EQ(report.torn, 0u);
+  EXPECT_EQ(report.backwards, 0u);
+}
+
+TEST(StoppedWriter, ThatSharesTheGroupOfItsSuccessorIsNoticed) {
+  const StopReport report = run_stop_trial({.stops = 20, .seconds = 60, .planted_defect = true});
   EXPECT_EQ(report.failure, "");
   EXPECT_GT(report.torn, 0u);
 }

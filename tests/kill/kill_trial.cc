@@ -3,27 +3,24 @@
 
 #include <signal.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <cstddef>
-#include <ctime>
 #include <new>
 #include <span>
 
 #include "chimera/platform/memory_region.h"
 #include "chimera/table/group.h"
+#include "tests/kill/forked.h"
+#include "tests/kill/publication.h"
 
 namespace chimera {
 namespace {
 
-constexpr std::uint32_t kPayload = 4096;
-constexpr std::size_t kWords = kPayload / 8;
 constexpr std::size_t kReaders = 2;
-constexpr int kPatienceMs = 20'000;
 
 struct alignas(64) ReaderScore {
   std::atomic<std::uint64_t> reads, torn, backwards, refused_dead, refused_alive;
@@ -38,47 +35,24 @@ struct Score {
   std::array<ReaderScore, kReaders> readers;
 };
 
-std::uint64_t word_of(std::uint64_t publication, std::size_t i) {
-  return (publication * 0x9e3779b97f4a7c15u) ^ (i * 0xc2b2ae3d27d4eb4fu);
-}
-
-void nap(long microseconds) {
-  const timespec span{0, microseconds * 1000};
-  ::nanosleep(&span, nullptr);
-}
-
-double seconds_now() {
-  timespec t{};
-  ::clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
-}
-
 // Never returns; ends by SIGKILL.
 [[noreturn]] void write_for_ever(std::span<std::byte> memory, Score& score, bool planted_defect) {
-  GroupWriter writer(memory, kPayload);
-  const GroupReader published(memory.data(), kPayload);
+  GroupWriter writer(memory, kTrialPayload);
+  const GroupReader published(memory.data(), kTrialPayload);
   for (;;) {
     const std::uint64_t n = writer.sequence() + 1;
     std::byte* place = writer.staging();
     if (planted_defect) place = reinterpret_cast<std::byte*>(const_cast<chimera_slot*>(published.published() + 1));
-    auto* words = reinterpret_cast<volatile std::uint64_t*>(place);
     score.begun.fetch_add(1, std::memory_order_relaxed);
-    for (std::size_t i = 0; i < kWords; ++i) words[i] = word_of(n, i);
+    fill(place, 0, n);
     writer.publish(Nanoseconds{static_cast<std::int64_t>(n)}, 1);
     score.finished.fetch_add(1, std::memory_order_relaxed);
   }
 }
 
-bool is_whole(const chimera_slot& header, const std::array<std::uint64_t, kWords>& words) {
-  if (header.published_ns != static_cast<std::int64_t>(header.sequence)) return false;
-  for (std::size_t i = 0; i < kWords; ++i)
-    if (words[i] != (header.sequence == 0 ? 0 : word_of(header.sequence, i))) return false;
-  return true;
-}
-
 void read_once(const GroupReader& reader, Score& score, ReaderScore& mine, std::uint64_t& last) {
   chimera_slot header{};
-  std::array<std::uint64_t, kWords> words;
+  TrialWords words;
   const std::uint64_t before = score.phase.load();
   const bool ok = reader.try_read(header, reinterpret_cast<std::byte*>(words.data()));
   const bool writer_was_dead = before % 2 == 1 && score.phase.load() == before;
@@ -86,7 +60,7 @@ void read_once(const GroupReader& reader, Score& score, ReaderScore& mine, std::
   if (!ok) {
     ++(writer_was_dead ? mine.refused_dead : mine.refused_alive);
   } else {
-    if (!is_whole(header, words)) ++mine.torn;
+    if (!is_whole(header, words, 0)) ++mine.torn;
     if (header.sequence < last) ++mine.backwards;
     last = header.sequence;
   }
@@ -94,9 +68,9 @@ void read_once(const GroupReader& reader, Score& score, ReaderScore& mine, std::
 }
 
 [[noreturn]] void read_until_stopped(int descriptor, Score& score, ReaderScore& mine) {
-  const Result<MemoryRegion> region = MemoryRegion::open_read_only(descriptor, group_bytes(kPayload));
+  const Result<MemoryRegion> region = MemoryRegion::open_read_only(descriptor, group_bytes(kTrialPayload));
   if (!region) ::_exit(1);
-  const GroupReader reader(region->bytes().data(), kPayload);
+  const GroupReader reader(region->bytes().data(), kTrialPayload);
   std::uint64_t last = 0;
   while (!score.stop) {
     for (int burst = 0; burst < 50 && !score.stop; ++burst) read_once(reader, score, mine, last);
@@ -105,38 +79,17 @@ void read_once(const GroupReader& reader, Score& score, ReaderScore& mine, std::
   ::_exit(0);
 }
 
-template <class Body>
-pid_t start(Body body) {
-  const pid_t parent = ::getpid();
-  const pid_t pid = ::fork();
-  if (pid != 0) return pid;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);
-  body();
-  ::_exit(0);
-}
-
-template <class Condition>
-bool wait_for(Condition condition) {
-  const double end = seconds_now() + kPatienceMs * 1e-3;
-  while (!condition()) {
-    if (seconds_now() > end) return false;
-    nap(20);
-  }
-  return true;
-}
-
 class Trial {
  public:
   explicit Trial(const KillTrial& trial) : trial_(trial), random_(trial.seed * 2 + 1) {}
 
   KillReport run() {
-    Result<MemoryRegion> region = MemoryRegion::create("kill_trial", group_bytes(kPayload));
+    Result<MemoryRegion> region = MemoryRegion::create("kill_trial", group_bytes(kTrialPayload));
     void* shared = ::mmap(nullptr, sizeof(Score), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (!region || shared == MAP_FAILED) return KillReport{.failure = "no shared memory"};
     score_ = new (shared) Score{};
     for (std::size_t i = 0; i < kReaders; ++i)
-      readers_[i] = start([&] { read_until_stopped(region->descriptor(), *score_, score_->readers[i]); });
+      readers_[i] = start_forked([&] { read_until_stopped(region->descriptor(), *score_, score_->readers[i]); });
     const double end = seconds_now() + trial_.seconds;
     KillReport report;
     while (report.failure.empty() && report.kills < trial_.kills && seconds_now() < end)
@@ -149,8 +102,8 @@ class Trial {
  private:
   void kill_one(std::span<std::byte> memory, KillReport& report) {
     const std::uint64_t begun = score_->begun;
-    const std::uint64_t sequence = GroupReader(memory.data(), kPayload).published()->sequence;
-    const pid_t writer = start([&] { write_for_ever(memory, *score_, trial_.planted_defect); });
+    const std::uint64_t sequence = GroupReader(memory.data(), kTrialPayload).published()->sequence;
+    const pid_t writer = start_forked([&] { write_for_ever(memory, *score_, trial_.planted_defect); });
     if (writer < 0) {
       report.failure = "fork failed";
       return;
@@ -163,7 +116,7 @@ class Trial {
     if (score_->begun != score_->finished) ++report.mid_write;
     score_->finished = score_->begun.load();
     if (!wrote) report.failure = "a writer did not begin to write";
-    if (GroupReader(memory.data(), kPayload).published()->sequence < sequence) ++report.backwards;
+    if (GroupReader(memory.data(), kTrialPayload).published()->sequence < sequence) ++report.backwards;
     let_readers_look(report);
   }
 

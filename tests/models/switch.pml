@@ -23,7 +23,7 @@
  * before), NO_PROOF (the standby takes over from a task that is only silent), JOURNAL_LATE (journal after the plan),
  * ARMED_STAYS (an abort leaves the armed task), TWO_PLANS (the next plan before the one before is over).
  *
- * With RECORDED the model follows a run of real units (tests/switching/record_runs.cc): what EVENT names happens in the
+ * With RECORDED the model follows a run of real units (switching_stress --record): what EVENT names happens in the
  * order of that run, or the search goes on elsewhere; it ends with an error when the model has made the whole run. */
 
 #define RTPUS 2

@@ -7,6 +7,7 @@ import sys
 import time
 import unittest
 
+from plan_page import PlanPage
 from system import Refused, System, UNITS, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
@@ -22,6 +23,7 @@ tasks:
 SWITCH = TEXT + "configurations: {with_hand: [hand, user], with_drill: [drill, user]}\nstart: with_hand\n"
 STANDBY = TEXT.replace("late: 3}", "late: 3}, standby_for: hand") + "configurations: {run: [hand, user]}\n"
 SEEN = {"with_hand": 1, "with_drill": 2}
+STEPS = 4  # off, kill, spawn, on
 STATES = {"with_hand": ["ON", "NOT-CREATED"], "with_drill": ["NOT-CREATED", "ON"]}
 
 
@@ -88,10 +90,14 @@ class Resource(unittest.TestCase):
         with System(SWITCH) as system:
             now = "with_hand"
             self.await_states(system, STATES[now])
-            for _ in range(ROUNDS):
+            now = "with_drill"
+            self.assertEqual(system.call("switch", configuration=now)["end"], "done")
+            page = PlanPage(system)
+            for number in range(ROUNDS):
                 target = "with_drill" if now == "with_hand" else "with_hand"
                 who = random.choice(["first", "second", "manager"])
-                system.kill_in_a_switch(who, target, random.random() * 0.06)
+                hit = system.kill_in_a_switch(who, target, page, (number + SEED) % STEPS, random.choice((0, 0.01)))
+                print(f"kills: 1 ({who}, {hit})", file=sys.stderr)
                 await_that(lambda: self.states(system) in STATES.values() and system.state("user") == "ON", 20,
                            f"one of them (killed {who} in a switch to {target}); {self.states(system)}")
                 now = next(name for name, states in STATES.items() if states == self.states(system))
@@ -99,7 +105,6 @@ class Resource(unittest.TestCase):
                 if ROUNDS > 1:
                     time.sleep(4)  # three deaths in 10 s and a unit is given up
             self.no_second_user(system)
-        print(f"kills: {ROUNDS}", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import sys
 import time
 import unittest
 
+from plan_page import PlanPage
 from system import Refused, System, UNITS, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
@@ -26,6 +27,7 @@ start: with_light
 """
 PREEMPTIVE = TEXT.replace("policy: edf}", "policy: edf, executor: preemptive}")
 SETS = {"with_light": {"light", "user", "beside"}, "with_heavy": {"heavy", "user", "beside"}}
+STEPS = 4  # check and reinit of the user, off of the one and on of the other
 ARC = {"with_light": [0.5, 1], "with_heavy": [2, 4, 6]}
 
 
@@ -59,15 +61,18 @@ class SlowSwitch(unittest.TestCase):
                 self.await_arc(system, target)
 
     def test_whoever_dies_it_ends_on_one_side(self):
-        """A real-time unit or the manager is killed at any moment of a slow switch."""
+        """A real-time unit or the manager is killed at each step of a slow switch."""
         random.seed(SEED)
         print(f"seed {SEED}", file=sys.stderr)
         with System(random.choice((TEXT, PREEMPTIVE))) as system:
-            now = "with_light"
-            for _ in range(ROUNDS):
+            now = "with_heavy"
+            self.assertEqual(system.call("switch", configuration=now)["end"], "done")
+            page = PlanPage(system)
+            for number in range(ROUNDS):
                 target = "with_heavy" if now == "with_light" else "with_light"
                 who = random.choice(["first", "second", "manager"])
-                system.kill_in_a_switch(who, target, random.random() * 0.02)
+                hit = system.kill_in_a_switch(who, target, page, (number + SEED) % STEPS, random.choice((0, 0.002)))
+                print(f"kills: 1 ({who}, {hit})", file=sys.stderr)
                 found = []
 
                 def is_settled(found=found):

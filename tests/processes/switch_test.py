@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A switch of configurations over real processes: all or nothing, one receipt each, whoever dies meanwhile. A bounded
 count here; more of them are the campaign `process_switch`. CHIMERA_ROUNDS: switches beside kills."""
-import mmap
 import os
-import pathlib
 import random
 import sys
 import threading
 import time
 import unittest
 
+from plan_page import PlanPage
 from system import Client, Refused, System, UNITS, await_that
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "2"))
@@ -154,39 +153,6 @@ configurations:
                 rounds.go(system, page, PHASES[(number + SEED) % len(PHASES)])
         print(", ".join(f"{n} {phase}" for phase, n in rounds.hit.items()), file=sys.stderr)
         print(f"kills: {rounds.kills}", file=sys.stderr)
-
-
-class PlanPage:
-    """The words of the switch on the decision page, read while the units write them."""
-
-    def __init__(self, system):
-        self.words = self.at = None
-        keeper = pathlib.Path(f"/proc/{system.pids()['keeper']}/fd")
-        for link in keeper.iterdir():
-            if os.readlink(link).startswith("/memfd:chimera-decision"):
-                held = os.open(link, os.O_RDONLY)
-                self.words = mmap.mmap(held, os.fstat(held).st_size, prot=mmap.PROT_READ)
-                os.close(held)
-                break
-        number = 1  # that of the switch which was made
-        self.at = next(at for at in range(0, len(self.words) - 128, 64)
-                       if self.word(at) & 0x3ffff == 3 << 16 | number and self.word(at + 64) & 0xffff == number)
-
-    def word(self, at):
-        return int.from_bytes(self.words[at:at + 8], "little")
-
-    def plan(self):
-        """(number of the plan, its phase)"""
-        word = self.word(self.at)
-        return word & 0xffff, ("aborted", "prepared", "proposed", "committed")[word >> 16 & 3]
-
-    def await_phase(self, last, phase, limit=5):
-        """Until a plan after `last` has come so far, or further; without a pause."""
-        order, end = ("prepared", "proposed", "committed", "aborted"), time.monotonic() + limit
-        while time.monotonic() < end:
-            number, now = self.plan()
-            if number != last and order.index(now) >= order.index(phase):
-                return
 
 
 # When somebody is killed: in that phase, as much later as at most so many seconds.

@@ -274,9 +274,10 @@ class System:
     def kill(self, pid, how=9):  # SIGKILL
         return kill(pid, self.marker, how)
 
-    def kill_in_a_switch(self, who, target, after):
-        """Asks for a switch to `target`, kills `who` so many seconds later, and waits for its successor."""
-        pid = self.pids()[who]
+    def kill_in_a_switch(self, who, target, page, step, later):
+        """Asks for a slow switch to `target`, kills `who` when so many steps are done and so many seconds later, and
+        waits for its successor. How far it was then."""
+        pid, last = self.pids()[who], page.plan()[0]
 
         def ask():
             try:
@@ -288,11 +289,14 @@ class System:
 
         asking = threading.Thread(target=ask)
         asking.start()
-        time.sleep(after)
+        page.await_step(last, step)
+        time.sleep(later)
+        hit = f"{page.plan()[1]}, step {page.step()}"
         assert self.kill(pid), who
         asking.join(30)
         assert not asking.is_alive(), "the switch was not answered"
         await_that(lambda: self.pids().get(who) not in (None, pid), 20, f"a new {who}")
+        return hit
 
     def left_over(self):
         return processes_of(self.marker)

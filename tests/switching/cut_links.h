@@ -44,6 +44,7 @@ class CutLinks final : public SwitchPeers {
   void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept override {
     tell([&] { links_.wish(request, changes_nothing, now); });
   }
+  bool is_wish_open() const noexcept override { return links_.is_wish_open(); }
 
  private:
   template <class Call>

@@ -60,7 +60,7 @@ std::string judged(const fs::path& path) {
   return run.is_legal() ? out + "legal\n" : out + "run:\n" + run.text();
 }
 
-struct Description : testing::TestWithParam<fs::path> {};
+struct Description : ::testing::TestWithParam<fs::path> {};
 struct FaultyDescription : Description {};
 struct GoodDescription : Description {};
 
@@ -82,8 +82,8 @@ TEST_P(GoodDescription, IsLegal) {
   EXPECT_EQ(report.substr(0, report.find("run:\n")).find("error:"), std::string::npos) << report;
 }
 
-INSTANTIATE_TEST_SUITE_P(Verify, FaultyDescription, testing::ValuesIn(descriptions("faulty")), name_of);
-INSTANTIATE_TEST_SUITE_P(Verify, GoodDescription, testing::ValuesIn(descriptions("good")), name_of);
+INSTANTIATE_TEST_SUITE_P(Verify, FaultyDescription, ::testing::ValuesIn(descriptions("faulty")), name_of);
+INSTANTIATE_TEST_SUITE_P(Verify, GoodDescription, ::testing::ValuesIn(descriptions("good")), name_of);
 
 }  // namespace
 }  // namespace chimera

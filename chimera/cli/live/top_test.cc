@@ -8,7 +8,7 @@
 #include "chimera/cli/live/columns.h"
 #include "chimera/cli/live/testing/test_answers.h"
 
-namespace chimera::cli {
+namespace chimera::cli::top_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -170,4 +170,4 @@ TEST(Top, AWideScreenNamesTheOldestInput) {
 }
 
 }  // namespace
-}  // namespace chimera::cli
+}  // namespace chimera::cli::top_test

@@ -73,7 +73,7 @@ struct Unit {
     auto made = HeapTaskSet::create(spec, components, place);
     EXPECT_TRUE(made.has_value()) << (made ? "" : made.error().message.c_str());
     tasks = *std::move(made);
-    switching = std::make_unique<SwitchLinks>(*tasks, others, decision, me);
+    switching = std::make_unique<SwitchLinks>(*tasks, others, *peers, decision, me);
     if (between) in_between = between(me, *switching);
     edge = std::make_unique<RtpuControl>(spec, *tasks, others, service, decision, me, seconds(1));
     RunOptions options;

@@ -35,7 +35,7 @@ void await(const Disk& disk, int calls) {
   ASSERT_GE(disk.calls, calls);
 }
 
-struct BackgroundWriters : testing::Test {
+struct BackgroundWriters : ::testing::Test {
   BackgroundWriter writer{milliseconds(1), milliseconds(200)};
   chimera_fault fault{};
 };

@@ -8,7 +8,7 @@
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
-namespace chimera {
+namespace chimera::peer_segment_test {
 namespace {
 
 struct Producer {
@@ -91,4 +91,4 @@ TEST_F(PeerSegmentTest, RefusesADescriptorThatIsNoMemory) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::peer_segment_test

@@ -10,7 +10,7 @@
 
 #include "chimera/runtime/tap_ring.h"
 
-namespace chimera {
+namespace chimera::tap_rows_test {
 namespace {
 
 constexpr std::uint32_t kBytes[] = {24, 8, 0};
@@ -21,7 +21,7 @@ struct Published {
   std::int64_t values[3] = {};
 };
 
-struct Rows : testing::Test {
+struct Rows : ::testing::Test {
   std::unique_ptr<TapRing> ring = std::make_unique<TapRing>();
   Tap tap{*ring};
   TapReader reader{*ring};
@@ -143,4 +143,4 @@ TEST_F(Rows, OfRandomRecordsAreNeverHalf) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::tap_rows_test

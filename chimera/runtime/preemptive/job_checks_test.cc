@@ -27,7 +27,7 @@ struct ThreeTasks {
   Task tasks_[3];
 };
 
-struct JobChecksTest : ThreeTasks, testing::Test {
+struct JobChecksTest : ThreeTasks, ::testing::Test {
   JobThread plain_{tasks_[0]}, other_{tasks_[1]}, exact_{tasks_[2]};
   JobChecks checks_{3, kShortest};
 };

@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-class JobThreadTest : public testing::Test {
+class JobThreadTest : public ::testing::Test {
  protected:
   JobThreadTest() {
     spec_.period = milliseconds(1);

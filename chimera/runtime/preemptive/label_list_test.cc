@@ -145,7 +145,7 @@ TEST(LabelList, KeepsItsInvariantsOverRandomEntries) {
     const auto random = [&source] { return static_cast<std::uint32_t>(source()); };
     Kernel k(policy, 60);
     std::vector<bool> ready(60);
-    for (int step = 0; step < 20'000 && !testing::Test::HasFailure(); ++step) {
+    for (int step = 0; step < 20'000 && !::testing::Test::HasFailure(); ++step) {
       const std::uint32_t task = random() % 60;
       const auto fresh = [&] {
         LabelledJob made = job(task, random() % 40, random() % 3);

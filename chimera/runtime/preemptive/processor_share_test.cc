@@ -5,13 +5,13 @@
 
 #include <array>
 
-namespace chimera {
+namespace chimera::processor_share_test {
 namespace {
 
 constexpr Nanoseconds kNow = seconds(1000);
 constexpr TaskId kImportant(0u), kLess(1u);
 
-class ProcessorShareTest : public testing::Test {
+class ProcessorShareTest : public ::testing::Test {
  protected:
   ProcessorShareTest() {
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -100,4 +100,4 @@ TEST_F(ProcessorShareTest, CountsNothingWithoutALimit) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::processor_share_test

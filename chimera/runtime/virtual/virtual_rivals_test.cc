@@ -7,7 +7,7 @@
 
 #include "chimera/runtime/testing/virtual_units.h"
 
-namespace chimera {
+namespace chimera::virtual_rivals_test {
 namespace {
 
 using testing::act_at;
@@ -193,4 +193,4 @@ TEST_P(VirtualRivals, TwoPrimariesMayFailAtOnce) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::virtual_rivals_test

@@ -8,7 +8,7 @@
 #include "chimera/runtime/testing/tool_scene.h"
 #include "chimera/runtime/testing/virtual_units.h"
 
-namespace chimera {
+namespace chimera::virtual_slow_switches_test {
 namespace {
 
 using namespace testing::tool_scene;
@@ -97,4 +97,4 @@ TEST_P(VirtualSlowSwitches, WhoeverDiesWhoLivesComesToOneSide) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::virtual_slow_switches_test

@@ -7,7 +7,7 @@
 
 #include "chimera/runtime/testing/virtual_units.h"
 
-namespace chimera {
+namespace chimera::virtual_standbys_test {
 namespace {
 
 using testing::VirtualUnits;
@@ -193,4 +193,4 @@ TEST_P(VirtualStandbysTest, ARunRepeatsExactly) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::virtual_standbys_test

@@ -13,6 +13,20 @@ namespace {
 // As the manager has them.
 constexpr Nanoseconds kPatience = seconds(10);
 
+class GapsOfUnits final : public NeededGaps {
+ public:
+  explicit GapsOfUnits(VirtualPeers& peers) noexcept : peers_(peers) {}
+  Nanoseconds for_on(TaskId task) const noexcept override {
+    const TaskSpec& spec = peers_.spec().tasks[task.index];
+    const TaskSet* const there = peers_.tasks(spec.rtpu);
+    return there == nullptr ? Nanoseconds{}
+                            : IdleGap::needed(spec, there->tasks()[task.index].profile, Method::kOn);
+  }
+
+ private:
+  VirtualPeers& peers_;
+};
+
 Nanoseconds later(Nanoseconds a, Nanoseconds b) noexcept { return a == kNever ? b : b == kNever ? a : std::max(a, b); }
 
 }  // namespace
@@ -73,7 +87,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   receipt.way = way;
   if (!answer) return refuse(receipt, answer);
   present_ = &receipt;
-  order(request.set, receipt.way.slow, now);
+  order(now + kPatience);
 }
 
 SwitchWay VirtualSwitches::judge_way() noexcept {
@@ -81,24 +95,26 @@ SwitchWay VirtualSwitches::judge_way() noexcept {
     if (((living() >> r) & 1u) == 0) continue;
     ContextConstants& constants = peers_.tasks(RtpuId(r))->constants();
     constants.read_foreign();
-    return ways_.judge(plan_, standing_, constants_, constants);
+    return ways_.judge(plan_, standing_, constants_, constants, GapsOfUnits(peers_));
   }
   return {};
 }
 
-void VirtualSwitches::order(std::uint32_t set, std::uint8_t slow, Nanoseconds now) noexcept {
+// The next try of the present one.
+void VirtualSwitches::order(Nanoseconds until) noexcept {
+  until_ = until;
   SwitchOrder order;
   for (std::size_t t = 0; t < standing_.size(); ++t)
     if (standing_[t].state == State::kOn) order.on.add(TaskId(t));
   n_tasks_ = n_variables_ = 0;
   order.number = next_plan(agreement().plan().number);
   order.members = living();
-  order.after = set;
-  order.target = tasks_of(peers_.spec(), set);
-  order.slow = slow;
+  order.after = present_->after;
+  order.target = tasks_of(peers_.spec(), present_->after);
+  order.slow = present_->way.slow;
   order.constants = constants_;
-  order.until = now + kPatience;
-  order.lead = lead();
+  order.until = until;
+  order.lead = lead_of_try(lead(), present_->tries);
   agreement().announce(order);
   ring();
 }
@@ -107,16 +123,18 @@ TaskStanding VirtualSwitches::standing_of(TaskId task) const noexcept {
   return {peers_.state(task), !peers_.presence(task).lives};
 }
 
-// What found no gap for `on`, or a device that is not ready, is done under the flag.
-bool VirtualSwitches::try_slowly(Nanoseconds now) noexcept {
-  const std::uint8_t slow = reason_to_go_slowly(present_->why);
-  if (slow == 0 || present_->way.slow != 0) return false;
+// What found no gap for `on`, or a device that is not ready, is done under the flag; what was only late has more time.
+bool VirtualSwitches::try_again(Nanoseconds now) noexcept {
+  const std::uint8_t slow = present_->way.slow == 0 ? reason_to_go_slowly(present_->why) : 0;
+  const bool was_late = present_->why == NoSwitch::kLate && now < until_;
+  if ((slow == 0 && !was_late) || present_->tries >= kMostTries) return false;
   for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = standing_of(TaskId(t));
   if (!planner_.plan(present_->after, standing_, plan_)) return false;
   present_->why = NoSwitch::kNone;
   present_->task = {};
-  present_->way.slow = slow;
-  order(present_->after, slow, now);
+  if (slow != 0) present_->way.slow = slow;
+  ++present_->tries;
+  order(slow != 0 ? now + kPatience : until_);
   return true;
 }
 
@@ -146,7 +164,7 @@ void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept 
   if (!present_->not_back.is_valid()) present_->not_back = part.not_back;
   present_->armed = later(present_->armed, part.armed);
   if (part.end == SwitchEnd::kDone) present_->at = part.at;
-  if (part.why == NoSwitch::kNone || present_->why != NoSwitch::kNone) return;
+  if (part.why == NoSwitch::kNone || !(present_->why == NoSwitch::kNone || is_of_another(present_->why))) return;
   present_->why = part.why;
   present_->task = part.task;
   present_->variable = part.variable;
@@ -167,7 +185,7 @@ void VirtualSwitches::finish(Nanoseconds now) noexcept {
     if (((living() >> r) & 1u) != 0 && !members_[r].is_over(plan.number)) return;
   const bool is_committed = plan.phase == SwitchPhase::kCommitted;
   if (is_committed) constants_ = present_->after;
-  if (!is_committed && try_slowly(now)) return;
+  if (!is_committed && try_again(now)) return;
   present_->end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
   if (is_committed) present_->at = agreement().at(plan);
   if (is_committed) present_->why = NoSwitch::kNone;

@@ -52,6 +52,7 @@ class VirtualSwitches {
       if (is_new_wish(request.set, changes_nothing, static_cast<bool>(all_.wish_), all_.wish_.set))
         all_.wish_ = request;
     }
+    bool is_wish_open() const noexcept override { return static_cast<bool>(all_.wish_); }
     bool is_over(std::uint16_t number) const noexcept { return progress_.over == number; }
 
    private:
@@ -64,10 +65,10 @@ class VirtualSwitches {
   std::uint16_t living() const noexcept;
   Nanoseconds lead() const noexcept;
   void ring() noexcept;
-  void order(std::uint32_t set, std::uint8_t slow, Nanoseconds now) noexcept;
+  void order(Nanoseconds until) noexcept;
   SwitchWay judge_way() noexcept;
   TaskStanding standing_of(TaskId task) const noexcept;
-  bool try_slowly(Nanoseconds now) noexcept;
+  bool try_again(Nanoseconds now) noexcept;
   void finish(Nanoseconds now) noexcept;
   void sort_reinitialised() noexcept;
   void add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept;
@@ -82,6 +83,7 @@ class VirtualSwitches {
   std::span<TaskStanding> standing_;  // by task, when a plan is judged
   SwitchReceipts receipts_;
   SwitchReceipt* present_ = nullptr;  // of the switch under way
+  Nanoseconds until_;                 // its deadline
   std::size_t n_tasks_ = 0, n_variables_ = 0;  // in it
   std::uint32_t constants_ = kNoSet;           // the set whose constants are in force
   SwitchRequest wish_;  // of the task that asked last: waits for the switch that is under way to end

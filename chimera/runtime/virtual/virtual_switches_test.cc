@@ -11,7 +11,7 @@
 #include "chimera/runtime/testing/switch_scene.h"
 #include "chimera/runtime/testing/virtual_units.h"
 
-namespace chimera {
+namespace chimera::virtual_switches_test {
 namespace {
 
 using namespace testing::switch_scene;
@@ -169,4 +169,4 @@ TEST_P(VirtualSwitchesTest, OneAtATime) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::virtual_switches_test

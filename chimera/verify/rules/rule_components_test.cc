@@ -24,7 +24,7 @@ Descriptor component(const std::string& name) {
 }
 
 /// A folder under the test's own temporary one.
-struct RuleComponents : testing::Test {
+struct RuleComponents : ::testing::Test {
   std::string root = testing::TempDir() + "chimera_rule_components_" + std::to_string(::getpid()) + "/";
   void SetUp() override { std::filesystem::create_directories(root + "one"); }
   void TearDown() override { std::filesystem::remove_all(root); }

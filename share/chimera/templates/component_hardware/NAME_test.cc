@@ -15,7 +15,7 @@
 
 using namespace chimera;
 
-struct @TYPE@ : testing::Test {
+struct @TYPE@ : ::testing::Test {
   Rig rig{"@NAME@"};
   int device = -1;  // the other end
   int line = -1;    // a second look at the component's end

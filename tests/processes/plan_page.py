@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far the switch that is under way has come, as the processes see it."""
+import mmap
+import os
+import pathlib
+import time
+
+
+class PlanPage:
+    """The words of the switch on the decision page, read while the units write them. Requires: one switch was made, and
+    committed."""
+
+    def __init__(self, system):
+        self.words = self.at = None
+        keeper = pathlib.Path(f"/proc/{system.pids()['keeper']}/fd")
+        for link in keeper.iterdir():
+            if os.readlink(link).startswith("/memfd:chimera-decision"):
+                held = os.open(link, os.O_RDONLY)
+                self.words = mmap.mmap(held, os.fstat(held).st_size, prot=mmap.PROT_READ)
+                os.close(held)
+                break
+        number = 1  # that of the switch which was made
+        self.at = next(at for at in range(0, len(self.words) - 128, 64)
+                       if self.word(at) & 0x3ffff == 3 << 16 | number and self.word(at + 64) & 0xffff == number)
+
+    def word(self, at):
+        return int.from_bytes(self.words[at:at + 8], "little")
+
+    def plan(self):
+        """(number of the plan, its phase)"""
+        word = self.word(self.at)
+        return word & 0xffff, ("aborted", "prepared", "proposed", "committed")[word >> 16 & 3]
+
+    def step(self):
+        """Of a slow switch: so many of its steps are done, or "back, N left"."""
+        turn = self.word(self.at + 64) >> 16 & 0xffff
+        return f"back, {turn & 0x7fff} left" if turn & 0x8000 else turn
+
+    def await_step(self, last, step, limit=5):
+        """Until a slow plan after `last` has done so many steps, or is over; without a pause."""
+        end = time.monotonic() + limit
+        while time.monotonic() < end:
+            number, phase = self.plan()
+            if number != last and (phase in ("committed", "aborted") or self.step() == step):
+                return
+
+    def await_phase(self, last, phase, limit=5):
+        """Until a plan after `last` has come so far, or further; without a pause."""
+        order, end = ("prepared", "proposed", "committed", "aborted"), time.monotonic() + limit
+        while time.monotonic() < end:
+            number, now = self.plan()
+            if number != last and order.index(now) >= order.index(phase):
+                return
