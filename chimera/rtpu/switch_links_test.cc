@@ -247,6 +247,30 @@ TEST_F(SwitchLinksTest, AnOrderThatNobodyWroteIsAborted) {
   EXPECT_EQ(scene.illegal, 0);
 }
 
+// Between its own agreement and the commit a unit still aborts when a task that takes part fails.
+TEST_F(SwitchLinksTest, WhatComesAfterTheOwnAgreementStillAborts) {
+  (void)units->switch_to(kObserved, milliseconds(20));
+  testing::Unit* agreed = nullptr;  // steps the units one by one, until one has agreed and the other has not
+  while (agreed == nullptr) {
+    units->now = units->now + microseconds(100);
+    for (const auto& unit : units->units) {
+      (void)unit->executive->run(units->now - units->keeper.origin);
+      const PlanWord plan = PlanWord::of(units->decision.switching.plan);
+      if (plan.phase == SwitchPhase::kProposed) agreed = unit.get();
+      ASSERT_NE(plan.phase, SwitchPhase::kAborted);
+      if (agreed != nullptr) break;
+    }
+  }
+  agreed->tasks->flag().raise(true);
+  units->change();  // an edge
+  units->now = units->now + microseconds(100);
+  (void)agreed->executive->run(units->now - units->keeper.origin);
+  EXPECT_EQ(PlanWord::of(units->decision.switching.plan).phase, SwitchPhase::kAborted);
+  units->run(milliseconds(30));
+  EXPECT_EQ(agreed->segment.block.switch_part().why, NoSwitch::kFlagRaised);
+  EXPECT_TRUE(are_on(kSets[kDirect]));
+}
+
 TEST_F(SwitchLinksTest, WithoutTimeToAgreeItIsAborted) {
   const std::uint16_t number = units->switch_to(kObserved, Nanoseconds{});
   units->run(milliseconds(10));

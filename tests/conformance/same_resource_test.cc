@@ -20,7 +20,7 @@ struct Device {
   std::string fails;      // the method that answers with a fault: "init drill"
   int users = 0;
   int not_ready = 0;      // so often `on` of the drill answers not yet
-  int hand_not_ready = 0; // the same of the hand
+  int hand_not_ready = 0, arm_not_ready = 0;  // the same of the hand and the arm
   std::uint64_t hand_fails_at = 0;  // cycle of the hand that is a fault; 0: none
 };
 Device device;
@@ -73,6 +73,7 @@ struct Drill {
 struct Arm {
   In<double> force{"force", "N"};
   Out<double> u{"u", "N", initial = 0.0};
+  Outcome on(Cycle) { return device.arm_not_ready-- > 0 ? not_yet() : ok(); }
   void cycle(Cycle) { *u = *force; }
 };
 
@@ -237,6 +238,19 @@ TEST_P(SameResource, OnTheWayBackADeviceHasItsTime) {
   (void)start({to(kWithDrill, milliseconds(5))});
   device.hand_not_ready = 3;
   EXPECT_EQ(runner_->run(milliseconds(40)), RunEnd::kTime);
+  EXPECT_EQ(runner_->receipts()[0].end, SwitchEnd::kAborted);
+  EXPECT_FALSE(runner_->receipts()[0].not_back.is_valid());
+  EXPECT_EQ(states(), (Story{"ON", "NOT-CREATED", "ON"}));
+}
+
+// 9 s each: more together than one has.
+TEST_P(SameResource, OnTheWayBackEachDeviceHasItsTime) {
+  with_drill_ = {kDrill};
+  sets_[1].order = with_drill_;
+  device.fails = "on drill";
+  (void)start({to(kWithDrill, milliseconds(5))});
+  device.hand_not_ready = device.arm_not_ready = 9000;
+  EXPECT_EQ(runner_->run(seconds(20)), RunEnd::kTime);
   EXPECT_EQ(runner_->receipts()[0].end, SwitchEnd::kAborted);
   EXPECT_FALSE(runner_->receipts()[0].not_back.is_valid());
   EXPECT_EQ(states(), (Story{"ON", "NOT-CREATED", "ON"}));
