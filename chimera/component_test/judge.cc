@@ -199,6 +199,17 @@ struct Judge {
     ok("bad inputs", tried);
   }
 
+  void safe_state() {
+    const SafeStateRecord& record = trial.troubled.record().safe_state;
+    if (!reached("safe state", Stage::kSafeState)) return;
+    if (!record.is_tried) return not_judged("safe state", "it has no output that is a safe state");
+    if (record.cycles == 0)
+      return fails("safe state", "not reached within 5 s of cycles under the illegal-configuration flag");
+    if (!record.is_left) return fails("safe state", "still told 5 s of cycles after the flag went down");
+    ok("safe state", "reached under the illegal-configuration flag in cycle " + std::to_string(record.cycles) +
+                         ", and left when it is down");
+  }
+
   void leftovers() {
     if (!reached("leftovers", Stage::kLeftovers)) return;
     const Record& record = trial.troubled.record();
@@ -261,6 +272,7 @@ TrialReport judge(const Trial& trial, const Circumstances& about) {
   judge.repeatable();
   judge.faults();
   judge.bad_inputs();
+  judge.safe_state();
   judge.leftovers();
   judge.measure();
   return judge.report;

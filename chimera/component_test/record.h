@@ -18,7 +18,7 @@
 namespace chimera::component_test {
 
 /// Where the child is. kEnd: it came to the end of its scenario.
-enum class Stage : std::uint32_t { kLoad, kStart, kRows, kFaults, kBadInputs, kLeftovers, kStop, kEnd };
+enum class Stage : std::uint32_t { kLoad, kStart, kRows, kFaults, kBadInputs, kSafeState, kLeftovers, kStop, kEnd };
 
 /// One cycle.
 struct RowRecord {
@@ -51,6 +51,13 @@ struct Trouble {
   bool is_finite = true;     ///< the outputs of the cycles after it
   bool is_rejected = false;  ///< a cycle answered with a fault
   char text[CHIMERA_FAULT_TEXT] = {};
+};
+
+/// What its outputs that are a safe state said while the illegal-configuration flag was up, and when it was down again.
+struct SafeStateRecord {
+  bool is_tried = false;    ///< it has such outputs, and was ON
+  std::uint32_t cycles = 0; ///< under the flag until all were true; 0: they never were
+  bool is_left = false;     ///< one was false when the flag was down again
 };
 
 /// What spoil() (component_test/inputs.h) knows.
@@ -87,6 +94,7 @@ struct Record {
   MethodRecord methods[CHIMERA_METHODS];
   Trouble faults[CHIMERA_METHODS];
   Trouble bad_inputs[kBadInputs];
+  SafeStateRecord safe_state;
   Round rounds[kRounds];
   char left_open[200] = {};  ///< a descriptor that the last round left
 };

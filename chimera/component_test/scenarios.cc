@@ -2,6 +2,7 @@
 // Goes through the rows, faults and bad inputs of a test run inside of the child.
 #include "chimera/component_test/scenarios.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -102,6 +103,24 @@ class Troubles {
     record_.stage = Stage::kBadInputs;
     for (std::size_t kind = 0; kind < kBadInputs; ++kind) bad_input(kind);
   }
+  void safe_state() {
+    record_.stage = Stage::kSafeState;
+    const std::vector<std::size_t> places = safe_places();
+    if (places.empty() || revive(task_, nullptr) == Return::kNot) return;
+    const auto are_all = [&](bool expected) {
+      run_good(1);
+      task_.copy_outputs(outputs_);
+      return std::ranges::all_of(places, [&](std::size_t at) { return outputs_[at] != std::byte{0}; }) == expected;
+    };
+    const auto most = static_cast<std::uint32_t>(seconds(5).count / task_.task().spec->period.count) + 2;
+    record_.safe_state.is_tried = true;
+    run_good(kBadRows);
+    task_.raise_flag(true);
+    for (std::uint32_t n = 1; n <= most && record_.safe_state.cycles == 0; ++n)
+      if (are_all(true)) record_.safe_state.cycles = n;
+    task_.raise_flag(false);
+    for (std::uint32_t n = 1; n <= most && !record_.safe_state.is_left; ++n) record_.safe_state.is_left = are_all(false);
+  }
   void leftovers() {
     record_.stage = Stage::kLeftovers;
     Descriptors before;
@@ -130,6 +149,14 @@ class Troubles {
       trouble->is_finite = trouble->is_finite && are_finite();
     }
     return completed;
+  }
+  /// Where the outputs that are a safe state lie.
+  std::vector<std::size_t> safe_places() const {
+    std::vector<std::size_t> places;
+    std::size_t payload = 0;
+    for (const OutputPlace& place : output_places(scenario_.configuration.spec(), payload))
+      if (scenario_.entry.descriptor.ports[place.spec->declared].safe_state) places.push_back(place.offset);
+    return places;
   }
   bool are_finite() {
     task_.copy_outputs(outputs_);
@@ -241,6 +268,7 @@ void run_faults(const Scenario& scenario, std::span<const RowRecord> good) {
   Troubles troubles(scenario, good, *task);
   troubles.faults();
   troubles.bad_inputs();
+  troubles.safe_state();
   troubles.leftovers();
   scenario.record.record().stage = Stage::kEnd;
 }

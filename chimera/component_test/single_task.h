@@ -35,6 +35,8 @@ class SingleTask {
   void feed(std::span<const std::byte> row) noexcept;
   /// Carries out a signal; the state afterwards.
   State signal(Signal signal);
+  /// The illegal-configuration flag, for the cycles from here on.
+  void raise_flag(bool is_up) noexcept { set_->flag().raise(is_up); }
   /// Releases the task once, a period after the last time: its cycle and what it does beside. Requires: ON.
   RowRecord cycle() noexcept;
   /// The outputs as they are published, packed as output_places() says.

@@ -17,7 +17,8 @@ namespace {
 
 enum Misdeed : std::int32_t {
   kNone, kNaN, kOutOfRange, kNeverWritten, kAllocates, kFrees, kSystemCall, kForgetful, kUnforgiving, kSaysNo,
-  kPoisoned, kCrash, kHang, kOpen, kLeak, kThrows, kRefuses, kCallsInOn
+  kPoisoned, kCrash, kHang, kOpen, kLeak, kThrows, kRefuses, kCallsInOn, kNeverSafe,
+  kStaysSafe
 };
 
 // Differs from one process to the next.
@@ -28,9 +29,10 @@ double present_number() {
 
 struct Misfit {
   In<double> x{"x", "1", doc = "Any number."};
-  InConst<std::int32_t> misdeed{"misdeed", "1", initial = 0, range(0, 17), doc = "What it does wrong."};
+  InConst<std::int32_t> misdeed{"misdeed", "1", initial = 0, range(0, 19), doc = "What it does wrong."};
   Out<double> y{"y", "1", range(-1e6, 1e6), doc = "x, as far as the misdeed lets it be."};
   Out<double> z{"z", "1", doc = "Written but for one misdeed."};
+  Out<bool> calm{"calm", safe_state, initial = false, doc = "The flag is up, as far as the misdeed lets it say so."};
 
   Outcome init() {
     if (*misdeed == kRefuses) return fault("refuses on purpose");
@@ -54,6 +56,7 @@ struct Misfit {
     if (*misdeed == kSystemCall) ::syscall(SYS_getppid);
     *y = output(c);
     if (*misdeed != kNeverWritten) *z = 0;
+    *calm = *misdeed == kNeverSafe ? false : c.illegal() || (*misdeed == kStaysSafe && *calm);
     return ok();
   }
   bool error() {

@@ -58,7 +58,7 @@ TEST_F(TestComponent, PassesAGoodOneAndSaysSo) {
   EXPECT_EQ(output.code, kOk) << output.out << output.err;
   EXPECT_TRUE(output.out.starts_with("t_misfit: passes (inputs: generated, seed 1)\n")) << output.out;
   EXPECT_EQ(line(output, "start"),
-            "  ok          start         4 ports as the descriptor says; methods init on cycle kill error clear");
+            "  ok          start         5 ports as the descriptor says; methods init on cycle kill error clear");
   EXPECT_EQ(line(output, "cycles"), "  ok          cycles        200 cycles completed");
   EXPECT_EQ(line(output, "faults"),
             "  ok          faults        came back after a fault in init: spawn, on; on: clear, on; cycle: clear, on; "
@@ -113,6 +113,16 @@ TEST_F(TestComponent, SurvivesACrashAndAHang) {
   EXPECT_EQ(misdeed(11, "cycles"), "  fails       cycles        killed by signal 6 (Aborted) in cycle 3");
   options_.patience = milliseconds(300);
   EXPECT_EQ(misdeed(12, "cycles"), "  fails       cycles        no progress, ended in cycle 3");
+}
+
+TEST_F(TestComponent, FindsASafeStateThatIsNotReachedOrNotLeft) {
+  EXPECT_EQ(line(run(), "safe state"),
+            "  ok          safe state    reached under the illegal-configuration flag in cycle 1, and left when it is "
+            "down");
+  EXPECT_EQ(misdeed(18, "safe state"),
+            "  fails       safe state    not reached within 5 s of cycles under the illegal-configuration flag");
+  EXPECT_EQ(misdeed(19, "safe state"),
+            "  fails       safe state    still told 5 s of cycles after the flag went down");
 }
 
 TEST_F(TestComponent, FindsWhatKillLeaves) {
