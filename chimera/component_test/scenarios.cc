@@ -119,7 +119,8 @@ class Troubles {
     for (std::uint32_t n = 1; n <= most && record_.safe_state.cycles == 0; ++n)
       if (are_all(true)) record_.safe_state.cycles = n;
     task_.raise_flag(false);
-    for (std::uint32_t n = 1; n <= most && !record_.safe_state.is_left; ++n) record_.safe_state.is_left = are_all(false);
+    for (std::uint32_t n = 1; n <= most && !record_.safe_state.is_left; ++n)
+      record_.safe_state.is_left = are_all(false);
   }
   void leftovers() {
     record_.stage = Stage::kLeftovers;
