@@ -4,13 +4,14 @@ tells it another one. When its task is killed the guard does; when the keeper is
 import os
 import pathlib
 import select
+import socket
 import struct
 import threading
 import time
 import tty
 import unittest
 
-from system import UNITS, System, await_that
+from system import BUILD, UNITS, System, await_that
 
 TEXT = UNITS + """
 tasks:
@@ -86,6 +87,37 @@ class Drive:
         before = self.angle
         time.sleep(0.1)
         return abs(self.angle - before) > 1e-9
+
+
+class ModbusDevice:
+    """Holding registers behind TCP, for any number of connections. `writes`: (the connection, the first register), in
+    order; what it was told last it does for ever."""
+
+    def __init__(self):
+        self.door = socket.create_server(("127.0.0.1", 0))
+        self.port, self.writes, self.n = self.door.getsockname()[1], [], 0
+        threading.Thread(target=self.run, daemon=True).start()
+
+    def run(self):
+        while True:
+            try:
+                client = self.door.accept()[0]
+            except OSError:
+                return
+            self.n += 1
+            threading.Thread(target=self.serve, args=(client, self.n), daemon=True).start()
+
+    def serve(self, client, connection):
+        with client, client.makefile("rb") as stream:
+            while len(head := stream.read(7)) == 7:
+                request = stream.read(struct.unpack(">HHHB", head)[2] - 1)
+                if request[0] == 16:
+                    self.writes.append((connection, struct.unpack(">H", request[6:8])[0]))
+                said = request[:5] if request[0] == 16 else bytes((request[0], 2, 0, 0))
+                try:
+                    client.sendall(head[:4] + struct.pack(">HB", len(said) + 1, head[6]) + said)
+                except OSError:
+                    return
 
 
 class Frames(unittest.TestCase):
@@ -186,6 +218,22 @@ class Frames(unittest.TestCase):
             await_that(lambda: [e for e in system.events() if e["kind"] == "safe" and e.get("task") == "drive" and
                                 "safe_after" in e["text"]], 10, "the event")
             system.await_state("drive", "ON")
+
+    @unittest.skipUnless((BUILD / "components/modbus_io.so").exists(), "modbus_io is not built")
+    def test_a_modbus_device_is_told_over_a_connection_of_its_own(self):
+        device = ModbusDevice()
+        self.addCleanup(device.door.close)
+        text = TEXT.replace("serial_frame", "modbus_io").replace(
+            "alias: {command: torque}", "alias: {input: [level], contact: [], holding: [torque], coil: []}")
+        text = text.replace("LINE", f"'tcp:127.0.0.1:{device.port}'").replace("RATE", "100 Hz").replace("TORQUE", "7")
+        with System(text) as system:
+            system.await_state("drive", "ON")
+            await_that(lambda: device.writes[-1:] == [(1, 7)], 10, "the device to turn")
+            system.kill(system.pids()["second"])
+            await_that(lambda: (2, 0) in device.writes, 10, "the safe frame")
+            self.assertEqual(set(device.writes[:device.writes.index((2, 0))]), {(1, 7)})
+            system.await_state("drive", "ON")
+            await_that(lambda: device.writes[-1] == (3, 7), 10, "the device to turn again")
 
     def test_a_task_that_was_turned_off_leaves_nothing_to_write(self):
         with self.start() as system:

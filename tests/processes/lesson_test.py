@@ -92,6 +92,13 @@ class Standby(Typed):
             self.assertRegex(self.said["switch"], r"1 task arrives, 1 leaves, \d+ cycles? lost\n.*q_ref moves "
                                                   r"by [^ ]+ rad, limit 0.005 rad\n")
             self.assertIn("figure_3d", self.said["receipts"])
+            receipts = sorted(system.call("receipts")["receipts"], key=lambda one: one["number"])
+            self.assertEqual([(one["way"], one["from"], one["to"], one["end"]) for one in receipts],
+                             [("takeover", "figure_3d", "figure_3d", "done"),
+                              ("fast", "figure_3d", "figure_3d", "done")])
+            for one in receipts:
+                q_ref, = [variable for variable in one["variables"] if variable["variable"] == "q_ref"]
+                self.assertEqual((q_ref["limit"], q_ref["beyond"]), (0.005, False), one)
 
 
 class SafeMachine(Typed):

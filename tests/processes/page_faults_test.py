@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From arming on no real-time thread takes a page fault: a switch brings no page in for the first time. Counted by the
-kernel for each thread with a real-time policy, over switches there and back and over the first ones, in executives and
-where each task has a thread. Memory that is locked in a release build only; else it says so and is skipped."""
+"""From arming on no real-time thread takes a page fault: a switch brings no page in for the first time, a slow one with
+`kill`, `init` and `reinit` and the takeover by a standby neither. Counted by the kernel for each thread with a real-time
+policy, over switches there and back and over the first ones, in executives and where each task has a thread. And the
+guard stands above all of them, with its memory locked. Memory is locked in a release build only; else it says so and is
+skipped."""
 import os
 import pathlib
 import sys
 
+import frames_test
+import resource_test
+import slow_switch_test
+import standby_test
 from switch_test import MIXED, PREEMPTIVE, TEXT
-from system import System
+from system import System, await_that
 
 SWITCHES = int(os.environ.get("CHIMERA_ROUNDS", "20"))
-MINOR, MAJOR, POLICY = 9, 11, 40  # in /proc/PID/stat, from 0
+MINOR, MAJOR, PRIORITY, POLICY = 9, 11, 39, 40  # in /proc/PID/stat, from 0
+ABOVE_ALL = 81  # the bands of a run are counted down from --priority 80
 SCHED_FIFO = "1"
 
 
@@ -34,37 +41,104 @@ def locked_kib(pid):
     return int(next(line for line in status.splitlines() if line.startswith("VmLck:")).split()[1])
 
 
+class Watch:
+    """Page faults of the real-time threads of two units from here on."""
+
+    def __init__(self, system):
+        self.units = {name: pid for name, pid in system.pids().items() if name in ("first", "second")}
+        self.before = {name: page_faults(pid) for name, pid in self.units.items()}
+
+    def is_judged(self):
+        return all(locked_kib(pid) > 0 and self.before[name] for name, pid in self.units.items())
+
+    def more(self, what):
+        found = []
+        for name, pid in self.units.items():
+            if not pathlib.Path(f"/proc/{pid}/task").is_dir():
+                continue  # it was killed
+            for thread, (of, n) in page_faults(pid).items():
+                if more := n - self.before[name].get(thread, (of, n))[1]:
+                    found.append(f"{what}: {more} page faults of thread {of} of {name}")
+        return found
+
+
+def judge_slow(text, there, back):
+    """The same of slow switches, after the first ones there and back: what `init` allocates comes from memory that is
+    locked as it comes, by a thread that is not real-time."""
+    wrong = []
+    with System(text, ("--priority", "80")) as system:
+        for number in range(SWITCHES):
+            watch = Watch(system)
+            if not watch.is_judged():
+                return None
+            target = (there, back)[number % 2]
+            receipt = system.call("switch", configuration=target)
+            if (receipt["end"], receipt["way"]) != ("done", "slow"):
+                wrong.append(f"switch {number + 1}: {receipt['end']}, {receipt['way']}, {receipt['why']}")
+            wrong += watch.more(f"slow switch {number + 1} to {target}")
+    return wrong
+
+
+def judge_takeover():
+    with System(standby_test.TEXT, ("--priority", "80")) as system:
+        await_that(lambda: system.state("main") == "ON" and system.call("get", variables=["seen"])["values"]["seen"]
+                   ["value"] == 2, 10, "the primary")
+        watch = Watch(system)
+        if not watch.is_judged():
+            return None
+        system.kill(watch.units["first"])
+        system.await_state("spare", "ON")
+        return watch.more("takeover")
+
+
+def judge_guard():
+    drive = frames_test.Drive(1)
+    try:
+        text = frames_test.TEXT.replace("LINE", drive.name).replace("RATE", "100 Hz").replace("TORQUE", "[3]")
+        with System(text, ("--priority", "80")) as system:
+            system.await_state("drive", "ON")
+            guard = next(pid for pid in system.left_over()
+                         if pathlib.Path(f"/proc/{pid}/comm").read_text().strip() == "chimera-guard")
+            stat, locked = fields(pathlib.Path(f"/proc/{guard}/stat")), locked_kib(guard)
+            if (stat[POLICY], stat[PRIORITY]) != (SCHED_FIFO, str(ABOVE_ALL)) or locked == 0:
+                return [f"the guard has policy {stat[POLICY]}, priority {stat[PRIORITY]}, {locked} KiB locked"]
+            return [f"thread {thread} of {name} is not below the guard"
+                    for name, pid in system.pids().items() if name in ("first", "second")
+                    for thread in pathlib.Path(f"/proc/{pid}/task").iterdir()
+                    if int(fields(thread / "stat")[PRIORITY]) >= ABOVE_ALL]
+    finally:
+        drive.end()
+
+
 def judge(text):
     """What is wrong in a run of the description; None: it cannot be judged."""
     wrong = []
     with System(text, ("--priority", "80")) as system:
-        units = {name: pid for name, pid in system.pids().items() if name in ("first", "second")}
-        for name, pid in units.items():
-            if locked_kib(pid) == 0 or not page_faults(pid):
-                return None
         for number in range(SWITCHES):
-            before = {name: page_faults(pid) for name, pid in units.items()}
+            watch = Watch(system)
+            if not watch.is_judged():
+                return None
             receipt = system.call("switch", configuration=("quick", "gentle")[number % 2])
             if receipt["end"] != "done":
                 wrong.append(f"switch {number + 1}: {receipt['end']}, {receipt['why']}")
-            for name, pid in units.items():
-                for thread, (what, n) in page_faults(pid).items():
-                    more = n - before[name].get(thread, (what, n))[1]
-                    if more:
-                        wrong.append(f"switch {number + 1}: {more} page faults of thread {what} of {name}")
+            wrong += watch.more(f"switch {number + 1}")
     return wrong
 
 
 def main():
-    for text in (TEXT, MIXED, PREEMPTIVE):
-        wrong = judge(text)
+    runs = [(judge, text) for text in (TEXT, MIXED, PREEMPTIVE)]
+    runs += [(judge_slow, slow_switch_test.TEXT, "with_heavy", "with_light"),
+             (judge_slow, slow_switch_test.PREEMPTIVE, "with_heavy", "with_light"),
+             (judge_slow, resource_test.SWITCH, "with_drill", "with_hand"), (judge_takeover,), (judge_guard,)]
+    for run, *given in runs:
+        wrong = run(*given)
         if wrong is None:
             print("skipped: the system grants no locked memory or no real-time rights")
             return 77
         if wrong:
             print("\n".join(wrong))
             return 1
-    print(f"{3 * SWITCHES} switches without a page fault of a real-time thread")
+    print(f"{6 * SWITCHES} switches and a takeover without a page fault of a real-time thread; the guard above them")
     return 0
 
 

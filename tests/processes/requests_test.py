@@ -3,6 +3,7 @@
 `safe_when`, which holds a switch up."""
 import os
 import random
+import signal
 import sys
 import threading
 import time
@@ -44,6 +45,18 @@ tasks:
   beside: {component: t_source, rtpu: second, rate: 100 Hz}
 configurations:
   all: [steady, thrower, beside]
+  less: [steady]
+start: all
+"""
+
+
+# The task of the second unit uses up to 9 ms of each 10.
+LATE = UNITS + """
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 100 Hz}
+  bad: {component: t_overrun, rtpu: second, rate: 100 Hz, constants: {allowed: 3000000 ns}, REACTION}
+configurations:
+  all: [steady, bad]
   less: [steady]
 start: all
 """
@@ -148,6 +161,42 @@ class Requests(unittest.TestCase):
             lines = await_that(lambda: [line for line in told(system) if "on_fault of thrower" in line and
                                         "to 'less' after" in line], 5, f"a receipt; {told(system)}")
             self.assertEqual(len(lines), 1)
+
+    def test_on_miss_and_on_overrun_lead_to_another_configuration(self):
+        reactions = {"on_miss": "deadline: 1 ms, on_miss: {switch: less}",
+                     "on_overrun": "budget: 500 us, on_overrun: {switch: less}"}
+        for reaction, text in reactions.items():
+            for executor in ("executive", "preemptive"):
+                with self.subTest(reaction=reaction, executor=executor):
+                    self.leads_to_another_configuration(reaction, LATE.replace("REACTION", text).replace(
+                        "cpu: 1, policy: edf}", f"cpu: 1, policy: edf, executor: {executor}}}"))
+
+    def leads_to_another_configuration(self, reaction, text):
+        with System(text) as system:
+            await_that(lambda: on(system) == {"steady"}, 10, "less")
+            receipts = await_that(lambda: system.call("receipts")["receipts"], 5, "a receipt")
+            self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
+                             [("less", "done", {"reaction": reaction, "task": "bad"})])
+            self.assertEqual(system.state("bad"), "OFF")
+
+    def test_a_reaction_asks_again_for_the_same_although_the_manager_is_dead(self):
+        """The first fault was answered by the manager that dies; the second one comes before its successor."""
+        with System(FAILS.replace("REACTION", "{switch: less}")) as system:
+            await_that(lambda: on(system) == {"steady"}, 10, "less")
+            for what in ("kill", "spawn"):  # made anew: it fails in its cycle 100 again
+                system.signal(what, "thrower")
+            self.assertEqual(system.call("switch", configuration="all")["end"], "done")
+            keeper, manager = system.pids()["keeper"], system.pids()["manager"]
+            self.assertTrue(system.kill(keeper, signal.SIGSTOP))  # starts no successor
+            try:
+                self.assertTrue(system.kill(manager))
+                time.sleep(1.5)
+            finally:
+                self.assertTrue(system.kill(keeper, signal.SIGCONT))
+            await_that(lambda: self.answers(system), 10, "a manager")
+            await_that(lambda: on(system) == {"steady"}, 10, "less, once more")
+            ends = [(one["to"], one["end"]) for one in system.call("receipts")["receipts"]]
+            self.assertEqual(ends, [("less", "done"), ("all", "done"), ("less", "done")])
 
     def test_on_fault_flag_is_seen_in_the_other_unit_until_it_is_cleared(self):
         with System(FAILS.replace("REACTION", "flag")) as system:

@@ -70,7 +70,7 @@ class Standby(unittest.TestCase):
             with self.assertRaises(Refused):
                 system.signal("on", "main")
             receipt = system.call("switch", configuration="run")  # back, by a person
-            self.assertEqual((receipt["end"], receipt["reason"]), ("done", None))
+            self.assertEqual((receipt["from"], receipt["end"], receipt["reason"]), ("run", "done", None))
             self.await_seen(system, 2)
             self.assertEqual(system.call("status")["configuration"], "run")
             self.assertEqual(self.flags(system, started), [])
