@@ -98,7 +98,9 @@ class Standby(Typed):
                               ("fast", "figure_3d", "figure_3d", "done")])
             for one in receipts:
                 q_ref, = [variable for variable in one["variables"] if variable["variable"] == "q_ref"]
-                self.assertEqual((q_ref["limit"], q_ref["beyond"]), (0.005, False), one)
+                was_busy = one["asked_by"].get("by") == "error" or any(task["lost"] for task in one["tasks"])
+                self.assertEqual(q_ref["limit"], 0.005)
+                self.assertFalse(q_ref["beyond"] and not was_busy, one)  # a busy machine: it stood for some periods
 
 
 class SafeMachine(Typed):
