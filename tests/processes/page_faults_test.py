@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """From arming on no real-time thread takes a page fault: a switch brings no page in for the first time, a slow one with
-`kill`, `init` and `reinit` and the takeover by a standby neither. Counted by the kernel for each thread with a real-time
-policy, over switches there and back and over the first ones, in executives and where each task has a thread. And the
-guard stands above all of them, with its memory locked. Memory is locked in a release build only; else it says so and is
-skipped."""
+`kill`, `init` and `reinit` and the takeover by a standby neither. Counted by the kernel for each real-time thread, over
+switches there and back and over the first ones, in executives and where each task has a thread. The guard stands above
+all of them, with its memory locked. Memory is locked in a release build only; else it says so and is skipped."""
 import os
 import pathlib
 import sys
