@@ -204,7 +204,10 @@ as_newcomer() {
   run "install over itself" 0 newcomer /srv/newcomer './dev install'
   run "a component by its printed steps" 0 newcomer /tmp "$found && $own_component && chimera check loop.yaml &&
     chimera run loop.yaml --virtual --for '1 s' --expect 'smooth >= 0.9 m' && man -w chimera"
-  run "uninstall" 0 newcomer /srv/newcomer './dev uninstall && [ ! -e ~/.local ]'
+  # What the README left is the newcomer's: the receipts of its switches.
+  run "uninstall" 0 newcomer /srv/newcomer './dev uninstall | tee said && grep -q "state/chimera (receipts" said &&
+    [ "$(find ~/.local -type f | grep -v "^$HOME/.local/state/chimera/")" = "" ] && rm -r ~/.local/state/chimera &&
+    rmdir ~/.local/state ~/.local'
   rm "$folder/etc/sudoers.d/newcomer"
 }
 
