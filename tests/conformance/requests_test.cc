@@ -101,6 +101,24 @@ class Requests : public ::testing::TestWithParam<Kind> {
 INSTANTIATE_TEST_SUITE_P(All, Requests, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
+// `high` has its first cycle half a second after the change: nobody waits for it who asks.
+TEST_P(Requests, DoNotWaitForFirstCycles) {
+  change_ = [](testing::TestApplication& app) {
+    app.tasks[kHigh.index].period = app.tasks[kHigh.index].deadline = seconds(1);
+    app.tasks[kHigh.index].offset = milliseconds(500);
+  };
+  scene.first = [](Cycle c) {
+    if (c.count() == 5) ask(c, "high");
+    if (c.count() == 20) ask(c, "low");
+  };
+  const auto receipts = go(milliseconds(100));
+  ASSERT_EQ(receipts.size(), 2u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[1].end, SwitchEnd::kDone);
+  EXPECT_LE(receipts[1].at, milliseconds(25));
+  EXPECT_TRUE(is_on(kLow));
+}
+
 TEST_P(Requests, AreCarriedOutBehindTheCycleThatAsked) {
   scene.first = [](Cycle c) {
     if (c.count() == 5) ask(c, "high");

@@ -80,7 +80,7 @@ DEFECTS = (
     ("a value of another context is not looked for", "switching.cc",
      "is_valid()) return wait(now, kLookForValue);", "is_valid()) return wait(now);"),
     ("a standby that is ON does not count as its primary", "switch_plan.h",
-     "if (spec.stand_in(task, by) && is_on(by)) return true;", "(void)by;"),
+     "if (spec.stand_in(task, by) && is_on(by)) return true;", "(void)by, (void)task;"),
     ("an on that fits no gap is tried for ten seconds", "switch_way.cc",
      "if (needed <= longest_gap) continue;", "if (true || needed <= longest_gap) continue;"),
     ("a takeover that is kept no more is told in the place of a younger one", "takeover.h",
