@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
-
 #include "chimera/platform/linux_clock.h"
+#include "chimera/runtime/testing/ended_thread.h"
 
 namespace chimera {
 namespace {
@@ -100,7 +98,7 @@ TEST_F(JobChecksTest, ForgetsCoalescedChecksWhenTheAlarmIsSetAnew) {
 
 TEST_F(JobChecksTest, LooksLessOftenAtAJobThatComputesNothing) {
   exact_.start([this] { exact_.attach(); });
-  exact_.join();  // the thread is gone: the job has used nothing, now and at the next look
+  testing::join_and_await_end(exact_);  // the job has used nothing, now and at the next look
   const Nanoseconds first = checks_.end_of_budget(exact_, false, kNow);
   EXPECT_EQ(first, kNow + milliseconds(2));
   specs_[2].budget = microseconds(1);
@@ -127,10 +125,7 @@ TEST_F(JobChecksTest, OnlyAJobBehindAServerHasACapacity) {
   specs_[0].server = ServerSpec{ServerKind::kDeferrable, milliseconds(2), milliseconds(10)};
   JobThread sporadic(tasks_[0]);
   sporadic.start([&] { sporadic.attach(); });
-  sporadic.join();
-  // The kernel ends a thread a little after the last to see it: until then it uses time.
-  for (int i = 0; i < 10'000 && used_by(sporadic.thread()) != kNever; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  testing::join_and_await_end(sporadic);
   sporadic.sporadic->start(sporadic.thread(), kNow);
   std::uint32_t waiting = 1;
   (void)sporadic.sporadic->job().accept(waiting, kNow);

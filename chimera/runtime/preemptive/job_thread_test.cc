@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
-
 #include "chimera/platform/linux_clock.h"
+#include "chimera/runtime/testing/ended_thread.h"
 
 namespace chimera {
 namespace {
@@ -34,11 +32,9 @@ TEST_F(JobThreadTest, CountsWhatItsThreadUsesFromTheBeginningOfTheJobOn) {
     job.begin_use();
     used = job.used();
   });
-  job.join();
+  testing::join_and_await_end(job);
   EXPECT_LT(used, milliseconds(5)) << "what came before is not the job's";
   EXPECT_GE(job.used_before(), milliseconds(5));
-  // The kernel ends a thread a little after the last to see it.
-  for (int i = 0; i < 10'000 && job.used() > Nanoseconds{}; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(job.used(), Nanoseconds{}) << "the thread is gone";
 }
 
