@@ -86,6 +86,12 @@ function(_chimera_test_properties name label)
   if(label STREQUAL "realtime")
     set_tests_properties(${name} PROPERTIES RUN_SERIAL TRUE)
   endif()
+  # Those of 10 s and more begin first: the last one to begin is then a short one, and no CPU waits for it.
+  if(name MATCHES "^(hostile_(files|output|values|watch|questions|ends)|(cli|library|conformance|manager|runtime)_test)$|\
+^(examples|readme|library_trials|compile_fail|applications|run_schema|run_by_processes|(cli|kill)_process_test)$|\
+^processes_(requests|protocol|frames|attack|ending)$")
+    set_tests_properties(${name} PROPERTIES COST 100)
+  endif()
 endfunction()
 
 # _chimera_together(list folder [ACROSS]): replaces the .cc files of the named list with files, in `folder` of the

@@ -243,14 +243,14 @@ TEST_P(SameResource, OnTheWayBackADeviceHasItsTime) {
   EXPECT_EQ(states(), (Story{"ON", "NOT-CREATED", "ON"}));
 }
 
-// 9 s each: more together than one has.
+// 6 s each: more together than one has.
 TEST_P(SameResource, OnTheWayBackEachDeviceHasItsTime) {
   with_drill_ = {kDrill};
   sets_[1].order = with_drill_;
   device.fails = "on drill";
   (void)start({to(kWithDrill, milliseconds(5))});
-  device.hand_not_ready = device.arm_not_ready = 9000;
-  EXPECT_EQ(runner_->run(seconds(20)), RunEnd::kTime);
+  device.hand_not_ready = device.arm_not_ready = 6000;
+  EXPECT_EQ(runner_->run(seconds(13)), RunEnd::kTime);
   EXPECT_EQ(runner_->receipts()[0].end, SwitchEnd::kAborted);
   EXPECT_FALSE(runner_->receipts()[0].not_back.is_valid());
   EXPECT_EQ(states(), (Story{"ON", "NOT-CREATED", "ON"}));
