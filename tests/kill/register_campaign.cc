@@ -27,7 +27,7 @@ void print_reads(std::uint64_t reads, std::uint64_t torn, std::uint64_t backward
               reads, torn, backwards, refused);
 }
 
-Verdict kill(const Bounds& bounds) {
+Verdict run_kills(const Bounds& bounds) {
   const auto r = chimera::run_kill_trial({.kills = bounds.times, .seconds = bounds.seconds, .seed = bounds.seed});
   print_reads(r.reads, r.torn, r.backwards, r.refused_alive);
   std::printf("refused without a writer %" PRIu64 "\n", r.refused_dead);
@@ -35,7 +35,7 @@ Verdict kill(const Bounds& bounds) {
   return {r.kills, r.faults(), r.mid_write};
 }
 
-Verdict stop(const Bounds& bounds) {
+Verdict run_stops(const Bounds& bounds) {
   const auto r = chimera::run_stop_trial({.stops = bounds.times, .seconds = bounds.seconds, .seed = bounds.seed});
   print_reads(r.reads, r.torn, r.backwards, r.refused);
   if (!r.failure.empty()) std::printf("ended early: %s\n", r.failure.c_str());
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (times != 0) bounds.times = times;
-  const Verdict verdict = *name == 'k' ? kill(bounds) : stop(bounds);
+  const Verdict verdict = *name == 'k' ? run_kills(bounds) : run_stops(bounds);
   std::printf("{\"name\": \"register_%s\", \"n\": %" PRIu64 ", \"faults\": %" PRIu64 ", \"mid_write\": %" PRIu64 "}\n",
               name, verdict.n, verdict.faults, verdict.mid_write);
   return verdict.faults == 0 ? 0 : 1;

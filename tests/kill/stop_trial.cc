@@ -131,7 +131,7 @@ class Trial {
     if (stopped.begun != finished) ++report.mid_write;
     ++score_->phase;
     let_readers_look(report);
-    ::kill(writers_[old], SIGCONT);
+    ::kill(writers_[old], SIGCONT);  // still ours
     if (!wait_for([&] { return stopped.finished > finished; })) report.failure = "a writer does not go on";
     ++score_->phase;
     let_readers_look(report);
