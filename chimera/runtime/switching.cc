@@ -40,6 +40,11 @@ bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t numbe
   return true;
 }
 
+// A plan is on the page that the next step takes up.
+bool is_announced(SwitchPeers& peers, std::uint16_t seen) noexcept {
+  return SwitchAgreement(peers.page(), {}).plan().number != seen;
+}
+
 // Of a context that is alone, behind plan `last`.
 SwitchOrder lone_order(TaskSet& set, std::uint16_t last, const TaskBits& target, std::uint8_t slow,
                        Nanoseconds until) {
@@ -99,23 +104,29 @@ void Switching::begin(Nanoseconds origin) noexcept {
   peers_->tell_over(record_.receipt());
 }
 
+bool Switching::is_free() const noexcept {
+  if (phase_ == Phase::kNone) return !is_announced(*peers_, seen_);
+  return phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
+}
+
 bool Switching::leads_to(std::uint32_t set) noexcept {
-  if (phase_ != Phase::kNone) return phase_ != Phase::kUndoing && plan_.after == set;
+  if (phase_ != Phase::kNone || is_announced(*peers_, seen_)) return phase_ != Phase::kUndoing && plan_.after == set;
   note_standing(parts_.set, standing_);
   return planner_.set_in_force(standing_) == set;
 }
 
 void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   if (peers_ != &nobody_) return peers_->wish(request, leads_to(request.set), now);
-  if (phase_ != Phase::kNone && is_free()) finish(SwitchEnd::kDone, now);
+  if (phase_ == Phase::kAfter && is_free()) finish(SwitchEnd::kDone, now);
   note_standing(parts_.set, standing_);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  if (phase_ == Phase::kNone) answer = planner_.plan(request.set, standing_, plan_);
+  const bool is_first = phase_ == Phase::kNone && is_free();
+  if (is_first) answer = planner_.plan(request.set, standing_, plan_);
   const ContextConstants& constants = parts_.set.constants();
   const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants, gap_) : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   const std::uint32_t number = is_nothing ? 0 : receipts().next_number();
-  SwitchReceipt* const added = phase_ == Phase::kNone ? &record_.add() : record_.add_beside();
+  SwitchReceipt* const added = is_first ? &record_.add() : record_.add_beside();
   if (added == nullptr) return;
   SwitchReceipt& receipt = *added;
   receipt.asked = now;

@@ -67,9 +67,7 @@ class Switching {
   /// told. Requires: prepare() took memory.
   void ask(const SwitchRequest& request, Nanoseconds now) noexcept;
   /// None is under way, or one of which only the first cycles of arriving tasks are looked at yet.
-  bool is_free() const noexcept {
-    return phase_ == Phase::kNone || (phase_ == Phase::kAfter && n_off_ == plan_.leaving.size());
-  }
+  bool is_free() const noexcept;
   /// The set is in force, or is the one that is being switched to.
   bool leads_to(std::uint32_t set) noexcept;
   /// Goes on with the switch that is under way, or takes up one that others have planned. No effect without one.

@@ -413,6 +413,23 @@ TEST_P(Switches, OverWhichATaskMightMissItsDeadlineGoesTheSlowWay) {
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "off one", "on observer", "on two"}));
 }
 
+// Two acts of one instant: the second one finds a plan that is announced and not taken up.
+TEST_P(Switches, OfTwoAtOneInstantTheSecondIsRefused) {
+  build();
+  for (const std::uint32_t second : {kDirect, kObserved}) {
+    build();
+    acts_ = {to(kObserved, milliseconds(5)), to(second, milliseconds(5))};
+    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+    EXPECT_TRUE(runner_->start());
+    EXPECT_EQ(runner_->run(milliseconds(30)), RunEnd::kTime);
+    ASSERT_EQ(runner_->receipts().size(), 2u);
+    EXPECT_EQ(runner_->receipts()[0].end, SwitchEnd::kDone);
+    EXPECT_EQ(runner_->receipts()[0].tasks.size(), 5u);
+    EXPECT_EQ(runner_->receipts()[1].end, SwitchEnd::kRefused);
+    EXPECT_EQ(runner_->receipts()[1].why, NoSwitch::kUnderWay);
+  }
+}
+
 // `on` is taken to need the budget: more than the shortest period is known before not to fit.
 TEST_P(Switches, AnOnThatFitsNoGapGoesTheSlowWayAtOnce) {
   build();
