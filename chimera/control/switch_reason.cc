@@ -37,7 +37,7 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
                           : time_text(takes) + ", its deadline is " + time_text(task.deadline));
 }
 
-/// ", for 10 s": to three digits, as it has the time of undoing in it.
+/// ", for 10 s": from the request to the end, rounded to three digits; the time of undoing is in it.
 std::string waited_text(const SwitchReceipt& receipt) {
   if (receipt.asked == kNever || receipt.ended == kNever || receipt.ended <= receipt.asked) return "";
   const std::int64_t waited = (receipt.ended - receipt.asked).count;

@@ -21,8 +21,8 @@ struct SwitchWay {
   std::uint8_t slow = 0;          ///< SlowReason; 0: fast
   ConstantUsers::Found constant;  ///< of kSlowForConstants: who stays ON, and what becomes another one for it
   PlanAnswer deadline;            ///< of kSlowForDeadlines: as SwitchSchedule::judge()
-  TaskId gapless;                 ///< of kSlowForGap: its `on` needs `needed`, and there is no such gap; invalid: none
-  Nanoseconds needed;             ///< was found by the deadline
+  TaskId gapless;                 ///< of kSlowForGap: its `on` fits no gap; invalid: none was found by the deadline
+  Nanoseconds needed;             ///< the gap that `gapless` needs
   TaskId absent;                  ///< of kSlowForResource: the first task of the plan that is NOT-CREATED
   TaskId rival;                   ///< and who has its resource; invalid: it waits for a constant of such a task
 };

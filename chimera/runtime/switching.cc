@@ -454,7 +454,10 @@ bool Switching::give_way(TaskId to) noexcept {
 }
 
 void Switching::end(Nanoseconds now) noexcept {
-  if (phase_ == Phase::kNone) return;
+  if (phase_ == Phase::kNone) {
+    if (peers_ == &nobody_ && !is_free()) record_.receipt().why = NoSwitch::kRunEnded;  // before the slow try began
+    return;
+  }
   if (phase_ == Phase::kArming || phase_ == Phase::kAgreed) abort(NoSwitch::kRunEnded, {}, {});
   if (phase_ == Phase::kSlow) {
     slow_.cut(agreement());

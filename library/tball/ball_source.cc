@@ -79,19 +79,18 @@ void BallSource::start(Nanoseconds now) noexcept {
   next_ = 0;
   kept_ = 0;
   error_ = 0;
-  is_old_ = true;
+  old_reads_ = kMostOldReads;
   if (kind_ != Kind::kRecording) forget();
 }
 
-// An input device keeps a few hundred events at most: some calls.
 void BallSource::forget() noexcept {
-  is_old_ = fill(sizeof buffer_) == static_cast<int>(sizeof buffer_);
+  old_reads_ = fill(sizeof buffer_) == static_cast<int>(sizeof buffer_) ? old_reads_ - 1 : 0;
   kept_ = 0;
 }
 
 bool BallSource::collect(Ball& ball, std::int32_t full, Nanoseconds now) noexcept {
   if (kind_ == Kind::kRecording) return collect_recorded(ball, now), true;
-  if (is_old_) return forget(), true;
+  if (old_reads_ > 0) return forget(), true;
   const int got = fill(kind_ == Kind::kKeys ? kMostEvents : sizeof buffer_);
   if (got < 0) return false;
   if (kind_ == Kind::kKeys) take_keys(ball, static_cast<std::size_t>(got), full, now);

@@ -37,6 +37,7 @@ class BallSource {
   static constexpr std::size_t kMostEvents = 64;
 
  private:
+  static constexpr int kMostOldReads = 17;  // an input device keeps a few hundred events at most
   enum class Kind { kNone, kEvents, kKeys, kRecording };
 
   void open_device(bool is_fifo);
@@ -56,7 +57,7 @@ class BallSource {
   termios mode_{};
   alignas(input_event) char buffer_[kMostEvents * sizeof(input_event)];
   std::size_t kept_ = 0;  // bytes of an event that was cut
-  bool is_old_ = false;   // what waits is of the time before start()
+  int old_reads_ = 0;     // so many at most bring what waited before start(); 0: it is forgotten
   std::vector<RecordedEvent> recording_;
   std::size_t next_ = 0;
   Nanoseconds origin_;

@@ -154,6 +154,23 @@ TEST_F(TballTest, WholeReportsOfADeviceCountAndLostOnesDoNot) {
   EXPECT_EQ(rig.get<std::int32_t>("buttons"), 2);
 }
 
+TEST_F(TballTest, WhatWaitedBeforeOnIsForgottenInTheFirstCycles) {
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  plug();
+  const RigAnswer made = init(path);
+  ASSERT_TRUE(made) << made.text;
+  for (int i = 0; i < 100; ++i) event(EV_REL, REL_Z, 350), report();
+  ASSERT_TRUE(rig.on());
+  for (int i = 0; i < 3; ++i) {  // 64 events in on and in each cycle
+    ASSERT_TRUE(rig.cycle());
+    EXPECT_EQ(motion(2), 0.0) << i;
+  }
+  event(EV_REL, REL_Z, 350);
+  report();
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(motion(2), 1.0);
+}
+
 TEST_F(TballTest, AnEventThatComesInTwoPiecesIsWhole) {
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   plug();

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kMostDatagrams = 8;   // a cycle
 constexpr int kMostForgotten = 64;  // the same, of those that came before `on`
+constexpr int kMostOld = 1000;      // of those that came before `on`: more than a queue holds
 // How far ahead the number of the safe frame is of the last one that was sent, and when it moves on: a device that
 // drops what is old takes it, whatever was on the way.
 constexpr std::uint32_t kAhead = 1u << 30, kAnewAfter = 1u << 20;
@@ -30,7 +31,7 @@ struct UdpFrame : FrameDevice {
   }
   void on(Cycle c) {
     begin(c);
-    is_old_ = true;
+    old_ = kMostOld;
     forget(kMostDatagrams);
     has_number_ = false;
     put_safe_frame(c);
@@ -38,11 +39,11 @@ struct UdpFrame : FrameDevice {
   Outcome cycle(Cycle c) {
     if (lost() != nullptr) return fault(lost(), socket_.error());
     std::uint8_t bytes[kLongestFrame];
-    if (is_old_) {
+    if (old_ > 0) {
       forget(kMostForgotten);
       hears(c.now());
     }
-    for (int i = 0; !is_old_ && i < kMostDatagrams; ++i) {
+    for (int i = 0; old_ == 0 && i < kMostDatagrams; ++i) {
       const std::size_t size = socket_.receive(bytes);
       if (size == 0) break;
       take(bytes, size, c.now());
@@ -76,7 +77,7 @@ struct UdpFrame : FrameDevice {
   // Of what came before `on`; a queue that was full is forgotten in some cycles.
   void forget(int most) {
     std::uint8_t bytes[1];
-    for (int i = 0; is_old_ && i < most; ++i) is_old_ = socket_.receive(bytes) > 0;
+    for (int i = 0; old_ > 0 && i < most; ++i) old_ = socket_.receive(bytes) > 0 ? old_ - 1 : 0;
   }
   void put_safe_frame(Cycle c) {
     std::uint8_t bytes[kLongestFrame];
@@ -111,7 +112,7 @@ struct UdpFrame : FrameDevice {
   }
 
   UdpSocket socket_;
-  bool is_old_ = false;  // what has come is of the time before `on`
+  int old_ = 0;  // so many datagrams at most may be of the time before `on`; 0: they are forgotten
   bool has_number_ = false;
   std::uint32_t number_ = 0;  // of the last good datagram
   std::uint32_t sent_ = 0;

@@ -140,6 +140,34 @@ TEST_F(UdpFrameTest, ACycleTakesEightDatagramsAtMost) {
   EXPECT_EQ(state(), 12);
 }
 
+TEST_F(UdpFrameTest, WhatCameBeforeOnIsForgottenInTheFirstCyclesAndIsNoSilence) {
+  start();
+  ASSERT_TRUE(rig.off());
+  for (std::uint32_t i = 1; i <= 150; ++i) say(datagram(i, 99));
+  ASSERT_TRUE(rig.on());
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(rig.cycle(milliseconds(70)));
+    EXPECT_EQ(count("received"), 0);
+  }
+  ASSERT_TRUE(rig.cycle(milliseconds(70))) << "0.21 s since on, of a timeout of 0.1 s";
+  EXPECT_EQ(count("received"), 0);
+  say(datagram(151, 5));
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(state(), 5);
+}
+
+TEST_F(UdpFrameTest, AFloodIsForgottenNoLongerThanAQueueIs) {
+  start();
+  ASSERT_TRUE(rig.off());
+  ASSERT_TRUE(rig.on());
+  std::uint32_t number = 0;
+  for (int cycles = 0; cycles < 20 && count("received") == 0; ++cycles) {
+    for (int i = 0; i < 70; ++i) say(datagram(++number, 5));
+    ASSERT_TRUE(rig.cycle());
+  }
+  EXPECT_GT(count("received"), 0);
+}
+
 TEST_F(UdpFrameTest, StrangersAreNotHeard) {
   start();
   const int stranger = ::socket(AF_INET, SOCK_DGRAM, 0);

@@ -61,23 +61,6 @@ class Watch:
         return found
 
 
-def judge_slow(text, there, back):
-    """The same of slow switches, after the first ones there and back: what `init` allocates comes from memory that is
-    locked as it comes, by a thread that is not real-time."""
-    wrong = []
-    with System(text, ("--priority", "80")) as system:
-        for number in range(SWITCHES):
-            watch = Watch(system)
-            if not watch.is_judged():
-                return None
-            target = (there, back)[number % 2]
-            receipt = system.call("switch", configuration=target)
-            if (receipt["end"], receipt["way"]) != ("done", "slow"):
-                wrong.append(f"switch {number + 1}: {receipt['end']}, {receipt['way']}, {receipt['why']}")
-            wrong += watch.more(f"slow switch {number + 1} to {target}")
-    return wrong
-
-
 def judge_takeover():
     with System(standby_test.TEXT, ("--priority", "80")) as system:
         await_that(lambda: system.state("main") == "ON" and system.call("get", variables=["seen"])["values"]["seen"]
@@ -109,26 +92,27 @@ def judge_guard():
         drive.end()
 
 
-def judge(text):
-    """What is wrong in a run of the description; None: it cannot be judged."""
+def judge_switches(text, there, back, way):
+    """What is wrong in switches of the description there and back; None: it cannot be judged."""
     wrong = []
     with System(text, ("--priority", "80")) as system:
         for number in range(SWITCHES):
             watch = Watch(system)
             if not watch.is_judged():
                 return None
-            receipt = system.call("switch", configuration=("quick", "gentle")[number % 2])
-            if receipt["end"] != "done":
-                wrong.append(f"switch {number + 1}: {receipt['end']}, {receipt['why']}")
+            receipt = system.call("switch", configuration=(there, back)[number % 2])
+            if (receipt["end"], receipt["way"]) != ("done", way):
+                wrong.append(f"switch {number + 1}: {receipt['end']}, {receipt['way']}, {receipt['why']}")
             wrong += watch.more(f"switch {number + 1}")
     return wrong
 
 
 def main():
-    runs = [(judge, text) for text in (TEXT, MIXED, PREEMPTIVE)]
-    runs += [(judge_slow, slow_switch_test.TEXT, "with_heavy", "with_light"),
-             (judge_slow, slow_switch_test.PREEMPTIVE, "with_heavy", "with_light"),
-             (judge_slow, resource_test.SWITCH, "with_drill", "with_hand"), (judge_takeover,), (judge_guard,)]
+    runs = [(judge_switches, text, "quick", "gentle", "fast") for text in (TEXT, MIXED, PREEMPTIVE)]
+    runs += [(judge_switches, text, "with_heavy", "with_light", "slow")
+             for text in (slow_switch_test.TEXT, slow_switch_test.PREEMPTIVE)]
+    runs += [(judge_switches, resource_test.SWITCH, "with_drill", "with_hand", "slow"), (judge_takeover,),
+             (judge_guard,)]
     for run, *given in runs:
         wrong = run(*given)
         if wrong is None:
