@@ -198,7 +198,7 @@ class Nonsense {
 
 TEST(AnyComponent, RefusesNonsenseWithATextOrGoesOnAndPublishesNumbers) {
   const char* asked = std::getenv("CHIMERA_NONSENSE");
-  const unsigned trials = asked != nullptr ? static_cast<unsigned>(std::atoi(asked)) : 40;
+  const unsigned trials = asked != nullptr ? static_cast<unsigned>(std::atoi(asked)) : 15;
   const std::filesystem::path before = std::filesystem::current_path();
   const std::filesystem::path folder = testing::TempDir() + "nonsense_" + std::to_string(::getpid());
   std::filesystem::create_directory(folder);

@@ -4,6 +4,7 @@ freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), withou
 heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted), which a
 microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
+import itertools
 import os
 import pathlib
 import re
@@ -39,10 +40,10 @@ def is_known(name, symbol):
             or symbol in TEXT.get(name, ()))
 
 
-def undefined_symbols(root, name, machine, folder):
+def undefined_symbols(root, source, machine):
     """(symbols the object asks for, what the compiler said)"""
-    target = pathlib.Path(folder, machine + name.replace("/", "_") + ".o")
-    command = [*MACHINES[machine], "-I", str(root), "-c", str(root / name), "-o", str(target)]
+    target = source.with_suffix(".o")
+    command = [*MACHINES[machine], "-I", str(root), "-c", str(source), "-o", str(target)]
     compiled = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, LC_ALL="C"))
     if compiled.returncode != 0:
         return [], compiled.stderr
@@ -50,8 +51,14 @@ def undefined_symbols(root, name, machine, folder):
     return [line.split()[0] for line in listing.stdout.splitlines() if line.strip()], ""
 
 
-def complaints_about(root, name, machine, folder):
-    symbols, said = undefined_symbols(root, name, machine, folder)
+def complaints_about(root, names, machine, folder):
+    """Of files that are compiled together, which is faster. Should there be any, each alone says which it is."""
+    name = names[0]
+    source = pathlib.Path(folder, f"{machine}_{len(names)}_{name.replace('/', '_')}")
+    source.write_text("".join(f'#include "{one}"\n' for one in names), encoding="utf-8")
+    symbols, said = undefined_symbols(root, source, machine)
+    if len(names) > 1 and (said or not all(is_known(name, symbol) for symbol in symbols)):
+        return [complaint for one in names for complaint in complaints_about(root, [one], machine, folder)]
     if said:
         error = next((line for line in said.splitlines() if "error:" in line), said.splitlines()[0])
         return [f"{name}: does not compile freestanding for {machine}: {error.split('error: ', 1)[-1]}"]
@@ -68,8 +75,17 @@ def check(root, machine):
         yield from (f"{name}: is not there, but tools/check_freestanding.py lists it"
                     for name in (*COMPONENTS, *TEXT) if name not in names)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for complaints in pool.map(lambda name: complaints_about(root, name, machine, folder), names):
+        for complaints in pool.map(lambda some: complaints_about(root, some, machine, folder), together(names)):
             yield from complaints
+
+
+def together(names):
+    """Lists of up to eight files of one folder; alone, who may ask for something of its own."""
+    alone = [name for name in names if name in TEXT]
+    for _, some in itertools.groupby((name for name in names if name not in alone), os.path.dirname):
+        some = list(some)
+        yield from (some[i:i + 8] for i in range(0, len(some), 8))
+    yield from ([name] for name in alone)
 
 
 _NAME = "chimera/table/x.cc"

@@ -41,7 +41,13 @@ Result<void> check_units(const LibraryEntry& entry, const UnitSystem& units) {
 
 Library Library::make(std::span<const std::string> folders, UnitSystem units) {
   Library library(std::move(units));
-  for (const std::string& folder : folders) library.read_folder(folder);
+  for (auto folder = folders.begin(); folder != folders.end(); ++folder) {
+    const auto is_same = [&](const std::string& other) {
+      std::error_code unknown;
+      return std::filesystem::equivalent(*folder, other, unknown);
+    };
+    if (std::none_of(folders.begin(), folder, is_same)) library.read_folder(*folder);  // CHIMERA_PATH may name it again
+  }
   for (std::string& folder : component_folders({}))
     if (!std::filesystem::is_directory(folder)) library.missing_folders_.push_back(std::move(folder));
   return library;
@@ -98,9 +104,7 @@ void Library::add(LibraryEntry entry) {
       std::lower_bound(entries_.begin(), entries_.end(), entry.descriptor.name,
                        [](const LibraryEntry& e, const std::string& name) { return e.descriptor.name < name; });
   if (place != entries_.end() && place->descriptor.name == entry.descriptor.name) {
-    std::error_code unknown;  // a folder that is named twice hides nothing
-    if (!std::filesystem::equivalent(place->descriptor_file, entry.descriptor_file, unknown))
-      hidden_.push_back({entry.descriptor.name, entry.descriptor_file});
+    hidden_.push_back({entry.descriptor.name, entry.descriptor_file});
     return;
   }
   entries_.insert(place, std::move(entry));

@@ -28,9 +28,9 @@ struct HiddenComponent {
 /// Context: setup; may block. Immutable after make().
 class Library {
  public:
-  /// Reads every NAME.component.json of `folders`, in order; of one name the first found counts. A folder that does
-  /// not exist is passed over. What cannot be read, or has a unit unknown to `units`, goes to faults(). A file
-  /// `buildable.txt` in a folder names, one a line, what its build tree can build.
+  /// Reads every NAME.component.json of `folders`, in order; of one name the first found counts. A folder that is
+  /// named twice is read once, one that does not exist is passed over. What cannot be read, or has a unit unknown to
+  /// `units`, goes to faults(). A file `buildable.txt` in a folder names, one a line, what its build tree can build.
   static Library make(std::span<const std::string> folders, UnitSystem units);
 
   /// A library of the given descriptors, for tests and tools that have no files.

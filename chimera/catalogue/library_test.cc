@@ -70,6 +70,18 @@ TEST_F(Folders, ReportsBadFilesAndGoesOn) {
             "component torque: port x: \"Nm\" is no known unit; did you mean \"N.m\"?");
 }
 
+TEST_F(Folders, AFolderThatIsNamedTwiceIsReadOnce) {
+  write("one/broken.component.json", "{");
+  write("one/gain.component.json", to_json(component("gain")));
+  write("one/buildable.txt", "limit\n");
+  const std::string folders[] = {root + "one", root + "two/../one"};
+  const Library library = Library::make(folders, our_units());
+  EXPECT_EQ(library.entries().size(), 1u);
+  EXPECT_EQ(library.faults().size(), 1u);
+  EXPECT_EQ(library.n_unbuilt(), 1u);
+  EXPECT_TRUE(library.hidden().empty());
+}
+
 TEST_F(Folders, KnowsWhatItsBuildTreeHasNotBuilt) {
   write("one/buildable.txt", "gain\nlimit\nadd\n");
   write("one/gain.component.json", to_json(component("gain")));

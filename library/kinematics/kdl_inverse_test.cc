@@ -135,7 +135,7 @@ Searched search(const DhChain& chain, const Frame& wanted, const Joints& begin, 
 TEST_F(InverseAgainstKdl, TheSearchIsThereOrSaysHowFarItIsNot) {
   std::size_t solved = 0, searched = 0, refused = 0, far = 0;
   double farthest = 0, dishonest = 0;
-  for (std::size_t c = 0; c < 200; ++c) {
+  for (std::size_t c = 0; c < 60; ++c) {
     const DhChain chain = c % 4 == 0 ? puma() : random.chain(6 + c % 5, c % 2 == 0);
     KdlArm kdl(chain);
     for (std::size_t p = 0; p < 50; ++p) {

@@ -79,7 +79,7 @@ TEST_F(PidTest, HasTheStepResponseOfTheClosedFormForEachWeightOfTheDerivative) {
       return q;
     };
     follow(
-        1e-5, 0.6, plant,
+        4e-5, 0.6, plant,
         [&](double t) {
           const double at = a * t;
           return 1 - std::exp(-at) * (1 + weight.p * at + weight.q * at * at);

@@ -4,6 +4,7 @@ count repeats to the instruction whatever else the machine does. It is held to i
 it is smaller the file is to say so (--write), where it is larger the change needs a decision that names what it buys.
 
   instructions.py [--write] BUILD"""
+import concurrent.futures
 import os
 import pathlib
 import re
@@ -48,15 +49,19 @@ def of_command(build):
                          encoding="utf-8")
         environment = dict(os.environ, CHIMERA_PATH=str(build / "components"))
         # Equally many characters, so that nothing but the jobs differs; progress by the wall clock adds now and then.
-        counts = [min(counted([str(build / "bin" / "chimera"), "run", str(chain), "--virtual", "--for", f"{ms} ms"],
-                              environment)[0] for _ in range(3)) for ms in (2000, 9000)]
-    return (counts[1] - counts[0]) / (7000 * TASKS)
+        def run(ms):
+            words = [str(build / "bin" / "chimera"), "run", str(chain), "--virtual", "--for", f"{ms} ms"]
+            return counted(words, environment)[0]
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            short, long = (min(pool.map(run, [ms] * 3)) for ms in (2000, 9000))
+    return (long - short) / (7000 * TASKS)
 
 
 def figures(build):
     yield "run_virtual", of_command(build)
-    for how in ("virtual", "executive", "preemptive"):
-        yield how, of_program(build, how)
+    programs = ("virtual", "executive", "preemptive")
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        yield from zip(programs, pool.map(lambda how: of_program(build, how), programs), strict=True)
 
 
 def read_limits():

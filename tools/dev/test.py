@@ -27,8 +27,9 @@ class Share:
 
 COMPILE = Share("compile", 12)
 SHARES = (
-    Share("units", 3, (("debug", "unit"), ("debug", "hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
+    Share("units", 3, (("debug", "unit|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
     Share("processes", 4, (("debug", "process"), ("release", "realtime"))),
+    Share("firmware", 1, (("debug", "firmware"),)),
     Share("models", 2, (("debug", "model"), ("fuzz", "fuzz"))),
 )
 QUICK = Share("quick", 2, (("debug", "unit"),))
@@ -120,7 +121,7 @@ def run_share(share, trees):
             with common.realtime_lock():
                 cases += ctest(tree, labels, jobs=1)
         else:
-            cases += ctest(tree, labels, jobs=cpus + 1 if labels == "hostile" else cpus)  # those wait most of the time
+            cases += ctest(tree, labels, jobs=cpus + 1 if "hostile" in labels else cpus)  # those wait most of the time
     return cases or [Case(f"share {share.name}", FAILED, "it has no tests")]
 
 
