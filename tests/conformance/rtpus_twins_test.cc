@@ -82,7 +82,7 @@ Outcome in_company(std::uint32_t seed, bool preemptive, std::uint32_t me, const 
 
 TEST(RtpusTwins, AnRtpuThatGetsNothingFromOthersDoesWhatItDoesAlone) {
   std::size_t n_records = 0;
-  for (std::uint32_t seed = 1; seed <= 120; ++seed)
+  for (std::uint32_t seed = 1; seed <= 40; ++seed)
     for (const bool preemptive : {false, true}) {
       SCOPED_TRACE("seed " + std::to_string(seed) + (preemptive ? " preemptive" : ""));
       VirtualOptions how;
@@ -132,7 +132,7 @@ struct Entangled {
 };
 
 TEST(RtpusTwins, ARunRepeatsInWhicheverOrderTheContextsAreMade) {
-  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Entangled first(seed), again(seed), turned(seed, {2, 0, 1});
     for (Entangled* one : {&first, &again, &turned}) one->run->run(milliseconds(40));
@@ -144,7 +144,7 @@ TEST(RtpusTwins, ARunRepeatsInWhicheverOrderTheContextsAreMade) {
 }
 
 TEST(RtpusTwins, ARunThatIsInterruptedIsTheSameRun) {
-  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Entangled first(seed), pieces(seed);
     first.run->run(milliseconds(40));

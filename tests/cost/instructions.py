@@ -53,7 +53,7 @@ def of_command(build):
             words = [str(build / "bin" / "chimera"), "run", str(chain), "--virtual", "--for", f"{ms} ms"]
             return counted(words, environment)[0]
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            short, long = (min(pool.map(run, [ms] * 3)) for ms in (2000, 9000))
+            short, long = (min(pool.map(run, [ms] * 2)) for ms in (2000, 9000))
     return (long - short) / (7000 * TASKS)
 
 

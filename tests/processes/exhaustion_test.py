@@ -7,6 +7,7 @@ import itertools
 import os
 import re
 import sys
+import time
 import unittest
 
 from system import BUILD, QUIET, System, TWO_UNITS, await_that
@@ -31,8 +32,10 @@ class Exhaustion(unittest.TestCase):
         with System(TWO_UNITS, ("--for", "0.1 s"), wait=False, environment={
                 "LD_PRELOAD": str(shim), "CHIMERA_FAIL": f"{program} {n}{' once' if once else ''}",
                 "CHIMERA_FAILED": "FAILED", "ASAN_OPTIONS": QUIET + ":verify_asan_link_order=0"}) as system:
+            begun = time.monotonic()
             await_that(lambda: system.process.poll() is not None, 40, f"an end of the run ({system.said()})")
             code, said = system.process.returncode, system.said()
+            self.assertNotIn("did not end in time", said, f"{program} {n}: {time.monotonic() - begun:.1f} s")
             system.await_nothing_left(10)
             record = system.place / "FAILED"
             failed = sorted({line.split()[2] for line in record.read_text().splitlines()}) if record.exists() else None

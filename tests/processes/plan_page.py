@@ -19,9 +19,10 @@ class PlanPage:
                 self.words = mmap.mmap(held, os.fstat(held).st_size, prot=mmap.PROT_READ)
                 os.close(held)
                 break
-        number = 1  # that of the switch which was made
+        # That switch has a small number, not always 1: on a busy machine one before it may have been aborted.
         self.at = next(at for at in range(0, len(self.words) - 128, 64)
-                       if self.word(at) & 0x3ffff == 3 << 16 | number and self.word(at + 64) & 0xffff == number)
+                       if self.word(at) >> 16 & 3 == 3 and 0 < self.word(at) & 0xffff < 16
+                       and self.word(at + 64) & 0xffff == self.word(at) & 0xffff)
 
     def word(self, at):
         return int.from_bytes(self.words[at:at + 8], "little")

@@ -147,7 +147,7 @@ configurations:
         print(f"seed {SEED}", file=sys.stderr)
         rounds = Rounds(self)
         with System(random.choice((TEXT, MIXED, PREEMPTIVE))) as system:
-            system.call("switch", configuration="quick")
+            await_that(lambda: system.call("switch", configuration="quick")["end"] == "done", 10, "a switch")
             page = PlanPage(system)
             for number in range(ROUNDS):
                 rounds.go(system, page, PHASES[(number + SEED) % len(PHASES)])

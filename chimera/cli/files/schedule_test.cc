@@ -152,7 +152,7 @@ std::vector<Line> random_lines(std::mt19937& random) {
 TEST(Schedule, ItsAdviceIsTrue) {
   std::mt19937 random(3);
   std::map<std::string, int> tried;
-  for (int run = 0; run < 16; ++run) {
+  for (int run = 0; run < 8; ++run) {
     const std::vector<Line> lines = random_lines(random);
     const std::string policy = run % 4 == 0 ? "rm" : run % 4 == 1 ? "edf" : "muf";
     const std::string executor = run % 8 < 4 ? "preemptive" : "executive";

@@ -32,6 +32,7 @@ using Json = nlohmann::json;
 
 constexpr Nanoseconds kLookEvery = milliseconds(100);  // for what has happened, and whether to stop
 constexpr Nanoseconds kStartLook = milliseconds(5);
+constexpr Nanoseconds kStartPatience = seconds(20), kStartAnswer = milliseconds(500);  // of a manager that starts
 constexpr Nanoseconds kSwitchLimit = seconds(15);  // what is not committed within 10 s is aborted
 constexpr std::size_t kEventsAtOnce = 1000;
 constexpr Nanoseconds kLastOutput = seconds(1);  // half of what the keeper waits for a face to finish
@@ -90,6 +91,7 @@ class RemoteTarget final : public RunTarget {
   bool is_output_complete(const RunReport& report) override;
 
  private:
+  Result<Json> first_status();
   Result<void> know_tasks(const Json& status);
   void print_grants(const Json& status);
   void poll_events();
@@ -122,7 +124,7 @@ class RemoteTarget final : public RunTarget {
   std::optional<Error> failure_;  // of the start
   Nanoseconds started_ = kNever, next_look_;
   std::uint64_t next_event_ = 0;
-  bool task_stopped_ = false;
+  bool task_stopped_ = false, has_answered_ = false;  // the manager, once
   std::string stopped_by_;
   std::vector<NotOff> not_off_;
   std::map<std::string, Nanoseconds> restarted_;  // by rtpu, the last time: maybe before the start is known
@@ -134,7 +136,7 @@ Result<void> RemoteTarget::start() {
   for (bool is_last = false; !is_last;) {
     ++page_.beats;
     is_last = stop_is_requested();  // also then: it may have started long ago
-    const auto status = line_.ask("status", Json::object(), seconds(20));
+    const auto status = first_status();
     if (!status) return status.error();
     last = *status;
     // What went wrong before the start comes first, also when the start was told meanwhile.
@@ -156,6 +158,19 @@ Result<void> RemoteTarget::start() {
   }
   const std::string why = "ended before its tasks were ON: " + not_ready(last);
   return Error{ErrorCode::kRefused, std::string_view(why), {}};
+}
+
+/// Waits for a manager that starts, unless the run is ended before there is one: it may never come.
+Result<Json> RemoteTarget::first_status() {
+  const Nanoseconds until = clock_.now() + kStartPatience;
+  for (;;) {
+    const bool is_last = stop_is_requested() || clock_.now() >= until;
+    ++page_.beats;
+    auto status = line_.ask("status", Json::object(), kStartAnswer);
+    has_answered_ = has_answered_ || status;
+    if (!status && stop_is_requested()) return Error{ErrorCode::kRefused, {"ended before its manager answered"}, {}};
+    if (status || is_last || status.error().code != ErrorCode::kSystem) return status;
+  }
 }
 
 Result<void> RemoteTarget::know_tasks(const Json& status) {
@@ -351,6 +366,7 @@ bool any_lives(const Json& status) {
 /// Has the tasks turned off and killed, and hears of everything that happens meanwhile: the status after that.
 std::optional<Json> RemoteTarget::await_end() {
   if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR1);
+  if (!has_answered_) return std::nullopt;
   auto after = line_.ask("status", Json::object());
   for (const Nanoseconds until = clock_.now() + kEndLimit; after && any_lives(*after) && clock_.now() < until;) {
     clock_.wait_until(clock_.now() + kStartLook);

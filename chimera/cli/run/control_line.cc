@@ -15,7 +15,7 @@ using control::RpcResponse;
 Result<Json> ControlLine::ask(std::string_view method, const Json& parameters, Nanoseconds limit) {
   const RpcResponse answer = client_.call(method, parameters, limit);
   if (answer.is_good()) return *answer.result;
-  const bool is_lost = answer.code == control::kNoConnection;
+  const bool is_lost = answer.code == control::kNoConnection || answer.code == control::kNoAnswer;
   const std::string where = is_lost ? client_.path() : answer.detail("where");
   return Error{is_lost ? ErrorCode::kSystem : ErrorCode::kRefused, std::string_view(answer.message),
                std::string_view(where)};

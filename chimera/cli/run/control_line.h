@@ -16,7 +16,7 @@ class ControlLine {
   explicit ControlLine(std::string path) : client_(control::Client::at(std::move(path))) {}
 
   /// The result of one request within `limit`. A refusal comes with its words, its `where` as place; without an answer
-  /// the place is the socket.
+  /// the code is kSystem and the place the socket.
   Result<control::Json> ask(std::string_view method, const control::Json& parameters,
                             Nanoseconds limit = control::kCallLimit);
   /// The parameters of the next notification; nothing when none comes until `instant` (CLOCK_MONOTONIC), or when the

@@ -51,12 +51,12 @@ TEST_P(VirtualSwitchesTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_EQ(units->lost(), 0u);
 }
 
-TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfTenThousandSwitches) {
+TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfAThousandSwitches) {
   std::vector<ScriptAct> acts;
   std::mt19937 random(3);
   Nanoseconds at = milliseconds(10);
   std::uint32_t present = kDirect;
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < 1'000; ++i) {
     present = static_cast<std::uint32_t>((present + 1 + random() % 2) % 3);
     acts.push_back(act_at(at, ScriptAct::Kind::kSwitch, present));
     at += microseconds(5000) + Nanoseconds{static_cast<std::int64_t>(random() % 2000000)};
