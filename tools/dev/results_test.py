@@ -94,16 +94,19 @@ class Finish(unittest.TestCase):
         cases = [Case("a", PASSED), Case("S.b", SKIPPED)]
         self.assertEqual(finish(cases, ci=""), (0, "1 passed, 0 failed, 1 skipped"))
 
-    def timed(self, seconds, ci):
+    def timed(self, seconds, ci, slower=1.0):
         """(cases, the line) of the first share after so many seconds."""
         said = io.StringIO()
         with mock.patch.dict(os.environ, {"CI": ci}), contextlib.redirect_stdout(said):
-            return frame.timed(frame.SHARES[0], seconds, []), said.getvalue()
+            return frame.timed(frame.SHARES[0], seconds, [], slower), said.getvalue()
 
     def test_a_share_over_its_limit_failed_on_the_build_machine(self):
         self.assertEqual([case.outcome for case in self.timed(181, "true")[0]], [FAILED])
         self.assertEqual([case.outcome for case in self.timed(181, "1")[0]], [FAILED])
         self.assertEqual(self.timed(179, "true")[0], [])
+        self.assertEqual(self.timed(269, "true", 1.5)[0], [])
+        self.assertIn("x 1.5, the machine is slow", self.timed(269, "true", 1.5)[1])
+        self.assertEqual([case.outcome for case in self.timed(271, "true", 1.5)[0]], [FAILED])
 
     def test_elsewhere_it_is_a_remark(self):
         cases, said = self.timed(181, "")
