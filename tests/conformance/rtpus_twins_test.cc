@@ -93,7 +93,7 @@ TEST(RtpusTwins, AnRtpuThatGetsNothingFromOthersDoesWhatItDoesAlone) {
       ASSERT_EQ(first.calls, second.calls);
       n_records += first.records.size();
     }
-  EXPECT_GT(n_records, 20'000u) << "the sets were worth comparing";
+  EXPECT_GT(n_records, 5'000u) << "the sets were worth comparing";
 }
 
 /// Three rtpus whose tasks read each other, send each other signals, and die.

@@ -45,8 +45,8 @@ def parse_arguments():
         description="Builds and runs every test; the last line counts them. Exit 0 only if none failed.",
         epilog="shares and their limits in minutes: compile 12, "
                + ", ".join(f"{share.name} {share.limit_min}" for share in SHARES)
-               + "; over one is an error where CI is set, else a remark; "
-               + "\na machine that is slower than usual has as much longer, but 25 for all"
+               + ";\nover one is an error where CI is set, else a remark; a machine that is slower than usual"
+               + " has\nas much longer, but 25 for all"
                + "\nexamples: ./dev test --only units\n          ./dev test --quick")
     names = [share.name for share in SHARES]
     group = parser.add_mutually_exclusive_group()
