@@ -91,7 +91,7 @@ class SameResource : public ::testing::TestWithParam<Kind> {
     set_.reset();
     app_ = std::make_unique<testing::TestApplication>();
     app_->add("hand", testing::component<Hand>("hand")).budget = microseconds(20);
-    app_->add("drill", testing::component<Drill>("drill")).budget = microseconds(20);
+    app_->add("drill", testing::component<Drill>("drill"), drill_period_).budget = microseconds(20);
     app_->add("arm", testing::component<Arm>("arm")).budget = microseconds(20);
     for (const TaskId tool : {kHand, kDrill}) {
       app_->port(tool.index, 1).value = text_;
@@ -125,6 +125,7 @@ class SameResource : public ::testing::TestWithParam<Kind> {
 
   const std::vector<std::byte> text_ = testing::bytes_of("tty0");
   bool is_shared_ = false;
+  Nanoseconds drill_period_ = milliseconds(1);  // as the others have it
   std::vector<TaskId> with_hand_{kHand, kArm}, with_drill_{kDrill, kArm};
   std::vector<StandbySpec> standbys_;
   NamedSet sets_[2] = {{"hand", with_hand_}, {"drill", with_drill_}};
@@ -207,6 +208,15 @@ TEST_P(SameResource, OnMayTakeSomeCycles) {
   EXPECT_EQ(std::ranges::count(device.story, "on drill"), 4);
   EXPECT_GE(receipts[0].at - receipts[0].asked, milliseconds(2));
   EXPECT_EQ(std::ranges::count(device.story, "off drill"), 0);
+}
+
+TEST_P(SameResource, ADeviceThatIsNotReadyIsAskedOnceInAPeriodOfItsTask) {
+  drill_period_ = milliseconds(10);  // the arm has an edge each millisecond
+  device.not_ready = 3;
+  const auto receipts = go(milliseconds(100), {to(kWithDrill, milliseconds(5))});
+  ASSERT_EQ(receipts[0].end, SwitchEnd::kDone) << static_cast<int>(receipts[0].why);
+  EXPECT_EQ(std::ranges::count(device.story, "on drill"), 4);
+  EXPECT_GE(receipts[0].at - receipts[0].asked, milliseconds(30));
 }
 
 TEST_P(SameResource, OnThatIsNeverReadyIsTakenBackWithItsOff) {
