@@ -104,7 +104,9 @@ void Library::add(LibraryEntry entry) {
       std::lower_bound(entries_.begin(), entries_.end(), entry.descriptor.name,
                        [](const LibraryEntry& e, const std::string& name) { return e.descriptor.name < name; });
   if (place != entries_.end() && place->descriptor.name == entry.descriptor.name) {
-    hidden_.push_back({entry.descriptor.name, entry.descriptor_file});
+    std::error_code unknown;  // a link to the same file hides nothing
+    if (!std::filesystem::equivalent(place->descriptor_file, entry.descriptor_file, unknown))
+      hidden_.push_back({entry.descriptor.name, entry.descriptor_file});
     return;
   }
   entries_.insert(place, std::move(entry));

@@ -123,7 +123,7 @@ def run_share(share, trees):
             with common.realtime_lock():
                 cases += ctest(tree, labels, jobs=1)
         else:
-            cases += ctest(tree, labels, jobs=cpus + 1 if "hostile" in labels else cpus)  # those wait most of the time
+            cases += ctest(tree, labels, jobs=cpus + 1 if "hostile" in labels else cpus)  # hostile ones wait a lot
     return cases or [Case(f"share {share.name}", FAILED, "it has no tests")]
 
 

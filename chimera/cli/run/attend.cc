@@ -91,7 +91,7 @@ class RemoteTarget final : public RunTarget {
   bool is_output_complete(const RunReport& report) override;
 
  private:
-  Result<Json> first_status();
+  Result<Json> await_status();
   Result<void> know_tasks(const Json& status);
   void print_grants(const Json& status);
   void poll_events();
@@ -124,7 +124,8 @@ class RemoteTarget final : public RunTarget {
   std::optional<Error> failure_;  // of the start
   Nanoseconds started_ = kNever, next_look_;
   std::uint64_t next_event_ = 0;
-  bool task_stopped_ = false, has_answered_ = false;  // the manager, once
+  bool has_answered_ = false;  // the manager, once: else nobody waits for its last words
+  bool task_stopped_ = false;
   std::string stopped_by_;
   std::vector<NotOff> not_off_;
   std::map<std::string, Nanoseconds> restarted_;  // by rtpu, the last time: maybe before the start is known
@@ -136,7 +137,7 @@ Result<void> RemoteTarget::start() {
   for (bool is_last = false; !is_last;) {
     ++page_.beats;
     is_last = stop_is_requested();  // also then: it may have started long ago
-    const auto status = first_status();
+    const auto status = await_status();
     if (!status) return status.error();
     last = *status;
     // What went wrong before the start comes first, also when the start was told meanwhile.
@@ -160,16 +161,18 @@ Result<void> RemoteTarget::start() {
   return Error{ErrorCode::kRefused, std::string_view(why), {}};
 }
 
-/// Waits for a manager that starts, unless the run is ended before there is one: it may never come.
-Result<Json> RemoteTarget::first_status() {
+/// Waits for a manager that starts, unless the run is ended: it may never come.
+Result<Json> RemoteTarget::await_status() {
   const Nanoseconds until = clock_.now() + kStartPatience;
   for (;;) {
-    const bool is_last = stop_is_requested() || clock_.now() >= until;
+    const bool is_ended = stop_is_requested(), is_last = is_ended || clock_.now() >= until;
     ++page_.beats;
     auto status = line_.ask("status", Json::object(), kStartAnswer);
-    has_answered_ = has_answered_ || status;
-    if (!status && stop_is_requested()) return Error{ErrorCode::kRefused, {"ended before its manager answered"}, {}};
-    if (status || is_last || status.error().code != ErrorCode::kSystem) return status;
+    if (status) has_answered_ = true;
+    if (status || status.error().code != ErrorCode::kSystem) return status;
+    if (is_ended && !has_answered_) return Error{ErrorCode::kRefused, {"ended before its manager answered"}, {}};
+    if (is_last) return status;
+    clock_.wait_until(clock_.now() + kStartLook);
   }
 }
 
