@@ -58,6 +58,21 @@ TEST(Channel, ADescriptorComesWithItsMessageAndIsNotInheritedFurther) {
   ::close(passed);
 }
 
+TEST(Channel, TheLastMessageOfAnEndThatDiedWithOneUnreadArrives) {
+  auto [here, there] = make_pair();
+  const auto bytes = FrozenBytes::create("test", letter(7));
+  ASSERT_TRUE(here.send(letter(1), bytes->descriptor()));
+  ASSERT_TRUE(there.send(letter(2)));  // which nobody reads
+  { const Channel ends_here = std::move(here); }
+  Letter got{};
+  int passed = -1;
+  ASSERT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  EXPECT_EQ(got, letter(1));
+  EXPECT_EQ(FrozenBytes::open(passed)->bytes().size(), 8u);
+  ::close(passed);
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kClosed);
+}
+
 TEST(Channel, ADeadEndIsClosedAfterItsLastMessage) {
   auto [here, there] = make_pair();
   ASSERT_TRUE(here.send(letter(1)));

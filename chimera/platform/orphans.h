@@ -33,7 +33,7 @@ class Orphans {
   Nanoseconds due() const noexcept { return due_; }
 
   /// When everybody else has ended: SIGKILL for all of them, and for what becomes a child by that, until none is left.
-  /// Undertakers have 100 ms to end by themselves. Whoever is left after `limit` is named on stderr.
+  /// Memory holders have 100 ms to end by themselves. Whoever else is left after `limit` is named on stderr.
   void end_all(Nanoseconds limit);
 
  private:

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 #include "chimera/platform/linux_clock.h"
@@ -82,6 +83,27 @@ TEST(Orphans, AtTheEndThoseWithoutAnOriginEndTooAndThoseThatForkOn) {
               orphans.look({}, kNobodyLives, clock.now());
               orphans.end_all(seconds(20));
               return begun && ::waitpid(-1, nullptr, WNOHANG) == -1;
+            }),
+            0);
+}
+
+TEST(Orphans, AMemoryHolderThatHasNotEndedYetIsNotNamedAsWhatAComponentStarted) {
+  EXPECT_EQ(code_of([] {
+              std::FILE* const said = std::tmpfile();
+              ::dup2(::fileno(said), STDERR_FILENO);
+              Orphans orphans;
+              const bool begun = has_run(orphans.prefix() + "0.1",
+                                         "d=$(mktemp -d); cp /bin/sleep $d/memory-holder; $d/memory-holder 1000 & h=$!; "
+                                         "sleep 1000 & until [ \"$(cat /proc/$h/comm /proc/$!/comm)\" = "
+                                         "\"$(printf 'memory-holder\\nsleep')\" ]; do :; done; rm -r $d");
+              orphans.end_all({});  // no time at all
+              orphans.end_all(seconds(20));
+              std::rewind(said);
+              char text[200] = "";
+              const std::size_t n = std::fread(text, 1, sizeof text - 1, said);
+              const std::string_view all(text, n);
+              return begun && all.ends_with(" (sleep), started by a component, could not be ended\n") &&
+                     all.find("memory-holder") == all.npos;
             }),
             0);
 }

@@ -94,7 +94,7 @@ class Requests(unittest.TestCase):
             self.assertEqual(sum("asked for by task asker: begun" in line for line in lines), 2, lines)
             self.assertTrue(any("by task asker from 'low' to 'high'" in line for line in lines), lines)
             self.assertEqual(system.call("get", variables=["refused"])["values"]["refused"]["value"], 0)
-            receipts = system.call("receipts")["receipts"]
+            receipts = await_that(lambda: (filed := system.call("receipts")["receipts"])[1:] and filed, 5, "two receipts")
             self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
                              [("high", "done", {"task": "asker"}), ("low", "done", {"task": "asker"})])
 
@@ -194,8 +194,9 @@ class Requests(unittest.TestCase):
                 self.assertTrue(system.kill(keeper, signal.SIGCONT))
             await_that(lambda: self.answers(system), 10, "a manager")
             await_that(lambda: on(system) == {"steady"}, 10, "less, once more")
-            ends = [(one["to"], one["end"]) for one in system.call("receipts")["receipts"]]
-            self.assertEqual(ends, [("less", "done"), ("all", "done"), ("less", "done")])
+            ends = lambda: [(one["to"], one["end"]) for one in system.call("receipts")["receipts"]]
+            await_that(lambda: ends() == [("less", "done"), ("all", "done"), ("less", "done")], 5,
+                       f"a receipt of each, filed after the tasks are seen OFF; {ends()}")
 
     def test_on_fault_flag_is_seen_in_the_other_unit_until_it_is_cleared(self):
         with System(FAILS.replace("REACTION", "flag")) as system:

@@ -82,8 +82,9 @@ Channel::Got Channel::receive(std::span<std::byte> bytes, int& passed) const noe
   message.msg_control = &control;
   message.msg_controllen = sizeof control;
   ssize_t got;
+  // The other end died with something unread: the kernel says so once, before what it had sent itself.
   do got = ::recvmsg(descriptor_, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-  while (got < 0 && errno == EINTR);
+  while (got < 0 && (errno == EINTR || errno == ECONNRESET));
   if (got < 0) return errno == EAGAIN ? Got::kNothing : Got::kClosed;
   passed = passed_in(message);
   if (static_cast<std::size_t>(got) == bytes.size() && (message.msg_flags & MSG_TRUNC) == 0) return Got::kMessage;
