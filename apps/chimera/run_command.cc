@@ -43,12 +43,13 @@ const std::vector<Option>& printing_options() {
       {.name = "--at",
        .value = "ACT",
        .help = "a timed act: '2 s: off pid', '3 s: flag up', '4 s: set kp 100 N.m/rad', '5 s: switch torque', "
-               "'6 s: die servo'; may be repeated",
+               "'6 s: switch --on pid', '7 s: die servo'; may be repeated",
        .manual = "A timed act, such as '2 s: off pid', '3 s: flag up' or '4 s: set kp 100 N.m/rad'. The signals are "
                  "spawn, on, off, kill, clear, reinit, and ring for an event; what is set is an operator variable; a "
-                 "switch makes exactly the tasks of a configuration ON without losing a cycle (`--virtual` with all "
-                 "tasks on one rtpu, `--isolation none`); `die` ends a real-time unit like the death of its process, "
-                 "and nobody restarts it (`--virtual` with tasks on several). May be repeated.",
+                 "switch makes exactly the tasks of a configuration ON without losing a cycle, or those that `switch "
+                 "--on TASK... --off TASK...` leads to, as in `chimera switch`; `die` ends a real-time unit like the "
+                 "death of its process, and nobody restarts it (`--virtual` with tasks on several). May be "
+                 "repeated.",
        .repeats = Repeats::kManyEach},
       {.name = "--watch",
        .value = "VARIABLE",

@@ -115,7 +115,9 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   if (receipt.cause == SwitchCause::kStandby) return takeover_text(receipt, spec, origin);
   const std::string to = set_text(receipt.after, spec);
   const std::string when = " at " + at(receipt.asked, origin);
-  if (receipt.end == SwitchEnd::kNothingToDo) return "switch" + when + ": " + to + " is in force, nothing to do\n";
+  if (receipt.end == SwitchEnd::kNothingToDo)
+    return "switch" + when + ": " + (receipt.after == kNoSet ? "these tasks are" : to + " is") +
+           " in force, nothing to do\n";
   const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
   const SwitchRequest request{receipt.after, receipt.cause, receipt.by};
   const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(request, spec) + " ";

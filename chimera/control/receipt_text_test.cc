@@ -238,6 +238,8 @@ TEST(ReceiptText, OfWhatIsInForceThereIsNoReceipt) {
   told.receipt.end = SwitchEnd::kNothingToDo;
   EXPECT_EQ(told.text(), "switch at 2.000 s: 'torque' is in force, nothing to do\n");
   EXPECT_EQ(told.json(), "");
+  told.receipt.after = kNoSet;
+  EXPECT_EQ(told.text(), "switch at 2.000 s: these tasks are in force, nothing to do\n");
 }
 
 TEST(ReceiptText, AsJsonHasEveryKey) {

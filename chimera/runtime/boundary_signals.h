@@ -68,6 +68,7 @@ class BoundarySignals {
 
  private:
   bool take_request(Nanoseconds now) noexcept;
+  void ask(const ScriptAct& act, Nanoseconds now) noexcept;
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
   void ring(Task& task, Nanoseconds now) noexcept;
   void record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;

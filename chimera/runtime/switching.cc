@@ -115,13 +115,16 @@ bool Switching::leads_to(std::uint32_t set) noexcept {
   return planner_.set_in_force(standing_) == set;
 }
 
-void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
+void Switching::ask(const SwitchRequest& request, Nanoseconds now, const TaskBits& unnamed) noexcept {
   if (peers_ != &nobody_) return peers_->wish(request, leads_to(request.set), now);
   if (phase_ == Phase::kAfter && is_free()) finish(SwitchEnd::kDone, now);
   note_standing(parts_.set, standing_);
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   const bool is_first = phase_ == Phase::kNone && is_free();
-  if (is_first) answer = planner_.plan(request.set, standing_, plan_);
+  const TaskBits target = request.set == kNoSet ? unnamed : tasks_of(parts_.set.spec(), request.set);
+  if (is_first)
+    answer = request.set == kNoSet ? planner_.plan(unnamed, standing_, plan_)
+                                   : planner_.plan(request.set, standing_, plan_);
   const ContextConstants& constants = parts_.set.constants();
   const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants, gap_) : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
@@ -138,8 +141,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   receipt.way = way;
   if (!answer) return refuse(receipt, answer);
   const std::uint16_t last = agreement().plan().number;
-  agreement().announce(
-      lone_order(parts_.set, last, tasks_of(parts_.set.spec(), request.set), way.slow, now + kPatience));
+  agreement().announce(lone_order(parts_.set, last, target, way.slow, now + kPatience));
   due_ = now;
 }
 

@@ -64,8 +64,8 @@ class Switching {
   void begin(Nanoseconds origin) noexcept;
 
   /// Makes a plan and begins to carry it out; what became of it is in receipts(). With peers: whoever plans for all is
-  /// told. Requires: prepare() took memory.
-  void ask(const SwitchRequest& request, Nanoseconds now) noexcept;
+  /// told. Of kNoSet the target are the tasks `unnamed`, without peers only. Requires: prepare() took memory.
+  void ask(const SwitchRequest& request, Nanoseconds now, const TaskBits& unnamed = {}) noexcept;
   /// None is under way, or one of which only the first cycles of arriving tasks are looked at yet.
   bool is_free() const noexcept;
   /// The set is in force, or is the one that is being switched to.

@@ -94,7 +94,8 @@ class Requests(unittest.TestCase):
             self.assertEqual(sum("asked for by task asker: begun" in line for line in lines), 2, lines)
             self.assertTrue(any("by task asker from 'low' to 'high'" in line for line in lines), lines)
             self.assertEqual(system.call("get", variables=["refused"])["values"]["refused"]["value"], 0)
-            receipts = await_that(lambda: (filed := system.call("receipts")["receipts"])[1:] and filed, 5, "two receipts")
+            receipts = await_that(lambda: (filed := system.call("receipts")["receipts"])[1:] and filed, 5,
+                                  "two receipts")
             self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
                              [("high", "done", {"task": "asker"}), ("low", "done", {"task": "asker"})])
 

@@ -159,8 +159,7 @@ class Measuring {
     }
     const auto tasks = application_.all_tasks();
     add_remarks(tasks, application_.is_flag_up(), made.remarks);
-    for (const RefusedSignal& refused : loop_->refused())
-      made.remarks.push_back(refused_line(refused, *tasks[refused.task.index], loop_->origin()));
+    for (std::string& line : refused_lines(*loop_, tasks, plan_.listed)) made.remarks.push_back(std::move(line));
     for (std::string& remark : made.remarks)
       if (remark.ends_with('\n')) remark.pop_back();
     loop_->shut_down();

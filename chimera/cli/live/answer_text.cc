@@ -104,10 +104,14 @@ std::string ring_text(const Json& answer) {
   return text;
 }
 
+std::string in_force_text(const std::string& target) {
+  return (target == "other tasks" ? "these tasks are" : target + " is") + " in force, nothing to do\n";
+}
+
 std::string switch_text(const Json& answer) {
   const std::string to = target_of(answer);
   const std::string end = text_of(answer, "end"), from = text_of(answer, "from");
-  if (end == "nothing-to-do") return to + " is in force, nothing to do\n";
+  if (end == "nothing-to-do") return in_force_text(to);
   std::string text = "switch " + std::to_string(whole_of(answer, "number")) +
                      (from.empty() ? "" : " from '" + from + "'") + " to " + to + " " + end;
   if (end != "done") return text + ": " + text_of(answer, "why") + "\n";
@@ -159,7 +163,7 @@ std::string drill_text(const Json& answer) {
 std::string plan_text(const Json& answer) {
   const std::string to = target_of(answer);
   const std::string end = text_of(answer, "end"), from = text_of(answer, "from");
-  if (end == "nothing-to-do") return to + " is in force, nothing to do\n";
+  if (end == "nothing-to-do") return in_force_text(to);
   const std::string begin = "switch" + (from.empty() ? "" : " from '" + from + "'") + " to " + to;
   if (end == "refused") {
     const std::string remedy = text_of(answer, "remedy");

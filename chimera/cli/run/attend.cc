@@ -275,12 +275,22 @@ void RemoteTarget::act_next() {
 }
 
 void RemoteTarget::switch_to(const TimedAct& timed) {
-  const std::string name = timed.text.substr(timed.text.rfind(' ') + 1);
-  const auto answer = line_.ask("switch", {{"configuration", name}}, kSwitchLimit);
+  const auto names = [this](const std::vector<TaskId>& tasks) {
+    Json list = Json::array();
+    for (const TaskId task : tasks) list.push_back(names_.tasks[task.index]);
+    return list;
+  };
+  Json asked = Json::object();
+  if (!timed.has_lists()) asked["configuration"] = timed.text.substr(timed.text.rfind(' ') + 1);
+  if (!timed.lists.plus.empty()) asked["on"] = names(timed.lists.plus);
+  if (!timed.lists.minus.empty()) asked["off"] = names(timed.lists.minus);
+  const auto answer = line_.ask("switch", asked, kSwitchLimit);
   if (!answer) {
     refused_ += "refused at " + since_start(clock_.now()) + ": " + answer.error().message.c_str() + "\n";
   } else if (answer->value("end", "") == "nothing-to-do") {
-    switches_ += "switch at " + since_start(clock_.now()) + ": '" + name + "' is in force, nothing to do\n";
+    const Json to = answer->value("to", Json());
+    const std::string what = to.is_string() ? "'" + to.get<std::string>() + "' is" : "these tasks are";
+    switches_ += "switch at " + since_start(clock_.now()) + ": " + what + " in force, nothing to do\n";
   }
 }
 

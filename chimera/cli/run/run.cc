@@ -202,8 +202,7 @@ void LocalTarget::finish(RunReport& report) {
   const auto tasks = application_.all_tasks();
   const std::vector<State> states = application_.states();
   if (report.end == RunEnd::kTaskStopped) report.stopped_by = who_stopped(tasks);
-  for (const RefusedSignal& r : loop_->refused())
-    report.refused += refused_line(r, *tasks[r.task.index], loop_->origin());
+  for (const std::string& line : refused_lines(*loop_, tasks, plan_.listed)) report.refused += line;
   const Nanoseconds now = loop_->now();
   std::vector<std::uint64_t> faults_before;
   for (const Task* task : tasks) faults_before.push_back(task->faults.count);

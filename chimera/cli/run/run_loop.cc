@@ -3,6 +3,7 @@
 // process.
 #include "chimera/cli/run/run_loop.h"
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <thread>
@@ -23,6 +24,8 @@ const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_t
   return configuration.rtpus()[virtual_time && has_tasks ? configuration.tasks()[0].rtpu : 0];
 }
 
+namespace {
+
 std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
   const std::string name(task.spec->name);
   std::string why = task.faults.last.text;
@@ -36,6 +39,21 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
   std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
   const std::string signal = is_ring ? "ring" : signal_name(refused.signal);
   return std::string("refused at ") + at + ": " + signal + " " + name + ": " + why + "\n";
+}
+
+}  // namespace
+
+std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* const> tasks,
+                                       std::span<const std::unique_ptr<ListedSwitch>> listed) {
+  std::vector<std::pair<Nanoseconds, std::string>> found;
+  for (const RefusedSignal& refused : loop.refused())
+    found.emplace_back(refused.at, refused_line(refused, *tasks[refused.task.index], loop.origin()));
+  for (const auto& each : listed)
+    if (each->refused_at() != kNever) found.emplace_back(each->refused_at(), each->refusal(loop.origin()));
+  std::ranges::stable_sort(found, {}, [](const auto& one) { return one.first; });
+  std::vector<std::string> lines;
+  for (auto& [at, line] : found) lines.push_back(std::move(line));
+  return lines;
 }
 
 std::string who_stopped(std::span<const Task* const> tasks) {

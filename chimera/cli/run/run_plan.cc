@@ -110,6 +110,9 @@ Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
     const auto act = is_set ? settled(timed, plan) : Result<ScriptAct>(timed.act);
     if (!act) return act.error();
     plan.acts.push_back(*act);
+    if (!timed.has_lists()) continue;
+    plan.listed.push_back(std::make_unique<ListedSwitch>(plan.configuration.spec(), timed.lists, timed.text));
+    plan.acts.back().asked = plan.listed.back().get();
   }
   return {};
 }
@@ -195,7 +198,7 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Library& librar
     return std::nullopt;
   }
   if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
-  RunPlan plan{library, std::move(reading.text), *std::move(verdict.configuration), {}, {}, {}};
+  RunPlan plan{library, std::move(reading.text), *std::move(verdict.configuration), {}, {}, {}, {}};
   if (const auto judged = judge_words(request, plan); !judged) {
     const int usage = refuse_run(request, judged.error(), out, err, kUsage);
     if (code != nullptr) *code = usage;

@@ -3,6 +3,7 @@
 #include "chimera/cli/run/script_text.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "chimera/cli/files/blanks.h"
 #include "chimera/task/signal.h"
@@ -27,6 +28,14 @@ Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, 
   return act;
 }
 
+Result<TaskId> task_named(const std::string& text, const std::string& name, const ApplicationSpec& spec) {
+  std::vector<std::string> names;
+  for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
+  const TaskId task(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
+  if (task.index < names.size()) return task;
+  return wrong_act(text, unknown("task", name, names));
+}
+
 Result<ScriptAct> parse_signal(const std::string& text, const std::string& word, const std::string& task, ScriptAct act,
                                const ApplicationSpec& spec) {
   std::vector<std::string> words;
@@ -37,23 +46,42 @@ Result<ScriptAct> parse_signal(const std::string& text, const std::string& word,
   const auto found = std::find(words.begin(), signals, word);
   if (found == signals) return wrong_act(text, unknown("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
-  std::vector<std::string> names;
-  for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
-  act.task = TaskId(static_cast<std::size_t>(std::find(names.begin(), names.end(), task) - names.begin()));
-  if (act.task.index < names.size()) return act;
-  return wrong_act(text, unknown("task", task, names));
+  const auto named = task_named(text, task, spec);
+  if (!named) return named.error();
+  act.task = *named;
+  return act;
 }
 
 Result<TimedAct> parse_set(const std::string& text, const std::string& object, ScriptAct act) {
   const std::size_t blank = object.find(' ');
   if (blank == std::string::npos) return wrong_act(text, "write 'set VARIABLE VALUE', such as 'set kp 100 N.m/rad'");
   act.kind = ScriptAct::Kind::kSet;
-  return TimedAct{act, text, object.substr(0, blank), trimmed(object.substr(blank))};
+  return TimedAct{act, text, object.substr(0, blank), trimmed(object.substr(blank)), {}};
+}
+
+// `lists`: "--on pid filter --off lqr".
+Result<TimedAct> parse_lists(const std::string& text, const std::string& lists, ScriptAct act,
+                             const ApplicationSpec& spec) {
+  TimedAct made{act, text, {}, {}, {}};
+  std::vector<TaskId>* list = nullptr;
+  std::istringstream words(lists);
+  for (std::string word; words >> word;) {
+    if (word == "--on" || word == "--off") {
+      list = word == "--on" ? &made.lists.plus : &made.lists.minus;
+    } else if (list == nullptr || word.starts_with("--")) {
+      return wrong_act(text, "found '" + word + "'; write 'switch --on TASK... --off TASK...'");
+    } else {
+      const auto task = task_named(text, word, spec);
+      if (!task) return task.error();
+      list->push_back(*task);
+    }
+  }
+  if (!made.has_lists()) return wrong_act(text, "no task is named; write 'switch --on TASK... --off TASK...'");
+  return made;
 }
 
 Result<ScriptAct> parse_switch(const std::string& text, const std::string& name, ScriptAct act,
                                const ApplicationSpec& spec) {
-  act.kind = ScriptAct::Kind::kSwitch;
   std::vector<std::string> names;
   for (const NamedSet& set : spec.sets) names.emplace_back(set.name);
   act.set = static_cast<std::uint32_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -86,17 +114,19 @@ Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   const std::size_t blank = act_text.find(' ');
   if (blank == std::string::npos)
     return wrong_act(text, "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', "
-                           "'switch CONFIGURATION', or 'die RTPU'");
+                           "'switch CONFIGURATION', 'switch --on TASK... --off TASK...', or 'die RTPU'");
   const std::string word = act_text.substr(0, blank);
   const std::string object = trimmed(act_text.substr(blank));
   ScriptAct act;
   act.at = *at;
+  if (word == "switch") act.kind = ScriptAct::Kind::kSwitch;
   if (word == "set") return parse_set(text, object, act);
+  if (word == "switch" && object.starts_with("-")) return parse_lists(text, object, act, spec);
   const auto made = word == "flag"     ? parse_flag(text, object, act)
                     : word == "switch" ? parse_switch(text, object, act, spec)
                     : word == "die"    ? parse_death(text, object, act, spec)
                                        : parse_signal(text, word, object, act, spec);
-  return made ? Result<TimedAct>(TimedAct{*made, text, {}, {}}) : Result<TimedAct>(made.error());
+  return made ? Result<TimedAct>(TimedAct{*made, text, {}, {}, {}}) : Result<TimedAct>(made.error());
 }
 
 }  // namespace

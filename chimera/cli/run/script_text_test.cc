@@ -73,10 +73,27 @@ TEST_F(ScriptText, ASwitchNamesAConfiguration) {
   EXPECT_EQ(refusal("3 s: swich all"), "--at '3 s: swich all': no signal 'swich'; did you mean 'switch'?");
 }
 
+TEST_F(ScriptText, ASwitchNamesTasksInPlaceOfOne) {
+  const auto acts = parse({"3 s: switch  --off counter", "4 s: switch --on counter --off counter --on counter"});
+  ASSERT_TRUE(acts);
+  EXPECT_EQ((*acts)[0].act.kind, ScriptAct::Kind::kSwitch);
+  EXPECT_EQ((*acts)[0].act.set, UINT32_MAX);
+  EXPECT_TRUE((*acts)[0].lists.plus.empty());
+  EXPECT_EQ((*acts)[0].lists.minus, std::vector{TaskId(0u)});
+  EXPECT_EQ((*acts)[1].lists.plus, (std::vector{TaskId(0u), TaskId(0u)}));
+  EXPECT_EQ((*acts)[1].lists.minus, std::vector{TaskId(0u)});
+  const std::string form = "write 'switch --on TASK... --off TASK...'";
+  EXPECT_EQ(refusal("3 s: switch --on"), "--at '3 s: switch --on': no task is named; " + form);
+  EXPECT_EQ(refusal("3 s: switch --of counter"), "--at '3 s: switch --of counter': found '--of'; " + form);
+  EXPECT_EQ(refusal("3 s: switch -on counter"), "--at '3 s: switch -on counter': found '-on'; " + form);
+  EXPECT_EQ(refusal("3 s: switch --on countr"),
+            "--at '3 s: switch --on countr': no task 'countr'; did you mean 'counter'?");
+}
+
 TEST_F(ScriptText, RefusesWhatIsNoAct) {
   const char* form = "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'";
   const char* object = "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', "
-                       "'switch CONFIGURATION', or 'die RTPU'";
+                       "'switch CONFIGURATION', 'switch --on TASK... --off TASK...', or 'die RTPU'";
   EXPECT_EQ(refusal(""), std::string("--at '': ") + form);
   EXPECT_EQ(refusal("2 s off counter"), std::string("--at '2 s off counter': ") + form);
   EXPECT_EQ(refusal("2 s:"), std::string("--at '2 s:': ") + object);

@@ -139,5 +139,20 @@ TEST(SeveralRtpus, SwitchToAnotherConfigurationTogether) {
   EXPECT_TRUE(has(said.out, ": 0 tasks arrive, 2 leave, 0 cycles lost\n")) << said.out;
 }
 
+TEST(SeveralRtpus, SwitchToWhatTasksByNameLeadTo) {
+  RunRequest request = with_act("5 ms: switch --off ages");
+  request.at.insert(request.at.end(), {"15 ms: switch --off counter --on source", "20 ms: switch --on ages",
+                                       "24 ms: switch --on ages", "25 ms: switch --off source ages",
+                                       "30 ms: switch --off source --on ages"});
+  const Said said = said_by(request);
+  EXPECT_EQ(said.code, kOk) << said.out << said.err;
+  EXPECT_TRUE(has(said.out, "\nrefused at 0.025 s: switch --off source ages: no task would be ON\n"
+                            "refused at 0.030 s: switch --off source --on ages: x would have no producer\n"
+                            "switch 1 at 0.005 s from 'all' to other tasks after ")) << said.out;
+  EXPECT_TRUE(has(said.out, "\nswitch 2 at 0.015 s to other tasks after ")) << said.out;
+  EXPECT_TRUE(has(said.out, "\nswitch 3 at 0.020 s to other tasks after ")) << said.out;
+  EXPECT_TRUE(has(said.out, "\nswitch at 0.024 s: these tasks are in force, nothing to do\n")) << said.out;
+}
+
 }  // namespace
 }  // namespace chimera::cli

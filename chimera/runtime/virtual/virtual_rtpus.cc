@@ -226,8 +226,17 @@ void VirtualRtpus::act(const ScriptAct& act, Unit*& last) noexcept {
     case ScriptAct::Kind::kDie:
       return die(act.rtpu);
     case ScriptAct::Kind::kSwitch:
-      return switches_.ask({act.set, SwitchCause::kScript, {}}, now_);
+      return ask(act);
   }
+}
+
+void VirtualRtpus::ask(const ScriptAct& act) noexcept {
+  if (act.asked == nullptr) return switches_.ask({act.set, SwitchCause::kScript, {}}, now_);
+  TaskBits on, target;
+  for (std::size_t t = 0; t < peers_.spec().tasks.size(); ++t)
+    if (peers_.state(TaskId(t)) == State::kOn) on.add(TaskId(t));
+  if (act.asked->find(on, now_, target))
+    switches_.ask({set_of(peers_.spec(), target), SwitchCause::kScript, {}}, now_, target);
 }
 
 // Lowered, it is also for the tasks that hold it up.

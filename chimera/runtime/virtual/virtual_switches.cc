@@ -67,11 +67,14 @@ Nanoseconds VirtualSwitches::lead() const noexcept {
   return lead_of(plan_, peers_.spec().tasks, longest);
 }
 
-void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
+void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now, const TaskBits& unnamed) noexcept {
   finish(now);
   for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = standing_of(TaskId(t));
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  if (!is_under_way()) answer = planner_.plan(request.set, standing_, plan_);
+  const TaskBits target = request.set == kNoSet ? unnamed : tasks_of(peers_.spec(), request.set);
+  if (!is_under_way())
+    answer = request.set == kNoSet ? planner_.plan(unnamed, standing_, plan_)
+                                   : planner_.plan(request.set, standing_, plan_);
   const SwitchWay way = answer ? judge_way() : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   if (is_nothing && request.cause != SwitchCause::kScript) return;
@@ -87,6 +90,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now) noexcep
   receipt.way = way;
   if (!answer) return refuse(receipt, answer);
   present_ = &receipt;
+  target_ = target;
   order(now + kPatience);
 }
 
@@ -110,7 +114,7 @@ void VirtualSwitches::order(Nanoseconds until) noexcept {
   order.number = next_plan(agreement().plan().number);
   order.members = living();
   order.after = present_->after;
-  order.target = tasks_of(peers_.spec(), present_->after);
+  order.target = target_;
   order.slow = present_->way.slow;
   order.constants = constants_;
   order.until = until;
@@ -129,7 +133,7 @@ bool VirtualSwitches::try_again(Nanoseconds now) noexcept {
   const bool was_late = present_->why == NoSwitch::kLate && now < until_;
   if ((slow == 0 && !was_late) || present_->tries >= kMostTries) return false;
   for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = standing_of(TaskId(t));
-  if (!planner_.plan(present_->after, standing_, plan_)) return false;
+  if (!planner_.plan(target_, standing_, plan_)) return false;
   present_->why = NoSwitch::kNone;
   present_->task = {};
   if (slow != 0) present_->way.slow = slow;
@@ -184,7 +188,7 @@ void VirtualSwitches::finish(Nanoseconds now) noexcept {
   for (std::uint32_t r = 0; r < members_.size(); ++r)
     if (((living() >> r) & 1u) != 0 && !members_[r].is_over(plan.number)) return;
   const bool is_committed = plan.phase == SwitchPhase::kCommitted;
-  if (is_committed) constants_ = present_->after;
+  if (is_committed && present_->after != kNoSet) constants_ = present_->after;
   if (!is_committed && try_again(now)) return;
   present_->end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
   if (is_committed) present_->at = agreement().at(plan);

@@ -25,8 +25,9 @@ class VirtualSwitches {
   SwitchPeers& of(RtpuId rtpu) noexcept { return members_[rtpu.index]; }
   void begin(Nanoseconds origin) noexcept { origin_ = origin; }
 
-  /// Judges the request and orders the switch; what became of it is in receipts(). Requires: memory for a receipt.
-  void ask(const SwitchRequest& request, Nanoseconds now) noexcept;
+  /// Judges the request and orders the switch; what became of it is in receipts(). Of kNoSet the target are the tasks
+  /// `unnamed`. Requires: memory for a receipt.
+  void ask(const SwitchRequest& request, Nanoseconds now, const TaskBits& unnamed = {}) noexcept;
   /// A switch of which nothing is left to do is over; then the last wish of a task is taken up.
   void look(Nanoseconds now) noexcept;
   bool is_under_way() const noexcept { return present_ != nullptr; }
@@ -83,6 +84,7 @@ class VirtualSwitches {
   std::span<TaskStanding> standing_;  // by task, when a plan is judged
   SwitchReceipts receipts_;
   SwitchReceipt* present_ = nullptr;  // of the switch under way
+  TaskBits target_;                   // that it leads to
   Nanoseconds until_;                 // its deadline
   std::size_t n_tasks_ = 0, n_variables_ = 0;  // in it
   std::uint32_t constants_ = kNoSet;           // the set whose constants are in force
