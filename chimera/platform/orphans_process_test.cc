@@ -94,7 +94,8 @@ TEST(Orphans, AMemoryHolderThatHasNotEndedYetIsNotNamedAsWhatAComponentStarted) 
               Orphans orphans;
               const bool begun = has_run(orphans.prefix() + "0.1",
                                          "d=$(mktemp -d); cp /bin/sleep $d/memory-holder; "
-                                         "$d/memory-holder 1000 & h=$!; sleep 1000 & until [ \"$(cat /proc/$h/comm /proc/$!/comm)\" = "
+                                         "$d/memory-holder 1000 & h=$!; sleep 1000 & "
+                                         "until [ \"$(cat /proc/$h/comm /proc/$!/comm)\" = "
                                          "\"$(printf 'memory-holder\\nsleep')\" ]; do :; done; rm -r $d");
               orphans.end_all({});  // no time at all
               orphans.end_all(seconds(20));
