@@ -2,7 +2,10 @@
 # Needs: demo component_gain_files component_t_delays_files component_mujoco_robot_files
 """Row 12, a switch of configurations. 100 tasks at 1 kHz on two real-time units, 25 of each unit leave and as many
 others arrive, there and back: from the return of the last `on` to the instant of the change, in periods, and how many
-cycles were lost by all of them. Baseline of the whole command, right behind it: the same change by `off`, then `on`.
+cycles were lost by all of them. A witness on each processor says which of them the host disturbed: cycles are counted
+in the others, and the instant of the change is judged where no job of the run has been stalled for 0.5 ms before, since
+nothing is changed sooner than the longest job so far takes. 20 switches in each run, runs until 200 are judged, at most
+60. Baseline of the whole command, right behind it: the same change by `off`, then `on`.
 Then what one task of a unit feels while a large component (mujoco_robot) is loaded there or goes: the longest start
 delay in windows of 0.5 s, beside as long ones in which nothing happens, and those twice (A/A)."""
 import json
@@ -13,11 +16,13 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "tests" / "processes"))
+from host_witness import HostWitness, any_stall  # noqa: E402
 from percentile import percentile  # noqa: E402
 from system import System  # noqa: E402
 
-SWITCHES, RESTARTS, WINDOWS, SECONDS, EACH = 200, 20, 20, 0.5, 25
+JUDGED, A_RUN, RUNS, RESTARTS, WINDOWS, SECONDS, EACH = 200, 20, 60, 20, 20, 0.5, 25
 PERIOD_NS = 1_000_000
+LONG_S, AROUND_S = 0.5e-3, 2e-3  # a stall that a job is longer by; what is disturbed before and after one
 
 
 def gains(name, unit):
@@ -46,23 +51,37 @@ start: all
 """.replace("MODEL", str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "library/puma_torque/puma560.xml"))
 
 
-def switches():
-    """([periods from armed to the change], cycles lost in all switches, [ms of a switch], [ms of off and on])"""
-    periods, lost, took, restarts = [], 0, [], []
+def one_run(n, periods, lost, took):
+    """Adds [periods from armed to the change] and [cycles lost] of the switches that are judged, [ms] of all."""
+    witnesses = [HostWitness(cpu) for cpu in (0, 1)]
+    receipts = []
     with System(TEXT, ("--priority", "80")) as system:
-        for n in range(SWITCHES):
+        target = "new"
+        for _ in range(n):
             began = time.monotonic()
-            receipt = system.call("switch", configuration=("new", "old")[n % 2])
+            receipts.append(system.call("switch", configuration=target))
             took.append(1e3 * (time.monotonic() - began))
+            target = {"new": "old", "old": "new"}[target] if receipts[-1]["end"] == "done" else target
+    stalls = [stall for witness in witnesses for stall in witness.stalls()]
+    for receipt in receipts:
+        begin, end = ((receipt["origin_ns"] + receipt[key]) / 1e9 for key in ("asked_ns", "ended_ns"))
+        if not any_stall(stalls, begin - AROUND_S, end + AROUND_S):
             assert receipt["end"] == "done", receipt
+            lost.append(sum(task["lost"] for task in receipt["tasks"]))
+        if receipt["end"] == "done" and not any_stall(stalls, receipt["origin_ns"] / 1e9 - AROUND_S, end, LONG_S):
             periods.append((receipt["at_ns"] - receipt["armed_ns"]) / PERIOD_NS)
-            lost += sum(task["lost"] for task in receipt["tasks"])
+
+
+def restarts():
+    """[ms of off, then on]"""
+    took = []
+    with System(TEXT, ("--priority", "80")) as system:
         for n in range(RESTARTS):
             began = time.monotonic()
             system.signal("off", *names(("old", "new")[n % 2]))
             system.signal("on", *names(("new", "old")[n % 2]))
-            restarts.append(1e3 * (time.monotonic() - began))
-    return periods, lost, took, restarts
+            took.append(1e3 * (time.monotonic() - began))
+    return took
 
 
 def upper_end(counts):
@@ -86,22 +105,28 @@ def stalls():
                 time.sleep(max(0, end - time.monotonic()))
                 system.signal("off", "probe")
                 counts = system.call("get", variables=["of_probe"])["values"]["of_probe"]["value"]
-                assert sum(counts) > SECONDS * 900, f"the probe did not run: {sum(counts)}"
+                assert sum(counts) > SECONDS * 500, f"the probe did not run: {sum(counts)}"
                 seen.append(upper_end(counts))
     return found
 
 
-PERIODS, LOST, TOOK, RESTARTED = switches()
+PERIODS, LOST, TOOK = [], [], []
+MADE = 0
+while (len(PERIODS) < JUDGED or len(LOST) < JUDGED) and MADE < RUNS * A_RUN:
+    one_run(A_RUN, PERIODS, LOST, TOOK)
+    MADE += A_RUN
+RESTARTED = restarts()
 FIGURE = percentile(PERIODS, 0.99)
 print(json.dumps({"row": 12, "what": f"all armed to the change, p99 (p50 {statistics.median(PERIODS):.2f})",
                   "unit": "periods", "figure": round(FIGURE, 2), "baseline": 1, "baseline_name": "a period of 1 ms",
-                  "goal": "<= 1", "met": FIGURE <= 1, "n": SWITCHES}))
-print(json.dumps({"row": 12, "what": "cycles lost by 150 tasks", "unit": "", "figure": LOST, "baseline": 0,
-                  "baseline_name": "promised", "goal": "0", "met": LOST == 0, "n": SWITCHES}))
+                  "goal": "<= 1", "met": FIGURE <= 1, "n": len(PERIODS)}))
+print(json.dumps({"row": 12, "what": f"cycles lost by 150 tasks ({MADE - len(LOST)} of {MADE} disturbed)", "unit": "",
+                  "figure": sum(LOST), "baseline": 0, "baseline_name": "promised", "goal": "0",
+                  "met": sum(LOST) == 0, "n": len(LOST)}))
 print(json.dumps({"row": 12, "what": f"the whole command, p50 (p99 {percentile(TOOK, 0.99):.1f})", "unit": "ms",
                   "figure": round(statistics.median(TOOK), 2), "baseline": round(statistics.median(RESTARTED), 2),
                   "baseline_name": "off, then on", "goal": "not slower",
-                  "met": statistics.median(TOOK) <= statistics.median(RESTARTED), "n": SWITCHES}))
+                  "met": statistics.median(TOOK) <= statistics.median(RESTARTED), "n": MADE}))
 SEEN = stalls()
 RATIOS = {what: sorted(one / other for one, other in zip(SEEN[what], SEEN["nothing"])) for what in ("control", "large")}
 RATIO, LIMIT = statistics.median(RATIOS["large"]), RATIOS["control"][WINDOWS * 9 // 10]

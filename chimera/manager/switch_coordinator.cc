@@ -307,8 +307,8 @@ Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
   const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
   const PeerSegment& there = world_.peers.of(task);
   if (!there.is_there()) return guess;
-  const Spread measured = there.block().profile(task).execution[static_cast<int>(method)];
-  return measured.count == 0 ? guess : measured.max;
+  const Profile profile = there.block().profile(task);
+  return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
 }
 
 /// To the change, when nothing has to be waited for but the flag. Requires: plan_ and way_ were judged.

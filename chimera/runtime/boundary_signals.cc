@@ -16,6 +16,7 @@ void BoundarySignals::look_ahead(Nanoseconds due, Nanoseconds wake) noexcept {
   const Nanoseconds at = script_.next_at();
   const Nanoseconds act = at == kNever ? kNever : origin_ + at;
   next_act_ = std::min({act, due, switching_.due()});
+  next_act_in_row_ = std::min({act, due, switching_.due(true)});
   next_wake_ = std::min({act, wake, switching_.wake()});
 }
 

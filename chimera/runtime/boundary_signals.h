@@ -42,6 +42,8 @@ class BoundarySignals {
   /// kNever: nothing is left.
   /// Context: cycle; wait-free.
   Nanoseconds next_act() const noexcept { return next_act_; }
+  /// The same while jobs wait, none of which is under way at an edge. Context: cycle; wait-free.
+  Nanoseconds next_act_in_row() const noexcept { return next_act_in_row_; }
   /// The next instant at which that is so although no job ends before. Context: cycle; wait-free.
   Nanoseconds next_wake() const noexcept { return next_wake_; }
   /// All of an edge is done: next_act() and next_wake() anew; `due` and `wake` are those of Recovery.
@@ -83,7 +85,7 @@ class BoundarySignals {
   BoundaryListener* guest_;
   SwitchRequest request_;  // of a task: waits for the switch that is under way to end
   Nanoseconds origin_;
-  Nanoseconds next_act_ = kNever, next_wake_ = kNever;
+  Nanoseconds next_act_ = kNever, next_act_in_row_ = kNever, next_wake_ = kNever;
   FixedVector<RefusedSignal, kRefusedKept> refused_;
 };
 

@@ -37,7 +37,7 @@ class IdleGap final : public NeededGaps {
     if (threads_.run_beside_methods()) return true;
     return queue_.is_empty() && std::none_of(tasks_.begin(), tasks_.end(), [](const Task& t) { return t.is_busy; });
   }
-  /// It is, and the next release is so far away as the method took at most, and a fifth of that. O(tasks).
+  /// It is, and the next release is so far away as the method takes at most of late, and a fifth of that. O(tasks).
   bool is_for(const Task& task, Method method, Nanoseconds now) const noexcept {
     if (threads_.run_beside_methods()) return true;
     return is_there() && queue_.next_release() - now >= needed(*task.spec, task.profile, method);
@@ -47,9 +47,10 @@ class IdleGap final : public NeededGaps {
     return threads_.run_beside_methods() ? Nanoseconds{} : needed(*of.spec, of.profile, Method::kOn);
   }
   static Nanoseconds needed(const TaskSpec& task, const Profile& profile, Method method) noexcept {
-    const Spread& measured = profile.execution[static_cast<int>(method)];
     const Nanoseconds guess = task.budget > Nanoseconds{} ? task.budget : kUnknownMethod;
-    return measured.count == 0 ? guess : measured.max + Nanoseconds{measured.max.count / 5};
+    if (profile.execution[static_cast<int>(method)].count == 0) return guess;
+    const Nanoseconds longest = profile.of_late(method);
+    return longest + Nanoseconds{longest.count / 5};
   }
 
  private:

@@ -56,9 +56,12 @@ class Releases {
     return now >= calm_until_ || stop_requested() || (guest_ != nullptr && guest_->is_due(now));
   }
   /// Everything that is due by now was looked at; the run ends at `until`.
-  void rest(Nanoseconds until) noexcept {
+  /// `puts_off`: no job is ever under way at an edge, and one that waits for the end of jobs may come when none waits
+  /// any more. Then edge_is_due() although must_look() is not true.
+  void rest(Nanoseconds until, bool puts_off = false) noexcept {
     const bool is_calm = !set_.sent().has_pending() && !settlement_.task_stopped();
-    calm_until_ = is_calm ? std::min({queue_.next_release(), signals_.next_act(), until}) : kAtOnce;
+    const Nanoseconds act = puts_off && !queue_.is_empty() ? signals_.next_act_in_row() : signals_.next_act();
+    calm_until_ = is_calm ? std::min({queue_.next_release(), act, until}) : kAtOnce;
   }
   /// The next must_look() is true.
   void look_again() noexcept { calm_until_ = kAtOnce; }

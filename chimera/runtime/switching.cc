@@ -147,6 +147,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now, const TaskBit
 
 void Switching::step(Nanoseconds edge) noexcept {
   Nanoseconds now = edge;
+  waits_for_row_ = false;
   const PlanWord plan = agreement().plan();
   if (phase_ == Phase::kNone && plan.number != seen_) take_up(plan, now);
   if (phase_ == Phase::kNone) return;
@@ -342,8 +343,9 @@ void Switching::change(Nanoseconds now) noexcept {
   }
   record_.keep_last_of_leaving();
   if (!changeover_.follow(plan_, at_)) {
-    due_ = now;  // with the end of each job
+    due_ = now;  // with the end of each job, or of their row
     wake_ = parts_.threads.next_look(now);
+    waits_for_row_ = true;
     return;
   }
   phase_ = Phase::kAfter;
@@ -354,7 +356,8 @@ void Switching::go_slowly(Nanoseconds now) noexcept {
   if (!cool_down(parts_.set, parts_.threads, parts_.members, plan_, now)) return wait(now);
   if (!slow_.step(agreement(), now)) {
     wake_ = std::max(std::min(slow_.wake(), parts_.threads.next_look(now)), now);
-    due_ = gap_.is_there() ? wake_ : now;
+    waits_for_row_ = !gap_.is_there();
+    due_ = waits_for_row_ ? now : wake_;
     return;
   }
   now = parts_.clock.now();
@@ -398,6 +401,7 @@ void Switching::settle(Nanoseconds now) noexcept {
   record_.await_first_cycles(parts_.threads);
   due_ = now;
   wake_ = record_.first_cycles_by();
+  waits_for_row_ = true;
 }
 
 // `off` of those that left, or were armed in vain, each in a gap unless it is to be at once. False: some are left for
@@ -480,7 +484,8 @@ void Switching::wait(Nanoseconds now, Nanoseconds at_most) noexcept {
   const Nanoseconds limit = std::max(order_.until, now + Nanoseconds{1});
   const Nanoseconds next = std::max(parts_.threads.next_look(now), now);
   wake_ = std::min({next, limit, at_most == kNever ? kNever : now + at_most});
-  due_ = gap_.is_there() ? wake_ : now;
+  waits_for_row_ = !gap_.is_there();
+  due_ = waits_for_row_ ? now : wake_;
 }
 
 }  // namespace chimera

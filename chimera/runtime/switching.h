@@ -78,8 +78,10 @@ class Switching {
   /// The run is over: what is not committed is aborted, what is committed is finished.
   void end(Nanoseconds now) noexcept;
 
-  /// From this instant on a step may have something to do; kNever: only when others say so. Wait-free.
-  Nanoseconds due() const noexcept { return due_; }
+  /// From this instant on a step may have something to do; kNever: only when others say so. `in_row`: while jobs wait,
+  /// and none is under way at an edge; what is due with the end of each job is then as well looked at when none waits
+  /// any more, or before the next release: a step takes as long as there are tasks. Wait-free.
+  Nanoseconds due(bool in_row = false) const noexcept { return in_row && waits_for_row_ ? kNever : due_; }
   /// The next instant at which a step is worth while although no job ends before. Wait-free.
   Nanoseconds wake() const noexcept { return wake_; }
   /// Of those asked for here. Context: setup, between runs.
@@ -128,6 +130,7 @@ class Switching {
   std::size_t n_off_ = 0;
   std::uint16_t seen_ = 0;            // number of the last plan that was taken up
   Phase phase_ = Phase::kNone;
+  bool waits_for_row_ = false;
   bool is_held_ = false;              // changeover_ is between hold() and release()
   bool is_changed_ = false;           // changeover_ has made the change
 };

@@ -243,7 +243,7 @@ Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanosec
   Progress& progress = progress_[task.id.index];
   progress.has_new_constants = false;
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
-  task.profile.execution[static_cast<int>(step.method)].add(progress.used + (read_clock(now) - began));
+  task.profile.add_call(step.method, progress.used + (read_clock(now) - began));
   if (progress.has_new_constants && !progress.is_moved) reinit_users(task.id, now);
   if (step.step == Step::kOn) task.is_half_on = answer == Answer::kNotYet;
   if (answer == Answer::kNotYet) {

@@ -2,11 +2,13 @@
 // What a task costs and how punctual it is, always measured (1994 paper 3.3; reference HASE'96 for the idea).
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
+#include "chimera/task/signal.h"
 
 namespace chimera {
 
@@ -67,6 +69,25 @@ struct Profile {
   std::uint64_t exhausted = 0;        ///< times its server ran out of capacity in the middle of a job
   Nanoseconds on_since = kNever;      ///< kNever: it is not ON
   Nanoseconds on_before;              ///< time that it was ON until then
+  Nanoseconds late[3];                ///< what of_late() answers of reinit, on and off
+
+  /// How long the method takes of late, as a gap for it must be: of reinit, on and off the longest call, of which every
+  /// later call forgets half, so that one that was held up once does not count for ever; of others the longest ever.
+  /// Requires: it was called. Context: any; wait-free.
+  Nanoseconds of_late(Method method) const noexcept {
+    const Nanoseconds longest = execution[static_cast<int>(method)].max;
+    const int place = late_place(method);
+    return place < 0 ? longest : late[place];
+  }
+  /// Adds a call of a method by an edge. Context: edge; wait-free.
+  void add_call(Method method, Nanoseconds used) noexcept {
+    execution[static_cast<int>(method)].add(used);
+    const int place = late_place(method);
+    if (place >= 0) late[place] = std::max(used, Nanoseconds{late[place].count / 2});
+  }
+  static constexpr int late_place(Method method) noexcept {
+    return method == Method::kReinit ? 0 : method == Method::kOn ? 1 : method == Method::kOff ? 2 : -1;
+  }
 
   /// Time that it was ON by `now`. Context: any; wait-free.
   Nanoseconds on_by(Nanoseconds now) const noexcept {

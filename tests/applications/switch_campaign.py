@@ -10,22 +10,22 @@ the robot's period meanwhile; else it is not judged, and there is another one, a
 usage: switch_campaign.py --build TREE [--real] [--seconds N | --switches N] [--seed N]
 """
 import argparse
-import gc
 import json
 import os
 import pathlib
 import random
-import select
 import subprocess
 import sys
 import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "processes"))
+from host_witness import HostWitness, any_stall  # noqa: E402
+
 LESSON = ROOT / "examples" / "17_switch"
 A_RUN = 500      # switches
 A_REAL_RUN = 50
-LATE_S = 100e-6
 AROUND_S = 2e-3  # nor may the host stall so shortly before and after
 CPU = 1          # of the lesson
 FIRST_MS, GAP_MS = 200, (30, 130)
@@ -88,33 +88,6 @@ def schedule(n, seed):
     return acts, round(at / 1e3 + 1, 1)
 
 
-class Witness:
-    """Sleeps on the lesson's processor, above everything, and keeps when it was late: from and to, in seconds."""
-
-    def __init__(self):
-        self.process = subprocess.Popen([sys.executable, __file__, "--witness"], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, text=True)
-        self.process.stdout.readline()
-
-    def stalls(self):
-        return json.loads(self.process.communicate("\n")[0])
-
-    @staticmethod
-    def watch():
-        os.sched_setaffinity(0, {CPU})
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(90))
-        gc.disable()
-        print(flush=True)
-        stalls, due = [], time.monotonic() + 0.001
-        while not select.select([sys.stdin], [], [], 0)[0]:
-            time.sleep(max(0, due - time.monotonic()))
-            woken = time.monotonic()
-            if woken - due > LATE_S:
-                stalls.append((due, woken))
-            due += 0.001 * (1 + int((woken - due) / 0.001))
-        print(json.dumps(stalls))
-
-
 class Load:
     """A busy program on each processor, as an ordinary process."""
 
@@ -131,14 +104,14 @@ class Load:
 def real_trial(program, path, n, seed):
     """(faults, how many were judged)"""
     acts, seconds = schedule(n, seed)
-    witness = Witness()
+    witness = HostWitness(CPU)
     report, _ = run(program, path, seconds, acts, is_real=True)
     stalls, found, judged = witness.stalls(), [], 0
     if len(report["receipts"]) != len(acts):
         found.append(f"{len(report['receipts'])} receipts of {len(acts)} switches")
     for number, (receipt, act) in enumerate(zip(report["receipts"], acts), 1):
         begin, end = ((receipt["origin_ns"] + receipt[key]) / 1e9 for key in ("asked_ns", "ended_ns"))
-        if not any(late_from < end + AROUND_S and late_to > begin - AROUND_S for late_from, late_to in stalls):
+        if not any_stall(stalls, begin - AROUND_S, end + AROUND_S):
             judged += 1
             found += faults_of(number, receipt, act)
     return found, judged
@@ -204,4 +177,4 @@ def in_real_time(arguments, program, path):
 
 
 if __name__ == "__main__":
-    sys.exit(Witness.watch() if sys.argv[1:] == ["--witness"] else main())
+    sys.exit(main())
