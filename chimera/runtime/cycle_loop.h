@@ -24,17 +24,13 @@ RunEnd run_cycles(Releases& releases, Time& time, Nanoseconds until) noexcept {
       if (releases.settlement().task_stopped()) return RunEnd::kTaskStopped;
       if (now >= until) return RunEnd::kTime;
       if (releases.edge_is_due(now)) {
-        releases.take_edge(now);
+        releases.take_edge(now, true);
         now = time.now();  // methods took their time
       }
       releases.release_due(now);
-      releases.rest(until, true);
+      releases.rest(until);
     }
     if (queue.is_empty()) {
-      if (!releases.must_look(now) && releases.edge_is_due(now)) {  // it was put off
-        releases.look_again();
-        continue;
-      }
       if (!releases.anything_left()) return RunEnd::kNothingLeft;
       const Nanoseconds next = releases.next_event();
       time.wait_until(next < until ? next : until);

@@ -83,7 +83,11 @@ void Releases::begin(Nanoseconds origin) noexcept {
   members_.follow_all(origin);
 }
 
-void Releases::take_edge(Nanoseconds now) noexcept {
+void Releases::take_edge(Nanoseconds now, bool puts_off) noexcept {
+  const bool is_in_row = puts_off && !queue_.is_empty() && queue_.next_release() > now;
+  const bool is_for_others = signals_.next_act_in_row() <= now || set_.sent().has_pending() ||
+                             (guest_ != nullptr && guest_->is_due(now));
+  if (is_in_row && !is_for_others) return;
   signals_.act(now);
   if (guest_ != nullptr) {
     guest_->take(signals_, now);

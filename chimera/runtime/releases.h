@@ -56,12 +56,9 @@ class Releases {
     return now >= calm_until_ || stop_requested() || (guest_ != nullptr && guest_->is_due(now));
   }
   /// Everything that is due by now was looked at; the run ends at `until`.
-  /// `puts_off`: no job is ever under way at an edge, and one that waits for the end of jobs may come when none waits
-  /// any more. Then edge_is_due() although must_look() is not true.
-  void rest(Nanoseconds until, bool puts_off = false) noexcept {
+  void rest(Nanoseconds until) noexcept {
     const bool is_calm = !set_.sent().has_pending() && !settlement_.task_stopped();
-    const Nanoseconds act = puts_off && !queue_.is_empty() ? signals_.next_act_in_row() : signals_.next_act();
-    calm_until_ = is_calm ? std::min({queue_.next_release(), act, until}) : kAtOnce;
+    calm_until_ = is_calm ? std::min({queue_.next_release(), signals_.next_act(), until}) : kAtOnce;
   }
   /// The next must_look() is true.
   void look_again() noexcept { calm_until_ = kAtOnce; }
@@ -70,7 +67,9 @@ class Releases {
     return set_.sent().has_pending() || signals_.next_act() <= now || (guest_ != nullptr && guest_->is_due(now));
   }
   /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
-  void take_edge(Nanoseconds now) noexcept;
+  /// `puts_off`: no job is ever under way at an edge, and one that only waits for the end of jobs is not taken before
+  /// none waits any more, or the next release is due.
+  void take_edge(Nanoseconds now, bool puts_off = false) noexcept;
   /// The next instant at which an edge or a release may be due.
   Nanoseconds next_event() const noexcept { return std::min(queue_.next_release(), next_edge()); }
   /// The same for edges alone, where releases have threads of their own.
