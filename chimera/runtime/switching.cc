@@ -122,9 +122,7 @@ void Switching::ask(const SwitchRequest& request, Nanoseconds now, const TaskBit
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   const bool is_first = phase_ == Phase::kNone && is_free();
   const TaskBits target = request.set == kNoSet ? unnamed : tasks_of(parts_.set.spec(), request.set);
-  if (is_first)
-    answer = request.set == kNoSet ? planner_.plan(unnamed, standing_, plan_)
-                                   : planner_.plan(request.set, standing_, plan_);
+  if (is_first) answer = planner_.plan(target, standing_, plan_);
   const ContextConstants& constants = parts_.set.constants();
   const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants, gap_) : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;

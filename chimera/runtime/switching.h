@@ -130,7 +130,7 @@ class Switching {
   std::size_t n_off_ = 0;
   std::uint16_t seen_ = 0;            // number of the last plan that was taken up
   Phase phase_ = Phase::kNone;
-  bool waits_for_row_ = false;
+  bool waits_for_row_ = false;        // due_ is now for the end of jobs alone
   bool is_held_ = false;              // changeover_ is between hold() and release()
   bool is_changed_ = false;           // changeover_ has made the change
 };

@@ -448,6 +448,23 @@ TEST_P(Switches, AnOnThatFitsNoGapGoesTheSlowWayAtOnce) {
   EXPECT_LE(receipt.at - receipt.asked, milliseconds(3));
 }
 
+// Held up for 8 ms, it needs 4.8 ms after the next call, and 0.6 ms after the fourth.
+TEST_P(Switches, AnOnThatWasHeldUpOnceIsNotSlowForEver) {
+  build();
+  for (int n = 0; n < 5; ++n)
+    acts_.insert(acts_.end(), {to(kObserved, milliseconds(5 + 20 * n)), to(kDirect, milliseconds(15 + 20 * n))});
+  for (TaskSpec& task : app_->tasks) task.on_miss = OnMiss::kAbort;  // no deadline is judged
+  runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+  set_->tasks()[kObserver.index].profile.add_call(Method::kOn, milliseconds(8));
+  EXPECT_TRUE(runner_->start());
+  EXPECT_EQ(runner_->run(milliseconds(110)), RunEnd::kTime);
+  ASSERT_EQ(runner_->receipts().size(), 10u);
+  EXPECT_EQ(runner_->receipts()[0].way.slow, kSlowForGap);
+  EXPECT_EQ(runner_->receipts()[0].way.needed, microseconds(9600));
+  EXPECT_EQ(runner_->receipts()[8].way.slow, 0u);
+  for (const SwitchReceipt& receipt : runner_->receipts()) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+}
+
 // Without a gap that `on` would fit in, it goes the slow way after 10 s.
 TEST_P(Switches, WithoutAGapItGoesTheSlowWayAfterTenSeconds) {
   build();

@@ -66,6 +66,11 @@ std::string target_of(const Json& answer) {
   return to.empty() ? "other tasks" : "'" + to + "'";
 }
 
+std::string in_force_text(const Json& answer) {
+  const bool is_named = !text_of(answer, "to").empty();
+  return (is_named ? target_of(answer) + " is" : "these tasks are") + " in force, nothing to do\n";
+}
+
 }  // namespace
 
 std::string json_line(const Json& answer) { return answer.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
@@ -104,14 +109,10 @@ std::string ring_text(const Json& answer) {
   return text;
 }
 
-std::string in_force_text(const std::string& target) {
-  return (target == "other tasks" ? "these tasks are" : target + " is") + " in force, nothing to do\n";
-}
-
 std::string switch_text(const Json& answer) {
   const std::string to = target_of(answer);
   const std::string end = text_of(answer, "end"), from = text_of(answer, "from");
-  if (end == "nothing-to-do") return in_force_text(to);
+  if (end == "nothing-to-do") return in_force_text(answer);
   std::string text = "switch " + std::to_string(whole_of(answer, "number")) +
                      (from.empty() ? "" : " from '" + from + "'") + " to " + to + " " + end;
   if (end != "done") return text + ": " + text_of(answer, "why") + "\n";
@@ -163,7 +164,7 @@ std::string drill_text(const Json& answer) {
 std::string plan_text(const Json& answer) {
   const std::string to = target_of(answer);
   const std::string end = text_of(answer, "end"), from = text_of(answer, "from");
-  if (end == "nothing-to-do") return in_force_text(to);
+  if (end == "nothing-to-do") return in_force_text(answer);
   const std::string begin = "switch" + (from.empty() ? "" : " from '" + from + "'") + " to " + to;
   if (end == "refused") {
     const std::string remedy = text_of(answer, "remedy");

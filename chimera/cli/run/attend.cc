@@ -11,6 +11,7 @@
 
 #include "chimera/analysis/task_profile.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/cli/files/blanks.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/run/control_line.h"
 #include "chimera/cli/run/expectation.h"
@@ -286,7 +287,8 @@ void RemoteTarget::switch_to(const TimedAct& timed) {
   if (!timed.lists.minus.empty()) asked["off"] = names(timed.lists.minus);
   const auto answer = line_.ask("switch", asked, kSwitchLimit);
   if (!answer) {
-    refused_ += "refused at " + since_start(clock_.now()) + ": " + answer.error().message.c_str() + "\n";
+    const std::string what = timed.has_lists() ? trimmed(timed.text.substr(timed.text.find(':') + 1)) + ": " : "";
+    refused_ += "refused at " + since_start(clock_.now()) + ": " + what + answer.error().message.c_str() + "\n";
   } else if (answer->value("end", "") == "nothing-to-do") {
     const Json to = answer->value("to", Json());
     const std::string what = to.is_string() ? "'" + to.get<std::string>() + "' is" : "these tasks are";

@@ -72,9 +72,7 @@ void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now, const T
   for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = standing_of(TaskId(t));
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   const TaskBits target = request.set == kNoSet ? unnamed : tasks_of(peers_.spec(), request.set);
-  if (!is_under_way())
-    answer = request.set == kNoSet ? planner_.plan(unnamed, standing_, plan_)
-                                   : planner_.plan(request.set, standing_, plan_);
+  if (!is_under_way()) answer = planner_.plan(target, standing_, plan_);
   const SwitchWay way = answer ? judge_way() : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   if (is_nothing && request.cause != SwitchCause::kScript) return;
