@@ -5,7 +5,7 @@ others arrive, there and back: from the return of the last `on` to the instant o
 cycles were lost by all of them. A witness on each processor says which of them the host disturbed: cycles are counted
 in the others, and the instant of the change is judged where no job of the run has been stalled for 0.5 ms before, since
 nothing is changed sooner than the longest job so far takes. 20 switches in each run, runs until 200 are judged, at most
-60. Baseline of the whole command, right behind it: the same change by `off`, then `on`.
+60. Baseline of the whole command: the same change by `off`, then `on`, few enough for the limit of acts a second.
 Then what one task of a unit feels while a large component (mujoco_robot) is loaded there or goes: the longest start
 delay in windows of 0.5 s, beside as long ones in which nothing happens, and those twice (A/A)."""
 import json

@@ -83,10 +83,8 @@ struct alignas(64) Task {
   Profile profile;
 
   // Touched now and then.
-  const chimera_component* component = nullptr;
-  chimera_inherited* inherited = nullptr;  ///< by output: what its port was told at the last on
   FaultRecord faults;
-  FixedVector<SentSignal, kOutboxSize> outbox;
+  FixedVector<SentSignal, kOutboxSize> outbox;  ///< its end and the next four share a cache line: jobs look there
   /// The present job was told to: it used up its budget. Relaxed, pairs with nothing: a job that sees it late gives up
   /// late.
   std::atomic<bool> give_up{false};
@@ -101,6 +99,8 @@ struct alignas(64) Task {
   bool owes_off = false;    ///< OFF, with `on` behind it and `off` before it: armed for a switch, or left by one
   bool is_half_on = false;  ///< OFF, `on` answered not yet: `off` is owed unless `on` goes on
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
+  const chimera_component* component = nullptr;  ///< from the construction of the component on
+  chimera_inherited* inherited = nullptr;  ///< by output: what its port was told at the last on
 
   /// As others see it.
   State shown_state() const noexcept { return is_unread && state == State::kOn ? State::kOff : state; }
