@@ -7,8 +7,10 @@ import socket
 import subprocess
 import unittest
 
+from host_witness import HostWitness, any_stall
 from system import CHIMERA, System, await_that
 
+HALF_A_PERIOD_S, AROUND_S = 0.001, 0.02  # of the tasks of lesson 19
 LESSONS = pathlib.Path(__file__).resolve().parents[2] / "examples"
 
 
@@ -77,6 +79,7 @@ class Standby(Typed):
         typed = commands("19_standby")
         real = typed.index("chimera run standby.yaml") + 1
         self.assertEqual(len([c for c in typed[:real - 1] if "--virtual" in c]), 2)  # tests/examples has them
+        witnesses = [HostWitness(cpu) for cpu in (0, 1)]
         with System((self.folder / "standby.yaml").read_text(), name="standby") as system:
             system.await_state("pinvkin", "ON")
             for command in typed[real:]:
@@ -96,11 +99,21 @@ class Standby(Typed):
             self.assertEqual([(one["way"], one["from"], one["to"], one["end"]) for one in receipts[:2]],
                              [("takeover", "figure_3d", "figure_3d", "done"),
                               ("fast", "figure_3d", "figure_3d", "done")])
-            for one in receipts:
-                q_ref, = [variable for variable in one["variables"] if variable["variable"] == "q_ref"]
-                was_busy = one["asked_by"].get("by") == "error" or any(task["lost"] for task in one["tasks"])
-                self.assertEqual(q_ref["limit"], 0.005)
-                self.assertFalse(q_ref["beyond"] and not was_busy, one)  # a busy machine: it stood for some periods
+        self.judge_steps(receipts, [stall for witness in witnesses for stall in witness.stalls()])
+
+    def judge_steps(self, receipts, stalls):
+        """q_ref moves as far as it was not written for: of that, what the machine was not there for is not judged."""
+        was_disturbed = False
+        for one in receipts:
+            q_ref, = [variable for variable in one["variables"] if variable["variable"] == "q_ref"]
+            self.assertEqual(q_ref["limit"], 0.005)
+            begin, end = ((one["origin_ns"] + one[key]) / 1e9 for key in ("asked_ns", "ended_ns"))
+            if not q_ref["beyond"] or one["asked_by"].get("by") == "error":  # pinvkin had stood for two periods
+                continue
+            self.assertTrue(any_stall(stalls, begin - AROUND_S, end + AROUND_S, HALF_A_PERIOD_S), one)
+            was_disturbed = True
+        if was_disturbed:
+            self.skipTest("not judged: host stalled")
 
 
 class SafeMachine(Typed):
