@@ -3,6 +3,7 @@
 import contextlib
 import gc
 import json
+import math
 import os
 import select
 import subprocess
@@ -27,7 +28,7 @@ class HostWitness:
         return [tuple(stall) for stall in json.loads(self.process.communicate("\n")[0])]
 
 
-def any_stall(stalls, begin, end, longer_than=0.0):
+def any_stall(stalls, begin=0.0, end=math.inf, longer_than=0.0):
     """One of them lay in that time and was that long."""
     return any(begin < to and since < end and to - since > longer_than for since, to in stalls)
 

@@ -10,7 +10,7 @@ import unittest
 from host_witness import HostWitness, any_stall
 from system import CHIMERA, System, await_that
 
-HALF_A_PERIOD_S, AROUND_S = 0.001, 0.02  # of the tasks of lesson 19
+HALF_A_PERIOD_S = 0.001  # of the tasks of lesson 19
 LESSONS = pathlib.Path(__file__).resolve().parents[2] / "examples"
 
 
@@ -75,11 +75,25 @@ class Processes(Typed):
 
 class Standby(Typed):
     def test_every_command_of_the_lesson_does_what_it_says(self):
+        """Three times where the machine was not there for half a period of its tasks: then q_ref moves too far."""
+        for is_last in (False, False, True):
+            witnesses = [HostWitness(cpu) for cpu in (0, 1)]
+            failure = None
+            try:
+                self.once()
+            except AssertionError as error:
+                failure = error
+            was_disturbed = any_stall(sum([witness.stalls() for witness in witnesses], []), longer_than=HALF_A_PERIOD_S)
+            if failure is None:
+                return
+            if is_last or not was_disturbed:
+                raise failure
+
+    def once(self):
         self.begin("19_standby")
         typed = commands("19_standby")
         real = typed.index("chimera run standby.yaml") + 1
         self.assertEqual(len([c for c in typed[:real - 1] if "--virtual" in c]), 2)  # tests/examples has them
-        witnesses = [HostWitness(cpu) for cpu in (0, 1)]
         with System((self.folder / "standby.yaml").read_text(), name="standby") as system:
             system.await_state("pinvkin", "ON")
             for command in typed[real:]:
@@ -99,29 +113,17 @@ class Standby(Typed):
             self.assertEqual([(one["way"], one["from"], one["to"], one["end"]) for one in receipts[:2]],
                              [("takeover", "figure_3d", "figure_3d", "done"),
                               ("fast", "figure_3d", "figure_3d", "done")])
-        self.judge_steps(receipts, [stall for witness in witnesses for stall in witness.stalls()])
-
-    def judge_steps(self, receipts, stalls):
-        """q_ref moves as far as it was not written for: of that, what the machine was not there for is not judged."""
-        was_disturbed = False
-        for one in receipts:
-            q_ref, = [variable for variable in one["variables"] if variable["variable"] == "q_ref"]
-            self.assertEqual(q_ref["limit"], 0.005)
-            begin, end = ((one["origin_ns"] + one[key]) / 1e9 for key in ("asked_ns", "ended_ns"))
-            if not q_ref["beyond"] or one["asked_by"].get("by") == "error":  # pinvkin had stood for two periods
-                continue
-            self.assertTrue(any_stall(stalls, begin - AROUND_S, end + AROUND_S, HALF_A_PERIOD_S), one)
-            was_disturbed = True
-        if was_disturbed:
-            self.skipTest("not judged: host stalled")
+            for one in receipts:
+                q_ref, = [variable for variable in one["variables"] if variable["variable"] == "q_ref"]
+                self.assertEqual(q_ref["limit"], 0.005)
+                has_stood = one["asked_by"].get("by") == "error"  # pinvkin, for two periods
+                self.assertFalse(q_ref["beyond"] and not has_stood, one)
 
 
 class SafeMachine(Typed):
     def description(self, name):
         text = (self.folder / f"{name}.yaml").read_text()
-        for port, free in self.ports.items():
-            text = text.replace(port, free)
-        return text
+        return re.sub("|".join(self.ports), lambda port: self.ports[port[0]], text)
 
     def free_port(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as found:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which subsystem a command reaches: one of this terminal or folder, or one that is named."""
 import json
+import re
 import subprocess
 import unittest
 
@@ -54,7 +55,8 @@ class Naming(unittest.TestCase):
             run = subprocess.Popen([str(CHIMERA), "run", str(other), "--priority", "0"], env=system.environment,
                                    cwd=folder, start_new_session=True, stdout=subprocess.DEVNULL)
             try:
-                await_that(lambda: self.chimera(system, "get", "x", "--subsystem", "other")[0] == 0, 20, "the start")
+                await_that(lambda: re.search(r"^beside +ON ", self.chimera(system, "status", "--subsystem", "other")[1],
+                                             re.M), 20, "the start")
                 self.assertEqual(self.chimera(system, "off", "beside", folder=folder),
                                  (0, "[other] beside: ON -> OFF\n", ""))
                 self.assertEqual(self.chimera(system, "get", "x", folder=folder)[2], "[other]\n")

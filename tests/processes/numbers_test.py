@@ -113,8 +113,8 @@ class Numbers(unittest.TestCase):
             self.ends += [e["text"] for e in system.events(self.since) if e["kind"] == "rtpu-ended"]
             self.assertEqual(len(self.ends), restarts)
             self.assertTrue(all("signal 9" in text for text in self.ends), self.ends)
-        if "CHIMERA_FEW_NUMBERS" in os.environ:  # process 1 of this world reaps nobody, and all in it is ours
-            self.assertEqual(memory_holders(), 0, "left unreaped")
+            if "CHIMERA_FEW_NUMBERS" in os.environ:  # all in this world is ours
+                await_that(lambda: memory_holders() <= 2, 10, "that who died is reaped with its memory holder")
         numbers = numbers_given() - numbers
         print(f"restarts: {restarts} in {time.monotonic() - began:.1f} s, {numbers} numbers given of {number_limit()}",
               file=sys.stderr)

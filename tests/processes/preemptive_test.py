@@ -79,7 +79,7 @@ BLOCKED = re.compile(r"^missed its deadline: it waits in a system call \(it used
 PERIOD_MS = 5  # of those that do not end in time
 
 WHOSE = re.compile(r"^missed its deadline: (bad used |it used [0-9.]+ [mu]s \(budget 300 us\)|"
-                   r"for [0-9.]+ ms nobody here )")
+                   r"no task of its real-time unit ran for [0-9.]+ ms: the CPU was taken )")
 GAVE_WAY = re.compile(r"^demoted below all other threads: the tasks of its real-time unit used [0-9.]+ ms lately, "
                       r"nearly all that the kernel leaves to real-time threads$")
 
