@@ -15,8 +15,8 @@ PERIOD_S = 0.0004
 
 
 class HostWitness:
-    """Wakes 2,500 times a second on that processor and keeps when it was late by more than 100 us: above everything, or,
-    where the machine grants no real-time rights, like any other program."""
+    """Wakes 2,500 times a second on that processor and keeps when it was late by more than 100 us: above everything,
+    or, where the machine grants no real-time rights, like any other program."""
 
     def __init__(self, cpu):
         self.process = subprocess.Popen([sys.executable, __file__, str(cpu)], stdin=subprocess.PIPE,
