@@ -23,14 +23,14 @@ def campaigns():
 
 
 def parse(words):
-    """[MINUTES] [NAME] in any order."""
-    minutes, name = 10.0, None
+    """(minutes, names): [MINUTES] [NAME ...] in any order."""
+    minutes, names = 10.0, []
     for word in words:
         if re.fullmatch(r"\d+(\.\d+)?", word):
             minutes = float(word)
         else:
-            name = word
-    return minutes, name
+            names.append(word)
+    return minutes, names
 
 
 def last_json(output):
@@ -68,11 +68,13 @@ def record(name, n, faults):
 
 def main(words):
     minutes, wanted = parse(words)
-    chosen = [campaign for campaign in campaigns() if wanted in (None, campaign[0])]
-    if not chosen:
-        names = ", ".join(campaign[0] for campaign in campaigns()) or "none"
-        print(f"./dev: no campaign '{wanted or ''}' in {LIST.relative_to(common.ROOT)}; there are: {names}")
+    known = [campaign[0] for campaign in campaigns()]
+    unknown = [name for name in wanted if name not in known]
+    if unknown or not known:
+        print(f"./dev: no campaign '{' '.join(unknown)}' in {LIST.relative_to(common.ROOT)}; "
+              f"there are: {', '.join(known) or 'none'}")
         return 2
+    chosen = [campaign for campaign in campaigns() if not wanted or campaign[0] in wanted]
     if not common.configure_with_tests("release") or not common.compile_tree("release", *{c[1] for c in chosen}):
         return 1
     outcomes = [run(name, command, minutes * 60) for name, _, command in chosen]
