@@ -162,9 +162,9 @@ class Fuzz(unittest.TestCase):
 
 
 class Stress(unittest.TestCase):
-    def test_minutes_and_name_come_in_any_order(self):
-        self.assertEqual(stress.parse(["5", "kill"]), (5.0, "kill"))
-        self.assertEqual(stress.parse(["kill"]), (10.0, "kill"))
+    def test_minutes_and_names_come_in_any_order(self):
+        self.assertEqual(stress.parse(["kill", "5", "stop"]), (5.0, ["kill", "stop"]))
+        self.assertEqual(stress.parse(["kill"]), (10.0, ["kill"]))
 
     def test_the_last_json_line_is_the_report(self):
         self.assertEqual(stress.last_json('{"n": 1}\ntext\n{"n": 2}\n'), {"n": 2})
