@@ -218,7 +218,7 @@ class System:
             except (OSError, ConnectionError):
                 self.disconnect()
                 if attempt == 199:
-                    raise AssertionError(f"no answer, {self.process.poll()}: {self.said()}") from None
+                    raise ConnectionError(f"no answer, {self.process.poll()}: {self.said()}") from None
                 time.sleep(0.01)
 
     def task(self, name):
