@@ -7,16 +7,18 @@
 #include <optional>
 
 #include "chimera/runtime/constant_choice.h"
+#include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/switch_plan.h"
 
 namespace chimera {
 namespace {
 
-/// Something of a task that asks for the set of that number.
+/// Something of a task that asks for the set of that number, or for the one that lists of tasks lead to.
 struct ModeWish {
   ModeAsker asker;
   std::size_t set = 0;
+  TaskLists lists;
 };
 
 class ModeWriter {
@@ -40,7 +42,7 @@ class ModeWriter {
     }
     for (std::size_t set = 0; set < n; ++set)
       if (set != configuration_.start() && !is_asked_for(set)) report_.by_operator.push_back(set);
-    for (const ModeWish& wish : wishes_) warn(wish);
+    for (const ModeWish& wish : wishes_) wish.lists.are_there() ? warn_of_lists(wish) : warn(wish);
     for (const ModeEdge& edge : report_.edges)
       if (edge.way() == ModeWay::kSlowUnlessSame || !edge.resources.empty()) warn(edge);
     return std::move(report_);
@@ -66,7 +68,7 @@ class ModeWriter {
   void find_wishes(std::size_t task) {
     const DraftTask& draft = configuration_.draft().tasks[task];
     const auto add = [&](const Word& name, ModeCause cause) {
-      if (const auto set = find_set(name.text)) wishes_.push_back({{cause, task, {}}, *set});
+      if (const auto set = find_set(name.text)) wishes_.push_back({{cause, task, {}}, *set, {}});
     };
     if (draft.on_miss) add(draft.on_miss->configuration, ModeCause::kMiss);
     if (draft.on_overrun) add(draft.on_overrun->configuration, ModeCause::kOverrun);
@@ -79,9 +81,11 @@ class ModeWriter {
       if (port.kind != CHIMERA_IN_CONST || !entry->descriptor.ports[port.declared].names_configuration) continue;
       const auto bytes = port.constant.is_valid() ? spec.constants[port.constant.index].value : port.value;
       for (std::size_t at = 0; at + port.element_bytes <= bytes.size(); at += port.element_bytes) {
-        const auto* text = reinterpret_cast<const char*>(bytes.data() + at);
-        if (const auto set = find_set({text, ::strnlen(text, port.element_bytes)}))
-          wishes_.push_back({{ModeCause::kConstant, task, name_of(ports, port)}, *set});
+        const auto* start = reinterpret_cast<const char*>(bytes.data() + at);
+        const std::string_view text(start, ::strnlen(start, port.element_bytes));
+        const ModeAsker asker{ModeCause::kConstant, task, name_of(ports, port)};
+        if (const auto set = find_set(text)) wishes_.push_back({asker, *set, {}});
+        else if (has_lists(text)) wishes_.push_back({asker, 0, lists_of(text)});
       }
     }
   }
@@ -90,6 +94,17 @@ class ModeWriter {
     for (const ConfiguredPort& port : ports)
       if (port.declared == spec.declared && port.instance == spec.instance) return port.name;
     return {};
+  }
+
+  TaskLists lists_of(std::string_view text) const {
+    const auto tasks = configuration_.tasks();
+    const auto find = [&](std::string_view name) {
+      const auto found = std::ranges::find(tasks, name, &ConfiguredTask::name);
+      return found == tasks.end() ? TaskId{} : TaskId(static_cast<std::size_t>(found - tasks.begin()));
+    };
+    TaskLists lists;
+    (void)read_lists(text, find, lists);  // check has read them
+    return lists;
   }
 
   std::optional<std::size_t> find_set(std::string_view name) const {
@@ -121,11 +136,17 @@ class ModeWriter {
     made.from = from;
     made.to = to;
     for (const ModeWish& wish : wishes_)
-      if (wish.set == to && has(from, wish.asker.task)) made.askers.push_back(wish.asker);
+      if (has(from, wish.asker.task) && leads_to(wish, from, to)) made.askers.push_back(wish.asker);
     judge_deadlines(made);
     find_constants(made);
     find_resources(made);
     return made;
+  }
+
+  bool leads_to(const ModeWish& wish, std::size_t from, std::size_t to) const {
+    if (!wish.lists.are_there()) return wish.set == to;
+    const AskedSet asked = asked_set(configuration_.spec(), bits_of(report_.nodes[from].tasks), wish.lists);
+    return asked && asked.tasks == bits_of(report_.nodes[to].tasks);
   }
 
   void judge_deadlines(ModeEdge& edge) {
@@ -181,6 +202,19 @@ class ModeWriter {
   std::size_t maker(ConstantId constant, TaskId user, std::uint32_t set) const {
     const ApplicationSpec& spec = configuration_.spec();
     return spec.constants[constant.index].producers[producer_for(spec, constant, user, set)].task.index;
+  }
+
+  /// Of lists that lead to no legal set from a configuration in which the task asks for them.
+  void warn_of_lists(const ModeWish& wish) {
+    const ApplicationSpec& spec = configuration_.spec();
+    for (std::size_t from = 0; from < configuration_.sets().size(); ++from) {
+      if (!has(from, wish.asker.task)) continue;
+      const AskedSet asked = asked_set(spec, bits_of(report_.nodes[from].tasks), wish.lists);
+      if (!asked)
+        report_.warnings.push_back(asker_text(configuration_, wish.asker) + " asks for '" +
+                                   lists_text(wish.lists, spec) + "': from '" + report_.nodes[from].name +
+                                   "' that is refused: " + asked.text());
+    }
   }
 
   /// Of a task that fails and is to go on in the set that its failure leads to.

@@ -65,17 +65,14 @@ std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& world, cons
     return RpcResponse::error(control::kBadParameters, "either 'configuration', or 'on' and 'off'",
                               {{"where", is_named ? "configuration" : "on"}});
   if (is_named) return named_set(world.spec(), parameters.at("configuration"));
-  std::vector<TaskId> lists[2];
-  const char* const keys[] = {"on", "off"};
-  for (const int i : {0, 1}) {
-    if (!parameters.contains(keys[i])) continue;
-    auto found = tasks_named(world, control::texts(parameters, keys[i]));
+  TaskLists lists;
+  for (const char* const key : {"on", "off"}) {
+    if (!parameters.contains(key)) continue;
+    auto found = tasks_named(world, control::texts(parameters, key));
     if (auto* refused = std::get_if<RpcResponse>(&found)) return std::move(*refused);
-    lists[i] = std::get<0>(std::move(found));
+    (key == std::string_view("on") ? lists.plus : lists.minus) = bits_of(std::get<0>(found));
   }
-  std::vector<bool> on(world.spec().tasks.size());
-  for (std::size_t t = 0; t < on.size(); ++t) on[t] = world.state(TaskId(t)) == State::kOn;
-  AskedSet asked = asked_set(world.spec(), std::move(on), lists[0], lists[1]);
+  AskedSet asked = asked_set(world.spec(), world.tasks_on(), lists);
   if (asked) return asked.tasks;
   return RpcResponse::refused("set", asked.why, "", asked.remedy);
 }

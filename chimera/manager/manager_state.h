@@ -64,6 +64,13 @@ struct ManagerState {
     return is_away && state != State::kNotCreated ? State::kError : state;
   }
   /// Has the keeper begun to end everything? Acquire: pairs with the keeper's store of KeeperPage::ending.
+  /// As everybody is to see them.
+  TaskBits tasks_on() const noexcept {
+    TaskBits on;
+    for (std::size_t t = 0; t < spec().tasks.size(); ++t)
+      if (state(TaskId(t)) == State::kOn) on.add(TaskId(t));
+    return on;
+  }
   bool is_ending() const noexcept { return keeper.ending.load(std::memory_order_acquire) != 0; }
   std::string name(TaskId task) const { return std::string(spec().tasks[task.index].name); }
   std::string name(RtpuId rtpu) const { return std::string(spec().rtpus[rtpu.index].name); }

@@ -72,8 +72,12 @@ class SwitchCoordinator {
   bool is_under_way() const noexcept { return present_.has_value(); }
   /// One that is asked for now would not be refused as under way; of a manager before this one neither.
   bool is_free() const noexcept;
-  /// The switch that is under way is to that set.
-  bool leads_to(std::uint32_t set) const noexcept { return present_ && present_->begun.order.after == set; }
+  /// What is asked for is under way.
+  bool leads_to(const SwitchRequest& request) const noexcept {
+    if (!present_) return false;
+    const SwitchOrder& order = present_->begun.order;
+    return request.lists.are_there() ? request.lists.are_met_by(order.target) : order.after == request.set;
+  }
   /// "switch 3 to 'hand', asked for by operate:ann", or "by task law", or "by on_fault of law"; "" without one.
   std::string under_way() const;
   /// How far it is, and until when it may take: "arming, until 14:03:07". Requires: is_under_way().

@@ -3,6 +3,7 @@
 #include "chimera/manager/switch_wishes.h"
 
 #include "chimera/control/switch_reason.h"
+#include "chimera/runtime/hosted/asked_set.h"
 
 namespace chimera::manager {
 namespace {
@@ -10,10 +11,15 @@ namespace {
 // As where one context carries its switches out itself.
 constexpr Nanoseconds kPatience = seconds(10);
 
-// A word says anything when its unit has died or writes where it should not.
-bool is_in_range(const SwitchWish& wish, RtpuId rtpu, const ApplicationSpec& spec) {
-  return wish.is_there() && wish.set < spec.sets.size() && wish.by < spec.tasks.size() &&
-         spec.tasks[wish.by].rtpu == rtpu && wish.cause > SwitchCause::kScript && wish.cause <= SwitchCause::kFault;
+// The words say anything when their unit has died or writes where it should not.
+bool is_in_range(const OpenWish& open, RtpuId rtpu, const ApplicationSpec& spec) {
+  const SwitchWish& wish = open.wish;
+  const bool is_set = wish.set < spec.sets.size();
+  const bool is_lists = wish.set == SwitchWish::kLists && open.lists.are_there() &&
+                        names_only(open.lists.plus, spec.tasks.size()) &&
+                        names_only(open.lists.minus, spec.tasks.size());
+  return wish.is_there() && (is_set || is_lists) && wish.by < spec.tasks.size() && spec.tasks[wish.by].rtpu == rtpu &&
+         wish.cause > SwitchCause::kScript && wish.cause <= SwitchCause::kFault;
 }
 
 }  // namespace
@@ -22,11 +28,11 @@ bool is_in_range(const SwitchWish& wish, RtpuId rtpu, const ApplicationSpec& spe
 std::optional<SwitchWishes::Open> SwitchWishes::read(RtpuId rtpu) const noexcept {
   if (!world_.peers[rtpu].is_there()) return std::nullopt;
   const BlockHead& head = world_.peers[rtpu].block().head();
-  const SwitchWish wish = SwitchWish::of(head.wish.word.load(std::memory_order_acquire));  // SwitchWishWords
+  const OpenWish open = head.wish.read();
   const std::uint64_t dealt = world_.own.block().memory().wishes[rtpu.index].load(std::memory_order_relaxed);
-  if (!is_in_range(wish, rtpu, world_.spec()) || dealt == wish_dealt_with(head.incarnation, wish.number))
+  if (!is_in_range(open, rtpu, world_.spec()) || dealt == wish_dealt_with(head.incarnation, open.wish.number))
     return std::nullopt;
-  return Open{rtpu, head.incarnation, wish, Nanoseconds{head.wish.at.load(std::memory_order_relaxed)}};
+  return Open{rtpu, head.incarnation, open};
 }
 
 const SwitchWishes::Open* SwitchWishes::find_last() {
@@ -34,7 +40,7 @@ const SwitchWishes::Open* SwitchWishes::find_last() {
   for (std::optional<Open>& seen : seen_) {
     const RtpuId rtpu(static_cast<std::size_t>(&seen - seen_.data()));
     if (const auto now = read(rtpu)) seen = now;
-    if (seen && (last == nullptr || seen->at >= last->at)) last = &*seen;
+    if (seen && (last == nullptr || seen->wish.at >= last->wish.at)) last = &*seen;
   }
   return last;
 }
@@ -42,7 +48,7 @@ const SwitchWishes::Open* SwitchWishes::find_last() {
 void SwitchWishes::deal_with_all() noexcept {
   for (std::optional<Open>& seen : seen_) {
     if (!seen) continue;
-    const std::uint64_t dealt = wish_dealt_with(seen->incarnation, seen->wish.number);
+    const std::uint64_t dealt = wish_dealt_with(seen->incarnation, seen->wish.wish.number);
     world_.own.block().memory().wishes[seen->rtpu.index].store(dealt, std::memory_order_relaxed);
     seen.reset();
   }
@@ -52,23 +58,34 @@ void SwitchWishes::look(Nanoseconds now) {
   if (world_.is_ending()) return;
   const Open* const last = find_last();
   if (last == nullptr) return;
-  const bool is_coming = switches_.leads_to(last->wish.set);
+  const SwitchRequest request = last->wish.request();
+  const bool is_coming = switches_.leads_to(request);
   if (!is_coming && (!switches_.is_free() || !world_.logic.is_settled())) return;
-  if (!is_coming) ask(*last, now);
+  if (!is_coming) ask(request, now);
   deal_with_all();  // only now: a manager that dies in between leaves the wish to its successor
 }
 
-void SwitchWishes::ask(const Open& open, Nanoseconds now) {
-  const SwitchRequest request{open.wish.set, open.wish.cause, TaskId(std::uint32_t{open.wish.by})};
-  const std::string by = control::asked_by(request, world_.spec());
-  switches_.ask(request, Asker{}, kPatience, now, [this, by](const SwitchOutcome& outcome) {
-    if (outcome.receipt.end != SwitchEnd::kRefused) return;
-    const std::string to(world_.spec().sets[outcome.receipt.after].name);
-    world_.tell("switch", TaskId{}, RtpuId{},
-                "switch to '" + to + "', asked for by " + by +
-                    ", is refused: " + control::reason_text(outcome.receipt, world_.spec()),
-                outcome.receipt.asked);
+void SwitchWishes::ask(SwitchRequest request, Nanoseconds now) {
+  const ApplicationSpec& spec = world_.spec();
+  const std::string by = control::asked_by(request, spec);
+  TaskBits target = request.lists.are_there() ? TaskBits() : tasks_of(spec, request.set);
+  if (request.lists.are_there()) {
+    const AskedSet asked = asked_set(spec, world_.tasks_on(), request.lists);
+    if (!asked) return tell_refused(lists_text(request.lists, spec), by, asked.text(), now);
+    target = asked.tasks;
+    request.set = set_of(spec, target);
+  }
+  switches_.ask(request, target, Asker{}, kPatience, now, [this, by](const SwitchOutcome& outcome) {
+    const SwitchReceipt& receipt = outcome.receipt;
+    if (receipt.end == SwitchEnd::kRefused)
+      tell_refused("to " + control::set_text(receipt.after, world_.spec()), by,
+                   control::reason_text(receipt, world_.spec()), receipt.asked);
   });
+}
+
+void SwitchWishes::tell_refused(const std::string& what, const std::string& by, const std::string& why,
+                                Nanoseconds at) {
+  world_.tell("switch", TaskId{}, RtpuId{}, "switch " + what + ", asked for by " + by + ", is refused: " + why, at);
 }
 
 }  // namespace chimera::manager

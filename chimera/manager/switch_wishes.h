@@ -27,14 +27,14 @@ class SwitchWishes {
   struct Open {
     RtpuId rtpu;
     std::uint32_t incarnation;
-    SwitchWish wish;
-    Nanoseconds at;
+    OpenWish wish;
   };
 
   std::optional<Open> read(RtpuId rtpu) const noexcept;
   const Open* find_last();
   void deal_with_all() noexcept;
-  void ask(const Open& open, Nanoseconds now);
+  void ask(SwitchRequest request, Nanoseconds now);
+  void tell_refused(const std::string& what, const std::string& by, const std::string& why, Nanoseconds at);
 
   ManagerState& world_;
   SwitchCoordinator& switches_;

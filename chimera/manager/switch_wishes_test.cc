@@ -27,9 +27,12 @@ struct SwitchWishesTest : ::testing::Test {
   /// As a task of the unit would.
   void wish(std::uint32_t unit, std::uint16_t set, const char* task, SwitchCause cause = SwitchCause::kRequest) {
     SwitchWishWords& words = fake.rtpu(unit).block().head().wish;
-    SwitchWish next = SwitchWish::of(words.word.load()).next({set, cause, fake.task(task)});
-    words.at = now().count;
-    words.word = next.word();
+    words.write(words.wish().next({set, cause, fake.task(task)}), {}, now());
+  }
+  /// `law` asks for tasks.
+  void wish_for(const TaskLists& lists) {
+    SwitchWishWords& words = fake.rtpu(1).block().head().wish;
+    words.write(words.wish().next({UINT32_MAX, SwitchCause::kRequest, fake.task("law"), lists}), lists, now());
   }
   void rounds(int n = 5) {
     for (int i = 0; i < n; ++i) ASSERT_TRUE(fake.step());
@@ -42,7 +45,7 @@ struct SwitchWishesTest : ::testing::Test {
     (void)agreement.agree(number, 0);
     ASSERT_TRUE(agreement.agree(number, 1));
     over();
-    const bool is_rest = coordinator().leads_to(kRest);
+    const bool is_rest = coordinator().leads_to({kRest, SwitchCause::kRequest, {}});
     fake.rtpu(0).block().set_status(fake.task("filter"), {is_rest ? State::kOff : State::kOn, false, 1});
     fake.rtpu(1).block().set_status(fake.task("law"), {is_rest ? State::kOff : State::kOn, false, 1});
     rounds();
@@ -101,7 +104,7 @@ TEST_F(SwitchWishesTest, WaitForTheSwitchThatIsUnderWay) {
   carry_out();
   rounds();
   EXPECT_EQ(plan().number, 2);
-  EXPECT_TRUE(coordinator().leads_to(kRun));
+  EXPECT_TRUE(coordinator().leads_to({kRun, SwitchCause::kRequest, {}}));
 }
 
 TEST_F(SwitchWishesTest, ASuccessorFindsWhatIsOpenAndOnlyThat) {
@@ -147,22 +150,48 @@ TEST_F(SwitchWishesTest, OfAUnitThatHasDiedSinceStand) {
   wish(1, kRest, "law");
   fake.kill_rtpu(1, SIGKILL);
   EXPECT_TRUE(fake.until([this] { return plan().number == 1; }));
-  EXPECT_TRUE(coordinator().leads_to(kRest));
+  EXPECT_TRUE(coordinator().leads_to({kRest, SwitchCause::kRequest, {}}));
 }
 
 // The memory of a unit may hold anything.
 TEST_F(SwitchWishesTest, WhatDoesNotFitTheApplicationIsPassedOver) {
-  std::atomic<std::uint64_t>& word = fake.rtpu(1).block().head().wish.word;
+  SwitchWishWords& words = fake.rtpu(1).block().head().wish;
   const auto law = static_cast<std::uint16_t>(fake.task("law").index);
   const auto sensor = static_cast<std::uint16_t>(fake.task("sensor").index);
-  for (const std::uint64_t one :
-       {~std::uint64_t{0}, SwitchWish{1, 2, law, SwitchCause::kRequest}.word(),
-        SwitchWish{1, kRest, 99, SwitchCause::kRequest}.word(), SwitchWish{1, kRest, sensor, SwitchCause::kMiss}.word(),
-        SwitchWish{1, kRest, law, SwitchCause::kScript}.word(), SwitchWish{0, kRest, law, SwitchCause::kMiss}.word()}) {
-    word = one;
+  const SwitchWish lists{1, SwitchWish::kLists, law, SwitchCause::kRequest};
+  TaskLists beyond;
+  beyond.minus.add(TaskId(std::size_t{255}));
+  const std::pair<SwitchWish, TaskLists> nonsense[] = {{SwitchWish::of(~std::uint64_t{0}), {}},
+                                                       {{1, 2, law, SwitchCause::kRequest}, {}},
+                                                       {{1, kRest, 99, SwitchCause::kRequest}, {}},
+                                                       {{1, kRest, sensor, SwitchCause::kMiss}, {}},
+                                                       {{1, kRest, law, SwitchCause::kScript}, {}},
+                                                       {{0, kRest, law, SwitchCause::kMiss}, {}},
+                                                       {lists, {}},
+                                                       {lists, beyond}};
+  for (const auto& [wish, named] : nonsense) {
+    words.write(wish, named, now());
     rounds(2);
-    EXPECT_EQ(plan().number, 0) << std::hex << one;
+    EXPECT_EQ(plan().number, 0) << std::hex << wish.word();
   }
+}
+
+TEST_F(SwitchWishesTest, ForTasksAreWorkedOutFromWhatIsOn) {
+  wish_for({.plus = {}, .minus = bits_of(std::vector{fake.task("law")})});
+  rounds();
+  EXPECT_EQ(plan().phase, SwitchPhase::kPrepared);
+  EXPECT_EQ(coordinator().under_way(), "switch 1 to other tasks, asked for by task law");
+  wish_for({.plus = {}, .minus = bits_of(std::vector{fake.task("law")})});
+  rounds();
+  EXPECT_EQ(plan().number, 1) << "it is under way";
+}
+
+TEST_F(SwitchWishesTest, ForTasksThatAreNoLegalSetAreToldOnce) {
+  wish_for({.plus = {}, .minus = bits_of(std::vector{fake.task("sensor")})});
+  rounds();
+  EXPECT_EQ(plan().number, 0);
+  EXPECT_EQ(fake.told("switch"),
+            "switch --off sensor, asked for by task law, is refused: x would have no producer\n");
 }
 
 }  // namespace

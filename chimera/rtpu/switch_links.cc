@@ -52,7 +52,7 @@ bool SwitchLinks::is_wish_open() const noexcept {
     const PeerSegment* const there = unit == me_ ? nullptr : others_.at(unit);
     if (unit != me_ && there == nullptr) continue;
     const BlockHead& head = unit == me_ ? others_.block().head() : there->block().head();
-    const SwitchWish last = SwitchWish::of(head.wish.word.load(std::memory_order_acquire));  // SwitchWishWords
+    const SwitchWish last = head.wish.wish();
     if (last.is_there() && !was_dealt_with(head, unit, last.number)) return true;
   }
   return false;
@@ -61,12 +61,11 @@ bool SwitchLinks::is_wish_open() const noexcept {
 // States that it follows from are shown before it.
 void SwitchLinks::wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept {
   BlockHead& head = others_.block().head();
-  const SwitchWish last = SwitchWish::of(head.wish.word.load(std::memory_order_relaxed));  // its only writer is here
-  const bool is_open = last.is_there() && !was_dealt_with(head, me_, last.number);
-  if (!is_new_wish(request.set, changes_nothing, is_open, last.set)) return;
+  const OpenWish last = head.wish.read();  // its only writer is here
+  const bool is_open = last.wish.is_there() && !was_dealt_with(head, me_, last.wish.number);
+  if (!is_new_wish(request.is_for(last.request()), changes_nothing, is_open)) return;
   others_.publish(tasks_);
-  head.wish.at.store(now.count, std::memory_order_relaxed);
-  head.wish.word.store(last.next(request).word(), std::memory_order_release);  // SwitchWishWords
+  head.wish.write(last.wish.next(request), request.lists, now);
   others_.ring_all();
 }
 

@@ -84,7 +84,7 @@ TEST_F(SwitchLinksTest, TwoUnitsChangeAtOneInstant) {
 }
 
 TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
-  const auto wish = [&] { return SwitchWish::of(units->units[1]->segment.block.head().wish.word.load()); };
+  const auto wish = [&] { return units->units[1]->segment.block.head().wish.wish(); };
   std::string wanted = "direct";
   scene.in_reader = [&](Cycle c) { EXPECT_TRUE(c.request(wanted.c_str())); };
   units->run(milliseconds(5));
@@ -92,7 +92,7 @@ TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
   wanted = "observed";
   units->run(milliseconds(5));
   EXPECT_EQ(wish(), (SwitchWish{1, kObserved, static_cast<std::uint16_t>(kReader.index), SwitchCause::kRequest}));
-  EXPECT_NE(units->units[1]->segment.block.head().wish.at.load(), 0);
+  EXPECT_NE(units->units[1]->segment.block.head().wish.read().at, Nanoseconds{});
   wanted = "direct";
   units->run(milliseconds(5));
   EXPECT_EQ(wish().number, 2) << "it takes the wish back that nobody has dealt with";
@@ -110,7 +110,7 @@ TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
 }
 
 TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTheLastOneIsDead) {
-  const auto number = [&] { return SwitchWish::of(units->units[1]->segment.block.head().wish.word.load()).number; };
+  const auto number = [&] { return units->units[1]->segment.block.head().wish.wish().number; };
   std::string wanted = "observed";
   scene.in_reader = [&](Cycle c) {
     EXPECT_TRUE(wanted.empty() || c.request(wanted.c_str()));
@@ -128,7 +128,7 @@ TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTh
   wanted = "observed";
   units->run(milliseconds(5));
   EXPECT_EQ(number(), 2);
-  EXPECT_EQ(SwitchWish::of(units->units[1]->segment.block.head().wish.word.load()).set, kObserved);
+  EXPECT_EQ(units->units[1]->segment.block.head().wish.wish().set, kObserved);
 }
 
 TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {

@@ -35,23 +35,14 @@ bool BoundarySignals::take_request(Nanoseconds now) noexcept {
     switching_.ask(std::exchange(request_, {}), now);
     return false;
   }
-  if (switching_.leads_to(request_.set)) request_ = {};
+  if (switching_.leads_to(request_)) request_ = {};
   if (!request_ || !switching_.is_free()) return false;
   switching_.ask(std::exchange(request_, {}), now);
   return true;
 }
 
-void BoundarySignals::ask(const ScriptAct& act, Nanoseconds now) noexcept {
-  if (act.asked == nullptr) return switching_.ask({act.set, SwitchCause::kScript, {}}, now);
-  TaskBits on, target;
-  for (const Task& task : set_.tasks())
-    if (task.shown_state() == State::kOn) on.add(task.id);
-  if (act.asked->find(on, now, target))
-    switching_.ask({set_of(set_.spec(), target), SwitchCause::kScript, {}}, now, target);
-}
-
 void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
-  if (act.kind == ScriptAct::Kind::kSwitch) return ask(act, now);
+  if (act.kind == ScriptAct::Kind::kSwitch) return switching_.ask(act.request(), now);
   if (act.kind == ScriptAct::Kind::kSet) return set_.table().set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;

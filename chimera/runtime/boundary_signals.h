@@ -9,7 +9,7 @@
 #include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/context_tap.h"
 #include "chimera/runtime/job_threads.h"
-#include "chimera/runtime/script.h"
+#include "chimera/runtime/run_options.h"
 #include "chimera/runtime/settlement.h"
 #include "chimera/runtime/switching.h"
 #include "chimera/runtime/task_set.h"
@@ -30,11 +30,11 @@ inline constexpr std::size_t kRefusedKept = 64;
 /// Context of everything not marked: edge; as long as the methods of components take; no allocation but theirs.
 class BoundarySignals {
  public:
-  /// Everything given outlives this; `guest` null: nobody is told. Context: setup.
-  BoundarySignals(TaskSet& set, const Script& script, ContextTap& tap, Settlement& settlement, JobThreads& threads,
-                  Switching& switching, BoundaryListener* guest) noexcept
-      : set_(set), script_(script), tap_(tap), settlement_(settlement), threads_(threads), switching_(switching),
-        guest_(guest) {}
+  /// Everything given outlives this, but `options`, whose script is kept and whose guest is told. Context: setup.
+  BoundarySignals(TaskSet& set, const RunOptions& options, ContextTap& tap, Settlement& settlement, JobThreads& threads,
+                  Switching& switching) noexcept
+      : set_(set), script_(options.script), tap_(tap), settlement_(settlement), threads_(threads),
+        switching_(switching), guest_(options.guest) {}
 
   /// The script counts from `origin`.
   void begin(Nanoseconds origin) noexcept;
@@ -70,7 +70,6 @@ class BoundarySignals {
 
  private:
   bool take_request(Nanoseconds now) noexcept;
-  void ask(const ScriptAct& act, Nanoseconds now) noexcept;
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
   void ring(Task& task, Nanoseconds now) noexcept;
   void record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;

@@ -32,7 +32,8 @@ bool may_request(const ApplicationSpec& spec) noexcept {
     return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch ||
            task.on_fault_set != UINT16_MAX;
   };
-  return spec.sets.size() > 1 || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
+  const bool has_choice = spec.sets.size() > 1 || (!spec.sets.empty() && spec.tasks.size() > 1);
+  return has_choice || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
 }
 
 std::size_t kept_of_unscripted(const ApplicationSpec& spec) noexcept {
@@ -51,14 +52,16 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
       members_(set.tasks(), records_, queue_, tap_, guest_),
       settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
       switching_({set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
-      signals_(set, options.script, tap_, settlement_, threads_, switching_, guest_),
+      signals_(set, options, tap_, settlement_, threads_, switching_),
       recovery_({set, settlement_, switching_, signals_, queue_, threads_, guest_}) {
   const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
   const bool takes_requests = (is_alone || options.switch_peers != nullptr) && may_request(set.spec());
-  switching_.prepare(n_switches + (is_alone ? kept_of_unscripted(set.spec()) : 0), options.switch_peers);
-  if (takes_requests) set.sent().allow_requests();
+  switching_.prepare(n_switches + (is_alone ? kept_of_unscripted(set.spec()) : 0), options.switch_peers, options.asked);
+  const bool takes_lists = options.asked != nullptr || options.switch_peers != nullptr;
+  if (takes_requests)
+    set.sent().allow_requests(set.setup_memory().take<TaskLists>(takes_lists ? set.tasks().size() : 0));
   recovery_.prepare(options.switch_peers);
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;

@@ -30,7 +30,7 @@
 
 namespace chimera {
 
-/// A task may ask for a configuration: there is another one, or a reaction leads to one.
+/// A task may ask for a switch: there are configurations and more than one task, or a reaction leads to one.
 bool may_request(const ApplicationSpec& spec) noexcept;
 /// So many receipts are kept of what no script asks for: switches that tasks ask for, and takeovers by standbys.
 std::size_t kept_of_unscripted(const ApplicationSpec& spec) noexcept;

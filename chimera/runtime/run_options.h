@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "chimera/runtime/asked_tasks.h"
 #include "chimera/runtime/background_threads.h"
 #include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/job_threads.h"
@@ -24,6 +25,8 @@ struct RunOptions {
   BoundaryListener* guest = nullptr;         ///< null: nobody else takes part in the edges
   const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
   SwitchPeers* switch_peers = nullptr;       ///< null: switches are asked for by the script, or there are none
+  /// What lists of tasks lead to; null: with `switch_peers` others know, else nobody may ask for lists.
+  AskedTasks* asked = nullptr;
   JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
   BackgroundThreads* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer
   bool can_demote = false;                   ///< jobs may go on below all others

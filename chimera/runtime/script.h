@@ -11,7 +11,7 @@
 #include "chimera/base/assert.h"
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
-#include "chimera/runtime/asked_tasks.h"
+#include "chimera/runtime/switch_request.h"
 #include "chimera/task/signal.h"
 
 namespace chimera {
@@ -27,8 +27,13 @@ struct ScriptAct {
   std::size_t operator_index = 0;         ///< kSet only: in ApplicationSpec::operators
   std::span<const std::byte> value = {};  ///< kSet only: as long as the value that the description gives
   std::uint32_t set = UINT32_MAX;         ///< kSwitch only: in ApplicationSpec::sets
-  AskedTasks* asked = nullptr;            ///< kSwitch only: in place of `set`
+  const TaskLists* lists = nullptr;       ///< kSwitch only: in place of `set`
   RtpuId rtpu = {};                       ///< kDie only, which no single context can carry out: virtual/virtual_rtpus.h
+
+  /// Of kSwitch. Context: any; wait-free.
+  SwitchRequest request() const noexcept {
+    return {set, SwitchCause::kScript, {}, lists != nullptr ? *lists : TaskLists()};
+  }
 };
 
 /// Acts in order of time, those of one instant in the given order. The memory outlives the script.

@@ -29,7 +29,8 @@ void SentSignals::deliver(Task& task) noexcept {
     }
     defer(target, sent.signal);
   }
-  if (task.requested_set != kNoRequest) request({task.requested_set, SwitchCause::kRequest, task.id});
+  if (task.requested_set == kListsRequested) request({UINT32_MAX, SwitchCause::kRequest, task.id, *lists_of(task.id)});
+  else if (task.requested_set != kNoRequest) request({task.requested_set, SwitchCause::kRequest, task.id});
   task.forget_sent();
 }
 

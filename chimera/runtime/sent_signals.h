@@ -41,9 +41,16 @@ class SentSignals {
   bool has_pending() const noexcept { return n_pending_ != 0; }
   /// Takes the oldest waiting signal of `task`; false when there is none.
   bool take_pending(Task& task, Signal& signal) noexcept;
-  /// A switch among the configurations can be asked for: somebody takes the requests. Context: setup.
-  void allow_requests() noexcept { takes_requests_ = true; }
+  /// A switch can be asked for: somebody takes the requests. `lists`, one for each task: of lists of tasks, too.
+  /// Context: setup.
+  void allow_requests(std::span<TaskLists> lists) noexcept {
+    takes_requests_ = true;
+    lists_ = lists;
+  }
   bool takes_requests() const noexcept { return takes_requests_; }
+  /// Where the present method of the task leaves the lists that it asks for; nullptr: nobody takes lists. Context:
+  /// cycle; wait-free.
+  TaskLists* lists_of(TaskId task) const noexcept { return lists_.empty() ? nullptr : &lists_[task.index]; }
   /// The request waits for the next edge; the one that waited before is forgotten.
   void request(const SwitchRequest& request) noexcept;
   /// The request that waits, once; false as a bool when there is none.
@@ -59,6 +66,7 @@ class SentSignals {
   std::span<const TaskMemory> memories_;
   PeerView* others_ = nullptr;
   SwitchRequest request_;
+  std::span<TaskLists> lists_;  // by task
   std::uint32_t n_pending_ = 0;  // signals, the request, and the wish for an edge
   bool wants_edge_ = false;
   bool takes_requests_ = false;

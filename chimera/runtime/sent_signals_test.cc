@@ -93,6 +93,22 @@ TEST_F(SentSignalsTest, OfTheRequestsForAConfigurationTheLastWaits) {
   EXPECT_FALSE(sent.has_pending());
 }
 
+TEST_F(SentSignalsTest, ARequestForTasksWaitsWithItsLists) {
+  EXPECT_EQ(sent.lists_of(tasks[0].id), nullptr);
+  std::array<TaskLists, 3> lists;
+  sent.allow_requests(lists);
+  sent.lists_of(tasks[0].id)->plus.add(TaskId(1u));
+  tasks[0].requested_set = kListsRequested;
+  sent.deliver(tasks[0]);
+  EXPECT_FALSE(tasks[0].has_sent());
+  const SwitchRequest request = sent.take_request();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request.set, UINT32_MAX);
+  EXPECT_TRUE(request.lists.plus.has(TaskId(1u)));
+  EXPECT_EQ(request.by, TaskId(0u));
+  EXPECT_FALSE(sent.take_request());
+}
+
 TEST_F(SentSignalsTest, KillTakesTheLastPlaceOfAFullQueue) {
   for (std::size_t i = 0; i < kOutboxSize + 2; ++i) sent.defer(tasks[1], Signal::kReinit);
   sent.defer(tasks[1], Signal::kKill);

@@ -29,13 +29,6 @@ std::uint64_t sum_of(const Words& words) noexcept {
   return sum;
 }
 
-// No bit stands for a task that the application does not have.
-bool names_only(const TaskBits& bits, std::size_t n_tasks) noexcept {
-  for (std::size_t t = n_tasks; t < kMaxSwitchedTasks; ++t)
-    if (bits.has(TaskId(t))) return false;
-  return true;
-}
-
 // Instants and lengths of time that may be added to each other: 73 years.
 bool can_be_added(Nanoseconds time) noexcept { return time.count >= 0 && time.count <= INT64_MAX / 4; }
 

@@ -35,6 +35,13 @@ constexpr TaskBits bits_of(std::span<const TaskId> tasks) noexcept {
   return bits;
 }
 
+/// No bit stands for a task that the application does not have. Context: any; wait-free.
+constexpr bool names_only(const TaskBits& bits, std::size_t n_tasks) noexcept {
+  for (std::size_t t = n_tasks; t < kMaxSwitchedTasks; ++t)
+    if (bits.has(TaskId(t))) return false;
+  return true;
+}
+
 /// How far a plan has come. A page of zeros says that plan 0 was aborted.
 enum class SwitchPhase : std::uint8_t { kAborted, kPrepared, kProposed, kCommitted };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A request for a switch of configurations: which, and who asks.
+// A request for a switch: to which configuration, or of which tasks, and who asks.
 #pragma once
 
 #include <cstdint>
 
 #include "chimera/base/ids.h"
+#include "chimera/runtime/task_lists.h"
 
 namespace chimera {
 
@@ -18,13 +19,16 @@ enum class SwitchCause : std::uint8_t {
   kStandby,  ///< nobody: `by` is a standby that takes over, which is no switch and has a receipt all the same
 };
 
-/// `set` is in ApplicationSpec::sets.
+/// Of a configuration, or with `lists` of none.
 struct SwitchRequest {
-  std::uint32_t set = UINT32_MAX;
+  std::uint32_t set = UINT32_MAX;  ///< in ApplicationSpec::sets
   SwitchCause cause = SwitchCause::kScript;
   TaskId by;  ///< invalid where `cause` is kScript
+  TaskLists lists{};
 
-  explicit operator bool() const noexcept { return set != UINT32_MAX; }
+  explicit operator bool() const noexcept { return set != UINT32_MAX || lists.are_there(); }
+  /// The same is asked for, whoever does.
+  bool is_for(const SwitchRequest& other) const noexcept { return set == other.set && lists == other.lists; }
 };
 
 }  // namespace chimera

@@ -22,10 +22,27 @@ TEST(SwitchWish, HasAnotherNumberThanTheOneBefore) {
 }
 
 TEST(SwitchWish, TheLastRequestStands) {
-  EXPECT_TRUE(is_new_wish(1, false, false, 0));
-  EXPECT_FALSE(is_new_wish(1, true, false, 0)) << "it is in force, and nothing else is asked for";
-  EXPECT_TRUE(is_new_wish(1, true, true, 2)) << "it takes another one back";
-  EXPECT_FALSE(is_new_wish(1, false, true, 1)) << "it is asked for already";
+  EXPECT_TRUE(is_new_wish(false, false, false));
+  EXPECT_FALSE(is_new_wish(false, true, false)) << "it is in force, and nothing else is asked for";
+  EXPECT_TRUE(is_new_wish(false, true, true)) << "it takes another one back";
+  EXPECT_FALSE(is_new_wish(true, false, true)) << "it is asked for already";
+}
+
+TEST(SwitchWish, OfListsIsReadWhole) {
+  SwitchWishWords words;
+  EXPECT_FALSE(words.read().wish.is_there());
+  SwitchRequest request{UINT32_MAX, SwitchCause::kRequest, TaskId{7u}};
+  request.lists.plus.add(TaskId{255u});
+  request.lists.minus.add(TaskId{0u});
+  words.write(words.wish().next(request), request.lists, milliseconds(5));
+  EXPECT_EQ(words.wish().set, SwitchWish::kLists);
+  EXPECT_EQ(words.read().at, milliseconds(5));
+  EXPECT_TRUE(words.read().request().is_for(request));
+  EXPECT_EQ(words.read().request().by, TaskId{7u});
+  words.write(words.wish().next({3, SwitchCause::kMiss, TaskId{7u}}), {}, milliseconds(6));
+  EXPECT_EQ(words.read().request().set, 3u);
+  EXPECT_FALSE(words.read().request().lists.are_there());
+  EXPECT_EQ(words.wish().number, 2);
 }
 
 TEST(SwitchWish, IsDealtWithInOneIncarnation) {

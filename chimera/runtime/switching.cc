@@ -70,8 +70,9 @@ Switching::Switching(const Parts& parts) noexcept
       slow_({parts.set, parts.threads, parts.settlement, parts.tap, parts.clock, gap_, record_}),
       record_(parts.set) {}
 
-void Switching::prepare(std::size_t n_switches, SwitchPeers* peers) {
+void Switching::prepare(std::size_t n_switches, SwitchPeers* peers, AskedTasks* asked) {
   if (n_switches == 0 && peers == nullptr) return;
+  asked_ = asked;
   TaskSet& set = parts_.set;
   CHIMERA_ASSERT(set.spec().tasks.size() <= kMaxSwitchedTasks);
   if (peers != nullptr) {
@@ -109,19 +110,23 @@ bool Switching::is_free() const noexcept {
   return phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
 }
 
-bool Switching::leads_to(std::uint32_t set) noexcept {
-  if (phase_ != Phase::kNone || is_announced(*peers_, seen_)) return phase_ != Phase::kUndoing && plan_.after == set;
+bool Switching::leads_to(const SwitchRequest& request) noexcept {
+  const bool has_lists = request.lists.are_there();
+  if (phase_ != Phase::kNone || is_announced(*peers_, seen_))
+    return phase_ != Phase::kUndoing &&
+           (has_lists ? request.lists.are_met_by(target_of(plan_)) : plan_.after == request.set);
   note_standing(parts_.set, standing_);
-  return planner_.set_in_force(standing_) == set;
+  return has_lists ? request.lists.are_met_by(tasks_on(standing_)) : planner_.set_in_force(standing_) == request.set;
 }
 
-void Switching::ask(const SwitchRequest& request, Nanoseconds now, const TaskBits& unnamed) noexcept {
-  if (peers_ != &nobody_) return peers_->wish(request, leads_to(request.set), now);
+void Switching::ask(SwitchRequest request, Nanoseconds now) noexcept {
+  if (peers_ != &nobody_) return peers_->wish(request, leads_to(request), now);
   if (phase_ == Phase::kAfter && is_free()) finish(SwitchEnd::kDone, now);
   note_standing(parts_.set, standing_);
+  TaskBits target;
+  if (!find_target(request, parts_.set.spec(), standing_, asked_, now, target)) return;
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   const bool is_first = phase_ == Phase::kNone && is_free();
-  const TaskBits target = request.set == kNoSet ? unnamed : tasks_of(parts_.set.spec(), request.set);
   if (is_first) answer = planner_.plan(target, standing_, plan_);
   const ContextConstants& constants = parts_.set.constants();
   const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants, gap_) : SwitchWay();

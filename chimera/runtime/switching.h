@@ -27,6 +27,7 @@
 #include <span>
 
 #include "chimera/runtime/arrival.h"
+#include "chimera/runtime/asked_tasks.h"
 #include "chimera/runtime/changeover.h"
 #include "chimera/runtime/context_tap.h"
 #include "chimera/runtime/disturbance.h"
@@ -58,18 +59,18 @@ class Switching {
   };
   explicit Switching(const Parts& parts) noexcept;
   /// Takes memory for so many receipts of switches that are asked for here; 0 and no peers: there will be none. With
-  /// peers, which outlive this, others ask. Context: setup.
-  void prepare(std::size_t n_switches, SwitchPeers* peers);
+  /// peers, which outlive this, others ask. `asked` may be null where no request has lists. Context: setup.
+  void prepare(std::size_t n_switches, SwitchPeers* peers, AskedTasks* asked);
   /// Instants on the page count from `origin`, that of the grid of releases.
   void begin(Nanoseconds origin) noexcept;
 
   /// Makes a plan and begins to carry it out; what became of it is in receipts(). With peers: whoever plans for all is
-  /// told. Of kNoSet the target are the tasks `unnamed`, without peers only. Requires: prepare() took memory.
-  void ask(const SwitchRequest& request, Nanoseconds now, const TaskBits& unnamed = {}) noexcept;
+  /// told. Lists that lead to no legal set have no effect. Requires: prepare() took memory.
+  void ask(SwitchRequest request, Nanoseconds now) noexcept;
   /// None is under way, or one of which only the first cycles of arriving tasks are looked at yet.
   bool is_free() const noexcept;
-  /// The set is in force, or is the one that is being switched to.
-  bool leads_to(std::uint32_t set) noexcept;
+  /// What is asked for is in force, or is being switched to.
+  bool leads_to(const SwitchRequest& request) noexcept;
   /// Goes on with the switch that is under way, or takes up one that others have planned. No effect without one.
   void step(Nanoseconds edge) noexcept;
   /// A task is to go ON in place of one that failed: a switch that is not committed is aborted. False: not now, the
@@ -119,6 +120,7 @@ class Switching {
   SwitchWays ways_;
   NoSwitchPeers nobody_;
   SwitchPeers* peers_ = &nobody_;
+  AskedTasks* asked_ = nullptr;
   SwitchOrder order_;
   SwitchPlan plan_;
   UndisturbedState before_;

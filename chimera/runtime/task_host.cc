@@ -47,12 +47,31 @@ std::int32_t refuse_request(void* context, const char* name, std::string_view wh
   Task& task = *host_of(context).task;
   if (task.requests_refused < UINT8_MAX) ++task.requests_refused;
   if (task.requests_refused > 1) return CHIMERA_FAULT;
-  const Message message = Message("asks for the configuration '") << name << "': " << why;
+  const Message message = Message(has_lists(name) ? "asks for '" : "asks for the configuration '") << name
+                                                                                                   << "': " << why;
   host_note(context, FixedString<CHIMERA_FAULT_TEXT - 1>(message.view()).c_str());
   return CHIMERA_FAULT;
 }
 
+std::int32_t request_lists(void* context, const char* text) {
+  const TaskHost& host = host_of(context);
+  SentSignals& sent = host.set->sent();
+  TaskLists lists;
+  const auto find = [&host](std::string_view name) { return task_named(name, host.set->spec().tasks); };
+  const ListsFault fault = read_lists(text, find, lists);
+  if (fault.kind == ListsFault::Kind::kUnknownTask)
+    return refuse_request(context, text, (Message("there is no task '") << fault.word << "'").view());
+  if (fault) return refuse_request(context, text, "expected '--on TASK... --off TASK...'");
+  TaskLists* const kept = sent.takes_requests() ? sent.lists_of(host.task->id) : nullptr;
+  if (kept == nullptr) return refuse_request(context, text, "nobody takes requests here");
+  *kept = lists;
+  host.task->requested_set = kListsRequested;
+  host.task->has_news = true;
+  return CHIMERA_OK;
+}
+
 std::int32_t host_request(void* context, const char* name) {
+  if (has_lists(name)) return request_lists(context, name);
   const TaskHost& host = host_of(context);
   const auto sets = host.set->spec().sets;
   std::uint32_t set = 0;

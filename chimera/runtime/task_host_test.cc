@@ -165,7 +165,7 @@ TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
   EXPECT_EQ(host().request(context(), "far"), CHIMERA_FAULT);
   EXPECT_STREQ(task().faults.note, "asks for the configuration 'far': nobody takes requests here");
   EXPECT_EQ(task().requested_set, kNoRequest);
-  set->sent().allow_requests();
+  set->sent().allow_requests({});
   task().has_news = false;
   EXPECT_EQ(host().request(context(), "far"), CHIMERA_OK);
   EXPECT_EQ(task().requested_set, 1u);
@@ -175,6 +175,29 @@ TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
   EXPECT_EQ(host().request(context(), "fa"), CHIMERA_FAULT);
   EXPECT_EQ(task().faults.notes, 1u) << "told once";
   EXPECT_EQ(task().requests_refused, 2u);
+}
+
+TEST_F(TaskHostTest, ARequestForTasksIsKeptWhereSomebodyTakesLists) {
+  const std::string mine(task().spec->name);
+  const std::string on = "--on " + mine;
+  set->sent().allow_requests({});
+  EXPECT_EQ(host().request(context(), on.c_str()), CHIMERA_FAULT);
+  EXPECT_EQ(task().faults.note, "asks for '" + on + "': nobody takes requests here");
+  std::vector<TaskLists> lists(set->tasks().size());
+  set->sent().allow_requests(lists);
+  const auto refusal = [&](const char* text) {
+    task().requests_refused = 0;
+    EXPECT_EQ(host().request(context(), text), CHIMERA_FAULT);
+    return std::string(task().faults.note);
+  };
+  EXPECT_EQ(refusal("--on nobody"), "asks for '--on nobody': there is no task 'nobody'");
+  EXPECT_EQ(refusal("--off"), "asks for '--off': expected '--on TASK... --off TASK...'");
+  EXPECT_EQ(refusal("-x"), "asks for '-x': expected '--on TASK... --off TASK...'");
+  EXPECT_EQ(task().requested_set, kNoRequest);
+  EXPECT_FALSE(lists[task().id.index].are_there());
+  EXPECT_EQ(host().request(context(), on.c_str()), CHIMERA_OK);
+  EXPECT_EQ(task().requested_set, kListsRequested);
+  EXPECT_TRUE(lists[task().id.index].plus.has(task().id));
 }
 
 TEST_F(TaskHostTest, APortKnowsWhatItIsLinkedToAndInWhichUnit) {

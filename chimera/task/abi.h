@@ -86,7 +86,7 @@ enum {
   CHIMERA_PORT_SAFETY = 1u << 0,      /* never publishes NaN, infinity, or a value outside [min, max] */
   CHIMERA_PORT_REPEATED = 1u << 1,    /* instances come from the description */
   CHIMERA_PORT_HAS_RANGE = 1u << 2,   /* min and max count */
-  CHIMERA_PORT_CONFIGURATION = 1u << 4, /* in-const of text: names a configuration of the description, or is empty */
+  CHIMERA_PORT_CONFIGURATION = 1u << 4, /* in-const of text: what `request` takes, or empty */
   CHIMERA_PORT_SAFE_STATE = 1u << 5, /* out-var of bool: true while the device is in the state that the
                                         illegal-configuration flag asks for; resource: nothing of it ever moves */
   CHIMERA_PORT_SHARED = 1u << 6, /* resource: several tasks may have it open at one time */
@@ -188,9 +188,9 @@ typedef struct chimera_host {
    * there is none. Good as long as the task. `port` lies in the component's state. */
   chimera_text (*variable)(void* context, const chimera_port* port);
   chimera_text (*unit)(void* context, const chimera_port* port);
-  /* Asks for a switch to the configuration of that name, as an operator would; the last request of a method counts.
-   * CHIMERA_OK, or CHIMERA_FAULT when there is no such configuration or it cannot be switched to in this run: told as a
-   * note, once for each task. Acted upon after the present method. */
+  /* Asks for a switch to the configuration of that name, or of tasks ("--on A --off B"), as an operator would; the last
+   * request of a method counts. CHIMERA_OK, or CHIMERA_FAULT when there is no such configuration or task, or nothing
+   * can be switched in this run: told as a note, once for each task. Acted upon after the present method. */
   int32_t (*request)(void* context, const char* configuration);
   /* Safe frame `index` of this task is written to `descriptor`, of which a copy is kept, by another process, when this
    * one is dead; below 0: there is no such frame any more. Before it is written, output that waits in the queue of a

@@ -47,9 +47,10 @@ class Cycle {
   /// One line for whoever runs the application, at most 159 bytes of `text`: an event, and a line of the run. Of
   /// several in one method the last counts. Context: any; wait-free.
   void note(const char* text) const noexcept { call_->host->note(call_->context, text); }
-  /// Asks for a switch to the configuration of that name: exactly its tasks ON, as docs/howto/reconfigure.md says. Of
-  /// all requests of tasks that wait the last counts; one for what is in force, or is being switched to, has no effect.
-  /// False when there is no such configuration, or no switch in this run: one note says so. Context: cycle; wait-free.
+  /// Asks for a switch, as docs/howto/reconfigure.md says: to the configuration of that name, exactly its tasks ON; or
+  /// "--on A --off B", those tasks ON and OFF, and who produces the same as A goes OFF. Of all requests of tasks that
+  /// wait the last counts; one for what is in force, or is being switched to, has no effect. False when there is no
+  /// such configuration or task, or no switch in this run: one note says so. Context: cycle; wait-free.
   bool request(const char* configuration) const noexcept {
     return call_->host->request(call_->context, configuration) == CHIMERA_OK;
   }

@@ -86,7 +86,7 @@ typedef struct pboPort_t {
 #define PBO_SAFETY .safety = 1
 #define PBO_AT_LEAST(lower) .at_least = lower /* in_const of numbers: no element is below that of in_const `lower` */
 #define PBO_ONE_OF(words) .one_of = words /* in_const of text: "the words it may be", with spaces between them */
-#define PBO_CONFIGURATION .configuration = 1 /* in_const of text: names a configuration, or is empty */
+#define PBO_CONFIGURATION .configuration = 1 /* in_const of text: a configuration, tasks (--on a --off b), or empty */
 #define PBO_SAFE_STATE .safe_state = 1 /* out_var of bool: the device is as the flag asks; resource: it never moves */
 #define PBO_SHARED .shared = 1 /* resource: several tasks may have it open at one time */
 #define PBO_INITIAL(type, ...) \

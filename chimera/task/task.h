@@ -44,8 +44,8 @@ struct SentSignal {
 
 inline constexpr std::size_t kOutboxSize = 16;
 
-/// Stands for "none" where a method asks for a configuration.
-inline constexpr std::uint16_t kNoRequest = UINT16_MAX;
+/// Where a method asks for a configuration: for none, or for lists of tasks, which SentSignals keeps.
+inline constexpr std::uint16_t kNoRequest = UINT16_MAX, kListsRequested = UINT16_MAX - 1;
 
 /// Where a task tells which method runs while nobody wants to know. Never read: pairs with nothing.
 inline std::atomic<std::uint32_t> running_untold{0};
@@ -88,7 +88,7 @@ struct alignas(64) Task {
   /// The present job was told to: it used up its budget. Relaxed, pairs with nothing: a job that sees it late gives up
   /// late.
   std::atomic<bool> give_up{false};
-  std::uint16_t requested_set = kNoRequest;  ///< by the present method, in ApplicationSpec::sets
+  std::uint16_t requested_set = kNoRequest;  ///< by the present method, in ApplicationSpec::sets; or above
   std::uint32_t events = 0;  ///< behind a server: rings of its doorbell that no job has answered; by the executor
   int descriptor = -1;   ///< readable while there is an event, from the end of init to kill; below 0: none
 

@@ -10,6 +10,7 @@
 
 #include "chimera/description/draft_values.h"
 #include "chimera/description/text_limits.h"
+#include "chimera/runtime/task_lists.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 
@@ -25,7 +26,7 @@ struct Cell {
   bool has_range = false;
   double min = 0, max = 0;
   std::span<const std::string> words{};  ///< what a text may be; empty: anything
-  bool names_configuration = false;      ///< a text is one of the configurations, or empty
+  bool names_configuration = false;      ///< a text is one of the configurations, lists of tasks, or empty
 };
 
 template <class T>
@@ -193,7 +194,8 @@ class ValueWriter {
       const std::string words = listed(std::vector<std::string>(cell.words.begin(), cell.words.end()));
       refuse("word-unknown", node.at, "found " + written(node) + "; expected one of " + words, node.text, words,
              nearest(node.text, cell.words));
-    } else if (!cell.names_configuration || node.text.empty() || is_configuration(node)) {
+    } else if (!cell.names_configuration || node.text.empty() ||
+               (has_lists(node.text) ? are_lists(node) : is_configuration(node))) {
       std::memcpy(to, node.text.data(), node.text.size());
     }
   }
@@ -205,6 +207,28 @@ class ValueWriter {
     refuse("configuration-unknown", node.at, "found " + written(node) + "; expected a configuration: " + listed(names),
            node.text, listed(names), nearest(node.text, names));
     return false;
+  }
+
+  /// "--on pid --off lqr".
+  bool are_lists(const Node& node) {
+    const auto find = [this](std::string_view name) {
+      const auto task = model_.task_named(name);
+      return task ? TaskId(*task) : TaskId{};
+    };
+    TaskLists lists;
+    const ListsFault fault = read_lists(node.text, find, lists);
+    if (fault.kind == ListsFault::Kind::kUnknownTask) {
+      std::vector<std::string> names;
+      for (const TaskModel& task : model_.tasks) names.push_back(task.name());
+      const std::string word(fault.word);
+      refuse("task-unknown", node.at, "found " + written(node) + ", and there is no task '" + word + "'", word,
+             listed(names), nearest(word, names));
+    } else if (fault) {
+      refuse("configuration-unknown", node.at,
+             "found " + written(node) + "; expected a configuration, or '--on TASK... --off TASK...'", node.text,
+             "--on TASK... --off TASK...");
+    }
+    return !fault;
   }
 
   void truth(const Node& node, std::byte* to) {

@@ -65,6 +65,7 @@ class Requests : public ::testing::TestWithParam<Kind> {
     app_->add("low", testing::component<Low>("low")).budget = microseconds(20);
     app_->add("high", testing::component<High>("high")).budget = microseconds(20);
     app_->add("other", testing::component<Low>("low")).budget = microseconds(20);
+    for (TaskSpec& task : app_->tasks) task.rtpu = RtpuId{0u};
     if (change_) change_(*app_);
     app_->make({kFirst, kSecond, kLow}, false);
     app_->spec.sets = std::span(sets_).first(n_sets_);
@@ -233,6 +234,51 @@ TEST_P(Requests, ForAnUnknownConfigurationAreRefusedCountedAndNotedOnce) {
   EXPECT_EQ(task.requests_refused, 3u);
   EXPECT_EQ(task.faults.notes, 1u);
   EXPECT_STREQ(task.faults.note, "asks for the configuration 'hihg': there is none of this name");
+}
+
+TEST_P(Requests, ForTasksAreWorkedOutFromWhatIsOn) {
+  scene.first = [](Cycle c) {
+    if (c.count() == 3) ask(c, "--on high");
+    if (c.count() == 4) ask(c, "--on high --off low");  // it leads to what is under way, or in force
+    if (c.count() == 12) ask(c, "--off second");
+    if (c.count() == 20) ask(c, "--on low --off high");
+  };
+  const auto receipts = go(milliseconds(30), {to(kOtherSet, milliseconds(25))});
+  EXPECT_EQ(scene.answers, (std::vector<bool>{true, true, true, true}));
+  ASSERT_EQ(receipts.size(), 4u);
+  EXPECT_EQ(receipts[0].after, kHighSet) << "`high` alone: who produces the same goes OFF";
+  EXPECT_EQ(receipts[0].cause, SwitchCause::kRequest);
+  EXPECT_EQ(receipts[0].by, kFirst);
+  EXPECT_EQ(receipts[1].after, kNoSet) << "it is none of them";
+  EXPECT_EQ(receipts[2].before, kNoSet);
+  for (const SwitchReceipt& receipt : receipts) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_TRUE(runner_->asked().refused().empty());
+}
+
+TEST_P(Requests, ForTasksThatAreNoLegalSetAreRefusedAndKept) {
+  scene.first = [](Cycle c) {
+    if (c.count() == 3) ask(c, "--on high low");
+    if (c.count() == 4) ask(c, "--on hihg");
+  };
+  EXPECT_TRUE(go(milliseconds(10)).empty());
+  EXPECT_EQ(scene.answers, (std::vector<bool>{true, false}));
+  EXPECT_STREQ(set_->tasks()[kFirst.index].faults.note, "asks for '--on hihg': there is no task 'hihg'");
+  ASSERT_EQ(runner_->asked().refused().size(), 1u);
+  const RefusedLists& refused = runner_->asked().refused()[0];
+  EXPECT_EQ(refused.request.by, kFirst);
+  EXPECT_EQ(refused.why, "level would have two producers: low and high");
+  EXPECT_TRUE(is_on(kLow));
+}
+
+TEST_P(Requests, OfOneConfigurationTurnSomeOfItsTasksOff) {
+  n_sets_ = 1;
+  scene.first = [](Cycle c) {
+    if (c.count() == 3) ask(c, "--off second");
+  };
+  const auto receipts = go(milliseconds(10));
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_FALSE(is_on(kSecond));
 }
 
 TEST_P(Requests, WhereThereIsOneConfigurationAreRefused) {

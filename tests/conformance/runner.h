@@ -7,6 +7,7 @@
 
 #include "chimera/platform/virtual/virtual_clock.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/hosted/asked_sets.h"
 #include "chimera/runtime/hosted/refusal_text.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 #include "tests/conformance/toy.h"
@@ -59,8 +60,9 @@ class Runner {
  public:
   Runner(TaskSet& set, Kind kind, Policy policy = Policy::kEdf, std::span<const ScriptAct> acts = {},
       const VirtualOptions& how = {})
-      : set_(set), job_clock_(clock_) {
+      : set_(set), job_clock_(clock_), asked_(set.spec()) {
     RunOptions options;
+    options.asked = &asked_;
     options.policy = policy;
     options.script = Script(acts);
     options.tap = listened_.tap();
@@ -72,6 +74,7 @@ class Runner {
 
   Result<void> start() { return executive_ ? start_result(set_, executive_->start()) : virtual_->start(); }
   RunEnd run(Nanoseconds duration) { return executive_ ? executive_->run(duration) : virtual_->run(duration); }
+  const AskedSets& asked() const { return asked_; }
   void shut_down() { executive_ ? executive_->shut_down() : virtual_->shut_down(); }
 
   std::span<const SwitchReceipt> receipts() { return kept().all(); }
@@ -84,6 +87,7 @@ class Runner {
   Listened listened_;
   VirtualClock clock_;
   TwinClock job_clock_;
+  AskedSets asked_;
   std::unique_ptr<Executive> executive_;
   std::unique_ptr<VirtualExecutor> virtual_;
 };

@@ -28,6 +28,7 @@ configurations:
   high: {tasks: [steady, asker, two, reader], safe_when: 'seen < 8'}
 start: low
 """
+LISTS = TEXT.replace("{first: low, second: high}", "{first: --on one, second: --on two --off one}")
 PREEMPTIVE = TEXT.replace("policy: edf}", "policy: edf, executor: preemptive}")
 MIXED = TEXT.replace("cpu: 1, policy: edf}", "cpu: 1, policy: edf, executor: preemptive}")
 SETS = {"low": {"steady", "asker", "one", "reader"}, "high": {"steady", "asker", "two", "reader"}}
@@ -98,6 +99,31 @@ class Requests(unittest.TestCase):
                                   "two receipts")
             self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
                              [("high", "done", {"task": "asker"}), ("low", "done", {"task": "asker"})])
+
+    def test_a_task_asks_for_tasks(self):
+        with System(LISTS) as system:
+            set_to(system, wish=2)
+            self.await_set(system, "high")
+            set_to(system, wish=1)
+            self.await_set(system, "low")
+            time.sleep(0.3)  # thirty cycles that ask for what is in force
+            receipts = await_that(lambda: (filed := system.call("receipts")["receipts"])[1:] and filed, 5,
+                                  "two receipts")
+            self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
+                             [("high", "done", {"task": "asker"}), ("low", "done", {"task": "asker"})])
+
+    def test_tasks_that_are_no_legal_set_are_refused_by_name(self):
+        with System(LISTS.replace("--on two --off one", "--off one two")) as system:
+            set_to(system, wish=2)
+            await_that(lambda: told(system), 5, "the refusal")
+            self.assertEqual(told(system)[0], "switch --off one two, asked for by task asker, is refused: "
+                                              "level would have no producer")
+            set_to(system, wish=1)  # in force
+            time.sleep(0.1)
+            n = len(told(system))
+            time.sleep(0.3)
+            self.assertEqual(len(told(system)), n)
+            self.assertEqual((on(system), system.call("receipts")["receipts"]), (SETS["low"], []))
 
     def test_safe_when_holds_it_up_and_is_told_by_name(self):
         with System(TEXT) as system:

@@ -174,16 +174,27 @@ class Standby(unittest.TestCase):
 
     def judge(self, system, what):
         def one_is_on():
-            states = {task["task"]: task["state"] for task in system.call("status")["tasks"]}
+            states = self.states(system)
             on = [name for name in ("main", "spare") if states[name] == "ON"]
             self.assertLess(len(on), 2, what)
             return len(on) == 1 and states["user"] == states["reference"] == "ON"
         try:
             await_that(one_is_on, 20, f"one of them to be ON ({what})")
         except AssertionError as error:
-            states = [(task["task"], task["state"]) for task in system.call("status")["tasks"]]
-            raise AssertionError(f"{error}: {states}") from None
-        self.await_seen(system, 2 if system.state("main") == "ON" else 3)
+            raise AssertionError(f"{error}: {self.states(system)}") from None
+
+        def seen_is_of_who_is_on():  # by states of one answer: a death that is not told yet is judged when it is
+            states, seen = self.states(system), system.call("get", variables=["seen"])["values"]["seen"]["value"]
+            return states == self.states(system) and seen == (2 if states["main"] == "ON" else 3)
+        try:
+            await_that(seen_is_of_who_is_on, 10, f"the reader to see who is ON ({what})")
+        except AssertionError as error:
+            seen = system.call("get", variables=["seen"])["values"]["seen"]
+            raise AssertionError(f"{error}: {seen}, {self.states(system)}") from None
+
+    @staticmethod
+    def states(system):
+        return {task["task"]: task["state"] for task in system.call("status")["tasks"]}
 
 
 if __name__ == "__main__":

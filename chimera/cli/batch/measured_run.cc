@@ -116,6 +116,7 @@ class Measuring {
     RunOptions options;
     options.policy = followed_rtpu(plan_.configuration, true).policy;
     options.script = Script(plan_.acts);
+    options.asked = &asked_;
     loop_ = make_virtual_loop(application_, request_.run, options);
     MeasuredRun made;
     if (auto started = loop_->start(); !started) return failed(started.error());
@@ -159,7 +160,8 @@ class Measuring {
     }
     const auto tasks = application_.all_tasks();
     add_remarks(tasks, application_.is_flag_up(), made.remarks);
-    for (std::string& line : refused_lines(*loop_, tasks, plan_.listed)) made.remarks.push_back(std::move(line));
+    for (std::string& line : refused_lines(*loop_, tasks, asked_, application_.spec()))
+      made.remarks.push_back(std::move(line));
     for (std::string& remark : made.remarks)
       if (remark.ends_with('\n')) remark.pop_back();
     loop_->shut_down();
@@ -173,6 +175,7 @@ class Measuring {
   const RunPlan& plan_;
   Application application_;
   ParsedMeasures parsed_;
+  AskedSets asked_{application_.spec()};
   std::unique_ptr<RunLoop> loop_;
 };
 

@@ -126,6 +126,24 @@ start: alone
   EXPECT_EQ(output.out.rfind("alone -> both: fast; asked for by on_miss of a, on_fault of a, an operator\n", 0), 0u);
 }
 
+TEST(CheckModes, NamesWhoAsksForTasksThatLeadToAConfiguration) {
+  const CommandResult output = modes_of(R"(subsystem: modes
+tasks:
+  asker: {component: t_asker, rate: 100 Hz, budget: 1 ms, constants: {first: --on two, second: --off one}}
+  one: {component: gain, rate: 100 Hz, budget: 1 ms, alias: {x: given, y: level}, constants: {k: 1}}
+  two: {component: gain, rate: 100 Hz, budget: 1 ms, alias: {x: given, y: level}, constants: {k: 1}}
+  reader: {component: gain, rate: 100 Hz, budget: 1 ms, alias: {x: level, y: seen}, constants: {k: 1}}
+operator: {wish: 0, given: 5}
+configurations: {low: [asker, one, reader], high: [asker, two, reader]}
+start: low
+)");
+  EXPECT_EQ(output.code, kOk);
+  EXPECT_EQ(output.out.rfind("low -> high: fast; asked for by constant first of asker, constant second of asker", 0),
+            0u)
+      << output.out;
+  EXPECT_EQ(output.err, "") << output.err;
+}
+
 TEST(CheckModes, TellsWhatHasNoBudgetAndWhatHasNothingToSwitchTo) {
   const CommandResult output = modes_of(kModes, "c: {component: t_counter, rate: 100 Hz}",
                                         "c: {component: t_counter, rate: 100 Hz, budget: 1 ms}");

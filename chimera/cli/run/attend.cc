@@ -276,15 +276,16 @@ void RemoteTarget::act_next() {
 }
 
 void RemoteTarget::switch_to(const TimedAct& timed) {
-  const auto names = [this](const std::vector<TaskId>& tasks) {
+  const auto names = [this](const TaskBits& tasks) {
     Json list = Json::array();
-    for (const TaskId task : tasks) list.push_back(names_.tasks[task.index]);
+    for (std::size_t t = 0; t < names_.tasks.size(); ++t)
+      if (tasks.has(TaskId(t))) list.push_back(names_.tasks[t]);
     return list;
   };
   Json asked = Json::object();
   if (!timed.has_lists()) asked["configuration"] = timed.text.substr(timed.text.rfind(' ') + 1);
-  if (!timed.lists.plus.empty()) asked["on"] = names(timed.lists.plus);
-  if (!timed.lists.minus.empty()) asked["off"] = names(timed.lists.minus);
+  if (timed.lists.plus != TaskBits{}) asked["on"] = names(timed.lists.plus);
+  if (timed.lists.minus != TaskBits{}) asked["off"] = names(timed.lists.minus);
   const auto answer = line_.ask("switch", asked, kSwitchLimit);
   if (!answer) {
     const std::string what = timed.has_lists() ? trimmed(timed.text.substr(timed.text.find(':') + 1)) + ": " : "";

@@ -103,6 +103,7 @@ class LocalTarget final : public RunTarget {
   std::unique_ptr<TapRing> ring_;
   std::optional<Tap> tap_;
   TapReader reader_;
+  AskedSets asked_{application_.spec()};
   std::unique_ptr<RunLoop> loop_;
   Nanoseconds at_;  // to which it has come, since the start
   std::map<std::string, Probe> probes_;
@@ -115,6 +116,7 @@ Result<void> LocalTarget::start() {
   RunOptions options;
   options.policy = followed_rtpu(plan_.configuration, request_.virtual_time).policy;
   options.script = Script(plan_.acts);
+  options.asked = &asked_;
   options.stop = &stop_requested;
   if (sink_ != nullptr) {
     ring_ = std::make_unique<TapRing>();
@@ -202,7 +204,7 @@ void LocalTarget::finish(RunReport& report) {
   const auto tasks = application_.all_tasks();
   const std::vector<State> states = application_.states();
   if (report.end == RunEnd::kTaskStopped) report.stopped_by = who_stopped(tasks);
-  for (const std::string& line : refused_lines(*loop_, tasks, plan_.listed)) report.refused += line;
+  for (const std::string& line : refused_lines(*loop_, tasks, asked_, application_.spec())) report.refused += line;
   const Nanoseconds now = loop_->now();
   std::vector<std::uint64_t> faults_before;
   for (const Task* task : tasks) faults_before.push_back(task->faults.count);

@@ -8,10 +8,12 @@
 #include <future>
 #include <thread>
 
+#include "chimera/control/switch_reason.h"
 #include "chimera/platform/linux_clock.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/runtime/hosted/background_writer.h"
 #include "chimera/runtime/hosted/refusal_text.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
@@ -26,6 +28,12 @@ const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_t
 
 namespace {
 
+std::string refused_line(Nanoseconds since_start, const std::string& what, const std::string& why) {
+  char at[32];
+  std::snprintf(at, sizeof at, "%.3f s", to_seconds(since_start));
+  return std::string("refused at ") + at + ": " + what + ": " + why + "\n";
+}
+
 std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
   const std::string name(task.spec->name);
   std::string why = task.faults.last.text;
@@ -35,21 +43,26 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
   if (refused.why == Refusal::kIllegalSet) why = "the tasks that would be ON are not a legal set";
   if (refused.why == Refusal::kNotYet) why = "it is not ready yet; ask again";
   if (refused.why == Refusal::kRival) why = "another task that is created has its resource";
-  char at[32];
-  std::snprintf(at, sizeof at, "%.3f s", to_seconds(refused.at - origin));
   const std::string signal = is_ring ? "ring" : signal_name(refused.signal);
-  return std::string("refused at ") + at + ": " + signal + " " + name + ": " + why + "\n";
+  return refused_line(refused.at - origin, signal + " " + name, why);
+}
+
+// "switch --on pid, asked for by task watch: u would have two producers: pid and lqr".
+std::string refused_line(const RefusedLists& refused, const ApplicationSpec& spec, Nanoseconds origin) {
+  const bool is_of_task = refused.request.by.is_valid();
+  const std::string by = is_of_task ? ", asked for by " + control::asked_by(refused.request, spec) : "";
+  return refused_line(refused.at - origin, "switch " + lists_text(refused.request.lists, spec) + by, refused.why);
 }
 
 }  // namespace
 
-std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* const> tasks,
-                                       std::span<const std::unique_ptr<ListedSwitch>> listed) {
+std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* const> tasks, const AskedSets& asked,
+                                       const ApplicationSpec& spec) {
   std::vector<std::pair<Nanoseconds, std::string>> found;
   for (const RefusedSignal& refused : loop.refused())
     found.emplace_back(refused.at, refused_line(refused, *tasks[refused.task.index], loop.origin()));
-  for (const auto& each : listed)
-    if (each->refused_at() != kNever) found.emplace_back(each->refused_at(), each->refusal(loop.origin()));
+  for (const RefusedLists& refused : asked.refused())
+    found.emplace_back(refused.at, refused_line(refused, spec, loop.origin()));
   std::ranges::stable_sort(found, {}, [](const auto& one) { return one.first; });
   std::vector<std::string> lines;
   for (auto& [at, line] : found) lines.push_back(std::move(line));

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "chimera/cli/run/listed_switch.h"
 #include "chimera/cli/run/run.h"
+#include "chimera/runtime/hosted/asked_sets.h"
 #include "chimera/runtime/releases.h"
 
 namespace chimera::cli {
@@ -33,10 +33,10 @@ class RunLoop {
 /// Whose policy a run of one context follows: in virtual time that of the first task's rtpu, else the first.
 const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time);
 
-/// "refused at 0.200 s: off pid: ..." and a line end, of each signal and switch of the script that was refused, and of
-/// the signals of tasks, in order of time. Context: setup, after the end.
-std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* const> tasks,
-                                       std::span<const std::unique_ptr<ListedSwitch>> listed);
+/// "refused at 0.200 s: off pid: ..." and a line end, of each signal of the script and of tasks that was refused, and
+/// of the lists of tasks that led to no legal set, in order of time. Context: setup, after the end.
+std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* const> tasks, const AskedSets& asked,
+                                       const ApplicationSpec& spec);
 /// The task whose reaction `stop` ended it: the first failure of time with that; "" when there is none.
 std::string who_stopped(std::span<const Task* const> tasks);
 

@@ -111,8 +111,7 @@ Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
     if (!act) return act.error();
     plan.acts.push_back(*act);
     if (!timed.has_lists()) continue;
-    plan.listed.push_back(std::make_unique<ListedSwitch>(plan.configuration.spec(), timed.lists, timed.text));
-    plan.acts.back().asked = plan.listed.back().get();
+    plan.acts.back().lists = &plan.lists.emplace_back(timed.lists);
   }
   return {};
 }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdio>
-#include <memory>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +12,6 @@
 #include "chimera/catalogue/library.h"
 #include "chimera/cli/files/workplace.h"
 #include "chimera/cli/run/expectation.h"
-#include "chimera/cli/run/listed_switch.h"
 #include "chimera/cli/run/own_process.h"
 #include "chimera/runtime/script.h"
 #include "chimera/verify/configuration.h"
@@ -28,7 +27,7 @@ struct RunPlan {
   Configuration configuration;      ///< with the settings of the request
   std::vector<ScriptAct> acts;
   std::vector<Configuration> set;   ///< one for each act `set`, which has its value there
-  std::vector<std::unique_ptr<ListedSwitch>> listed;  ///< one for each act `switch` that names tasks
+  std::deque<TaskLists> lists;      ///< one for each act `switch` that names tasks
   std::vector<Expectation> expectations;
 };
 

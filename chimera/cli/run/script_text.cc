@@ -3,7 +3,6 @@
 #include "chimera/cli/run/script_text.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "chimera/cli/files/blanks.h"
 #include "chimera/task/signal.h"
@@ -63,21 +62,23 @@ Result<TimedAct> parse_set(const std::string& text, const std::string& object, S
 Result<TimedAct> parse_lists(const std::string& text, const std::string& lists, ScriptAct act,
                              const ApplicationSpec& spec) {
   TimedAct made{act, text, {}, {}, {}};
-  std::vector<TaskId>* list = nullptr;
-  std::istringstream words(lists);
-  for (std::string word; words >> word;) {
-    if (word == "--on" || word == "--off") {
-      list = word == "--on" ? &made.lists.plus : &made.lists.minus;
-    } else if (list == nullptr || word.starts_with("--")) {
+  std::vector<std::string> names;
+  for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
+  const auto find = [&names](std::string_view name) {
+    const auto found = std::ranges::find(names, name);
+    return found == names.end() ? TaskId{} : TaskId(static_cast<std::size_t>(found - names.begin()));
+  };
+  const ListsFault fault = read_lists(lists, find, made.lists);
+  const std::string word(fault.word);
+  switch (fault.kind) {
+    case ListsFault::Kind::kNone: return made;
+    case ListsFault::Kind::kEmpty:
+      return wrong_act(text, "no task is named; write 'switch --on TASK... --off TASK...'");
+    case ListsFault::Kind::kOutOfPlace:
       return wrong_act(text, "found '" + word + "'; write 'switch --on TASK... --off TASK...'");
-    } else {
-      const auto task = task_named(text, word, spec);
-      if (!task) return task.error();
-      list->push_back(*task);
-    }
+    case ListsFault::Kind::kUnknownTask: break;
   }
-  if (!made.has_lists()) return wrong_act(text, "no task is named; write 'switch --on TASK... --off TASK...'");
-  return made;
+  return wrong_act(text, unknown("task", word, names));
 }
 
 Result<ScriptAct> parse_switch(const std::string& text, const std::string& name, ScriptAct act,
@@ -121,7 +122,7 @@ Result<TimedAct> parse(const std::string& text, const ApplicationSpec& spec) {
   act.at = *at;
   if (word == "switch") act.kind = ScriptAct::Kind::kSwitch;
   if (word == "set") return parse_set(text, object, act);
-  if (word == "switch" && object.starts_with("-")) return parse_lists(text, object, act, spec);
+  if (word == "switch" && has_lists(object)) return parse_lists(text, object, act, spec);
   const auto made = word == "flag"     ? parse_flag(text, object, act)
                     : word == "switch" ? parse_switch(text, object, act, spec)
                     : word == "die"    ? parse_death(text, object, act, spec)

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/cli/run/listed_switch.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/script.h"
 
@@ -21,7 +20,7 @@ struct TimedAct {
   std::string variable, value;  ///< of `set`
   TaskLists lists;              ///< of `switch` that names no configuration
 
-  bool has_lists() const noexcept { return !lists.plus.empty() || !lists.minus.empty(); }
+  bool has_lists() const noexcept { return lists.are_there(); }
 };
 
 /// The acts in order of time. Each text is `DURATION: SIGNAL TASK` with spawn, on, off, kill, clear, reinit or ring,

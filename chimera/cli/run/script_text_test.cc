@@ -78,10 +78,9 @@ TEST_F(ScriptText, ASwitchNamesTasksInPlaceOfOne) {
   ASSERT_TRUE(acts);
   EXPECT_EQ((*acts)[0].act.kind, ScriptAct::Kind::kSwitch);
   EXPECT_EQ((*acts)[0].act.set, UINT32_MAX);
-  EXPECT_TRUE((*acts)[0].lists.plus.empty());
-  EXPECT_EQ((*acts)[0].lists.minus, std::vector{TaskId(0u)});
-  EXPECT_EQ((*acts)[1].lists.plus, (std::vector{TaskId(0u), TaskId(0u)}));
-  EXPECT_EQ((*acts)[1].lists.minus, std::vector{TaskId(0u)});
+  const TaskBits counter = bits_of(std::vector{TaskId(0u)});
+  EXPECT_EQ((*acts)[0].lists, (TaskLists{{}, counter}));
+  EXPECT_EQ((*acts)[1].lists, (TaskLists{counter, counter}));
   const std::string form = "write 'switch --on TASK... --off TASK...'";
   EXPECT_EQ(refusal("3 s: switch --on"), "--at '3 s: switch --on': no task is named; " + form);
   EXPECT_EQ(refusal("3 s: switch --of counter"), "--at '3 s: switch --of counter': found '--of'; " + form);

@@ -147,7 +147,7 @@ TEST(SeveralRtpus, SwitchToWhatTasksByNameLeadTo) {
   const Said said = said_by(request);
   EXPECT_EQ(said.code, kOk) << said.out << said.err;
   EXPECT_TRUE(has(said.out, "\nrefused at 0.025 s: switch --off source ages: no task would be ON\n"
-                            "refused at 0.030 s: switch --off source --on ages: x would have no producer\n"
+                            "refused at 0.030 s: switch --on ages --off source: x would have no producer\n"
                             "switch 1 at 0.005 s from 'all' to other tasks after ")) << said.out;
   EXPECT_TRUE(has(said.out, "\nswitch 2 at 0.015 s to other tasks after ")) << said.out;
   EXPECT_TRUE(has(said.out, "\nswitch 3 at 0.020 s to other tasks after ")) << said.out;

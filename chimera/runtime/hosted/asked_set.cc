@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <vector>
 
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/variables.h"
@@ -14,20 +15,33 @@
 namespace chimera {
 namespace {
 
+std::vector<TaskId> ids_of(const TaskBits& tasks, const ApplicationSpec& spec) {
+  std::vector<TaskId> ids;
+  for (std::size_t t = 0; t < spec.tasks.size(); ++t)
+    if (tasks.has(TaskId(t))) ids.push_back(TaskId(t));
+  return ids;
+}
+
+std::vector<bool> flags_of(const TaskBits& tasks, const ApplicationSpec& spec) {
+  std::vector<bool> flags(spec.tasks.size());
+  for (std::size_t t = 0; t < flags.size(); ++t) flags[t] = tasks.has(TaskId(t));
+  return flags;
+}
+
 class SetMaker {
  public:
-  SetMaker(const ApplicationSpec& spec, std::vector<bool> on, std::span<const TaskId> plus,
-           std::span<const TaskId> minus)
-      : spec_(spec), variables_(spec), on_(std::move(on)), was_on_(on_), plus_(plus), minus_(minus) {
+  SetMaker(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists)
+      : spec_(spec), variables_(spec), on_(flags_of(on, spec)), was_on_(on_), lists_(lists),
+        plus_(ids_of(lists.plus, spec)) {
     rivals_.prepare(spec, memory_);
   }
 
   AskedSet make() {
     for (const TaskId task : plus_) {
-      if (has(minus_, task)) refuse("task " + name(task) + " cannot be both ON and OFF");
+      if (lists_.minus.has(task)) refuse("task " + name(task) + " cannot be both ON and OFF");
       on_[task.index] = true;
     }
-    for (const TaskId task : minus_) on_[task.index] = false;
+    for (const TaskId task : ids_of(lists_.minus, spec_)) on_[task.index] = false;
     displace();
     while (asked_ && complete()) {
     }
@@ -42,7 +56,6 @@ class SetMaker {
   }
 
  private:
-  static bool has(std::span<const TaskId> tasks, TaskId task) { return std::ranges::find(tasks, task) != tasks.end(); }
   std::string name(TaskId task) const { return "'" + std::string(spec_.tasks[task.index].name) + "'"; }
   void refuse(std::string why, std::string remedy = {}) {
     if (!asked_) return;
@@ -53,14 +66,14 @@ class SetMaker {
   /// Whoever produces what an asked task produces, or has its resource, goes OFF, unless it was asked for, too.
   void displace() {
     for (const Variable& variable : spec_.variables) {
-      const auto is_asked = [this](const PortOf& p) { return has(plus_, p.task); };
+      const auto is_asked = [this](const PortOf& p) { return lists_.plus.has(p.task); };
       if (std::ranges::none_of(variable.producers, is_asked)) continue;
       for (const PortOf& producer : variable.producers)
         if (!is_asked(producer)) on_[producer.task.index] = false;
     }
     for (const TaskId task : plus_)
       for (std::size_t t = 0; t < on_.size(); ++t)
-        if (rivals_.are(task, TaskId(t)) && !has(plus_, TaskId(t))) on_[t] = false;
+        if (rivals_.are(task, TaskId(t)) && !lists_.plus.has(TaskId(t))) on_[t] = false;
   }
 
   /// Adds the only producer of a variable that has none; false: nothing is missing, or it cannot be mended.
@@ -71,7 +84,7 @@ class SetMaker {
       if (set_fault(variable.producers, variable.consumers, is_given, is_on, is_on) != SetFault::kNoProducer) continue;
       std::vector<TaskId> may;
       for (const PortOf& producer : variable.producers)
-        if (!has(minus_, producer.task)) may.push_back(producer.task);
+        if (!lists_.minus.has(producer.task)) may.push_back(producer.task);
       if (may.size() == 1) {
         on_[may[0].index] = true;
         return true;
@@ -167,15 +180,27 @@ class SetMaker {
   Rivals rivals_;
   std::vector<bool> on_;
   const std::vector<bool> was_on_;
-  std::span<const TaskId> plus_, minus_;
+  const TaskLists& lists_;
+  const std::vector<TaskId> plus_;
   AskedSet asked_;
 };
 
 }  // namespace
 
-AskedSet asked_set(const ApplicationSpec& spec, std::vector<bool> on, std::span<const TaskId> plus,
-                   std::span<const TaskId> minus) {
-  return SetMaker(spec, std::move(on), plus, minus).make();
+AskedSet asked_set(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists) {
+  return SetMaker(spec, on, lists).make();
+}
+
+std::string lists_text(const TaskLists& lists, const ApplicationSpec& spec) {
+  std::string text;
+  const auto add = [&](const char* word, const TaskBits& tasks) {
+    if (tasks == TaskBits{}) return;
+    text += (text.empty() ? "" : " ") + std::string(word);
+    for (const TaskId task : ids_of(tasks, spec)) text += " " + std::string(spec.tasks[task.index].name);
+  };
+  add("--on", lists.plus);
+  add("--off", lists.minus);
+  return text;
 }
 
 }  // namespace chimera

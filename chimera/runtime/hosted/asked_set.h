@@ -3,12 +3,10 @@
 // producer that is missing comes along where there is only one, and the result is judged as a configuration is.
 #pragma once
 
-#include <span>
 #include <string>
-#include <vector>
 
 #include "chimera/runtime/application_spec.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/task_lists.h"
 
 namespace chimera {
 
@@ -19,12 +17,16 @@ struct AskedSet {
   std::string remedy;  ///< "" or what would help
 
   explicit operator bool() const noexcept { return why.empty(); }
+  /// Both, in one line.
+  std::string text() const { return remedy.empty() ? why : why + "; " + remedy; }
 };
 
-/// From the tasks that are ON (`on[t]`: task t): all of `plus`, none of `minus`. Refuses what breaks an equation, has
-/// a loop of data without an initial value, takes more of a CPU than check allows, or needs a choice (named).
-/// Context: setup.
-AskedSet asked_set(const ApplicationSpec& spec, std::vector<bool> on, std::span<const TaskId> plus,
-                   std::span<const TaskId> minus);
+/// From the tasks that are ON: all of `lists.plus`, none of `lists.minus`. Refuses what breaks an equation, has a loop
+/// of data without an initial value, takes more of a CPU than check allows, or needs a choice (named). Requires: the
+/// lists name tasks of the spec. Context: setup.
+AskedSet asked_set(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists);
+
+/// "--on a b --off c", in the order of the spec. Context: setup.
+std::string lists_text(const TaskLists& lists, const ApplicationSpec& spec);
 
 }  // namespace chimera

@@ -81,10 +81,8 @@ struct AskedSetTest : ::testing::Test {
   void make() { app.make({}, false); }
   /// "sensor pid motor", or why not.
   std::string ask(std::vector<TaskId> plus, std::vector<TaskId> minus = {}) {
-    std::vector<bool> on(app.spec.tasks.size());
-    for (const TaskId task : are_on) on[task.index] = true;
-    const AskedSet asked = asked_set(app.spec, on, plus, minus);
-    if (!asked) return asked.why + (asked.remedy.empty() ? "" : "; " + asked.remedy);
+    const AskedSet asked = asked_set(app.spec, bits_of(are_on), {bits_of(plus), bits_of(minus)});
+    if (!asked) return asked.text();
     std::string names;
     for (std::size_t t = 0; t < app.spec.tasks.size(); ++t)
       if (asked.tasks.has(TaskId(t))) names += (names.empty() ? "" : " ") + std::string(app.spec.tasks[t].name);

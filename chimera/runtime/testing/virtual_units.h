@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "chimera/runtime/hosted/asked_sets.h"
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/virtual_rtpus.h"
@@ -42,6 +44,7 @@ class VirtualUnits {
     }
     RunOptions options;
     options.script = Script(acts_);
+    options.asked = &asked_.emplace(application_->spec);
     VirtualOptions how;
     how.preemptive = preemptive;
     rtpus_ = std::make_unique<VirtualRtpus>(*peers_, options, how);
@@ -53,6 +56,7 @@ class VirtualUnits {
     EXPECT_EQ(rtpus_->run(duration), RunEnd::kTime);
   }
 
+  const AskedSets& asked() const { return *asked_; }
   VirtualPeers& peers() { return *peers_; }
   VirtualRtpus& rtpus() { return *rtpus_; }
   TaskSet& set(std::uint32_t rtpu) { return *sets_[rtpu]; }
@@ -75,6 +79,7 @@ class VirtualUnits {
  private:
   std::unique_ptr<TestApplication> application_;
   std::vector<ScriptAct> acts_;
+  std::optional<AskedSets> asked_;
   std::unique_ptr<VirtualPeers> peers_;
   std::vector<std::unique_ptr<HeapTaskSet>> sets_;
   std::unique_ptr<VirtualRtpus> rtpus_;

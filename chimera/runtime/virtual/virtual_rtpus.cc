@@ -71,7 +71,8 @@ VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const
     : peers_(peers),
       stop_(options.stop != nullptr ? options.stop : &kNoStop),
       script_(options.script),
-      switches_(peers, options.script.count(ScriptAct::Kind::kSwitch) + kept_of_unscripted(peers.spec())) {
+      switches_(peers, options.script.count(ScriptAct::Kind::kSwitch) + kept_of_unscripted(peers.spec()),
+                options.asked) {
   CHIMERA_ASSERT(how.quantum > Nanoseconds{} && options.guest == nullptr);
   const bool has_switches = script_.count(ScriptAct::Kind::kSwitch) > 0 || kept_of_unscripted(peers.spec()) > 0;
   for (std::size_t r = 0; r < peers.spec().rtpus.size(); ++r) {
@@ -226,17 +227,8 @@ void VirtualRtpus::act(const ScriptAct& act, Unit*& last) noexcept {
     case ScriptAct::Kind::kDie:
       return die(act.rtpu);
     case ScriptAct::Kind::kSwitch:
-      return ask(act);
+      return switches_.ask(act.request(), now_);
   }
-}
-
-void VirtualRtpus::ask(const ScriptAct& act) noexcept {
-  if (act.asked == nullptr) return switches_.ask({act.set, SwitchCause::kScript, {}}, now_);
-  TaskBits on, target;
-  for (std::size_t t = 0; t < peers_.spec().tasks.size(); ++t)
-    if (peers_.state(TaskId(t)) == State::kOn) on.add(TaskId(t));
-  if (act.asked->find(on, now_, target))
-    switches_.ask({set_of(peers_.spec(), target), SwitchCause::kScript, {}}, now_, target);
 }
 
 // Lowered, it is also for the tasks that hold it up.

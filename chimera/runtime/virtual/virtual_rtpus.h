@@ -60,7 +60,6 @@ class VirtualRtpus {
   Unit& unit_of(TaskId task) noexcept;
   void take_acts() noexcept;
   void act(const ScriptAct& act, Unit*& last) noexcept;
-  void ask(const ScriptAct& act) noexcept;
   void lower_flag(const ScriptAct& act) noexcept;
   void die(RtpuId rtpu) noexcept;
   void look_for_silence() noexcept;

@@ -31,7 +31,8 @@ Nanoseconds later(Nanoseconds a, Nanoseconds b) noexcept { return a == kNever ? 
 
 }  // namespace
 
-VirtualSwitches::VirtualSwitches(VirtualPeers& peers, std::size_t n) : peers_(peers) {
+VirtualSwitches::VirtualSwitches(VirtualPeers& peers, std::size_t n, AskedTasks* asked)
+    : peers_(peers), asked_(asked) {
   const ApplicationSpec& spec = peers.spec();
   for (std::uint32_t r = 0; r < spec.rtpus.size(); ++r) members_.emplace_back(*this, r);
   if (n == 0) return;
@@ -48,6 +49,11 @@ std::uint16_t VirtualSwitches::living() const noexcept {
   for (std::uint32_t r = 0; r < members_.size(); ++r)
     if (peers_.tasks(RtpuId(r)) != nullptr && peers_.died(RtpuId(r)) == kNever) living |= 1u << r;
   return static_cast<std::uint16_t>(living);
+}
+
+bool VirtualSwitches::leads_to(const SwitchRequest& request) const noexcept {
+  if (!is_under_way()) return false;
+  return request.lists.are_there() ? request.lists.are_met_by(target_) : present_->after == request.set;
 }
 
 void VirtualSwitches::ring() noexcept {
@@ -67,11 +73,12 @@ Nanoseconds VirtualSwitches::lead() const noexcept {
   return lead_of(plan_, peers_.spec().tasks, longest);
 }
 
-void VirtualSwitches::ask(const SwitchRequest& request, Nanoseconds now, const TaskBits& unnamed) noexcept {
+void VirtualSwitches::ask(SwitchRequest request, Nanoseconds now) noexcept {
   finish(now);
   for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = standing_of(TaskId(t));
+  TaskBits target;
+  if (!find_target(request, peers_.spec(), standing_, asked_, now, target)) return;
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  const TaskBits target = request.set == kNoSet ? unnamed : tasks_of(peers_.spec(), request.set);
   if (!is_under_way()) answer = planner_.plan(target, standing_, plan_);
   const SwitchWay way = answer ? judge_way() : SwitchWay();
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
@@ -176,7 +183,7 @@ void VirtualSwitches::add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept 
 
 void VirtualSwitches::look(Nanoseconds now) noexcept {
   finish(now);
-  if (wish_ && is_under_way() && present_->after == wish_.set) wish_ = {};
+  if (wish_ && leads_to(wish_)) wish_ = {};
   if (wish_ && !is_under_way()) ask(std::exchange(wish_, {}), now);
 }
 

@@ -6,6 +6,7 @@
 #include <deque>
 #include <span>
 
+#include "chimera/runtime/asked_tasks.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
@@ -19,15 +20,15 @@ namespace chimera {
 class VirtualSwitches {
  public:
   /// Memory for the receipts of `n` switches of the rtpus that have joined `peers`, which outlives this; of more the
-  /// first and the last are kept. Context: setup.
-  VirtualSwitches(VirtualPeers& peers, std::size_t n);
+  /// first and the last are kept. `asked`, which outlives this, may be null where no request has lists. Context: setup.
+  VirtualSwitches(VirtualPeers& peers, std::size_t n, AskedTasks* asked);
   /// What the unit knows of the others in a switch. Context: setup.
   SwitchPeers& of(RtpuId rtpu) noexcept { return members_[rtpu.index]; }
   void begin(Nanoseconds origin) noexcept { origin_ = origin; }
 
-  /// Judges the request and orders the switch; what became of it is in receipts(). Of kNoSet the target are the tasks
-  /// `unnamed`. Requires: memory for a receipt.
-  void ask(const SwitchRequest& request, Nanoseconds now, const TaskBits& unnamed = {}) noexcept;
+  /// Judges the request and orders the switch; what became of it is in receipts(). Lists that lead to no legal set have
+  /// no effect. Requires: memory for a receipt.
+  void ask(SwitchRequest request, Nanoseconds now) noexcept;
   /// A switch of which nothing is left to do is over; then the last wish of a task is taken up.
   void look(Nanoseconds now) noexcept;
   bool is_under_way() const noexcept { return present_ != nullptr; }
@@ -50,8 +51,7 @@ class VirtualSwitches {
     void tell_over(const SwitchReceipt& receipt) noexcept override;
     void tell_takeover(const Takeover& takeover) noexcept override { keep_receipt(takeover, all_.receipts_); }
     void wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds) noexcept override {
-      if (is_new_wish(request.set, changes_nothing, static_cast<bool>(all_.wish_), all_.wish_.set))
-        all_.wish_ = request;
+      if (is_new_wish(request.is_for(all_.wish_), changes_nothing, static_cast<bool>(all_.wish_))) all_.wish_ = request;
     }
     bool is_wish_open() const noexcept override { return static_cast<bool>(all_.wish_); }
     bool is_over(std::uint16_t number) const noexcept { return progress_.over == number; }
@@ -64,6 +64,7 @@ class VirtualSwitches {
 
   SwitchAgreement agreement() noexcept { return {page_, origin_}; }
   std::uint16_t living() const noexcept;
+  bool leads_to(const SwitchRequest& request) const noexcept;
   Nanoseconds lead() const noexcept;
   void ring() noexcept;
   void order(Nanoseconds until) noexcept;
@@ -75,6 +76,7 @@ class VirtualSwitches {
   void add_part(const SwitchReceipt& part, RtpuId rtpu) noexcept;
 
   VirtualPeers& peers_;
+  AskedTasks* asked_;
   HeapMemory memory_;
   SwitchPage page_;
   std::deque<Member> members_;  // by rtpu

@@ -104,6 +104,27 @@ TEST_P(VirtualSwitchesTest, ATaskOfEitherRtpuAsks) {
   EXPECT_EQ(scene.illegal, 0);
 }
 
+TEST_P(VirtualSwitchesTest, ATaskOfEitherRtpuAsksForTasks) {
+  scene.in_reader = [](Cycle c) {
+    if (c.count() == 5) c.request("--on two");  // the observer, which it reads, comes along
+    if (c.count() == 10) c.request("--off plant");
+  };
+  scene.in_plant = [](Cycle c) {
+    if (c.count() == 15) c.request("--on one --off observer two");
+  };
+  const auto receipts = go(milliseconds(30));
+  ASSERT_EQ(receipts.size(), 2u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[0].by, kReader);
+  EXPECT_EQ(receipts[0].after, kObserved);
+  EXPECT_EQ(receipts[1].by, kPlant);
+  EXPECT_EQ(receipts[1].after, kDirect);
+  ASSERT_EQ(units->asked().refused().size(), 1u);
+  EXPECT_EQ(units->asked().refused()[0].request.by, kReader);
+  EXPECT_TRUE(units->are_on(kSets[kDirect]));
+  EXPECT_EQ(units->lost(), 0u);
+}
+
 TEST_P(VirtualSwitchesTest, OfTheWishesThatComeMeanwhileTheLastIsTakenNext) {
   scene.in_plant = [](Cycle c) {
     if (c.count() == 6) c.request("beside");  // under way: observed

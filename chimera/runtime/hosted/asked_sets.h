@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Works out what lists of tasks lead to, for a script and for tasks that ask, and keeps what was refused.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/runtime/asked_tasks.h"
+
+namespace chimera {
+
+/// Lists that led to no legal set.
+struct RefusedLists {
+  Nanoseconds at;  ///< on the executor's clock
+  SwitchRequest request;
+  std::string why;
+};
+
+/// What the manager makes of the same words (hosted/asked_set.h).
+class AskedSets final : public AskedTasks {
+ public:
+  /// The spec outlives this. Context: setup.
+  explicit AskedSets(const ApplicationSpec& spec) : spec_(spec) { refused_.reserve(kKept); }
+
+  bool find(const SwitchRequest& request, const TaskBits& on, Nanoseconds now, TaskBits& target) override;
+  /// The first kKept, in order of time. Context: setup, between runs.
+  const std::vector<RefusedLists>& refused() const noexcept { return refused_; }
+
+  static constexpr std::size_t kKept = 64;
+
+ private:
+  const ApplicationSpec& spec_;
+  std::vector<RefusedLists> refused_;
+};
+
+}  // namespace chimera
