@@ -10,7 +10,7 @@
 namespace chimera::manager {
 namespace {
 
-constexpr Nanoseconds kLookEvery = milliseconds(1);
+constexpr Nanoseconds kDrillLooksEvery = milliseconds(1);
 
 std::string in_ms(Nanoseconds time) {
   char text[32];
@@ -131,7 +131,7 @@ void Drill::take(const KeeperMessage& written) {
 
 void Drill::look(Nanoseconds now) {
   if (!present_ || now < due_) return;
-  due_ = now + kLookEvery;
+  due_ = now + kDrillLooksEvery;
   DrillOutcome& outcome = present_->outcome;
   if (!world_.is_ending() && goes_on(now)) return;
   outcome.flag_for = now - present_->raised;

@@ -19,7 +19,7 @@ VariableTrouble trouble_of(const VariableFacts& facts) {
   return limit.count > 0 && facts.age > limit ? VariableTrouble::kStale : VariableTrouble::kNone;
 }
 
-std::string time_text(Nanoseconds t) {
+std::string short_time(Nanoseconds t) {
   char text[32];
   const auto ns = static_cast<double>(t.count);
   if (t < milliseconds(1)) std::snprintf(text, sizeof text, "%.3g us", ns * 1e-3);
@@ -52,7 +52,7 @@ std::string complaint(const WhyLink& link) {
              (f.waits_for_events ? ": it waits for an event" : with_timing(f));
     case VariableTrouble::kNotFinite: return f.producer + " published " + f.value;
     case VariableTrouble::kStale:
-      return "stale: " + f.producer + " wrote it " + time_text(f.age) + " ago, its period is " + time_text(f.period) +
+      return "stale: " + f.producer + " wrote it " + short_time(f.age) + " ago, its period is " + short_time(f.period) +
              with_timing(f);
     case VariableTrouble::kNone: break;
   }
@@ -63,7 +63,7 @@ std::string praise(const std::vector<WhyLink>& chain) {
   const VariableFacts& f = chain[0].facts;
   std::string first = f.variable + " is good";
   first += f.timing.empty() ? ": " : " now, not always in time (" + f.timing + "): ";
-  first += f.is_operators() ? "set by the operator" : f.producer + " wrote it " + time_text(f.age) + " ago";
+  first += f.is_operators() ? "set by the operator" : f.producer + " wrote it " + short_time(f.age) + " ago";
   if (chain.size() == 1) return first;
   return first + ", and " + (chain.size() == 2 ? "the variable" : "all " + std::to_string(chain.size() - 1)) +
          (chain.size() == 2 ? " it depends on is good too" : " variables it depends on are good too");

@@ -18,7 +18,7 @@ struct Item {
   bool is_text = false;  ///< neither a number nor a list: it has no unit
 };
 
-Error wrong(const std::string& text, const std::string& why) {
+Error wrong_list(const std::string& text, const std::string& why) {
   return {ErrorCode::kBadInput, {"--over '" + text + "': " + why}, {}};
 }
 
@@ -67,12 +67,13 @@ Result<void> spread(const std::string& text, const Item& item, std::vector<Item>
   const std::size_t first = inside.find(':'), last = inside.rfind(':');
   const auto from = number_of(inside.substr(0, first)), end = number_of(inside.substr(last + 1));
   const auto step = first == last ? std::nullopt : number_of(inside.substr(first + 1, last - first - 1));
-  if (!from || !step || !end) return wrong(text, "write a range as '[FIRST:STEP:LAST] UNIT', such as '[0.1:0.1:1] V'");
+  if (!from || !step || !end)
+    return wrong_list(text, "write a range as '[FIRST:STEP:LAST] UNIT', such as '[0.1:0.1:1] V'");
   const double steps = (*end - *from) / *step;
   if (*step == 0 || steps < 0)
-    return wrong(text, "the range " + item.value + " does not come from its first to its last value");
+    return wrong_list(text, "the range " + item.value + " does not come from its first to its last value");
   if (steps >= static_cast<double>(kMostRuns))
-    return wrong(text, "the range " + item.value + " has more than " + std::to_string(kMostRuns) + " values");
+    return wrong_list(text, "the range " + item.value + " has more than " + std::to_string(kMostRuns) + " values");
   for (double i = 0; i <= std::floor(steps + 1e-9); ++i) {
     char value[40];
     const double exact = *from + i * *step;
@@ -106,17 +107,17 @@ Result<ValueList> parse_value_list(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string name = trimmed(text.substr(0, equals));
   if (equals == std::string::npos || name.empty() || name.find(' ') != std::string::npos)
-    return wrong(text, "write 'NAME = VALUE, VALUE UNIT' or 'NAME = [FIRST:STEP:LAST] UNIT'");
+    return wrong_list(text, "write 'NAME = VALUE, VALUE UNIT' or 'NAME = [FIRST:STEP:LAST] UNIT'");
   std::vector<Item> items;
   for (const std::string& word : items_of(text.substr(equals + 1))) {
-    if (word.empty()) return wrong(text, "a value is missing");
+    if (word.empty()) return wrong_list(text, "a value is missing");
     const Item item = cut(word);
     if (!is_range(item))
       items.push_back(item);
     else if (auto done = spread(text, item, items); !done)
       return done.error();
   }
-  if (items.size() > kMostRuns) return wrong(text, "more than " + std::to_string(kMostRuns) + " values");
+  if (items.size() > kMostRuns) return wrong_list(text, "more than " + std::to_string(kMostRuns) + " values");
   return listed(name, std::move(items));
 }
 

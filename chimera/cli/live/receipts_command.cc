@@ -68,7 +68,7 @@ std::string asked_by(const Json& receipt) {
   return task.empty() ? text_of(by, "script") : "task " + task;
 }
 
-std::string figure(const Json& number) {
+std::string short_figure(const Json& number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", number.get<double>());
   return text;
@@ -81,8 +81,8 @@ std::string moves(const Json& receipt) {
     const Json &step = field(variable, "step"), &limit = field(variable, "limit");
     if (!step.is_number()) continue;
     const std::string unit = text_of(variable, "unit");
-    text += (text.empty() ? "" : ", ") + text_of(variable, "variable") + " " + figure(step) +
-            (limit.is_number() ? " of " + figure(limit) : "") + (unit == "1" ? "" : " " + unit) +
+    text += (text.empty() ? "" : ", ") + text_of(variable, "variable") + " " + short_figure(step) +
+            (limit.is_number() ? " of " + short_figure(limit) : "") + (unit == "1" ? "" : " " + unit) +
             (truth_of(variable, "beyond") ? " (beyond)" : "");
   }
   return text;
