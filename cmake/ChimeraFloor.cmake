@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# chimera_floor(NAME [LINKS floor...] [LIBRARIES lib...] [EXCEPTIONS [TEXT]])
+# chimera_floor(NAME [LINKS floor...] [LIBRARIES lib...] [EXCEPTIONS [TEXT]] [TOGETHER])
 #   One floor of the library: every x.cc of the folder makes the static library chimera_NAME,
 #   every x_test.cc goes into one test binary NAME_test. Suffixes choose where a file goes:
 #     x_test.cc           debug (address+undefined sanitizers)
@@ -11,6 +11,8 @@
 #   Without EXCEPTIONS the floor is built with -fno-exceptions -fno-rtti (floors 0 to 5).
 #   TEXT: a floor of JSON and other texts, slow to compile and without memory of its own making. Its files are compiled
 #   sixteen at a time (./dev lint looks at each alone) and with fewer checks of the sanitizers.
+#   TOGETHER: a floor of many files. They are compiled eight at a time in every tree but release, whose code is
+#   measured.
 # chimera_tests(NAME LIBS lib... [DEPENDS target...] [MEMORY])
 #   The test half alone, for folders without a library. DEPENDS: targets the tests run (programs, components).
 #   MEMORY: with every check of the sanitizers, for floors that make memory of their own (0 to 5). Others are compiled
@@ -259,7 +261,7 @@ function(_chimera_text target)
 endfunction()
 
 function(chimera_floor name)
-  cmake_parse_arguments(arg "EXCEPTIONS;TEXT" "" "LINKS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "EXCEPTIONS;TEXT;TOGETHER" "" "LINKS;LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS
     *.cc hosted/*.cc linux/*.cc virtual/*.cc executive/*.cc preemptive/*.cc rules/*.cc
     command/*.cc files/*.cc run/*.cc batch/*.cc live/*.cc)
@@ -268,6 +270,8 @@ function(chimera_floor name)
   set(scope PUBLIC)
   if(arg_TEXT)
     _chimera_together(sources together MOST 16)
+  elseif(arg_TOGETHER AND NOT CHIMERA_TREE STREQUAL "release")
+    _chimera_together(sources together)
   endif()
   if(sources)
     add_library(${target} STATIC ${sources})

@@ -80,8 +80,8 @@ class Requests(unittest.TestCase):
         await_that(lambda: on(system) == SETS[name], limit, f"{name}; {on(system)}; {told(system)}")
 
     def test_a_task_asks_and_is_named(self):
-        for text in (TEXT, MIXED, PREEMPTIVE):
-            with self.subTest(preemptive=text.count("executor: preemptive")):
+        for text in (TEXT, MIXED, PREEMPTIVE, LISTS):
+            with self.subTest(preemptive=text.count("executor: preemptive"), lists=text.count("--on")):
                 self.a_task_asks_and_is_named(text)
 
     def a_task_asks_and_is_named(self, text):
@@ -95,18 +95,6 @@ class Requests(unittest.TestCase):
             self.assertEqual(sum("asked for by task asker: begun" in line for line in lines), 2, lines)
             self.assertTrue(any("by task asker from 'low' to 'high'" in line for line in lines), lines)
             self.assertEqual(system.call("get", variables=["refused"])["values"]["refused"]["value"], 0)
-            receipts = await_that(lambda: (filed := system.call("receipts")["receipts"])[1:] and filed, 5,
-                                  "two receipts")
-            self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
-                             [("high", "done", {"task": "asker"}), ("low", "done", {"task": "asker"})])
-
-    def test_a_task_asks_for_tasks(self):
-        with System(LISTS) as system:
-            set_to(system, wish=2)
-            self.await_set(system, "high")
-            set_to(system, wish=1)
-            self.await_set(system, "low")
-            time.sleep(0.3)  # thirty cycles that ask for what is in force
             receipts = await_that(lambda: (filed := system.call("receipts")["receipts"])[1:] and filed, 5,
                                   "two receipts")
             self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],

@@ -26,6 +26,18 @@ configurations: {run: [reference, main, user]}
 """
 
 
+# The reader in the second unit is told that what comes from the first is too old.
+STALE = UNITS + """
+tasks:
+  live:
+    {component: signal_generator, rtpu: first, rate: 100 Hz, alias: {y: x},
+     constants: {amplitude: 0 m/s, offset: 1 m/s}}
+  reader: {component: t_ages, rtpu: second, rate: 100 Hz, stale_after: 100 ms}
+configurations: {all: [live, reader]}
+start: all
+"""
+
+
 class Standby(unittest.TestCase):
     def await_seen(self, system, value):
         await_that(lambda: system.call("get", variables=["seen"])["values"]["seen"]["value"] == value, 5,
@@ -151,6 +163,23 @@ class Standby(unittest.TestCase):
                 self.await_seen(system, 2)
                 time.sleep(4 if rounds + 1 < ROUNDS else 0)  # three deaths in 10 s and a unit is given up
         print(f"stops: {2 * ROUNDS}", file=sys.stderr)
+
+    def test_an_input_that_is_too_old_is_not_valid(self):
+        """Its producer is stopped and goes on, and is killed and comes back."""
+        with System(STALE) as system:
+            def valid():
+                values = system.call("get", variables=["valid", "age"])["values"]
+                return values["valid"]["value"], values["age"]["value"] >= 0
+            await_that(lambda: valid() == (True, True), 5, "a value")
+            pid = system.pids()["first"]
+            self.assertTrue(system.kill(pid, signal.SIGSTOP))
+            await_that(lambda: valid() == (False, False), 5, "a value that is too old")
+            self.assertTrue(system.kill(pid, signal.SIGCONT))
+            await_that(lambda: valid() == (True, True), 5, "a value of the one that goes on")
+            self.assertTrue(system.kill(pid))
+            system.await_state("live", "ON", 20)
+            await_that(lambda: valid() == (True, True), 5, "a value of the one that came back")
+            self.assertEqual(system.task("reader")["state"], "ON")
 
     def test_whoever_dies_one_of_them_is_on(self):
         """One or two of all are killed, the second at any moment of the take-over from the first."""
