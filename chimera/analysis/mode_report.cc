@@ -85,7 +85,7 @@ class ModeWriter {
         const std::string_view text(start, ::strnlen(start, port.element_bytes));
         const ModeAsker asker{ModeCause::kConstant, task, name_of(ports, port)};
         if (const auto set = find_set(text)) wishes_.push_back({asker, *set, {}});
-        else if (has_lists(text)) wishes_.push_back({asker, 0, lists_of(text)});
+        else if (const TaskLists lists = lists_of(text); lists.are_there()) wishes_.push_back({asker, 0, lists});
       }
     }
   }
@@ -96,6 +96,7 @@ class ModeWriter {
     return {};
   }
 
+  /// None of a text that is no lists, such as the default of a component, which no rule has read.
   TaskLists lists_of(std::string_view text) const {
     const auto tasks = configuration_.tasks();
     const auto find = [&](std::string_view name) {
@@ -103,8 +104,7 @@ class ModeWriter {
       return found == tasks.end() ? TaskId{} : TaskId(static_cast<std::size_t>(found - tasks.begin()));
     };
     TaskLists lists;
-    (void)read_lists(text, find, lists);  // check has read them
-    return lists;
+    return has_lists(text) && !read_lists(text, find, lists) ? lists : TaskLists();
   }
 
   std::optional<std::size_t> find_set(std::string_view name) const {
