@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
@@ -13,13 +14,34 @@
 namespace chimera::manager {
 
 /// Could these be counts of a subsystem that runs for `age`? Nothing is counted faster than the shortest period, times
-/// the inputs of a cycle. Context: any; wait-free.
+/// the inputs of a cycle, and nothing took longer than all of it. Context: any; wait-free.
 inline bool is_credible(const Profile& counted, Nanoseconds age) noexcept {
-  const std::int64_t cycles = std::max<std::int64_t>((age + seconds(1)).count, 0) / kShortestPeriod.count;
-  const auto most = static_cast<std::uint64_t>(cycles) * CHIMERA_MAX_PORTS;
+  const std::int64_t longest = std::max<std::int64_t>((age + seconds(1)).count, 0);
+  const auto most = static_cast<std::uint64_t>(longest / kShortestPeriod.count) * CHIMERA_MAX_PORTS;
   for (const std::uint64_t count : {counted.missed, counted.overrun, counted.stale, counted.dropped})
     if (count > most) return false;
-  return true;
+  const auto is_duration = [&](Nanoseconds took) { return took.count >= -longest && took.count <= longest; };
+  const auto is_spread = [&](const Spread& spread) {
+    const bool has_values = spread.min <= spread.max;  // else as at first: nothing was added, or just now
+    return spread.count <= most && (!has_values || (is_duration(spread.min) && is_duration(spread.max)));
+  };
+  return is_spread(counted.response) && is_spread(counted.start_delay) &&
+         std::all_of(std::begin(counted.execution), std::end(counted.execution), is_spread) &&
+         std::all_of(std::begin(counted.late), std::end(counted.late), is_duration) &&
+         (counted.on_since == kNever || counted.on_since.count >= 0) && is_duration(counted.on_before);
+}
+
+/// A copy may have the count of the first value and not yet the value. Context: any; wait-free.
+inline Spread whole(const Spread& spread) noexcept { return spread.min <= spread.max ? spread : Spread{}; }
+
+/// What can be counted with, of what was read: nothing where it cannot be true. Context: any; wait-free.
+inline Profile credible(const Profile& read, Nanoseconds age) noexcept {
+  if (!is_credible(read, age)) return {};
+  Profile counted = read;
+  counted.response = whole(counted.response);
+  counted.start_delay = whole(counted.start_delay);
+  std::transform(std::begin(counted.execution), std::end(counted.execution), std::begin(counted.execution), whole);
+  return counted;
 }
 
 }  // namespace chimera::manager

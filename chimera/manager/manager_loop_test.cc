@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "chimera/manager/status_json.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 #include "chimera/manager/value_json.h"
 #include "chimera/runtime/task_word.h"
@@ -110,6 +113,50 @@ TEST(ManagerLoop, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
   ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
   EXPECT_EQ(fake.told("rtpu-ended"), "spare ended by signal 9 (SIGKILL)\n");
   EXPECT_TRUE(fake.until_on("law"));
+}
+
+TEST(ManagerLoop, WhatWasOnComesBackWhateverItsUnitLeftInItsMemory) {
+  for (const std::uint64_t word : {std::uint64_t{0xdeadbeef}, UINT64_MAX, std::uint64_t{1}}) {
+    FakeSubsystem fake;
+    fake.start_manager();
+    ASSERT_TRUE(fake.until_on("law"));
+    fake.rtpu(1).die_overwritten(word, 8);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(fake.step());  // it looks before it hears
+    const Nanoseconds at = now();
+    EXPECT_EQ(status_json(fake.driver().world(), at)["tasks"][2]["task"], "law");
+    EXPECT_EQ(profile_json(fake.driver().world(), at)["tasks"].size(), 3u);
+    fake.kill_rtpu(1, SIGSEGV);
+    ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
+    EXPECT_TRUE(fake.until_on("law")) << word;
+  }
+}
+
+TEST(ManagerLoop, WhatWasOnInAUnitWhoseMemoryCannotBeReadIsKnownToTheNextManager) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.kill_manager();
+  fake.rtpu(1).die_overwritten(0xdeadbeef);
+  fake.kill_rtpu(1, SIGSEGV);
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
+  EXPECT_EQ(fake.told("fault"),
+            "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
+            "bytes are not CHIMTBL1)\n");
+  EXPECT_TRUE(fake.until_on("law"));
+  fake.kill_manager();  // what was ON before was a goal, and is no memory any more
+  bool is_off = false;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].is_up; }));
+  fake.driver().command(Signal::kOff, {fake.task("law")}, [&](const auto& answer) { is_off = answer.is_accepted(); });
+  ASSERT_TRUE(fake.until([&] { return is_off; }));
+  fake.kill_manager();
+  fake.rtpu(1).die_overwritten(0xdeadbeef);
+  fake.kill_rtpu(1, SIGSEGV);
+  fake.start_manager();
+  ASSERT_TRUE(fake.until([&] { return fake.driver().world().state(fake.task("law")) == State::kOff; }));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(fake.step());
+  EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOff) << "as it was";
 }
 
 TEST(ManagerLoop, TellsTheFaultOfATaskInItsWords) {

@@ -2,6 +2,8 @@
 // Writes events, and keeps the clocks of the manager.
 #include "chimera/manager/manager_state.h"
 
+#include "chimera/manager/credible.h"
+
 #include <ctime>
 
 #include "chimera/platform/doorbell.h"
@@ -39,6 +41,11 @@ ManagerState::ManagerState(Bundle given, Peers mapped, OwnSegment segment, Decis
   configuration = verify(bundle).configuration;
   if (configuration)
     readings.emplace(peers, own, *configuration, bundle.library, [this](TaskId task) { return state(task); });
+}
+
+Profile ManagerState::profile(TaskId task) const noexcept {
+  const PeerSegment& segment = peers.of(task);
+  return segment.is_there() ? credible(segment.block().profile(task), now() - keeper.origin) : Profile{};
 }
 
 void ManagerState::tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at) {

@@ -63,7 +63,8 @@ struct ManagerState {
     const bool is_away = rtpus[spec().tasks[task.index].rtpu.index].is_away;
     return is_away && state != State::kNotCreated ? State::kError : state;
   }
-  /// Has the keeper begun to end everything? Acquire: pairs with the keeper's store of KeeperPage::ending.
+  /// What its unit has counted; nothing when no unit is there, or when that cannot be true.
+  Profile profile(TaskId task) const noexcept;
   /// As everybody is to see them.
   TaskBits tasks_on() const noexcept {
     TaskBits on;
@@ -71,6 +72,7 @@ struct ManagerState {
       if (state(TaskId(t)) == State::kOn) on.add(TaskId(t));
     return on;
   }
+  /// Has the keeper begun to end everything? Acquire: pairs with the keeper's store of KeeperPage::ending.
   bool is_ending() const noexcept { return keeper.ending.load(std::memory_order_acquire) != 0; }
   std::string name(TaskId task) const { return std::string(spec().tasks[task.index].name); }
   std::string name(RtpuId rtpu) const { return std::string(spec().rtpus[rtpu.index].name); }

@@ -42,7 +42,10 @@ Result<OwnSegment> OwnSegment::make(const Peers& peers, std::uint32_t incarnatio
 }
 
 void OwnSegment::take_over(const BlockView& left, const Peers& peers) noexcept {
-  for (std::uint32_t t = 0; t < peers.n_tasks(); ++t) block_.set_goal(TaskId(t), left.goal(TaskId(t)));
+  for (std::uint32_t t = 0; t < peers.n_tasks(); ++t) {
+    block_.set_goal(TaskId(t), left.goal(TaskId(t)));
+    block_.set_status(TaskId(t), left.status(TaskId(t)));
+  }
   block_.head().flag = left.head().flag & kOperatorFlag;
   SwitchJournal(block_.journal()).take_over(left.journal());
   const ManagerMemory& from = left.memory();

@@ -30,7 +30,7 @@ struct VariableReading {
 
   /// At `at`; 0 when it was published after that.
   Nanoseconds age(Nanoseconds at) const noexcept {
-    return {std::max<std::int64_t>(at.count - slot.published_ns, 0)};
+    return {std::max<std::int64_t>(at.count - std::max<std::int64_t>(slot.published_ns, 0), 0)};
   }
 };
 

@@ -59,7 +59,11 @@ void RtpuLinks::mapped(const KeeperMessage& message, int descriptor) {
   link.inbox = {};  // both point into the mapping that goes away
   link.outbox = {};
   if (const auto mapped = world_.peers.map(rtpu, message.incarnation, descriptor); !mapped) {
-    world_.tell("fault", TaskId{}, rtpu, std::string(mapped.error().message.view()), now());
+    const std::string remedy = record(rtpu).is_alive ? ": it cannot be told to do anything before it is started again, "
+                                                       "as it is when it is killed" : "";
+    world_.tell("fault", TaskId{}, rtpu,
+                "its memory cannot be read, something in it has overwritten it (" +
+                    std::string(mapped.error().message.view()) + ")" + remedy, now());
     return;
   }
   const BlockView& block = world_.peers[rtpu].block();
@@ -86,21 +90,24 @@ void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
   record.incarnation = message.incarnation;
   record.restarts = message.incarnation - 1;
   const bool left_words = is_current(rtpu);
-  if (left_words) {
-    take_posts(rtpu, events);
+  const bool is_known = message.incarnation <= world_.own.block().memory().handled[rtpu.index];  // to a predecessor
+  if (left_words) take_posts(rtpu, events);
+  if (left_words || !is_known) {
     abort_open_plan_of(world_, rtpu);
     links_[rtpu.index].has_died = true;
-    for (const TaskId task : links_[rtpu.index].tasks) {
-      seen_[task.index] = world_.peers.status(task);
-      events.push_back(subsystem::TaskSeen{task, last_status(world_, task)});
-    }
+  }
+  for (const TaskId task : links_[rtpu.index].tasks) {
+    const bool is_readable = left_words && !world_.peers[rtpu].block().is_status_lost(task);
+    if (!is_readable && is_known) continue;
+    if (left_words) seen_[task.index] = world_.peers.status(task);
+    const TaskStatus last = is_readable ? last_status(world_, task) : world_.own.block().view().status(task);
+    events.push_back(subsystem::TaskSeen{task, last});
   }
   record.is_alive = record.is_up = record.is_away = false;
   record.hang.clear();
   const BlockView left = left_words ? world_.peers[rtpu].block() : BlockView();
   record.last_end = cause_text(world_.spec(), message, left, what_it_made(rtpu));
   if (!record.ended_for.empty()) record.last_end += ": " + std::exchange(record.ended_for, "");
-  const bool is_known = message.incarnation <= world_.own.block().memory().handled[rtpu.index];  // to a predecessor
   if (left_words && !is_known)
     for (const Unfinished& one : unfinished(world_, rtpu, left, record.last_end))
       world_.tell("not-off", one.task, rtpu, one.text, message.at);
@@ -147,6 +154,7 @@ void RtpuLinks::see(TaskId task, Events& events, bool always) {
   const TaskStatus status = world_.peers.status(task);
   if (!always && status == seen_[task.index]) return;
   seen_[task.index] = status;
+  if (!world_.peers.of(task).block().is_status_lost(task)) world_.own.block().set_status(task, status);
   events.push_back(subsystem::TaskSeen{task, status});
 }
 

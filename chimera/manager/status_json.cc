@@ -9,7 +9,6 @@
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/analysis/task_profile.h"
 #include "chimera/manager/cause.h"
-#include "chimera/manager/credible.h"
 #include "chimera/manager/face_watch.h"
 
 namespace chimera::manager {
@@ -117,12 +116,6 @@ Json spread_json(const Spread& spread) {
   return {{"mean", spread.mean().count}, {"max", spread.max.count}};
 }
 
-Profile profile_of(const ManagerState& world, TaskId task) {
-  const PeerSegment& segment = world.peers.of(task);
-  const Profile counted = segment.is_there() ? segment.block().profile(task) : Profile{};
-  return is_credible(counted, now() - world.keeper.origin) ? counted : Profile{};
-}
-
 Json server_json(const std::optional<ServerSpec>& server) {
   if (!server) return nullptr;
   return {{"kind", server_kind_name(server->kind)},
@@ -138,7 +131,7 @@ Nanoseconds on_time(const ManagerState& world, TaskId task, const Profile& profi
 Json task_json(const ManagerState& world, TaskId task, Nanoseconds at) {
   const TaskSpec& spec = world.spec().tasks[task.index];
   const TaskStatus status = world.peers.status(task);
-  const Profile p = profile_of(world, task);
+  const Profile p = world.profile(task);
   const FaultRecord fault = world.peers.fault(task);
   return {{"task", spec.name},
           {"component", spec.component},
@@ -297,7 +290,7 @@ Json profile_json(const ManagerState& world, Nanoseconds at) {
   std::vector<TaskProfile> tasks;
   for (std::uint32_t t = 0; t < world.peers.n_tasks(); ++t) {
     const TaskSpec& spec = world.spec().tasks[t];
-    const Profile profile = profile_of(world, TaskId(t));
+    const Profile profile = world.profile(TaskId(t));
     tasks.push_back({std::string(spec.name), std::string(spec.component), world.state(TaskId(t)), spec.period, profile,
                      world.peers.fault(TaskId(t)), std::string(world.name(spec.rtpu)),
                      world.configuration ? transfer_of(*world.configuration, t) : TransferCost{},

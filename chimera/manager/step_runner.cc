@@ -52,6 +52,8 @@ void StepRunner::carry_out(const subsystem::RememberGoal& goal) { world_.own.blo
 
 void StepRunner::carry_out(const subsystem::RememberHandled& handled) {
   memory().handled[handled.rtpu.index] = handled.incarnation;
+  for (std::uint32_t t = 0; t < world_.peers.n_tasks(); ++t)  // what it was is a goal by now
+    if (world_.spec().tasks[t].rtpu == handled.rtpu) world_.own.block().set_status(TaskId(t), {});
 }
 
 void StepRunner::carry_out(const subsystem::RememberRestart& restart) {

@@ -74,6 +74,14 @@ TEST_F(StepRunnerTest, DoesNotDealTwiceWithADeathThatAPredecessorDealtWith) {
   EXPECT_NE(told(last), "");
 }
 
+TEST_F(StepRunnerTest, WhatTasksWereIsForgottenWithTheDeathThatIsDealtWith) {
+  runner_.begin();
+  for (const char* name : {"law", "sensor"}) world().own.block().set_status(task(name), {State::kOn});
+  runner_.step(subsystem::RtpuDown{RtpuId(1u), 3, "ended by signal 9 (SIGKILL)"});
+  EXPECT_EQ(world().own.block().view().status(task("law")).state, State::kNotCreated) << "it is a goal by now";
+  EXPECT_EQ(world().own.block().view().status(task("sensor")).state, State::kOn) << "of the other unit";
+}
+
 TEST_F(StepRunnerTest, AsksTheKeeperToStartAUnitAndRemembersThatAndWhen) {
   runner_.begin();
   const std::uint64_t last = world().log.last();

@@ -47,7 +47,7 @@ class ShownGaps final : public NeededGaps {
     const TaskSpec& spec = world_.spec().tasks[task.index];
     const PeerSegment& there = world_.peers.of(task);
     const bool is_needed = there.is_there() && !world_.spec().rtpus[spec.rtpu.index].preemptive;
-    return is_needed ? IdleGap::needed(spec, there.block().profile(task), Method::kOn) : Nanoseconds{};
+    return is_needed ? IdleGap::needed(spec, world_.profile(task), Method::kOn) : Nanoseconds{};
   }
 
  private:
@@ -230,9 +230,8 @@ std::uint32_t SwitchCoordinator::constants_in_force() const {
 Nanoseconds SwitchCoordinator::lead() const noexcept {
   Nanoseconds longest;
   for (std::size_t t = 0; t < standing_.size(); ++t) {
-    const PeerSegment& there = world_.peers.of(TaskId(t));
-    if (standing_[t].state != State::kOn || !there.is_there()) continue;
-    const Profile profile = there.block().profile(TaskId(t));
+    if (standing_[t].state != State::kOn) continue;
+    const Profile profile = world_.profile(TaskId(t));
     longest = std::max(longest, profile.execution[static_cast<int>(Method::kCycle)].max);
   }
   return lead_of(plan_, world_.spec().tasks, longest);
@@ -305,9 +304,7 @@ ForeseenSwitch SwitchCoordinator::foresee(const TaskBits& target) {
 Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
   const Nanoseconds budget = world_.spec().tasks[task.index].budget;
   const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
-  const PeerSegment& there = world_.peers.of(task);
-  if (!there.is_there()) return guess;
-  const Profile profile = there.block().profile(task);
+  const Profile profile = world_.profile(task);
   return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
 }
 

@@ -18,6 +18,8 @@ struct TaskStatus {
   constexpr std::uint64_t word() const noexcept {
     return static_cast<std::uint64_t>(incarnation) << 32 | (in_service ? 256u : 0u) | static_cast<std::uint64_t>(state);
   }
+  /// Would an owner write it?
+  static constexpr bool is_one(std::uint64_t word) noexcept { return of(word).word() == word; }
   /// A word that no owner would write reads as ERROR.
   static constexpr TaskStatus of(std::uint64_t word) noexcept {
     const auto state = word & 255u;

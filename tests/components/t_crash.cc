@@ -56,7 +56,7 @@ struct Crash {
     while (is("linger") && ::access(armed.c_str(), F_OK) == 0) ::usleep(1'000);
     while (is("sleep")) ::pause();
     if (is("vanish")) ::syscall(SYS_exit, 0);  // the thread and nothing else
-    if (is("scribble")) scribble();
+    if (is("scribble")) scribble("memfd:chimera-"), scribble("memfd:"), ::abort();
     while (is("hang")) (void)::access(armed.c_str(), F_OK);
   }
   // Into the file that lets it happen, the first time.
@@ -75,23 +75,24 @@ struct Crash {
     page[0] = static_cast<char>(depth);
     return depth < 1'000'000 ? overflow(depth + 1) + page[0] : 0;
   }
-  // Writes over everything that this process may write to but its own code's data, one mapping after the other.
-  static void scribble() {
+  // Writes over every mapping of that name that this process may write to, one after the other: first what it shares
+  // with others, for it does not survive the data of its own objects.
+  static void scribble(const char* name) {
     std::FILE* maps = std::fopen("/proc/self/maps", "r");
     char line[512];
     constexpr int kWritable = PROT_READ | PROT_WRITE;
     while (maps != nullptr && std::fgets(line, sizeof line, maps) != nullptr) {
       unsigned long begin = 0, end = 0;
       char rights[5] = {};
-        const bool is_memory = std::sscanf(line, "%lx-%lx %4s", &begin, &end, rights) == 3;
-      const bool is_shared = std::strstr(line, "memfd:") != nullptr;
+      const bool is_memory = std::sscanf(line, "%lx-%lx %4s", &begin, &end, rights) == 3;
+      const bool is_shared = std::strstr(line, name) != nullptr;
       if (!is_memory || !is_shared) continue;
       // Also what is mapped read-only: first asked for, then tried through the file.
       const bool may = rights[1] == 'w' || ::mprotect(reinterpret_cast<void*>(begin), end - begin, kWritable) == 0;
       if (!may) continue;
       for (unsigned long at = begin; at < end; at += 64) *reinterpret_cast<volatile unsigned long*>(at) = 0xdeadbeef;
     }
-    ::abort();
+    if (maps != nullptr) std::fclose(maps);
   }
 };
 CHIMERA_COMPONENT(Crash, "t_crash", "Dies, hangs or scribbles on demand.", rate = 1000.0);

@@ -154,6 +154,24 @@ class Faults(unittest.TestCase):
                 self.assertGreater(system.call("get", variables=["count"])["values"]["count"]["value"], count)
                 self.assertTrue(system.call("hello")["manager"]["pid"])
 
+    def test_rows_6_and_11_what_was_on_in_a_unit_that_scribbled_is_known_to_the_next_manager(self):
+        with System(filled(APPLICATION, where="cycle", how="scribble")) as system:
+            for _ in range(ROUNDS):
+                before, unit, manager = system.task("steady"), system.rtpu("second"), system.pids()["manager"]
+                self.assertTrue(system.kill(manager, signal.SIGSTOP))
+                system.arm()
+                await_that(lambda: unit["pid"] not in system.left_over(), 10, "the end of the unit")
+                system.disarm()
+                self.assertTrue(system.kill(manager))
+                system.disconnect()
+                self.count("rows 6 and 11")
+                self.await_successor(system, unit)
+                system.await_state("victim", "ON", 15)
+                system.await_state("beside", "ON", 15)
+                self.steady_goes_on(system, before)
+                told = [e["text"] for e in system.events() if e["kind"] == "fault"]
+                self.assertTrue([text for text in told if "memory cannot be read" in text], told)
+
     def test_rows_1_and_2_an_error_in_any_method_stays_with_its_task(self):
         for where in ("init", "on", "cycle", "off", "reinit", "kill"):
             for how in (1, 2, 3):

@@ -231,7 +231,13 @@ class System:
         return self.task(name)["state"]
 
     def await_state(self, name, state, limit=10):
-        await_that(lambda: self.state(name) == state, limit, f"{name} {state}")
+        """Fails with what the subsystem is and has told, so that the reason is seen where it cannot be asked again."""
+        try:
+            await_that(lambda: self.state(name) == state, limit, f"{name} {state}")
+        except AssertionError as failure:
+            told = [f"{e['kind']}: {e['text']}" for e in self.events()[-12:]]
+            tasks = [(t["task"], t["state"]) for t in self.call("status")["tasks"]]
+            raise AssertionError(f"{failure}: {tasks}; told at last: {told}; said: {self.said()}") from None
 
     def await_running(self, unit, what, limit=10):
         """Until a unit is seen in the same method twice, with a hundredth of a second between."""

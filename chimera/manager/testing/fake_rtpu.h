@@ -108,6 +108,16 @@ class FakeRtpu {
   /// Serves no signal until set again.
   std::atomic<bool> is_deaf{false};
 
+  /// It dies, and has written over its memory: `word` at every 64th byte, or at every 8th. Its header, too.
+  void die_overwritten(std::uint64_t word, std::size_t every = 64) {
+    die();
+    const std::span<std::byte> bytes = region_.writable();
+    for (std::size_t at = 0; at + sizeof word <= bytes.size(); at += every) {
+      std::memcpy(bytes.data() + at, &word, sizeof word);
+      word = word * 2862933555777941757u + 3037000493u;
+    }
+  }
+
   void die() {
     stop_ = true;
     Doorbell(page_.bells[peer_].word).ring();

@@ -83,6 +83,11 @@ TaskStatus BlockView::status(TaskId task) const noexcept {
   return TaskStatus::of(part<StatusWord>(bytes_, kStatusAt, task.index).load(std::memory_order_acquire));
 }
 
+bool BlockView::is_status_lost(TaskId task) const noexcept {
+  CHIMERA_ASSERT(task.index < n_tasks_);
+  return !TaskStatus::is_one(part<StatusWord>(bytes_, kStatusAt, task.index).load(std::memory_order_acquire));
+}
+
 Profile BlockView::profile(TaskId task) const noexcept {
   CHIMERA_ASSERT(task.index < n_tasks_);
   const std::byte* from = bytes_ + profile_at(n_tasks_) + sizeof(Profile) * task.index;

@@ -83,7 +83,10 @@ class BlockView {
   BlockView(const std::byte* bytes, std::uint32_t n_tasks) noexcept;
 
   const BlockHead& head() const noexcept;
+  /// Of the manager: what it saw last, for its successor.
   TaskStatus status(TaskId task) const noexcept;
+  /// Has something else than its owner written over that?
+  bool is_status_lost(TaskId task) const noexcept;
   /// Copied word by word: two numbers may be a cycle apart.
   Profile profile(TaskId task) const noexcept;
   /// Of the manager: what is to become of the task (goal bits), and whether its group goes to the tap.
