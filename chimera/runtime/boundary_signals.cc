@@ -9,15 +9,16 @@ namespace chimera {
 
 void BoundarySignals::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
+  asked_ = {};
   look_ahead(kNever, kNever);
 }
 
 void BoundarySignals::look_ahead(Nanoseconds due, Nanoseconds wake) noexcept {
   const Nanoseconds at = script_.next_at();
   const Nanoseconds act = at == kNever ? kNever : origin_ + at;
-  next_act_ = std::min({act, due, switching_.due()});
+  next_act_ = std::min({act, due, switching_.due(), asks_again_});
   next_act_in_row_ = std::min({act, due, switching_.due(true)});
-  next_wake_ = std::min({act, wake, switching_.wake()});
+  next_wake_ = std::min({act, wake, switching_.wake(), asks_again_});
 }
 
 void BoundarySignals::act(Nanoseconds now) noexcept {
@@ -27,22 +28,27 @@ void BoundarySignals::act(Nanoseconds now) noexcept {
   if (take_request(now)) switching_.step(now);
 }
 
-// The last request stands, and is taken when no switch is under way; one that changes nothing is dropped.
+// The last request stands, and is taken when no switch is under way; one that changes nothing is dropped. A task may
+// ask in each cycle for what is refused.
 bool BoundarySignals::take_request(Nanoseconds now) noexcept {
   if (const SwitchRequest last = set_.sent().take_request()) request_ = last;
+  asks_again_ = kNever;
   if (!request_) return false;
-  if (set_.others() != nullptr) {  // another one plans for all, and keeps the last request
-    switching_.ask(std::exchange(request_, {}), now);
+  const bool has_others = set_.others() != nullptr;  // another one plans for all, and keeps the last request
+  if (!has_others && switching_.leads_to(request_)) request_ = {};
+  if (!request_ || (!has_others && !switching_.is_free())) return false;
+  const bool is_the_same = request_.is_for(asked_) && request_.by == asked_.by && request_.cause == asked_.cause;
+  if (is_the_same && now < asked_at_ + kAskAgain) {
+    asks_again_ = asked_at_ + kAskAgain;
     return false;
   }
-  if (switching_.leads_to(request_)) request_ = {};
-  if (!request_ || !switching_.is_free()) return false;
-  switching_.ask(std::exchange(request_, {}), now);
-  return true;
+  const SwitchRequest next = std::exchange(request_, {});
+  if (switching_.ask(next, now)) asked_ = next, asked_at_ = now;
+  return !has_others;
 }
 
 void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
-  if (act.kind == ScriptAct::Kind::kSwitch) return switching_.ask(act.request(), now);
+  if (act.kind == ScriptAct::Kind::kSwitch) return (void)switching_.ask(act.request(), now);
   if (act.kind == ScriptAct::Kind::kSet) return set_.table().set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;

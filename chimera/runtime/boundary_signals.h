@@ -27,6 +27,9 @@ struct RefusedSignal {
 
 inline constexpr std::size_t kRefusedKept = 64;
 
+/// So long after a request of a task was taken, the same one is not taken again: it waits, and gives way to another.
+inline constexpr Nanoseconds kAskAgain = milliseconds(100);
+
 /// Context of everything not marked: edge; as long as the methods of components take; no allocation but theirs.
 class BoundarySignals {
  public:
@@ -82,7 +85,9 @@ class BoundarySignals {
   JobThreads& threads_;
   Switching& switching_;
   BoundaryListener* guest_;
-  SwitchRequest request_;  // of a task: waits for the switch that is under way to end
+  SwitchRequest request_;  // of a task: waits for the switch that is under way to end, or for kAskAgain
+  SwitchRequest asked_;    // that was taken last
+  Nanoseconds asked_at_, asks_again_ = kNever;  // when; when request_ is taken that waits for that
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever, next_act_in_row_ = kNever, next_wake_ = kNever;
   FixedVector<RefusedSignal, kRefusedKept> refused_;

@@ -81,6 +81,17 @@ struct SwitchReceipt {
   std::span<TaskId> reinitialised;  ///< in this order
 };
 
+/// Of a switch that is asked for; `before` is in force.
+inline void note_request(SwitchReceipt& receipt, const SwitchRequest& request, std::uint32_t before,
+                         const SwitchWay& way, Nanoseconds asked) noexcept {
+  receipt.asked = asked;
+  receipt.after = request.set;
+  receipt.cause = request.cause;
+  receipt.by = request.by;
+  receipt.before = before;
+  receipt.way = way;
+}
+
 /// Nothing was begun: what was asked for is in force, or the answer says why not.
 inline void refuse(SwitchReceipt& receipt, const PlanAnswer& answer) noexcept {
   receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;

@@ -119,12 +119,16 @@ bool Switching::leads_to(const SwitchRequest& request) noexcept {
   return has_lists ? request.lists.are_met_by(tasks_on(standing_)) : planner_.set_in_force(standing_) == request.set;
 }
 
-void Switching::ask(SwitchRequest request, Nanoseconds now) noexcept {
-  if (peers_ != &nobody_) return peers_->wish(request, leads_to(request), now);
+bool Switching::ask(SwitchRequest request, Nanoseconds now) noexcept {
+  if (peers_ != &nobody_) {
+    const bool changes_nothing = leads_to(request);
+    peers_->wish(request, changes_nothing, now);
+    return !changes_nothing;
+  }
   if (phase_ == Phase::kAfter && is_free()) finish(SwitchEnd::kDone, now);
   note_standing(parts_.set, standing_);
   TaskBits target;
-  if (!find_target(request, parts_.set.spec(), standing_, asked_, now, target)) return;
+  if (!find_target(request, parts_.set.spec(), standing_, asked_, now, target)) return true;
   PlanAnswer answer{NoSwitch::kUnderWay, {}};
   const bool is_first = phase_ == Phase::kNone && is_free();
   if (is_first) answer = planner_.plan(target, standing_, plan_);
@@ -133,19 +137,17 @@ void Switching::ask(SwitchRequest request, Nanoseconds now) noexcept {
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   const std::uint32_t number = is_nothing ? 0 : receipts().next_number();
   SwitchReceipt* const added = is_first ? &record_.add() : record_.add_beside();
-  if (added == nullptr) return;
-  SwitchReceipt& receipt = *added;
-  receipt.asked = now;
-  receipt.after = request.set;
-  receipt.cause = request.cause;
-  receipt.by = request.by;
-  receipt.before = planner_.set_in_force(standing_);
-  receipt.number = number;
-  receipt.way = way;
-  if (!answer) return refuse(receipt, answer);
+  if (added == nullptr) return true;
+  added->number = number;
+  note_request(*added, request, planner_.set_in_force(standing_), way, now);
+  if (!answer) {
+    refuse(*added, answer);
+    return !is_nothing;
+  }
   const std::uint16_t last = agreement().plan().number;
   agreement().announce(lone_order(parts_.set, last, target, way.slow, now + kPatience));
   due_ = now;
+  return true;
 }
 
 void Switching::step(Nanoseconds edge) noexcept {

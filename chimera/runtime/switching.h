@@ -65,8 +65,8 @@ class Switching {
   void begin(Nanoseconds origin) noexcept;
 
   /// Makes a plan and begins to carry it out; what became of it is in receipts(). With peers: whoever plans for all is
-  /// told. Lists that lead to no legal set have no effect. Requires: prepare() took memory.
-  void ask(SwitchRequest request, Nanoseconds now) noexcept;
+  /// told. Lists that lead to no legal set have no effect. False: it changes nothing. Requires: prepare() took memory.
+  bool ask(SwitchRequest request, Nanoseconds now) noexcept;
   /// None is under way, or one of which only the first cycles of arriving tasks are looked at yet.
   bool is_free() const noexcept;
   /// What is asked for is in force, or is being switched to.

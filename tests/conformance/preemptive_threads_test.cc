@@ -108,7 +108,8 @@ TEST(PreemptiveThreads, AJobThatSleepsIsChargedForWhatItComputed) {
   EXPECT_LT(p.overrun, p.cycles);
 }
 
-// Two jobs at once set the alarm to their deadline, 20 times; by then both have long ended.
+// Two jobs at once set the alarm to their deadline, 20 times; by then both have long ended, but on a machine that is
+// busy with other things.
 TEST(PreemptiveThreads, TheSupervisorIsNotWokenForJobsThatHaveEnded) {
   Application app;
   app.add("one", milliseconds(20), milliseconds(2));
@@ -116,7 +117,8 @@ TEST(PreemptiveThreads, TheSupervisorIsNotWokenForJobsThatHaveEnded) {
   PreemptiveExecutor executor(app.build_preemptive(), {}, {});
   ASSERT_TRUE(executor.start());
   EXPECT_EQ(executor.run(milliseconds(400)), RunEnd::kTime);
-  EXPECT_LT(executor.counts().supervised, 10u);
+  const std::uint64_t late = app.task("one").profile.missed + app.task("two").profile.missed;
+  EXPECT_LT(executor.counts().supervised, 10u + 2 * late);
 }
 
 // Also where nobody looks at a job that is alone before it ends.

@@ -120,6 +120,36 @@ TEST_P(Requests, DoNotWaitForFirstCycles) {
   EXPECT_TRUE(is_on(kLow));
 }
 
+TEST_P(Requests, TheSameThatIsRefusedIsTakenTenTimesASecondAndAnotherOneAtOnce) {
+  scene.on_of_high = [](Cycle) { return fault("no"); };
+  scene.first = [](Cycle c) { (void)c.request(c.count() == 270 ? "other" : "high"); };
+  const auto receipts = go(milliseconds(300));
+  ASSERT_EQ(receipts.size(), 5u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
+  for (const std::size_t i : {1u, 2u}) {
+    EXPECT_EQ(receipts[i].end, SwitchEnd::kRefused);
+    EXPECT_EQ(receipts[i].why, NoSwitch::kInError);
+    EXPECT_GE(receipts[i].asked - receipts[i - 1].asked, milliseconds(100));
+    EXPECT_LE(receipts[i].asked - receipts[i - 1].asked, milliseconds(102));
+  }
+  EXPECT_EQ(receipts[3].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[3].after, kOtherSet);
+  EXPECT_LT(receipts[3].at, milliseconds(272));
+  EXPECT_LT(receipts[4].asked, milliseconds(273)) << "it is not the one that was taken last";
+  EXPECT_TRUE(is_on(kOther));
+}
+
+TEST_P(Requests, WhatIsRefusedIsTakenAgainAlthoughItIsAskedForOnlyOnceMore) {
+  scene.on_of_high = [](Cycle) { return fault("no"); };
+  scene.first = [](Cycle c) {
+    if (c.count() == 10 || c.count() == 20) ask(c, "high");
+  };
+  const auto receipts = go(milliseconds(200));
+  ASSERT_EQ(receipts.size(), 2u);
+  EXPECT_GE(receipts[1].asked - receipts[0].asked, milliseconds(100));
+  EXPECT_LE(receipts[1].asked - receipts[0].asked, milliseconds(102));
+}
+
 TEST_P(Requests, AreCarriedOutBehindTheCycleThatAsked) {
   scene.first = [](Cycle c) {
     if (c.count() == 5) ask(c, "high");

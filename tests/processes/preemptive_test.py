@@ -305,25 +305,31 @@ class Preemptive(unittest.TestCase):
         for executor, policy in (("preemptive", "muf"), ("preemptive", "edf"), ("executive", "edf")):
             text = OVERRUNS.replace("POLICY", policy).replace("EXECUTOR", executor)
             with self.subTest(executor=executor, policy=policy), started(text) as system:
-                await_that(lambda: system.task("bad")["cycles"] > 400 * ROUNDS, 10 + 3 * ROUNDS, "cycles")
+                def blamed():
+                    return [e for e in system.events() if e["kind"] == "blame" and e["task"] == "patient"]
+
+                def named():
+                    return [e for e in blamed() if "missed its deadline: bad used " in e["text"]]
+                # Without real-time rights both get a share of the CPU, and `patient` is seldom late.
+                await_that(lambda: system.task("bad")["cycles"] > 400 * ROUNDS and named(), 20 + 3 * ROUNDS,
+                           "cycles, and a miss for which the bad one is named")
                 system.signal("off", "bad")
                 values = system.call("get", variables=["bursts", "unsaid", "over"])["values"]
                 seen = {name: reading["value"] for name, reading in values.items()}
                 self.assertEqual((seen["bursts"], seen["unsaid"]), (0, 0))
                 bad = await_that(lambda: (t := system.task("bad"))["overrun"] >= seen["over"] and t, 5, "every overrun")
                 self.assertGreater(seen["over"], bad["cycles"] // 2)
-                blamed = [e for e in system.events() if e["kind"] == "blame" and e["task"] == "patient"]
-                self.assertTrue(blamed)
                 # The machine delays some, more on a busy one: then it is named, or whoever it kept from ending.
-                named = [e for e in blamed if "missed its deadline: bad used " in e["text"]]
-                self.assertGreater(len(named), len(blamed) // 2)
-                for event in blamed:
+                told, bads = len(blamed()), len(named())
+                if self.is_judged(system):
+                    self.assertGreater(bads, told // 2)
+                for event in blamed():
                     self.assertRegex(event["text"], WHOSE)
                 self.count("row 4 cycles", bad["cycles"])
                 self.count("row 4 overruns", bad["overrun"])
                 self.count("bad jobs", bad["overrun"])
-                self.count("row 4 culprits named", len(named))
-                self.count("row 4 delays by the machine told", len(blamed) - len(named))
+                self.count("row 4 culprits named", bads)
+                self.count("row 4 delays by the machine told", told - bads)
 
     def test_row_18_a_processor_that_is_taken_away_is_told(self):
         for executor in ("executive", "preemptive"):

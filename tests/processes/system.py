@@ -127,9 +127,21 @@ def processes_of(marker):
     return found
 
 
+def runs(pid):
+    """Has it a thread that is neither stopped nor ended?"""
+    for thread in pathlib.Path(f"/proc/{pid}/task").glob("*/stat"):
+        try:
+            if thread.read_text().rsplit(")", 1)[1].split()[0] not in "TtZX":
+                return True
+        except OSError:
+            pass  # it has ended
+    return False
+
+
 def kill(pid, marker, how=signal.SIGKILL):
     """Signals a process that carries the marker. The number may be another's by now, the descriptor is not: whether it
-    is ours is asked while it is held. True when it was sent."""
+    is ours is asked while it is held. One that is stopped does nothing any more when this returns. True when it was
+    sent."""
     try:
         held = os.pidfd_open(pid)
     except OSError:
@@ -138,6 +150,8 @@ def kill(pid, marker, how=signal.SIGKILL):
         if marker.encode() not in pathlib.Path(f"/proc/{pid}/environ").read_bytes():
             return False
         signal.pidfd_send_signal(held, how)
+        if how == signal.SIGSTOP:  # a thread that waits for a CPU goes on until it has one
+            await_that(lambda: not runs(pid), 5, f"process {pid} stopped")
         return True
     except OSError:
         return False  # it has ended

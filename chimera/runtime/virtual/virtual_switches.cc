@@ -86,13 +86,8 @@ void VirtualSwitches::ask(SwitchRequest request, Nanoseconds now) noexcept {
   const std::uint32_t number = is_nothing ? 0 : receipts_.next_number();
   if (is_under_way() && !receipts_.has_room()) return receipts_.leave_out();  // the last place is that of the present
   SwitchReceipt& receipt = receipts_.add();
-  receipt.asked = now;
-  receipt.after = request.set;
-  receipt.cause = request.cause;
-  receipt.by = request.by;
-  receipt.before = planner_.set_in_force(standing_);
+  note_request(receipt, request, planner_.set_in_force(standing_), way, now);
   receipt.number = number;
-  receipt.way = way;
   if (!answer) return refuse(receipt, answer);
   present_ = &receipt;
   target_ = target;
