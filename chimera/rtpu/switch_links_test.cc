@@ -127,6 +127,8 @@ TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTh
   units->die(units->n);
   wanted = "observed";
   units->run(milliseconds(5));
+  EXPECT_EQ(number(), 1) << "not yet: 100 ms have not passed since the last";
+  units->run(kAskAgain);
   EXPECT_EQ(number(), 2);
   EXPECT_EQ(units->units[1]->segment.block.head().wish.wish().set, kObserved);
 }

@@ -35,10 +35,11 @@ bool BoundarySignals::take_request(Nanoseconds now) noexcept {
   asks_again_ = kNever;
   if (!request_) return false;
   const bool has_others = set_.others() != nullptr;  // another one plans for all, and keeps the last request
+  const bool is_the_same = request_.is_for(asked_) && request_.by == asked_.by && request_.cause == asked_.cause;
+  if (!is_the_same) asked_ = {};
   if (!has_others && switching_.leads_to(request_)) request_ = {};
   if (!request_ || (!has_others && !switching_.is_free())) return false;
-  const bool is_the_same = request_.is_for(asked_) && request_.by == asked_.by && request_.cause == asked_.cause;
-  if (is_the_same && now < asked_at_ + kAskAgain) {
+  if (asked_ && now < asked_at_ + kAskAgain) {
     asks_again_ = asked_at_ + kAskAgain;
     return false;
   }

@@ -86,7 +86,7 @@ class BoundarySignals {
   Switching& switching_;
   BoundaryListener* guest_;
   SwitchRequest request_;  // of a task: waits for the switch that is under way to end, or for kAskAgain
-  SwitchRequest asked_;    // that was taken last
+  SwitchRequest asked_;    // that was taken last; none when another one came since
   Nanoseconds asked_at_, asks_again_ = kNever;  // when; when request_ is taken that waits for that
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever, next_act_in_row_ = kNever, next_wake_ = kNever;
