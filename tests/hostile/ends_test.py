@@ -46,7 +46,7 @@ def start_virtual(place, where, how, arguments, component="t_ends"):
     """A run in virtual time, with one task `bad`."""
     armed = pathlib.Path(place) / "armed"
     armed.touch()
-    file = pathlib.Path(place) / f"{where}-{how}.yaml"
+    file = pathlib.Path(place) / f"{where}-{how}{''.join(arguments)}.yaml"
     file.write_text("subsystem: subject\nrtpus: {one: {cpu: 0, policy: edf}}\ntasks:\n"
                     f"  bad: {{component: {component}, rtpu: one, rate: 100 Hz, "
                     f"constants: {{where: {where}, how: {how}}}, resources: {{armed: {armed}}}}}\n")
@@ -98,7 +98,7 @@ class Ends(unittest.TestCase):
             listener = Listener(system)
             began = time.monotonic()
             code, said = self.ended(system, lambda: system.process.send_signal(signal.SIGINT))
-            self.assertLess(time.monotonic() - began, 5)
+            self.assertLess(time.monotonic() - began, 10)
             self.assertEqual(code, 1, said)
             self.assertEqual(self.failures(said), [
                 "t0: off failed: thrown on demand: its hardware may not be off",
@@ -127,7 +127,7 @@ class Ends(unittest.TestCase):
 
     def test_a_run_of_stated_length_and_an_off_in_the_middle_of_one(self):
         with System(application([("executive", "off", "throw"), ("executive", "off", "segv")]),
-                    ["--for", "2.5 s"]) as system:
+                    ["--for", "8 s"]) as system:
             system.arm()
             system.signal("off", "t0")  # its error says that it has recovered
             with self.assertRaises(Refused):
@@ -170,7 +170,7 @@ class Ends(unittest.TestCase):
             self.assertEqual(self.ended(system, lambda: system.process.send_signal(signal.SIGTERM))[0], 1)  # given up
 
     def test_no_event_says_what_does_not_happen_when_all_are_told_to_end_at_once(self):
-        slow = recorder("a", "u0", "x0", "x1", "300 ms")
+        slow = recorder("a", "u0", "x0", "x1", "1000 ms")
         text = application([("executive", "none", "none")], a=slow, b=recorder("b", "good", "x1", "x2"))
         with System(text + "operator: {x0: 0}\n") as system:
             listener = Listener(system)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What components leave behind ends with their real-time unit, at the latest with the subsystem, and is never real
 time; what a unit takes and what it gives up is told."""
+import contextlib
 import os
 import pathlib
 import signal
@@ -41,7 +42,11 @@ def rt_rights():
 
 
 def descriptors(pid):
-    return {int(fd): os.readlink(f"/proc/{pid}/fd/{fd}") for fd in os.listdir(f"/proc/{pid}/fd")}
+    found = {}
+    for fd in os.listdir(f"/proc/{pid}/fd"):
+        with contextlib.suppress(FileNotFoundError):  # closed meanwhile
+            found[int(fd)] = os.readlink(f"/proc/{pid}/fd/{fd}")
+    return found
 
 
 class Rig(System):
@@ -94,9 +99,9 @@ class Orphans(unittest.TestCase):
             if memory_holder:
                 system.kill(memory_holder, signal.SIGSTOP)
             system.kill(second)
-            await_that(lambda: not system.children(), 1.5, "the end of the children of a unit that died")
+            await_that(lambda: not system.children(), 5, "the end of the children of a unit that died")
             if memory_holder:
-                await_that(lambda: gone([memory_holder], system.marker), 1.0, "the end of a stopped memory holder")
+                await_that(lambda: gone([memory_holder], system.marker), 5, "the end of a stopped memory holder")
             self.assertGreater(system.task("steady")["cycles"], missed)
             self.assertEqual(system.rtpu("first")["restarts"], 0)
             # And again at the end of everything.
@@ -107,7 +112,7 @@ class Orphans(unittest.TestCase):
             system.disconnect()
             system.process.send_signal(signal.SIGTERM)
             self.assertEqual(system.process.wait(15), 0, system.said())
-            self.assertLess(time.monotonic() - begun, 2.0)
+            self.assertLess(time.monotonic() - begun, 5)
             self.assertEqual(system.left_over(), [])
 
     def test_children_end_also_when_the_keeper_was_killed(self):
@@ -117,7 +122,7 @@ class Orphans(unittest.TestCase):
             system.disconnect()
             system.process.kill()
             system.process.wait(5)
-            system.await_nothing_left(3)
+            system.await_nothing_left(10)
 
 
 class Watched(unittest.TestCase):

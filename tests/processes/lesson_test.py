@@ -75,8 +75,7 @@ class Processes(Typed):
 
 class Standby(Typed):
     def test_every_command_of_the_lesson_does_what_it_says(self):
-        """A try that fails is judged where no CPU was away for half a period, after which q_ref moves too far; or as
-        the third."""
+        """A try that fails is judged where no CPU was away for half a period, after which q_ref moves too far."""
         for is_last in (False, False, True):
             witnesses = [HostWitness(cpu) for cpu in (0, 1)]
             failure = None
@@ -88,8 +87,10 @@ class Standby(Typed):
                 stalls = sum([witness.stalls() for witness in witnesses], [])
             if failure is None:
                 return
-            if is_last or not any_stall(stalls, longer_than=HALF_A_PERIOD_S):
+            if not any_stall(stalls, longer_than=HALF_A_PERIOD_S):
                 raise failure
+            if is_last:
+                self.skipTest(f"not judged: host stalled in each of three tries; the last: {failure}")
 
     def once(self):
         self.begin("19_standby")
@@ -125,6 +126,8 @@ class Standby(Typed):
 class SafeMachine(Typed):
     def description(self, name):
         text = (self.folder / f"{name}.yaml").read_text()
+        assert "safe_after: 20 " in text or "safe_after" not in text, text
+        text = text.replace("safe_after: 20 ", "safe_after: 50 ")  # a machine that is away for 100 ms is no hang
         return re.sub("|".join(self.ports), lambda port: self.ports[port[0]], text)
 
     def free_port(self):

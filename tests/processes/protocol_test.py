@@ -203,6 +203,14 @@ class Protocol(unittest.TestCase):
         kinds = {event["kind"] for event in self.client.exchange("events")["events"]}
         self.assertLessEqual({"manager-started", "started", "state", "fault", "rtpu-ended", "rtpu-restarted"}, kinds)
 
+    def switched(self, configuration):
+        """As System.switch()."""
+        for _ in range(5):
+            receipt = self.client.exchange("switch", configuration=configuration)
+            if receipt.get("reason") != "late":
+                break
+        return receipt
+
     def test_acts_and_their_refusals_are_within_the_schema(self):
         self.assertIsNone(self.client.exchange("signal", signal="off", tasks=["stedy"]))
         self.assertIsNone(self.client.exchange("signal", signal="clear", tasks=["steady"]))
@@ -215,12 +223,12 @@ class Protocol(unittest.TestCase):
         self.assertEqual(self.client.exchange("set", values={"level": 4})["values"]["level"]["value"], 4)
         for wrong in ({"level": "3 m"}, {"level": [1, 2]}, {"count": 1}, {"lvel": 1}):
             self.assertIsNone(self.client.exchange("set", values=wrong))
-        self.assertEqual(self.client.exchange("switch", configuration="less")["end"], "done")
+        self.assertEqual(self.switched("less")["end"], "done")
         self.assertEqual(self.client.exchange("plan", configuration="all")["end"], "possible")
         self.assertIsNone(self.client.exchange("plan", configuration="al"))
         self.assertIsNone(self.client.exchange("cancel"))
-        self.assertEqual(len(self.client.exchange("receipts")["receipts"]), 1)
-        self.assertEqual(self.client.exchange("switch", configuration="all")["end"], "done")
+        self.assertGreaterEqual(len(self.client.exchange("receipts")["receipts"]), 1)
+        self.assertEqual(self.switched("all")["end"], "done")
         self.assertIsNotNone(self.client.exchange("flag", up=True))
         self.assertEqual(self.client.exchange("status")["flag"], {"up": True, "by": ["operator"]})
         self.assertIsNotNone(self.client.exchange("flag", up=False))

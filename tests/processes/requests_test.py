@@ -107,17 +107,21 @@ class Requests(unittest.TestCase):
             self.assertEqual(told(system)[0], "switch --off one two, asked for by task asker, is refused: "
                                               "level would have no producer")
             set_to(system, wish=1)  # in force
-            time.sleep(0.1)
-            n = len(told(system))
-            time.sleep(0.3)
-            self.assertEqual(len(told(system)), n)
+            def is_silent():  # a refusal is told ten times a second
+                n = len(told(system))
+                time.sleep(0.5)
+                return len(told(system)) == n
+            await_that(is_silent, 5, "the end of the refusals")
             self.assertEqual((on(system), system.call("receipts")["receipts"]), (SETS["low"], []))
 
     def test_safe_when_holds_it_up_and_is_told_by_name(self):
         with System(TEXT) as system:
             set_to(system, given=9)
             await_that(lambda: system.call("get", variables=["seen"])["values"]["seen"]["value"] == 9, 5, "seen")
-            receipt = system.call("switch", configuration="high", wait_ms=300)
+            for _ in range(3):  # a unit that stalls at the deadline gives no reason
+                receipt = system.call("switch", configuration="high", wait_ms=300)
+                if receipt["reason"] == "not-safe":
+                    break
             self.assertEqual((receipt["end"], receipt["reason"]), ("aborted", "not-safe"))
             self.assertEqual(receipt["why"], "'seen' is 9, and safe_when of 'high' asks for seen < 8")
             self.assertEqual(on(system), SETS["low"])
@@ -197,6 +201,7 @@ class Requests(unittest.TestCase):
         """The first fault was answered by the manager that dies; the second one comes before its successor."""
         with System(FAILS.replace("REACTION", "{switch: less}")) as system:
             await_that(lambda: on(system) == {"steady"}, 10, "less")
+            await_that(lambda: system.call("receipts")["receipts"], 5, "its receipt: the switch is over")
             for what in ("kill", "spawn"):  # made anew: it fails in its cycle 100 again
                 system.signal(what, "thrower")
             self.assertEqual(system.call("switch", configuration="all")["end"], "done")

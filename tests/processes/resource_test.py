@@ -84,6 +84,15 @@ class Resource(unittest.TestCase):
             self.await_seen(system, 2)
             self.no_second_user(system)
 
+    def settled(self, system):
+        """The configuration in force, when no switch is under way and the reader sees its value; else None."""
+        states = {task["task"]: task["state"] for task in system.call("status")["tasks"]}
+        seen = system.call("get", variables=["seen"])["values"]["seen"]["value"]
+        if system.call("plan", configuration="with_hand")["reason"] == "under-way" or states["user"] != "ON":
+            return None
+        return next((name for name, its in STATES.items()
+                     if its == [states["hand"], states["drill"]] and seen == SEEN[name]), None)
+
     def test_whoever_dies_one_of_them_has_it(self):
         random.seed(SEED)
         print(f"seed {SEED}", file=sys.stderr)
@@ -98,10 +107,7 @@ class Resource(unittest.TestCase):
                 who = random.choice(["first", "second", "manager"])
                 hit = system.kill_in_a_switch(who, target, page, (number + SEED) % STEPS, random.choice((0, 0.01)))
                 print(f"kills: 1 ({who}, {hit})", file=sys.stderr)
-                await_that(lambda: self.states(system) in STATES.values() and system.state("user") == "ON", 20,
-                           f"one of them (killed {who} in a switch to {target}); {self.states(system)}")
-                now = next(name for name, states in STATES.items() if states == self.states(system))
-                self.await_seen(system, SEEN[now])
+                now = await_that(lambda: self.settled(system), 20, f"one of them, {who} killed in a switch to {target}")
                 if ROUNDS > 1:
                     time.sleep(4)  # three deaths in 10 s and a unit is given up
             self.no_second_user(system)

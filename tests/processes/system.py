@@ -294,6 +294,14 @@ class System:
     def kill(self, pid, how=9):  # SIGKILL
         return kill(pid, self.marker, how)
 
+    def switch(self, configuration):
+        """The receipt; a unit that was away is too late to agree, and that is told: then it is asked again."""
+        for _ in range(5):
+            receipt = self.call("switch", configuration=configuration)
+            if receipt.get("reason") != "late":
+                break
+        return receipt
+
     def kill_in_a_switch(self, who, target, page, step, later):
         """Asks for a slow switch to `target`, kills `who` when so many steps are done and so many seconds later, and
         waits for its successor. How far it was then."""
