@@ -128,6 +128,7 @@ TEST_F(KeeperProcess, StartsEverybodyAndPassesTheirMemoryOn) {
 TEST_F(KeeperProcess, ADeadManagerIsReplacedAndToldAllThereIs) {
   start(2);
   ASSERT_TRUE(wait_for("1.1 peer 2 1"));
+  ASSERT_TRUE(wait_for("1.1 peer 0 1"));  // the keeper has the memory of all three
   order("1", "exit 4");
   ASSERT_TRUE(wait_for("2.1 ended 1 1 exit 4"));
   kill_the("2.1");

@@ -48,7 +48,7 @@ struct Writer {
 struct TaskSetBackground : ::testing::Test {
   Story told;
   chimera::testing::TestApplication app;
-  BackgroundWriter writer{milliseconds(1), milliseconds(100)};
+  BackgroundWriter writer{milliseconds(1), seconds(20)};
   std::unique_ptr<HeapTaskSet> set;
 
   void make() {
@@ -107,7 +107,8 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   make();
   story = &for_ever;
   for_ever.is_stalled = true;
-  set->methods().run_by({nullptr, nullptr, &writer});
+  BackgroundWriter impatient{milliseconds(1), milliseconds(100)};
+  set->methods().run_by({nullptr, nullptr, &impatient});
   set->life().signal(TaskId{0u}, Signal::kSpawn, {});
   while (for_ever.backgrounds == 0) std::this_thread::yield();
   const SignalReport report = set->life().signal(TaskId{0u}, Signal::kKill, {});
@@ -119,6 +120,7 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_EQ(for_ever.backgrounds, begun) << "what was left alone is not asked again";
   for_ever.letters.clear();
+  set->methods().run_by({nullptr, nullptr, &writer});
   EXPECT_TRUE(set->life().signal(TaskId{0u}, Signal::kSpawn, {}).is_accepted);
   EXPECT_TRUE(set->life().signal(TaskId{0u}, Signal::kKill, {}).is_accepted);
   EXPECT_EQ(for_ever.letters, "ikd");

@@ -227,7 +227,7 @@ TEST_F(SerialFrameTest, ASilentDeviceGetsTheIdleCommandThenIsAFaultAndComesBack)
   say(frame({1}));
   for (int i = 0; i < 11; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
   EXPECT_TRUE(connected());
-  heard();
+  EXPECT_EQ(heard(11 * 8).size(), 88u) << "a frame of each cycle";
   ASSERT_TRUE(rig.cycle(milliseconds(10)));
   EXPECT_FALSE(connected());
   EXPECT_EQ(state(0), 1.0);

@@ -31,7 +31,9 @@ class Late : public ::testing::Test {
       return CHIMERA_OK;
     };
     app.toy("beside").during = [this](const chimera_call& call) {
-      if (call.illegal != 0 && stays) has_seen = has_flag = true;
+      if (call.illegal == 0 || !stays) return CHIMERA_OK;
+      has_seen = has_flag = ends = true;
+      Doorbell(bell).ring();
       return CHIMERA_OK;
     };
   }
@@ -40,18 +42,21 @@ class Late : public ::testing::Test {
     place.bell = &bell;
     RunOptions options;
     options.guest = &listener;
+    options.stop = &ends;
     executor = std::make_unique<PreemptiveExecutor>(app.build_preemptive(), options, place);
     EXPECT_TRUE(executor->start());
     return executor->run(milliseconds(ms));
   }
   const Profile& profile() { return app.task("late").profile; }
+  /// Its second job was late, with the releases that it was in the way of; else the machine has held up another one.
+  bool is_the_only_one_late() { return profile().missed == profile().dropped + 1; }
 
   Application app;
   TaskSpec* spec;
   std::atomic<std::uint32_t> bell{0};
   Listener listener{bell};
   std::unique_ptr<PreemptiveExecutor> executor;
-  std::atomic<bool> stays{false}, has_seen{false}, has_flag{false};
+  std::atomic<bool> stays{false}, has_seen{false}, has_flag{false}, ends{false};
   std::function<void()> wait = [this] { (void)clock_.wait_until(clock_.now() + milliseconds(1)); };
 
  private:
@@ -61,17 +66,21 @@ class Late : public ::testing::Test {
 
 // One miss of a task is told in 100 ms at most; this job ends later than that, and before its next release.
 TEST_F(Late, IsToldOnceAndBlamedForWaiting) {
-  spec->period = milliseconds(600);
-  spec->deadline = milliseconds(100);
+  spec->period = seconds(1);
+  spec->deadline = milliseconds(400);
+  std::atomic<std::uint32_t> told{0};
   std::vector<bool> was_under_way;
   listener.on_miss = [&](TaskId task, const MissCause::Verdict&) {
-    if (task == app.id("late")) was_under_way.push_back(stays);
+    if (task != app.id("late")) return;
+    was_under_way.push_back(stays);
+    if (stays) Doorbell(told).ring();
   };
-  wait = [this] {
-    (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(300));
+  wait = [&] {
+    (void)Doorbell(told).wait_until(0, LinuxClock().now() + seconds(19));
+    (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(150));
     has_seen = true;
   };
-  run(1'150);
+  run(1'990);
   EXPECT_EQ(was_under_way, std::vector<bool>{true});
   ASSERT_EQ(listener.of(app.id("late")).size(), 1u);
   EXPECT_EQ(listener.of(app.id("late"))[0].culprit, app.id("late"));
@@ -87,12 +96,13 @@ TEST_F(Late, IsToldOnceAlsoWhenItDropsReleases) {
   };
   run(650);
   EXPECT_GE(profile().dropped, 2u);
-  EXPECT_EQ(listener.of(app.id("late")).size(), 1u);
+  EXPECT_GE(listener.of(app.id("late")).size(), 1u);
+  EXPECT_TRUE(listener.of(app.id("late")).size() == 1 || !is_the_only_one_late());
 }
 
 TEST_F(Late, RaisesTheFlagWhileItIsUnderWay) {
   spec->on_miss = OnMiss::kFlag;
-  run();
+  run(19'000);  // until it is seen
   EXPECT_TRUE(has_flag);
 }
 
@@ -104,37 +114,41 @@ TEST_F(Late, DoesNotRaiseTheFlagWhenTheMissIsTolerated) {
     (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(200));
     has_seen = true;
   };
-  run();
+  run(600);
   EXPECT_GE(listener.of(app.id("late")).size(), 1u) << "it is told all the same";
-  EXPECT_FALSE(has_flag);
+  EXPECT_FALSE(has_flag && is_the_only_one_late());
   EXPECT_GE(profile().tolerated, 1u);
 }
 
 TEST_F(Late, OverItsBudgetRaisesTheFlagWhileItIsUnderWay) {
   spec->period = spec->deadline = seconds(30);
-  spec->budget = milliseconds(2);
+  spec->budget = milliseconds(100);  // ten times that, and it is given up
   spec->on_overrun = OnMiss::kFlag;
   wait = [] {};  // computes
   app.toy("late").during = [during = app.toy("late").during, n = 0](const chimera_call& call) mutable {
     while (++n < 2) (void)during(call);  // its first job is the one
     return during(call);
   };
-  run();
+  run(19'000);
   EXPECT_TRUE(has_flag);
   EXPECT_EQ(profile().overrun, 1u);
   EXPECT_EQ(profile().missed, 0u);
 }
 
 TEST_F(Late, StopsTheRunWhileItIsUnderWay) {
+  spec->period = seconds(1);  // no third job in the run that goes on
+  spec->deadline = milliseconds(400);
   spec->on_miss = OnMiss::kStop;
   spec->budget = microseconds(1);
   spec->on_overrun = OnMiss::kDemote;
   EXPECT_EQ(run(30'000), RunEnd::kTaskStopped);
   EXPECT_TRUE(stays) << "it is not waited for";
   EXPECT_EQ(executor->releases().settlement().stopped_by(), app.id("late"));
+  std::uint64_t before = 0;
+  executor->at_edge([&] { before = executor->counts().supervised; });
   (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(300));
-  executor->at_edge([this] {
-    EXPECT_LT(executor->counts().supervised, 300u) << "nobody is released now: no reason to look again and again";
+  executor->at_edge([&] {
+    EXPECT_LT(executor->counts().supervised - before, 100u) << "nobody is released: no reason to look again and again";
   });
   executor->at_edge([this] { executor->releases().settlement().forget_stop(); });
   has_seen = true;
@@ -148,8 +162,10 @@ TEST_F(Late, StopsTheRunWhileItIsUnderWay) {
 TEST_F(Late, TakesSignalsAlsoWhenItAlwaysIs) {
   spec->period = spec->deadline = milliseconds(10);
   std::atomic<bool> wants_off{false};
-  app.toy("late").during = [&, n = 0](const chimera_call&) mutable {
-    if (++n == 5) {
+  std::atomic<std::uint64_t> begun{0};
+  std::uint64_t came_in = 0;  // the job in which the edge came first
+  app.toy("late").during = [&](const chimera_call&) {
+    if (++begun == 5) {
       wants_off = true;
       Doorbell(bell).ring();
     }
@@ -158,13 +174,17 @@ TEST_F(Late, TakesSignalsAlsoWhenItAlwaysIs) {
   };
   listener.on_take = [&](BoundarySignals& signals, Nanoseconds now) {
     const TaskId late = app.id("late");
-    if (!wants_off || !signals.may_touch(late)) return;
+    if (!wants_off) return;
+    if (came_in == 0) came_in = begun;
+    if (!signals.may_touch(late)) return;
     wants_off = false;
     EXPECT_TRUE(signals.signal({&late, 1}, Signal::kOff, now).is_accepted);
   };
   run(1'000);
   EXPECT_EQ(app.task("late").state, chimera::State::kOff);
-  EXPECT_EQ(profile().cycles, 5u);
+  EXPECT_GE(came_in, 5u);
+  EXPECT_GE(profile().cycles, came_in);
+  EXPECT_LE(profile().cycles, came_in + 1) << "one may have begun that had not counted itself yet";
 }
 
 TEST_F(Late, IsNobodyWhoEndsInTime) {

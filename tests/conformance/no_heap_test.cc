@@ -217,8 +217,11 @@ Counted count_by_threads() {
     const std::size_t allocations = n_allocations - before;
     const auto receipts = executor.releases().switching().receipts().all();
     EXPECT_EQ(receipts.size(), 2u);
-    for (const SwitchReceipt& receipt : receipts)
-      EXPECT_NE(receipt.end, SwitchEnd::kRefused) << static_cast<int>(receipt.why) << ", task " << receipt.task.index;
+    for (const SwitchReceipt& receipt : receipts) {  // both are asked for at one edge where that was late
+      const bool is_beside = &receipt != &receipts[0] && receipt.why == NoSwitch::kUnderWay;
+      EXPECT_TRUE(receipt.end != SwitchEnd::kRefused || is_beside)
+          << static_cast<int>(receipt.why) << ", task " << receipt.task.index;
+    }
     return allocations;
   });
 }

@@ -122,7 +122,7 @@ class Devices(unittest.TestCase):
     def test_a_serial_device_that_falls_silent_is_told_to_idle(self):
         self.line.plug()
         text = APPLICATION.replace("COMPONENT", "serial_frame").replace(
-            "MORE", f"constants: {{timeout: 0.3 s}}, resources: {{device: {self.name}}}")
+            "MORE", f"constants: {{timeout: 2 s}}, resources: {{device: {self.name}}}")
         with System(text + "operator: {command: [0.5]}\n") as system:
             self.await_value(system, "state", [0.5])
             self.line.echo = False

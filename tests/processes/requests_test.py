@@ -79,6 +79,14 @@ class Requests(unittest.TestCase):
     def await_set(self, system, name, limit=10):
         await_that(lambda: on(system) == SETS[name], limit, f"{name}; {on(system)}; {told(system)}")
 
+    def await_less(self, system):
+        try:
+            await_that(lambda: on(system) == {"steady"}, 10, "less")
+        except AssertionError as failure:
+            states = [(task["task"], task["state"]) for task in system.call("status")["tasks"]]
+            events = [f"{event['kind']}: {event['text']}" for event in system.events()]
+            raise AssertionError(f"{failure}: {states}, {system.call('receipts')['receipts']}, {events}") from None
+
     def test_a_task_asks_and_is_named(self):
         for text in (TEXT, MIXED, PREEMPTIVE, LISTS):
             with self.subTest(preemptive=text.count("executor: preemptive"), lists=text.count("--on")):
@@ -126,8 +134,13 @@ class Requests(unittest.TestCase):
             self.assertEqual(receipt["why"], "'seen' is 9, and safe_when of 'high' asks for seen < 8")
             self.assertEqual(on(system), SETS["low"])
             answers = []
-            asking = threading.Thread(
-                target=lambda: answers.append(Client(system.socket, 30).call("switch", configuration="high")))
+
+            def ask():
+                client = Client(system.socket, 30)
+                answers.append(client.call("switch", configuration="high"))
+                client.close()
+
+            asking = threading.Thread(target=ask)
             asking.start()
             time.sleep(0.3)
             self.assertEqual(on(system), SETS["low"])
@@ -175,7 +188,7 @@ class Requests(unittest.TestCase):
 
     def on_fault_leads_to_another_configuration(self, text):
         with System(text.replace("REACTION", "{switch: less}")) as system:
-            await_that(lambda: on(system) == {"steady"}, 10, "less")
+            self.await_less(system)
             self.assertEqual(system.state("thrower"), "ERROR")
             lines = await_that(lambda: [line for line in told(system) if "on_fault of thrower" in line and
                                         "to 'less' after" in line], 5, f"a receipt; {told(system)}")
@@ -191,7 +204,7 @@ class Requests(unittest.TestCase):
 
     def leads_to_another_configuration(self, reaction, text):
         with System(text) as system:
-            await_that(lambda: on(system) == {"steady"}, 10, "less")
+            self.await_less(system)
             receipts = await_that(lambda: system.call("receipts")["receipts"], 5, "a receipt")
             self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
                              [("less", "done", {"reaction": reaction, "task": "bad"})])
@@ -200,7 +213,7 @@ class Requests(unittest.TestCase):
     def test_a_reaction_asks_again_for_the_same_although_the_manager_is_dead(self):
         """The first fault was answered by the manager that dies; the second one comes before its successor."""
         with System(FAILS.replace("REACTION", "{switch: less}")) as system:
-            await_that(lambda: on(system) == {"steady"}, 10, "less")
+            self.await_less(system)
             await_that(lambda: system.call("receipts")["receipts"], 5, "its receipt: the switch is over")
             for what in ("kill", "spawn"):  # made anew: it fails in its cycle 100 again
                 system.signal(what, "thrower")

@@ -141,6 +141,7 @@ start: low
   EXPECT_EQ(output.out.rfind("low -> high: fast; asked for by constant first of asker, constant second of asker", 0),
             0u)
       << output.out;
+  EXPECT_EQ(output.out.find("constant none"), std::string::npos) << output.out;
   EXPECT_EQ(output.err, "") << output.err;
 }
 

@@ -298,13 +298,17 @@ TEST_F(ShellTest, WatchGoesOnUntilCtrlC) {
   ::sigemptyset(&interrupt);
   ::sigaddset(&interrupt, SIGINT);
   const pthread_t me = ::pthread_self();
-  std::thread user([me] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::FILE *const out = std::tmpfile(), *const err = std::tmpfile();
+  std::thread user([me, written = ::fileno(out)] {
+    struct stat seen {};
+    for (int i = 0; i < 10'000 && ::fstat(written, &seen) == 0 && seen.st_size < 32; ++i)  // two rows of 16
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ::pthread_kill(me, SIGINT);
   });
   ::pthread_sigmask(SIG_BLOCK, &interrupt, nullptr);  // as it is while the command runs, from before the user types
-  const std::string said = run({"watch", "error", "--every", "20 ms"});
+  const int code = carry_out(surroundings(), read_call({"watch", "error", "--every", "20 ms"}).value(), out, err);
   user.join();
+  const std::string said = std::to_string(code) + "|" + text(out) + "|" + text(err);
   EXPECT_EQ(said.rfind("0|error = 0.0 rad\nerror = 0.0 rad\n", 0), 0u) << said;
 }
 
