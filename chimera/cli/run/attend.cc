@@ -97,6 +97,7 @@ class RemoteTarget final : public RunTarget {
   void print_grants(const Json& status);
   void poll_events();
   void on_event(const Json& event);
+  void take_back_failure();  // that came behind the start
   void check_output();
   void act_next();
   void act(const TimedAct& timed);
@@ -123,6 +124,7 @@ class RemoteTarget final : public RunTarget {
   FacePage& page_;
   const bool is_resumed_;         // a face that died had begun
   std::optional<Error> failure_;  // of the start
+  Json failed_;                   // its event
   Nanoseconds started_ = kNever, next_look_;
   std::uint64_t next_event_ = 0;
   bool has_answered_ = false;  // the manager, once: else nobody waits for its last words
@@ -138,13 +140,18 @@ Result<void> RemoteTarget::start() {
   for (bool is_last = false; !is_last;) {
     ++page_.beats;
     is_last = stop_is_requested();  // also then: it may have started long ago
-    const auto status = await_status();
+    auto status = await_status();
     if (!status) return status.error();
-    last = *status;
     // What went wrong before the start comes first, also when the start was told meanwhile.
     started_ = instant((*status)["started_ns"]);
     poll_events();
+    if (failure_ && started_ == kNever) {  // it may have started, and failed only then, since the status was asked
+      if (status = await_status(); !status) return status.error();
+      started_ = instant((*status)["started_ns"]);
+      take_back_failure();
+    }
     if (failure_) return *failure_;
+    last = *status;
     if (started_ != kNever) {
       print_grants(*status);
       page_.has_begun = 1;
@@ -241,6 +248,14 @@ void RemoteTarget::check_output() {
   if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR2);
 }
 
+void RemoteTarget::take_back_failure() {
+  if (instant(failed_["at_ns"]) < started_) return;
+  failure_.reset();
+  const std::uint64_t next = next_event_;
+  on_event(failed_);
+  next_event_ = next;
+}
+
 void RemoteTarget::on_event(const Json& event) {
   next_event_ = event["number"].get<std::uint64_t>() + 1;
   const std::string kind = event.value("kind", ""), text = event.value("text", "");
@@ -248,7 +263,7 @@ void RemoteTarget::on_event(const Json& event) {
   const std::string task = about.is_string() ? about.get<std::string>() : "";
   const bool is_refusal = kind == "refused" || kind == "fault" || kind == "rtpu-given-up";
   if (is_refusal && instant(event["at_ns"]) < started_ && !failure_)
-    failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
+    failed_ = event, failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
   else if (kind == "refused")
     refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
   if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())

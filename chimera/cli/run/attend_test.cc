@@ -15,6 +15,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 #include "chimera/control/control_server.h"
 #include "chimera/platform/linux_clock.h"
@@ -33,7 +34,10 @@ class MadeUp final : public control::ControlBackend {
     const std::string name = method.name;
     asked += name + (name == "signal" ? parameters.dump() : "") + "\n";
     if (name == "status") return reply(RpcResponse::good(status()));
-    if (name == "events") return reply(RpcResponse::good(news(parameters["since"].get<std::uint64_t>())));
+    if (name == "events") {
+      if (starts_at != nullptr) started_ns = starts_at;
+      return reply(RpcResponse::good(news(parameters["since"].get<std::uint64_t>())));
+    }
     if (name == "get") return reply(RpcResponse::good({{"values", values}}));
     if (name == "profile") return reply(RpcResponse::good({{"tasks", Json::array({profile()})}}));
     if (name == "receipts") return reply(RpcResponse::good({{"receipts", receipts}}));
@@ -54,6 +58,7 @@ class MadeUp final : public control::ControlBackend {
 
   std::string asked;
   Json started_ns;
+  Json starts_at;  // not null: that is known since events are asked for
   Json events = Json::array();
   Json values = Json::object();
   Json records = Json::array();  // a notification each
@@ -230,6 +235,22 @@ TEST_F(Attend, AStartThatFailsIsRefusedInTheWordsOfItsTask) {
   EXPECT_EQ(attend(), kRefused);
   EXPECT_EQ(err_, "pid: error: init: no model\n");
   EXPECT_EQ(out_, "");
+}
+
+TEST_F(Attend, WhatFailsBehindAStartThatWasNotKnownYetIsNoFailureOfIt) {
+  const std::int64_t started = backend_.started_ns;
+  backend_.starts_at = std::exchange(backend_.started_ns, nullptr);
+  backend_.events = {{{"number", 1}, {"at_ns", started + 2'000'000}, {"kind", "refused"}, {"task", "pid"},
+                      {"rtpu", "servo"}, {"text", "kill sent by other: not legal in state ON"}}};
+  EXPECT_EQ(attend(), kOk);
+  EXPECT_EQ(err_, "");
+  const std::string line = "refused at 0.002 s: pid: kill sent by other: not legal in state ON\n";
+  ASSERT_NE(out_.find(line), std::string::npos) << out_;
+  EXPECT_EQ(out_.find(line, out_.find(line) + 1), std::string::npos) << "told once";
+  backend_.started_ns = nullptr;
+  backend_.events[0]["at_ns"] = started - 1;
+  EXPECT_EQ(attend(), kRefused);
+  EXPECT_EQ(err_, "pid: error: kill sent by other: not legal in state ON\n");
 }
 
 TEST_F(Attend, TheReactionStopOfATaskIsNoSuccess) {
