@@ -159,6 +159,22 @@ TEST(ManagerLoop, WhatWasOnInAUnitWhoseMemoryCannotBeReadIsKnownToTheNextManager
   EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOff) << "as it was";
 }
 
+TEST(ManagerLoop, AUnitThatLivesAndCannotBeReadIsToldWithWhatHelps) {
+  FakeSubsystem fake;
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  fake.kill_manager();
+  fake.rtpu(1).die_overwritten(0xdeadbeef);
+  fake.start_manager();  // it has heard of no death
+  ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
+  EXPECT_EQ(fake.told("fault"),
+            "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
+            "bytes are not CHIMTBL1): it can be told nothing until it is started again, as it is when killed\n");
+  fake.kill_rtpu(1, SIGKILL);
+  EXPECT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
+  EXPECT_TRUE(fake.until_on("law"));
+}
+
 TEST(ManagerLoop, TellsTheFaultOfATaskInItsWords) {
   FakeSubsystem fake;
   fake.start_manager();

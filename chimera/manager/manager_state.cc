@@ -2,10 +2,9 @@
 // Writes events, and keeps the clocks of the manager.
 #include "chimera/manager/manager_state.h"
 
-#include "chimera/manager/credible.h"
-
 #include <ctime>
 
+#include "chimera/manager/credible.h"
 #include "chimera/platform/doorbell.h"
 
 namespace chimera::manager {

@@ -59,11 +59,12 @@ void RtpuLinks::mapped(const KeeperMessage& message, int descriptor) {
   link.inbox = {};  // both point into the mapping that goes away
   link.outbox = {};
   if (const auto mapped = world_.peers.map(rtpu, message.incarnation, descriptor); !mapped) {
-    const std::string remedy = record(rtpu).is_alive ? ": it cannot be told to do anything before it is started again, "
-                                                       "as it is when it is killed" : "";
-    world_.tell("fault", TaskId{}, rtpu,
-                "its memory cannot be read, something in it has overwritten it (" +
-                    std::string(mapped.error().message.view()) + ")" + remedy, now());
+    const Error& why = mapped.error();
+    std::string text = "its memory cannot be read";
+    if (why.code == ErrorCode::kBadInput) text += ", something in it has overwritten it";
+    text += " (" + std::string(why.message.view()) + ")";
+    if (record(rtpu).is_alive) text += ": it can be told nothing until it is started again, as it is when killed";
+    world_.tell("fault", TaskId{}, rtpu, std::move(text), now());
     return;
   }
   const BlockView& block = world_.peers[rtpu].block();
