@@ -6,7 +6,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-usage: tools/fresh_machine.sh [--demo-only | --no-tests] [--keep] [--dir FOLDER] [--ccache FOLDER]
+usage: tools/fresh_machine.sh [--demo-only | --no-tests | --tests-only] [--keep] [--dir FOLDER] [--ccache FOLDER]
 
   ./dev demo, twice     the first within 10 minutes, the second within 15 seconds
   the README            every line as printed, as an ordinary user: demo, install, a control loop of one's own, ...
@@ -17,17 +17,19 @@ usage: tools/fresh_machine.sh [--demo-only | --no-tests] [--keep] [--dir FOLDER]
 
   --demo-only    the demonstration alone
   --no-tests     leave out the tests
+  --tests-only   run ./dev test as root alone, with an empty cache: how long it takes
   --ccache FOLDER  lend it this cache of compiled files: the times say nothing then
   --keep         leave the root standing (its folder is printed); it is used again when given by --dir
   --dir FOLDER   make the root there (default: a new folder under ${TMPDIR:-/var/tmp})
 TEXT
 }
 
-demo_only=false tests=true keep=false folder="" cache=""
+demo_only=false tests=true tests_only=false keep=false folder="" cache=""
 while [ $# -gt 0 ]; do
   case "$1" in
     --demo-only) demo_only=true;;
     --no-tests) tests=false;;
+    --tests-only) tests_only=true;;
     --ccache) cache=$(realpath "${2:?--ccache wants a folder}"); shift;;
     --keep) keep=true;;
     --dir) folder=${2:?--dir wants a folder}; shift;;
@@ -50,7 +52,8 @@ command -v debootstrap >/dev/null || die "debootstrap is missing: apt-get instal
 # In a mount namespace of its own, so that no mount outlives this process, however it ends.
 if [ "${FRESH_MACHINE_INNER:-}" != 1 ] && unshare --mount --propagation private true 2>/dev/null; then
   export FRESH_MACHINE_INNER=1
-  options=(); $demo_only && options+=(--demo-only); $tests || options+=(--no-tests); $keep && options+=(--keep)
+  options=(); $demo_only && options+=(--demo-only); $tests || options+=(--no-tests)
+  $tests_only && options+=(--tests-only); $keep && options+=(--keep)
   [ -z "$cache" ] || options+=(--ccache "$cache")
   [ -z "$folder" ] || options+=(--dir "$folder")
   exec unshare --mount --propagation private "$0" "${options[@]}"
@@ -187,6 +190,11 @@ mkdir -p "$folder"
 [ -x "$folder/usr/bin/git" ] || make_root
 enter_root
 clone_to /opt/chimera
+if $tests_only; then
+  run "tests as root" 0 root /opt/chimera './.ci/run'
+  printf '%s\n' "fresh Debian $suite, commit ${commit:0:10}" "${summary[@]}"
+  exit $failed
+fi
 run "demo, first" $first_demo_limit root /opt/chimera './dev demo'
 run "demo, again" $second_demo_limit root /opt/chimera './dev demo'
 run "what the demo did not build" 0 root /opt/chimera \
