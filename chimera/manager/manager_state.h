@@ -12,6 +12,7 @@
 #include "chimera/manager/own_segment.h"
 #include "chimera/manager/peers.h"
 #include "chimera/manager/readings.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/pages.h"
 #include "chimera/runtime/rivals.h"
@@ -83,8 +84,10 @@ struct ManagerState {
   void announce() noexcept;
 };
 
-/// CLOCK_MONOTONIC. Context: any; wait-free.
+/// The time of the manager: CLOCK_MONOTONIC, or the clock of use_clock(). Context: any; wait-free.
 Nanoseconds now() noexcept;
+/// For tests: now() reads `clock` from here on; nullptr: CLOCK_MONOTONIC again. Context: setup.
+void use_clock(Clock* clock) noexcept;
 /// Nanoseconds since 1970 at the monotonic instant `at`.
 std::int64_t wall_ns(Nanoseconds at) noexcept;
 

@@ -5,8 +5,6 @@
 #include <cstring>
 #include <utility>
 
-#include "chimera/platform/linux_clock.h"
-
 namespace chimera {
 namespace {
 
@@ -26,6 +24,7 @@ PeerLinks::PeerLinks(const ApplicationSpec& spec, std::uint32_t me, std::span<st
       block_(block),
       decision_(&decision),
       keeper_(&keeper),
+      now_(keeper.origin),
       peers_(&peers),
       claims_(decision, keeper, me, block_.head().incarnation),
       faults_(spec.tasks.size()),
@@ -141,7 +140,7 @@ bool PeerLinks::publish_flag(const IllegalFlag& flag) noexcept {
   if (before == now) return false;
   block_.head().flag.store(now, std::memory_order_release);  // BlockHead
   Post post;
-  post.at = LinuxClock().now();
+  post.at = now_;
   post.from = flag.raised_by();
   post.kind = PostKind::kEvent;
   post.happening = EventKind::kFlag;
@@ -160,7 +159,7 @@ void PeerLinks::publish_fault(const Task& task) noexcept {
   if (std::exchange(faults_[task.id.index], task.faults.count) != task.faults.count)
     send_event(EventKind::kFault, task.id, static_cast<std::uint64_t>(task.faults.method), task.faults.at);
   if (std::exchange(notes_[task.id.index], task.faults.notes) != task.faults.notes)
-    send_event(EventKind::kNote, task.id, 0, LinuxClock().now());
+    send_event(EventKind::kNote, task.id, 0, now_);
 }
 
 void PeerLinks::ring_all() noexcept {

@@ -26,6 +26,9 @@ class PeerLinks final : public PeerView {
   void publish(TaskSet& tasks) noexcept;
   /// publish() of every task whose shown state is not its own, listed or not: at the start. Context: cycle boundary.
   void publish_all(TaskSet& tasks) noexcept;
+  /// The instant of the cycle boundary; events of flags and notes are stamped with it. Context: cycle boundary;
+  /// wait-free.
+  void begin_boundary(Nanoseconds now) noexcept { now_ = now; }
   /// While it keeps them nobody is shown states: what was ON when the unit began to end alone comes back with its
   /// successor. When it does not any more, all are shown. Context: cycle boundary.
   void keep_last_words(bool keeps, TaskSet& tasks) noexcept;
@@ -80,6 +83,7 @@ class PeerLinks final : public PeerView {
   DecisionPage* decision_;
   std::uint32_t last_shown_ = 0;  // the count of changes with the last of this context
   const KeeperPage* keeper_;
+  Nanoseconds now_;
   MappedPeers* peers_;
   bool keeps_last_words_ = false;
   GroupClaims claims_;

@@ -38,6 +38,7 @@ void RtpuControl::begin() noexcept {
 void RtpuControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
   listen();
   set_due(kNever);
+  others_.begin_boundary(now);
   others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
   check_peers();
   take_slow(signals, now);

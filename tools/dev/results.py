@@ -11,7 +11,9 @@ PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
 class Case:
     name: str
     outcome: str
-    said: str = ""  # failed: the output; skipped: the reason
+    said: str = ""     # failed: the output; skipped: the reason
+    program: str = ""  # the ctest entry it belongs to
+    flaky: str = ""    # what it said when it failed, of a case that passed in a later try
 
 
 def _text(element):
@@ -77,5 +79,28 @@ def read(junit, results):
     """All cases of one ctest run. `junit` is ctest's file, `results` the folder of the gtest files."""
     cases = []
     for test in xml.parse(junit).getroot().iter("testcase"):
-        cases += _program_cases(test, results)
+        for case in _program_cases(test, results):
+            case.program = test.get("name")
+            cases.append(case)
+    return cases
+
+
+def merge(before, again, programs):
+    """The cases after `programs` ran again. What failed before and fails no more is flaky."""
+    failed = {(case.program, case.name): case.said or "failed" for case in before if case.outcome == FAILED}
+    flaky = {(case.program, case.name): case.flaky for case in before if case.flaky}
+    cases = [case for case in before if case.program not in programs]
+    for program in programs:
+        found = [case for case in again if case.program == program]
+        if not found:
+            found = [Case(program, FAILED, "it did not run again", program)]
+        names = {case.name for case in found}
+        for (of, name), said in failed.items():
+            if of == program and name not in names:  # the program itself, which died before; or it died sooner now
+                found.append(Case(name, PASSED if name == program else FAILED, said, program))
+        for case in found:
+            key = (program, case.name)
+            if case.outcome != FAILED:
+                case.flaky = flaky.get(key) or failed.get(key, "")
+        cases += found
     return cases

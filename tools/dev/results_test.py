@@ -94,25 +94,58 @@ class Finish(unittest.TestCase):
         cases = [Case("a", PASSED), Case("S.b", SKIPPED)]
         self.assertEqual(finish(cases, ci=""), (0, "1 passed, 0 failed, 1 skipped"))
 
-    def timed(self, seconds, ci, slower=1.0):
-        """(cases, the line) of the first share after so many seconds."""
+    def test_a_flaky_case_is_printed_and_counted_and_not_red(self):
         said = io.StringIO()
-        with mock.patch.dict(os.environ, {"CI": ci}), contextlib.redirect_stdout(said):
-            return frame.timed(frame.SHARES[0], seconds, [], slower), said.getvalue()
+        with contextlib.redirect_stdout(said):
+            code = frame.finish([Case("a", PASSED, flaky="x != y"), Case("b", PASSED)])
+        self.assertEqual(code, 0)
+        self.assertEqual(said.getvalue(), "flaky: a\n    x != y\n2 passed, 0 failed, 0 skipped, 1 flaky\n")
 
-    def test_a_share_over_its_limit_failed_on_the_build_machine(self):
-        self.assertEqual([case.outcome for case in self.timed(181, "true")[0]], [FAILED])
-        self.assertEqual([case.outcome for case in self.timed(181, "1")[0]], [FAILED])
-        self.assertEqual(self.timed(179, "true")[0], [])
-        self.assertEqual(self.timed(269, "true", 1.5)[0], [])
-        self.assertIn("x 1.5, the machine is slow", self.timed(269, "true", 1.5)[1])
-        self.assertEqual([case.outcome for case in self.timed(271, "true", 1.5)[0]], [FAILED])
+    def test_a_duration_is_printed_and_recorded(self):
+        said = io.StringIO()
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(said):
+            record = pathlib.Path(folder) / "durations.jsonl"
+            with mock.patch.object(frame, "DURATIONS", record):
+                frame.timed("units", 3601, 7)
+            entry = json.loads(record.read_text())
+        self.assertEqual(said.getvalue(), "   units      60:01  7 tests\n")
+        self.assertEqual((entry["part"], entry["seconds"]), ("units", 3601))
 
-    def test_elsewhere_it_is_a_remark(self):
-        cases, said = self.timed(181, "")
-        self.assertEqual(cases, [])
-        self.assertIn(" 3:01 of  3:00  0 tests  longer than its limit", said)
-        self.assertNotIn("longer", self.timed(179, "")[1])
+
+class Again(unittest.TestCase):
+    """Tests that touch real scheduling run again; the others never."""
+
+    def again(self, *tries, labels="process"):
+        """What is left of these tries of the program p, each a list of cases; how often it ran."""
+        for cases in tries:
+            for case in cases:
+                case.program = "p"
+        left = list(tries[1:])
+        with mock.patch.object(frame, "tests_of", lambda _: [("p", [labels])]), \
+                mock.patch.object(frame, "ctest", lambda *_: left.pop(0)), contextlib.redirect_stdout(io.StringIO()):
+            cases = frame.ctest_again("debug", labels, tries[0])
+        return sorted((case.name, case.outcome, case.flaky) for case in cases), len(tries) - len(left)
+
+    def test_what_passes_later_is_flaky_with_its_first_words(self):
+        found = self.again([Case("a", PASSED), Case("b", FAILED, "late")], [Case("a", PASSED), Case("b", PASSED)])
+        self.assertEqual(found, ([("a", PASSED, ""), ("b", PASSED, "late")], 2))
+
+    def test_a_third_try_is_the_last(self):
+        fails = lambda: [Case("b", FAILED, "wrong")]
+        self.assertEqual(self.again(fails(), fails(), fails(), fails()), ([("b", FAILED, "")], 3))
+        self.assertEqual(self.again(fails(), fails(), [Case("b", PASSED)])[0], [("b", PASSED, "wrong")])
+
+    def test_a_program_that_died_once_is_flaky(self):
+        found = self.again([Case("a", PASSED), Case("p", FAILED, "SEGFAULT")], [Case("a", PASSED)])
+        self.assertEqual(found[0], [("a", PASSED, ""), ("p", PASSED, "SEGFAULT")])
+
+    def test_a_case_that_is_not_reached_again_stays_failed(self):
+        found = self.again([Case("b", FAILED, "wrong")], [Case("p", FAILED, "died")], [Case("p", FAILED, "died")])
+        self.assertEqual([(name, outcome) for name, outcome, _ in found[0]], [("b", FAILED), ("p", FAILED)])
+
+    def test_a_unit_test_does_not_run_again(self):
+        self.assertEqual(self.again([Case("b", FAILED, "wrong")], [Case("b", PASSED)], labels="unit"),
+                         ([("b", FAILED, "")], 1))
 
 
 class Shares(unittest.TestCase):

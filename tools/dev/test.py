@@ -6,13 +6,13 @@ import fnmatch
 import json
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
 import time
 
 import common
-import machine_speed
 import results
 import stress
 from results import FAILED, PASSED, SKIPPED, Case
@@ -20,22 +20,23 @@ from results import FAILED, PASSED, SKIPPED, Case
 
 @dataclasses.dataclass
 class Share:
-    """A part of the tests with its limit; `runs` are (tree, labels), the real-time ones alone on the machine."""
+    """A part of the tests; `runs` are (tree, labels), the real-time ones alone on the machine."""
     name: str
-    limit_min: float
     runs: tuple = ()
 
 
-COMPILE = Share("compile", 12)
 SHARES = (
-    Share("units", 3, (("debug", "unit|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
-    Share("processes", 4, (("debug", "process"), ("release", "realtime"))),
-    Share("firmware", 1, (("debug", "firmware"),)),
-    Share("models", 2, (("debug", "model"), ("fuzz", "fuzz"))),
+    Share("units", (("debug", "unit|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
+    Share("processes", (("debug", "process"), ("release", "realtime"))),
+    Share("firmware", (("debug", "firmware"),)),
+    Share("models", (("debug", "model"), ("fuzz", "fuzz"))),
 )
-QUICK = Share("quick", 2, (("debug", "unit"),))
+QUICK = Share("quick", (("debug", "unit"),))
 TREES = ("debug", "tsan", "release", "fuzz")
-TOTAL_LIMIT_MIN = 25
+# What these tests judge can depend on when the system runs a thread: one that fails runs again, at most twice.
+SCHEDULED = {"threads", "process", "hostile", "realtime"}
+MOST_TRIES = 3
+DURATIONS = common.BUILD / "durations.jsonl"
 MAY_SKIP = common.ROOT / "tests" / "may_skip.txt"
 
 
@@ -43,10 +44,10 @@ def parse_arguments():
     parser = argparse.ArgumentParser(
         prog="./dev test", formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Builds and runs every test; the last line counts them. Exit 0 only if none failed.",
-        epilog="shares and their limits in minutes: compile 12, "
-               + ", ".join(f"{share.name} {share.limit_min}" for share in SHARES)
-               + ";\nover one is an error where CI is set, else a remark; a machine that is slower than usual"
-               + " has\nas much longer, but 25 for all"
+        epilog="shares: " + ", ".join(share.name for share in SHARES)
+               + "\nA test that runs threads or processes runs again when it fails, at most twice; one that passes then"
+               + "\nis printed as `flaky: NAME` and counted. Durations are printed and added to build/durations.jsonl;"
+               + "\nno test fails for them."
                + "\nexamples: ./dev test --only units\n          ./dev test --quick")
     names = [share.name for share in SHARES]
     group = parser.add_mutually_exclusive_group()
@@ -87,8 +88,8 @@ def without_address_randomisation():
     return prefix if works else []
 
 
-def ctest(tree, labels, jobs):
-    """Runs the tests of a tree that carry one of the labels. Returns their cases."""
+def ctest(tree, labels, jobs, only=()):
+    """Runs the tests of a tree that carry one of the labels, or of these the named ones. Returns their cases."""
     folder = common.BUILD / tree
     junit = folder / "results" / "ctest.xml"
     shutil.rmtree(junit.parent, ignore_errors=True)
@@ -96,6 +97,8 @@ def ctest(tree, labels, jobs):
     command = ["ctest", "--test-dir", f"build/{tree}", "-L", f"^({labels})$", "--no-tests=ignore", "--output-junit",
                str(junit), "--test-output-size-passed", "200000", "--test-output-size-failed", "1000000",
                "-j", str(jobs)]
+    if only:
+        command += ["-R", "^(" + "|".join(map(re.escape, only)) + ")$"]
     prefix = without_address_randomisation() if tree == "tsan" else []
     code = common.run_logged(prefix + command, folder / "ctest.log", r"\s*\d+/\d+ Test ")
     if not junit.exists():
@@ -103,15 +106,35 @@ def ctest(tree, labels, jobs):
     return results.read(junit, junit.parent)
 
 
-def unlabelled(tree):
-    """Tests of a tree that no share would ever run."""
-    known = {label for share in SHARES for run in share.runs if run[0] == tree for label in run[1].split("|")}
+def ctest_again(tree, labels, cases):
+    """Runs what failed and touches real scheduling again, alone, at most MOST_TRIES times in all. Returns the cases of
+    the last try of each program; a case that failed before and passes now says so in `flaky`."""
+    scheduled = [label for label in labels.split("|") if label in SCHEDULED]
+    for _ in range(MOST_TRIES - 1):
+        failed = {case.program for case in cases if case.outcome == FAILED}
+        failed = sorted(name for name, its in tests_of(tree) if name in failed and set(its) & set(scheduled)) \
+            if failed and scheduled else []
+        if not failed:
+            break
+        common.step(f"again, of build/{tree}: {' '.join(failed)}")
+        cases = results.merge(cases, ctest(tree, "|".join(scheduled), 1, failed), failed)
+    return cases
+
+
+def tests_of(tree):
+    """(name, labels) of each test of a tree."""
     listing = subprocess.run(["ctest", "--test-dir", f"build/{tree}", "--show-only=json-v1"], cwd=common.ROOT,
                              capture_output=True, text=True, check=True)
     for test in json.loads(listing.stdout)["tests"]:
-        labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
+        yield test["name"], next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
+
+
+def unlabelled(tree):
+    """Tests of a tree that no share would ever run."""
+    known = {label for share in SHARES for run in share.runs if run[0] == tree for label in run[1].split("|")}
+    for name, labels in tests_of(tree):
         if not known & set(labels):
-            yield Case(test["name"], FAILED, f"no share runs its labels {labels} in build/{tree}: it would never run")
+            yield Case(name, FAILED, f"no share runs its labels {labels} in build/{tree}: it would never run")
 
 
 def run_share(share, trees):
@@ -121,9 +144,10 @@ def run_share(share, trees):
             continue
         if labels == "realtime":
             with common.realtime_lock():
-                cases += ctest(tree, labels, jobs=1)
-        else:
-            cases += ctest(tree, labels, jobs=cpus + 1 if "hostile" in labels else cpus)  # hostile ones wait a lot
+                found = ctest_again(tree, labels, ctest(tree, labels, jobs=1))
+        else:  # hostile ones wait a lot
+            found = ctest_again(tree, labels, ctest(tree, labels, jobs=cpus + 1 if "hostile" in labels else cpus))
+        cases += found
     return cases or [Case(f"share {share.name}", FAILED, "it has no tests")]
 
 
@@ -144,55 +168,61 @@ def judge_skips(cases):
             case.said = f"skipped, and not listed in {MAY_SKIP.relative_to(common.ROOT)}: {case.said}"
 
 
-def timed(share, seconds, cases, slower=1.0):
-    """Prints the share's line. One that took too long is a failed case on the build machine, elsewhere a remark. Where
-    the machine was slower than usual, by that factor, the share has as much more time (decision 0067)."""
-    over = seconds > share.limit_min * 60 * slower
-    counts = "" if share is COMPILE else f"  {len(cases)} tests"
-    limit = clock(share.limit_min * 60) + (f" x {slower:.1f}, the machine is slow" if slower > 1.1 else "")
-    remark = "" if not over else "  TOO LONG" if on_build_machine() else "  longer than its limit: with CI set an error"
-    print(f"   {share.name:<10} {clock(seconds)} of {limit}{counts}{remark}", flush=True)
-    if over and on_build_machine():
-        cases.append(Case(f"share {share.name}", FAILED, f"took {clock(seconds)}, its limit is {limit}"))
-    return cases
+def timed(name, seconds, n_tests=None):
+    """Prints how long a part took, and adds it to the record."""
+    print(f"   {name:<10} {clock(seconds)}" + ("" if n_tests is None else f"  {n_tests} tests"), flush=True)
+    entry = {"at": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()), "commit": common.commit(), "part": name,
+             "seconds": round(seconds, 1)}
+    with open(DURATIONS, "a", encoding="utf-8") as file:
+        file.write(json.dumps(entry) + "\n")
 
 
 def clock(seconds):
     return f"{int(seconds) // 60:2d}:{int(seconds) % 60:02d}"
 
 
+def shown(said):
+    """The lines of an output, the middle of a long one left out."""
+    lines = said.rstrip().splitlines()
+    if len(lines) > 120:
+        lines = lines[:60] + [f"... {len(lines) - 120} lines ..."] + lines[-60:]
+    return "\n    ".join(lines)
+
+
 def finish(cases):
-    """Failures with what they said, skips with their reasons, the count. Returns the exit code."""
+    """Failures and flaky ones with what they said, skips with their reasons, the count. Returns the exit code."""
     judge_skips(cases)
     for case in cases:
         if case.outcome == FAILED:
-            lines = case.said.rstrip().splitlines()
-            shown = lines if len(lines) <= 120 else lines[:60] + [f"... {len(lines) - 120} lines ..."] + lines[-60:]
-            print(f"FAILED {case.name}\n    " + "\n    ".join(shown))
+            print(f"FAILED {case.name}\n    {shown(case.said)}")
+        elif case.flaky:
+            print(f"flaky: {case.name}\n    {shown(case.flaky)}")
     for case in cases:
         if case.outcome == SKIPPED:
             print(f"skipped {case.name}: {case.said}")
     count = {outcome: sum(case.outcome == outcome for case in cases) for outcome in (PASSED, FAILED, SKIPPED)}
-    print(f"{count[PASSED]} passed, {count[FAILED]} failed, {count[SKIPPED]} skipped", flush=True)
+    n_flaky = sum(bool(case.flaky) for case in cases)
+    print(f"{count[PASSED]} passed, {count[FAILED]} failed, {count[SKIPPED]} skipped"
+          + (f", {n_flaky} flaky" if n_flaky else ""), flush=True)
     return 1 if count[FAILED] or not count[PASSED] else 0
 
 
 def run_tests(shares, quick=False):
-    begin, before = time.monotonic(), machine_speed.slowness()
+    begin = time.monotonic()
     trees = trees_of(shares)
     if not compile_trees(trees, quick):
         return finish([Case("compile", FAILED, "see above")])
-    seconds, slower = time.monotonic() - begin, machine_speed.slowness()
-    cases = timed(COMPILE, seconds, [], (before + slower) / 2)
+    timed("compile", time.monotonic() - begin)
+    cases = []
     for tree in trees:
         cases += unlabelled(tree)
     for share in shares:
         common.step(f"running {share.name}")
         start = time.monotonic()
         found = run_share(share, trees)
-        seconds, before, slower = time.monotonic() - start, slower, machine_speed.slowness()
-        cases += timed(share, seconds, found, (before + slower) / 2)
-    cases = timed(Share("total", TOTAL_LIMIT_MIN), time.monotonic() - begin, cases)
+        timed(share.name, time.monotonic() - start, len(found))
+        cases += found
+    timed("total", time.monotonic() - begin)
     if quick:
         print(f"left out, and run by `./dev test`: {left_out()}")
     return finish(cases)

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: a subsystem in one process on one stepped clock. The manager (ManagerLoop, ManagerBackend) and the rtpus
+// (RtpuControl, PeerLinks, SwitchLinks, Executive) are the real ones; the test is the keeper and the clients.
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chimera/load/shared_object.h"
+#include "chimera/manager/manager_backend.h"
+#include "chimera/manager/testing/test_bundle.h"
+#include "chimera/platform/owned_descriptor.h"
+#include "chimera/rtpu/testing/test_units.h"
+
+namespace chimera::manager {
+
+/// The manager reads the clock that this object holds, until the object is destroyed.
+class SteppedClock {
+ public:
+  explicit SteppedClock(Nanoseconds start) : clock_(start) { use_clock(&clock_); }
+  ~SteppedClock() { use_clock(nullptr); }
+  SteppedClock(const SteppedClock&) = delete;
+  void advance(Nanoseconds time) noexcept { clock_.advance(time); }
+
+ private:
+  VirtualClock clock_;
+};
+
+/// The answer to a call, once it is there.
+using PendingAnswer = std::shared_ptr<std::optional<control::RpcResponse>>;
+
+class SteppedSubsystem {
+ public:
+  /// The description is verified with the components of the build tree. Its rtpus are executives.
+  explicit SteppedSubsystem(const std::string& description) : bundle_(with_library(description)) {
+    EXPECT_NE(::mkdtemp(state_), nullptr);
+    ::setenv("XDG_STATE_HOME", state_, 1);
+    const Verdict verdict = verify(bundle_);
+    EXPECT_TRUE(verdict.configuration) << verdict.report.text();
+    configuration_ = verdict.configuration;
+    for (const TaskSpec& task : spec().tasks) components_.push_back(component_of(task));
+    image_ = *FrozenBytes::create("image", encode(spec(), std::vector<ComponentPlace>(spec().tasks.size()), {}));
+    const std::string packed = encode(bundle_);
+    frozen_bundle_ = *FrozenBytes::create("bundle", std::as_bytes(std::span(packed)));
+    decision_ = *SharedPages::create("decision", sizeof(DecisionPage));
+    new (decision_.bytes().data()) DecisionPage;
+    keeper_ = *MemoryRegion::create("keeper", sizeof(KeeperPage));
+    new (keeper_.writable().data()) KeeperPage;
+    page().origin = now();
+    page().n_rtpus = n_rtpus();
+    rtpus_.resize(n_rtpus());
+    for (std::uint32_t r = 0; r < n_rtpus(); ++r) start_rtpu(r);
+    start_manager();
+  }
+  SteppedSubsystem(const SteppedSubsystem&) = delete;
+  ~SteppedSubsystem() {
+    kill_manager();
+    rtpus_.clear();
+    std::error_code error;
+    std::filesystem::remove_all(state_, error);
+  }
+
+  /// Lets `time` pass in steps of 100 us; in each step every rtpu, then the manager, then the keeper works.
+  void run(Nanoseconds time) {
+    for (const Nanoseconds end = now() + time; now() < end;) step();
+  }
+  /// Runs until `holds`, at most `limit`. False when the limit is reached.
+  bool until(const std::function<bool()>& holds, Nanoseconds limit = seconds(10)) {
+    for (const Nanoseconds end = now() + limit; !holds(); step())
+      if (now() >= end) return false;
+    return true;
+  }
+  bool until_on(std::string_view name) {
+    return until([&] { return state(name) == State::kOn; });
+  }
+  /// Until everything of the start set is ON and the manager has said so.
+  bool until_started() {
+    return until([&] { return manager_ && manager().world().own.block().memory().started_at != 0; });
+  }
+
+  /// Asks as a client with the right to configure would; the answer comes while time passes.
+  PendingAnswer ask(const std::string& method, const control::Json& parameters = control::Json::object()) {
+    auto answer = std::make_shared<std::optional<control::RpcResponse>>();
+    const control::MethodRule* rule = control::find_method(method);
+    EXPECT_NE(rule, nullptr) << method;
+    const control::RpcResponse judged = control::check_parameters(*rule, parameters);
+    if (!judged.is_good()) *answer = judged;
+    else backend_->call(*rule, parameters, {control::Role::kConfigure, 1, 0},
+                        [answer](const control::RpcResponse& got) { *answer = got; });
+    return answer;
+  }
+  /// Asks and runs until the answer is there.
+  control::RpcResponse call(const std::string& method,
+                            const control::Json& parameters = control::Json::object()) {
+    const PendingAnswer answer = ask(method, parameters);
+    EXPECT_TRUE(until([&] { return answer->has_value(); }, seconds(30))) << method << " was not answered";
+    return answer->value_or(control::RpcResponse::error(control::kNoAnswer, "no answer"));
+  }
+  /// The result of a call that must not be refused.
+  control::Json result(const std::string& method, const control::Json& parameters = control::Json::object()) {
+    const control::RpcResponse answer = call(method, parameters);
+    EXPECT_TRUE(answer.is_good()) << method << ": " << answer.message;
+    if (answer.text) return control::Json::parse(*answer.text);
+    return answer.result ? *answer.result : control::Json();
+  }
+
+  /// The process of the rtpu dies by that signal. The manager has it started again.
+  void die(std::string_view rtpu, int signal = SIGKILL) { die(index(rtpu), signal); }
+  /// The process of the rtpu is told to end alone, as by SIGTERM: it turns its tasks OFF and dies.
+  void terminate(std::string_view rtpu) { rtpus_[index(rtpu)]->edge->unit_end().tell(true); }
+  /// As by SIGKILL. start_manager() starts its successor.
+  void kill_manager() {
+    backend_.reset();
+    manager_.reset();
+    channel_ = Channel();
+    if (manager_segment_.fd >= 0) page().alive[n_rtpus()] = 0;
+  }
+  void start_manager() {
+    auto ends = Channel::pair();
+    ASSERT_TRUE(ends);
+    channel_ = std::move(ends->first);
+    ++manager_incarnation_;
+    for (std::uint32_t r = 0; r < n_rtpus(); ++r) introduce(r);
+    if (manager_segment_.fd >= 0) tell(KeeperMessage::Kind::kPeer, n_rtpus(), manager_incarnation_ - 1, manager_segment_.fd);
+    tell(KeeperMessage::Kind::kComplete, 0, 0);
+    const Inherited inherited{again(ends->second.descriptor()), again(image_.descriptor()),
+                              again(decision_.descriptor()),    again(keeper_.descriptor()),
+                              -1,                               again(frozen_bundle_.descriptor())};
+    auto made = ManagerLoop::start(inherited, manager_incarnation_, ::getpid());
+    ASSERT_TRUE(made) << made.error().message.c_str();
+    manager_ = *std::move(made);
+    backend_ = std::make_unique<ManagerBackend>(*manager_);
+    keep();
+  }
+  /// While it is stopped the keeper starts nothing.
+  void stop_keeper(bool is_stopped) {
+    keeper_is_stopped_ = is_stopped;
+    if (!is_stopped) keep();
+  }
+
+  const ApplicationSpec& spec() const { return configuration_->spec(); }
+  std::uint32_t n_rtpus() const { return static_cast<std::uint32_t>(spec().rtpus.size()); }
+  ManagerLoop& manager() { return *manager_; }
+  testing::Unit& rtpu(std::string_view name) { return *rtpus_[index(name)]; }
+  KeeperPage& page() { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
+  DecisionPage& decision_page() { return *reinterpret_cast<DecisionPage*>(decision_.bytes().data()); }
+  TaskId task(std::string_view name) const {
+    for (std::size_t t = 0; t < spec().tasks.size(); ++t)
+      if (spec().tasks[t].name == name) return TaskId(t);
+    ADD_FAILURE() << "no task " << name;
+    return TaskId(std::size_t{0});
+  }
+  /// As the manager shows it.
+  State state(std::string_view name) { return manager_ ? manager_->world().state(task(name)) : State::kNotCreated; }
+  /// The names of the tasks that are ON, in the order of the description, a blank after each.
+  std::string on() {
+    std::string names;
+    for (const TaskSpec& task : spec().tasks)
+      if (state(task.name) == State::kOn) names += std::string(task.name) + " ";
+    return names;
+  }
+  /// The value of a variable of one number, as `get` answers it.
+  double value(const std::string& variable) {
+    const control::Json values = result("get", {{"variables", {variable}}})["values"];
+    return values[variable]["value"].get<double>();
+  }
+  void set(const std::string& variable, double value) { (void)result("set", {{"values", {{variable, value}}}}); }
+  control::Json receipts() { return result("receipts")["receipts"]; }
+  /// "to end" of each receipt, a line each.
+  std::string ends() {
+    std::string text;
+    for (const control::Json& one : receipts())
+      text += one["to"].get<std::string>() + " " + one["end"].get<std::string>() + "\n";
+    return text;
+  }
+  /// The texts of all events of a kind, a line each, with the name of the task first if there is one.
+  std::string events(std::string_view kind) {
+    std::string text;
+    const ManagerState& world = manager_->world();
+    for (std::uint64_t n = world.log.first(); n <= world.log.last(); ++n) {
+      const LoggedEvent& event = world.log.at(n);
+      if (event.kind != kind) continue;
+      text += (event.task.is_valid() ? world.name(event.task) + ": " : "") + event.text + "\n";
+    }
+    return text;
+  }
+  std::optional<std::int32_t> end_asked;  ///< the exit code with which the manager asked the keeper to end everything
+
+ private:
+  static Bundle with_library(const std::string& description) {
+    static const Library library = test_library();
+    Bundle bundle{"0.1.0", "test.yaml", description, {}, {}, {}, library};
+    return bundle;
+  }
+  /// Objects stay open for all tests of the process: what a component keeps in static variables is shared.
+  const chimera_component* component_of(const TaskSpec& task) {
+    static std::map<std::string, const chimera_component*> opened;
+    const std::string name(task.component);
+    if (const auto found = opened.find(name); found != opened.end()) return found->second;
+    const auto object = SharedObject::open(bundle_.library.find(name)->object_file);
+    EXPECT_TRUE(object) << object.error().message.c_str();
+    return opened[name] = *object->component(name);
+  }
+  static int again(int descriptor) { return ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0); }
+  std::uint32_t index(std::string_view rtpu) const {
+    for (std::uint32_t r = 0; r < n_rtpus(); ++r)
+      if (spec().rtpus[r].name == rtpu) return r;
+    ADD_FAILURE() << "no rtpu " << rtpu;
+    return 0;
+  }
+
+  void step() {
+    clock_.advance(microseconds(100));
+    for (std::uint32_t r = 0; r < n_rtpus(); ++r)
+      if (page().alive[r] != 0) step(r);
+    page().beats.fetch_add(1);
+    if (manager_ == nullptr) return;
+    if (!manager_->step(now())) return kill_manager();
+    if (manager_->receipts().unfiled() > 0) manager_->finish();  // the thread that files is not stepped
+    if (!keeper_is_stopped_) keep();
+  }
+  void step(std::uint32_t r) {
+    testing::Unit& unit = *rtpus_[r];
+    unit.segment.block.head().attended.fetch_add(1);
+    unit.serve();
+    while (unit.executive->run(now() - page().origin) == RunEnd::kTaskStopped) {
+      Releases& releases = unit.executive->releases();
+      unit.edge->stop_all(releases.signals(), releases.settlement().stopped_by(), now());
+      releases.settlement().forget_stop();
+    }
+    if (unit.edge->unit_end().is_over()) die(r, SIGTERM);
+  }
+
+  void start_rtpu(std::uint32_t r) {
+    const std::uint32_t incarnation = rtpus_[r] == nullptr ? 1 : rtpus_[r]->segment.block.head().incarnation + 1;
+    testing::Unit::decision_now = now();
+    ended_.erase(r);
+    rtpus_[r] = std::make_unique<testing::Unit>(spec(), components_, r, incarnation, decision_page(), page());
+    BlockHead& head = rtpus_[r]->segment.block.head();
+    std::strcpy(head.grant, "as an ordinary process");
+    head.phase = PeerPhase::kServing;
+    for (std::uint32_t other = 0; other < n_rtpus(); ++other) {
+      if (other == r || rtpus_[other] == nullptr || ended_.contains(other)) continue;
+      show(r, other);
+      show(other, r);
+    }
+    if (manager_segment_.fd >= 0) show_manager(r);
+  }
+  void show(std::uint32_t to, std::uint32_t of) {
+    const testing::OwnSegment& segment = rtpus_[of]->segment;
+    EXPECT_TRUE(rtpus_[to]->peers->offer(of, segment.block.head().incarnation, segment.region.descriptor()));
+    Doorbell(decision_page().bells[to].word).ring();
+  }
+  void show_manager(std::uint32_t to) {
+    EXPECT_TRUE(rtpus_[to]->peers->offer(n_rtpus(), manager_incarnation_, manager_segment_.fd));
+    Doorbell(decision_page().bells[to].word).ring();
+  }
+  void die(std::uint32_t r, int signal) {
+    page().alive[r] = 0;
+    decision_page().changes.fetch_add(1);
+    for (std::uint32_t other = 0; other < n_rtpus(); ++other) Doorbell(decision_page().bells[other].word).ring();
+    ended_[r] = KeeperMessage{.kind = KeeperMessage::Kind::kEnded,
+                              .index = r,
+                              .incarnation = rtpus_[r]->segment.block.head().incarnation,
+                              .code = signal,
+                              .by_signal = 1,
+                              .at = now()};
+    if (channel_.is_open()) EXPECT_TRUE(channel_.send(bytes_of(ended_[r])));
+  }
+  void tell(KeeperMessage::Kind kind, std::uint32_t index, std::uint32_t incarnation, int passed = -1) {
+    const KeeperMessage message{
+        .kind = kind, .index = index, .incarnation = incarnation, .pid = ::getpid(), .at = now()};
+    EXPECT_TRUE(channel_.send(bytes_of(message), passed));
+  }
+  void introduce(std::uint32_t r) {
+    const testing::OwnSegment& segment = rtpus_[r]->segment;
+    const std::uint32_t incarnation = segment.block.head().incarnation;
+    if (!ended_.contains(r)) tell(KeeperMessage::Kind::kStarted, r, incarnation);
+    tell(KeeperMessage::Kind::kPeer, r, incarnation, segment.region.descriptor());
+    if (ended_.contains(r)) EXPECT_TRUE(channel_.send(bytes_of(ended_[r])));
+  }
+  /// Carries out what the manager asked the keeper for.
+  void keep() {
+    KeeperMessage message;
+    int passed = -1;
+    while (channel_.receive(bytes_of(message), passed) == Channel::Got::kMessage) {
+      if (message.kind == KeeperMessage::Kind::kSegment) {
+        manager_segment_ = OwnedDescriptor(passed);
+        page().alive[n_rtpus()] = manager_incarnation_;
+        for (std::uint32_t r = 0; r < n_rtpus(); ++r)
+          if (!ended_.contains(r)) show_manager(r);
+      } else if (message.kind == KeeperMessage::Kind::kStart && ended_.contains(message.index)) {
+        start_rtpu(message.index);
+        introduce(message.index);
+      } else if (message.kind == KeeperMessage::Kind::kEndChild && !ended_.contains(message.index)) {
+        die(message.index, SIGKILL);
+      } else if (message.kind == KeeperMessage::Kind::kEnd) {
+        end_asked = message.code;
+      }
+    }
+  }
+
+  SteppedClock clock_{seconds(1000)};
+  char state_[40] = "/tmp/chimera_stepped_XXXXXX";
+  Bundle bundle_;
+  std::optional<Configuration> configuration_;
+  std::vector<const chimera_component*> components_;
+  FrozenBytes image_, frozen_bundle_;
+  SharedPages decision_;
+  MemoryRegion keeper_;
+  std::vector<std::unique_ptr<testing::Unit>> rtpus_;
+  std::map<std::uint32_t, KeeperMessage> ended_;  // by rtpu: the message about its death, until it is started again
+  Channel channel_;
+  OwnedDescriptor manager_segment_{-1};
+  std::uint32_t manager_incarnation_ = 0;
+  bool keeper_is_stopped_ = false;
+  std::unique_ptr<ManagerLoop> manager_;
+  std::unique_ptr<ManagerBackend> backend_;
+};
+
+}  // namespace chimera::manager
