@@ -5,7 +5,7 @@ import subprocess
 import time
 
 WORK = "s = 0\nfor i in range(5_000_000): s += i * i"
-USUAL_S = 0.35  # on the build machine, where it takes 0.25 to 0.87: decision 0067
+USUAL_S = 0.35  # on the build machine, where it takes 0.25 to 0.87: decision 0004
 PYTHON = "/usr/bin/python3"  # Debian's
 N_PROGRAMS, TIMES = 2, 3
 

@@ -146,7 +146,7 @@ def judge_skips(cases):
 
 def timed(share, seconds, cases, slower=1.0):
     """Prints the share's line. One that took too long is a failed case on the build machine, elsewhere a remark. Where
-    the machine was slower than usual, by that factor, the share has as much more time (decision 0067)."""
+    the machine was slower than usual, by that factor, the share has as much more time (decision 0004)."""
     over = seconds > share.limit_min * 60 * slower
     counts = "" if share is COMPILE else f"  {len(cases)} tests"
     limit = clock(share.limit_min * 60) + (f" x {slower:.1f}, the machine is slow" if slower > 1.1 else "")
