@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process that writes the safe frames of real-time units that are dead: docs/decisions/0060-drill-and-guard.md and
+// The process that writes the safe frames of real-time units that are dead: docs/design/guard.md and
 // docs/formats/processes.md, "The guard". It runs no code of a component and outlives the keeper.
 #pragma once
 

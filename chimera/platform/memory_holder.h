@@ -4,7 +4,7 @@
 // Linux takes the memory of a killed process down before its pidfd becomes readable: milliseconds when it is locked,
 // on the processor and at the priority of whichever thread ends last, even a SCHED_FIFO one. Memory that somebody else
 // still has is not taken down: the death is known at once, and the work is done later by somebody with time
-// (docs/decisions/0008-quick-death.md).
+// (docs/design/guard.md).
 #pragma once
 
 namespace chimera {

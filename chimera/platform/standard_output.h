@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether what a program printed has reached its place. A write that fails is an error of the program, not a signal
-// that ends it, and is told where it still can be. docs/decisions/0028-output-is-not-control.md.
+// that ends it, and is told where it still can be. docs/decisions/0023-exit-code-of-a-run.md.
 #pragma once
 
 #include <cstdio>
