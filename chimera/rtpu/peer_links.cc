@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 
 namespace chimera {
 namespace {
