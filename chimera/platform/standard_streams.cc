@@ -46,7 +46,7 @@ void hold_standard_streams() noexcept {
 }
 
 const char* why_lost_text(int why) noexcept {
-  if (why == kNobodyReads) return "nobody reads it";
+  if (why == kNobodyReads) return "no process reads it";
   const char* text = ::strerrordesc_np(why);
   return text == nullptr ? "the reason is not known" : text;
 }

@@ -80,7 +80,7 @@ TEST(StandardOutput, ReportsAFileThatMayNotGrowWithoutASignal) {
             }),
             0);
   EXPECT_STREQ(why_lost_text(EFBIG), "File too large");
-  EXPECT_STREQ(why_lost_text(kNobodyReads), "nobody reads it");
+  EXPECT_STREQ(why_lost_text(kNobodyReads), "no process reads it");
 }
 
 TEST(Terminal, PipeIsNoTerminalAndHasTheSizeFromTheEnvironment) {
