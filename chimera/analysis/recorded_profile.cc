@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/platform/part_file.h"
+#include "chimera/platform/file.h"
 #include "chimera/text/json_cursor.h"
 #include "chimera/text/json_text.h"
 

@@ -13,10 +13,10 @@
 #include "chimera/control/methods.h"
 #include "chimera/control/request.h"
 #include "chimera/control/running.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/descriptor.h"
 #include "chimera/platform/local_socket.h"
-#include "chimera/platform/readiness.h"
-#include "chimera/platform/socket_folder.h"
+#include "chimera/platform/socket_place.h"
 #include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"
 

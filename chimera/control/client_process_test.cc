@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "chimera/control/testing/control_server_rig.h"
 #include "chimera/control/running.h"
-#include "chimera/platform/socket_folder.h"
+#include "chimera/control/testing/control_server_rig.h"
+#include "chimera/platform/socket_place.h"
 
 namespace chimera::control {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera::control {
 namespace {

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/platform/file_state.h"
-#include "chimera/platform/line_file.h"
+#include "chimera/platform/file.h"
 
 namespace chimera::control {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "chimera/manager/manager_state.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 
 namespace chimera::manager {
 namespace {

@@ -9,9 +9,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/owned_descriptor.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/process_state.h"
+#include "chimera/platform/shared_memory.h"
 
 namespace chimera::manager {
 namespace {

@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "chimera/manager/subscription_feeds.h"
 #include "chimera/manager/large_readings.h"
 #include "chimera/manager/operator_acts.h"
 #include "chimera/manager/status_json.h"
+#include "chimera/manager/subscription_feeds.h"
 #include "chimera/manager/value_json.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera::manager {
 

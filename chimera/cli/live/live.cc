@@ -13,7 +13,7 @@
 #include "chimera/cli/live/terminal.h"
 #include "chimera/cli/live/top.h"
 #include "chimera/cli/live/watch.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/units/quantity.h"
 
 namespace chimera::cli {

@@ -8,15 +8,15 @@
 #include <nlohmann/json.hpp>
 
 #include "chimera/analysis/recorded_profile.h"
+#include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/message.h"
 #include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/event_lines.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/save_file.h"
 #include "chimera/cli/live/status_text.h"
-#include "chimera/base/hosted/terminal_text.h"
-#include "chimera/base/message.h"
 #include "chimera/cli/live/words.h"
-#include "chimera/platform/terminal.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 

@@ -15,7 +15,8 @@
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/operator_text.h"
 #include "chimera/control/state_folder.h"
-#include "chimera/platform/file_state.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/file.h"
 
 namespace chimera::cli {
 namespace {

@@ -16,7 +16,7 @@
 #include "chimera/cli/live/sketch.h"
 #include "chimera/cli/live/sparkline.h"
 #include "chimera/cli/live/terminal.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 

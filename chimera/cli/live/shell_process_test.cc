@@ -28,7 +28,7 @@
 #include "chimera/cli/live/interactive.h"
 #include "chimera/cli/live/testing/test_answers.h"
 #include "chimera/control/control_server.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 
 namespace chimera::cli {
 namespace {

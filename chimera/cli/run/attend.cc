@@ -21,9 +21,9 @@
 #include "chimera/cli/run/run_report.h"
 #include "chimera/cli/run/run_session.h"
 #include "chimera/cli/run/script_text.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/text/json_text.h"
 
 namespace chimera::cli {

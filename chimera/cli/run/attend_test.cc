@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "chimera/control/control_server.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 
 namespace chimera::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 
 namespace chimera::cli {
 namespace {

@@ -19,7 +19,7 @@
 #include "chimera/load/shared_object.h"
 #include "chimera/manager/manager_backend.h"
 #include "chimera/manager/testing/test_bundle.h"
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/descriptor.h"
 #include "chimera/rtpu/testing/test_units.h"
 
 namespace chimera::manager {

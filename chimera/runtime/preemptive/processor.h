@@ -9,8 +9,7 @@
 
 #include <algorithm>
 
-#include "chimera/platform/doorbell.h"
-#include "chimera/platform/section.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/preemptive/job_checks.h"
 #include "chimera/runtime/preemptive/processor_share.h"
 #include "chimera/runtime/preemptive/ready_jobs.h"
