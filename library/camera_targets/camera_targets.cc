@@ -14,17 +14,16 @@ namespace {
 
 struct CameraTargets : library::CameraPorts {
   Out<double[3]> ball{"ball", "m", frame = "base", doc = "Where the ball is."};
-  Out<double[3]> feature{"feature", "1", doc = "Its picture: right, down, diameter in pixels; 0 while out of sight."};
+  Out<double[3]> feature{"feature", "1",
+                         doc = "Place (right, down) and diameter in the picture, in pixels; 0 out of sight."};
   Out<bool> in_sight{"in_sight", "1", initial = false, doc = "The ball is in the picture."};
-  Out<std::int64_t> sent{"sent", "1", initial = 0, doc = "Features given to the link."};
-  InConst<double[3]> centre{"centre", "m", frame = "base", doc = "Of the ball's path."};
+  Out<std::int64_t> sent{"sent", "1", initial = 0, doc = "Features sent."};
+  InConst<double[3]> centre{"centre", "m", frame = "base", doc = "Middle of the path of the ball."};
   InConst<double[3]> amplitude{"amplitude", "m", initial = 0.0, range(0, 10), frame = "base", doc = "Along each axis."};
   InConst<double[3]> frequency{"frequency", "Hz", initial = 0.0, range(0, 10), doc = "Along each axis."};
   InConst<double[3]> phase{"phase", "rad", initial = 0.0, doc = "Along each axis."};
-  InConst<double> noise{"noise", "1", initial = 0.0, range(0, 20),
-                        doc = "Pixels: each number of a feature is off by at most this."};
-  Resource link{"link", safe_state, shared,
-                doc = "Where features go: udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
+  InConst<double> noise{"noise", "1", initial = 0.0, range(0, 20), doc = "Largest error of a number, in pixels."};
+  Resource link{"link", safe_state, shared, doc = "udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
 
   void init() {
     reinit();
@@ -74,7 +73,7 @@ struct CameraTargets : library::CameraPorts {
   std::uint64_t random_ = 1;
 };
 
-CHIMERA_COMPONENT(CameraTargets, "camera_targets", "Simulated vision: a ball before a camera, its features sent away.",
+CHIMERA_COMPONENT(CameraTargets, "camera_targets", "Simulated vision: sends the features of a ball before a camera.",
                   rate = 30.0, source = "1994 paper, section 3.4: the visual servoing subsystem");
 
 }  // namespace

@@ -13,13 +13,12 @@ namespace chimera::library {
 /// The ports and methods of a car that a component derives from. It adds the in-vars of the driver and cycle().
 struct RollingCar {
   Out<double> xw{"xw", "rad", doc = "Angle of a wheel since init, forward positive."};
-  Out<double> speed{"speed", "km/h", doc = "True speed, for judging; no module of the control reads it."};
+  Out<double> speed{"speed", "km/h", doc = "True speed, for monitors only."};
   Out<double> grade{"grade", "1", doc = "Rise over run where the car is."};
-  Out<bool> coasts{"coasts", initial = false, safe_state,
-                   doc = "The flag is up: the car rolls, nobody drives or brakes."};
+  Out<bool> coasts{"coasts", initial = false, safe_state, doc = "The flag is up and the car rolls freely."};
   InConst<double> mass{"mass", "kg", initial = 1600.0, range(500, 40000), doc = "With load."};
-  InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Of the tyre under load."};
-  InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "At init."};
+  InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Tyre under load."};
+  InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "Speed at init."};
   Resource road{"road", shared, doc = "Script of metres:grade, straight lines between; \"0:0\" is level."};
 
   Outcome init() {

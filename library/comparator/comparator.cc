@@ -10,22 +10,21 @@ namespace {
 
 struct Comparator {
   In<double[]> x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  In<double[]> level{"level", "U", "[n...<=64]", doc = "What it is compared with: of the operator, or a signal."};
-  InConst<Text<16>> when{"when", "1", initial = "above",
-                         doc = "y is true above or below the level, inside or outside its band."};
+  In<double[]> level{"level", "U", "[n...<=64]", doc = "Level to compare with."};
+  InConst<Text<16>> when{"when", "1", initial = "above", doc = "above, below, inside or outside."};
   InConst<double[]> width{"width",
                           "U",
                           "[n...<=64]",
                           initial = 0.0,
                           range(0, library::kNoLimit),
-                          doc = "From the level to each end of the band; for inside and outside."};
+                          doc = "Half width of the band."};
   InConst<double[]> hysteresis{"hysteresis",
                                "U",
                                "[n...<=64]",
                                initial = 0.0,
                                range(0, library::kNoLimit),
-                               doc = "From where y becomes true to where it becomes false, its middle the threshold."};
-  Out<bool[]> y{"y", "1", "[n...<=64]", initial = false, doc = "Whether it is so."};
+                               doc = "Distance between the thresholds of true and false."};
+  Out<bool[]> y{"y", "1", "[n...<=64]", initial = false, doc = "Result."};
 
   Outcome init() {
     if (*when == "above")

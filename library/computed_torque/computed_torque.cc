@@ -15,15 +15,15 @@ struct ComputedTorque : library::DhPorts {
   In<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured velocities."};
   Out<double[]> tau{"tau", "N.m", "[ndof<=10]", frame = "joint", initial = 0.0, safety,
                     doc = "Torque for each joint, within tau_max."};
-  InConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive, a link a joint, base to tip."};
+  InConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive of each link, base to tip."};
   InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", range(0, 1e6), frame = "joint",
-                            doc = "What the drives can give."};
+                            doc = "Largest torque of the drives."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 20.0, range(0, 500),
                             doc = "Angular frequency at which an error decays; 0: no feedback."};
-  InConst<double> damping_ratio{"damping_ratio", "1", initial = 1.0, range(0, 10), doc = "1: without overshoot."};
-  InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 1000), doc = "A point at the tool."};
+  InConst<double> damping_ratio{"damping_ratio", "1", initial = 1.0, range(0, 10), doc = "1: no overshoot."};
+  InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 1000), doc = "Point mass at the tool."};
   InConst<double[3]> gravity{"gravity", "m/s2", initial = {0.0, 0.0, -9.81}, frame = "base",
-                             doc = "Acceleration of what falls."};
+                             doc = "Acceleration of gravity."};
 
   Outcome init() {
     const DhChain chain = read_chain();

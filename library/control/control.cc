@@ -10,13 +10,13 @@ using namespace chimera;
 namespace {
 
 struct Control {
-  In<double> vr{"vr", "m/s", doc = "Speed to hold; 0: the control is off."};
+  In<double> vr{"vr", "m/s", doc = "Speed to hold; 0: off."};
   In<double> vz{"vz", "m/s", doc = "Measured speed."};
-  Out<double> fd{"fd", "N", initial = 0.0, safety, range(-20000, 20000), doc = "Force wanted; below 0 to brake."};
+  Out<double> fd{"fd", "N", initial = 0.0, safety, range(-20000, 20000), doc = "Wanted force; below 0 brakes."};
   InConst<double> kp{"kp", "N.s/m", initial = 2500.0, range(0, 1e6), doc = "Gain of the speed error."};
   InConst<double> ki{"ki", "N/m", initial = 600.0, range(0, 1e6), doc = "Gain of its integral."};
-  InConst<double> drive_max{"drive_max", "N", initial = 2280.0, range(0, 20000), doc = "The most it asks for."};
-  InConst<double> brake_max{"brake_max", "N", initial = 4000.0, range(0, 20000), doc = "The most it brakes with."};
+  InConst<double> drive_max{"drive_max", "N", initial = 2280.0, range(0, 20000), doc = "Largest force."};
+  InConst<double> brake_max{"brake_max", "N", initial = 4000.0, range(0, 20000), doc = "Largest braking force."};
 
   Outcome init() {
     const char* const wrong = library::SpeedControl::fault_in(gains());

@@ -12,9 +12,9 @@ constexpr double kMostCount = 9007199254740992.0;  // 2^53: a number of a descri
 struct EdgeCounter {
   In<bool[]> up{"up", "1", "[n...<=64]", doc = "Each rising edge counts one up."};
   In<bool[]> down{"down", "1", "[n...<=64]", doc = "Each rising edge counts one down."};
-  In<bool[]> reset{"reset", "1", "[n...<=64]", doc = "While it is true the count is the preset."};
+  In<bool[]> reset{"reset", "1", "[n...<=64]", doc = "While true, the count is the preset."};
   InConst<std::int64_t[]> preset{
-      "preset", "1", "[n...<=64]", initial = 0, range(-kMostCount, kMostCount), doc = "Where it begins."};
+      "preset", "1", "[n...<=64]", initial = 0, range(-kMostCount, kMostCount), doc = "First count."};
   InConst<std::int64_t[]> low{
       "low", "1", "[n...<=64]", initial = -kMostCount, range(-kMostCount, kMostCount), doc = "Least count."};
   InConst<std::int64_t[]> high{"high",
@@ -25,9 +25,9 @@ struct EdgeCounter {
                                at_least = "low",
                                doc = "Greatest count."};
   InConst<bool> wraps{"wraps", "1", initial = false,
-                      doc = "One above high is low, and one below low is high; else it stands there."};
+                      doc = "At one end the count continues at the other; false: it holds."};
   Out<std::int64_t[]> count{"count", "1", "[n...<=64]", initial = 0, doc = "The count."};
-  Out<bool[]> at_high{"at_high", "1", "[n...<=64]", initial = false, doc = "The count is high."};
+  Out<bool[]> at_high{"at_high", "1", "[n...<=64]", initial = false, doc = "The count is at high."};
 
   Outcome init() {
     is_preset_ = false;

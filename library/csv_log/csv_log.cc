@@ -29,14 +29,14 @@ constexpr std::size_t kTextBytes = 1 << 16;     // gathered for one write
 constexpr std::uint64_t kMostBytes = 1u << 29;  // of all rows that may wait
 
 struct CsvLog {
-  Many<In<Any[]>>       in{"in*", "U", "[n...<=64]", type = "T", doc = "What is kept: numbers or truth values."};
+  Many<In<Any[]>>       in{"in*", "U", "[n...<=64]", type = "T", doc = "Numbers or truth values."};
   InConst<std::int32_t> capacity{"capacity", "1", initial = 10000, range(1, 1000000),
                                  doc = "Rows that may wait for the disk."};
-  Out<std::int64_t>     rows{"rows", "1", initial = 0, doc = "Rows that found room: in the file, or on the way."};
-  Out<std::int64_t>     lost{"lost", "1", initial = 0, doc = "Rows that found no room."};
+  Out<std::int64_t>     rows{"rows", "1", initial = 0, doc = "Rows in the file or in the ring."};
+  Out<std::int64_t>     lost{"lost", "1", initial = 0, doc = "Rows dropped."};
   Out<std::int32_t>     disk_error{"disk_error", "1", initial = 0,
-                                   doc = "0: the disk takes what it is given; else the error number of its refusal."};
-  Resource              file{"file", safe_state, doc = "The file to write; what was in it is lost."};
+                                   doc = "Error number while the disk refuses data; 0: none."};
+  Resource              file{"file", safe_state, doc = "File to write; old content is lost."};
 
   void init(Cycle c) {
     check_inputs();
@@ -210,6 +210,6 @@ struct CsvLog {
   int file_ = -1;
 };
 
-CHIMERA_COMPONENT(CsvLog, "csv_log", "Writes its inputs of every cycle to a CSV file, beside the cycles.");
+CHIMERA_COMPONENT(CsvLog, "csv_log", "Writes its inputs of every cycle to a CSV file, without delaying a cycle.");
 
 }  // namespace

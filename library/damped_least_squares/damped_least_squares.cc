@@ -13,15 +13,14 @@ struct DampedLeastSquares {
   In<Matrix<double>> jv{"jv", "m/rad", "[3][ndof<=10]", frame = "base", doc = "Tool velocity by joint speeds."};
   In<Matrix<double>> jw{"jw", "1", "[3][ndof<=10]", frame = "base", doc = "Angular tool velocity by joint speeds."};
   Out<double[]> qd_ref{"qd_ref", "rad/s", "[ndof<=10]", initial = 0.0, frame = "joint", doc = "Joint speeds."};
-  Out<double> manipulability{"manipulability", "1", initial = 0.0,
-                             doc = "sqrt(det J J^T): 0 where the arm is singular."};
+  Out<double> manipulability{"manipulability", "1", initial = 0.0, doc = "sqrt(det J J^T): 0 at a singular pose."};
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
-  InConst<double> gain{"gain", "1/s", initial = 10.0, range(0, 100), doc = "How fast an error of the tool decays."};
-  InConst<double> damping{"damping", "1", initial = 0.05, range(1e-6, 1), doc = "Where the arm is singular."};
+  InConst<double> gain{"gain", "1/s", initial = 10.0, range(0, 100),
+                       doc = "Rate at which an error of the tool decays."};
+  InConst<double> damping{"damping", "1", initial = 0.05, range(1e-6, 1), doc = "Damping at a singular pose."};
   InConst<double> threshold{"threshold", "1", initial = 0.02, range(1e-9, 10),
                             doc = "Manipulability below which damping begins."};
-  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 2.0, range(0.01, 100),
-                              doc = "Of the fastest joint; the others keep their share."};
+  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 2.0, range(0.01, 100), doc = "Largest joint speed."};
 
   void init() { reinit(); }
   void reinit() {

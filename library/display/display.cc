@@ -15,13 +15,11 @@ namespace {
 constexpr std::size_t kRowsWaiting = 64;
 
 struct Display {
-  Many<In<Any[]>>     in{"in*", "U", "[n...<=64]", type = "T",
-                         doc = "What is shown: numbers or truth values of one unit."};
-  InConst<Text<32>>   title{"title", "1", initial = "", doc = "What every line begins with."};
+  Many<In<Any[]>>     in{"in*", "U", "[n...<=64]", type = "T", doc = "Numbers or truth values of one unit."};
+  InConst<Text<32>>   title{"title", "1", initial = "", doc = "Start of every line."};
   InConst<std::int32_t> digits{"digits", "1", initial = 6, range(1, 17), doc = "Significant digits."};
-  Out<std::int64_t>   lines{"lines", "1", initial = 0, doc = "Lines that were handed to the printer."};
-  Out<std::int64_t>   lost{"lost", "1", initial = 0,
-                           doc = "Lines that found no room; lines + lost is the number of cycles."};
+  Out<std::int64_t>   lines{"lines", "1", initial = 0, doc = "Lines printed or in the ring."};
+  Out<std::int64_t>   lost{"lost", "1", initial = 0, doc = "Lines dropped; lines + lost is the number of cycles."};
 
   Outcome init() {
     if (in.size() == 0) return fault("there is nothing to show: name at least one input");
@@ -78,6 +76,6 @@ struct Display {
   Nanoseconds origin_;
 };
 
-CHIMERA_COMPONENT(Display, "display", "Prints values, beside the cycles.", rate = 2.0);
+CHIMERA_COMPONENT(Display, "display", "Prints values, without delaying a cycle.", rate = 2.0);
 
 }  // namespace

@@ -17,27 +17,26 @@ constexpr double kLongest = 86400;
 
 struct Encoder {
   Many<In<Any[]>, 3> in{"in*", "1", "[n...<=64]", type = "T",
-                        doc = "The tracks A and B, or a count; behind them the index, where there is one."};
-  InConst<double[]> span{"span", "U", "[n...<=64]", doc = "The way of so many counts; below 0 turns the direction."};
+                        doc = "Tracks A and B, or a count; then the optional index."};
+  InConst<double[]> span{"span", "U", "[n...<=64]", doc = "Way of `counts` counts; below 0 reverses the direction."};
   InConst<std::int64_t> counts{"counts", "1", initial = 1, range(1, kMostCount),
-                               doc = "Counts to a span; two tracks give four to a line."};
+                               doc = "Counts in a span; tracks give four to a line."};
   InConst<std::int64_t> wrap{"wrap", "1", initial = 0, range(0, kMostCount),
-                             doc = "Where a count begins anew: 65536 of 16 bits; 0: int32 at 2^32, else not."};
+                             doc = "Counts until a count repeats: 65536 of 16 bits; 0: 2^32 of int32, else none."};
   InConst<bool> is_absolute{"is_absolute", "1", initial = false,
-                            doc = "A count tells where it is when the task goes on; else the position goes on."};
+                            doc = "At on the position is that of the count; false: it continues."};
   InConst<Text<16>> zero_at{"zero_at", "1", initial = "first",
-                            doc = "The index that makes the position 0: the first since on, or every."};
+                            doc = "Index that sets the position to 0: first (since on) or every."};
   InConst<double> window{"window", "s", initial = 0.0, range(0, kLongest),
-                         doc = "The velocity is measured over at least this time; longer is finer and later."};
+                         doc = "Least time over which the velocity is measured."};
   InConst<double> standstill{"standstill", "s", initial = 0.1, range(1e-6, kLongest),
-                             doc = "So long without a count, the velocity is 0."};
-  Out<double[]> position{"position", "U", "[n...<=64]", initial = 0.0, doc = "Where it is."};
-  Out<double[]> velocity{"velocity", "U/s", "[n...<=64]", initial = 0.0, doc = "How fast it moves."};
+                             doc = "Time without a count after which the velocity is 0."};
+  Out<double[]> position{"position", "U", "[n...<=64]", initial = 0.0, doc = "Position."};
+  Out<double[]> velocity{"velocity", "U/s", "[n...<=64]", initial = 0.0, doc = "Velocity."};
   Out<std::int64_t[]> count{"count", "1", "[n...<=64]", initial = 0, doc = "The position in counts."};
   Out<std::int64_t[]> errors{"errors", "1", "[n...<=64]", initial = 0,
                              doc = "Cycles in which both tracks changed: too fast, or a broken wire."};
-  Out<bool[]> is_referenced{"is_referenced", "1", "[n...<=64]", initial = false,
-                            doc = "The index was met since the task went on."};
+  Out<bool[]> is_referenced{"is_referenced", "1", "[n...<=64]", initial = false, doc = "The index was seen since on."};
 
   Outcome init() {
     const Outcome inputs = judge_inputs();

@@ -15,9 +15,9 @@ constexpr double kNeverSeconds = 1e9;
 struct Faulty {
   Out<double> y{"y", "1", initial = 0.0, safety, range(0, 1e12), doc = "Cycles since on."};
   InConst<double> throw_after{"throw_after", "s", initial = kNeverSeconds, range(0, 1e9),
-                              doc = "Throws an exception in every cycle from then on."};
+                              doc = "Time after which every cycle throws an exception."};
   InConst<double> nan_after{"nan_after", "s", initial = kNeverSeconds, range(0, 1e9),
-                            doc = "Puts NaN on its safety port in every cycle from then on."};
+                            doc = "Time after which every cycle writes NaN to y."};
 
   void on(Cycle c) {
     from_ = c.now();

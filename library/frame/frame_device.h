@@ -16,27 +16,23 @@
 namespace chimera::library {
 
 struct FrameDevice {
-  In<double[]> command{"command", "U", "[m<=16]", doc = "What is sent to the device in every cycle."};
-  Out<double[]> state{"state", "X", "[fields<=16]", initial = 0.0, doc = "What the device sent last."};
-  Out<double> age{"age", "s", initial = 0.0, doc = "Since the last good frame came; since on before the first."};
+  In<double[]> command{"command", "U", "[m<=16]", doc = "Values to send in every cycle."};
+  Out<double[]> state{"state", "X", "[fields<=16]", initial = 0.0, doc = "Last values of the device."};
+  Out<double> age{"age", "s", initial = 0.0, doc = "Time since the last good frame, or since on."};
   Out<bool> connected{"connected", initial = false, doc = "A good frame came within the timeout."};
   Out<std::int64_t> received{"received", "1", initial = 0, doc = "Good frames."};
   Out<std::int64_t> wrong{"wrong", "1", initial = 0, doc = "Frames with a wrong CRC or a value that is not finite."};
-  Out<bool> idled{"idled", initial = false, safe_state,
-                  doc = "The flag is up and a frame with `idle` has gone out since."};
-  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Commands that were not finite, or found the line full."};
+  Out<bool> idled{"idled", initial = false, safe_state, doc = "The flag is up and a frame with `idle` was sent since."};
+  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Commands not sent: not finite, or the line was full."};
   InConst<std::int32_t> fields{"fields", "1", initial = 1, range(1, 16), doc = "Values in a frame of the device."};
-  InConst<Text<8>> form{"form", initial = "float32", one_of = "float32 int16",
-                        doc = "How a value stands in a frame."};
-  InConst<double> command_resolution{"command_resolution", "U", initial = 1.0,
-                                     doc = "Command that is a 1 in the frame."};
-  InConst<double> state_resolution{"state_resolution", "X", initial = 1.0, doc = "State that is a 1 in the frame."};
+  InConst<Text<8>> form{"form", initial = "float32", one_of = "float32 int16", doc = "Form of a value in a frame."};
+  InConst<double> command_resolution{"command_resolution", "U", initial = 1.0, doc = "Command for a 1 in the frame."};
+  InConst<double> state_resolution{"state_resolution", "X", initial = 1.0, doc = "State for a 1 in the frame."};
   InConst<double> limit{"limit", "U", initial = 1e6, range(0, 1e9), at_least = "idle",
-                        doc = "Commands are held within +- limit."};
-  InConst<double> idle{"idle", "U", initial = 0.0,
-                       doc = "What is sent at off and in place of commands that mean nothing."};
+                        doc = "Commands are cut at +- limit."};
+  InConst<double> idle{"idle", "U", initial = 0.0, doc = "Command at off, after the timeout and while the flag is up."};
   InConst<double> timeout{"timeout", "s", initial = 0.1, range(0.001, 3600),
-                          doc = "Silence after which the device is lost."};
+                          doc = "Silence after which the device counts as lost."};
 
  protected:
   /// Checks the constants. Context: setup; wait-free.

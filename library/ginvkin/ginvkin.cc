@@ -9,22 +9,19 @@ namespace {
 
 struct Ginvkin : library::DhPorts {
   In<Pose> xr{"xr", frame = "base", doc = "Reference tool pose."};
-  In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint",
-                 doc = "Measured joint positions: where the search begins at on, unless q_ref is handed over."};
+  In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
   Out<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                       doc = "Joint positions for xr, near the last ones."};
-  Out<double> residual{"residual", "1", initial = 0.0,
-                       doc = "What is missing where the search ends: the larger of metres and radians; large "
-                             "when xr is out of reach."};
-  Out<bool> is_reachable{"is_reachable", "1", initial = true,
-                         doc = "The residual is within tolerance; false: xr is out of reach, or beyond a joint limit."};
-  InConst<double> tolerance{"tolerance", "1", initial = 1e-6, range(1e-9, 0.1), doc = "Metres and radians."};
+  Out<double> residual{"residual", "1", initial = 0.0, doc = "Remaining error: the larger of metres and radians."};
+  Out<bool> is_reachable{"is_reachable", "1", initial = true, doc = "The residual is within tolerance."};
+  InConst<double> tolerance{"tolerance", "1", initial = 1e-6, range(1e-9, 0.1),
+                            doc = "Largest residual of a reachable pose."};
   InConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", initial = -1e6, frame = "joint",
                           doc = "Lower joint limits; -1e6 for none."};
   InConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", initial = 1e6, at_least = "q_min", frame = "joint",
                           doc = "Upper joint limits; 1e6 for none."};
   InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1e6, range(0.01, 1e6),
-                              doc = "Of the fastest joint of q_ref, the others keep their share; 1e6 for none."};
+                              doc = "Largest joint speed of q_ref; 1e6 for none."};
 
   Outcome init() {
     read_chain();

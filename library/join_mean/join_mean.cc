@@ -6,9 +6,9 @@
 using namespace chimera;
 
 struct JoinMean {
-  Many<In<double>>      in{"in*", "U", doc = "the values to join"};
-  Many<InConst<double>> weight{"weight*", "1", initial = 1.0, range(0, 1e6), doc = "how much each value counts"};
-  Out<double>           out{"out", "U", doc = "the weighted mean of the values that are valid"};
+  Many<In<double>>      in{"in*", "U", doc = "Values to average."};
+  Many<InConst<double>> weight{"weight*", "1", initial = 1.0, range(0, 1e6), doc = "Weight of each input."};
+  Out<double>           out{"out", "U", doc = "Weighted mean of the valid inputs."};
 
   Outcome init() const {
     if (in.size() == 0) return fault("there is nothing to join: name at least one input");

@@ -23,19 +23,19 @@ struct JointTrajectory {
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", frame = "joint",
                                doc = "Where the first motion starts."};
-  InConst<double[]> goal{"goal", "rad", "[ndof<=10]", frame = "joint", doc = "Where it ends."};
+  InConst<double[]> goal{"goal", "rad", "[ndof<=10]", frame = "joint", doc = "Where each motion ends."};
   InConst<double> duration{"duration", "s", initial = 0.0, range(0, 3600),
-                           doc = "From rest to rest; with limits the least time it takes."};
+                           doc = "Time from rest to rest; with limits the least time."};
   InConst<Text<16>> profile{"profile", "1", initial = "quintic", one_of = "quintic trapezoid jerk",
-                            doc = "How speed and acceleration go."};
+                            doc = "Shape of the motion."};
   InConst<double[]> velocity_max{"velocity_max", "rad/s", "[ndof<=10]", range(0, 1e6), frame = "joint", initial = 1.0,
-                                 doc = "Limit of trapezoid and jerk."};
+                                 doc = "Limit for trapezoid and jerk."};
   InConst<double[]> acceleration_max{"acceleration_max", "rad/s2", "[ndof<=10]", range(0, 1e6), frame = "joint",
-                                     initial = 2.0, doc = "Limit of trapezoid and jerk."};
+                                     initial = 2.0, doc = "Limit for trapezoid and jerk."};
   InConst<double[]> jerk_max{"jerk_max", "rad/s3", "[ndof<=10]", range(0, 1e9), frame = "joint", initial = 20.0,
-                             doc = "Limit of jerk."};
+                             doc = "Limit for jerk."};
   InConst<bool> is_synchronised{"is_synchronised", "1", initial = true,
-                                doc = "With limits: all joints arrive with the slowest."};
+                                doc = "With limits all joints arrive with the slowest."};
 
   Outcome init() {
     is_quintic_ = *profile == "quintic";

@@ -12,10 +12,9 @@ namespace {
 
 struct LookupTable {
   In<double[]> x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  InConst<double[]> at{"at", "U", "[points<=256]", doc = "The points of the curve: x, each above the one before."};
-  InConst<double[]> value{"value", "X", "[points<=256]", doc = "The points of the curve: y at each of them."};
-  InConst<Text<16>> outside{"outside", "1", initial = "hold",
-                            doc = "Before the first and behind the last point: hold, extend or fault."};
+  InConst<double[]> at{"at", "U", "[points<=256]", doc = "x of the points, increasing."};
+  InConst<double[]> value{"value", "X", "[points<=256]", doc = "y of the points."};
+  InConst<Text<16>> outside{"outside", "1", initial = "hold", doc = "Outside the points: hold, extend or fault."};
   Out<double[]> y{"y", "X", "[n...<=64]", doc = "The curve at x."};
 
   Outcome init() {

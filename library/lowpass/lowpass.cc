@@ -13,10 +13,9 @@ constexpr std::int32_t kMostOrder = 8;
 struct Lowpass {
   In<double[]>          x{"x", "U", "[n...<=64]", doc = "Any signal."};
   InConst<double>       cutoff{"cutoff", "Hz", range(0, 1e6),
-                               doc = "Where the gain is 1/sqrt(2); above 0, below half the rate."};
-  InConst<std::int32_t> order{"order", "1", initial = 2, range(1, kMostOrder),
-                              doc = "Falls by order times 20 dB a decade."};
-  Out<double[]>         y{"y", "U", "[n...<=64]", doc = "What of x is slower than the cutoff."};
+                               doc = "Frequency of gain 1/sqrt(2); above 0, below half the rate."};
+  InConst<std::int32_t> order{"order", "1", initial = 2, range(1, kMostOrder), doc = "Order of the filter."};
+  Out<double[]>         y{"y", "U", "[n...<=64]", doc = "x below the cutoff."};
 
   Outcome init() {
     if (!(*cutoff > 0) || !math::is_finite(*cutoff)) return fault("cutoff must be above 0 Hz");

@@ -28,24 +28,26 @@ struct ModbusIo {
                                           doc = "Discrete inputs, from first_contact on."};
   Many<In<double>, kMostPoints> holding{"holding*", "U", doc = "Written to holding registers, from first_holding on."};
   Many<In<bool>, kMostPoints> coil{"coil*", "1", doc = "Written to coils, from first_coil on."};
-  Out<double> age{"age", "s", initial = 0.0, doc = "Since the last exchange was seen; since on before the first."};
+  Out<double> age{"age", "s", initial = 0.0, doc = "Time since the last exchange, or since on."};
   Out<bool> connected{"connected", initial = false, doc = "An exchange succeeded within the timeout."};
   Out<bool> idled{"idled", initial = false, safe_state,
-                  doc = "The flag is up, and `idle` and fallen coils have been written since."};
-  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Cycles with an input that is not finite: not passed on."};
+                  doc = "The flag is up, and `idle` and false coils were written since."};
+  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Cycles whose inputs were not finite and not sent."};
   InConst<std::int32_t> first_input{"first_input", "1", initial = 0, range(0, 65535), doc = "Address of input[0]."};
-  InConst<std::int32_t> first_contact{"first_contact", "1", initial = 0, range(0, 65535), doc = "Of contact[0]."};
-  InConst<std::int32_t> first_holding{"first_holding", "1", initial = 0, range(0, 65535), doc = "Of holding[0]."};
-  InConst<std::int32_t> first_coil{"first_coil", "1", initial = 0, range(0, 65535), doc = "Of coil[0]."};
-  InConst<double> input_resolution{"input_resolution", "X", initial = 1.0, doc = "Input that is a 1 in the register."};
-  InConst<double> holding_resolution{"holding_resolution", "U", initial = 1.0,
-                                     doc = "Value that is a 1 in the register."};
-  InConst<bool> is_signed{"is_signed", initial = true, doc = "Registers are -32768 to 32767, else 0 to 65535."};
-  InConst<double> idle{"idle", "U", initial = 0.0, doc = "Written at off in place of each holding; coils fall."};
+  InConst<std::int32_t> first_contact{"first_contact", "1", initial = 0, range(0, 65535),
+                                      doc = "Address of contact[0]."};
+  InConst<std::int32_t> first_holding{"first_holding", "1", initial = 0, range(0, 65535),
+                                      doc = "Address of holding[0]."};
+  InConst<std::int32_t> first_coil{"first_coil", "1", initial = 0, range(0, 65535), doc = "Address of coil[0]."};
+  InConst<double> input_resolution{"input_resolution", "X", initial = 1.0, doc = "Input for a 1 in the register."};
+  InConst<double> holding_resolution{"holding_resolution", "U", initial = 1.0, doc = "Value for a 1 in the register."};
+  InConst<bool> is_signed{"is_signed", initial = true, doc = "Registers are -32768 to 32767; false: 0 to 65535."};
+  InConst<double> idle{"idle", "U", initial = 0.0, doc = "Value of each holding at off; coils are false."};
   InConst<double> timeout{"timeout", "s", initial = 1.0, range(0.05, 3600),
-                          doc = "Silence after which the device is lost."};
+                          doc = "Silence after which the device counts as lost."};
   InConst<std::int32_t> unit{"unit", "1", initial = 1, range(0, 255), doc = "Unit (slave) number of the device."};
-  InConst<std::int32_t> baud{"baud", "1", initial = 19200, range(1200, 115200), doc = "Of rtu; 8 bits, even parity."};
+  InConst<std::int32_t> baud{"baud", "1", initial = 19200, range(1200, 115200),
+                             doc = "Bits a second of rtu; 8 bits, even parity."};
   Resource device{"device", doc = "tcp:ADDRESS:PORT or rtu:PATH."};
 
   void init(Cycle c) {

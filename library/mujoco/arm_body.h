@@ -19,8 +19,7 @@ template <class Arm>
 struct ArmBody {
   Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
   Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
-  Out<bool> held{"held", initial = false, safe_state,
-                 doc = "The arm stands and holds itself, because the flag is up or it is off."};
+  Out<bool> held{"held", initial = false, safe_state, doc = "The arm stands: the flag is up, or it is off."};
 
   // A simulated arm that takes the place of another goes on where that one is, whatever its own start_pose says: at the
   // speed that is handed over, else at rest, for an arm that goes off brakes. One that stands where its out-vars say is

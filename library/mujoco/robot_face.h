@@ -15,7 +15,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
   InConst<double[]> torque_limit{"torque_limit", "N.m", "[ndof<=10]", initial = 0.0, range(0, 1e6), frame = "joint",
-                                 doc = "Cuts the torque of the drives; 0 for what the model says."};
+                                 doc = "Cuts the torque of the drives; 0: the limit of the model."};
   OutConst<std::int32_t> ndof{"ndof", "1", doc = "Joints from the base to the tip."};
   OutConst<DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to tip."};
   OutConst<Pose> base{"base", "1", frame = "base", doc = "Frame 0."};
@@ -23,7 +23,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
   OutConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", frame = "joint", doc = "Lower joint limits; -1e6 for none."};
   OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits; 1e6 for none."};
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
-                             doc = "What the drives can give, either way; 1e6 where nobody states a limit."};
+                             doc = "Largest torque of the drives; 1e6 without a limit."};
 
  protected:
   /// For init: `load` reads the arm and answers a Result<void>. Throws what it, or place(), refuses.

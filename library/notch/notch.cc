@@ -13,9 +13,8 @@ constexpr double kLeast = 1e-6;
 
 struct Notch {
   In<double[]>    x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  InConst<double> center{"center", "Hz", range(kLeast, 1e6), doc = "What is taken out; below half the rate."};
-  InConst<double> width{"width", "Hz", range(kLeast, 1e6),
-                        doc = "Between the two frequencies where the gain is 1/sqrt(2)."};
+  InConst<double> center{"center", "Hz", range(kLeast, 1e6), doc = "Frequency to remove; below half the rate."};
+  InConst<double> width{"width", "Hz", range(kLeast, 1e6), doc = "Between the frequencies of gain 1/sqrt(2)."};
   Out<double[]>   y{"y", "U", "[n...<=64]", doc = "x without the centre frequency."};
 
   Outcome init() {
@@ -62,7 +61,7 @@ struct Notch {
   library::SecondOrder section_[library::kMostElements];
 };
 
-CHIMERA_COMPONENT(Notch, "notch", "Takes one frequency out of a signal.", rate = 1000.0,
+CHIMERA_COMPONENT(Notch, "notch", "Removes one frequency from a signal.", rate = 1000.0,
                   source = "Orfanidis 1996, section 11.3; Zavalishin 2018, section 4.4");
 
 }  // namespace

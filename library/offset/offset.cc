@@ -9,7 +9,7 @@ namespace {
 
 struct Offset {
   In<double[]> x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  In<double[]> offset{"offset", "U", "[n...<=64]", doc = "What is added: of the operator, or of another task."};
+  In<double[]> offset{"offset", "U", "[n...<=64]", doc = "Value to add."};
   Out<double[]> y{"y", "U", "[n...<=64]", doc = "x plus the offset."};
 
   void on() {

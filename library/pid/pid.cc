@@ -11,31 +11,31 @@ using namespace chimera;
 namespace {
 
 struct Pid {
-  In<double[]> reference{"reference", "U", "[n...<=64]", doc = "What the measured quantity is to be."};
-  In<double[]> measured{"measured", "U", "[n...<=64]", doc = "What it is."};
+  In<double[]> reference{"reference", "U", "[n...<=64]", doc = "Wanted value."};
+  In<double[]> measured{"measured", "U", "[n...<=64]", doc = "Measured value."};
   In<double[]> kp{"kp", "X/U", "[n...<=64]", doc = "Gain of the error."};
   In<double[]> ki{"ki", "X/(U.s)", "[n...<=64]", doc = "Gain of its integral."};
   In<double[]> kd{"kd", "X.s/U", "[n...<=64]", doc = "Gain of its rate of change."};
-  InConst<double[]> low{"low", "X", "[n...<=64]", doc = "Least output that the actuator takes."};
-  InConst<double[]> high{"high", "X", "[n...<=64]", at_least = "low", doc = "Greatest; likewise."};
+  InConst<double[]> low{"low", "X", "[n...<=64]", doc = "Least output."};
+  InConst<double[]> high{"high", "X", "[n...<=64]", at_least = "low", doc = "Greatest output."};
   InConst<double> filter_time{"filter_time", "s", initial = 0.0, range(0, 86400),
                               doc = "Time constant of the filter of both rates; 0 for none."};
   InConst<double> reference_weight{"reference_weight", "1", initial = 1.0, range(0, 1),
-                                   doc = "b: how much of the reference kp sees; below 1 for less overshoot."};
+                                   doc = "b: share of the reference in P; below 1: less overshoot."};
   InConst<double> derivative_weight{"derivative_weight", "1", initial = 0.0, range(0, 1),
-                                    doc = "c: how much of the reference kd sees; 0: a step of it makes no kick."};
+                                    doc = "c: share of the reference in D; 0: no kick at a step."};
   InConst<double[]> deadband{"deadband",
                              "U",
                              "[n...<=64]",
                              initial = 0.0,
                              range(0, library::kNoLimit),
-                             doc = "An error up to this counts as none, a larger one as less by it."};
+                             doc = "An error up to this counts as 0."};
   InConst<double[]> ff{"ff", "X/U", "[n...<=64]", initial = 0.0, doc = "Feed-forward of the reference."};
   InConst<double[]> ff_rate{"ff_rate", "X.s/U", "[n...<=64]", initial = 0.0,
                             doc = "Feed-forward of its rate of change."};
   InConst<bool> holds_off{"holds_off", "1", initial = true,
-                          doc = "Off, the last output stands; false: it becomes 0, or the limit next to it."};
-  Out<double[]> output{"output", "X", "[n...<=64]", initial = 0.0, safety, doc = "To the actuator, low to high."};
+                          doc = "off holds the output; false: it becomes 0, or the limit next to 0."};
+  Out<double[]> output{"output", "X", "[n...<=64]", initial = 0.0, safety, doc = "Output, low to high."};
 
   Outcome init() {
     for (std::size_t i = 0; i < low.size(); ++i)

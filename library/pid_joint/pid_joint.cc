@@ -23,7 +23,7 @@ struct PidJoint {
                     doc = "Torque for each joint, within tau_max."};
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", range(0, 200), frame = "joint",
-                            doc = "What the drives can give."};
+                            doc = "Largest torque of the drives."};
   InConst<double> filter_time{"filter_time", "s", initial = 2e-3, range(0, 1),
                               doc = "Time constant of the velocity filter; 0 for none."};
 

@@ -10,10 +10,9 @@ namespace {
 
 struct Pinvkin {
   In<Pose> xr{"xr", frame = "base", doc = "Reference tool pose: the flange."};
-  In<double[6]> q{"q", "rad", frame = "joint",
-                 doc = "Measured joint positions: which solution is near at on, unless q_ref is handed over."};
+  In<double[6]> q{"q", "rad", frame = "joint", doc = "Measured joint positions."};
   Out<double[6]> q_ref{"q_ref", "rad", initial = 0.0, frame = "joint", doc = "Joint positions for xr."};
-  Out<bool> is_reachable{"is_reachable", "1", initial = true, doc = "False: xr is out of reach, q_ref stands."};
+  Out<bool> is_reachable{"is_reachable", "1", initial = true, doc = "False: xr is out of reach."};
 
   // Bumpless: a command that is handed over goes on; the drives are still behind it. Else the arm is where it is.
   Outcome on() {

@@ -10,13 +10,12 @@ using namespace chimera;
 namespace {
 
 struct Puma : library::PumaBody {
-  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Position that the drives go to."};
+  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Wanted position."};
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 100.0, range(1, 200),
-                            doc = "Angular frequency at which an error of a joint decays."};
-  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1.5, range(0.01, 10),
-                              doc = "The fastest that the drives move a joint."};
+                            doc = "Angular frequency at which a joint error decays."};
+  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1.5, range(0.01, 10), doc = "Largest joint speed."};
   InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 10), doc = "Bolted to the flange."};
   OutConst<std::int32_t> ndof{"ndof", "1", doc = "Joints: 6."};
   OutConst<library::DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to flange."};

@@ -13,7 +13,7 @@ struct RateLimit {
                          doc = "How fast y may grow; above 0."};
   InConst<double[]> fall{"fall", "U/s", "[n...<=64]", range(0, library::kNoLimit),
                          doc = "How fast y may fall; above 0."};
-  Out<double[]>     y{"y", "U", "[n...<=64]", doc = "x, as near as the rates allow."};
+  Out<double[]>     y{"y", "U", "[n...<=64]", doc = "x, limited in rate."};
 
   Outcome init() {
     for (std::size_t i = 0; i < rise.size(); ++i)

@@ -12,7 +12,7 @@ struct Pedal {
   Out<double> force;
   InConst<double> full_force;
   Resource pedal{"pedal", safe_state, shared,
-                 doc = "Script of seconds:travel, 0 to 1, straight lines between; \"0:0\" is never touched."};
+                 doc = "Script of seconds:travel, 0 to 1, straight lines between; \"0:0\": never pressed."};
 
   Outcome init() {
     if (const char* wrong = travel_.read(pedal.text(), 0, 1, "the travel of a pedal is 0 to 1")) return fault(wrong);

@@ -11,7 +11,7 @@ namespace {
 
 struct SerialFrame : FrameDevice {
   InConst<std::int32_t> baud{"baud", "1", initial = 115200, range(9600, 2000000), doc = "Bits a second, 8N1."};
-  Out<std::int64_t> noise{"noise", "1", initial = 0, doc = "Bytes that belonged to no frame."};
+  Out<std::int64_t> noise{"noise", "1", initial = 0, doc = "Bytes outside frames."};
   Resource device{"device", doc = "Serial device, such as /dev/ttyUSB0."};
 
   void init(Cycle c) {

@@ -10,9 +10,9 @@ using namespace chimera;
 namespace {
 
 struct SplitPm {
-  In<double> fd{"fd", "N", doc = "Force wanted by the control; below 0 to brake."};
-  Out<double> fde{"fde", "N", doc = "Force wanted of the engine, 0 or more."};
-  Out<double> fdw{"fdw", "N", doc = "Force wanted of the brakes, 0 or more."};
+  In<double> fd{"fd", "N", doc = "Wanted force; below 0 brakes."};
+  Out<double> fde{"fde", "N", doc = "Wanted engine force."};
+  Out<double> fdw{"fdw", "N", doc = "Wanted brake force."};
 
   Outcome on() { return cycle(); }
   Outcome cycle() {

@@ -16,12 +16,10 @@ namespace {
 constexpr double kLongestStep = 0.1;  // s: after a pause the reference goes on, it does not catch up
 
 struct TrackBall {
-  Many<In<Pose>, 1> xm{"xm*", "1", frame = "base",
-                    doc = "Measured tool pose, where xd starts at on unless it is handed over; may be left out."};
-  Out<Pose> xd{"xd", frame = "base", initial = Pose{{0, 0, 0}, {1, 0, 0, 0}},
-               doc = "Cartesian reference, moved by the ball."};
+  Many<In<Pose>, 1> xm{"xm*", "1", frame = "base", doc = "Measured tool pose; may be left out."};
+  Out<Pose> xd{"xd", frame = "base", initial = Pose{{0, 0, 0}, {1, 0, 0, 0}}, doc = "Cartesian reference."};
   Out<double[6]> motion{"motion", "U", initial = 0.0,
-                        doc = "Deflection times scale: along x y z, about x y z; or of six joints."};
+                        doc = "Deflection times scale: along and about x y z, or of six joints."};
   Out<std::int32_t> buttons{"buttons", "1", initial = 0, doc = "A bit for each button that is pressed."};
   InConst<double[6]> scale{"scale", "U", initial = 1.0, range(-1e6, 1e6), doc = "Motion at full deflection."};
   InConst<double> linear{"linear", "m/s", initial = 0.1, range(0, 10), doc = "Speed of xd at full deflection."};
@@ -30,7 +28,7 @@ struct TrackBall {
   InConst<std::int32_t> full{"full", "1", initial = 350, range(1, 1000000),
                              doc = "Counts of the device at full deflection."};
   InConst<double> hold{"hold", "s", initial = 0.2, range(0.001, 10),
-                       doc = "An axis or key that is silent for so long has been let go."};
+                       doc = "Silence after which an axis or key counts as released."};
   Resource device{"device", safe_state, doc = "Input device, FIFO of its events, terminal (its keys), or recording."};
 
   void init() {

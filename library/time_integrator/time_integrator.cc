@@ -11,10 +11,9 @@ using namespace chimera;
 namespace {
 
 struct TimeIntegrator {
-  In<double[]> rate_of_change{"rate_of_change", "U/s", "[n...<=64]", doc = "What is integrated."};
-  In<double[]> start{"start", "U", "[n...<=64]", doc = "Where the integral begins at on, unless it is handed over."};
-  Out<double[]> integral{"integral", "U", "[n...<=64]", initial = 0.0,
-                         doc = "start at on, or what is handed over, plus what was integrated since."};
+  In<double[]> rate_of_change{"rate_of_change", "U/s", "[n...<=64]", doc = "Any rate."};
+  In<double[]> start{"start", "U", "[n...<=64]", doc = "Integral at on, unless it is handed over."};
+  Out<double[]> integral{"integral", "U", "[n...<=64]", initial = 0.0, doc = "The integral."};
 
   // Bumpless: an integral that is handed over goes on.
   Outcome on() {

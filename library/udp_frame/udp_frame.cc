@@ -17,13 +17,10 @@ constexpr int kMostOld = 1000;      // of those that came before `on`: more than
 constexpr std::uint32_t kAhead = 1u << 30, kAnewAfter = 1u << 20;
 
 struct UdpFrame : FrameDevice {
-  InConst<std::int32_t> local_port{"local_port", "1", initial = 0, range(0, 65535),
-                                   doc = "Our UDP port; 0: any."};
-  Out<std::int64_t> missing{"missing", "1", initial = 0,
-                            doc = "Numbers that were passed over: datagrams lost or late."};
-  Out<std::int64_t> old{"old", "1", initial = 0,
-                        doc = "Datagrams with a number that was there or passed over already."};
-  Resource device{"device", doc = "Address and port of the device in numbers, such as 192.168.0.7:5000."};
+  InConst<std::int32_t> local_port{"local_port", "1", initial = 0, range(0, 65535), doc = "Local UDP port; 0: any."};
+  Out<std::int64_t> missing{"missing", "1", initial = 0, doc = "Datagrams lost or late."};
+  Out<std::int64_t> old{"old", "1", initial = 0, doc = "Datagrams repeated or out of order."};
+  Resource device{"device", doc = "Numeric address and port, such as 192.168.0.7:5000."};
 
   void init(Cycle c) {
     prepare(device.text(), 4);

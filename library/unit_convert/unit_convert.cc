@@ -33,4 +33,4 @@ struct UnitConvert {
     for (double& out : y) out = times * *in++ + plus;
   }
 };
-CHIMERA_COMPONENT(UnitConvert, "unit_convert", "Hands a signal on in another unit.");
+CHIMERA_COMPONENT(UnitConvert, "unit_convert", "Converts a signal to another unit.");

@@ -13,10 +13,10 @@ namespace chimera::library {
 /// In-consts that a component derives from.
 struct CameraPorts {
   InConst<Pose> camera{"camera", frame = "base", doc = "The camera: x to the right, y down, z forward."};
-  InConst<double> focal_length{"focal_length", "1", initial = 800.0, range(1, 1e5), doc = "In pixels."};
+  InConst<double> focal_length{"focal_length", "1", initial = 800.0, range(1, 1e5), doc = "Focal length in pixels."};
   InConst<double[2]> image_size{"image_size", "1", initial = {1280.0, 960.0}, range(1, 1e5),
                                 doc = "Width and height in pixels; the optical axis meets the middle."};
-  InConst<double> ball_diameter{"ball_diameter", "m", initial = 0.05, range(1e-3, 10), doc = "Of the target."};
+  InConst<double> ball_diameter{"ball_diameter", "m", initial = 0.05, range(1e-3, 10), doc = "Diameter of the ball."};
 
  protected:
   Pinhole pinhole() const {

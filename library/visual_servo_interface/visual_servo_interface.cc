@@ -14,20 +14,19 @@ using namespace chimera;
 namespace {
 
 struct VisualServoInterface : library::CameraPorts {
-  In<Pose> xm{"xm", frame = "base", doc = "Measured tool pose: where xd begins at on, unless it is handed over."};
+  In<Pose> xm{"xm", frame = "base", doc = "Measured tool pose."};
   Out<Pose> xd{"xd", frame = "base", doc = "Desired tool pose."};
-  Out<Pose> target{"target", frame = "base", doc = "Where the tool should be for the ball that is seen."};
+  Out<Pose> target{"target", frame = "base", doc = "Tool pose at the ball."};
   Out<bool> in_sight{"in_sight", "1", initial = false, doc = "The last feature is younger than timeout."};
-  Out<std::int64_t> received{"received", "1", initial = 0, doc = "Features that told a place."};
+  Out<std::int64_t> received{"received", "1", initial = 0, doc = "Features with a valid place."};
   InConst<Pose> grip{"grip", initial = library::kIdentityPose, frame = "base",
                      doc = "Tool beside the ball: offset along the base's axes, orientation in the base."};
-  InConst<double> gain{"gain", "1/s", initial = 5.0, range(0, 100), doc = "How fast xd closes in on the target."};
-  InConst<double> speed_limit{"speed_limit", "m/s", initial = 0.5, range(0, 10), doc = "Of xd."};
-  InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Of the orientation of xd."};
+  InConst<double> gain{"gain", "1/s", initial = 5.0, range(0, 100), doc = "Rate at which xd approaches the target."};
+  InConst<double> speed_limit{"speed_limit", "m/s", initial = 0.5, range(0, 10), doc = "Largest speed of xd."};
+  InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Largest turning speed of xd."};
   InConst<double> timeout{"timeout", "s", initial = 0.3, range(0.001, 60),
-                          doc = "After so long without a feature xd stands still."};
-  Resource link{"link", safe_state, shared,
-                doc = "Where features come from: udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
+                          doc = "Time without a feature after which xd holds."};
+  Resource link{"link", safe_state, shared, doc = "udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
 
   void init() {
     reinit();

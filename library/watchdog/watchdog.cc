@@ -12,15 +12,15 @@ namespace {
 enum class Action { kReport, kFault, kOff };
 
 struct Watchdog {
-  Many<In<Any[]>>    in{"in*", "U", "[n...<=64]", type = "T", doc = "The values to watch, of one type and unit."};
-  InConst<double>    max_age{"max_age", "s", range(1e-6, 86400), doc = "A value must be renewed at least this often."};
-  InConst<Text<16>>  action{"action", "1", initial = "report", one_of = "report fault off", doc = "What follows."};
-  InConst<Text<64>>  target{"target", "1", initial = "", doc = "The task that the action off turns off."};
-  Out<bool>          alive{"alive", "1", initial = true, doc = "All of them are renewed in time."};
-  Out<std::int32_t>  late{"late", "1", initial = 0, range(0, 16), doc = "How many are not."};
-  Out<double>        oldest{"oldest", "s", initial = 0.0,
-                            doc = "The age of the oldest; what nobody has written counts from on."};
-  Out<std::int64_t>  alarms{"alarms", "1", initial = 0, doc = "How often alive went from true to false."};
+  Many<In<Any[]>>    in{"in*", "U", "[n...<=64]", type = "T", doc = "Values to watch, of one type and unit."};
+  InConst<double>    max_age{"max_age", "s", range(1e-6, 86400), doc = "Largest age of a live value."};
+  InConst<Text<16>>  action{"action", "1", initial = "report", one_of = "report fault off",
+                            doc = "Action when alive falls."};
+  InConst<Text<64>>  target{"target", "1", initial = "", doc = "Task for the action off."};
+  Out<bool>          alive{"alive", "1", initial = true, doc = "All values are renewed in time."};
+  Out<std::int32_t>  late{"late", "1", initial = 0, range(0, 16), doc = "Number of values that are too old."};
+  Out<double>        oldest{"oldest", "s", initial = 0.0, doc = "Age of the oldest value."};
+  Out<std::int64_t>  alarms{"alarms", "1", initial = 0, doc = "Times that alive fell."};
 
   Outcome init() {
     if (in.size() == 0) return fault("there is nothing to watch: name at least one input");
@@ -69,6 +69,6 @@ struct Watchdog {
 };
 
 CHIMERA_COMPONENT(Watchdog, "watchdog",
-                  "Says when values it watches are no longer renewed, and acts on it.", rate = 100.0);
+                  "Detects values that are no longer renewed, and acts.", rate = 100.0);
 
 }  // namespace
