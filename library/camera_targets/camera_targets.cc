@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vision subsystem, simulated: a ball moves, a camera looks at it, and what is found in the picture is sent away.
+// Simulates the vision subsystem: a ball moves before a camera, and its place in each picture is sent over a link.
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -61,7 +61,7 @@ struct CameraTargets : library::CameraPorts {
       ball[i] = centre[i] + amplitude[i] * std::sin(2 * std::numbers::pi * frequency[i] * t + phase[i]);
     }
   }
-  // The same errors in every run.
+  // Errors of the picture. Every run has the same ones.
   double off_by() {
     random_ = random_ * 6364136223846793005u + 1442695040888963407u;
     return *noise * (static_cast<double>(random_ >> 11) * 0x1p-52 - 1);

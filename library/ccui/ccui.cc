@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input element of the cruise control (2000 paper, figure 15): the cruise control's user interface.
+// The user interface of the cruise control (2000 paper, figure 15), operated by a script.
 #include "chimera/task/component.h"
 #include "library/script/script.h"
 

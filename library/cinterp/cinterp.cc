@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cartesian trajectory interpolator: from where the tool is to where it should be, no faster than allowed.
+// Cartesian trajectory interpolator: moves the reference towards the desired pose within speed limits.
 #include "library/kinematics/dh_ports.h"
 
 using namespace chimera;
@@ -15,7 +15,7 @@ struct Cinterp {
   InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Largest turning speed of xr."};
   InConst<double> leash{"leash", "m", initial = 0.1, range(1e-3, 10), doc = "Largest distance from xm to xr."};
 
-  // Bumpless: a reference that is handed over goes on. Else it begins where the tool is.
+  // Bumpless: continues from a reference that is handed over, else starts at the measured pose.
   Outcome on() {
     if (xr.is_handed_over() && library::DhPorts::is_pose(*xr)) return ok();
     if (!library::DhPorts::is_pose(*xm)) return fault("xm is not finite or no orientation: xr cannot begin there");

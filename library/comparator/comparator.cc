@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says when a signal is above or below a level, inside or outside a band about it, with hysteresis.
-// README.md is the data sheet.
+// Compares a signal with a level or a band, with hysteresis. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -46,7 +45,7 @@ struct Comparator {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // Within the hysteresis y goes on from what stands.
+  // Between the thresholds y keeps its last value.
   void on() {
     if (library::all_finite(x) && library::all_finite(level)) compare();
   }
@@ -62,7 +61,7 @@ struct Comparator {
   enum class Relation { kAbove, kBelow, kInside, kOutside };
 
   static bool is_amount(double value) { return value >= 0 && math::is_finite(value); }
-  /// How far the signal is beyond the threshold.
+  /// Distance of the signal beyond the threshold.
   double beyond(std::size_t i) const {
     const double apart = x.begin()[i] - level.begin()[i];
     if (relation_ == Relation::kAbove) return apart;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The controller that knows the arm: each joint follows its reference as if it were alone and without weight.
+// Computed-torque control: compensates the dynamics of the arm, so that each joint follows its reference independently.
 #include "library/kinematics/dh_dynamics.h"
 #include "library/kinematics/dh_ports.h"
 
@@ -39,10 +39,10 @@ struct ComputedTorque : library::DhPorts {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // The law has no memory: what it says now is right whoever drove the arm before.
+  // The law has no state, so its output does not depend on the previous controller.
   Outcome on() { return follow(); }
   Outcome cycle(Cycle c) { return c.illegal() ? ok() : follow(); }
-  // No off(): the last torque stands, as that of pid_joint does.
+  // There is no off(): the last torque holds, as that of pid_joint.
 
  private:
   using DhChain = library::DhChain;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The speed control of the cruise control (2000 paper, figure 17 bottom): how much force the car needs.
+// Speed control of the cruise control (2000 paper, figure 17 bottom): computes the force that holds the speed.
 #include <cmath>
 
 #include "chimera/task/component.h"
@@ -23,13 +23,13 @@ struct Control {
     return wrong == nullptr ? ok() : fault(wrong);
   }
   Outcome reinit() { return init(); }
-  // An older force belongs to another speed.
+  // An outdated force belongs to another speed.
   void on() {
     if (fd.is_outdated()) *fd = 0;
     control_.start(*fd);
   }
   Outcome cycle(Cycle c) {
-    if (c.illegal()) return ok();  // nobody follows fd: the error means nothing, do not integrate it
+    if (c.illegal()) return ok();  // the car does not follow fd, so the error must not be integrated
     if (!std::isfinite(*vr) || !std::isfinite(*vz)) return fault("vr or vz is not finite");
     *fd = control_.step(gains(), *vr, *vz, c.dt());
     return ok();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The speed control of the cruise control as one module with both outputs (2000 paper, figure 17 top).
+// Speed control of the cruise control in one module with two outputs (2000 paper, figure 17 top).
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +27,7 @@ struct ControlPm {
     return wrong == nullptr ? ok() : fault(wrong);
   }
   Outcome reinit() { return init(); }
-  // What the engine and the brakes do is what it goes on from. An older force belongs to another speed.
+  // Continues from the present forces of engine and brakes. An outdated force belongs to another speed.
   void on() {
     if (fde.is_outdated()) *fde = 0;
     if (fdw.is_outdated()) *fdw = 0;
@@ -35,7 +35,7 @@ struct ControlPm {
     control_.start(*fd);
   }
   Outcome cycle(Cycle c) {
-    if (c.illegal()) return ok();  // nobody follows it: the error means nothing, do not integrate it
+    if (c.illegal()) return ok();  // the car does not follow the force, so the error must not be integrated
     if (!std::isfinite(*vr) || !std::isfinite(*vz)) return fault("vr or vz is not finite");
     *fd = control_.step(gains(), *vr, *vz, c.dt());
     *fde = std::max(0.0, *fd);

@@ -7,7 +7,7 @@ using namespace chimera;
 
 namespace {
 
-constexpr double kMostCount = 9007199254740992.0;  // 2^53: a number of a description holds it exactly
+constexpr double kMostCount = 9007199254740992.0;  // 2^53: the greatest exact count in a description
 
 struct EdgeCounter {
   In<bool[]> up{"up", "1", "[n...<=64]", doc = "Each rising edge counts one up."};
@@ -34,7 +34,7 @@ struct EdgeCounter {
     return judge();
   }
   Outcome reinit() { return judge(); }
-  // The count goes on from what stands; what came while it was off is not counted.
+  // Continues from the last count. Edges while the task was off do not count.
   void on() {
     has_last_ = false;
     for (std::size_t i = 0; i < count.size(); ++i) publish(i, is_preset_ ? count[i] : preset[i]);

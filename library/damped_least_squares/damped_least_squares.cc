@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joint speeds that bring the tool to its target, and stay bounded where the arm is singular (1994 paper, figure 9).
+// Computes joint speeds for a tool error that stay bounded at singular poses (1994 paper, figure 9).
 #include "library/kinematics/dh_ports.h"
 #include "library/signals/input.h"
 
@@ -29,7 +29,7 @@ struct DampedLeastSquares {
     inverse_.damping = *damping;
     inverse_.threshold = *threshold;
   }
-  // Bumpless: joint speeds that are handed over stand until the first cycle; others are those of no motion.
+  // Bumpless: speeds that are handed over hold until the first cycle. Otherwise the speeds are 0.
   void on() {
     if (!qd_ref.is_handed_over() || !library::all_finite(qd_ref)) stop();
   }
@@ -42,7 +42,7 @@ struct DampedLeastSquares {
     library::Vec6 e = library::motion_between(library::frame_of(*xm), library::frame_of(*xd));
     for (double& part : e) part *= *gain;
     library::Jacobian jacobian;
-    double sum = 0;  // of squares: what is solved with must be finite too
+    double sum = 0;  // sum of squares: the matrix of the solution must be finite, too
     for (std::size_t i = 0; i < qd_ref.size(); ++i) {
       for (std::size_t r = 0; r < 3; ++r) {
         jacobian.linear[i][r] = jv(r, i);
@@ -57,7 +57,7 @@ struct DampedLeastSquares {
   void off() { stop(); }
 
  private:
-  static constexpr double kMost = 1e20;  // beyond it the solution would lose every digit
+  static constexpr double kMost = 1e20;  // above this the solution would have no correct digit
 
   void stop() {
     for (double& speed : qd_ref) speed = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes out small deviations, without a jump at the edges. README.md is the data sheet.
+// Removes small deviations, without a jump at the edges. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints values, beside the cycles: a terminal that stalls costs lines and no cycle. README.md is the data sheet.
+// Prints values in the background. A terminal that stalls costs lines but delays no cycle. README.md is the data sheet.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -54,7 +54,7 @@ struct Display {
     ring_.commit();
     *lines += 1;
   }
-  // At most what waited when it began: a cycle that is faster than the terminal must not keep it here.
+  // Prints only lines that wait at the start of the call, so that a fast cycle cannot keep background() here.
   void background() {
     for (std::size_t n = 0; n < kRowsWaiting; ++n) {
       const double* row = ring_.front();
@@ -70,7 +70,7 @@ struct Display {
 
  private:
   library::RowRing ring_;
-  // Fixed by init: the background reads no port.
+  // Copied by init, because background must not read ports.
   Text<32> title_;
   int digits_ = 6;
   Nanoseconds origin_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pulse where a truth value changes. README.md is the data sheet.
+// Gives a pulse when a truth value changes. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -23,7 +23,7 @@ struct EdgePulse {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // What changed while it was off is no edge.
+  // A change while the task was off is no edge.
   void on() {
     has_last_ = false;
     for (bool& out : y) out = false;

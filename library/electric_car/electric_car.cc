@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The car of the 2000 paper's direct-drive variant: one motor force, driving and braking.
+// Simulates the car of the 2000 paper's direct-drive variant: one motor drives and brakes.
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Position and velocity of an encoder: two tracks, or a count of a device. README.md is the data sheet.
+// Position and velocity of an encoder, from two tracks or a count. README.md is the data sheet.
 #include <cstdio>
 #include <cstring>
 
@@ -12,7 +12,7 @@ using namespace chimera;
 
 namespace {
 
-constexpr double kMostCount = 9007199254740992.0;  // 2^53: every double up to there is a count
+constexpr double kMostCount = 9007199254740992.0;  // 2^53: a double represents every count up to here exactly
 constexpr double kLongest = 86400;
 
 struct Encoder {
@@ -58,7 +58,7 @@ struct Encoder {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // Goes on from the count that stands; what turned while it was off is not known, so the reference is lost.
+  // Continues from the last count. The reference is lost, because turns while the task was off are not seen.
   void on() {
     for (std::size_t i = 0; i < count.size(); ++i) {
       axis_[i].wheel.begin(count[i]);
@@ -80,8 +80,8 @@ struct Encoder {
  private:
   struct Axis {
     library::CountedWheel wheel;
-    std::int64_t found = 0;  // the count of this cycle
-    std::int64_t zero = 0;   // the total at which the count is 0
+    std::int64_t found = 0;  // count of this cycle
+    std::int64_t zero = 0;   // total for which the count is 0
     bool was_index = false;
   };
 
@@ -102,7 +102,7 @@ struct Encoder {
     return ok();
   }
   bool truth(std::size_t k, std::size_t i) const { return in[k].bytes()[i] != std::byte{0}; }
-  /// Reads all before any is counted: a fault leaves no axis ahead of another.
+  /// Reads all counts before it uses one, so that a fault leaves all axes at the same cycle.
   Outcome read_counts() {
     const std::span<const std::byte> bytes = in[0].bytes();
     const std::uint32_t type = in[0].element_type();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts its cycles until it fails on purpose, so that one can see what the others notice of it. README.md is the data
-// sheet.
+// Counts its cycles until it fails on purpose, to show how other tasks react. README.md is the data sheet.
 #include <limits>
 #include <stdexcept>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the components that exchange frames with a device have in common: ports, what is sent and what is not, and when
-// a device counts as lost. Who moves the bytes is theirs.
+// Common part of the components that exchange frames with a device: ports, checks of commands, detection of a lost
+// device. The component moves the bytes.
 #pragma once
 
 #include <array>
@@ -57,7 +57,7 @@ struct FrameDevice {
     *connected = *idled = false;
     *age = 0;
   }
-  /// The frame for this cycle behind to[2 + number_bytes]; its payload, 0: there is nothing to send.
+  /// Writes the payload of this cycle at to[2 + number_bytes] and returns its size; 0 if nothing is to be sent.
   std::size_t put_command(std::uint8_t* to, bool is_idle) {
     std::uint8_t* at = to + 2 + number_bytes_;
     for (const double value : command) {
@@ -71,11 +71,11 @@ struct FrameDevice {
     }
     return static_cast<std::size_t>(at - to) - 2;
   }
-  /// There is a device: it counts as silent from now on only.
+  /// The device exists: its silence begins now.
   void hears(Nanoseconds now) { heard_ = now; }
-  /// For cycle, after what was sent: whether a whole frame with the idle command has gone out in it.
+  /// For cycle, after sending. `is_idle_out`: a complete frame with the idle command went out in this cycle.
   void tell_idled(Cycle c, bool is_idle_out) { *idled = c.illegal() && (*idled || is_idle_out); }
-  /// Takes the values of a good frame.
+  /// Reads the values of a good frame.
   void take_state(std::span<const std::uint8_t> frame, Nanoseconds now) {
     std::array<double, 16> values{};
     for (std::size_t i = 0; i < state.size(); ++i) {
@@ -89,7 +89,7 @@ struct FrameDevice {
     *connected = true;
     heard_ = now;
   }
-  /// Whether the device is lost from now on: the cycle that finds it still publishes, the next one is the fault.
+  /// Decides whether the device is lost. The present cycle still publishes, the next one is the fault.
   bool is_lost(Cycle c, bool is_open) {
     *age = to_seconds(c.now() - heard_);
     if (!is_open) lost_ = &gone_;
@@ -97,7 +97,7 @@ struct FrameDevice {
     if (lost_ != nullptr) *connected = false;
     return lost_ != nullptr;
   }
-  /// The sentence of a device that was found lost; null while it is not.
+  /// Fault text of a lost device; null while the device is not lost.
   const char* lost() const { return lost_ == nullptr ? nullptr : lost_->text(); }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Generalized inverse kinematics: joint positions for a tool pose, for any robot that tells how it is built.
+// Generalized inverse kinematics: joint positions for a tool pose of any serial arm.
 #include "library/kinematics/dh_ports.h"
 #include "library/signals/input.h"
 
@@ -38,8 +38,8 @@ struct Ginvkin : library::DhPorts {
     cut();
     return outcome;
   }
-  // Bumpless: a command that is handed over goes on; the drives are still behind it. From beyond a joint limit it comes
-  // back no faster than it goes anywhere. Else the arm is where it is.
+  // Bumpless: continues from a command that is handed over, because the drives lag behind it; else starts at the
+  // measured positions. From beyond a joint limit the command comes back within the speed limit.
   Outcome on() {
     if (q_ref.is_handed_over() && library::all_finite(q_ref)) return ok();
     for (std::size_t i = 0; i < q.size(); ++i) {
@@ -61,7 +61,7 @@ struct Ginvkin : library::DhPorts {
   }
 
  private:
-  /// All the way, or as far as the fastest joint may go.
+  /// Moves to `goal`, or towards it until the fastest joint has moved by `farthest`.
   void move_to(const std::array<double, library::kMostJoints>& goal, double farthest) {
     double way = 0;
     for (std::size_t i = 0; i < q_ref.size(); ++i) way = std::max(way, std::abs(goal[i] - q_ref[i]));

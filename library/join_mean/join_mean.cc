@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The join connector of the 1994 paper (figure 3): several producers of one quantity, combined by a weighted mean.
-// README.md is the data sheet.
+// The join connector of the 1994 paper (figure 3): weighted mean of several producers of one quantity. README.md is the
+// data sheet.
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -24,7 +24,7 @@ struct JoinMean {
       sum += w * *in[i];
       weights += w;
     }
-    if (weights > 0) *out = sum / weights;  // else the last mean stands
+    if (weights > 0) *out = sum / weights;  // otherwise the last mean holds
   }
 };
 CHIMERA_COMPONENT(JoinMean, "join_mean", "Joins several producers of one quantity by their weighted mean.",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins several producers of one quantity: the first that is alive counts. README.md is the data sheet.
+// Selects the first live producer of one quantity. README.md is the data sheet.
 #include <algorithm>
 
 #include "chimera/task/component.h"

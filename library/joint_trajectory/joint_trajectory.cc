@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The joint position trajectory generator of figure 4 (1994 paper): from rest, or from the motion of a predecessor, to
-// rest, then hold. README.md is the data sheet.
+// The joint trajectory generator of figure 4 (1994 paper): from rest, or from the motion of a predecessor, to rest;
+// then it holds. README.md is the data sheet.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -56,8 +56,8 @@ struct JointTrajectory {
   }
   Outcome reinit() { return init(); }
 
-  // A reference that stands already, of an earlier run or of a predecessor, is where the motion begins: no jump. It
-  // begins at rest unless a predecessor hands it over in motion.
+  // Starts at the last reference, if there is one, so that the reference does not jump. It starts at rest unless a
+  // predecessor hands over a motion.
   void on() {
     elapsed_ = 0;
     for (std::size_t i = 0; i < q_ref.size(); ++i) {
@@ -78,7 +78,7 @@ struct JointTrajectory {
     elapsed_ += c.dt();
     publish();
   }
-  // At rest where it is: who holds the arm holds it there.
+  // Holds the last position at rest, because the controller of the arm still follows it.
   void off() {
     for (std::size_t i = 0; i < q_ref.size(); ++i) qd_ref[i] = qdd_ref[i] = 0;
   }
@@ -119,9 +119,9 @@ struct JointTrajectory {
   }
 
   library::Quintic path_[kMostJoints];
-  library::Braking braking_[kMostJoints];  // to rest, where a motion with limits begins
+  library::Braking braking_[kMostJoints];  // to rest, before a motion with limits
   library::SevenSegments limited_[kMostJoints];
-  double starts_at_[kMostJoints] = {};  // s, where those begin
+  double starts_at_[kMostJoints] = {};  // s, start of that motion
   bool is_quintic_ = true, has_jerk_ = false;
   double elapsed_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One truth value of several. README.md is the data sheet.
+// Combines truth values to one. README.md is the data sheet.
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -49,7 +49,7 @@ struct Logic {
       if (!port.valid()) return false;
     return true;
   }
-  /// Whether any element of an input is true.
+  /// True if any element of input `k` is true.
   bool any(std::size_t k) const {
     bool found = false;
     for (const bool element : in[k]) found |= element != is_inverted(k);

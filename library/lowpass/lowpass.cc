@@ -39,7 +39,7 @@ struct Lowpass {
     const Outcome input = library::judge(x, "x");
     if (!library::is_ok(input)) return input;
     if (!is_settled_) settle();
-    if (c.dt() != last_dt_) {  // the first cycle, or one behind dropped releases
+    if (c.dt() != last_dt_) {  // the first cycle, or the first after dropped releases
       last_dt_ = c.dt();
       g_ = library::prewarped(*cutoff, last_dt_);
     }
@@ -54,7 +54,7 @@ struct Lowpass {
   bool error() { return true; }
 
  private:
-  // As if the input had always been what it is: no transient of its own.
+  // Sets the state for a constant input, so that there is no transient.
   void settle() {
     for (std::size_t i = 0; i < y.size(); ++i) {
       first_[i].settle(x[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Modbus device: what it measures as outputs, what it is told as inputs. README.md is the data sheet.
+// Reads and writes registers and coils of a Modbus device. README.md is the data sheet.
 //
 //   cycle                                     background (may wait for the device)
 //   told_.put(command)     -------------->    told_.get(), written, then read
@@ -19,7 +19,7 @@ using namespace chimera::library;
 
 namespace {
 
-constexpr int kCallsBetweenTries = 20;  // of background, 10 ms each: a device that is gone is called 5 times a second
+constexpr int kCallsBetweenTries = 20;  // calls of background, 10 ms each: five connection attempts a second
 
 struct ModbusIo {
   Many<Out<double>, kMostPoints> input{"input*", "X", initial = 0.0,
@@ -111,8 +111,8 @@ struct ModbusIo {
   }
 
  private:
-  // A serial line has to rest for 3.5 characters, or what comes belongs to the request that was cut. The second request
-  // leaves the device time to answer the first.
+  // A serial line must rest for 3.5 characters, or the device takes the next bytes as a part of the cut request. The
+  // second request comes later, so that the device can answer the first.
   void hand_over_line(Cycle c) {
     const int descriptor = line_.open_second();
     if (descriptor < 0) c.note("takes no second connection: nothing tells it to idle when this process dies");
@@ -172,7 +172,7 @@ struct ModbusIo {
     command.number = ++told_number_;
     told_.put(command);
   }
-  // The result of an exchange, or of the try to connect before it.
+  // Stores the result of an exchange or of a connection attempt.
   void brought(int error) {
     is_good_.store(error == 0, std::memory_order_relaxed);
     error_.store(error, std::memory_order_relaxed);
@@ -183,20 +183,20 @@ struct ModbusIo {
 
   Latest<ModbusCommand> told_;
   Latest<ModbusReading> brought_;
-  // Relaxed, pair with nothing: by background, told by the cycle in a fault.
+  // Relaxed, because they order no other data: background writes, cycle reports them in a fault.
   std::atomic<bool> is_good_{false};
   std::atomic<int> error_{0};
-  std::atomic<bool> has_lost_second_{false};  // by background, told by the cycle in a note
-  // Of background, after init.
+  std::atomic<bool> has_lost_second_{false};  // background writes, cycle gives a note
+  // Used by background after init.
   ModbusLine line_;
   ModbusReading reading_;
   int calls_ = 0;
-  // Of cycle.
+  // Used by cycle.
   LostSentence lost_;
   Nanoseconds heard_;
   std::uint64_t seen_ = 0;
-  std::uint64_t told_number_ = 0;  // of the last command
-  std::uint64_t idle_from_ = 0;    // of the first command since the flag is up; 0: it is down
+  std::uint64_t told_number_ = 0;  // number of the last command
+  std::uint64_t idle_from_ = 0;    // number of the first command after the flag rose; 0: the flag is down
   bool is_lost_ = false;
 };
 

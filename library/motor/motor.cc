@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output element of the direct-drive variant (2000 paper, section 6): one force that drives and brakes.
+// One force that drives and brakes: the direct-drive variant of the 2000 paper, section 6.
 #include <algorithm>
 #include <cmath>
 

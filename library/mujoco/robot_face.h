@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the three simulated robot interfaces have in common: everything but the command.
+// Common part of the three simulated robot interfaces: everything except the command.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace chimera::library {
 
-/// The ports and methods of an arm that a component derives from. It adds the in-var of the command and cycle(), and
-/// init() and reinit() with where the arm comes from.
+/// Base of a component that moves a simulated arm. The component adds the in-var of the command, cycle(), and init()
+/// and reinit(), which load the arm.
 struct RobotBody : ArmBody<SimulatedArm> {
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
@@ -26,14 +26,14 @@ struct RobotBody : ArmBody<SimulatedArm> {
                              doc = "Largest torque of the drives; 1e6 without a limit."};
 
  protected:
-  /// For init: `load` reads the arm and answers a Result<void>. Throws what it, or place(), refuses.
+  /// For init: `load` reads the arm and returns a Result<void>. Throws its error, or that of place().
   template <class Load>
   void start(Load load) {
     check(load());
     tell();
     check(arm_.place({start_pose.begin(), arm_.joints()}));
   }
-  /// For reinit: other limits or drives, at rest in the same place.
+  /// For reinit: changes limits or drives and keeps the place, at rest.
   template <class Load>
   void restart(Load load) {
     ArmVector here;
@@ -43,7 +43,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
     tell();
     check(arm_.place({here.data(), joints}));
   }
-  /// What whoever named the file should know of it.
+  /// Gives the user a note about the model file, if there is one.
   void tell_note(Cycle c) const {
     if (!arm_.note().empty()) c.note(arm_.note().c_str());
   }
@@ -67,7 +67,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
   }
 };
 
-/// An arm from a file that the user names.
+/// An arm from a file of the user.
 struct RobotFace : RobotBody {
   InConst<Text<64>> tip{"tip", "1", initial = "",
                         doc = "Body or site that is the tool; empty: the link behind the most joints."};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot interface of the position kind with any simulated arm behind it.
+// Robot interface with position commands, for any simulated arm.
 #include "library/mujoco/robot_face.h"
 
 using namespace chimera;

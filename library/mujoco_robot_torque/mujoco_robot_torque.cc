@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot interface of the torque kind with any simulated arm behind it.
+// Robot interface with torque commands, for any simulated arm.
 #include "library/mujoco/link_masses.h"
 #include "library/mujoco/robot_face.h"
 

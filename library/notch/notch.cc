@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes one frequency out of a signal. README.md is the data sheet.
+// Removes one frequency from a signal. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 #include "library/signals/tpt.h"
@@ -8,7 +8,7 @@ using namespace chimera;
 
 namespace {
 
-// Hz. Far below it nothing is left of the ratio of width and center.
+// Hz. Far below, rounding destroys the ratio of width and center.
 constexpr double kLeast = 1e-6;
 
 struct Notch {
@@ -42,7 +42,7 @@ struct Notch {
   bool error() { return true; }
 
  private:
-  // The width survives the transform exactly: tan(pi width dt) = k g / (1 + g^2).
+  // The transform keeps the width exactly: tan(pi width dt) = k g / (1 + g^2).
   void tune(double dt) {
     last_dt_ = dt;
     g_ = library::prewarped(*center, dt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds an offset that may change while it runs: y = x + offset. README.md is the data sheet.
+// Adds a variable offset: y = x + offset. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 

@@ -50,15 +50,15 @@ struct Pid {
   }
   Outcome reinit() { return init(); }
 
-  // The start itself waits for the first cycle: an input may come from a task that goes on after this one. An output
-  // that is outdated belongs to another state of the plant.
+  // The first cycle starts the loop, because the task of an input may go ON after this one. An outdated output belongs
+  // to another state of the plant.
   void on() {
     is_started_ = false;
     if (output.is_outdated()) rest();
   }
 
   Outcome cycle(Cycle c) {
-    if (c.illegal()) {  // the actuator holds itself, and the error means nothing: do not integrate it
+    if (c.illegal()) {  // the actuator holds itself, so the error must not be integrated
       is_started_ = false;
       return ok();
     }
@@ -85,10 +85,10 @@ struct Pid {
     library::PidAxis axis;
     double last_weighted = 0, last_reference = 0, reference_rate = 0;
   };
-  /// What the control law is made of at one instant.
+  /// Terms of the control law at one instant.
   struct Terms {
     library::PidGains gains;
-    double error, weighted, besides;  // besides: proportional weight and feed-forward of the reference
+    double error, weighted, besides;  // besides: feed-forward and weighted reference
   };
 
   void rest() {
@@ -111,8 +111,8 @@ struct Pid {
             *derivative_weight * r - y,
             (*reference_weight - 1) * p * r + ff.begin()[i] * r};
   }
-  // Bumpless: the integral takes what the other terms lack to the output that stands: that of a predecessor, what was
-  // held while the configuration was illegal, or the initial one.
+  // Bumpless: sets the integral so that the output continues from the last one: that of a predecessor, the one held
+  // while the configuration was illegal, or the initial one.
   void start() {
     for (std::size_t i = 0; i < output.size(); ++i) {
       const Terms now = terms(i);
@@ -134,7 +134,7 @@ struct Pid {
     const double besides = now.besides + ff_rate.begin()[i] * loop.reference_rate;
     const double least = low.begin()[i], most = high.begin()[i];
     const double u = loop.axis.step(now.gains, now.error, rate, dt, *filter_time, least - besides, most - besides);
-    return std::clamp(u + besides, least, most);  // the sum may be rounded across a limit
+    return std::clamp(u + besides, least, most);  // rounding of the sum may cross a limit
   }
 
   Loop loop_[library::kMostElements];

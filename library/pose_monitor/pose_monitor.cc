@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges how a tool follows a target that moves, so that an application can be judged by values in the table.
+// Judges how a tool follows a moving target, in variables that `--expect` compares.
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input element of the cruise control (2000 paper, figure 15): the wheel position resolver.
+// The wheel position resolver of the cruise control (2000 paper, figure 15).
 #include <cmath>
 #include <numbers>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Puma 560 in position mode (2000 paper, figure 3), simulated; the arm is that of library/puma_torque.
+// The simulated Puma 560 in position mode (2000 paper, figure 3). The arm is that of library/puma_torque.
 #include <algorithm>
 
 #include "library/kinematics/puma560.h"
@@ -26,7 +26,7 @@ struct Puma : library::PumaBody {
     load();
     check(arm_.place(Joints(start_pose.begin(), 6)));
   }
-  // Another payload or other drives, at rest in the same place.
+  // Changes payload or drives and keeps the place, at rest.
   void reinit() {
     restart([this] { load(); });
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The torque-mode robot interface of figure 4 (1994 paper), with a simulated Puma 560 behind it.
+// The torque-mode robot interface of figure 4 (1994 paper), with a simulated Puma 560.
 #include <algorithm>
 
 #include "library/puma_torque/puma_body.h"
@@ -30,7 +30,7 @@ struct PumaTorque : library::PumaBody {
     load();
     check(arm_.place(PumaInput(start_pose.begin(), library::kPumaJoints)));
   }
-  // Another payload, at rest in the same place.
+  // Changes the payload and keeps the place, at rest.
   void reinit() {
     restart([this] { load(); });
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows a signal no faster than allowed. README.md is the data sheet.
+// Limits the rate of a signal. README.md is the data sheet.
 #include <algorithm>
 
 #include "chimera/task/component.h"
@@ -21,7 +21,7 @@ struct RateLimit {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // What stands, of an earlier run or a predecessor, is where y goes on: no jump.
+  // Continues from the last output, of an earlier run or a predecessor, without a jump.
   void on() {
     if (!library::all_finite(y) && library::all_finite(x)) std::copy(x.begin(), x.end(), y.begin());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interface to the Reconfigurable Modular Manipulator System, simulated: what is plugged together is what it tells.
+// The simulated Reconfigurable Modular Manipulator System: provides the constants of its modules.
 #include <mujoco/mujoco.h>
 
 #include <cstring>

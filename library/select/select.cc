@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands on the input that a number names. README.md is the data sheet.
+// Passes on the input with a given number. README.md is the data sheet.
 #include <algorithm>
 #include <cstdio>
 
@@ -36,7 +36,7 @@ struct Select {
  private:
   bool is_named() const { return *which >= 0 && static_cast<std::size_t>(*which) < in.size(); }
   std::size_t number() const { return static_cast<std::size_t>(*which); }
-  // Without formatting: it is asked for in every cycle.
+  // Avoids formatted output, because every cycle calls it.
   const char* name_of(char* name) const {
     char* at = std::copy_n("in[", 3, name);
     if (*which >= 10) *at++ = '1';

@@ -65,7 +65,7 @@ struct SignalGenerator {
 
   library::Waveform wave_ = library::Waveform::kSine;
   library::Noise noise_{1};
-  Nanoseconds elapsed_;  // whole nanoseconds: a year of them loses no phase
+  Nanoseconds elapsed_;  // whole nanoseconds lose no phase in a year
 };
 
 CHIMERA_COMPONENT(SignalGenerator, "signal_generator",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says when the arm comes near a singular pose: when to change from figure 8 of the 1994 paper to figure 9.
+// Detects when the arm comes near a singular pose: the time to change from figure 8 of the 1994 paper to figure 9.
 #include "chimera/task/component.h"
 #include "library/kinematics/singular_values.h"
 
@@ -52,18 +52,18 @@ struct SingularityMonitor {
   }
 
  private:
-  // Once for each approach, and once when the pose has been clear for dwell: so dwell at least lies between two.
+  // Requests once for each approach, and once after dwell without is_near. Two requests are at least dwell apart.
   void ask(Cycle c) {
     if (*is_near) last_near_ = c.now();
     const bool is_to_ask = *is_near ? !has_asked_ : has_asked_ && to_seconds(c.now() - last_near_) >= *dwell;
     if (!is_to_ask) return;
     has_asked_ = *is_near;
     const Text<64>& name = *is_near ? *when_near : *when_clear;
-    if (!name.empty()) c.request(name.c_str());  // a refusal is told by the framework
+    if (!name.empty()) c.request(name.c_str());  // the framework reports a refusal
   }
 
   Nanoseconds last_near_;
-  bool has_asked_ = false;  // for when_near, and not yet for when_clear
+  bool has_asked_ = false;  // when_near is requested, when_clear not yet
 };
 
 CHIMERA_COMPONENT(SingularityMonitor, "singularity_monitor", "Detects when an arm comes near a singular pose.",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits one force into one for the engine and one for the brakes (2000 paper, figure 17).
+// Splits a force into engine force and brake force (2000 paper, figure 17).
 #include <algorithm>
 #include <cmath>
 

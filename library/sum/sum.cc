@@ -36,7 +36,7 @@ struct Sum {
   bool error() { return true; }
 
  private:
-  // Formats a name: only where there is something to complain about.
+  // Formats a name, but only for a fault.
   Outcome judge(std::size_t i) const {
     char name[16];
     std::snprintf(name, sizeof name, "in[%zu]", i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ball with six degrees of freedom, by which a person moves a reference. README.md is the data sheet.
+// A ball with six degrees of freedom with which a person moves a reference. README.md is the data sheet.
 #include <stdexcept>
 
 #include "chimera/base/math.h"
@@ -13,7 +13,7 @@ using namespace chimera::library;
 
 namespace {
 
-constexpr double kLongestStep = 0.1;  // s: after a pause the reference goes on, it does not catch up
+constexpr double kLongestStep = 0.1;  // s; a longer step moves the reference only by this time
 
 struct TrackBall {
   Many<In<Pose>, 1> xm{"xm*", "1", frame = "base", doc = "Measured tool pose; may be left out."};
@@ -45,7 +45,7 @@ struct TrackBall {
     reinit();
     source_.start(c.now());
     rest();
-    if (xd.is_handed_over() && is_sound(*xd)) return ok();  // bumpless: the reference goes on
+    if (xd.is_handed_over() && is_sound(*xd)) return ok();  // bumpless: the reference continues
     if (xm.size() == 0 || !xm[0].valid()) return ok();
     if (!is_sound(*xm[0])) return fault("xm is not finite or no orientation: xd cannot start there");
     *xd = *xm[0];
@@ -53,7 +53,7 @@ struct TrackBall {
   }
   Outcome cycle(Cycle c) {
     if (is_gone_) return fault(lost_.text(), source_.error());
-    // Without its device the ball is at rest for one more cycle, so that everybody hears it; then it is a fault.
+    // If the device is gone, one cycle publishes a ball at rest for all readers; the next cycle is a fault.
     is_gone_ = !source_.collect(ball_, *full, c.now());
     if (is_gone_) ball_.rest();
     double deflection[kBallAxes];
@@ -90,7 +90,7 @@ struct TrackBall {
     return norm > 0.5 && norm < 2;  // false for NaN
   }
 
-  // xd moves along and about the axes of its frame.
+  // Moves xd along and about the axes of its frame.
   void move(const double (&deflection)[kBallAxes], double dt) {
     Pose pose = *xd;
     for (std::size_t i = 0; i < 3; ++i) pose.position[i] += *linear * deflection[i] * dt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hangs on the flange of an arm: it tells its frame and its mass, to whoever reckons with them.
+// A tool on the flange of an arm: provides its frame and mass as constants.
 #include <cmath>
 
 #include "library/kinematics/dh_ports.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges how a robot follows its reference, so that a demonstration can be judged by values in the table.
+// Judges how a robot follows its reference, in variables that `--expect` compares.
 #include <algorithm>
 #include <cmath>
 

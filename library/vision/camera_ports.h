@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constants of a calibrated camera, the same for who simulates it and who reads it.
+// Constants of a calibrated camera, shared by its simulation and by its reader.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace chimera::library {
 
-/// In-consts that a component derives from.
+/// Base of a component with the in-consts of a camera.
 struct CameraPorts {
   InConst<Pose> camera{"camera", frame = "base", doc = "The camera: x to the right, y down, z forward."};
   InConst<double> focal_length{"focal_length", "1", initial = 800.0, range(1, 1e5), doc = "Focal length in pixels."};

@@ -38,7 +38,7 @@ struct VisualServoInterface : library::CameraPorts {
     if (!xm.valid()) return fault("xm was never written: where the tool is is not known");
     if (!is_finite(*xm)) return fault("xm is not a number");
     *target = *xm;
-    if (!xd.is_handed_over() || !is_finite(*xd)) *xd = *xm;  // else bumpless: a reference that is handed over goes on
+    if (!xd.is_handed_over() || !is_finite(*xd)) *xd = *xm;  // otherwise bumpless: xd continues
     reader_.rewind();
     begin_ = c.now();
     was_seen_ = *in_sight = false;
@@ -65,7 +65,7 @@ struct VisualServoInterface : library::CameraPorts {
     return std::isfinite(library::length(frame.origin + frame.x));
   }
 
-  // Between two pictures the ball goes on as it went from the last to this one.
+  // Between two pictures the ball is assumed to move with its last velocity.
   void look(const library::Feature& feature, double now) {
     Vec3 place;
     if (!pinhole_.locate(feature, place)) return;
@@ -85,7 +85,7 @@ struct VisualServoInterface : library::CameraPorts {
     std::ranges::copy(grip->orientation, target->orientation);
   }
   void approach(double dt) {
-    const double lead = *gain > 0 ? 1 : 0;  // without it xd would trail a ball that moves by its speed over the gain
+    const double lead = *gain > 0 ? 1 : 0;  // otherwise xd would lag a moving ball by its speed over the gain
     Vec3 v;
     for (std::size_t i = 0; i < 3; ++i) v[i] = *gain * (target->position[i] - xd->position[i]) + lead * velocity_[i];
     const double speed = library::length(v), share = speed > *speed_limit ? *speed_limit / speed : 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says when values it watches are no longer renewed, and acts on it. README.md is the data sheet.
+// Detects values that are no longer renewed, and acts. README.md is the data sheet.
 #include <algorithm>
 #include <cstdio>
 
@@ -60,7 +60,7 @@ struct Watchdog {
     std::snprintf(text, sizeof text, "in[%zu] has not been renewed for %.3g s", worst, *oldest);
     return fault(text);
   }
-  // Only somebody who looks after the cause turns it on again.
+  // Always succeeds, because a person turns the task on again after removing the cause.
   bool clear() { return true; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output element of the cruise control (2000 paper, figure 15): how hard to press the brakes.
+// Computes the brake force for a wanted force of the cruise control (2000 paper, figure 15).
 #include <algorithm>
 #include <cmath>
 
