@@ -20,7 +20,7 @@ inline std::string open_refusal(const std::string& path, int error) {
   const std::string what = path + ": " + std::strerror(error) + ": ";
   if (error == ENOENT || error == ENODEV || error == ENXIO)
     return what + "plug the device in, or name another under `resources`";
-  if (error != EACCES && error != EPERM) return what + "see that it is the right device and nobody else holds it";
+  if (error != EACCES && error != EPERM) return what + "check the path, and end a process that has it open";
   struct stat about {};
   const group* owner = ::stat(path.c_str(), &about) == 0 ? ::getgrgid(about.st_gid) : nullptr;
   const std::string name = owner != nullptr && about.st_gid != 0 ? owner->gr_name : "dialout or input";

@@ -115,14 +115,14 @@ struct ModbusIo {
   // second request comes later, so that the device can answer the first.
   void hand_over_line(Cycle c) {
     const int descriptor = line_.open_second();
-    if (descriptor < 0) c.note("takes no second connection: nothing tells it to idle when this process dies");
+    if (descriptor < 0) c.note("takes no second connection: it gets no `idle` when this process dies");
     const Nanoseconds rest = line_.is_tcp() ? Nanoseconds{} : Nanoseconds{38'500'000'000 / *baud};
     c.safe_frame(0, descriptor, rest);
     c.safe_frame(1, descriptor, rest + (holding.size() == 0 ? Nanoseconds{} : milliseconds(50)));
   }
   void tell_lost_second(Cycle c) {
     has_lost_second_.store(false, std::memory_order_relaxed);
-    c.note("was connected anew: nothing tells it to idle when this process dies, until `kill` and `spawn`");
+    c.note("was connected again: it gets no `idle` when this process dies, until `kill` and `spawn`");
   }
   void put_safe_frames(Cycle c) {
     std::array<std::uint16_t, kMostPoints> values;

@@ -71,7 +71,7 @@ void BallSource::reopen() {
   open(std::string(path_));
   kept_ = 0;
   if (kind_ == Kind::kRecording || fill(sizeof buffer_) >= 0) return;
-  throw std::runtime_error(path_ + ": opens, but nobody is at the other end");
+  throw std::runtime_error(path_ + ": opens, but no process has the other end open");
 }
 
 void BallSource::start(Nanoseconds now) noexcept {

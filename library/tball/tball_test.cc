@@ -200,7 +200,7 @@ TEST_F(TballTest, ALostDeviceRestsThenIsAFaultAndComesBackByClear) {
   const RigAnswer fault = rig.cycle();
   EXPECT_EQ(fault.status, CHIMERA_FAULT);
   EXPECT_NE(fault.text.find(" is gone: bring it back, then `clear` and `on`"), std::string::npos) << fault.text;
-  EXPECT_EQ(rig.clear().text, path + ": opens, but nobody is at the other end");
+  EXPECT_EQ(rig.clear().text, path + ": opens, but no process has the other end open");
   plug();
   ASSERT_TRUE(rig.clear());
   ASSERT_TRUE(rig.on());

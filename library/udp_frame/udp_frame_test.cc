@@ -251,7 +251,7 @@ TEST_F(UdpFrameTest, RefusesWhatIsNoAddressAndAPortThatIsTaken) {
   rig.resource("device", address.c_str());
   rig.set("local_port", std::int32_t{std::stoi(port)});
   EXPECT_EQ(rig.init().text,
-            "UDP port " + port + ": Address already in use: name another `local_port`, or end who has it");
+            "UDP port " + port + ": Address already in use: name another `local_port`, or end the process that has it");
 }
 
 }  // namespace

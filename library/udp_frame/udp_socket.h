@@ -35,7 +35,7 @@ class UdpSocket {
     here.sin_family = AF_INET;
     here.sin_port = htons(static_cast<std::uint16_t>(local_port));
     if (::bind(file_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0)
-      refuse("UDP port " + std::to_string(local_port), ": name another `local_port`, or end who has it");
+      refuse("UDP port " + std::to_string(local_port), ": name another `local_port`, or end the process that has it");
     connect(peer);
   }
   /// Changes the peer and keeps the port: a copy of the descriptor, such as the guard's, would prevent binding the port

@@ -45,6 +45,6 @@ struct UrdfModel {
 };
 
 CHIMERA_COMPONENT(UrdfModel, "urdf_model", "Constants of a robot from its URDF file.", rate = 1.0,
-                  source = "2000 paper, section 3.2: constants that the robot itself tells");
+                  source = "2000 paper, section 3.2: constants of the robot itself");
 
 }  // namespace

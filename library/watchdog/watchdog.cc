@@ -54,7 +54,7 @@ struct Watchdog {
     if (*alive || !was_alive) return ok();
     *alarms += 1;
     if (action_ == Action::kOff && !c.signal(Signal::kOff, target->c_str()))
-      return fault("the target could not be told");
+      return fault("the target is no task of this application");
     if (action_ != Action::kFault) return ok();
     char text[80];
     std::snprintf(text, sizeof text, "in[%zu] has not been renewed for %.3g s", worst, *oldest);
