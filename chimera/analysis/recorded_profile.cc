@@ -3,10 +3,10 @@
 #include "chimera/analysis/recorded_profile.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/platform/part_file.h"
+#include "chimera/text/json.h"
 #include "chimera/text/json_cursor.h"
 #include "chimera/text/json_text.h"
 
@@ -22,10 +22,10 @@ constexpr std::int64_t kLongestPeriod = 3'600'000'000'000;  // the longest perio
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 53;
 
 std::uint64_t count_at(const JsonCursor& at, std::uint64_t most) {
-  const auto& json = at.value();
-  if (!json.is_number_unsigned() || json.get<std::uint64_t>() > most)
+  const Json& json = at.value();
+  if (!json.is_whole() || json.as_int64() < 0 || json.as_uint64() > most)
     at.refuse("expected a whole number from 0 to " + std::to_string(most));
-  return json.get<std::uint64_t>();
+  return json.as_uint64();
 }
 
 Nanoseconds time_at(const JsonCursor& at, std::string_view key) {
@@ -114,7 +114,7 @@ std::string to_json(const RecordedProfile& profile) {
 
 Result<RecordedProfile> parse_recorded_profile(std::string_view json) {
   try {
-    const nlohmann::json tree = read_json(json, kMostBytes, kNesting);
+    const Json tree = read_json(json, kMostBytes, kNesting);
     return profile_at(JsonCursor(tree, "$"));
   } catch (const JsonRefusal& refusal) {
     return bad(refusal.message, "profile");

@@ -3,18 +3,16 @@
 #include "chimera/manager/status_json.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/analysis/task_profile.h"
 #include "chimera/manager/cause.h"
 #include "chimera/manager/face_watch.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 const char* policy_text(Policy policy) {
   constexpr const char* kNames[] = {"rm", "edf", "llf", "muf", "muf-laxity"};
