@@ -93,7 +93,7 @@ std::string mode_json(const Configuration& configuration, const ModeReport& repo
                     {"transitions", std::move(edges)},
                     {"by_operator_only", std::move(alone)},
                     {"warnings", report.warnings}};
-  return all.dump(Json::Order::kAsMade);
+  return all.dump(Json::Style::kAsMade);
 }
 
 }  // namespace chimera

@@ -103,11 +103,12 @@ RecordedProfile recorded(const std::string& subsystem, std::span<const TaskProfi
 std::string to_json(const RecordedProfile& profile) {
   std::string rows;
   for (const RecordedTask& task : profile.tasks)
-    rows += (rows.empty() ? "\n    " : ",\n    ") + std::string("{\"task\": ") + json_string(task.task) +
-            ", \"samples\": " + std::to_string(task.samples) + ", \"worst_ns\": " + std::to_string(task.worst.count) +
-            ", \"mean_ns\": " + std::to_string(task.mean.count) +
-            ", \"response_ns\": " + std::to_string(task.response.count) +
-            ", \"jitter_ns\": " + std::to_string(task.jitter.count) + "}";
+    rows += (rows.empty() ? "\n    " : ",\n    ") + spaced_json({{"task", task.task},
+                                                                 {"samples", task.samples},
+                                                                 {"worst_ns", task.worst.count},
+                                                                 {"mean_ns", task.mean.count},
+                                                                 {"response_ns", task.response.count},
+                                                                 {"jitter_ns", task.jitter.count}});
   return "{\n  \"version\": 1,\n  \"subsystem\": " + json_string(profile.subsystem) + ",\n  \"tasks\": [" + rows +
          (rows.empty() ? "" : "\n  ") + "]\n}\n";
 }

@@ -117,7 +117,7 @@ std::string schedule_json(const Configuration& configuration, const ScheduleRepo
                     {"fits", report.fits()},
                     {"notes", report.notes},
                     {"sets", std::move(sets)}};
-  return all.dump(Json::Order::kAsMade);
+  return all.dump(Json::Style::kAsMade);
 }
 
 }  // namespace chimera

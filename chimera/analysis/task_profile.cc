@@ -6,7 +6,6 @@
 #include <array>
 
 #include "chimera/text/json.h"
-#include "chimera/text/json_text.h"
 
 namespace chimera {
 namespace {
@@ -32,50 +31,49 @@ constexpr std::array<Counter, 15> kCounters = {{{"missed", &Profile::missed},
                                                 {"events_lost", &Profile::events_lost},
                                                 {"exhausted", &Profile::exhausted}}};
 
-std::string number(std::uint64_t n) { return std::to_string(n); }
-
-std::string spread_json(const Spread& spread) {
-  if (spread.count == 0) return "{\"count\": 0}";
-  return "{\"count\": " + number(spread.count) + ", \"min\": " + std::to_string(spread.min.count) +
-         ", \"mean\": " + std::to_string(spread.mean().count) + ", \"max\": " + std::to_string(spread.max.count) + "}";
+Json json_of(const Spread& spread) {
+  if (spread.count == 0) return {{"count", 0}};
+  return {{"count", spread.count}, {"min", spread.min.count}, {"mean", spread.mean().count}, {"max", spread.max.count}};
 }
 
-std::string server_json(const std::optional<ServerSpec>& server) {
-  if (!server) return "null";
-  return std::string("{\"kind\": ") + json_string(server_kind_name(server->kind)) +
-         ", \"capacity_ns\": " + std::to_string(server->capacity.count) +
-         ", \"period_ns\": " + std::to_string(server->period.count) + "}";
+Json json_of(const std::optional<ServerSpec>& server) {
+  if (!server) return nullptr;
+  return {{"kind", server_kind_name(server->kind)},
+          {"capacity_ns", server->capacity.count},
+          {"period_ns", server->period.count}};
 }
 
-std::string fault_json(const FaultRecord& faults, Nanoseconds origin) {
-  return "{\"method\": " + json_string(method_name(faults.method)) +
-         ", \"at_ns\": " + std::to_string((faults.at - origin).count) +
-         ", \"code\": " + std::to_string(faults.last.code) + ", \"text\": " + json_string(faults.last.text) + "}";
+Json json_of(const FaultRecord& faults, Nanoseconds origin) {
+  return {{"method", method_name(faults.method)},
+          {"at_ns", (faults.at - origin).count},
+          {"code", faults.last.code},
+          {"text", faults.last.text}};
 }
 
-std::string task_json(const TaskProfile& task, Nanoseconds origin) {
+Json json_of(const TaskProfile& task, Nanoseconds origin) {
   const Profile& p = task.profile;
-  std::string methods;
+  Json methods = Json::object();
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m)
-    if (p.execution[m].count > 0)
-      methods += (methods.empty() ? "" : ", ") + json_string(method_name(static_cast<Method>(m))) + ": " +
-                 spread_json(p.execution[m]);
-  std::string text = "{\"task\": " + json_string(task.task) + ", \"component\": " + json_string(task.component) +
-                     ", \"rtpu\": " + json_string(task.rtpu) + ", \"state\": " + json_string(state_name(task.state)) +
-                     ", \"period_ns\": " + std::to_string(task.period.count) +
-                     ", \"server\": " + server_json(task.server) + ", \"on_ns\": " + std::to_string(task.on.count) +
-                     ", \"cycles\": " + number(p.cycles) + ", \"execution_ns\": {" + methods +
-                     "}, \"response_ns\": " + spread_json(p.response) +
-                     ", \"start_delay_ns\": " + spread_json(p.start_delay) +
-                     ", \"transfer\": {\"groups\": " + number(task.transfer.groups) +
-                     ", \"bytes\": " + number(task.transfer.bytes) + "}";
-  for (const Counter& counter : kCounters) text += ", " + json_string(counter.key) + ": " + number(p.*counter.count);
-  if (p.restarts > 0) text += ", \"restarts\": " + number(p.restarts);
-  if (p.takeovers > 0) text += ", \"takeovers\": " + number(p.takeovers);
-  text += ", \"faults\": " + number(task.faults.count);
-  if (task.faults.count > 0) text += ", \"last_fault\": " + fault_json(task.faults, origin);
-  if (task.faults.notes > 0) text += std::string(", \"note\": ") + json_string(task.faults.note);
-  return text + "}";
+    if (p.execution[m].count > 0) methods[method_name(static_cast<Method>(m))] = json_of(p.execution[m]);
+  Json json = {{"task", task.task},
+               {"component", task.component},
+               {"rtpu", task.rtpu},
+               {"state", state_name(task.state)},
+               {"period_ns", task.period.count},
+               {"server", json_of(task.server)},
+               {"on_ns", task.on.count},
+               {"cycles", p.cycles},
+               {"execution_ns", std::move(methods)},
+               {"response_ns", json_of(p.response)},
+               {"start_delay_ns", json_of(p.start_delay)},
+               {"transfer", {{"groups", task.transfer.groups}, {"bytes", task.transfer.bytes}}}};
+  for (const Counter& counter : kCounters) json[counter.key] = p.*counter.count;
+  if (p.restarts > 0) json["restarts"] = p.restarts;
+  if (p.takeovers > 0) json["takeovers"] = p.takeovers;
+  json["faults"] = task.faults.count;
+  if (task.faults.count > 0) json["last_fault"] = json_of(task.faults, origin);
+  if (task.faults.notes > 0) json["note"] = task.faults.note;
+  return json;
 }
 
 Spread spread_of(const Json& json) {
@@ -150,16 +148,17 @@ TaskProfile profile_of(const Json& json, Nanoseconds origin) {
 
 }  // namespace
 
-std::string profile_json(std::span<const TaskProfile> tasks, Nanoseconds origin) {
-  std::string rows;
-  for (const TaskProfile& task : tasks) rows += (rows.empty() ? "" : ", ") + task_json(task, origin);
-  return "[" + rows + "]";
+Json profile_json(std::span<const TaskProfile> tasks, Nanoseconds origin) {
+  Json all = Json::array();
+  for (const TaskProfile& task : tasks) all.push_back(json_of(task, origin));
+  return all;
 }
 
-Result<std::vector<TaskProfile>> parse_profiles(std::string_view json, Nanoseconds origin) {
+Result<std::vector<TaskProfile>> read_profiles(const Json& json, Nanoseconds origin) {
   try {
+    if (!json.is_array()) throw JsonError("expected a list of tasks");
     std::vector<TaskProfile> tasks;
-    for (const Json& task : Json::parse(json)) tasks.push_back(profile_of(task, origin));
+    for (const Json& task : json) tasks.push_back(profile_of(task, origin));
     return tasks;
   } catch (const std::exception& error) {
     return Error{ErrorCode::kBadInput, std::string_view(error.what()), std::string_view("profile")};

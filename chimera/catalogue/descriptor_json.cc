@@ -280,7 +280,7 @@ std::string to_json(const Descriptor& descriptor) {
   json["ports"] = Json::array();
   for (const PortDescriptor& port : descriptor.ports) json["ports"].push_back(port_json(port));
   json["fingerprint"] = hex(fingerprint(descriptor));
-  return json.dump(Json::Order::kAsMade, 2) + "\n";
+  return json.dump(Json::Style::kLines) + "\n";
 }
 
 Result<Descriptor> read_descriptor_file(const std::string& path) {

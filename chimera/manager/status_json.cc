@@ -294,7 +294,7 @@ Json profile_json(const ManagerState& world, Nanoseconds at) {
                      world.configuration ? transfer_of(*world.configuration, t) : TransferCost{},
                      on_time(world, TaskId(t), profile, at), spec.server});
   }
-  return {{"tasks", Json::parse(chimera::profile_json(tasks, world.keeper.origin))}};
+  return {{"tasks", chimera::profile_json(tasks, world.keeper.origin)}};
 }
 
 Json event_json(const ManagerState& world, const LoggedEvent& event) {

@@ -295,7 +295,7 @@ std::optional<Json> Json::parse_or_none(std::string_view text, std::optional<std
 
 class Json::Writer {
  public:
-  Writer(Order order, int indent) : order_(order), indent_(static_cast<std::size_t>(indent)) {}
+  explicit Writer(Style style) : style_(style) {}
 
   void write(const Json& json, std::size_t level) {
     switch (json.kind_) {
@@ -348,41 +348,42 @@ class Json::Writer {
   void write(const std::vector<Json>& elements, std::size_t level) {
     text += '[';
     for (const Json& element : elements) {
-      begin_item(&element == elements.data(), level);
+      begin_item(&element == elements.data(), level + 1);
       write(element, level + 1);
     }
-    end_items(elements.empty(), level);
+    if (!elements.empty()) end_line(level);
     text += ']';
   }
 
   void write(const Object& object, std::size_t level) {
     text += '{';
     for (std::size_t i = 0; i < object.made.size(); ++i) {
-      const Member& member = order_ == Order::kByKey ? *object.by_key[i] : *object.made[i];
-      begin_item(i == 0, level);
+      const Member& member = style_ == Style::kDense ? *object.by_key[i] : *object.made[i];
+      begin_item(i == 0, level + 1);
       write(member.first);
-      text += indent_ > 0 ? ": " : ":";
+      text += is_dense() ? ":" : ": ";
       write(member.second, level + 1);
     }
-    end_items(object.made.empty(), level);
+    if (!object.made.empty()) end_line(level);
     text += '}';
   }
 
+  bool is_dense() const { return style_ == Style::kDense || style_ == Style::kAsMade; }
+
   void begin_item(bool is_first, std::size_t level) {
-    if (!is_first) text += ',';
-    end_items(false, level + 1);
+    if (!is_first) text += style_ == Style::kSpaced ? ", " : ",";
+    end_line(level);
   }
 
-  void end_items(bool is_empty, std::size_t level) {
-    if (!is_empty && indent_ > 0) text.append(1, '\n').append(indent_ * level, ' ');
+  void end_line(std::size_t next_level) {
+    if (style_ == Style::kLines) text.append(1, '\n').append(2 * next_level, ' ');
   }
 
-  Order order_;
-  std::size_t indent_;
+  Style style_;
 };
 
-std::string Json::dump(Order order, int indent) const {
-  Writer writer(order, indent);
+std::string Json::dump(Style style) const {
+  Writer writer(style);
   writer.write(*this, 0);
   return std::move(writer.text);
 }

@@ -45,7 +45,12 @@ class Json : public JsonKind {
  public:
   using Member = std::pair<const std::string, Json>;
   class Members;
-  enum class Order { kByKey, kAsMade };
+  enum class Style {
+    kDense,   ///< one line, keys by their bytes: {"a":1,"b":[2,3]}
+    kAsMade,  ///< one line, keys in the order in which they were added: {"b":[2,3],"a":1}
+    kSpaced,  ///< the same with spaces: {"b": [2, 3], "a": 1}
+    kLines,   ///< the same on lines of their own, two columns in for each level
+  };
 
   Json(std::nullptr_t = nullptr) noexcept : JsonKind(Kind::kNull) {}
   Json(bool value) noexcept : JsonKind(Kind::kBool) { value_.truth = value; }
@@ -77,9 +82,8 @@ class Json : public JsonKind {
   static Json parse(std::string_view text, std::optional<std::string>* twice = nullptr);
   /// As parse(); none in place of JsonError.
   static std::optional<Json> parse_or_none(std::string_view text, std::optional<std::string>* twice = nullptr);
-  /// Keys by their bytes, or in the order in which they were added. Bytes that are no UTF-8 become U+FFFD, numbers that
-  /// are not finite become null. `indent`: spaces for each level; 0: one line.
-  std::string dump(Order order = Order::kByKey, int indent = 0) const;
+  /// Bytes that are no UTF-8 become U+FFFD, numbers that are not finite become null.
+  std::string dump(Style style = Style::kDense) const;
 
   /// Each throws JsonError for another kind. A number is converted: a fraction is cut off, a number beyond the range
   /// becomes its limit.

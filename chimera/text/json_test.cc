@@ -46,12 +46,13 @@ TEST(Json, WritesKeysAsMadeAndIndentsOnRequest) {
   Json json = {{"b", 1}, {"a", {{"z", Json::array()}, {"y", {1, "x"}}}}};
   json["0"] = Json::object();
   EXPECT_EQ(json.dump(), R"({"0":{},"a":{"y":[1,"x"],"z":[]},"b":1})");
-  EXPECT_EQ(json.dump(Json::Order::kAsMade), R"({"b":1,"a":{"z":[],"y":[1,"x"]},"0":{}})");
-  EXPECT_EQ(json.dump(Json::Order::kAsMade, 2),
+  EXPECT_EQ(json.dump(Json::Style::kAsMade), R"({"b":1,"a":{"z":[],"y":[1,"x"]},"0":{}})");
+  EXPECT_EQ(json.dump(Json::Style::kLines),
             "{\n  \"b\": 1,\n  \"a\": {\n    \"z\": [],\n    \"y\": [\n      1,\n      \"x\"\n    ]\n  },\n"
             "  \"0\": {}\n}");
+  EXPECT_EQ(json.dump(Json::Style::kSpaced), R"({"b": 1, "a": {"z": [], "y": [1, "x"]}, "0": {}})");
   const Json copy = json;
-  EXPECT_EQ(copy.dump(Json::Order::kAsMade), json.dump(Json::Order::kAsMade));
+  EXPECT_EQ(copy.dump(Json::Style::kAsMade), json.dump(Json::Style::kAsMade));
 }
 
 TEST(Json, KeepsEveryNumber) {

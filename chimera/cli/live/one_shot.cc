@@ -109,7 +109,7 @@ CommandResult profile(Session& session, const Call& call, const Screen&) {
   const control::RpcResponse hello = session.ask("hello");
   for (const control::RpcResponse* asked : {&answer, &hello})
     if (!asked->is_good()) return refused(*asked, call.json);
-  const auto tasks = parse_profiles((*answer.result)["tasks"].dump(), Nanoseconds{});
+  const auto tasks = read_profiles((*answer.result)["tasks"], Nanoseconds{});
   if (!tasks) return refused(tasks.error(), call.json);
   const std::string file = call.value("--save");
   const auto written = write_recorded_profile(file, recorded(text_of(*hello.result, "subsystem"), *tasks));

@@ -385,8 +385,8 @@ std::vector<UnitFate> RemoteTarget::units_of(const Json& status) const {
 std::vector<TaskProfile> RemoteTarget::profiles(const Json& origin) {
   const auto answer = line_.ask("profile", Json::object());
   if (!answer) return {};
-  const auto parsed = parse_profiles((*answer)["tasks"].dump(), instant(origin));
-  return parsed ? *parsed : std::vector<TaskProfile>();
+  const auto tasks = read_profiles((*answer)["tasks"], instant(origin));
+  return tasks ? *tasks : std::vector<TaskProfile>();
 }
 
 bool any_lives(const Json& status) {
