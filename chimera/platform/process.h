@@ -86,7 +86,7 @@ void run_in_background(std::uint64_t memory) noexcept;
 /// Linux frees the memory of a killed process before its pidfd becomes readable: milliseconds if the memory is locked,
 /// on the processor and at the priority of the thread that ends last, even a SCHED_FIFO thread. Memory with another
 /// user is not freed: the death is known at once, and the memory holder frees the memory later
-/// (docs/decisions/0008-quick-death.md).
+/// (docs/design/guard.md).
 ///
 /// The memory holder has no descriptor of this process, accepts no signal but SIGKILL, runs on idle processors only
 /// (SCHED_IDLE), and ends some milliseconds after this process. False if the system grants no second process: then this

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The standard streams of a program: whether printed text arrived, and the terminal behind a stream. A failed write is
 // an error of the program, which it reports, and never a signal that ends it.
-// docs/decisions/0028-output-is-not-control.md.
+// docs/decisions/0023-exit-code-of-a-run.md.
 #pragma once
 
 #include <cstddef>
