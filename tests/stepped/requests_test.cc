@@ -2,12 +2,10 @@
 // Requests and reactions of tasks: from the component in an rtpu over the manager to the switch and its receipt.
 #include <gtest/gtest.h>
 
-#include "chimera/manager/testing/stepped_subsystem.h"
+#include "tests/stepped/stepped_subsystem.h"
 
 namespace chimera::manager {
 namespace {
-
-using control::Json;
 
 // `asker` asks for what the operator variable `wish` says: 1 for `first`, 2 for `second`.
 const std::string kTasksAsk = R"(subsystem: subject
