@@ -22,6 +22,7 @@
 #include "chimera/manager/testing/test_bundle.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/rtpu/testing/test_units.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera::manager {
 
