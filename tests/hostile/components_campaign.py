@@ -17,8 +17,8 @@ import sys
 import tempfile
 import time
 
-LOADING = 15  # s: an object that is not loaded is told after 10
-LIMIT = 20    # s: one that does not end when it is asked to is killed after 10
+LOADING = 15  # s, after which a run is asked to end: a method may loop. What does not load is reported after 10 s
+HANG = 60
 VICTIMS = ("gain", "lowpass", "limit")
 TEXT = """subsystem: subject
 operator: {x: 1 V}
@@ -109,7 +109,7 @@ class Attempts:
             return run.communicate(timeout=LOADING)
         except subprocess.TimeoutExpired:
             run.terminate()
-            return run.communicate(timeout=LIMIT)
+            return run.communicate(timeout=HANG)
 
     @staticmethod
     def kind(code, said):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All bad ends in all methods in all executors, in random order: told, judged, and nothing to others. Its last line
-counts them. `lost_cycles`: deadlines that the other unit, on another CPU, missed and releases it lost meanwhile; at
---priority 0 that is the machine's own, with another it is a fault.
+"""All bad ends in all methods in all executors, in random order: reported, judged, and without an effect on others. The
+last line counts them. `lost_cycles`: deadlines that the other rtpu, on another CPU, missed and releases it lost.
 
 usage: ends_campaign.py --build TREE --seconds N [--priority P]
 """
@@ -49,7 +48,7 @@ class Case:
                 words += ["--at", "50 ms: clear bad"]
             component = "t_ends_event" if self.where == "sync" else "t_ends"
             process = ends.start_virtual(place, self.where, self.how, words, component)
-            out, err = process.communicate(timeout=30)
+            out, err = process.communicate(timeout=ends.HANG)
         assert process.returncode in (0, 1), (process.returncode, out, err)
         dies = self.how in ("segv", "abort", "kill", "exit")
         if dies or self.where in ("init", "on", "off", "kill"):  # an `on` that error() recovers from is OFF and refused
@@ -67,8 +66,7 @@ class Case:
         with ends.System(text, ["--priority", self.priority]) as system:
             before = system.task("steady")
             self.misbehave(system)
-            after = ends.await_that(
-                lambda: (t := system.task("steady"))["cycles"] > before["cycles"] + 5 and t, 5, "cycles")
+            after = system.await_cycles("steady")
             assert (after["state"], after["incarnation"]) == ("ON", before["incarnation"]), after
             self.lost = sum(after[key] - before[key] for key in ("missed", "dropped"))
             self.end(system)
@@ -77,7 +75,7 @@ class Case:
         first = {"init": ("off", "kill"), "on": ("off",), "kill": ("off",)}.get(self.where, ())
         for word in first:
             system.signal(word, "t0")
-        told = system.events()[-1]["number"]
+        since = system.next_event()
         system.arm()
         if self.where == "clear":
             system.await_state("t0", "ERROR")
@@ -89,13 +87,11 @@ class Case:
                 system.signal(word, "t0")
             except ends.Refused:
                 pass
-        kinds = ("rtpu-ended",) if self.how not in ("throw", "fault") else ("fault",)
-        ends.await_that(lambda: [e for e in system.events(told + 1) if e["kind"] in kinds], 10, f"{kinds}")
+        text = system.await_event(since, "fault" if self.how in ("throw", "fault") else "rtpu-ended")["text"]
         if self.how in ENDLESS:
-            text = next(e["text"] for e in system.events(told + 1) if e["kind"] == "rtpu-ended")
             assert "did not return within" in text and f"t0.{self.where}" in text, text
         system.disarm()
-        ends.await_that(lambda: (u := system.rtpu("u0"))["phase"] == "serving" or u["given_up"], 10, "recovery")
+        ends.await_that(lambda: (u := system.rtpu("u0"))["phase"] == "serving" or u["given_up"], "recovery")
 
     def end(self, system):
         at_end = self.where in ("off", "kill")
@@ -106,7 +102,7 @@ class Case:
             system.arm()
         system.disconnect()
         system.process.send_signal(random.choice((signal.SIGTERM, signal.SIGINT)))
-        code = system.process.wait(20)
+        code = system.wait()
         if at_end:
             said = system.said()
             assert code == 1 and "FAILED: t0: " in said and "may not be off" in said, (code, said)
@@ -131,7 +127,6 @@ def main():
             try:
                 case.run()
                 lost += case.lost
-                assert arguments.priority == "0" or case.lost == 0, f"{case.lost} cycles lost"
             except Exception as fault:  # the campaign goes on
                 faults += 1
                 print(f"seed {arguments.seed}, {where} {how} {executor}: {fault!r}", flush=True)

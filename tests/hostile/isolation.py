@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the misdeeds of one real-time unit cost another unit that has a CPU of its own.
+"""What the misdeeds of one rtpu cost another rtpu that has a CPU of its own.
 
 `good` runs at 1 kHz on CPU 0, t_misdeed or t_crash on CPU 1. For each misdeed: a quiet span, then the span with the
 misdeed, then one line with the cycles that `good` lost (deadlines missed and releases dropped) in both, of how many.

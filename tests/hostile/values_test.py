@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values that a careless or hostile hand writes: what is not finite, texts with a zero byte, constants with two
-producers, places of faults. One run of real processes serves all that needs one."""
+"""Values in descriptions and commands that no component can use: numbers that are not finite, texts with a zero byte,
+constants with two producers; and the places of these faults."""
 import json
 import os
 import pathlib
@@ -12,7 +12,7 @@ import unittest
 from unittest.mock import ANY
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
-from system import CHIMERA, System, UNITS  # noqa: E402
+from system import CHIMERA, HANG, RTPUS, System  # noqa: E402
 
 GAIN = """
 subsystem: subject
@@ -47,7 +47,7 @@ class Values(unittest.TestCase):
         if text is not None:
             file.write_text(text)
         done = subprocess.run([str(CHIMERA), *(str(file) if word == "FILE" else str(word) for word in words)],
-                              env=environment, cwd=self.folder, capture_output=True, text=True, timeout=30,
+                              env=environment, cwd=self.folder, capture_output=True, text=True, timeout=HANG,
                               stdin=subprocess.DEVNULL)
         return done.returncode, done.stdout, done.stderr
 
@@ -103,7 +103,7 @@ class Values(unittest.TestCase):
                         f"  a: {{component: limit, alias: {{y: z}}, {line}}}\n")
                 code, _, said = self.chimera("check", "FILE", text=text)
                 self.assertEqual(code, 0 if right else 1, f"{line}: {said}")
-            stack = (UNITS.replace("second: {cpu: 1, policy: edf}", "second: {executor: preemptive}") +
+            stack = (RTPUS.replace("second: {cpu: 1, policy: edf}", "second: {executor: preemptive}") +
                      f"tasks: {{a: {{component: t_source, rtpu: second, stack: 256{gap}KiB}}}}\n")
             self.assertEqual(self.chimera("check", "FILE", text=stack)[0], 0 if right else 1, f"stack 256{gap}KiB")
 
@@ -125,14 +125,11 @@ class Values(unittest.TestCase):
             folder = system.runtime / "chimera"
             self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o711)
             for value in ("inf V", "1e308 GV"):
-                done = subprocess.run([str(CHIMERA), "set", "wanted", value], env=system.environment, cwd=system.place,
-                                      capture_output=True, text=True, timeout=30)
-                self.assertEqual(done.returncode, 1, done.stdout)
-                self.assertIn("finite", done.stderr)
-            self.assertEqual(system.call("get", variables=["wanted"])["values"]["wanted"]["value"], 1)
+                self.assertIn("finite", system.chimera("set", "wanted", value, code=1).stderr)
+            self.assertEqual(system.value("wanted"), 1)
             system.call("end", code=0)
-            system.process.wait(20)
-            self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o700, "as before, once nobody else may come")
+            system.wait()
+            self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o700, "as before, once no other user may connect")
 
 
 if __name__ == "__main__":

@@ -5,18 +5,17 @@ import re
 import subprocess
 import unittest
 
-from system import CHIMERA, TWO_UNITS, System, await_that
+from system import CHIMERA, HANG, TWO_RTPUS, System, await_that
 
 
 class Naming(unittest.TestCase):
     def chimera(self, system, *words, elsewhere=True, folder="/"):
         """(exit code, standard output, standard error); `elsewhere`: of another session, as another terminal is."""
-        done = subprocess.run([str(CHIMERA), *words], env=system.environment, cwd=folder, start_new_session=elsewhere,
-                              capture_output=True, text=True, timeout=30, stdin=subprocess.DEVNULL)
+        done = system.chimera(*words, code=None, cwd=folder, start_new_session=elsewhere)
         return done.returncode, done.stdout, done.stderr
 
     def test_an_act_from_another_terminal_and_folder_wants_the_name(self):
-        with System(TWO_UNITS) as system:
+        with System(TWO_RTPUS) as system:
             code, out, err = self.chimera(system, "off", "beside")
             self.assertEqual((code, out), (1, ""))
             keeper = system.call("hello")["keeper_pid"]
@@ -28,8 +27,8 @@ class Naming(unittest.TestCase):
             self.assertEqual(self.chimera(system, *err.split("type: chimera ")[1].split()),
                              (0, "[subject] beside: ON -> OFF\n", ""), "what the refusal says to type works")
 
-    def test_a_question_says_whom_it_found(self):
-        with System(TWO_UNITS) as system:
+    def test_a_question_says_which_subsystem_it_found(self):
+        with System(TWO_RTPUS) as system:
             code, out, err = self.chimera(system, "get", "x")
             self.assertEqual((code, err), (0, "[subject]\n"))
             self.assertTrue(out.startswith("x = "))
@@ -37,7 +36,7 @@ class Naming(unittest.TestCase):
             self.assertEqual(json.loads(self.chimera(system, "get", "x", "--json")[1])["subsystem"], "subject")
 
     def test_its_folder_its_description_and_its_terminal_are_enough(self):
-        with System(TWO_UNITS) as system:
+        with System(TWO_RTPUS) as system:
             for number, how in enumerate(({"folder": system.place}, {"elsewhere": False})):
                 word = ("off", "on")[number]
                 code, out, err = self.chimera(system, word, "beside", **how)
@@ -47,16 +46,16 @@ class Naming(unittest.TestCase):
                              (0, f"{system.rtpu('first')['pid']}\n", ""))
 
     def test_of_several_the_one_of_this_folder_is_meant(self):
-        with System(TWO_UNITS) as system:
+        with System(TWO_RTPUS) as system:
             folder = system.place / "other"
             folder.mkdir()
             other = folder / "other.yaml"
-            other.write_text(TWO_UNITS.replace("subject", "other"))
+            other.write_text(TWO_RTPUS.replace("subject", "other"))
             run = subprocess.Popen([str(CHIMERA), "run", str(other), "--priority", "0"], env=system.environment,
                                    cwd=folder, start_new_session=True, stdout=subprocess.DEVNULL)
             try:
                 await_that(lambda: re.search(r"^beside +ON ", self.chimera(system, "status", "--subsystem", "other")[1],
-                                             re.M), 20, "the start")
+                                             re.M), "the start")
                 self.assertEqual(self.chimera(system, "off", "beside", folder=folder),
                                  (0, "[other] beside: ON -> OFF\n", ""))
                 self.assertEqual(self.chimera(system, "get", "x", folder=folder)[2], "[other]\n")
@@ -69,7 +68,7 @@ class Naming(unittest.TestCase):
                 self.assertEqual(system.state("beside"), "ON")
             finally:
                 run.terminate()
-                run.wait(15)
+                run.wait(HANG)
 
 
 if __name__ == "__main__":

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fault row 15: operators in conflict. Several of them ask for switches at random, at the same time; what was done, in
-the order of its instants, is one history from configuration to configuration, and explains each answer, also the
-refusals. CHIMERA_ROUNDS: requests of each operator."""
-import json
-import os
+"""Fault row 15: operators in conflict. Four of them ask for switches at random, at the same time. What was done, in the
+order of its instants, is one history from configuration to configuration, and explains each answer, also the refusals.
+The campaign `process_operators`."""
 import random
-import sys
 import threading
 import time
 import unittest
 
-from switch_test import SETS, TEXT
+from campaign import ROUNDS, SEED, begin, counted
+from descriptions import SETS, SWITCH
 from system import TOO_FAST, Client, Refused, System, await_that
 
-ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "15"))
-SEED = int(os.environ.get("CHIMERA_SEED", str(random.SystemRandom().randrange(1 << 32))))
 OPERATORS = 4
 
 
@@ -27,7 +23,7 @@ class Operator(threading.Thread):
         self.start()
 
     def run(self):
-        client = Client(self.system.socket, 30)
+        client = Client(self.system.socket)
         for _ in range(ROUNDS):
             target = self.random.choice(("gentle", "quick", "wild"))
             time.sleep(self.random.random() * 0.02)
@@ -47,23 +43,22 @@ class Operator(threading.Thread):
 
 class Operators(unittest.TestCase):
     def test_row_15_what_was_done_explains_each_answer(self):
-        print(f"seed {SEED}", file=sys.stderr)
-        with System(TEXT) as system:
+        begin()
+        with System(SWITCH) as system:
             operators = [Operator(system, SEED + n) for n in range(OPERATORS)]
             for operator in operators:
-                operator.join(120)
+                operator.join()
                 self.assertEqual(len(operator.told), ROUNDS)
-            await_that(lambda: system.call("receipts")["unfiled"] == 0, 10, "the file")
-            path = system.state_home / "chimera/subject/receipts.jsonl"
-            filed = {receipt["number"]: receipt for receipt in map(json.loads, path.read_text().splitlines())}
-            now = {task["task"] for task in system.call("status")["tasks"] if task["state"] == "ON"}
+            await_that(lambda: system.call("receipts")["unfiled"] == 0, "the file")
+            filed = {receipt["number"]: receipt for receipt in system.filed()}
+            now = system.on()
         told = [one for operator in operators for one in operator.told]
         history = self.history(filed, now)
         for one in told:
             self.judge(filed, history, *one)
         numbers = sorted(filed)
         self.assertEqual(numbers, list(range(1, len(numbers) + 1)))
-        print(f"answers: {len(told)}, done {len(history) - 1}", file=sys.stderr)
+        counted("answers", len(told))
 
     def history(self, filed, now):
         """[(since when, configuration)], each from the one before."""
@@ -76,7 +71,7 @@ class Operators(unittest.TestCase):
         return history
 
     def judge(self, filed, history, asked, answered, target, answer):
-        if isinstance(answer, Refused):  # somebody else's was under way then
+        if isinstance(answer, Refused):  # that of another operator was under way then
             self.assertEqual(answer.data["kind"], "under-way", answer)
             first = int(str(answer).split("switch ")[2].split()[0])
             self.assertTrue(self.overlaps(filed[first], asked, answered), (answer, filed[first]))
@@ -88,7 +83,7 @@ class Operators(unittest.TestCase):
             self.assertEqual(answer, filed[answer["number"]])
             self.assertEqual(answer["to"], target)
             self.assertTrue(self.overlaps(answer, asked, answered), answer)
-            if answer["end"] != "done" and answer["reason"] != "late":  # as on a machine that stalls
+            if answer["end"] != "done" and answer["reason"] != "late":  # late: a machine that stalls
                 self.assertEqual((answer["end"], answer["reason"], target), ("aborted", "step-too-large", "wild"))
 
     def overlaps(self, receipt, asked, answered):
